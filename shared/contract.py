@@ -44,7 +44,7 @@ class _Strict(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     """Unknown and missing fields are refused."""
 
 
-class Provenance(_Strict):
+class Provenance(_Strict, kw_only=True):
     """What the file was made from. Nothing here depends on when or where it was made."""
 
     inputs: str
@@ -52,7 +52,7 @@ class Provenance(_Strict):
     versions: dict[str, str]
 
 
-class BodyMotion(_Strict):
+class BodyMotion(_Strict, kw_only=True):
     """One body over time: its frame (m, rad), rates and accelerations; constants of the body."""
 
     x: Series
@@ -70,7 +70,7 @@ class BodyMotion(_Strict):
     inertia: NonNegative
 
 
-class JointMotion(_Strict):
+class JointMotion(_Strict, kw_only=True):
     """One joint over time: where its second marker is, and the reaction on the second body."""
 
     kind: str
@@ -82,7 +82,7 @@ class JointMotion(_Strict):
     torque: Series
 
 
-class DriverMotion(_Strict):
+class DriverMotion(_Strict, kw_only=True):
     """One driver over time: its value (m or rad), effort (N or N m) and power (W)."""
 
     kind: str
@@ -91,7 +91,7 @@ class DriverMotion(_Strict):
     power: Series
 
 
-class PointMotion(_Strict):
+class PointMotion(_Strict, kw_only=True):
     """One traced point over time."""
 
     body: str
@@ -103,14 +103,14 @@ class PointMotion(_Strict):
     ay: Series
 
 
-class Energy(_Strict):
+class Energy(_Strict, kw_only=True):
     """Energy of the whole mechanism (J)."""
 
     kinetic: Series
     potential: Series
 
 
-class Diagnostics(_Strict):
+class Diagnostics(_Strict, kw_only=True):
     """How good the numbers are."""
 
     position_residual: NonNegative
@@ -126,7 +126,7 @@ class Diagnostics(_Strict):
     """Smallest over largest singular value of the scaled Jacobian, 0 at a singular pose; per time."""
 
 
-class Motion(_Strict):
+class Motion(_Strict, kw_only=True):
     """data.json: the motion of one mechanism."""
 
     schema: Literal["mbsd.motion"] = "mbsd.motion"
@@ -147,7 +147,7 @@ class Motion(_Strict):
     diagnostics: Diagnostics
 
 
-class Mass(_Strict):
+class Mass(_Strict, kw_only=True):
     """Mass properties: kg, centre of mass (m, body frame), inertia about it (kg m^2), volume (m^3)."""
 
     mass: NonNegative
@@ -156,7 +156,7 @@ class Mass(_Strict):
     volume: NonNegative
 
 
-class Piece(_Strict):
+class Piece(_Strict, kw_only=True):
     """One printable solid of a body, in the body's frame; its files stand beside parts.json (millimetres)."""
 
     material: str
@@ -169,7 +169,7 @@ class Piece(_Strict):
     stl_sha256: str
 
 
-class BodyParts(_Strict):
+class BodyParts(_Strict, kw_only=True):
     """All pieces that move with one body, and their mass together. ``ground`` is the frame."""
 
     pieces: dict[str, Piece]
@@ -178,7 +178,7 @@ class BodyParts(_Strict):
     """Middle height of the body's main piece (m)."""
 
 
-class Parts(_Strict):
+class Parts(_Strict, kw_only=True):
     """parts.json: the solids of one mechanism."""
 
     schema: Literal["mbsd.parts"] = "mbsd.parts"

@@ -1,0 +1,41 @@
+"""The author's side of the line: ``python -m mechanisms {parts,solve,clearance,shot} NAME``, ``new NAME``, ``list``."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+
+from shared.console import run_cli
+from shared.paths import mechanism_folder
+
+STAGES = {
+    "parts": ("mechanisms.parts_stage", "make the solids: STL, STEP and parts.json"),
+    "solve": ("mechanisms.solve_stage", "solve the motion: data.json"),
+    "clearance": ("mechanisms.clearance_stage", "prove that no two parts touch over the motion: clearance.json"),
+    "shot": ("mechanisms.shot_stage", "check the scene's description: shot.json"),
+}
+
+
+def main() -> int | None:
+    """Read the command line and run one stage; each is imported only when it is asked for."""
+    parser = argparse.ArgumentParser(prog="python -m mechanisms", description="Mechanisms: from a folder to files.")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for command, (_, text) in STAGES.items():
+        commands.add_parser(command, help=text).add_argument("name", help="mechanism; four-bar and four_bar are one")
+    commands.add_parser("new", help="a new mechanism that already runs").add_argument("name", help="folder to make")
+    commands.add_parser("list", help="the mechanisms and what is made of them")
+    arguments = parser.parse_args()
+    if arguments.command in STAGES:
+        name = mechanism_folder(arguments.name).name
+        return importlib.import_module(STAGES[arguments.command][0]).run(name)
+    if arguments.command == "new":
+        from mechanisms import new
+
+        return new.run(arguments.name)
+    from mechanisms import listing
+
+    return listing.run()
+
+
+if __name__ == "__main__":
+    run_cli(main)

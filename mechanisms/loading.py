@@ -1,0 +1,108 @@
+"""Load one of the three files of a mechanism; what is wrong in it is told with file and line."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+import traceback
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from importlib.abc import MetaPathFinder
+from importlib.machinery import ModuleSpec, SourceFileLoader
+from importlib.util import spec_from_file_location
+from pathlib import Path
+from types import CodeType, ModuleType
+from typing import Any, Literal
+
+from shared.errors import UserError
+from shared.paths import MECHANISMS, canonical_name, mechanism_folder
+
+File = Literal["mechanism", "parts", "shot"]
+
+REQUIRED: dict[File, dict[str, str]] = {
+    "mechanism": {"Params": "a frozen dataclass of the lengths", "build": "def build(p: Params) -> Mechanism"},
+    "parts": {"parts": "def parts(p: Params) -> dict[str, list[Solid]]"},
+    "shot": {"shot": "shot = Shot(...)"},
+}
+
+
+def load(name: str, file: File) -> ModuleType:
+    """Import ``mechanisms/<name>/<file>.py``.
+
+    Raises UserError, with file and line, when there is no such mechanism or file, when the file cannot be
+    imported, or when it lacks what :data:`REQUIRED` lists.
+    """
+    folder = mechanism_folder(name)
+    path = folder / f"{file}.py"
+    if not path.is_file():
+        raise UserError(f"{folder.name}: {_shown(path)} is missing; a mechanism has mechanism.py, parts.py and shot.py")
+    with author_code(name):
+        module = importlib.import_module(f"mechanisms.{folder.name}.{file}")
+    for attribute, form in REQUIRED[file].items():
+        if not hasattr(module, attribute):
+            raise UserError(f"{folder.name}: {_shown(path)} does not define '{attribute}'; write {form}")
+    return module
+
+
+def params(name: str) -> Any:
+    """The default parameters of a mechanism: ``Params()`` of its mechanism.py. Raises UserError as :func:`load`."""
+    module = load(name, "mechanism")
+    with author_code(name):
+        return module.Params()
+
+
+@contextmanager
+def author_code(name: str) -> Iterator[None]:
+    """Turn what the author's code raises in this block into a UserError that names file and line.
+
+    A UserError passes as it is. An exception that comes from elsewhere without touching the mechanism's folder
+    is a fault of ours and passes too.
+    """
+    folder = MECHANISMS / canonical_name(name)
+    try:
+        yield
+    except UserError:
+        raise
+    except SyntaxError as error:
+        if not error.filename or not Path(error.filename).is_relative_to(folder):
+            raise
+        shown = f"{_shown(Path(error.filename))}:{error.lineno}"
+        raise UserError(f"{folder.name}: {shown}: {error.msg}: {(error.text or '').strip()}") from error
+    except Exception as error:
+        lines = [frame for frame in traceback.extract_tb(error.__traceback__) if _is_below(frame.filename, folder)]
+        if not lines:
+            raise
+        shown = f"{_shown(Path(lines[-1].filename))}:{lines[-1].lineno}"
+        raise UserError(f"{folder.name}: {shown}: {type(error).__name__}: {error}") from error
+
+
+class _SourceOnly(SourceFileLoader):
+    """Compiles the file each time: Python's own cache misses an edit within a second that keeps the size."""
+
+    def get_code(self, fullname: str) -> CodeType:
+        return self.source_to_code(self.get_data(self.path), self.path)
+
+
+class _MechanismFiles(MetaPathFinder):
+    """Finds ``mechanisms.<folder>.<file>``."""
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        package, _, rest = fullname.partition(".")
+        folder, dot, file = rest.partition(".")
+        source = MECHANISMS / folder / f"{file}.py"
+        if package != "mechanisms" or not dot or not source.is_file():
+            return None
+        return spec_from_file_location(fullname, source, loader=_SourceOnly(fullname, str(source)))
+
+
+def _is_below(filename: str, folder: Path) -> bool:
+    return Path(filename).is_relative_to(folder)
+
+
+def _shown(path: Path) -> str:
+    return path.relative_to(MECHANISMS.parent).as_posix()
+
+
+sys.meta_path.insert(0, _MechanismFiles())

@@ -1,0 +1,148 @@
+"""shot.json: how a motion is filmed. Data only; ``Shot()`` alone gives a good film.
+
+Metres and seconds; angles in degrees, because this is written by hand; colours linear RGB 0..1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Annotated, Literal
+
+import msgspec
+
+from shared import jsonfile
+from shared.contract import Motion, Parts
+from shared.errors import UserError
+from shared.materials import MATERIALS
+
+Unit = Annotated[float, msgspec.Meta(ge=0, le=1)]
+Positive = Annotated[float, msgspec.Meta(gt=0)]
+Colour = tuple[Unit, Unit, Unit]
+
+
+class _Strict(msgspec.Struct, forbid_unknown_fields=True, kw_only=True, frozen=True):
+    """Unknown fields are refused."""
+
+
+class Camera(_Strict):
+    """Where the camera stands. Its distance follows from the swept motion, so that all of it is always in the frame."""
+
+    azimuth: Annotated[float, msgspec.Meta(ge=-180, le=180)] = -16.0
+    """Degrees about z; 0 looks along +y, positive walks to the right."""
+    elevation: Annotated[float, msgspec.Meta(ge=5, le=89)] = 42.0
+    """Degrees above the base."""
+    lens: Annotated[float, msgspec.Meta(ge=20, le=200)] = 55.0
+    """Focal length in mm on a 36 mm wide sensor."""
+    margin: Annotated[float, msgspec.Meta(ge=0, le=0.4)] = 0.09
+    """Empty part of the frame's width (and height) left on each side of the swept motion."""
+    blur: Annotated[float, msgspec.Meta(ge=0, le=20)] = 1.0
+    """Depth of field: blur in pixels of a 1280 wide frame at the nearest and farthest moving part; 0 is a pinhole."""
+    orbit: Annotated[float, msgspec.Meta(ge=0, le=45)] = 0.0
+    """Degrees the camera swings to each side, once a turn, so that the film still loops."""
+
+
+class Trail(_Strict):
+    """The path of a traced point, a thin light that fades behind it."""
+
+    point: str
+    colour: Colour = (1.0, 0.46, 0.13)
+    tail: Annotated[float, msgspec.Meta(gt=0, le=1)] = 0.92
+    """Length behind the point, in turns."""
+    radius: Annotated[float, msgspec.Meta(gt=0, le=0.1)] = 0.004
+    """At the point, as a part of the size of the swept motion."""
+    z: float | None = None
+    """Height (m); null is just above the body that carries the point."""
+
+
+class Label(_Strict):
+    """A short text that floats over a joint or a traced point and faces the camera."""
+
+    at: str
+    text: Annotated[str, msgspec.Meta(min_length=1, max_length=40)]
+    size: Annotated[float, msgspec.Meta(gt=0, le=0.2)] = 0.028
+    """Letter height, as a part of the size of the swept motion."""
+    colour: Colour = (0.86, 0.88, 0.92)
+
+
+class Surface(_Strict):
+    """A surface for a piece, where none of the named materials will do."""
+
+    colour: Colour
+    finish: Literal["anodised", "brushed", "polished", "satin", "plastic", "rubber"] = (
+        "anodised"
+    )
+    roughness: Unit = 0.3
+
+
+class Shot(_Strict):
+    """shot.json: camera, look and film of one mechanism."""
+
+    schema: Literal["mbsd.shot"] = "mbsd.shot"
+    schema_version: Literal[1] = 1
+    camera: Camera = Camera()
+    look: Literal["studio", "daylight"] = "studio"
+    turns: Annotated[int, msgspec.Meta(ge=1, le=1000)] = 3
+    """How often the film shows the motion; every turn after the first costs nothing to render."""
+    seconds_per_turn: Annotated[float, msgspec.Meta(gt=0, le=600)] = 4.0
+    """Film time of one turn (one period; a motion without a period runs there and back in it)."""
+    fps: Annotated[int, msgspec.Meta(ge=1, le=120)] = 30
+    trails: tuple[Trail, ...] | None = None
+    """null trails every traced point; () trails none."""
+    labels: tuple[Label, ...] = ()
+    materials: dict[str, str | Surface] = {}
+    """Other surfaces for the film alone, by ``body`` or ``body/piece``: the name of a material or a Surface."""
+    poster: Unit = 0.12
+    """Which moment the poster shows, as a part of a turn."""
+
+    @property
+    def frames_per_turn(self) -> int:
+        """Pictures in one turn, at least one."""
+        return max(1, round(self.seconds_per_turn * self.fps))
+
+    @property
+    def frames(self) -> int:
+        """Pictures in the whole film."""
+        return self.turns * self.frames_per_turn
+
+
+def read_shot(path: Path) -> Shot:
+    """Read shot.json; raises UserError naming the field."""
+    return jsonfile.read(path, Shot)
+
+
+def write_shot(path: Path, shot: Shot) -> None:
+    """Check types, ranges and numbers, and write shot.json whole."""
+    jsonfile.refuse_non_finite(shot, path)
+    jsonfile.write(path, jsonfile.decode(jsonfile.encode(shot), Shot, path))
+
+
+def refuse_unknown(shot: Shot, motion: Motion, parts: Parts) -> None:
+    """Raise UserError for every name in the shot that the motion or the parts do not have, with the names they have."""
+    for index, trail in enumerate(shot.trails or ()):
+        _known(motion.mechanism, f"trails[{index}].point", trail.point, motion.points)
+    for index, label in enumerate(shot.labels):
+        _known(
+            motion.mechanism,
+            f"labels[{index}].at",
+            label.at,
+            [*motion.joints, *motion.points],
+        )
+    bodies = list(parts.bodies)
+    pieces = [
+        f"{body}/{piece}"
+        for body, solids in parts.bodies.items()
+        for piece in solids.pieces
+    ]
+    for name, surface in shot.materials.items():
+        _known(motion.mechanism, "materials", name, [*bodies, *pieces])
+        if isinstance(surface, str):
+            _known(motion.mechanism, f"materials['{name}']", surface, MATERIALS)
+
+
+def _known(mechanism: str, field: str, name: str, names: Iterable[str]) -> None:
+    known = list(names)
+    if name not in known:
+        raise UserError(
+            f"{mechanism}: shot.{field} names '{name}', which is not there; known: {', '.join(known) or 'none'}"
+        )

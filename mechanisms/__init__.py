@@ -1,0 +1,1 @@
+"""Mechanisms, one folder each, and the stages that turn them into files."""

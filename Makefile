@@ -1,0 +1,134 @@
+# The face of the project: `make help` lists what there is. GNU make 3.81 and a POSIX shell are enough.
+
+PRESET ?= preview
+FRAME ?= 1
+NAME ?=
+PYTEST ?= -n 2 --dist loadfile
+
+PRESETS := draft preview production final
+ifeq ($(filter $(PRESETS),$(PRESET)),)
+$(error PRESET=$(PRESET) is not a preset; choose one of: $(PRESETS))
+endif
+
+PYTHON := .venv/bin/python
+MECHANISMS = $(PYTHON) -m mechanisms
+RENDER = $(PYTHON) -m render
+name = $(subst -,_,$*)
+
+# pyright comes whole in its wheel; without this it asks the network whether it is the newest.
+export PYRIGHT_PYTHON_IGNORE_WARNINGS := 1
+
+.DEFAULT_GOAL := help
+.PHONY: help install check list run-all all new test lint format bench schema lock clean clean-all always
+
+# A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
+define upto_motion
+	@$(MECHANISMS) parts $(name)
+	@$(MECHANISMS) solve $(name)
+endef
+define upto_shot
+	$(upto_motion)
+	@$(MECHANISMS) shot $(name)
+endef
+
+help: ## this list
+	@echo "make <target>, with PRESET=draft|preview|production|final on every picture target (preview by default)."
+	@echo "A mechanism's name takes hyphens or underscores: run-four-bar, run-four_bar."
+	@echo
+	@sed -n 's/^\([a-z][a-z-]*\)-%:[^#]*## /\1-<name>|/p; s/^\([a-z][a-z-]*\):[^#]*## /\1|/p' Makefile \
+	| awk -F'|' '{ printf "  %-18s %s\n", $$1, $$2 }'
+
+run-%: install always ## everything of one mechanism: parts, motion, clearance, plots, poster, film
+	$(upto_motion)
+	@$(MECHANISMS) clearance $(name)
+	@$(MECHANISMS) shot $(name)
+	@$(RENDER) plots $(name)
+	@$(RENDER) poster $(name) --preset $(PRESET)
+	@$(RENDER) film $(name) --preset $(PRESET)
+
+run-all: install ## run-<name> for every mechanism; goes on after a failure, with a summary at the end
+	@sh tools/run_all.sh "$(MAKE)" "$(PRESET)"
+
+all: run-all ## the same: what one starts overnight, e.g. make all PRESET=final
+
+parts-%: install always ## the solids: out/<name>/parts/ (STL, STEP, parts.json)
+	@$(MECHANISMS) parts $(name)
+
+solve-%: install always ## the motion: out/<name>/data.json
+	$(upto_motion)
+
+clearance-%: install always ## proof that no two parts touch over the whole motion: clearance.json
+	$(upto_motion)
+	@$(MECHANISMS) clearance $(name)
+
+plot-%: install always ## the plots: out/<name>/plots/
+	$(upto_motion)
+	@$(RENDER) plots $(name)
+
+poster-%: install always ## one picture at its best: out/<name>/poster.png
+	$(upto_shot)
+	@$(RENDER) poster $(name) --preset $(PRESET)
+
+still-%: install always ## one frame of the film, FRAME=15: out/<name>/stills/
+	$(upto_shot)
+	@$(RENDER) still $(name) --frame $(FRAME) --preset $(PRESET)
+
+frames-%: install always ## the frames of the film: out/<name>/frames/<preset>/
+	$(upto_shot)
+	@$(RENDER) frames $(name) --preset $(PRESET)
+
+film-%: install always ## the film: out/films/<name>-<preset>.mp4
+	$(upto_shot)
+	@$(RENDER) film $(name) --preset $(PRESET)
+
+scene-ui-%: install always ## open the scene in an installed Blender
+	$(upto_shot)
+	@$(RENDER) scene-ui $(name) --preset $(PRESET)
+
+scene-%: install always ## save the scene: out/<name>/<name>.blend
+	$(upto_shot)
+	@$(RENDER) scene $(name) --preset $(PRESET)
+
+new: install ## a new mechanism that already runs: make new NAME=my_linkage
+	@$(MECHANISMS) new "$(NAME)"
+
+list: install ## the mechanisms and what is made of them
+	@$(MECHANISMS) list
+
+check: install ## versions, system libraries, render device, disk space
+	@$(PYTHON) -m shared.check
+
+install: ## uv, Python 3.13, every package at its locked version, compiled kernels
+	@sh tools/install.sh
+
+test: install ## the tests; PYTEST="-k name" picks some
+	@$(PYTHON) -m pytest $(PYTEST)
+
+lint: install ## formatting, ruff, pyright, import rules
+	@.venv/bin/ruff format --check .
+	@.venv/bin/ruff check .
+	@.venv/bin/pyright
+	@.venv/bin/lint-imports --no-cache
+
+format: install ## format the sources and cure what ruff can
+	@.venv/bin/ruff check --fix --exit-zero --quiet .
+	@.venv/bin/ruff format .
+
+bench: install ## the solver beside its peers: a table, and out/bench.json
+	@sh tools/install.sh bench
+	@$(PYTHON) -m benchmarks
+
+schema: install ## write docs/schema/ from shared/contract.py and shared/shot.py
+	@$(PYTHON) -m shared.schema
+
+lock: ## choose versions anew within pyproject.toml: requirements.lock, requirements-bench.lock
+	@sh tools/lock.sh
+
+clean: ## remove all results
+	@sh tools/clean.sh
+
+clean-all: clean ## remove results, environment and caches
+	@rm -rf .venv .venv-uv .cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache mbsd.egg-info
+	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+always:

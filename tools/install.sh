@@ -1,0 +1,65 @@
+#!/bin/sh
+# Makes .venv with the packages of requirements.lock and compiles the solver's kernels; `install.sh bench` adds the
+# peers of the benchmarks. What stands already, judged by the content of the lock, is left alone.
+set -eu
+cd "$(dirname "$0")/.."
+python=.venv/bin/python
+
+finds_python() {
+    # A working 3.13 with the global lock: the free-threaded build has no wheels for half of the packages.
+    "$1" -c 'import sys, sysconfig
+sys.exit(sys.version_info[:2] != (3, 13) or bool(sysconfig.get_config_var("Py_GIL_DISABLED")))' >/dev/null 2>&1
+}
+
+choose_python() {
+    # uv does not look into pyenv, whose shims answer only when the version is switched on; so look there by hand.
+    for candidate in python3.13 "${PYENV_ROOT:-$HOME/.pyenv}"/versions/3.13*/bin/python3.13; do
+        if finds_python "$candidate"; then
+            "$candidate" -c 'import sys; print(sys.executable)'
+            return
+        fi
+    done
+    echo 3.13
+}
+
+make_environment() {
+    uv=$(sh tools/find_uv.sh)
+    if ! finds_python $python; then
+        chosen=$(choose_python)
+        echo "install: making .venv with Python $chosen"
+        rm -rf .venv
+        "$uv" venv --quiet --python "$chosen" .venv || {
+            echo "error: Python 3.13 was neither found nor fetched; install it (Debian: pyenv install 3.13," \
+                "Mac: brew install python@3.13) and run make again" >&2
+            exit 1
+        }
+    fi
+    rm -f .venv/requirements.lock .venv/requirements-bench.lock
+    echo "install: packages of requirements.lock (3 GB when all are new)"
+    "$uv" pip sync --quiet --python $python --require-hashes requirements.lock || {
+        echo "error: the packages of requirements.lock could not be installed; uv says why above." \
+            "The same command goes on from here" >&2
+        exit 1
+    }
+    echo "install: compiling the solver's kernels"
+    $python -m mbsd compile
+    cp requirements.lock .venv/requirements.lock
+}
+
+if ! { [ -x $python ] && cmp -s requirements.lock .venv/requirements.lock; }; then
+    make_environment
+fi
+
+# Asked again until nothing is missing; the solver runs without these libraries, parts and pictures do not.
+if [ ! -f .venv/libraries-found ]; then
+    if $python -m shared.system_libraries; then
+        touch .venv/libraries-found
+    fi
+fi
+
+if [ "${1:-}" = bench ] && ! cmp -s requirements-bench.lock .venv/requirements-bench.lock; then
+    uv=$(sh tools/find_uv.sh)
+    echo "install: peers of the benchmarks"
+    "$uv" pip install --quiet --python $python --require-hashes -r requirements-bench.lock
+    cp requirements-bench.lock .venv/requirements-bench.lock
+fi

@@ -1,0 +1,21 @@
+#!/bin/sh
+# run_all.sh MAKE PRESET: make run-<name> for every mechanism, a summary at the end; non-zero if one failed.
+set -u
+cd "$(dirname "$0")/.."
+done=0 failed=
+for file in mechanisms/*/mechanism.py; do
+    [ -f "$file" ] || continue
+    folder=${file%/mechanism.py}
+    name=${folder#mechanisms/}
+    echo "run-all: $name"
+    if "$1" --no-print-directory "run-$name" PRESET="$2"; then
+        done=$((done + 1))
+    else
+        failed="$failed $name"
+    fi
+done
+if [ -n "$failed" ]; then
+    echo "run-all: $done done, failed:$failed; their errors stand above, make run-<name> tries one again" >&2
+    exit 1
+fi
+echo "run-all: $done done"

@@ -9,6 +9,8 @@ from __future__ import annotations
 import json
 import math
 import re
+import typing
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,15 +20,27 @@ from shared.errors import UserError
 from shared.files import write_bytes
 
 
+class _Header(msgspec.Struct):
+    """What is looked at first, so that another version is not blamed on its fields."""
+
+    schema: Any = None
+    schema_version: Any = None
+
+
 def encode(document: msgspec.Struct) -> bytes:
     """Canonical bytes: fields in declaration order, shortest exact floats, one trailing newline."""
     return msgspec.json.format(msgspec.json.encode(document), indent=1) + b"\n"
 
 
-def write(path: Path, document: msgspec.Struct) -> None:
-    """Check ``document`` and write it whole; raises UserError, leaving an older file as it was."""
+def write[T: msgspec.Struct](path: Path, document: T) -> None:
+    """Check numbers, types and ranges of ``document`` and write it whole.
+
+    Raises UserError naming the field, and leaves an older file as it was.
+    """
     refuse_non_finite(document, path)
-    write_bytes(path, encode(document))
+    content = encode(document)
+    decode(content, type(document), path)
+    write_bytes(path, content)
 
 
 def read[T: msgspec.Struct](path: Path, kind: type[T]) -> T:
@@ -42,13 +56,12 @@ def read[T: msgspec.Struct](path: Path, kind: type[T]) -> T:
 
 def decode[T: msgspec.Struct](content: bytes, kind: type[T], path: Path | str) -> T:
     """Decode and check bytes that came from ``path``."""
-    _check_version(content, kind, path)
     try:
+        header = msgspec.json.decode(content, type=_Header)
+        _refuse_other_version(header, kind, path)
         document = msgspec.json.decode(content, type=kind)
-    except msgspec.ValidationError as error:
-        raise UserError(f"{path}: {_plain(str(error))}") from error
     except msgspec.DecodeError as error:
-        raise UserError(f"{path}: not a whole JSON file ({error}){_last_field(content)}; make it again") from error
+        raise UserError(f"{path}: {_reason(content, kind, error)}") from error
     refuse_non_finite(document, path)
     return document
 
@@ -60,21 +73,60 @@ def refuse_non_finite(document: Any, path: Path | str) -> None:
             raise UserError(f"{path}: {field} is {value}; every number must be finite")
 
 
-def _check_version(content: bytes, kind: type[msgspec.Struct], path: Path | str) -> None:
-    """Refuse another schema or version before its fields confuse the message."""
-    expected = {f.name: f.default for f in msgspec.structs.fields(kind) if f.name in ("schema", "schema_version")}
+def _refuse_other_version(header: _Header, kind: type[msgspec.Struct], path: Path | str) -> None:
+    for field in msgspec.structs.fields(kind):
+        found = getattr(header, field.name, field.default)
+        if field.name in _Header.__struct_fields__ and found != field.default:
+            said = "missing" if found is None else repr(found)
+            raise UserError(
+                f"{path}: {field.name} is {said}, this program reads {field.default!r}; make the file again"
+            )
+
+
+def _reason(content: bytes, kind: type[msgspec.Struct], error: msgspec.DecodeError) -> str:
+    """Why the typed decoder refused ``content``, with the field it means; slow, but a refusal is rare."""
     try:
-        raw = json.loads(content)
+        raw = json.loads(content)  # takes NaN and Infinity, so that they can be named
     except ValueError:
-        return  # the typed decoder words this better
+        return f"not a whole JSON file ({error}){_last_field(content)}; make it again"
     if not isinstance(raw, dict):
-        raise UserError(f"{path}: expected an object at the top, found {type(raw).__name__}")
-    for field, value in expected.items():
-        if raw.get(field) != value:
-            raise UserError(f"{path}: {field} is {raw.get(field)!r}, this program reads {value!r}; make the file again")
+        return f"expected an object at the top, found {type(raw).__name__}"
+    try:
+        _refuse_other_version(msgspec.convert(raw, _Header), kind, "")
+        refuse_non_finite(raw, "")
+    except UserError as refusal:
+        return str(refusal).removeprefix(": ")
+    return next(_complaints(raw, kind, ""), str(error))
 
 
-def _floats(value: Any, field: str) -> Any:
+def _complaints(raw: Any, kind: Any, field: str) -> Iterator[str]:
+    """Follow dictionaries and structs down to the entries that do not convert.
+
+    msgspec hides the key of a dictionary behind ``[...]``, so each entry is converted on its own.
+    """
+    try:
+        msgspec.convert(raw, kind)
+        return
+    except msgspec.ValidationError as error:
+        message = str(error)
+    if isinstance(raw, dict) and isinstance(kind, type) and issubclass(kind, msgspec.Struct):
+        for inner in msgspec.structs.fields(kind):
+            if inner.name in raw:
+                yield from _complaints(raw[inner.name], inner.type, f"{field}.{inner.name}" if field else inner.name)
+    elif isinstance(raw, dict) and typing.get_origin(kind) is dict:
+        for key, value in raw.items():
+            yield from _complaints(value, typing.get_args(kind)[1], f"{field}.{key}")
+    yield _placed(message, field)
+
+
+def _placed(message: str, field: str) -> str:
+    """msgspec writes ``- at `$.x[3]` `` below the thing it converted; say the whole field without the dollar."""
+    reason, _, inner = message.partition(" - at `$")
+    whole = (field + inner.rstrip("`")).lstrip(".")
+    return f"{reason} at {whole}" if whole else reason
+
+
+def _floats(value: Any, field: str) -> Iterator[tuple[str, float]]:
     if isinstance(value, float):
         yield field, value
     elif isinstance(value, msgspec.Struct):
@@ -82,15 +134,10 @@ def _floats(value: Any, field: str) -> Any:
             yield from _floats(getattr(value, name), f"{field}.{name}" if field else name)
     elif isinstance(value, dict):
         for name, item in value.items():
-            yield from _floats(item, f"{field}.{name}")
+            yield from _floats(item, f"{field}.{name}" if field else str(name))
     elif isinstance(value, list | tuple):
         for index, item in enumerate(value):
             yield from _floats(item, f"{field}[{index}]")
-
-
-def _plain(message: str) -> str:
-    """msgspec writes ``- at `$.bodies[...].x[3]` ``; say it without the dollar."""
-    return re.sub(r" - at `\$\.?(.*)`", r" at \1", message)
 
 
 def _last_field(content: bytes) -> str:

@@ -1,0 +1,44 @@
+"""Plots of a motion: ``python -m render plots NAME`` reads data.json and writes out/<mechanism>/plots/*.png."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from shared.console import say
+from shared.contract import read_motion
+from shared.files import sources_hash, whole_file
+from shared.paths import ROOT, Out
+from shared.stages import Stage, key_of, versions
+
+
+def run(name: str) -> None:
+    """Draw every plot of one mechanism, if the motion or the drawing code changed; same motion, same bytes.
+
+    Raises UserError if data.json is missing or does not hold together.
+    """
+    out = Out(name)
+    motion = read_motion(out.motion)
+    names = ["path", "bodies", "reactions", "hodographs", "energy"]
+    names += [f"point-{point}" for point in motion.points]
+    names += [f"slider-{body}" for body in motion.bodies if _only_slides(motion.bodies[body].theta)]
+    outputs = {plot: out.plots / f"{plot}.png" for plot in names}
+    sources = sources_hash(Path(__file__).parent, ROOT / "shared" / "contract.py")
+    key = key_of(out.motion, sources, versions("matplotlib", "numpy"))
+    stage = Stage(out, "plots", key, list(outputs.values()))
+    if stage.is_fresh():
+        return
+
+    from render.plots.figures import figure  # matplotlib takes a second to load
+
+    for plot, path in outputs.items():
+        with whole_file(path) as temporary:
+            # No software, no date: the same motion gives the same bytes.
+            figure(plot, motion).savefig(temporary, format="png", metadata={"Software": None})
+    for older in set(out.plots.glob("*.png")) - set(outputs.values()):
+        older.unlink()
+    stage.done()
+    say("plots", f"{out.name}: {len(outputs)} plots in {out.plots}")
+
+
+def _only_slides(theta: list[float]) -> bool:
+    return max(theta) - min(theta) < 1e-9

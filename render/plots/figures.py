@@ -1,0 +1,23 @@
+"""Every plot by name."""
+
+from __future__ import annotations
+
+from matplotlib.figure import Figure
+
+from render.plots.loads import energy, hodographs, reactions
+from render.plots.path import path
+from render.plots.rates import bodies, point, slider
+from render.plots.style import house_style
+from shared.contract import Motion
+
+WHOLE = {"path": path, "bodies": bodies, "reactions": reactions, "hodographs": hodographs, "energy": energy}
+ONE = {"point-": point, "slider-": slider}
+
+
+def figure(plot: str, motion: Motion) -> Figure:
+    """Draw one plot: a name of :data:`WHOLE`, or ``point-<P>``, ``slider-<body>``."""
+    with house_style():
+        if plot in WHOLE:
+            return WHOLE[plot](motion)
+        prefix = next(prefix for prefix in ONE if plot.startswith(prefix))
+        return ONE[prefix](motion, plot.removeprefix(prefix))

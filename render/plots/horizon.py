@@ -1,0 +1,47 @@
+"""The horizontal axis: the driver's angle where one angle drives the mechanism forward, time otherwise."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import MultipleLocator
+
+from shared.contract import Motion
+
+
+@dataclass(frozen=True)
+class Horizon:
+    """Values of the horizontal axis and what they are called."""
+
+    values: np.ndarray
+    label: str
+    degrees: bool
+
+    def dress(self, axes: Axes) -> None:
+        """Set limits, ticks and the label of the lowest axes."""
+        axes.set_xlim(self.values[0], self.values[-1])
+        axes.set_xlabel(self.label)
+        if self.degrees:
+            span = float(self.values[-1] - self.values[0])
+            axes.xaxis.set_major_locator(MultipleLocator(_step(span)))
+
+
+def horizon(motion: Motion) -> Horizon:
+    """The driver's angle in degrees if there is one driver, it is an angle and it never turns back; else time in s."""
+    if len(motion.drivers) == 1:
+        ((name, driver),) = motion.drivers.items()
+        angle = np.degrees(driver.value)
+        if "angle" in driver.kind and np.all(np.diff(angle) > 0):
+            return Horizon(angle, f"{name} angle (deg)", True)
+    return Horizon(np.asarray(motion.time), "time (s)", False)
+
+
+def _step(span: float) -> float:
+    """Ticks in parts and multiples of a right angle, twelve at most."""
+    for step in (5, 10, 15, 30, 45, 90, 180, 360):
+        if span / step <= 12:
+            return step
+    return 360.0 * math.ceil(span / 360 / 12)

@@ -1,0 +1,132 @@
+"""What the joints carry and the drivers give: reactions, hodographs, energy and power."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from render.plots.horizon import horizon
+from render.plots.rates import draw
+from render.plots.style import INK, PALETTE, QUIET, colour, page, rows
+from shared.contract import Motion
+
+PANELS = 12
+"""Hodographs on one page; of more joints, those with the largest reactions."""
+
+
+def reactions(motion: Motion) -> Figure:
+    """Magnitude of every joint's reaction (N), its torque where it carries one (N m), and the drivers' effort."""
+    over = horizon(motion)
+    forces = [(name, np.hypot(joint.fx, joint.fy), colour(i)) for i, (name, joint) in enumerate(motion.joints.items())]
+    torques = [
+        (name, np.asarray(joint.torque), colour(i))
+        for i, (name, joint) in enumerate(motion.joints.items())
+        if np.abs(joint.torque).max() > 1e-12
+    ]
+    turning, pushing = [], []
+    for i, (name, driver) in enumerate(motion.drivers.items()):
+        (turning if "angle" in driver.kind else pushing).append((name, np.asarray(driver.effort), colour(i)))
+    panels = [
+        ("reaction force (N)", forces),
+        ("reaction torque (N m)", torques),
+        ("driver torque (N m)", turning),
+        ("driver force (N)", pushing),
+    ]
+    panels = [(label, lines) for label, lines in panels if lines]
+    figure = page(
+        motion.mechanism,
+        "what the joints carry",
+        "magnitude of each joint's reaction, and what the driver must give",
+    )
+    for axes, (label, lines) in zip(rows(figure, len(panels)), panels, strict=True):
+        draw(axes, over, label, lines)
+    over.dress(axes)
+    return figure
+
+
+def hodographs(motion: Motion) -> Figure:
+    """The tip of each joint's reaction vector (N) over the motion, drawn from the origin; the dot is the start."""
+    largest = sorted(
+        motion.joints, key=lambda name: -float(np.hypot(motion.joints[name].fx, motion.joints[name].fy).max())
+    )
+    shown = [name for name in motion.joints if name in largest[:PANELS]]
+    figure = page(
+        motion.mechanism,
+        "reactions by direction",
+        "tip of the force on the joint's second body, world axes, in N; the dot marks the start, the arrow the largest",
+    )
+    columns = min(len(shown), max(3, math.ceil(math.sqrt(len(shown)))) if len(shown) != 4 else 2)
+    grid = figure.subplots(math.ceil(len(shown) / columns), columns, squeeze=False).ravel()
+    figure.subplots_adjust(left=0.07, right=0.975, top=0.83, bottom=0.085, wspace=0.22, hspace=0.34)
+    for axes, name in zip(grid, shown, strict=False):
+        joint = motion.joints[name]
+        fx, fy = np.asarray(joint.fx), np.asarray(joint.fy)
+        ink = colour(list(motion.joints).index(name))
+        top = int(np.hypot(fx, fy).argmax())
+        axes.axhline(0, color="#9aa3ab", linewidth=0.8, zorder=1)
+        axes.axvline(0, color="#9aa3ab", linewidth=0.8, zorder=1)
+        axes.plot(fx, fy, color=ink)
+        axes.plot(fx[0], fy[0], "o", color=ink, markersize=5)
+        axes.annotate(
+            "",
+            (fx[top], fy[top]),
+            (0, 0),
+            arrowprops={"arrowstyle": "-|>", "color": INK, "linewidth": 1.1, "shrinkA": 0, "shrinkB": 0},
+        )
+        axes.set_title(
+            f"{name}: {joint.bodies[0]} on {joint.bodies[1]}, at most {math.hypot(fx[top], fy[top]):.3g} N",
+            fontsize=10,
+            loc="left",
+            color=ink,
+        )
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.locator_params(nbins=6)
+        axes.margins(0.08)
+        axes.set_xlabel("fx (N)", labelpad=1)
+        axes.set_ylabel("fy (N)", labelpad=1)
+    for axes in grid[len(shown) :]:
+        axes.set_visible(False)
+    return figure
+
+
+def energy(motion: Motion) -> Figure:
+    """Energies (J) from their start, and the power balance: what drivers give is what the energy gains (W)."""
+    over = horizon(motion)
+    time = np.asarray(motion.time)
+    kinetic, potential = np.asarray(motion.energy.kinetic), np.asarray(motion.energy.potential)
+    total = kinetic + potential
+    given = np.sum([driver.power for driver in motion.drivers.values()], axis=0) if motion.drivers else 0.0 * time
+    figure = page(
+        motion.mechanism,
+        "energy and power",
+        "potential energy counts from its start; the drivers' power is the rate of the energy, "
+        f"largest difference {motion.diagnostics.power_residual:.1e} W",
+    )
+    upper, lower = rows(figure, 2)
+    draw(
+        upper,
+        over,
+        "energy (J)",
+        [
+            ("kinetic", kinetic, PALETTE[0]),
+            ("potential", potential - potential[0], PALETTE[1]),
+            ("total", total - potential[0], INK),
+        ],
+    )
+    draw(lower, over, "power (W)", [("drivers", given, PALETTE[2])])
+    rate = np.gradient(total, time, edge_order=2)
+    lower.lines[0].set(linewidth=5.0, alpha=0.35)
+    lower.plot(over.values, rate, color=INK, linewidth=1.2, linestyle=(0, (5, 3)), zorder=4)
+    lower.text(
+        0.012,
+        0.94,
+        "wide: power of the drivers     dashed: d(kinetic + potential)/dt",
+        transform=lower.transAxes,
+        color=QUIET,
+        fontsize=9,
+        va="top",
+    )
+    over.dress(lower)
+    return figure

@@ -1,0 +1,80 @@
+"""Position, velocity and acceleration over the turn: of the bodies' angles, of a traced point, of a sliding body."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from render.plots.horizon import Horizon, horizon
+from render.plots.style import FAINT, INK, LABELLED, PALETTE, colour, label_ends, page, rows
+from shared.contract import BodyMotion, Motion, PointMotion
+
+Line = tuple[str, np.ndarray, str]
+"""Label, values, colour."""
+
+
+def bodies(motion: Motion) -> Figure:
+    """Angle (deg), angular velocity (rad/s) and angular acceleration (rad/s^2) of every body."""
+    figure = page(motion.mechanism, "angles of the bodies", "angle, angular velocity and angular acceleration")
+    kinds = (("theta", "angle (deg)"), ("omega", "velocity (rad/s)"), ("alpha", "acceleration (rad/s²)"))
+    over = horizon(motion)
+    for axes, (field, label) in zip(rows(figure, 3), kinds, strict=True):
+        series = {name: np.asarray(getattr(body, field)) for name, body in motion.bodies.items()}
+        scale = np.degrees(1.0) if field == "theta" else 1.0
+        draw(axes, over, label, [(name, scale * values, colour(i)) for i, (name, values) in enumerate(series.items())])
+    over.dress(axes)
+    return figure
+
+
+def point(motion: Motion, name: str) -> Figure:
+    """Components and magnitudes of a traced point's motion."""
+    traced = motion.points[name]
+    return _plane_motion(motion, traced, f"traced point {name}", f"fixed to {traced.body}; x, y and magnitude")
+
+
+def slider(motion: Motion, name: str) -> Figure:
+    """The motion of a body that does not turn."""
+    return _plane_motion(motion, motion.bodies[name], f"sliding body {name}", "its origin; x, y and magnitude")
+
+
+def draw(axes: Axes, over: Horizon, label: str, lines: Sequence[Line], *, zero: bool = True) -> None:
+    """Lines with their labels at the right; of many, the largest get labels and the rest stay faint."""
+    axes.set_ylabel(label)
+    by_size = sorted(lines, key=lambda line: -float(np.ptp(line[1])))
+    named = [line for line in lines if any(line is big for big in by_size[:LABELLED])]
+    for line in lines:
+        text, values, ink = line
+        is_named = any(line is big for big in named)
+        axes.plot(over.values, values, color=ink if is_named else FAINT, zorder=3 if is_named else 2, label=text)
+    low, high = axes.get_ylim()
+    if high - low < 1e-9:  # a constant is a straight line, not the noise of its last digit
+        axes.set_ylim(low - 1.0, high + 1.0)
+    elif zero and low < 0 < high:
+        axes.axhline(0, color="#9aa3ab", linewidth=0.9, zorder=1)
+    if "deg" in label:
+        axes.yaxis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 1.5, 3, 4.5, 9, 10]))
+    else:
+        axes.locator_params(axis="y", nbins=5)
+    label_ends(axes, over.values[-1], [(text, float(values[-1]), ink) for text, values, ink in named])
+
+
+def _plane_motion(motion: Motion, moving: PointMotion | BodyMotion, title: str, subtitle: str) -> Figure:
+    figure = page(motion.mechanism, title, subtitle)
+    kinds = (
+        ("", "position (m)"),
+        ("v", "velocity (m/s)"),
+        ("a", "acceleration (m/s²)"),
+    )
+    over = horizon(motion)
+    for axes, (rate, label) in zip(rows(figure, 3), kinds, strict=True):
+        x, y = (np.asarray(getattr(moving, rate + axis)) for axis in "xy")
+        lines: list[Line] = [(f"{rate}x", x, PALETTE[0]), (f"{rate}y", y, PALETTE[1])]
+        if rate:
+            lines.insert(0, (f"|{rate}|", np.hypot(x, y), INK))
+        draw(axes, over, label, lines)
+    over.dress(axes)
+    return figure

@@ -1,0 +1,40 @@
+"""What the parent asks of the Blender process, one JSON file; and what it answers, one JSON line at a time."""
+
+from __future__ import annotations
+
+import msgspec
+
+from render.scene import Scene, State
+
+
+class Picture(msgspec.Struct, kw_only=True, frozen=True):
+    """One picture to make: the state at an index of ``Job.states``, written whole to ``path``."""
+
+    state: int
+    path: str
+
+
+class Job(msgspec.Struct, kw_only=True, frozen=True):
+    """Render ``pictures``, or save a .blend that plays all states."""
+
+    scene: Scene
+    states: list[State]
+    """Consecutive frames; a blurred picture needs its neighbours."""
+    pictures: list[Picture] = []
+    blend: str | None = None
+    width: int = 1280
+    height: int = 720
+    samples: int = 8
+    motion_blur: bool = False
+    flat: dict[str, tuple[float, float, float]] | None = None
+    """Only these pieces (``body/piece``), as flat linear colours on black, sharp and untouched by the view: for tests."""
+
+
+class Answer(msgspec.Struct, kw_only=True, frozen=True, omit_defaults=True):
+    """One line from the Blender process: the device once, then a line per picture; or an error."""
+
+    device: str = ""
+    path: str = ""
+    cycles: float = 0.0
+    """Seconds inside Blender's renderer for this picture."""
+    error: str = ""

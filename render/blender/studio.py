@@ -1,0 +1,142 @@
+"""The studio: a backdrop without a horizon, softboxes, rim lights. Sized by what is filmed, turned with the camera.
+
+Places are (right, away, up) as the camera stands, in radii of the swept motion around its middle. A light's power
+grows with the square of its distance, so a mechanism of any size is lit alike.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from render.blender.nodes import Graph
+from render.scene import Colour, StudioSpec
+
+
+@dataclass(frozen=True)
+class Softbox:
+    """An area light that fades to its rim; ``power`` is W for a radius of one metre."""
+
+    name: str
+    place: tuple[float, float, float]
+    size: tuple[float, float]
+    power: float
+    colour: Colour = (1.0, 1.0, 1.0)
+    aim: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    spread: float = 180.0
+
+
+@dataclass(frozen=True)
+class Look:
+    """A light setting by name."""
+
+    floor: Colour
+    floor_roughness: float
+    world: Colour
+    exposure: float
+    contrast: str
+    softboxes: tuple[Softbox, ...]
+
+
+LOOKS = {
+    "studio": Look(
+        floor=(0.030, 0.032, 0.036),
+        floor_roughness=0.42,
+        world=(0.010, 0.012, 0.016),
+        exposure=0.0,
+        contrast="AgX - Medium High Contrast",
+        softboxes=(
+            Softbox("overhead", (-0.2, 2.2, 3.0), (3.2, 1.8), 62.0, (1.0, 0.985, 0.96), (0.0, 0.2, 0.0)),
+            Softbox("rim cool", (-3.0, 1.6, 1.2), (0.5, 2.6), 26.0, (0.55, 0.74, 1.0)),
+            Softbox("rim warm", (3.0, 1.3, 1.0), (0.5, 2.6), 22.0, (1.0, 0.66, 0.38)),
+            Softbox("fill", (-1.2, -3.2, 2.2), (3.0, 2.0), 6.0, (0.86, 0.92, 1.0)),
+        ),
+    ),
+    "daylight": Look(
+        floor=(0.62, 0.62, 0.61),
+        floor_roughness=0.55,
+        world=(0.32, 0.34, 0.37),
+        exposure=0.0,
+        contrast="AgX - Base Contrast",
+        softboxes=(
+            Softbox("overhead", (-0.6, 1.8, 3.2), (3.4, 2.4), 46.0, (1.0, 0.98, 0.95)),
+            Softbox("rim cool", (-3.0, 1.4, 1.4), (0.8, 2.6), 14.0, (0.80, 0.90, 1.0)),
+            Softbox("rim warm", (3.0, 1.2, 1.2), (0.8, 2.6), 12.0, (1.0, 0.88, 0.74)),
+        ),
+    ),
+}
+
+
+def build(scene: Any, studio: StudioSpec) -> None:
+    """Put backdrop, lights and world around the mechanism and set the view."""
+    look = LOOKS[studio.look]
+    _world(scene, look)
+    _backdrop(scene, studio, look)
+    for box in look.softboxes:
+        _softbox(scene, studio, box)
+    view = scene.view_settings
+    view.view_transform = "AgX"
+    view.look = look.contrast
+    view.exposure = look.exposure
+
+
+def _world(scene: Any, look: Look) -> None:
+    import bpy
+
+    scene.world = bpy.data.worlds.new("studio")
+    scene.world.use_nodes = True
+    graph = Graph(scene.world.node_tree).clear()
+    graph.add("OutputWorld", Surface=graph.add("Background", Color=look.world, Strength=1.0).outputs[0])
+
+
+def _backdrop(scene: Any, studio: StudioSpec, look: Look) -> None:
+    """A floor that bends upwards far behind: a profile swept sideways."""
+    import bpy
+
+    radius, half = studio.radius, 14.0
+    bend_start, bend = 5.0, 3.0
+    profile = [(-12.0, 0.0), (bend_start, 0.0)]
+    for step in range(1, 33):
+        angle = math.pi / 2 * step / 32
+        profile.append((bend_start + bend * math.sin(angle), bend * (1 - math.cos(angle))))
+    profile.append((bend_start + bend, 14.0))
+    corners = [(side * half * radius, away * radius, up * radius) for away, up in profile for side in (-1, 1)]
+    faces = [(2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2) for i in range(len(profile) - 1)]
+    mesh = bpy.data.meshes.new("backdrop")
+    mesh.from_pydata(corners, [], faces)
+    mesh.polygons.foreach_set("use_smooth", [True] * len(faces))
+    thing = bpy.data.objects.new("backdrop", mesh)
+    thing.location = (studio.centre[0], studio.centre[1], studio.floor)
+    thing.rotation_euler = (0.0, 0.0, studio.azimuth)
+    scene.collection.objects.link(thing)
+
+    paint = bpy.data.materials.new("backdrop")
+    paint.use_nodes = True
+    graph = Graph(paint.node_tree).clear()
+    shader = graph.add(
+        "BsdfPrincipled", Base_Color=look.floor, Roughness=look.floor_roughness, Specular_IOR_Level=0.35
+    )
+    graph.add("OutputMaterial", Surface=shader.outputs[0])
+    mesh.materials.append(paint)
+
+
+def _softbox(scene: Any, studio: StudioSpec, box: Softbox) -> None:
+    import bpy
+    from mathutils import Matrix, Vector
+
+    radius = studio.radius
+    turn = Matrix.Rotation(studio.azimuth, 4, "Z")
+    centre = Vector(studio.centre)
+    place = centre + turn @ (Vector(box.place) * radius)
+    aim = centre + turn @ (Vector(box.aim) * radius)
+    light = bpy.data.lights.new(box.name, "AREA")
+    light.shape = "RECTANGLE"
+    light.size, light.size_y = box.size[0] * radius, box.size[1] * radius
+    light.energy = box.power * radius**2
+    light.color = box.colour
+    light.spread = math.radians(box.spread)
+    thing = bpy.data.objects.new(box.name, light)
+    thing.location = place
+    thing.rotation_euler = (aim - place).to_track_quat("-Z", "Y").to_euler()
+    scene.collection.objects.link(thing)

@@ -1,0 +1,106 @@
+"""The motion at any moment: quintic Hermite between the samples of data.json, and the film's clock.
+
+Position, velocity and acceleration at both ends of an interval fix one quintic, so the film may have any frame rate.
+Between 361 samples a turn the error is far below a micrometre.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shared.contract import Motion
+
+Array = NDArray[np.float64]
+
+
+def hermite(time: Array, value: Array, rate: Array, acceleration: Array, t: Array | float) -> Array:
+    """Quintic through samples at ``time`` (n,) with their first and second derivatives, evaluated at ``t`` (m,).
+
+    ``t`` outside ``time`` is held at the nearest end.
+    """
+    t = np.clip(np.atleast_1d(np.asarray(t, dtype=float)), time[0], time[-1])
+    i = np.clip(np.searchsorted(time, t, side="right") - 1, 0, len(time) - 2)
+    h = time[i + 1] - time[i]
+    s = (t - time[i]) / h
+    s3, s4, s5 = s**3, s**4, s**5
+    return (
+        value[i] * (1 - 10 * s3 + 15 * s4 - 6 * s5)
+        + rate[i] * h * (s - 6 * s3 + 8 * s4 - 3 * s5)
+        + acceleration[i] * h**2 * (0.5 * s**2 - 1.5 * s3 + 1.5 * s4 - 0.5 * s5)
+        + value[i + 1] * (10 * s3 - 15 * s4 + 6 * s5)
+        + rate[i + 1] * h * (-4 * s3 + 7 * s4 - 3 * s5)
+        + acceleration[i + 1] * h**2 * (0.5 * s3 - s4 + 0.5 * s5)
+    )
+
+
+@dataclass(frozen=True)
+class Moment:
+    """A film phase in the motion's own terms: time (s), and how many whole turns came before."""
+
+    time: float
+    turns: int
+
+
+def moment(motion: Motion, frame: int, frames_per_turn: int) -> Moment:
+    """The moment that a film frame shows; frames beyond one turn, or before frame 0, go on with the loop.
+
+    A motion without a period runs there and back in one turn, so that it too loops without a jump.
+    The same phase gives the same float in every turn, so later turns find their pictures made.
+    """
+    turns, step = divmod(frame, frames_per_turn)
+    phase = step / frames_per_turn
+    start, end = motion.time[0], motion.time[-1]
+    if motion.period is None:
+        return Moment(start + (end - start) * (1 - abs(1 - 2 * phase)), 0)
+    return Moment(start + motion.period * phase, turns)
+
+
+class Poses:
+    """Poses of every body and point of a motion, at any moment."""
+
+    def __init__(self, motion: Motion) -> None:
+        self.motion = motion
+        self.time = np.asarray(motion.time)
+        self._series: dict[tuple[str, str], tuple[Array, Array, Array]] = {}
+        for name, body in motion.bodies.items():
+            self._series[name, "x"] = _arrays(body.x, body.vx, body.ax)
+            self._series[name, "y"] = _arrays(body.y, body.vy, body.ay)
+            self._series[name, "theta"] = _arrays(body.theta, body.omega, body.alpha)
+        self._points: dict[tuple[str, str], tuple[Array, Array, Array]] = {}
+        for name, point in motion.points.items():
+            self._points[name, "x"] = _arrays(point.x, point.vx, point.ax)
+            self._points[name, "y"] = _arrays(point.y, point.vy, point.ay)
+
+    def body(self, name: str, at: Moment) -> tuple[float, float, float]:
+        """x, y (m) and the unwrapped theta (rad) of a body's frame; a body that never moves is at the origin."""
+        if name not in self.motion.bodies:
+            return 0.0, 0.0, 0.0
+        x, y, theta = (float(hermite(self.time, *self._series[name, k], at.time)[0]) for k in ("x", "y", "theta"))
+        angles = self.motion.bodies[name].theta
+        whole = round((angles[-1] - angles[0]) / math.tau) if self.motion.period is not None else 0
+        return x, y, theta + math.tau * whole * at.turns
+
+    def point(self, name: str, times: Array) -> Array:
+        """Positions (n, 2) of a traced point at mechanism times (n,)."""
+        return np.stack([hermite(self.time, *self._points[name, k], times) for k in ("x", "y")], axis=1)
+
+    def joint(self, name: str, at: Moment) -> tuple[float, float]:
+        """x, y (m) of a joint: a marker fixed to its second body, carried along by that body's pose."""
+        joint = self.motion.joints[name]
+        body = joint.bodies[1]
+        if body not in self.motion.bodies:
+            return joint.x[0], joint.y[0]
+        first = self.motion.bodies[body]
+        dx, dy = joint.x[0] - first.x[0], joint.y[0] - first.y[0]
+        x, y, theta = self.body(body, at)
+        turn = theta - first.theta[0]
+        return x + math.cos(turn) * dx - math.sin(turn) * dy, y + math.sin(turn) * dx + math.cos(turn) * dy
+
+
+def _arrays(*series: list[float]) -> tuple[Array, Array, Array]:
+    value, rate, acceleration = (np.asarray(s, dtype=float) for s in series)
+    return value, rate, acceleration

@@ -1,0 +1,78 @@
+"""A scene in plain data: what stands where, of what, in which light. No Blender here; render/blender/ translates it.
+
+Metres and radians. A Scene is what stays the same over the film, a State is what one frame changes.
+"""
+
+from __future__ import annotations
+
+import msgspec
+
+from render.framing import CameraPose
+
+Colour = tuple[float, float, float]
+Point = tuple[float, float, float]
+
+
+class SurfaceSpec(msgspec.Struct, kw_only=True, frozen=True):
+    """How a piece looks; ``finish`` names a shader of render/blender/materials.py, ``flat`` emits its colour alone."""
+
+    colour: Colour
+    finish: str
+    roughness: float
+
+
+class PieceSpec(msgspec.Struct, kw_only=True, frozen=True):
+    """One solid of a body; the STL is in millimetres, in the body's frame."""
+
+    body: str
+    name: str
+    stl: str
+    sha256: str
+    surface: SurfaceSpec
+
+
+class TrailSpec(msgspec.Struct, kw_only=True, frozen=True):
+    """A fading tube of so many rings; its path is in every State, from the point back to the end of the tail."""
+
+    name: str
+    colour: Colour
+    radius: float
+    rings: int
+
+
+class LabelSpec(msgspec.Struct, kw_only=True, frozen=True):
+    """A text that faces the camera; its place is in every State."""
+
+    text: str
+    size: float
+    colour: Colour
+
+
+class StudioSpec(msgspec.Struct, kw_only=True, frozen=True):
+    """Backdrop and lights, sized by the swept motion: its middle, its radius, the floor's height."""
+
+    look: str
+    centre: Point
+    radius: float
+    floor: float
+    azimuth: float
+
+
+class Scene(msgspec.Struct, kw_only=True, frozen=True):
+    """What stays the same over the film."""
+
+    mechanism: str
+    fps: int
+    pieces: list[PieceSpec]
+    trails: list[TrailSpec]
+    labels: list[LabelSpec]
+    studio: StudioSpec
+
+
+class State(msgspec.Struct, kw_only=True, frozen=True):
+    """What one frame changes: x, y, theta of every body; paths, label places and the camera."""
+
+    bodies: dict[str, Point]
+    trails: list[list[Point]]
+    labels: list[Point]
+    camera: CameraPose

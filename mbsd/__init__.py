@@ -1,0 +1,40 @@
+"""mbsd: planar multibody mechanisms. Numbers in SI, angles in radians, counter-clockwise.
+
+    from mbsd import Mechanism, constant_rate
+
+Kernels are compiled and scipy is loaded only when something is solved; this import stays light.
+"""
+
+from mbsd.errors import (
+    AssemblyError,
+    BranchError,
+    MechanismError,
+    MobilityError,
+    ModelError,
+    SingularPoseError,
+)
+from mbsd.model import STANDARD_GRAVITY, Body, Joint, Marker, Mechanism
+from mbsd.motions import Motion, constant_rate, cycloidal, function, harmonic, polynomial, table
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "STANDARD_GRAVITY",
+    "AssemblyError",
+    "Body",
+    "BranchError",
+    "Joint",
+    "Marker",
+    "Mechanism",
+    "MechanismError",
+    "MobilityError",
+    "ModelError",
+    "Motion",
+    "SingularPoseError",
+    "constant_rate",
+    "cycloidal",
+    "function",
+    "harmonic",
+    "polynomial",
+    "table",
+]

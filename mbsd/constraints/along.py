@@ -1,0 +1,52 @@
+"""Coordinate constraint: how far marker j lies along the x axis of marker i.
+
+    u     = unit axis of marker i;   d = p_j - p_i;   n = u_perp;   u' = omega_i n
+    Phi   = u . d - f(t)                                      1 row
+    J     = [u, u . s_perp_j] on body j;  [-u, n . d - u . s_perp_i] on body i
+    gamma = -( u . (c_j - c_i) + 2 omega_i n . d' - omega_i^2 u . d ) + f''
+"""
+
+from __future__ import annotations
+
+from mbsd.jit import kernel
+
+
+@kernel
+def rows(system, drive, ws):
+    """Residual (m) and Jacobian."""
+    table, jac = system.along, ws.jac
+    for k in range(table.shape[0]):
+        i, j, r = table[k, 0], table[k, 1], table[k, 2]
+        bi, bj = 3 * system.marker_body[i], 3 * system.marker_body[j]
+        ux, uy = ws.axis[i, 0], ws.axis[i, 1]
+        dx = ws.position[j, 0] - ws.position[i, 0]
+        dy = ws.position[j, 1] - ws.position[i, 1]
+        ws.phi[r] = ux * dx + uy * dy - drive[table[k, 3], 0]
+        jac[r, bi], jac[r, bi + 1] = -ux, -uy
+        jac[r, bi + 2] = -uy * dx + ux * dy - (-ux * ws.arm[i, 1] + uy * ws.arm[i, 0])
+        jac[r, bj], jac[r, bj + 1] = ux, uy
+        jac[r, bj + 2] = -ux * ws.arm[j, 1] + uy * ws.arm[j, 0]
+
+
+@kernel
+def gamma_rows(system, v, ws):
+    """Acceleration right-hand side (m/s^2) without f''."""
+    table = system.along
+    for k in range(table.shape[0]):
+        i, j, r = table[k, 0], table[k, 1], table[k, 2]
+        bi, bj = 3 * system.marker_body[i], 3 * system.marker_body[j]
+        ux, uy = ws.axis[i, 0], ws.axis[i, 1]
+        nx, ny = -uy, ux
+        wi, wj = v[bi + 2], v[bj + 2]
+        dx = ws.position[j, 0] - ws.position[i, 0]
+        dy = ws.position[j, 1] - ws.position[i, 1]
+        rate_x = v[bj] - wj * ws.arm[j, 1] - v[bi] + wi * ws.arm[i, 1]
+        rate_y = v[bj + 1] + wj * ws.arm[j, 0] - v[bi + 1] - wi * ws.arm[i, 0]
+        convective_x = -wj * wj * ws.arm[j, 0] + wi * wi * ws.arm[i, 0]
+        convective_y = -wj * wj * ws.arm[j, 1] + wi * wi * ws.arm[i, 1]
+        ws.gamma[r] = -(
+            ux * convective_x
+            + uy * convective_y
+            + 2.0 * wi * (nx * rate_x + ny * rate_y)
+            - wi * wi * (ux * dx + uy * dy)
+        )

@@ -1,0 +1,54 @@
+"""Distance constraint: markers i and j stay a fixed or driven distance apart (a massless rod).
+
+    d     = p_j - p_i,  l = |d|,  u = d / l
+    Phi   = l - length - f(t)                                 1 row
+    J     = [u, u . s_perp_j] on body j;  -[u, u . s_perp_i] on body i
+    gamma = -( u . (c_j - c_i) + (|d'|^2 - (u . d')^2) / l ) + f''
+
+The multiplier is the rod's push: positive where the rod is in compression. l = 0 has no direction; the
+model refuses a rod of zero length.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.jit import kernel
+
+
+@kernel
+def rows(system, drive, ws):
+    """Residual (m) and Jacobian."""
+    table, jac = system.distance, ws.jac
+    for k in range(table.shape[0]):
+        i, j, r = table[k, 0], table[k, 1], table[k, 2]
+        bi, bj = 3 * system.marker_body[i], 3 * system.marker_body[j]
+        dx = ws.position[j, 0] - ws.position[i, 0]
+        dy = ws.position[j, 1] - ws.position[i, 1]
+        length = math.sqrt(dx * dx + dy * dy)
+        ux, uy = dx / length, dy / length
+        ws.phi[r] = length - system.distance_length[k] - drive[table[k, 3], 0]
+        jac[r, bi], jac[r, bi + 1] = -ux, -uy
+        jac[r, bi + 2] = ux * ws.arm[i, 1] - uy * ws.arm[i, 0]
+        jac[r, bj], jac[r, bj + 1] = ux, uy
+        jac[r, bj + 2] = -ux * ws.arm[j, 1] + uy * ws.arm[j, 0]
+
+
+@kernel
+def gamma_rows(system, v, ws):
+    """Acceleration right-hand side (m/s^2) without f''."""
+    table = system.distance
+    for k in range(table.shape[0]):
+        i, j, r = table[k, 0], table[k, 1], table[k, 2]
+        bi, bj = 3 * system.marker_body[i], 3 * system.marker_body[j]
+        wi, wj = v[bi + 2], v[bj + 2]
+        dx = ws.position[j, 0] - ws.position[i, 0]
+        dy = ws.position[j, 1] - ws.position[i, 1]
+        length = math.sqrt(dx * dx + dy * dy)
+        ux, uy = dx / length, dy / length
+        rate_x = v[bj] - wj * ws.arm[j, 1] - v[bi] + wi * ws.arm[i, 1]
+        rate_y = v[bj + 1] + wj * ws.arm[j, 0] - v[bi + 1] - wi * ws.arm[i, 0]
+        convective_x = -wj * wj * ws.arm[j, 0] + wi * wi * ws.arm[i, 0]
+        convective_y = -wj * wj * ws.arm[j, 1] + wi * wi * ws.arm[i, 1]
+        across = ux * rate_y - uy * rate_x
+        ws.gamma[r] = -(ux * convective_x + uy * convective_y + across * across / length)

@@ -1,0 +1,36 @@
+"""Point constraint: markers i and j share one point.
+
+    Phi   = p_j - p_i                  2 rows
+    J     = [I, s_perp_j] on body j, -[I, s_perp_i] on body i
+    gamma = -(c_j - c_i)               c = -omega^2 s, the convective acceleration
+"""
+
+from __future__ import annotations
+
+from mbsd.jit import kernel
+
+
+@kernel
+def rows(system, ws):
+    """Residual (m) and Jacobian."""
+    table, phi, jac = system.point, ws.phi, ws.jac
+    for k in range(table.shape[0]):
+        i, j, r = table[k, 0], table[k, 1], table[k, 2]
+        bi, bj = 3 * system.marker_body[i], 3 * system.marker_body[j]
+        phi[r] = ws.position[j, 0] - ws.position[i, 0]
+        phi[r + 1] = ws.position[j, 1] - ws.position[i, 1]
+        jac[r, bi], jac[r, bi + 2] = -1.0, ws.arm[i, 1]
+        jac[r + 1, bi + 1], jac[r + 1, bi + 2] = -1.0, -ws.arm[i, 0]
+        jac[r, bj], jac[r, bj + 2] = 1.0, -ws.arm[j, 1]
+        jac[r + 1, bj + 1], jac[r + 1, bj + 2] = 1.0, ws.arm[j, 0]
+
+
+@kernel
+def gamma_rows(system, v, ws):
+    """Acceleration right-hand side (m/s^2); v is (3 nb,)."""
+    table, gamma = system.point, ws.gamma
+    for k in range(table.shape[0]):
+        i, j, r = table[k, 0], table[k, 1], table[k, 2]
+        wi, wj = v[3 * system.marker_body[i] + 2], v[3 * system.marker_body[j] + 2]
+        gamma[r] = wj * wj * ws.arm[j, 0] - wi * wi * ws.arm[i, 0]
+        gamma[r + 1] = wj * wj * ws.arm[j, 1] - wi * wi * ws.arm[i, 1]

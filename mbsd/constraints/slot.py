@@ -1,0 +1,53 @@
+"""Slot constraint: the point of marker j lies on the x axis of marker i.
+
+    n     = u_perp_i, unit normal of the slot;   d = p_j - p_i;   n = R n_local, so n' = -omega_i u
+    Phi   = n . d                                             1 row
+    J     = [n, n . s_perp_j] on body j;  [-n, -u . d - n . s_perp_i] on body i
+    gamma = -( n . (c_j - c_i) - 2 omega_i u . d' - omega_i^2 n . d )
+"""
+
+from __future__ import annotations
+
+from mbsd.jit import kernel
+
+
+@kernel
+def rows(system, ws):
+    """Residual (m) and Jacobian."""
+    table, jac = system.slot, ws.jac
+    for k in range(table.shape[0]):
+        i, j, r = table[k, 0], table[k, 1], table[k, 2]
+        bi, bj = 3 * system.marker_body[i], 3 * system.marker_body[j]
+        ux, uy = ws.axis[i, 0], ws.axis[i, 1]
+        nx, ny = -uy, ux
+        dx = ws.position[j, 0] - ws.position[i, 0]
+        dy = ws.position[j, 1] - ws.position[i, 1]
+        ws.phi[r] = nx * dx + ny * dy
+        jac[r, bi], jac[r, bi + 1] = -nx, -ny
+        jac[r, bi + 2] = -(ux * dx + uy * dy) - (-nx * ws.arm[i, 1] + ny * ws.arm[i, 0])
+        jac[r, bj], jac[r, bj + 1] = nx, ny
+        jac[r, bj + 2] = -nx * ws.arm[j, 1] + ny * ws.arm[j, 0]
+
+
+@kernel
+def gamma_rows(system, v, ws):
+    """Acceleration right-hand side (m/s^2)."""
+    table = system.slot
+    for k in range(table.shape[0]):
+        i, j, r = table[k, 0], table[k, 1], table[k, 2]
+        bi, bj = 3 * system.marker_body[i], 3 * system.marker_body[j]
+        ux, uy = ws.axis[i, 0], ws.axis[i, 1]
+        nx, ny = -uy, ux
+        wi, wj = v[bi + 2], v[bj + 2]
+        dx = ws.position[j, 0] - ws.position[i, 0]
+        dy = ws.position[j, 1] - ws.position[i, 1]
+        rate_x = v[bj] - wj * ws.arm[j, 1] - v[bi] + wi * ws.arm[i, 1]
+        rate_y = v[bj + 1] + wj * ws.arm[j, 0] - v[bi + 1] - wi * ws.arm[i, 0]
+        convective_x = -wj * wj * ws.arm[j, 0] + wi * wi * ws.arm[i, 0]
+        convective_y = -wj * wj * ws.arm[j, 1] + wi * wi * ws.arm[i, 1]
+        ws.gamma[r] = -(
+            nx * convective_x
+            + ny * convective_y
+            - 2.0 * wi * (ux * rate_x + uy * rate_y)
+            - wi * wi * (nx * dx + ny * dy)
+        )

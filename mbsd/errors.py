@@ -1,0 +1,27 @@
+"""What can go wrong, each with the mechanism, the place, the number and the remedy in its message."""
+
+from __future__ import annotations
+
+
+class MechanismError(Exception):
+    """Base of every error that a model or its data can cause."""
+
+
+class ModelError(MechanismError):
+    """The model cannot be: a bad name, a NaN, a negative mass, a marker of another mechanism."""
+
+
+class MobilityError(MechanismError):
+    """Drivers and freedoms do not match: a driver is missing, or two drive one freedom."""
+
+
+class AssemblyError(MechanismError):
+    """The links cannot be closed at the start."""
+
+
+class BranchError(MechanismError):
+    """The motion would jump to the other assembly, and smaller steps do not cure it."""
+
+
+class SingularPoseError(MechanismError):
+    """A toggle or a change point: the drivers no longer fix the motion here."""

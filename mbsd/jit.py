@@ -1,0 +1,50 @@
+"""The one decorator for compiled kernels, and where their machine code is kept.
+
+numba's disk cache does not notice an edit in an *imported* file (numba issue 9483): a caller would silently keep
+the old numbers. So the cache lives in a folder named after a hash of all sources of this package.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import tempfile
+from pathlib import Path
+
+_PACKAGE = Path(__file__).parent
+
+
+def _cache_folder() -> Path:
+    digest = hashlib.sha256()
+    for source in sorted(_PACKAGE.rglob("*.py")):
+        digest.update(source.relative_to(_PACKAGE).as_posix().encode())
+        digest.update(source.read_bytes())
+    name = f"numba-{digest.hexdigest()[:16]}"
+    user_cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "mbsd"
+    for parent in (_PACKAGE / "__pycache__", user_cache, Path(tempfile.gettempdir()) / "mbsd"):
+        folder = parent / name
+        try:
+            if not folder.is_dir():
+                folder.mkdir(parents=True)
+                for stale in parent.glob("numba-*"):
+                    if stale != folder:
+                        shutil.rmtree(stale, ignore_errors=True)
+            if os.access(folder, os.W_OK):
+                return folder
+        except OSError:
+            continue
+    raise OSError("no folder is writable for compiled code; set XDG_CACHE_HOME to one that is")
+
+
+os.environ.setdefault("NUMBA_CACHE_DIR", str(_cache_folder()))
+
+import numba  # noqa: E402  (the folder must be set first)
+
+numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]  # in case numba was imported before us
+
+kernel = numba.njit(cache=True, error_model="numpy", fastmath=False)
+"""Compile for float64 arrays; IEEE division, no re-association, so the numbers do not depend on the compiler."""
+
+inlined = numba.njit(cache=True, error_model="numpy", fastmath=False, inline="always")
+"""The same for small kernels: their body is copied into the caller."""

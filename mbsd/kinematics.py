@@ -1,0 +1,124 @@
+"""Positions, velocities and accelerations along a driven motion: Newton-Raphson with a predictor.
+
+    predict   q from the quintic through the last two (q, v, a)
+    correct   J dq = -Phi, until |dq| is below the tolerance
+    then      J v = nu,  J a = gamma  with the factors of the last Newton step
+
+The last Newton step moves q by less than ``TOLERANCE``, so its factors serve velocities and accelerations too.
+
+Branch guard: a step is refused (the caller halves it) when Newton does not contract, when the correction is not
+small against the step that was predicted, or when the sign of det J changes though the prediction was not
+confirmed: then the pose may lie on the other assembly.
+
+Source: Haug 1989, ch. 4 (Newton-Raphson); Hairer, Norsett, Wanner, Solving ODEs I, II.6 (Hermite interpolation).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbsd.assembly import evaluate_gamma, evaluate_nu, evaluate_position
+from mbsd.elimination import factorise, solve
+from mbsd.jit import kernel
+
+TOLERANCE = 1e-12
+"""Of a Newton correction, relative to the mechanism's size (m) and to 1 rad."""
+ROUNDING = 1e-9
+"""A correction that stops shrinking below this has met rounding in an ill-conditioned pose, and is accepted."""
+MAX_ITERATIONS = 12
+CONFIRMED = 1e-3
+"""A correction below this part of the predicted step confirms the branch, even past a change point."""
+SUSPICIOUS = 0.25
+"""A correction above this part of the predicted step may have left the branch."""
+LONGEST_STRETCH = 4.0
+"""Beyond this ratio of step lengths the quintic is not trusted; the last (q, v, a) alone predicts."""
+
+DONE, NO_CONTRACTION, BRANCH_DOUBT, SINGULAR = 0, 1, 2, 3
+
+
+@kernel
+def _predict(q, v, a, t, k, time, out):
+    """Pose at ``time`` from results 0 .. k-1 (the last two, or the last alone)."""
+    h = t[k - 1] - t[k - 2] if k > 1 else 0.0
+    ahead = time - t[k - 1]
+    quintic = k > 1 and ahead < LONGEST_STRETCH * h
+    s = ahead / h if quintic else 0.0
+    for c in range(3, q.shape[1]):
+        q1, v1, a1 = q[k - 1, c], v[k - 1, c], a[k - 1, c]
+        if quintic:
+            speed, bend = v1 * h, a1 * h * h
+            d0 = q[k - 2, c] - q1 + speed - 0.5 * bend
+            d1 = v[k - 2, c] * h - speed + bend
+            d2 = a[k - 2, c] * h * h - bend
+            c3 = -(10.0 * d0 + 4.0 * d1 + 0.5 * d2)
+            c5 = c3 + d1 + 4.0 * d0
+            c4 = d0 + c3 + c5
+            out[c] = q1 + s * (speed + s * (0.5 * bend + s * (c3 + s * (c4 + s * c5))))
+        else:
+            out[c] = q1 + ahead * (v1 + 0.5 * ahead * a1)
+
+
+@kernel
+def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, start):
+    """Solve positions, velocities and accelerations at ``times[start:]``; rows before ``start`` are known.
+
+    times (T,), drives (T, motions, 3), q, v, a (T, 3 nb), residual (T,) largest |Phi| and sign (T,) of det J are
+    filled. With ``start`` 0, q[0] must hold the assembled pose. ``size`` is the mechanism's length (m).
+    Returns (status, index): DONE and T, or why and at which index the step was refused.
+    """
+    n3 = q.shape[1]
+    pose, delta, rate, minus_phi = np.zeros(n3), np.zeros(n3), np.zeros(n3), np.zeros(ws.phi.shape[0])
+    for k in range(start, times.shape[0]):
+        if k > 0:
+            _predict(q, v, a, times, k, times[k], pose)
+        else:
+            pose[:] = q[0]
+        first, last = 0.0, np.inf
+        for iteration in range(MAX_ITERATIONS):
+            evaluate_position(system, pose, drives[k], ws)
+            determinant, margin = factorise(seq, ws.jac, fac)
+            if margin < 1e-12:
+                return SINGULAR, k
+            for r in range(minus_phi.shape[0]):
+                minus_phi[r] = -ws.phi[r]
+            solve(seq, fac, minus_phi, delta)
+            change = 0.0
+            for c in range(3, n3):
+                pose[c] += delta[c]
+                part = abs(delta[c]) if c % 3 == 2 else abs(delta[c]) / size
+                if not part <= change:
+                    change = part
+            if iteration == 0:
+                first = change
+            if change <= TOLERANCE:
+                break
+            if iteration > 0 and not change < 0.5 * last:
+                break
+            last = change
+        if not change <= ROUNDING:
+            return NO_CONTRACTION, k
+        if k > 0:
+            step = 0.0
+            for c in range(3, n3):
+                part = abs(pose[c] - q[k - 1, c])
+                step = max(step, part if c % 3 == 2 else part / size)
+            if first > SUSPICIOUS * step + 1e-9:
+                return BRANCH_DOUBT, k
+            if determinant != sign[k - 1] and first > CONFIRMED * step + 1e-9:
+                return BRANCH_DOUBT, k
+        for c in range(n3):
+            q[k, c] = pose[c]
+        sign[k] = determinant
+        worst = 0.0
+        for r in range(ws.phi.shape[0]):
+            worst = max(worst, abs(ws.phi[r]))
+        residual[k] = worst
+        evaluate_nu(system, drives[k], ws)
+        solve(seq, fac, ws.nu, rate)
+        for c in range(3, n3):
+            v[k, c] = rate[c]
+        evaluate_gamma(system, rate, drives[k], ws)
+        solve(seq, fac, ws.gamma, delta)
+        for c in range(3, n3):
+            a[k, c] = delta[c]
+    return DONE, times.shape[0]

@@ -1,0 +1,34 @@
+"""Where the markers are: one kernel for all of them.
+
+    arm      s = R(theta) s_local
+    position p = r + s
+    axis     u = R(theta) u_local
+    velocity p' = r' + omega s_perp,              s_perp = (-s_y, s_x) = ds/dtheta
+    convective acceleration c = -omega^2 s        (p'' = r'' + alpha s_perp + c)
+
+Source: Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems, 1989, ch. 2.4 and 3.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.jit import kernel
+
+
+@kernel
+def place(system, q, ws):
+    """Fill arm, position and axis of every marker from q (3 nb,), ground included."""
+    for b in range(1, system.mass.shape[0]):
+        theta = q[3 * b + 2]
+        ws.cos_sin[b, 0] = math.cos(theta)
+        ws.cos_sin[b, 1] = math.sin(theta)
+    for k in range(system.marker_body.shape[0]):
+        b = system.marker_body[k]
+        c, s = ws.cos_sin[b, 0], ws.cos_sin[b, 1]
+        x, y = system.marker_arm[k, 0], system.marker_arm[k, 1]
+        arm_x, arm_y = c * x - s * y, s * x + c * y
+        ws.arm[k, 0], ws.arm[k, 1] = arm_x, arm_y
+        ws.position[k, 0], ws.position[k, 1] = q[3 * b] + arm_x, q[3 * b + 1] + arm_y
+        x, y = system.marker_axis[k, 0], system.marker_axis[k, 1]
+        ws.axis[k, 0], ws.axis[k, 1] = c * x - s * y, s * x + c * y

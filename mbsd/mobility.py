@@ -1,0 +1,158 @@
+"""Mobility: degrees of freedom by count and by rank, redundant joints, undriven and doubly driven freedoms.
+
+    nominal  3 (nb - 1) - rows of all joints          (Gruebler)
+    dof      n - rank J of the joints
+
+The rank at one pose may be low by accident (a toggle, a change point), so it is also taken at closed poses nearby
+and the largest counts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.assembly import evaluate_position
+from mbsd.errors import MobilityError, SingularPoseError
+from mbsd.model import Mechanism
+from mbsd.packing import Packed, pack
+from mbsd.start import CLOSED, assemble, close
+
+RANK_TOLERANCE = 1e-8
+"""A row that adds less than this part of itself to the others repeats them."""
+
+
+@dataclass(frozen=True)
+class Mobility:
+    """What the joints leave free."""
+
+    nominal: int
+    """By counting rows."""
+    dof: int
+    """By rank."""
+    redundant_rows: int
+    """How many rows repeat others: the nominal count is wrong by this many."""
+    redundant: tuple[str, ...]
+    """Joints those rows belong to: one removable set."""
+    singular: bool
+    """The start pose has a lower rank than poses near it."""
+    free_bodies: tuple[str, ...]
+    """Bodies that can move."""
+
+    def __str__(self) -> str:
+        text = f"{self.dof} degrees of freedom ({self.nominal} nominal)"
+        if self.redundant:
+            text += f", {self.redundant_rows} redundant rows, removable at {', '.join(self.redundant)}"
+        return text + (", start pose singular" if self.singular else "")
+
+
+def mobility(m: Mechanism) -> Mobility:
+    """Mobility of the joints of ``m`` at its start; raises AssemblyError if it does not close."""
+    packed = pack(m)
+    q = assemble(m, packed, 0.0)
+    return joint_mobility(packed, q)
+
+
+def joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
+    """Mobility of the joints alone at the closed pose q (3 nb,)."""
+    rows = packed.driver_rows
+    here = scaled_jacobian(packed, q)[:rows]
+    best = here
+    for near in _nearby(packed, q):
+        jac = scaled_jacobian(packed, near)[:rows]
+        if len(independent_rows(jac)) > len(independent_rows(best)):
+            best = jac
+    kept = independent_rows(best)
+    dropped = [row for row in range(rows) if row not in set(kept)]
+    free = packed.coordinates - len(kept)
+    return Mobility(
+        nominal=packed.coordinates - rows,
+        dof=free,
+        redundant_rows=len(dropped),
+        redundant=tuple(dict.fromkeys(packed.joint_of_row(row).name for row in dropped)),
+        singular=len(independent_rows(here)) < len(kept),
+        free_bodies=_moving(packed, best),
+    )
+
+
+def choose_rows(packed: Packed, q: np.ndarray, time: float) -> np.ndarray:
+    """(n,) independent rows that fix all coordinates, drivers included.
+
+    Raises MobilityError for a missing or superfluous driver, SingularPoseError where only this pose is at fault.
+    """
+    joints = joint_mobility(packed, q)
+    poses = [q, *_nearby(packed, q)]
+    ranked = [independent_rows(scaled_jacobian(packed, pose)) for pose in poses]
+    kept = max(ranked, key=len)
+    drivers = packed.joints[len(packed.joints) - len(packed.motions) :]
+    idle = [d for k, d in enumerate(drivers) if packed.driver_rows + k not in set(kept)]
+    if idle:
+        others = [d.name for d in drivers if d not in idle]
+        fixed = f"driver '{others[0]}'" if len(others) == 1 else "drivers " + ", ".join(f"'{name}'" for name in others)
+        raise MobilityError(
+            f"{packed.name}: driver '{idle[0].name}' drives a freedom that "
+            f"{'the joints and ' + fixed if others else 'the joints'} already fix: "
+            f"{joints.dof} degrees of freedom, {len(drivers)} drivers. Remove one driver or free a joint."
+        )
+    if len(kept) < packed.coordinates:
+        missing = packed.coordinates - len(kept)
+        free = _moving(packed, scaled_jacobian(packed, poses[int(np.argmax([len(r) for r in ranked]))]))
+        raise MobilityError(
+            f"{packed.name}: {missing} of {joints.dof} degrees of freedom {'is' if missing == 1 else 'are'} not driven: "
+            f"{', '.join(free)} can still move. Add {'a driver' if missing == 1 else f'{missing} drivers'}, "
+            "for example m.drive_angle(...)."
+        )
+    if len(ranked[0]) < len(kept):
+        raise SingularPoseError(
+            f"{packed.name}: the start pose at t = {time:.6g} s is singular (a toggle or change point): the drivers do not "
+            "fix the motion here. Start a little before or after it, or drive another body."
+        )
+    return np.array(kept)
+
+
+def scaled_jacobian(packed: Packed, q: np.ndarray) -> np.ndarray:
+    """(m, n) dimensionless Jacobian at q, ground's columns left out."""
+    evaluate_position(packed.system, q, np.zeros((len(packed.motions) + 1, 3)), packed.ws)
+    return packed.ws.jac[:, 3:] * packed.row_scale()[:, None] * packed.column_scale()
+
+
+def independent_rows(jac: np.ndarray) -> list[int]:
+    """Rows that are independent of those before them (Gram-Schmidt, done twice for rounding)."""
+    basis = np.zeros((0, jac.shape[1]))
+    kept: list[int] = []
+    for row, vector in enumerate(jac):
+        length = np.linalg.norm(vector)
+        if length == 0 or len(kept) == jac.shape[1]:
+            continue
+        rest = vector / length
+        for _ in range(2):
+            rest = rest - basis.T @ (basis @ rest)
+        if np.linalg.norm(rest) > RANK_TOLERANCE:
+            basis = np.vstack([basis, rest / np.linalg.norm(rest)])
+            kept.append(row)
+    return kept
+
+
+def _nearby(packed: Packed, q: np.ndarray) -> list[np.ndarray]:
+    """Closed poses near q; the drivers are let go."""
+    random = np.random.default_rng(1)
+    scale = packed.column_scale()
+    none = np.zeros((len(packed.motions) + 1, 3))
+    poses = []
+    for _ in range(3):
+        moved = q.copy()
+        moved[3:] += 0.1 * scale * random.standard_normal(packed.coordinates)
+        moved, worst = close(packed, moved, none, packed.driver_rows)
+        if worst <= CLOSED:
+            poses.append(moved)
+    return poses
+
+
+def _moving(packed: Packed, jac: np.ndarray) -> tuple[str, ...]:
+    """Bodies that the null space of J moves."""
+    _, singular, v = np.linalg.svd(jac, full_matrices=True)
+    rank = int((singular > RANK_TOLERANCE * max(1.0, singular.max(initial=0.0))).sum())
+    null = v[rank:]
+    size = np.linalg.norm(null, axis=0).reshape(-1, 3).max(axis=1)
+    return tuple(name for name, moved in zip(packed.body_names[1:], size, strict=True) if moved > 1e-6)

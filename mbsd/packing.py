@@ -1,0 +1,134 @@
+"""Names in, arrays out: a Mechanism as the System the kernels read.
+
+Authors place a body's frame where it is convenient; here alone it is shifted to the centre of mass.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.joints.kind import ROWS
+from mbsd.model import Joint, Mechanism
+from mbsd.motions import Motion
+from mbsd.system import System, Workspace, workspace
+
+
+@dataclass
+class Packed:
+    """A mechanism as arrays, and where its names are in them."""
+
+    name: str
+    body_names: list[str]
+    com: np.ndarray
+    """(nb, 2) in the author's frames (m)."""
+    system: System
+    ws: Workspace
+    joints: list[Joint]
+    """Joints, then drivers."""
+    first_row: np.ndarray
+    """(joints + 1,) of each joint in J."""
+    markers: np.ndarray
+    """(joints, 2) marker numbers i, j."""
+    motions: list[Motion]
+    """Of the drivers, in order; motion k of the tables is ``motions[k - 1]``."""
+    size: float
+    """Characteristic length (m): the largest distance between two joints of one body."""
+
+    @property
+    def coordinates(self) -> int:
+        """Unknowns: three per moving body."""
+        return 3 * (len(self.body_names) - 1)
+
+    @property
+    def driver_rows(self) -> int:
+        """The first row that belongs to a driver."""
+        return int(self.first_row[len(self.joints) - len(self.motions)])
+
+    def joint_of_row(self, row: int) -> Joint:
+        """The joint that owns a row of J."""
+        return self.joints[int(np.searchsorted(self.first_row, row, side="right")) - 1]
+
+    def drives(self, times: np.ndarray) -> np.ndarray:
+        """(T, motions + 1, 3) values, rates and accelerations of all laws; index 0 is zero."""
+        out = np.zeros((len(times), len(self.motions) + 1, 3))
+        for k, motion in enumerate(self.motions):
+            out[:, k + 1] = motion(times)
+        return out
+
+    def row_scale(self) -> np.ndarray:
+        """(m,) what makes residual rows dimensionless: 1 / size for lengths, 1 for angles."""
+        scale = np.full(int(self.first_row[-1]), 1.0 / self.size)
+        scale[self.system.angle[:, 2]] = 1.0
+        return scale
+
+    def column_scale(self) -> np.ndarray:
+        """(n,) size of a unit step of each coordinate: ``size`` for x and y, 1 for theta."""
+        return np.tile([self.size, self.size, 1.0], len(self.body_names) - 1)
+
+
+def pack(m: Mechanism) -> Packed:
+    """Build the arrays of a mechanism."""
+    bodies = list(m.bodies.values())
+    number = {body.name: k for k, body in enumerate(bodies)}
+    com = np.array([body.com for body in bodies], float)
+    joints = [*m.joints.values(), *m.drivers.values()]
+    motions: list[Motion] = []
+    tables: dict[str, list[tuple[int, int, int, int]]] = {name: [] for name in ROWS}
+    offsets: list[float] = []
+    lengths: list[float] = []
+    first_row = [0]
+    marker_of = []
+    for k, joint in enumerate(joints):
+        i, j = 2 * k, 2 * k + 1
+        marker_of.append((i, j))
+        motion = 0
+        if joint.motion is not None:
+            motions.append(joint.motion)
+            motion = len(motions)
+        row = first_row[-1]
+        for constraint in joint.kind.constraints:
+            tables[constraint].append((i, j, row, motion))
+            row += ROWS[constraint]
+            if constraint == "angle":
+                offsets.append(joint.i.angle - joint.j.angle)
+            if constraint == "distance":
+                lengths.append(joint.length)
+        first_row.append(row)
+    markers = [marker for joint in joints for marker in (joint.i, joint.j)]
+    local = np.array([(marker.x, marker.y) for marker in markers], float).reshape(-1, 2)
+    marker_body = np.array([number[marker.body.name] for marker in markers], np.int64)
+    angles = np.array([marker.angle for marker in markers], float)
+    as_table = {name: np.array(rows, np.int64).reshape(-1, 4) for name, rows in tables.items()}
+    system = System(
+        mass=np.array([body.mass for body in bodies], float),
+        inertia=np.array([body.inertia for body in bodies], float),
+        gravity=np.array(m.gravity, float),
+        marker_body=marker_body,
+        marker_arm=local - com[marker_body] if len(markers) else np.zeros((0, 2)),
+        marker_axis=np.stack([np.cos(angles), np.sin(angles)], axis=1),
+        angle_offset=np.array(offsets, float),
+        distance_length=np.array(lengths, float),
+        **as_table,
+    )
+    return Packed(
+        name=m.name,
+        body_names=[body.name for body in bodies],
+        com=com,
+        system=system,
+        ws=workspace(system, first_row[-1]),
+        joints=joints,
+        first_row=np.array(first_row, np.int64),
+        markers=np.array(marker_of, np.int64).reshape(-1, 2),
+        motions=motions,
+        size=_size(local, marker_body, lengths),
+    )
+
+
+def _size(local: np.ndarray, marker_body: np.ndarray, lengths: list[float]) -> float:
+    extents = list(lengths)
+    for body in np.unique(marker_body):
+        extents.append(float(np.linalg.norm(np.ptp(local[marker_body == body], axis=0))))
+    largest = max(extents, default=0.0)
+    return largest if largest > 0 else 1.0

@@ -1,0 +1,266 @@
+"""Results by name: arrays over time in the author's body frames, SI units.
+
+    sol.t                              (T,) s
+    sol.body("coupler").theta          also x, y, vx, vy, omega, ax, ay, alpha
+    sol.joint("B").reaction            (T, 2) force on the joint's second body; fx, fy, torque, x, y, magnitude
+    sol.driver("motor").torque         also effort, force, value, rate, power
+    sol.point("P").x                   of traced points
+    sol.energy.kinetic, .potential
+"""
+
+from __future__ import annotations
+
+import html
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.errors import ModelError
+
+if TYPE_CHECKING:
+    import pandas
+
+    from mbsd.mobility import Mobility
+    from mbsd.model import Mechanism
+    from mbsd.packing import Packed
+
+
+@dataclass(frozen=True)
+class Stats:
+    """How well the motion fulfils its equations: largest residuals over all times and rows."""
+
+    position_residual: float
+    """|Phi| (m or rad)."""
+    velocity_residual: float
+    """|J v - nu| (m/s or rad/s)."""
+    acceleration_residual: float
+    """|J a - gamma| (m/s^2 or rad/s^2)."""
+    power_residual: float
+    """|d(T + V)/dt - power of the drivers| (W)."""
+    steps: int
+    inserted_steps: int
+    """Steps added between outputs to stay on the branch."""
+
+
+@dataclass(frozen=True)
+class FrameView:
+    """Motion of a frame: (T,) arrays, m and rad by s."""
+
+    x: np.ndarray
+    y: np.ndarray
+    theta: np.ndarray
+    vx: np.ndarray
+    vy: np.ndarray
+    omega: np.ndarray
+    ax: np.ndarray
+    ay: np.ndarray
+    alpha: np.ndarray
+
+
+@dataclass(frozen=True)
+class JointView:
+    """A joint: place of its second marker (m) and what it does to its second body (N, N m), (T,) arrays."""
+
+    x: np.ndarray
+    y: np.ndarray
+    fx: np.ndarray
+    fy: np.ndarray
+    torque: np.ndarray
+
+    @property
+    def reaction(self) -> np.ndarray:
+        """(T, 2) force on the second body, world axes (N)."""
+        return np.stack([self.fx, self.fy], axis=1)
+
+    @property
+    def magnitude(self) -> np.ndarray:
+        """(T,) of the force (N)."""
+        return np.hypot(self.fx, self.fy)
+
+
+@dataclass(frozen=True)
+class DriverView:
+    """A driver: imposed value and its rates (m or rad by s), effort (N or N m), power (W), (T,) arrays."""
+
+    name: str
+    angular: bool
+    value: np.ndarray
+    rate: np.ndarray
+    acceleration: np.ndarray
+    effort: np.ndarray
+
+    @property
+    def power(self) -> np.ndarray:
+        """(T,) effort times rate: what the driver puts into the mechanism."""
+        return self.effort * self.rate
+
+    @property
+    def torque(self) -> np.ndarray:
+        """(T,) the effort of an angle driver (N m)."""
+        if not self.angular:
+            raise ModelError(f"driver '{self.name}' imposes a length: it has a force, not a torque")
+        return self.effort
+
+    @property
+    def force(self) -> np.ndarray:
+        """(T,) the effort of a length driver (N)."""
+        if self.angular:
+            raise ModelError(f"driver '{self.name}' imposes an angle: it has a torque, not a force")
+        return self.effort
+
+
+@dataclass(frozen=True)
+class EnergyView:
+    """(T,) J."""
+
+    kinetic: np.ndarray
+    potential: np.ndarray
+
+    @property
+    def total(self) -> np.ndarray:
+        """(T,) J."""
+        return self.kinetic + self.potential
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """The motion of one mechanism. q, v, a hold centres of mass, (T, nb, 3); the views give the author's frames."""
+
+    mechanism: Mechanism
+    packed: Packed
+    t: np.ndarray
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    wrench: np.ndarray
+    lam: np.ndarray
+    drives: np.ndarray
+    singularity_margin: np.ndarray
+    """(T,) smallest over largest singular value of the scaled Jacobian; 0 at a singular pose."""
+    stats: Stats
+    mobility: Mobility
+
+    def body(self, name: str) -> FrameView:
+        """Motion of a body's frame."""
+        return self._frame(self._index(name, self.packed.body_names, "body"), (0.0, 0.0))
+
+    def point(self, name: str) -> FrameView:
+        """Motion of a traced point (and of its marker's direction)."""
+        names = list(self.mechanism.traces)
+        self._index(name, names, "traced point")
+        marker = self.mechanism.traces[name]
+        return self._frame(self.packed.body_names.index(marker.body.name), (marker.x, marker.y), marker.angle)
+
+    def joint(self, name: str) -> JointView:
+        """Place and reaction of a joint."""
+        k = self._index(name, list(self.mechanism.joints), "joint")
+        marker = self.mechanism.joints[name].j
+        place = self._frame(self.packed.body_names.index(marker.body.name), (marker.x, marker.y))
+        fx, fy, torque = self.wrench[:, k].T
+        return JointView(place.x, place.y, fx, fy, torque)
+
+    def driver(self, name: str) -> DriverView:
+        """Value, effort and power of a driver."""
+        k = self._index(name, list(self.mechanism.drivers), "driver")
+        row = self.packed.driver_rows + k
+        value, rate, acceleration = self.drives[:, k + 1].T
+        angular = self.mechanism.drivers[name].kind.constraints == ("angle",)
+        return DriverView(name, angular, value, rate, acceleration, -self.lam[:, row])
+
+    @cached_property
+    def energy(self) -> EnergyView:
+        """Kinetic and potential energy of the whole mechanism; potential is 0 at the world's origin."""
+        mass, inertia, gravity = self.packed.system.mass, self.packed.system.inertia, self.packed.system.gravity
+        kinetic = 0.5 * (mass * (self.v[..., 0] ** 2 + self.v[..., 1] ** 2) + inertia * self.v[..., 2] ** 2).sum(axis=1)
+        return EnergyView(kinetic, -(mass[:, None] * self.q[..., :2] @ gravity[:, None]).sum(axis=(1, 2)))
+
+    @cached_property
+    def period(self) -> float | None:
+        """The time spanned (s) if pose, velocity and acceleration return to those of the start; else None."""
+        turns = np.round((self.q[-1, :, 2] - self.q[0, :, 2]) / (2 * math.pi))
+        for start, end in ((self.q[0], self.q[-1]), (self.v[0], self.v[-1]), (self.a[0], self.a[-1])):
+            gap = end - start
+            if start is self.q[0] or np.shares_memory(start, self.q):
+                gap = gap - np.stack([0 * turns, 0 * turns, 2 * math.pi * turns], axis=1)
+            if np.abs(gap).max() > 1e-7 * max(1.0, float(np.abs(start).max())):
+                return None
+        return float(self.t[-1] - self.t[0])
+
+    def to_frame(self) -> pandas.DataFrame:
+        """All results as a pandas DataFrame indexed by time; columns name their units. Needs the extra ``pandas``."""
+        try:
+            import pandas
+        except ImportError as error:
+            raise ModelError("to_frame needs pandas: install mbsd[pandas]") from error
+        return pandas.DataFrame(self.columns(), index=pandas.Index(self.t, name="t [s]"))
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """All results as (T,) arrays, named ``coupler.theta [rad]``."""
+        frame_units = dict(zip(FrameView.__dataclass_fields__, _FRAME_UNITS, strict=True))
+        out: dict[str, np.ndarray] = {}
+        for name in self.packed.body_names[1:]:
+            view = self.body(name)
+            out |= {f"{name}.{key} [{unit}]": getattr(view, key) for key, unit in frame_units.items()}
+        for name in self.mechanism.traces:
+            view = self.point(name)
+            linear = {key: unit for key, unit in frame_units.items() if "rad" not in unit}
+            out |= {f"{name}.{key} [{unit}]": getattr(view, key) for key, unit in linear.items()}
+        for name in self.mechanism.joints:
+            joint = self.joint(name)
+            out |= {f"{name}.{key} [{unit}]": getattr(joint, key) for key, unit in _JOINT_UNITS.items()}
+        for name, driver in self.mechanism.drivers.items():
+            view = self.driver(name)
+            effort, value = driver.kind.units
+            out |= {f"{name}.value [{value}]": view.value, f"{name}.effort [{effort}]": view.effort}
+            out[f"{name}.power [W]"] = view.power
+        return out | {"kinetic [J]": self.energy.kinetic, "potential [J]": self.energy.potential}
+
+    def __repr__(self) -> str:
+        return (
+            f"<Solution {self.mechanism.name}: {len(self.t)} times, t = {self.t[0]:g} .. {self.t[-1]:g} s, "
+            f"largest residual {self.stats.position_residual:.1e}>"
+        )
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (name, f"{view.min():.6g}", f"{view.max():.6g}")
+            for name, view in self.columns().items()
+            if not name.endswith((".ax [m/s^2]", ".ay [m/s^2]", ".vx [m/s]", ".vy [m/s]"))
+        ]
+        body = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in rows)
+        return (
+            f"<p><b>{html.escape(self.mechanism.name)}</b>: {html.escape(str(self.mobility))}; {len(self.t)} times from "
+            f"{self.t[0]:g} to {self.t[-1]:g} s; largest residual {self.stats.position_residual:.1e}</p>"
+            f"<table><tr><th>quantity</th><th>min</th><th>max</th></tr>{body}</table>"
+        )
+
+    def _frame(self, b: int, place: tuple[float, float], turned: float = 0.0) -> FrameView:
+        """The frame at ``place`` of body b's author frame: moved from the centre of mass."""
+        q, v, a = self.q[:, b], self.v[:, b], self.a[:, b]
+        local = np.array(place) - self.packed.com[b]
+        c, s = np.cos(q[:, 2]), np.sin(q[:, 2])
+        arm_x, arm_y = c * local[0] - s * local[1], s * local[0] + c * local[1]
+        omega, alpha = v[:, 2], a[:, 2]
+        return FrameView(
+            x=q[:, 0] + arm_x,
+            y=q[:, 1] + arm_y,
+            theta=q[:, 2] + turned,
+            vx=v[:, 0] - omega * arm_y,
+            vy=v[:, 1] + omega * arm_x,
+            omega=omega,
+            ax=a[:, 0] - alpha * arm_y - omega**2 * arm_x,
+            ay=a[:, 1] + alpha * arm_x - omega**2 * arm_y,
+            alpha=alpha,
+        )
+
+    def _index(self, name: str, names: list[str], what: str) -> int:
+        if name not in names:
+            raise ModelError(f"{self.mechanism.name}: there is no {what} '{name}'; there is: {', '.join(names) or 'none'}")
+        return names.index(name)
+
+
+_FRAME_UNITS = ("m", "m", "rad", "m/s", "m/s", "rad/s", "m/s^2", "m/s^2", "rad/s^2")
+_JOINT_UNITS = {"x": "m", "y": "m", "fx": "N", "fy": "N", "torque": "N m"}

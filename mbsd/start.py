@@ -1,0 +1,236 @@
+"""The assembled pose at the start: rough angles, a walk over the joints for places, then Gauss-Newton closes it.
+
+Steps are damped (least norm, limited length, halved until the residual falls), so the pose closes near where the
+author put it. Bodies without a rough angle are tried at several angles.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from mbsd.assembly import evaluate_position
+from mbsd.errors import AssemblyError
+from mbsd.model import Joint, Mechanism
+from mbsd.packing import Packed
+
+CLOSED = 1e-10
+"""Largest residual of a closed pose, in sizes (m) and rad."""
+ATTEMPTS = 24
+LONGEST_STEP = 0.5
+"""Of one Gauss-Newton step, in sizes and rad."""
+
+
+def assemble(m: Mechanism, packed: Packed, time: float) -> np.ndarray:
+    """(3 nb,) closed pose at ``time``, centre-of-mass coordinates. Raises AssemblyError naming the open joint."""
+    drive = packed.drives(np.array([time]))[0]
+    best: tuple[float, np.ndarray] | None = None
+    for attempt in range(ATTEMPTS):
+        q = rough_pose(m, packed, drive, attempt)
+        _unwind_angles(packed, q)
+        q, worst = close(packed, q, drive)
+        if worst <= CLOSED:
+            return q
+        if best is None or worst < best[0]:
+            best = worst, q
+    assert best is not None
+    raise AssemblyError(_why_open(m, packed, best[1], drive, time))
+
+
+def close(packed: Packed, q: np.ndarray, drive: np.ndarray, rows: int | None = None) -> tuple[np.ndarray, float]:
+    """Gauss-Newton on the first ``rows`` rows (all by default) from q; returns the pose and its scaled residual."""
+    q = q.copy()
+    rows = len(packed.ws.phi) if rows is None else rows
+    row_scale, column_scale = packed.row_scale()[:rows], packed.column_scale()
+
+    def scaled() -> np.ndarray:
+        evaluate_position(packed.system, q, drive, packed.ws)
+        return packed.ws.phi[:rows] * row_scale
+
+    phi = scaled()
+    if rows == 0:
+        return q, 0.0
+    for _ in range(200):
+        jac = packed.ws.jac[:rows, 3:] * row_scale[:, None] * column_scale
+        if not (np.isfinite(jac).all() and np.isfinite(phi).all()):
+            return q, math.inf
+        step = np.linalg.lstsq(jac, -phi, rcond=1e-9)[0]
+        longest = float(np.abs(step).max(initial=0.0))
+        step *= min(1.0, LONGEST_STEP / longest) if longest > 0 else 1.0
+        before, old = float(np.linalg.norm(phi)), q.copy()
+        for _ in range(12):
+            q[3:] = old[3:] + step * column_scale
+            phi = scaled()
+            if np.linalg.norm(phi) < before or longest < 1e-9:
+                break
+            step /= 2
+        if longest < 1e-13 or not np.linalg.norm(phi) < before:
+            break
+    return q, float(np.abs(phi).max())
+
+
+def rough_pose(m: Mechanism, packed: Packed, drive: np.ndarray, attempt: int) -> np.ndarray:
+    """(3 nb,) from ``start_near``, the drivers and a walk over the joints; attempts after the first vary angles."""
+    angle = _rough_angles(m, packed, drive, attempt)
+    q = np.zeros((len(packed.body_names), 3))
+    q[:, 2] = angle
+    placed = {0}
+    for name, start in m.starts.items():
+        if start.place is not None:
+            b = packed.body_names.index(name)
+            q[b, :2] = start.place + _turned(angle[b], packed.com[b])
+            placed.add(b)
+    for reach in ("point", "distance", "slot", "along", "angle"):
+        while _place_one(packed, q, placed, reach):
+            pass
+    return q.ravel()
+
+
+def _rough_angles(m: Mechanism, packed: Packed, drive: np.ndarray, attempt: int) -> np.ndarray:
+    random = np.random.default_rng(attempt)
+    angle = np.zeros(len(packed.body_names))
+    known = {0}
+    for b, name in enumerate(packed.body_names):
+        if name in m.starts:
+            vary = 0.15 * random.standard_normal() if attempt else 0.0
+            angle[b] = m.starts[name].angle + vary
+            known.add(b)
+    system = packed.system
+    for _ in packed.body_names:  # angles pass on along welds, sliders and driven angles
+        for (i, j, _row, motion), offset in zip(system.angle, system.angle_offset, strict=True):
+            bi, bj = system.marker_body[i], system.marker_body[j]
+            turn = offset + drive[motion, 0]
+            if motion and bi == 0:  # a driver's angle is exact, start_near only rough
+                angle[bj] = turn
+                known.add(bj)
+            elif bi in known and bj not in known:
+                angle[bj] = angle[bi] + turn
+                known.add(bj)
+            elif bj in known and bi not in known:
+                angle[bi] = angle[bj] - turn
+                known.add(bi)
+    for b in range(len(angle)):
+        if b not in known and attempt:
+            angle[b] = random.uniform(-math.pi, math.pi)
+    return angle
+
+
+def _place_one(packed: Packed, q: np.ndarray, placed: set[int], constraint: str) -> bool:
+    """Place one more body by a joint of the given constraint to a placed one; False if there is none."""
+    system = packed.system
+    table = getattr(system, constraint)
+    for k, (i, j, _row, _motion) in enumerate(table):
+        bi, bj = int(system.marker_body[i]), int(system.marker_body[j])
+        if (bi in placed) == (bj in placed):
+            continue
+        base, new = (i, j) if bi in placed else (j, i)
+        body = bj if bi in placed else bi
+        target = _marker_place(packed, q, base)
+        if constraint == "distance":
+            target = target + np.array([system.distance_length[k], 0.0])
+        q[body, :2] = target - _turned(q[body, 2], system.marker_arm[new])
+        placed.add(body)
+        return True
+    return False
+
+
+def _marker_place(packed: Packed, q: np.ndarray, marker: int) -> np.ndarray:
+    b = packed.system.marker_body[marker]
+    return q[b, :2] + _turned(q[b, 2], packed.system.marker_arm[marker])
+
+
+def _turned(angle: float, vector: np.ndarray) -> np.ndarray:
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]])
+
+
+def _unwind_angles(packed: Packed, q: np.ndarray) -> None:
+    """Angles of welds and sliders hold up to whole turns: take the turn nearest to the rough pose."""
+    system = packed.system
+    for k, (i, j, _row, motion) in enumerate(system.angle):
+        if motion == 0:
+            gap = q[3 * system.marker_body[j] + 2] - q[3 * system.marker_body[i] + 2] - system.angle_offset[k]
+            system.angle_offset[k] += 2 * math.pi * round(gap / (2 * math.pi))
+
+
+# -- why it stays open ------------------------------------------------------------------------------------------
+
+
+def _why_open(m: Mechanism, packed: Packed, q: np.ndarray, drive: np.ndarray, time: float) -> str:
+    evaluate_position(packed.system, q, drive, packed.ws)
+    phi = packed.ws.phi
+    gaps = [float(np.abs(phi[a:b] * packed.row_scale()[a:b]).max()) for a, b in pairwise(packed.first_row)]
+    worst = int(np.argmax(gaps))
+    joint = packed.joints[worst]
+    rows = slice(packed.first_row[worst], packed.first_row[worst + 1])
+    what = "driver" if joint.kind.driven else "joint"
+    gap = f"{1000 * float(np.linalg.norm(phi[rows])):.3g} mm"
+    if joint.kind.constraints == ("angle",):
+        gap = f"{math.degrees(float(phi[rows][0])):.3g} degrees"
+    hint = _short_links(m, packed, joint, drive)
+    return (
+        f"{m.name}: the links do not close at t = {time:.6g} s: {what} {joint.name} stays open by {gap} at best. "
+        + (hint or "Check the lengths and joint places, or give other rough angles with start_near.")
+    )
+
+
+def _short_links(m: Mechanism, packed: Packed, joint: Joint, drive: np.ndarray) -> str:
+    """In a loop of pinned links: the one that is longer than the others together, if so."""
+    loop = _loop_through(m, joint)
+    if loop is None:
+        return ""
+    driven = {
+        j.j.body.name: float(drive[k + 1, 0])
+        for k, j in enumerate(m.drivers.values())
+        if j.kind.name == "drive_angle" and j.motion is not None
+    }
+    parts: list[tuple[str, np.ndarray, bool]] = []  # bodies, vector in the world if it is fixed, fixed?
+    for body, entry, leave in loop:
+        vector = np.array([leave.x - entry.x, leave.y - entry.y])
+        fixed = body == "ground" or body in driven
+        parts.append((body, _turned(driven.get(body, 0.0), vector) if fixed else vector, fixed))
+    held = [part for part in parts if part[2]]
+    spans = [(name, float(np.linalg.norm(vector))) for name, vector, fixed in parts if not fixed]
+    if held:
+        label = " and ".join(name for name, _, _ in held)
+        spans.append((label, float(np.linalg.norm(sum(vector for _, vector, _ in held)))))
+    longest = max(spans, key=lambda span: span[1])
+    others = [span for span in spans if span is not longest]
+    reach = sum(length for _, length in others)
+    if longest[1] <= reach:
+        return ""
+    together = " + ".join(name for name, _ in others)
+    return (
+        f"The links are too short: {together} = {reach:.4g} m must reach {longest[1]:.4g} m "
+        f"({'between the ends of ' if longest[0].count(' and ') else ''}{longest[0]})."
+    )
+
+
+def _loop_through(m: Mechanism, joint: Joint) -> list | None:
+    """Bodies around the shortest loop of pins through ``joint``: (name, marker in, marker out); None if there is none."""
+    pins = [j for j in m.joints.values() if j.kind.name == "revolute"]
+    if joint not in pins:
+        loops = [loop for pin in pins if (loop := _loop_through(m, pin))]
+        return min(loops, key=len, default=None)
+    paths = [[(joint.j.body.name, joint.j)]]
+    seen = {joint.j.body.name}
+    while paths:
+        path = paths.pop(0)
+        name, entry = path[-1]
+        if name == joint.i.body.name:
+            return _with_exits(path, joint)
+        for pin in pins:
+            if pin is joint:
+                continue
+            for here, there in ((pin.i, pin.j), (pin.j, pin.i)):
+                if here.body.name == name and there.body.name not in seen:
+                    seen.add(there.body.name)
+                    paths.append([*path[:-1], (name, entry, here), (there.body.name, there)])
+    return None
+
+
+def _with_exits(path: list, joint: Joint) -> list:
+    name, entry = path[-1]
+    return [*path[:-1], (name, entry, joint.i)]

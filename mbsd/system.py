@@ -1,0 +1,76 @@
+"""Arrays that the kernels work on: System (constant), Workspace (scratch). Made by model.py, changed by nobody else.
+
+Bodies are numbered 0 .. nb-1; body 0 is ground, whose columns of the Jacobian are computed and not used.
+A constraint table has one row per constraint: marker i, marker j, first row in J, motion (0: none, constant 0).
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+
+class System(NamedTuple):
+    """A mechanism as constant arrays (SI). nb bodies, nm markers."""
+
+    mass: Any
+    """(nb,) kg; ground 0."""
+    inertia: Any
+    """(nb,) kg m^2 about the centre of mass; ground 0."""
+    gravity: Any
+    """(2,) m/s^2."""
+    marker_body: Any
+    """(nm,) body of each marker."""
+    marker_arm: Any
+    """(nm, 2) from the centre of mass, body axes (m)."""
+    marker_axis: Any
+    """(nm, 2) unit x axis of the marker, body axes."""
+    point: Any
+    angle: Any
+    slot: Any
+    along: Any
+    distance: Any
+    """(k, 4) int constraint tables."""
+    angle_offset: Any
+    """(k,) rad, for the rows of ``angle``."""
+    distance_length: Any
+    """(k,) m, for the rows of ``distance``."""
+
+
+class Workspace(NamedTuple):
+    """Scratch of one evaluation; every kernel call overwrites it."""
+
+    cos_sin: Any
+    """(nb, 2) of the body angles."""
+    arm: Any
+    """(nm, 2) from the centre of mass, world axes."""
+    position: Any
+    """(nm, 2) world."""
+    axis: Any
+    """(nm, 2) unit, world."""
+    phi: Any
+    """(m,) residual."""
+    jac: Any
+    """(m, 3 nb) dPhi/dq, ground included."""
+    nu: Any
+    """(m,) J v = nu."""
+    gamma: Any
+    """(m,) J a = gamma."""
+
+
+def workspace(system: System, rows: int) -> Workspace:
+    """Scratch for ``rows`` constraint rows. Entries of ``jac`` outside the pattern stay zero for ever."""
+    bodies, markers = len(system.mass), len(system.marker_body)
+    cos_sin = np.zeros((bodies, 2))
+    cos_sin[:, 0] = 1.0
+    return Workspace(
+        cos_sin=cos_sin,
+        arm=np.zeros((markers, 2)),
+        position=np.zeros((markers, 2)),
+        axis=np.zeros((markers, 2)),
+        phi=np.zeros(rows),
+        jac=np.zeros((rows, 3 * bodies)),
+        nu=np.zeros(rows),
+        gamma=np.zeros(rows),
+    )

@@ -157,7 +157,7 @@ class Film:
             return SurfaceSpec(colour=chosen.colour, finish=chosen.finish, roughness=chosen.roughness)
         if chosen not in MATERIALS:
             raise UserError(
-                f"{self.motion.mechanism}: piece {body}/{name} is of '{chosen}'; known materials: {', '.join(MATERIALS)}"
+                f"{self.motion.mechanism}: piece {body}/{name} is of '{chosen}'; known: {', '.join(MATERIALS)}"
             )
         material = MATERIALS[chosen]
         return SurfaceSpec(colour=material.colour, finish=material.finish, roughness=material.roughness)

@@ -76,7 +76,7 @@ def motion(samples: int = 361, speed: float = 2 * math.pi) -> Motion:
     zero = np.zeros((samples, 2))
     a = (zero, zero, zero)
     b = arm(0, CRANK)
-    d = (zero + [GROUND, 0.0], zero, zero)
+    d = (zero + np.array([GROUND, 0.0]), zero, zero)
     frames = {"crank": (a, 0), "coupler": (b, 1), "rocker": (d, 2)}
     bodies = {
         name: BodyMotion(

@@ -27,7 +27,7 @@ class Job(msgspec.Struct, kw_only=True, frozen=True):
     samples: int = 8
     motion_blur: bool = False
     flat: dict[str, tuple[float, float, float]] | None = None
-    """Only these pieces (``body/piece``), as flat linear colours on black, sharp and untouched by the view: for tests."""
+    """Only these pieces (``body/piece``), as flat linear colours on black, sharp, without a view transform."""
 
 
 class Answer(msgspec.Struct, kw_only=True, frozen=True, omit_defaults=True):

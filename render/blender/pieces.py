@@ -47,9 +47,7 @@ def _empty(scene: Any, name: str) -> Any:
 def _load(path: str, name: str) -> Any:
     import bpy
 
-    bpy.ops.wm.stl_import(
-        filepath=path, global_scale=MILLIMETRE, use_scene_unit=False, forward_axis="Y", up_axis="Z"
-    )
+    bpy.ops.wm.stl_import(filepath=path, global_scale=MILLIMETRE, use_scene_unit=False, forward_axis="Y", up_axis="Z")
     solid = bpy.context.active_object
     solid.name = solid.data.name = name
     # The importer scales the object; the mesh itself shall be in metres, for textures and bevels alike.

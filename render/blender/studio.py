@@ -114,9 +114,7 @@ def _backdrop(scene: Any, studio: StudioSpec, look: Look) -> None:
     paint = bpy.data.materials.new("backdrop")
     paint.use_nodes = True
     graph = Graph(paint.node_tree).clear()
-    shader = graph.add(
-        "BsdfPrincipled", Base_Color=look.floor, Roughness=look.floor_roughness, Specular_IOR_Level=0.35
-    )
+    shader = graph.add("BsdfPrincipled", Base_Color=look.floor, Roughness=look.floor_roughness, Specular_IOR_Level=0.35)
     graph.add("OutputMaterial", Surface=shader.outputs[0])
     mesh.materials.append(paint)
 

@@ -1,0 +1,66 @@
+"""Pictures: ``python -m render {plots,still,poster,frames,film,scene,scene-ui} NAME [--preset P]``."""
+
+from __future__ import annotations
+
+import argparse
+
+from render.presets import PRESETS, Preset, preset_named
+from shared.console import run_cli
+from shared.paths import canonical_name
+
+COMMANDS = {
+    "plots": "plots of the motion, its forces and its energy",
+    "still": "one frame as a picture",
+    "poster": "the shot's best moment as poster.png",
+    "frames": "render every frame that is not there yet",
+    "film": "frames, then the MP4",
+    "scene": "save the scene as a .blend that plays the motion",
+    "scene-ui": "save the scene and open it in an installed Blender",
+}
+
+
+def main() -> int | None:
+    """Read the command line and run one stage; each is imported only when it is asked for."""
+    parser = argparse.ArgumentParser(prog="python -m render", description="From data.json, parts and shot to pictures.")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for command, text in COMMANDS.items():
+        sub = commands.add_parser(command, aliases=[command.replace("-", "_")] if "-" in command else [], help=text)
+        sub.add_argument("name", help="mechanism; four-bar and four_bar are one")
+        if command != "plots":
+            sub.add_argument("--preset", default="preview", help=f"{', '.join(PRESETS)}; preview if not given")
+        if command == "still":
+            sub.add_argument("--frame", type=int, default=0, help="number of the frame, from 0")
+    arguments = parser.parse_args()
+    name, command = canonical_name(arguments.name), arguments.command.replace("_", "-")
+    if command == "plots":
+        from render import plots
+
+        return plots.run(name)
+    return _picture(command, name, preset_named(arguments.preset), arguments)
+
+
+def _picture(command: str, name: str, preset: Preset, arguments: argparse.Namespace) -> None:
+    if command == "film":
+        from render import film
+
+        film.run(name, preset)
+    elif command == "frames":
+        from render import frames
+
+        frames.run(name, preset)
+    elif command == "still":
+        from render import still
+
+        still.still(name, preset, arguments.frame)
+    elif command == "poster":
+        from render import still
+
+        still.poster(name, preset)
+    else:
+        from render import blend
+
+        (blend.save if command == "scene" else blend.open_in_blender)(name, preset)
+
+
+if __name__ == "__main__":
+    run_cli(main)

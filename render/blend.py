@@ -1,0 +1,91 @@
+"""The scene as a .blend that plays the motion, and Blender opened on it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+from render.inputs import stage_key
+from render.presets import Preset
+from shared.console import say
+from shared.errors import UserError
+from shared.paths import Out
+from shared.stages import Stage
+
+USUAL_PLACES = (
+    "/Applications/Blender.app/Contents/MacOS/Blender",
+    "~/Applications/Blender.app/Contents/MacOS/Blender",
+    "/snap/bin/blender",
+    "/var/lib/flatpak/exports/bin/org.blender.Blender",
+    "/usr/local/bin/blender",
+    "/opt/blender*/blender",
+    "/usr/local/blender*/blender",
+    "~/blender*/blender",
+    "~/.local/bin/blender",
+)
+
+
+def save(name: str, preset: Preset) -> Path:
+    """The stage: out/<mechanism>/<mechanism>.blend with one turn of the motion on its timeline."""
+    out = Out(name)
+    stage = Stage(out, "scene", stage_key(out, preset), [out.scene])
+    if stage.is_fresh():
+        say("scene", f"{out.name}: {out.scene}: nothing to do")
+        return out.scene
+    from render.blender.job import Job
+    from render.child import blender
+    from render.inputs import read_film
+
+    film = read_film(out)
+    job = Job(
+        scene=film.scene,
+        states=[film.state(frame) for frame in range(film.shot.frames_per_turn)],
+        blend=str(out.scene.resolve()),
+        width=preset.width,
+        height=preset.height,
+        samples=preset.samples,
+        motion_blur=preset.motion_blur,
+    )
+    try:
+        with blender(job) as answers:
+            for _ in answers:
+                pass
+    finally:
+        for part in out.folder.glob(".*.part.blend*"):
+            part.unlink(missing_ok=True)
+    stage.done()
+    say("scene", f"{out.name}: {out.scene}: {len(job.states)} frames, {out.scene.stat().st_size / 1e6:.1f} MB")
+    return out.scene
+
+
+def open_in_blender(name: str, preset: Preset) -> None:
+    """Save the scene and open it in an installed Blender; raises UserError if there is none."""
+    program = find_blender()
+    scene = save(name, preset)
+    subprocess.Popen(
+        [program, str(scene)], start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
+    say("scene", f"{scene.name} opens in {program}")
+
+
+def find_blender() -> str:
+    """An installed Blender: $BLENDER, the PATH, then the usual places of Linux and macOS."""
+    named = os.environ.get("BLENDER")
+    if named:
+        if os.access(named, os.X_OK):
+            return named
+        raise UserError(f"BLENDER is set to {named}, which is not a program")
+    found = shutil.which("blender")
+    if found:
+        return found
+    for place in USUAL_PLACES:
+        pattern = Path(place).expanduser()
+        for program in sorted(Path(pattern.anchor).glob(str(pattern.relative_to(pattern.anchor))), reverse=True):
+            if os.access(program, os.X_OK):
+                return str(program)
+    raise UserError(
+        "no installed Blender was found to open the scene in; install Blender 5.2 or newer (blender.org), "
+        "or set BLENDER to its program. make scene-<name> saves the .blend without it"
+    )

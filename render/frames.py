@@ -1,0 +1,175 @@
+"""Renders the pictures a film still lacks. What was seen before is not rendered again."""
+
+from __future__ import annotations
+
+import shutil
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from render.blender.job import Job, Picture
+from render.child import blender
+from render.describe import Film
+from render.inputs import blender_version, read_film, stage_key
+from render.keys import frame_key, scene_key
+from render.presets import Preset
+from render.scene import State
+from render.store import FrameIndex, FrameStore, Timing
+from shared import jsonfile
+from shared.console import duration, progress, say
+from shared.errors import UserError
+from shared.paths import Out, out_root
+from shared.stages import Stage
+
+RESERVE = 200e6
+"""Bytes left free on the disk beside the frames."""
+
+
+def run(name: str, preset: Preset) -> None:
+    """The stage: every frame of the film in the store, and frames.json."""
+    started = time.perf_counter()
+    out = Out(name)
+    store = FrameStore(out.frames(preset.name))
+    stage = Stage(out, f"frames-{preset.name}", stage_key(out, preset), [store.index])
+    if stage.is_fresh():
+        say("frames", f"{out.name}: {preset}: nothing to do")
+        return
+    film = read_film(out)
+    pictures = Pictures(film, preset)
+    frames = range(film.shot.frames_per_turn)
+    with store.locked():
+        tally = Tally()
+        try:
+            render(pictures, store, frames, f"{film.shot.frames} frames in the film", tally)
+        finally:
+            tally.write(store, preset, time.perf_counter() - started)
+        keys = [pictures.key(frame) for frame in frames]
+        index = FrameIndex(
+            mechanism=out.name,
+            preset=preset.name,
+            width=preset.width,
+            height=preset.height,
+            fps=film.shot.fps,
+            frames=keys * film.shot.turns,
+        )
+        jsonfile.write(store.index, index)
+        store.prune(set(keys), spare=len(set(keys)))
+    stage.outputs.extend(store.path(key) for key in sorted(set(keys)))
+    stage.done()
+
+
+@dataclass
+class Tally:
+    """What a run made, and in how many seconds of Blender's own."""
+
+    device: str = ""
+    rendered: int = 0
+    cycles: float = 0.0
+
+    def write(self, store: FrameStore, preset: Preset, wall: float) -> None:
+        """Keep it in timing.json, unless nothing was made."""
+        if not self.rendered:
+            return
+        timing = Timing(
+            preset=preset.name,
+            device=self.device,
+            work=preset.work,
+            rendered=self.rendered,
+            wall=round(wall, 3),
+            cycles=round(self.cycles, 3),
+            overhead=round(wall / max(self.cycles, 1e-9), 4),
+        )
+        jsonfile.write(store.timing, timing)
+
+
+@dataclass
+class Pictures:
+    """Frames of a film as keys and states, at one preset."""
+
+    film: Film
+    preset: Preset
+    _states: dict[int, State] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.scene = scene_key(self.film.scene, self.preset, blender_version())
+
+    def state(self, frame: int) -> State:
+        """The state a frame shows."""
+        if frame not in self._states:
+            self._states[frame] = self.film.state(frame)
+        return self._states[frame]
+
+    def key(self, frame: int) -> str:
+        """The name of the picture a frame shows."""
+        around = (frame - 1, frame, frame + 1) if self.preset.motion_blur else (frame,)
+        return frame_key(self.scene, [self.state(f) for f in around])
+
+    def job(self, frames: Sequence[int], store: FrameStore) -> Job:
+        """The work order for these frames; a blurred frame has its neighbours beside it on the timeline."""
+        states: list[State] = []
+        pictures = []
+        for frame in frames:
+            around = [self.state(f) for f in (frame - 1, frame, frame + 1)] if self.preset.motion_blur else []
+            at = len(states) + (1 if around else 0)
+            states += around or [self.state(frame)]
+            pictures.append(Picture(state=at, path=str(store.path(self.key(frame)).resolve())))
+        return Job(
+            scene=self.film.scene,
+            states=states,
+            pictures=pictures,
+            width=self.preset.width,
+            height=self.preset.height,
+            samples=self.preset.samples,
+            motion_blur=self.preset.motion_blur,
+        )
+
+
+def render(pictures: Pictures, store: FrameStore, frames: Sequence[int], what: str, tally: Tally) -> None:
+    """Render those of ``frames`` that the store lacks, with a forecast before and progress meanwhile.
+
+    Interrupted, it leaves every finished picture, counted in ``tally``. Raises UserError if the disk has
+    no room for them.
+    """
+    preset, name = pictures.preset, pictures.film.motion.mechanism
+    by_key = {pictures.key(frame): frame for frame in reversed(frames)}
+    missing = sorted(frame for key, frame in by_key.items() if not store.has(key, preset.width, preset.height))
+    say("frames", f"{name}: {preset}: {len(missing)} of {len(by_key)} pictures to render, {what}")
+    if not missing:
+        return
+    _refuse_full_disk(name, preset, store, len(missing))
+    known = _seconds_a_picture(preset, store)
+    if known is not None:
+        say("frames", f"{name}: forecast {duration(known * len(missing))} at {known:.1f} s a frame, as measured before")
+    with blender(pictures.job(missing, store)) as answers, progress(f"{name} {preset.name}", len(missing)) as bar:
+        for answer in answers:
+            if answer.device:
+                tally.device = answer.device
+                say("frames", f"{name}: device: {answer.device}")
+                continue
+            tally.cycles += answer.cycles
+            tally.rendered += 1
+            if tally.rendered == 1 and known is None and len(missing) > 1:
+                whole = duration(answer.cycles * (len(missing) - 1))
+                say("frames", f"{name}: forecast {whole} more, from {answer.cycles:.1f} s for the first frame")
+            bar.advance()
+
+
+def _seconds_a_picture(preset: Preset, store: FrameStore) -> float | None:
+    """From the last run of this preset, else scaled from another run on this machine; None if there was none."""
+    own = store.read_timing()
+    if own is not None:
+        return own.cycles / own.rendered
+    others = [FrameStore(path.parent).read_timing() for path in sorted(out_root().glob("*/frames/*/timing.json"))]
+    scaled = [t.cycles / t.rendered * preset.work / t.work for t in others if t is not None]
+    return sorted(scaled)[len(scaled) // 2] if scaled else None
+
+
+def _refuse_full_disk(name: str, preset: Preset, store: FrameStore, count: int) -> None:
+    """A PNG of the studio takes about 1.3 bytes a pixel; three at worst."""
+    needed = 3.0 * preset.width * preset.height * count + RESERVE
+    free = shutil.disk_usage(store.folder).free
+    if free < needed:
+        raise UserError(
+            f"{name}: {count} pictures of {preset.name} may need {needed / 1e9:.1f} GB, {store.folder} has "
+            f"{free / 1e9:.1f} GB free; free some space, take a smaller PRESET or set MBSD_OUT to another disk"
+        )

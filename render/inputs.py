@@ -1,0 +1,59 @@
+"""What the picture stages read, and the key that tells whether any of it changed. Cheap to import."""
+
+from __future__ import annotations
+
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from render.presets import Preset
+from shared.errors import UserError
+from shared.files import sources_hash
+from shared.paths import Out, mechanism_folder
+from shared.stages import key_of
+
+if TYPE_CHECKING:
+    from render.describe import Film
+
+STAGE_OF = {"motion": "solve", "parts": "parts", "shot": "run"}
+
+
+def refuse_missing(out: Out) -> None:
+    """Raise UserError naming the make target if a file is not there yet."""
+    if not out.folder.is_dir():
+        mechanism_folder(out.name)
+    for attribute, target in STAGE_OF.items():
+        path = getattr(out, attribute)
+        if not path.is_file():
+            raise UserError(f"{out.name}: {path} is missing; run make {target}-{out.name.replace('_', '-')} first")
+
+
+def stage_key(out: Out, preset: Preset, *more: object) -> str:
+    """Key of a picture stage: the three files, our sources, the preset, Blender's version."""
+    refuse_missing(out)
+    return key_of(out.motion, out.parts, out.shot, picture_sources(), preset, blender_version(), *more)
+
+
+def picture_sources() -> str:
+    """Hash of the sources that make pictures; the plots are not among them."""
+    room = Path(__file__).parent
+    files = [path for path in sorted(room.glob("*.py")) if not path.name.startswith("plots")]
+    return sources_hash(*files, room / "blender")
+
+
+def blender_version() -> str:
+    """Version of bpy, without its two seconds of import."""
+    try:
+        return metadata.version("bpy")
+    except metadata.PackageNotFoundError:
+        raise UserError("bpy (Blender as a module) is not installed; run make install") from None
+
+
+def read_film(out: Out) -> Film:
+    """Read and check data.json, parts.json and shot.json."""
+    from render.describe import Film
+    from shared.contract import read_motion, read_parts
+    from shared.shot import read_shot
+
+    refuse_missing(out)
+    return Film(read_motion(out.motion), read_parts(out.parts), read_shot(out.shot), out.parts_folder)

@@ -1,0 +1,50 @@
+"""The name of a picture is a hash of what it shows, so no picture is rendered twice and no wrong one is kept."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from render.presets import Preset
+from render.scene import Scene, State
+from shared.files import sources_hash
+
+DIGITS = 9
+"""Poses count to a nanometre and a nanoradian."""
+BLENDER_SOURCES = Path(__file__).parent / "blender"
+
+
+def scene_key(scene: Scene, preset: Preset, blender: str) -> str:
+    """Everything that all frames have in common; STL files count by content, not by place.
+
+    ``blender`` is the version of bpy.
+    """
+    plain = _rounded(msgspec.to_builtins(scene))
+    for piece in plain["pieces"]:
+        del piece["stl"]
+    shown = {key: plain[key] for key in ("pieces", "trails", "labels", "studio")}
+    picture = [preset.width, preset.height, preset.samples, preset.motion_blur]
+    return _hash([shown, picture, sources_hash(BLENDER_SOURCES), blender])
+
+
+def frame_key(scene: str, states: Sequence[State]) -> str:
+    """One frame of the scene with that key: its state alone, or with both neighbours' where the shutter blurs them."""
+    return _hash([scene, [_rounded(msgspec.to_builtins(state)) for state in states]])[:32]
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, float):
+        return round(value, DIGITS) + 0.0  # -0.0 and 0.0 are one place
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_rounded(item) for item in value]
+    return value
+
+
+def _hash(value: Any) -> str:
+    return hashlib.sha256(msgspec.json.encode(value, order="sorted")).hexdigest()

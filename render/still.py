@@ -1,0 +1,55 @@
+"""One frame of the film as a picture: any frame as a still, the shot's best moment as the poster."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from render.inputs import stage_key
+from render.presets import Preset
+from shared.console import say
+from shared.errors import UserError
+from shared.files import write_bytes
+from shared.paths import Out
+from shared.stages import Stage
+
+
+def still(name: str, preset: Preset, frame: int) -> None:
+    """out/<mechanism>/stills/<preset>-<frame>.png; raises UserError if the film has no such frame."""
+    out = Out(name)
+    target = out.stills / f"{preset.name}-{frame:04d}.png"
+    stage = Stage(out, f"still-{preset.name}-{frame:04d}", stage_key(out, preset, frame), [target])
+    _make(out, preset, frame, target, stage, "still")
+
+
+def poster(name: str, preset: Preset) -> None:
+    """out/<mechanism>/poster.png: the moment that ``shot.poster`` names."""
+    out = Out(name)
+    stage = Stage(out, "poster", stage_key(out, preset), [out.poster])
+    _make(out, preset, None, out.poster, stage, "poster")
+
+
+def _make(out: Out, preset: Preset, frame: int | None, target: Path, stage: Stage, word: str) -> None:
+    """Through the store of frames: a still that the film has shows at once, and the film finds the still."""
+    if stage.is_fresh():
+        say(word, f"{out.name}: {preset}: nothing to do")
+        return
+    from render import frames
+    from render.inputs import read_film
+    from render.store import FrameStore
+
+    film = read_film(out)
+    if frame is None:
+        frame = round(film.shot.poster * film.shot.frames_per_turn)
+    elif not 0 <= frame < film.shot.frames:
+        raise UserError(
+            f"{out.name}: there is no frame {frame}; the film has frames 0 to {film.shot.frames - 1} "
+            f"({film.shot.turns} turns of {film.shot.frames_per_turn})"
+        )
+    frame %= film.shot.frames_per_turn
+    pictures = frames.Pictures(film, preset)
+    store = FrameStore(out.frames(preset.name))
+    with store.locked():
+        frames.render(pictures, store, [frame], f"frame {frame}", frames.Tally())
+        write_bytes(target, store.path(pictures.key(frame)).read_bytes())
+    stage.done()
+    say(word, f"{out.name}: {target}")

@@ -25,7 +25,7 @@ class _Strict(msgspec.Struct, forbid_unknown_fields=True, kw_only=True, frozen=T
     """Unknown fields are refused."""
 
 
-class Camera(_Strict):
+class Camera(_Strict, frozen=True):
     """Where the camera stands. Its distance follows from the swept motion, so that all of it is always in the frame."""
 
     azimuth: Annotated[float, msgspec.Meta(ge=-180, le=180)] = -16.0
@@ -42,7 +42,7 @@ class Camera(_Strict):
     """Degrees the camera swings to each side, once a turn, so that the film still loops."""
 
 
-class Trail(_Strict):
+class Trail(_Strict, frozen=True):
     """The path of a traced point, a thin light that fades behind it."""
 
     point: str
@@ -55,7 +55,7 @@ class Trail(_Strict):
     """Height (m); null is just above the body that carries the point."""
 
 
-class Label(_Strict):
+class Label(_Strict, frozen=True):
     """A short text that floats over a joint or a traced point and faces the camera."""
 
     at: str
@@ -65,17 +65,15 @@ class Label(_Strict):
     colour: Colour = (0.86, 0.88, 0.92)
 
 
-class Surface(_Strict):
+class Surface(_Strict, frozen=True):
     """A surface for a piece, where none of the named materials will do."""
 
     colour: Colour
-    finish: Literal["anodised", "brushed", "polished", "satin", "plastic", "rubber"] = (
-        "anodised"
-    )
+    finish: Literal["anodised", "brushed", "polished", "satin", "plastic", "rubber"] = "anodised"
     roughness: Unit = 0.3
 
 
-class Shot(_Strict):
+class Shot(_Strict, frozen=True):
     """shot.json: camera, look and film of one mechanism."""
 
     schema: Literal["mbsd.shot"] = "mbsd.shot"
@@ -129,11 +127,7 @@ def refuse_unknown(shot: Shot, motion: Motion, parts: Parts) -> None:
             [*motion.joints, *motion.points],
         )
     bodies = list(parts.bodies)
-    pieces = [
-        f"{body}/{piece}"
-        for body, solids in parts.bodies.items()
-        for piece in solids.pieces
-    ]
+    pieces = [f"{body}/{piece}" for body, solids in parts.bodies.items() for piece in solids.pieces]
     for name, surface in shot.materials.items():
         _known(motion.mechanism, "materials", name, [*bodies, *pieces])
         if isinstance(surface, str):

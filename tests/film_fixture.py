@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -132,7 +133,7 @@ def motion(samples: int = 361, speed: float = 2 * math.pi) -> Motion:
     )  # fmt: skip
 
 
-def solids() -> dict[str, dict[str, tuple[object, str]]]:
+def solids() -> dict[str, dict[str, tuple[Any, str]]]:
     """Body -> piece -> (mesh in mm, material). Every moving body carries a small ball at each of its joints."""
     from trimesh import creation
     from trimesh.transformations import translation_matrix as move
@@ -147,7 +148,7 @@ def solids() -> dict[str, dict[str, tuple[object, str]]]:
         mesh.apply_transform(move((x, y, z)))
         return mesh
 
-    def link(name: str, length: float, material: str):
+    def link(name: str, length: float, material: str) -> dict[str, tuple[Any, str]]:
         z = LAYERS[name] * 1000
         return {
             name: (box(length, 16, z, 8), material),
@@ -173,11 +174,11 @@ def write(out: Out, shot: Shot | None = None) -> None:
         made = {}
         for name, (mesh, material) in pieces.items():
             path: Path = out.parts_folder / f"{body}-{name}.stl"
-            mesh.export(path)  # type: ignore[attr-defined]
-            low, high = mesh.bounds[:, 2] / 1000  # type: ignore[attr-defined]
+            mesh.export(path)
+            low, high = mesh.bounds[:, 2] / 1000
             made[name] = Piece(
                 material=material, stl=path.name, step=path.with_suffix(".step").name, mass=mass,
-                z_range=(float(low), float(high)), triangles=len(mesh.faces), stl_sha256=file_hash(path),  # type: ignore[attr-defined]
+                z_range=(float(low), float(high)), triangles=len(mesh.faces), stl_sha256=file_hash(path),
             )  # fmt: skip
         bodies[body] = BodyParts(pieces=made, mass=mass, z=LAYERS.get(body, 0.0))
     write_parts(

@@ -1,5 +1,7 @@
 """The device Cycles renders on: a GPU where one is found, else the CPU; always told, never silent."""
 
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
 from __future__ import annotations
 
 import os

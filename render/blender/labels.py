@@ -1,5 +1,7 @@
 """Short texts that float over joints and face the camera."""
 
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
 from __future__ import annotations
 
 from typing import Any

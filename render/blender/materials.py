@@ -1,5 +1,7 @@
 """One small function per finish: from a surface in plain data to a Blender material."""
 
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
 from __future__ import annotations
 
 from collections.abc import Callable

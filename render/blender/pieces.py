@@ -1,5 +1,7 @@
 """Bodies and their solids: an empty per body that the motion moves, the meshes fixed to it."""
 
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
 from __future__ import annotations
 
 import math

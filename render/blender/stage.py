@@ -1,5 +1,7 @@
 """The whole scene in Blender: built once, then played. Frame i of the timeline shows state i."""
 
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
 from __future__ import annotations
 
 import math

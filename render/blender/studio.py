@@ -4,6 +4,8 @@ Places are (right, away, up) as the camera stands, in radii of the swept motion 
 grows with the square of its distance, so a mechanism of any size is lit alike.
 """
 
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
 from __future__ import annotations
 
 import math

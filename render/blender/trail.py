@@ -1,5 +1,7 @@
 """The trail: a thin tube of light, thick and bright at the point, thin and gone at the end of its tail."""
 
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
 from __future__ import annotations
 
 from typing import Any

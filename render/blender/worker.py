@@ -3,6 +3,8 @@
 It ends by itself when its standard input closes, so that it never outlives the process that started it.
 """
 
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
 from __future__ import annotations
 
 import os

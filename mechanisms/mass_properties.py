@@ -1,0 +1,43 @@
+"""Mass, centre of mass and inertia of solids: exact from the CAD kernel, times the density of the material."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from shared.contract import Mass
+from shared.shapes.units import cubic_metres, inertia_metres, metres
+
+
+def mass_of(solid: Any, density: float) -> Mass:
+    """Mass properties (kg, m, kg m^2, m^3) of a ``cadquery.Shape`` in mm, with ``density`` in kg/m^3.
+
+    The centre of mass is in the body's frame; the inertia is about the axis through it, along z.
+    """
+    from OCP.BRepGProp import BRepGProp
+    from OCP.GProp import GProp_GProps
+
+    found = GProp_GProps()
+    BRepGProp.VolumeProperties_s(solid.wrapped, found)
+    centre = found.CentreOfMass()
+    volume = cubic_metres(found.Mass())
+    return Mass(
+        mass=density * volume,
+        com=(metres(centre.X()), metres(centre.Y())),
+        inertia=density * inertia_metres(found.MatrixOfInertia().Value(3, 3)),  # about the centre of mass
+        volume=volume,
+    )
+
+
+def combined(masses: Iterable[Mass]) -> Mass:
+    """One body of several pieces: parallel-axis theorem (Steiner) about the common centre of mass."""
+    pieces = list(masses)
+    mass = sum(piece.mass for piece in pieces)
+    if mass == 0:
+        return Mass(mass=0.0, com=(0.0, 0.0), inertia=0.0, volume=sum(piece.volume for piece in pieces))
+    x = sum(piece.mass * piece.com[0] for piece in pieces) / mass
+    y = sum(piece.mass * piece.com[1] for piece in pieces) / mass
+    inertia = sum(
+        piece.inertia + piece.mass * ((piece.com[0] - x) ** 2 + (piece.com[1] - y) ** 2) for piece in pieces
+    )
+    return Mass(mass=mass, com=(x, y), inertia=inertia, volume=sum(piece.volume for piece in pieces))

@@ -1,0 +1,160 @@
+"""The ``parts`` stage: mechanisms/<name>/parts.py becomes STL, STEP and parts.json.
+
+It runs again only if something changed that the solids follow from: parts.py, the part library, the densities,
+CadQuery, or a parameter that ``parts()`` reads. A file whose bytes would be the same is not touched.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from pathlib import Path
+from typing import Any
+
+from mechanisms.loading import author_code, load, params
+from mechanisms.traced_params import fields_of, traced
+from shared.console import say
+from shared.contract import BodyParts, Parts, Piece, Provenance, write_parts
+from shared.errors import UserError
+from shared.files import sources_hash, write_bytes
+from shared.materials import MATERIALS
+from shared.paths import ROOT, Out, mechanism_folder
+from shared.shapes.units import metres
+from shared.stages import Stage, key_of, versions
+
+SOURCES = [
+    ROOT / "shared" / "shapes",
+    *(ROOT / "mechanisms" / f"{name}.py" for name in ("parts_stage", "parts_files", "mass_properties", "mesh_check")),
+]
+PACKAGES = ("cadquery", "cadquery-ocp")
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+
+
+def run(name: str) -> None:
+    """Make the parts of mechanism ``name``, if anything they follow from has changed.
+
+    Raises UserError naming the solid, the number and the remedy if a solid is refused; what was there stays.
+    """
+    out = Out(name)
+    given = params(out.name)
+    known = Stage(out, "parts", "", []).notes().get("reads")
+    if known is not None and Stage(out, "parts", _key(out.name, given, known), [out.parts]).is_fresh():
+        say("parts", f"{out.name}: up to date")
+        return
+    bodies, reads = _build(out.name, given)
+    key = _key(out.name, given, reads)
+    files: dict[str, bytes] = {}
+    described = {body: _body(out.name, body, solids, files) for body, solids in bodies.items()}
+    document = Parts(
+        mechanism=out.name, provenance=Provenance(inputs=key, versions=versions(*PACKAGES)), bodies=described
+    )
+    written = _write(out, files, document)
+    Stage(out, "parts", key, [out.parts, *(out.parts_folder / file for file in files)]).done(reads=reads)
+    say("parts", _summary(out.name, document, written))
+
+
+def _key(name: str, given: Any, reads: list[str]) -> str:
+    """Hash of all that the parts follow from; ``reads`` are the attributes of Params that parts() reads."""
+    folder = mechanism_folder(name)
+    fields = fields_of(given)
+    values = {read: fields[read] for read in reads if read in fields}
+    # a property or method of Params can compute anything: then the text of its file counts as well
+    computed = [] if len(values) == len(reads) else [folder / "mechanism.py"]
+    densities = {material: MATERIALS[material].density for material in sorted(MATERIALS)}
+    return key_of(sources_hash(*SOURCES, folder / "parts.py"), versions(*PACKAGES), densities, values, *computed)
+
+
+def _build(name: str, given: Any) -> tuple[dict[str, list[Any]], list[str]]:
+    """The solids by body, and the names that parts() read from its parameters."""
+    module = load(name, "parts")
+    stand_in, seen = traced(given)
+    with author_code(name):
+        bodies = module.parts(stand_in)
+    from shared.shapes.solid import Solid
+
+    if not isinstance(bodies, dict) or not bodies:
+        raise UserError(f"{name}: parts() must return a dict of lists of Solid by body, not {type(bodies).__name__}")
+    known: dict[str, str] = {}
+    for body, solids in bodies.items():
+        if not solids or not all(isinstance(solid, Solid) for solid in solids):
+            raise UserError(f"{name}: parts()['{body}'] must be a list of one Solid or more")
+        for solid in solids:
+            if not NAME.fullmatch(solid.name):
+                raise UserError(f"{name}: {body}: a solid is called '{solid.name}'; use letters, digits and _")
+            if solid.name in known:
+                raise UserError(
+                    f"{name}: {known[solid.name]} and {body} both have a solid '{solid.name}'; "
+                    "files are named after solids, so give one of them another name"
+                )
+            if solid.material not in MATERIALS:
+                raise UserError(
+                    f"{name}: {body}: {solid.name} is of '{solid.material}'; there is {', '.join(MATERIALS)}"
+                )
+            known[solid.name] = body
+    return bodies, sorted(seen)
+
+
+def _body(name: str, body: str, solids: list[Any], files: dict[str, bytes]) -> BodyParts:
+    from mechanisms.mass_properties import combined
+
+    pieces = {solid.name: _piece(name, body, solid, files) for solid in solids}
+    main = pieces[solids[0].name]
+    return BodyParts(
+        pieces=pieces, mass=combined(piece.mass for piece in pieces.values()), z=(sum(main.z_range)) / 2
+    )
+
+
+def _piece(name: str, body: str, solid: Any, files: dict[str, bytes]) -> Piece:
+    """Check one solid, add its files to ``files``, and describe it."""
+    from mechanisms.mass_properties import mass_of
+    from mechanisms.mesh_check import check_mesh, only_solid
+    from mechanisms.parts_files import read_mesh, step_bytes, stl_bytes
+
+    where = f"{name}: {body}: {solid.name}"
+    shape = only_solid(solid.shape, where)
+    step = step_bytes(shape, solid.name)  # before the mesh, which the shape would carry along
+    stl = stl_bytes(shape)
+    mesh = read_mesh(stl)
+    check_mesh(mesh, shape.Volume(), solid.through_holes, where)
+    files[f"{solid.name}.stl"] = stl
+    files[f"{solid.name}.step"] = step
+    return Piece(
+        material=solid.material,
+        stl=f"{solid.name}.stl",
+        step=f"{solid.name}.step",
+        mass=mass_of(shape, MATERIALS[solid.material].density),
+        z_range=(metres(float(mesh.bounds[0][2])), metres(float(mesh.bounds[1][2]))),
+        triangles=len(mesh.faces),
+        stl_sha256=hashlib.sha256(stl).hexdigest(),
+    )
+
+
+def _write(out: Out, files: dict[str, bytes], document: Parts) -> int:
+    """Write what differs from what is there, remove what no solid makes any more; the number of files written.
+
+    parts.json is written last, so it never names a file that is not there.
+    """
+    written = 0
+    for file, content in files.items():
+        path = out.parts_folder / file
+        if not path.is_file() or path.read_bytes() != content:
+            write_bytes(path, content)
+            written += 1
+    write_parts(out.parts, document)
+    for path in _leftovers(out.parts_folder, files):
+        path.unlink()
+    return written
+
+
+def _leftovers(folder: Path, files: dict[str, bytes]) -> list[Path]:
+    return [path for path in sorted(folder.iterdir()) if path.suffix in (".stl", ".step") and path.name not in files]
+
+
+def _summary(name: str, document: Parts, written: int) -> str:
+    pieces = [piece for body in document.bodies.values() for piece in body.pieces.values()]
+    moving = sum(body.mass.mass for key, body in document.bodies.items() if key != "ground")
+    triangles = sum(piece.triangles for piece in pieces)
+    return (
+        f"{name}: {len(pieces)} solids of {len(document.bodies)} bodies, {moving:.3f} kg moving, "
+        f"{triangles} triangles, {written} files written"
+    )

@@ -1,0 +1,152 @@
+"""Closed outlines of lines and tangent arcs in the plane z = 0 (mm), counter-clockwise.
+
+All corners are tangent, so edges of what is extruded from them take fillets and chamfers reliably.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import cadquery as cq
+import numpy as np
+
+Point = tuple[float, float]
+Circle = tuple[float, float, float]
+"""x, y, radius."""
+
+
+def circle(x: float, y: float, radius: float) -> cq.Wire:
+    """A full circle."""
+    return cq.Wire.makeCircle(radius, cq.Vector(x, y, 0), cq.Vector(0, 0, 1))
+
+
+def rounded_rectangle(x0: float, y0: float, x1: float, y1: float, radius: float) -> cq.Wire:
+    """A rectangle with rounded corners. Raises ValueError if they do not fit."""
+    if 2 * radius >= min(x1 - x0, y1 - y0):
+        raise ValueError(f"corner radius {radius:g} mm is too large for a plate of {x1 - x0:g} x {y1 - y0:g} mm")
+    r = radius
+    return hull([(x0 + r, y0 + r, r), (x1 - r, y0 + r, r), (x1 - r, y1 - r, r), (x0 + r, y1 - r, r)])
+
+
+def bar(length: float, radii: Point, widths: Point, fillet: float) -> cq.Wire:
+    """Two round ends at (0, 0) and (length, 0), joined by a web that tapers from widths[0] to widths[1].
+
+    ``widths`` hold on the axes of the ends; the web runs into them with radius ``fillet``.
+    Raises ValueError if the ends are not wider than the web or the web has no room.
+    """
+    for radius, width in zip(radii, widths, strict=True):
+        if radius <= width / 2:
+            raise ValueError(f"end radius {radius:g} mm must exceed half of the web's width {width:g} mm")
+    start, end = np.array([0.0, widths[0] / 2]), np.array([length, widths[1] / 2])
+    along = (end - start) / np.linalg.norm(end - start)
+    out = np.array([-along[1], along[0]])
+    origin = start + fillet * out
+    corners = []
+    for centre, radius, side in ((np.zeros(2), radii[0], 1.0), (np.array([length, 0.0]), radii[1], -1.0)):
+        to = origin - centre
+        b = to @ along
+        root = math.sqrt(b * b - to @ to + (radius + fillet) ** 2)
+        knuckle = origin + (side * root - b) * along  # centre of the fillet
+        on_end = centre + (knuckle - centre) * radius / (radius + fillet)
+        on_web = knuckle - fillet * out
+        middle = knuckle + fillet * _unit(on_end + on_web - 2 * knuckle)
+        corners.append((on_end, middle, on_web))
+    (end0, mid0, web0), (end1, mid1, web1) = corners
+    if (web1 - web0) @ along <= 0:
+        raise ValueError(
+            f"a link of {length:g} mm has no room for ends of {radii[0]:g} and {radii[1]:g} mm with {fillet:g} mm "
+            "fillets; make the ends or the fillet smaller, or the link longer"
+        )
+
+    def low(p: np.ndarray) -> np.ndarray:
+        return p * (1, -1)
+
+    return cq.Wire.assembleEdges(
+        [
+            _arc(end0, np.array([-radii[0], 0.0]), low(end0)),
+            _arc(low(end0), low(mid0), low(web0)),
+            _line(low(web0), low(web1)),
+            _arc(low(web1), low(mid1), low(end1)),
+            _arc(low(end1), np.array([length + radii[1], 0.0]), end1),
+            _arc(end1, mid1, web1),
+            _line(web1, web0),
+            _arc(web0, mid0, end0),
+        ]
+    )
+
+
+def hull(circles: Sequence[Circle], waist: float = math.inf) -> cq.Wire:
+    """The outline round two or more circles, in counter-clockwise order.
+
+    With ``waist`` infinite the sides are straight; else they curve inwards with that radius.
+    """
+    count = len(circles)
+    sides = [_side(circles[i], circles[(i + 1) % count], waist) for i in range(count)]
+    edges = []
+    for i in range(count):
+        leave, middle, arrive = sides[i]
+        edges.append(_line(leave, arrive) if middle is None else _arc(leave, middle, arrive))
+        x, y, radius = circles[(i + 1) % count]
+        centre = np.array([x, y])
+        first = math.atan2(*(arrive - centre)[::-1])
+        last = math.atan2(*(sides[(i + 1) % count][0] - centre)[::-1])
+        half = first + ((last - first) % (2 * math.pi)) / 2
+        edges.append(
+            _arc(arrive, centre + radius * np.array([math.cos(half), math.sin(half)]), sides[(i + 1) % count][0])
+        )
+    return cq.Wire.assembleEdges(edges)
+
+
+def window(points: Sequence[Point], rims: Sequence[float], corner: float) -> cq.Wire:
+    """A convex polygon (counter-clockwise) shrunk by rims[i] at its side from point i to i + 1, with round corners.
+
+    Raises ValueError if nothing is left of it.
+    """
+    count = len(points)
+    lines = []
+    for i, rim in enumerate(rims):
+        a, b = np.array(points[i]), np.array(points[(i + 1) % count])
+        along = _unit(b - a)
+        inward = np.array([-along[1], along[0]])
+        lines.append((a + (rim + corner) * inward, along))
+    corners = []
+    for i in range(count):
+        (p, u), (q, v) = lines[i - 1], lines[i]
+        s = np.linalg.solve(np.column_stack([u, -v]), q - p)[0]
+        corners.append(p + s * u)
+    for i in range(count):
+        if (corners[(i + 1) % count] - corners[i]) @ lines[i][1] <= 0:
+            raise ValueError("the rims leave no window; make them or the corner radius smaller")
+    return hull([(float(x), float(y), corner) for x, y in corners])
+
+
+def _side(a: Circle, b: Circle, waist: float) -> tuple[np.ndarray, np.ndarray | None, np.ndarray]:
+    """Where the side from circle a to b leaves a, its middle if curved, and where it meets b; outside is right."""
+    p, q, ra, rb = np.array(a[:2]), np.array(b[:2]), a[2], b[2]
+    distance = float(np.linalg.norm(q - p))
+    along = (q - p) / distance
+    right = np.array([along[1], -along[0]])
+    if math.isinf(waist):
+        lean = (ra - rb) / distance
+        normal = lean * along + math.sqrt(1 - lean * lean) * right
+        return p + ra * normal, None, q + rb * normal
+    forward = ((ra + waist) ** 2 - (rb + waist) ** 2 + distance**2) / (2 * distance)
+    aside = (ra + waist) ** 2 - forward**2
+    if aside <= 0:
+        raise ValueError(f"waist radius {waist:g} mm is too small to span {distance:g} mm; make it larger")
+    centre = p + forward * along + math.sqrt(aside) * right
+    leave, arrive = p + ra * _unit(centre - p), q + rb * _unit(centre - q)
+    return leave, centre + waist * _unit((leave + arrive) / 2 - centre), arrive
+
+
+def _unit(v: np.ndarray) -> np.ndarray:
+    return v / np.linalg.norm(v)
+
+
+def _line(a: np.ndarray, b: np.ndarray) -> cq.Edge:
+    return cq.Edge.makeLine(cq.Vector(*a, 0), cq.Vector(*b, 0))
+
+
+def _arc(a: np.ndarray, middle: np.ndarray, b: np.ndarray) -> cq.Edge:
+    return cq.Edge.makeThreePointArc(cq.Vector(*a, 0), cq.Vector(*middle, 0), cq.Vector(*b, 0))

@@ -1,0 +1,126 @@
+"""Turned parts on a joint's axis: pins, washers, circlips, flanged bushings, a stylus."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import cadquery as cq
+
+from shared.shapes.build import extruded, turned
+from shared.shapes.outline import circle
+
+
+@dataclass(frozen=True)
+class Head:
+    """The head of a pin (mm): a cylinder with a dome on it and a centre mark in its middle."""
+
+    diameter: float
+    height: float
+    dome: float = 1.2
+    """Height of the domed part, out of ``height``."""
+
+
+@dataclass(frozen=True)
+class Groove:
+    """A groove for a circlip (mm): from z to z + width above the pin's lower end, ``depth`` into the radius."""
+
+    z: float
+    width: float
+    depth: float
+
+
+def pin(
+    diameter: float, length: float, head: Head | None = None, groove: Groove | None = None, chamfer: float = 0.6
+) -> cq.Workplane:
+    """A pin on the z axis from z = 0 to z = length, its head on top of that. No through hole."""
+    r, c = diameter / 2, chamfer
+    profile: list[tuple[float, ...]] = [(0, 0), (r - c, 0), (r, c)]
+    if groove:
+        inner = r - groove.depth
+        profile += [(r, groove.z), (inner, groove.z), (inner, groove.z + groove.width), (r, groove.z + groove.width)]
+    if head is None:
+        profile += [(r, length - c), (r - c, length), *_centre_mark(length, r)]
+        return turned(profile)
+    top, edge = length + head.height, head.diameter / 2
+    shoulder = top - head.dome
+    profile += [(r, length), (edge - 0.3, length), (edge, length + 0.3), (edge, shoulder)]
+    rim = edge * 0.55
+    middle = (rim + (edge - rim) * math.cos(math.pi / 4), shoulder + head.dome * math.sin(math.pi / 4))
+    profile += [(*middle, rim, top), *_centre_mark(top, r)]
+    return turned(profile)
+
+
+def washer(inner: float, outer: float, thickness: float, chamfer: float = 0.15) -> cq.Workplane:
+    """A flat washer (diameters in mm) from z = 0: one through hole."""
+    a, b, c, t = inner / 2, outer / 2, chamfer, thickness
+    return turned([(a, 0), (b - c, 0), (b, c), (b, t - c), (b - c, t), (a, t)])
+
+
+def bushing(inner: float, outer: float, flange: float, flange_thickness: float, length: float) -> cq.Workplane:
+    """A flanged bushing (diameters in mm): flange from z = 0 up, barrel down to z = -length. One through hole."""
+    a, b, f, t, c = inner / 2, outer / 2, flange / 2, flange_thickness, 0.25
+    return turned(
+        [
+            (a, -length + c),
+            (a + c, -length),
+            (b - c, -length),
+            (b, -length + c),
+            (b, 0),
+            (f - c, 0),
+            (f, c),
+            (f, t - c),
+            (f - c, t),
+            (a + c, t),
+            (a, t - c),
+        ]
+    )
+
+
+def circlip(inner: float, thickness: float, band: float = 0.0) -> cq.Workplane:
+    """An external circlip round a groove of diameter ``inner`` (mm), z = 0 up, its gap at +x.
+
+    The band is widest opposite the gap and ends in two ears with a hole each: two through holes.
+    """
+    band = band or 0.16 * inner + 0.6
+    r = inner / 2
+    ear, eye, lean = 0.95 * band, 0.5 * band, 0.25 * band
+    turn = math.asin((ear + 0.25 * band) / (r + ear))
+    ring = extruded(circle(-lean, 0, r + band), thickness)
+    ears = [((r + ear * 1.05) * math.cos(a), (r + ear * 1.05) * math.sin(a)) for a in (turn, -turn)]
+    for x, y in ears:
+        ring = ring.union(extruded(circle(x, y, ear), thickness))
+    gap = cq.Workplane().box(4 * r, 0.5 * band, 3 * thickness, centered=(False, True, True))
+    ring = ring.cut(extruded(circle(0, 0, r), 3 * thickness, -thickness)).cut(gap)
+    for x, y in ears:
+        ring = ring.cut(extruded(circle(x, y, eye), 3 * thickness, -thickness))
+    return ring
+
+
+def stylus(diameter: float, length: float, height: float, ball: float) -> cq.Workplane:
+    """A tracer: a shank from z = -length to 0, a collar and a cone up to a ball tip that ends at z = height."""
+    r, collar, c = diameter / 2, diameter * 0.85, 0.3
+    centre = height - ball
+    meet = (ball * math.cos(0.4), centre - ball * math.sin(0.4))
+    return turned(
+        [
+            (0, -length),
+            (r - c, -length),
+            (r, -length + c),
+            (r, 0),
+            (collar - 0.2, 0),
+            (collar, 0.2),
+            (collar, 1.0),
+            (collar - 0.2, 1.2),
+            (r, 1.2),
+            meet,
+            (ball * math.cos(0.5), centre + ball * math.sin(0.5), 0.1 * ball, height - 0.005 * ball),
+            (0, height - 0.005 * ball),
+        ]
+    )
+
+
+def _centre_mark(top: float, radius: float) -> list[tuple[float, float]]:
+    """The cone that a centre drill leaves in a turned face; its floor is flat, since a mesh may tear at an apex."""
+    depth = 0.2 * radius
+    return [(0.3 * radius, top), (0.06 * radius, top - depth), (0, top - depth)]

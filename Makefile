@@ -6,7 +6,7 @@ NAME ?=
 PYTEST ?= -n 2 --dist loadfile
 
 PRESETS := draft preview production final
-ifeq ($(filter $(PRESETS),$(PRESET)),)
+ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
 $(error PRESET=$(PRESET) is not a preset; choose one of: $(PRESETS))
 endif
 

@@ -73,8 +73,9 @@ def motions(draw: st.DrawFn) -> Motion:
     margin = draw(series)
     diagnostics = msgspec.structs.replace(MOTION.diagnostics, singularity_margin=margin, dof=draw(st.integers(-9, 9)))
     return Motion(
-        mechanism=draw(st.text()), provenance=MOTION.provenance, gravity=(0.0, -9.81), 
-        period=draw(st.none() | st.just(1.5)), time=time, bodies=bodies, joints={}, drivers={}, points={}, energy=energy, diagnostics=diagnostics,
+        mechanism=draw(st.text()), provenance=MOTION.provenance, gravity=(0.0, -9.81),
+        period=draw(st.none() | st.just(1.5)), time=time, bodies=bodies, joints={}, drivers={}, points={},
+        energy=energy, diagnostics=diagnostics,
     )  # fmt: skip
 
 

@@ -1,7 +1,7 @@
 # The face of the project: `make help` lists what there is. GNU make 3.81 and a POSIX shell are enough.
 
 PRESET ?= preview
-FRAME ?= 1
+FRAME ?= 0
 NAME ?=
 PYTEST ?= -n 2 --dist loadfile
 
@@ -69,7 +69,7 @@ poster-%: install always ## one picture at its best: out/<name>/poster.png
 	$(upto_shot)
 	@$(RENDER) poster $(name) --preset $(PRESET)
 
-still-%: install always ## one frame of the film, FRAME=15: out/<name>/stills/
+still-%: install always ## one frame of the film, FRAME=15 (from 0): out/<name>/stills/
 	$(upto_shot)
 	@$(RENDER) still $(name) --frame $(FRAME) --preset $(PRESET)
 

@@ -67,13 +67,13 @@ def author_code(name: str) -> Iterator[None]:
         if not error.filename or not Path(error.filename).is_relative_to(folder):
             raise
         shown = f"{_shown(Path(error.filename))}:{error.lineno}"
-        raise UserError(f"{folder.name}: {shown}: {error.msg}: {(error.text or '').strip()}") from error
+        raise UserError(f"{shown}: {error.msg}: {(error.text or '').strip()}") from error
     except Exception as error:
         lines = [frame for frame in traceback.extract_tb(error.__traceback__) if _is_below(frame.filename, folder)]
         if not lines:
             raise
         shown = f"{_shown(Path(lines[-1].filename))}:{lines[-1].lineno}"
-        raise UserError(f"{folder.name}: {shown}: {type(error).__name__}: {error}") from error
+        raise UserError(f"{shown}: {type(error).__name__}: {error}") from error
 
 
 class _SourceOnly(SourceFileLoader):

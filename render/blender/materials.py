@@ -10,9 +10,6 @@ from typing import Any
 from render.blender.nodes import Graph
 from render.scene import SurfaceSpec
 
-BEVEL = 0.0004
-"""Radius (m) of the light that catches on every edge; no real part has a sharp one."""
-
 
 def material(surface: SurfaceSpec, name: str) -> Any:
     """The Blender material of a surface."""
@@ -39,12 +36,8 @@ def _new(name: str) -> tuple[Any, Graph]:
     return made, Graph(made.node_tree).clear()
 
 
-def _edge(graph: Graph) -> Any:
-    return graph.add("Bevel", {"samples": 4}, Radius=BEVEL).outputs[0]
-
-
 def _principled(graph: Graph, **inputs: Any) -> Any:
-    return graph.add("BsdfPrincipled", Normal=_edge(graph), **inputs).outputs[0]
+    return graph.add("BsdfPrincipled", **inputs).outputs[0]
 
 
 def _cloudy(graph: Graph, roughness: float, swing: float, scale: float) -> Any:
@@ -60,9 +53,9 @@ def _anodised(graph: Graph, surface: SurfaceSpec) -> Any:
     return _principled(
         graph,
         Base_Color=surface.colour,
-        Metallic=0.92,
+        Metallic=1.0,
         Roughness=_cloudy(graph, surface.roughness + 0.04, 0.06, 60.0),
-        Coat_Weight=0.45,
+        Coat_Weight=0.18,
         Coat_Roughness=0.16,
         Coat_IOR=1.5,
     )
@@ -74,7 +67,7 @@ def _brushed(graph: Graph, surface: SurfaceSpec) -> Any:
     stretched = graph.add("Mapping", Vector=place, Scale=(14.0, 900.0, 40.0)).outputs[0]
     streaks = graph.add("TexNoise", Vector=stretched, Scale=1.0, Detail=3.0, Roughness=0.6).outputs[0]
     rough = graph.math("ADD", surface.roughness - 0.06, graph.math("MULTIPLY", streaks, 0.16))
-    tone = graph.math("ADD", 0.90, graph.math("MULTIPLY", streaks, 0.16))
+    tone = graph.math("ADD", 0.66, graph.math("MULTIPLY", streaks, 0.20))
     colour = graph.add("VectorMath", {"operation": "SCALE"}, Scale=tone)
     graph.set(colour, 0, surface.colour)
     tangent = graph.add("Tangent", {"direction_type": "RADIAL", "axis": "Y"}).outputs[0]
@@ -92,10 +85,10 @@ def _satin(graph: Graph, surface: SurfaceSpec) -> Any:
     """Hard black anodising: dark, with a wide soft sheen."""
     return _principled(
         graph,
-        Base_Color=surface.colour,
-        Metallic=0.0,
-        Roughness=_cloudy(graph, surface.roughness, 0.05, 40.0),
-        Specular_IOR_Level=0.55,
+        Base_Color=tuple(1.5 * c for c in surface.colour),
+        Metallic=0.35,
+        Roughness=_cloudy(graph, surface.roughness - 0.06, 0.05, 40.0),
+        Specular_IOR_Level=0.8,
     )
 
 

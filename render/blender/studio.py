@@ -18,7 +18,7 @@ from render.scene import Colour, StudioSpec
 
 @dataclass(frozen=True)
 class Softbox:
-    """An area light that fades to its rim; ``power`` is W for a radius of one metre."""
+    """An area light; ``power`` is W for a radius of one metre."""
 
     name: str
     place: tuple[float, float, float]
@@ -27,6 +27,8 @@ class Softbox:
     colour: Colour = (1.0, 1.0, 1.0)
     aim: tuple[float, float, float] = (0.0, 0.0, 0.0)
     spread: float = 180.0
+    fades: bool = False
+    """Dims towards its rim, so that its edge in a reflection is a gradient; costs a little render time."""
 
 
 @dataclass(frozen=True)
@@ -43,16 +45,17 @@ class Look:
 
 LOOKS = {
     "studio": Look(
-        floor=(0.030, 0.032, 0.036),
-        floor_roughness=0.42,
-        world=(0.010, 0.012, 0.016),
+        floor=(0.036, 0.040, 0.050),
+        floor_roughness=0.46,
+        world=(0.016, 0.018, 0.024),
         exposure=0.0,
         contrast="AgX - Medium High Contrast",
         softboxes=(
-            Softbox("overhead", (-0.2, 2.2, 3.0), (3.2, 1.8), 62.0, (1.0, 0.985, 0.96), (0.0, 0.2, 0.0)),
-            Softbox("rim cool", (-3.0, 1.6, 1.2), (0.5, 2.6), 26.0, (0.55, 0.74, 1.0)),
-            Softbox("rim warm", (3.0, 1.3, 1.0), (0.5, 2.6), 22.0, (1.0, 0.66, 0.38)),
-            Softbox("fill", (-1.2, -3.2, 2.2), (3.0, 2.0), 6.0, (0.86, 0.92, 1.0)),
+            Softbox("overhead", (-0.8, 3.4, 2.5), (4.2, 2.0), 50.0, (1.0, 0.985, 0.96), (0.0, 0.3, 0.0), fades=True),
+            Softbox("pool", (0.9, 1.8, 4.2), (0.6, 0.6), 62.0, (1.0, 0.97, 0.94), (0.1, 0.35, -0.3), 50.0),
+            Softbox("rim cool", (-3.2, 1.4, 0.9), (0.5, 2.8), 46.0, (0.42, 0.68, 1.0)),
+            Softbox("rim warm", (3.2, 0.9, 0.8), (0.5, 2.8), 40.0, (1.0, 0.58, 0.28)),
+            Softbox("fill", (-1.2, -3.8, 1.6), (3.4, 1.6), 13.0, (0.84, 0.91, 1.0)),
         ),
     ),
     "daylight": Look(
@@ -136,7 +139,21 @@ def _softbox(scene: Any, studio: StudioSpec, box: Softbox) -> None:
     light.energy = box.power * radius**2
     light.color = box.colour
     light.spread = math.radians(box.spread)
+    if box.fades:
+        _fade_to_rim(light)
     thing = bpy.data.objects.new(box.name, light)
     thing.location = place
     thing.rotation_euler = (aim - place).to_track_quat("-Z", "Y").to_euler()
     scene.collection.objects.link(thing)
+
+
+def _fade_to_rim(light: Any) -> None:
+    """Bright along its lower edge, gone at its upper: level faces far off catch more of it than near ones."""
+    light.use_nodes = True
+    graph = Graph(light.node_tree).clear()
+    across = graph.add("SeparateXYZ", Vector=graph.add("NewGeometry").outputs["Parametric"])
+    sides = graph.math("MULTIPLY", graph.math("PINGPONG", across.outputs["X"], 0.5), 2.0)
+    soft = graph.math("SMOOTH_MIN", graph.math("MULTIPLY", sides, 2.0), 1.0, 0.5)
+    down = graph.math("POWER", graph.math("SUBTRACT", 1.0, across.outputs["Y"]), 1.5)
+    strength = graph.math("MULTIPLY", graph.math("MULTIPLY", soft, down), 2.6)
+    graph.add("OutputLight", Surface=graph.add("Emission", Strength=strength).outputs[0])

@@ -12,7 +12,7 @@ from render.blender.nodes import Graph
 from render.scene import Point, TrailSpec
 
 SIDES = 10
-BRIGHTNESS = 5.0
+BRIGHTNESS = 3.2
 
 
 def build(scene: Any, trail: TrailSpec) -> Any:

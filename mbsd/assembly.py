@@ -6,11 +6,11 @@
 from __future__ import annotations
 
 from mbsd.constraints import along, angle, distance, point, slot
-from mbsd.jit import kernel
+from mbsd.jit import inlined, kernel
 from mbsd.markers import place
 
 
-@kernel
+@inlined
 def evaluate_position(system, q, drive, ws):
     """Fill ws.phi and ws.jac at q (3 nb,). ``drive`` is (motions, 3): f, f', f'' now; row 0 is zero."""
     place(system, q, ws)
@@ -21,7 +21,7 @@ def evaluate_position(system, q, drive, ws):
     distance.rows(system, drive, ws)
 
 
-@kernel
+@inlined
 def evaluate_nu(system, drive, ws):
     """Fill ws.nu: f' in driven rows, else zero."""
     for r in range(ws.nu.shape[0]):
@@ -31,7 +31,7 @@ def evaluate_nu(system, drive, ws):
             ws.nu[table[k, 2]] = drive[table[k, 3], 1]
 
 
-@kernel
+@inlined
 def evaluate_gamma(system, v, drive, ws):
     """Fill ws.gamma at velocities v (3 nb,), after evaluate_position at the same pose."""
     point.gamma_rows(system, v, ws)
@@ -42,3 +42,9 @@ def evaluate_gamma(system, v, drive, ws):
     for table in (system.angle, system.along, system.distance):
         for k in range(table.shape[0]):
             ws.gamma[table[k, 2]] += drive[table[k, 3], 2]
+
+
+@kernel
+def residual_and_jacobian(system, q, drive, ws):
+    """evaluate_position as a function of its own, for callers outside the compiled loops."""
+    evaluate_position(system, q, drive, ws)

@@ -9,7 +9,7 @@ M is constant and diagonal because q holds centres of mass. Source: Haug 1989, c
 
 from __future__ import annotations
 
-from mbsd.assembly import evaluate_gamma, evaluate_nu, evaluate_position
+from mbsd.assembly import evaluate_gamma, evaluate_nu, residual_and_jacobian
 from mbsd.elimination import factorise, solve_transposed
 from mbsd.jit import kernel
 
@@ -23,9 +23,9 @@ def inverse_dynamics(system, seq, fac, ws, first_row, second_marker, drives, q, 
     jacobians (T, m, n) for the singularity margin.
     """
     n3 = q.shape[1]
-    rhs = q[0].copy()
+    rhs = ws.rate
     for k in range(q.shape[0]):
-        evaluate_position(system, q[k], drives[k], ws)
+        residual_and_jacobian(system, q[k], drives[k], ws)
         evaluate_nu(system, drives[k], ws)
         evaluate_gamma(system, v[k], drives[k], ws)
         factorise(seq, ws.jac, fac)

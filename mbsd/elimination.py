@@ -1,12 +1,16 @@
 """Linear solves with the constraint Jacobian by a fixed elimination sequence found once per mechanism.
 
 Most entries of J in reference coordinates are constants (+-1 on the coordinates of a body). Pivots on them never
-vanish, so they are taken first, in Markowitz order, by a tape of index pairs; they cut J down to a small dense
-block in which rows are pivoted at run time. For a four-bar 9 x 9 becomes 2 x 2. Exact LU, nothing is approximated.
+vanish, so they are taken first, in Markowitz order; what is left is a small dense block in which rows are pivoted
+at run time. For a four-bar 9 x 9 becomes 2 x 2. Exact LU, nothing is approximated.
 
-    forward   L y = b,   block   B x_C = y_R,   backward   U x = y
+Rows and columns are renumbered so that pivot k stands at (k, k), and pivot rows are scaled to a pivot of 1. The
+numeric work is then flat loops over index triples:
 
-Source: Duff, Erisman, Reid, Direct Methods for Sparse Matrices, ch. 7 (Markowitz) and 9 (a generated pivot sequence).
+    factor    w[target] -= w[lower] * w[upper]
+    solve     y[i] -= L y[k] forward;  dense block;  y[k] -= U y[j] backward
+
+Source: Duff, Erisman, Reid, Direct Methods for Sparse Matrices, ch. 7 (Markowitz) and 9 (a fixed pivot sequence).
 """
 
 from __future__ import annotations
@@ -15,92 +19,126 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mbsd.jit import kernel
+from mbsd.jit import inlined
 
 
 class Elimination(NamedTuple):
-    """The sequence, as constant arrays. p constant pivots, k = n - p rows and columns in the dense block."""
+    """The sequence, as constant arrays; n unknowns, p constant pivots, k = n - p in the dense block."""
 
-    kept_rows: Any
-    """(n,) rows of J that are solved; the others repeat them."""
-    pivot_row: Any
-    pivot_column: Any
-    """(p,)"""
-    lower_start: Any
-    """(p + 1,) into lower_row: rows that pivot k is subtracted from."""
-    lower_row: Any
-    upper_start: Any
-    """(p + 1,) into upper_column: other columns of pivot row k."""
-    upper_column: Any
-    block_rows: Any
-    block_columns: Any
-    """(k,)"""
+    rows: Any
+    """(n,) row of J at each position; rows of J that are not here repeat the others."""
+    columns: Any
+    """(n,) coordinate at each position, ground's three counted."""
+    scale: Any
+    """(n,) factor of each row: one over its constant pivot, 1 in the block."""
+    read: Any
+    """(r, 3): value, row and column of J: entries copied before each factorisation."""
+    read_scale: Any
+    """(r,)"""
+    cleared: Any
+    """(f,) values that start at zero: fill."""
+    update: Any
+    """(u, 3) value target -= value lower * value upper."""
+    lower: Any
+    """(l, 3) value, position it changes, pivot."""
+    upper: Any
+    """(u, 3) value, pivot, position it multiplies."""
+    block: Any
+    """(k, k) values; 0 is the value that is always zero."""
 
 
 class Factors(NamedTuple):
-    """Scratch that holds the factors of one Jacobian."""
+    """The factors of one Jacobian, overwritten by the next."""
 
-    work: Any
-    """(n, n)"""
+    values: Any
+    """(e,) nonzeros; the first is always zero."""
     block: Any
     """(k, k)"""
     order: Any
     """(k,) row order of the block."""
-    scratch: Any
-    """(max(k, 1),)"""
+    mixed: Any
+    """(k,) scratch."""
+    side: Any
+    """(n,) right-hand side, then the solution, by position."""
 
 
-def plan(samples: np.ndarray, kept_rows: np.ndarray) -> Elimination:
+def plan(samples: np.ndarray, kept_rows: np.ndarray) -> tuple[Elimination, Factors]:
     """Find the sequence from Jacobians (s, m, n) at s unrelated poses: what is the same in all is constant."""
     matrices = samples[:, kept_rows, :]
-    value = matrices[0].copy()
-    pattern = np.any(matrices != 0.0, axis=0)
-    constant = pattern & np.all(matrices == matrices[0], axis=0)
     n = len(kept_rows)
+    value = matrices[0].copy()
+    own = np.any(matrices != 0.0, axis=0)
+    constant = own & np.all(matrices == matrices[0], axis=0)
+    fixed_value, changed = value.copy(), np.zeros((n, n), bool)
+    own_constant = constant.copy()
+    pattern = own.copy()
     open_rows, open_columns = np.ones(n, bool), np.ones(n, bool)
-    rows: list[int] = []
-    columns: list[int] = []
-    lower: list[np.ndarray] = []
-    upper: list[np.ndarray] = []
-    while True:
-        found = _cheapest_pivot(pattern, constant & (np.abs(value) > 1e-9), open_rows, open_columns)
-        if found is None:
-            break
+    pivots: list[tuple[int, int, float]] = []
+    steps: list[tuple[np.ndarray, np.ndarray]] = []
+    while (found := _cheapest_pivot(pattern, constant & (np.abs(value) > 1e-9), open_rows, open_columns)) is not None:
         r, c = found
         open_rows[r], open_columns[c] = False, False
         targets = np.flatnonzero(pattern[:, c] & open_rows)
         others = np.flatnonzero(pattern[r] & open_columns)
         for i in targets:
-            factor = value[i, c] / value[r, c]
-            value[i, others] -= factor * value[r, others]
-            constant[i, others] &= constant[i, c] & constant[r, others] | ~pattern[r, others]
+            value[i, others] -= value[i, c] / value[r, c] * value[r, others]
+            constant[i, others] = (constant[i, others] | ~pattern[i, others]) & constant[i, c] & constant[r, others]
             pattern[i, others] = True
-        rows.append(r)
-        columns.append(c)
-        lower.append(targets)
-        upper.append(others)
-    return Elimination(
-        kept_rows=np.ascontiguousarray(kept_rows, dtype=np.int64),
-        pivot_row=np.array(rows, dtype=np.int64),
-        pivot_column=np.array(columns, dtype=np.int64),
-        lower_start=_starts(lower),
-        lower_row=_joined(lower),
-        upper_start=_starts(upper),
-        upper_column=_joined(upper),
-        block_rows=np.flatnonzero(open_rows),
-        block_columns=np.flatnonzero(open_columns),
+            changed[i, others] = True
+        pivots.append((r, c, value[r, c]))
+        steps.append((targets, others))
+
+    row_order = [r for r, _, _ in pivots] + list(np.flatnonzero(open_rows))
+    column_order = [c for _, c, _ in pivots] + list(np.flatnonzero(open_columns))
+    scale = np.array([1.0 / pivot for _, _, pivot in pivots] + [1.0] * int(open_rows.sum()))
+    scale_of = dict(zip(row_order, scale, strict=True))
+    at_row = {int(r): k for k, r in enumerate(row_order)}
+    at_column = {int(c): k for k, c in enumerate(column_order)}
+    slot = {(int(r), int(c)): k + 1 for k, (r, c) in enumerate(zip(*np.nonzero(pattern), strict=True))}
+
+    values = np.zeros(len(slot) + 1)
+    read, read_scale, cleared = [], [], []
+    for (r, c), k in slot.items():
+        if own_constant[r, c] and not changed[r, c]:
+            values[k] = fixed_value[r, c] * scale_of[r]
+        elif own[r, c]:
+            read.append((k, int(kept_rows[r]), c + 3))
+            read_scale.append(scale_of[r])
+        else:
+            cleared.append(k)
+    update, lower, upper = [], [], []
+    for (r, c, _), (targets, others) in zip(pivots, steps, strict=True):
+        lower += [(slot[int(i), c], at_row[int(i)], at_row[r]) for i in targets]
+        upper += [(slot[r, int(j)], at_row[r], at_column[int(j)]) for j in others]
+        update += [(slot[int(i), int(j)], slot[int(i), c], slot[r, int(j)]) for i in targets for j in others]
+    size = int(open_rows.sum())
+    block = np.zeros((size, size), np.int64)
+    for a, r in enumerate(np.flatnonzero(open_rows)):
+        for b, c in enumerate(np.flatnonzero(open_columns)):
+            block[a, b] = slot.get((int(r), int(c)), 0)
+    sequence = Elimination(
+        rows=np.array(kept_rows, np.int64)[np.array(row_order, np.int64)],
+        columns=np.array(column_order, np.int64) + 3,
+        scale=scale,
+        read=_triples(read),
+        read_scale=np.array(read_scale, float),
+        cleared=np.array(cleared, np.int64),
+        update=_triples(update),
+        lower=_triples(lower),
+        upper=_triples(upper),
+        block=block,
     )
+    return sequence, Factors(values, np.zeros((size, size)), np.zeros(size, np.int64), np.zeros(size), np.zeros(n))
 
 
-def factors(sequence: Elimination) -> Factors:
-    """Scratch for the factors."""
-    n, k = len(sequence.kept_rows), len(sequence.block_rows)
-    return Factors(np.zeros((n, n)), np.zeros((k, k)), np.zeros(k, np.int64), np.zeros(max(k, 1)))
+def _triples(rows: list) -> np.ndarray:
+    return np.array(rows, np.int64).reshape(-1, 3)
 
 
 def _cheapest_pivot(
     pattern: np.ndarray, usable: np.ndarray, open_rows: np.ndarray, open_columns: np.ndarray
 ) -> tuple[int, int] | None:
+    """Markowitz: the usable entry with the least product of other entries in its row and column."""
     active = pattern & open_rows[:, None] & open_columns[None, :]
     candidates = usable & active
     if not candidates.any():
@@ -110,49 +148,32 @@ def _cheapest_pivot(
     return best // pattern.shape[1], best % pattern.shape[1]
 
 
-def _starts(lists: list[np.ndarray]) -> np.ndarray:
-    return np.concatenate([[0], np.cumsum([len(item) for item in lists])]).astype(np.int64)
-
-
-def _joined(lists: list[np.ndarray]) -> np.ndarray:
-    return np.concatenate([*lists, np.zeros(0)]).astype(np.int64)
-
-
-@kernel
+@inlined
 def factorise(seq, jac, fac):
-    """Factor the kept rows of J (m, 3 nb; ground's columns skipped).
+    """Factor J (m, 3 nb).
 
     Returns (sign, margin): sign of the block's determinant, and its smallest over its largest pivot; 0 if singular.
     """
-    work = fac.work
-    n = seq.kept_rows.shape[0]
-    for r in range(n):
-        source = seq.kept_rows[r]
-        for c in range(n):
-            work[r, c] = jac[source, c + 3]
-    for p in range(seq.pivot_row.shape[0]):
-        r, c = seq.pivot_row[p], seq.pivot_column[p]
-        inverse = 1.0 / work[r, c]
-        for a in range(seq.lower_start[p], seq.lower_start[p + 1]):
-            i = seq.lower_row[a]
-            factor = work[i, c] * inverse
-            work[i, c] = factor
-            for b in range(seq.upper_start[p], seq.upper_start[p + 1]):
-                j = seq.upper_column[b]
-                work[i, j] -= factor * work[r, j]
+    w = fac.values
+    for e in range(seq.read.shape[0]):
+        w[seq.read[e, 0]] = seq.read_scale[e] * jac[seq.read[e, 1], seq.read[e, 2]]
+    for e in range(seq.cleared.shape[0]):
+        w[seq.cleared[e]] = 0.0
+    for e in range(seq.update.shape[0]):
+        w[seq.update[e, 0]] -= w[seq.update[e, 1]] * w[seq.update[e, 2]]
     return _factorise_block(seq, fac)
 
 
-@kernel
+@inlined
 def _factorise_block(seq, fac):
-    """LU with partial pivoting of the dense block, in place."""
+    """LU with partial pivoting of the dense block; its diagonal keeps the inverse pivots."""
     block, order = fac.block, fac.order
-    k = seq.block_rows.shape[0]
+    k = block.shape[0]
     sign, smallest, largest = 1.0, np.inf, 0.0
     for a in range(k):
         order[a] = a
         for b in range(k):
-            block[a, b] = fac.work[seq.block_rows[a], seq.block_columns[b]]
+            block[a, b] = fac.values[seq.block[a, b]]
     for c in range(k):
         best, size = c, abs(block[c, c])
         for r in range(c + 1, k):
@@ -164,83 +185,66 @@ def _factorise_block(seq, fac):
             for b in range(k):
                 block[c, b], block[best, b] = block[best, b], block[c, b]
         smallest, largest = min(smallest, size), max(largest, size)
-        if not size > 0.0:
-            return 0.0, 0.0
         if block[c, c] < 0.0:
             sign = -sign
         inverse = 1.0 / block[c, c]
+        block[c, c] = inverse
         for r in range(c + 1, k):
             factor = block[r, c] * inverse
             block[r, c] = factor
             for b in range(c + 1, k):
                 block[r, b] -= factor * block[c, b]
-    return sign, (smallest / largest if k > 0 else 1.0)
+    margin = smallest / largest if k > 0 else 1.0
+    return sign, margin if margin > 0.0 else 0.0
 
 
-@kernel
+@inlined
 def solve(seq, fac, rhs, x):
     """J x = rhs: rhs (m,) by row of J; x (3 nb,) by coordinate, ground's entries untouched."""
-    work, block, scratch = fac.work, fac.block, fac.scratch
-    n = seq.kept_rows.shape[0]
-    pivots, k = seq.pivot_row.shape[0], seq.block_rows.shape[0]
-    b = np.empty(n)
-    for r in range(n):
-        b[r] = rhs[seq.kept_rows[r]]
-    for p in range(pivots):
-        r, c = seq.pivot_row[p], seq.pivot_column[p]
-        if b[r] != 0.0:
-            for a in range(seq.lower_start[p], seq.lower_start[p + 1]):
-                i = seq.lower_row[a]
-                b[i] -= work[i, c] * b[r]
+    w, block, mixed, y = fac.values, fac.block, fac.mixed, fac.side
+    n, k = seq.rows.shape[0], block.shape[0]
+    p = n - k
+    for e in range(n):
+        y[e] = seq.scale[e] * rhs[seq.rows[e]]
+    for e in range(seq.lower.shape[0]):
+        y[seq.lower[e, 1]] -= w[seq.lower[e, 0]] * y[seq.lower[e, 2]]
     for a in range(k):
-        total = b[seq.block_rows[fac.order[a]]]
+        mixed[a] = y[p + fac.order[a]]
         for c in range(a):
-            total -= block[a, c] * scratch[c]
-        scratch[a] = total
+            mixed[a] -= block[a, c] * mixed[c]
     for a in range(k - 1, -1, -1):
-        total = scratch[a]
         for c in range(a + 1, k):
-            total -= block[a, c] * scratch[c]
-        scratch[a] = total / block[a, a]
-        x[3 + seq.block_columns[a]] = scratch[a]
-    for p in range(pivots - 1, -1, -1):
-        r, c = seq.pivot_row[p], seq.pivot_column[p]
-        total = b[r]
-        for a in range(seq.upper_start[p], seq.upper_start[p + 1]):
-            j = seq.upper_column[a]
-            total -= work[r, j] * x[3 + j]
-        x[3 + c] = total / work[r, c]
+            mixed[a] -= block[a, c] * mixed[c]
+        mixed[a] *= block[a, a]
+        y[p + a] = mixed[a]
+    for e in range(seq.upper.shape[0] - 1, -1, -1):
+        y[seq.upper[e, 1]] -= w[seq.upper[e, 0]] * y[seq.upper[e, 2]]
+    for e in range(n):
+        x[seq.columns[e]] = y[e]
 
 
-@kernel
-def solve_transposed(seq, fac, rhs, y):
-    """J^T y = rhs: rhs (3 nb,) by coordinate, overwritten; y (m,) by row of J, rows not kept get 0."""
-    work, block, scratch = fac.work, fac.block, fac.scratch
-    n = seq.kept_rows.shape[0]
-    pivots, k = seq.pivot_row.shape[0], seq.block_rows.shape[0]
-    z = np.empty(n)
-    for p in range(pivots):
-        r, c = seq.pivot_row[p], seq.pivot_column[p]
-        z[r] = rhs[3 + c] / work[r, c]
-        for a in range(seq.upper_start[p], seq.upper_start[p + 1]):
-            j = seq.upper_column[a]
-            rhs[3 + j] -= work[r, j] * z[r]
+@inlined
+def solve_transposed(seq, fac, rhs, x):
+    """J^T x = rhs: rhs (3 nb,) by coordinate; x (m,) by row of J, rows that are not kept get 0."""
+    w, block, mixed, y = fac.values, fac.block, fac.mixed, fac.side
+    n, k = seq.rows.shape[0], block.shape[0]
+    p = n - k
+    for e in range(n):
+        y[e] = rhs[seq.columns[e]]
+    for e in range(seq.upper.shape[0]):
+        y[seq.upper[e, 2]] -= w[seq.upper[e, 0]] * y[seq.upper[e, 1]]
     for a in range(k):
-        total = rhs[3 + seq.block_columns[a]]
+        mixed[a] = y[p + a]
         for c in range(a):
-            total -= block[c, a] * scratch[c]
-        scratch[a] = total / block[a, a]
+            mixed[a] -= block[c, a] * mixed[c]
+        mixed[a] *= block[a, a]
     for a in range(k - 1, -1, -1):
-        total = scratch[a]
         for c in range(a + 1, k):
-            total -= block[c, a] * scratch[c]
-        scratch[a] = total
-        z[seq.block_rows[fac.order[a]]] = total
-    for p in range(pivots - 1, -1, -1):
-        r, c = seq.pivot_row[p], seq.pivot_column[p]
-        for a in range(seq.lower_start[p], seq.lower_start[p + 1]):
-            z[r] -= work[seq.lower_row[a], c] * z[seq.lower_row[a]]
-    for r in range(y.shape[0]):
-        y[r] = 0.0
-    for r in range(n):
-        y[seq.kept_rows[r]] = z[r]
+            mixed[a] -= block[c, a] * mixed[c]
+        y[p + fac.order[a]] = mixed[a]
+    for e in range(seq.lower.shape[0] - 1, -1, -1):
+        y[seq.lower[e, 2]] -= w[seq.lower[e, 0]] * y[seq.lower[e, 1]]
+    for e in range(x.shape[0]):
+        x[e] = 0.0
+    for e in range(n):
+        x[seq.rows[e]] = seq.scale[e] * y[e]

@@ -19,7 +19,7 @@ import numpy as np
 
 from mbsd.assembly import evaluate_gamma, evaluate_nu, evaluate_position
 from mbsd.elimination import factorise, solve
-from mbsd.jit import kernel
+from mbsd.jit import inlined, kernel
 
 TOLERANCE = 1e-12
 """Of a Newton correction, relative to the mechanism's size (m) and to 1 rad."""
@@ -36,17 +36,15 @@ LONGEST_STRETCH = 4.0
 DONE, NO_CONTRACTION, BRANCH_DOUBT, SINGULAR = 0, 1, 2, 3
 
 
-@kernel
+@inlined
 def _predict(q, v, a, t, k, time, out):
     """Pose at ``time`` from results 0 .. k-1 (the last two, or the last alone)."""
-    h = t[k - 1] - t[k - 2] if k > 1 else 0.0
     ahead = time - t[k - 1]
-    quintic = k > 1 and ahead < LONGEST_STRETCH * h
-    s = ahead / h if quintic else 0.0
-    for c in range(3, q.shape[1]):
-        q1, v1, a1 = q[k - 1, c], v[k - 1, c], a[k - 1, c]
-        if quintic:
-            speed, bend = v1 * h, a1 * h * h
+    h = t[k - 1] - t[k - 2] if k > 1 else 0.0
+    if ahead < LONGEST_STRETCH * h:
+        s = ahead / h
+        for c in range(3, q.shape[1]):
+            q1, speed, bend = q[k - 1, c], v[k - 1, c] * h, a[k - 1, c] * h * h
             d0 = q[k - 2, c] - q1 + speed - 0.5 * bend
             d1 = v[k - 2, c] * h - speed + bend
             d2 = a[k - 2, c] * h * h - bend
@@ -54,8 +52,9 @@ def _predict(q, v, a, t, k, time, out):
             c5 = c3 + d1 + 4.0 * d0
             c4 = d0 + c3 + c5
             out[c] = q1 + s * (speed + s * (0.5 * bend + s * (c3 + s * (c4 + s * c5))))
-        else:
-            out[c] = q1 + ahead * (v1 + 0.5 * ahead * a1)
+    else:
+        for c in range(3, q.shape[1]):
+            out[c] = q[k - 1, c] + ahead * (v[k - 1, c] + 0.5 * ahead * a[k - 1, c])
 
 
 @kernel
@@ -67,12 +66,13 @@ def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, st
     Returns (status, index): DONE and T, or why and at which index the step was refused.
     """
     n3 = q.shape[1]
-    pose, delta, rate, minus_phi = np.zeros(n3), np.zeros(n3), np.zeros(n3), np.zeros(ws.phi.shape[0])
+    pose, delta, rate, minus_phi = ws.pose, ws.delta, ws.rate, ws.right
     for k in range(start, times.shape[0]):
         if k > 0:
             _predict(q, v, a, times, k, times[k], pose)
         else:
-            pose[:] = q[0]
+            for c in range(n3):
+                pose[c] = q[0, c]
         first, last = 0.0, np.inf
         for iteration in range(MAX_ITERATIONS):
             evaluate_position(system, pose, drives[k], ws)

@@ -13,10 +13,10 @@ from __future__ import annotations
 
 import math
 
-from mbsd.jit import kernel
+from mbsd.jit import inlined
 
 
-@kernel
+@inlined
 def place(system, q, ws):
     """Fill arm, position and axis of every marker from q (3 nb,), ground included."""
     for b in range(1, system.mass.shape[0]):

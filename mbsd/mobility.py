@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.assembly import evaluate_position
+from mbsd.assembly import residual_and_jacobian
 from mbsd.errors import MobilityError, SingularPoseError
 from mbsd.model import Mechanism
 from mbsd.packing import Packed, pack
@@ -113,7 +113,7 @@ def choose_rows(packed: Packed, q: np.ndarray, time: float) -> np.ndarray:
 
 def scaled_jacobian(packed: Packed, q: np.ndarray) -> np.ndarray:
     """(m, n) dimensionless Jacobian at q, ground's columns left out."""
-    evaluate_position(packed.system, q, np.zeros((len(packed.motions) + 1, 3)), packed.ws)
+    residual_and_jacobian(packed.system, q, np.zeros((len(packed.motions) + 1, 3)), packed.ws)
     return packed.ws.jac[:, 3:] * packed.row_scale()[:, None] * packed.column_scale()
 
 

@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from mbsd.assembly import evaluate_position
+from mbsd.assembly import residual_and_jacobian
 from mbsd.errors import AssemblyError
 from mbsd.model import Joint, Mechanism
 from mbsd.packing import Packed
@@ -46,7 +46,7 @@ def close(packed: Packed, q: np.ndarray, drive: np.ndarray, rows: int | None = N
     row_scale, column_scale = packed.row_scale()[:rows], packed.column_scale()
 
     def scaled() -> np.ndarray:
-        evaluate_position(packed.system, q, drive, packed.ws)
+        residual_and_jacobian(packed.system, q, drive, packed.ws)
         return packed.ws.phi[:rows] * row_scale
 
     phi = scaled()
@@ -159,7 +159,7 @@ def _unwind_angles(packed: Packed, q: np.ndarray) -> None:
 
 
 def _why_open(m: Mechanism, packed: Packed, q: np.ndarray, drive: np.ndarray, time: float) -> str:
-    evaluate_position(packed.system, q, drive, packed.ws)
+    residual_and_jacobian(packed.system, q, drive, packed.ws)
     phi = packed.ws.phi
     gaps = [float(np.abs(phi[a:b] * packed.row_scale()[a:b]).max()) for a, b in pairwise(packed.first_row)]
     worst = int(np.argmax(gaps))

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd import kinematics
-from mbsd.dynamics import inverse_dynamics
-from mbsd.elimination import Elimination, Factors, factors, plan
+from mbsd.assembly import residual_and_jacobian
+from mbsd.dynamics import inverse_dynamics, joint_wrenches
+from mbsd.elimination import Elimination, Factors, plan
 from mbsd.errors import AssemblyError, BranchError, ModelError, SingularPoseError
 from mbsd.mobility import Mobility, choose_rows, joint_mobility
 from mbsd.model import Mechanism
@@ -82,7 +83,7 @@ class Prepared:
         k = int(np.argmax(residual))
         if residual[k] <= REDUNDANT_GAP * max(self.packed.size, 1.0):
             return
-        kinematics.evaluate_position(self.packed.system, q[k], drives[k], self.packed.ws)
+        residual_and_jacobian(self.packed.system, q[k], drives[k], self.packed.ws)
         joint = self.packed.joint_of_row(int(np.argmax(np.abs(self.packed.ws.phi))))
         raise AssemblyError(
             f"{self.packed.name}: at t = {grid[k]:.6g} s redundant joint {joint.name} is open by {residual[k]:.3g} (m or rad) "
@@ -134,8 +135,8 @@ def prepare(m: Mechanism, start: float = 0.0, end: float = 1.0) -> Prepared:
     _refuse_bad_laws(packed, start, end)
     q0 = assemble(m, packed, start)
     kept = choose_rows(packed, q0, start)
-    sequence = plan(_sample_jacobians(packed), kept)
-    return Prepared(packed, q0, start, sequence, factors(sequence), joint_mobility(packed, q0))
+    sequence, factors = plan(_sample_jacobians(packed), kept)
+    return Prepared(packed, q0, start, sequence, factors, joint_mobility(packed, q0))
 
 
 def _refuse_bad_laws(packed: Packed, start: float, end: float) -> None:
@@ -158,7 +159,7 @@ def _sample_jacobians(packed: Packed) -> np.ndarray:
     for _ in range(4):
         q = np.zeros(3 * len(packed.body_names))
         q[3:] = random.uniform(-2.0, 2.0, packed.coordinates) * packed.column_scale()
-        kinematics.evaluate_position(packed.system, q, none, packed.ws)
+        residual_and_jacobian(packed.system, q, none, packed.ws)
         samples.append(packed.ws.jac[:, 3:].copy())
     return np.array(samples)
 
@@ -186,7 +187,7 @@ def sweep(
             drives[part], q[part], v[part], a[part], lam[part], wrench[part], checks[part], jacobians,
         )  # fmt: skip
         scaled = jacobians * packed.row_scale()[:, None] * packed.column_scale()
-        kept = np.linalg.svd(scaled[:, ready.sequence.kept_rows], compute_uv=False)
+        kept = np.linalg.svd(scaled[:, ready.sequence.rows], compute_uv=False)
         margin[part] = kept[:, -1] / kept[:, 0]
         if ready.mobility.redundant_rows:
             _least_norm(packed, jacobians, q[part], a[part], lam[part], wrench[part])
@@ -216,9 +217,7 @@ def _least_norm(
     load[:, :2] = system.mass[:, None] * system.gravity
     for k, jac in enumerate(jacobians):
         lam[k] = np.linalg.lstsq(jac.T, load.ravel()[3:] - inertia * a[k, 3:], rcond=1e-9)[0]
-        kinematics.evaluate_position(system, q[k], np.zeros((len(packed.motions) + 1, 3)), packed.ws)
-        from mbsd.dynamics import joint_wrenches
-
+        residual_and_jacobian(system, q[k], np.zeros((len(packed.motions) + 1, 3)), packed.ws)
         joint_wrenches(system, packed.ws, packed.first_row, packed.markers[:, 1], lam[k], wrench[k])
 
 

@@ -57,6 +57,12 @@ class Workspace(NamedTuple):
     """(m,) J v = nu."""
     gamma: Any
     """(m,) J a = gamma."""
+    pose: Any
+    delta: Any
+    rate: Any
+    """(3 nb,) of the Newton iteration."""
+    right: Any
+    """(m,) right-hand side."""
 
 
 def workspace(system: System, rows: int) -> Workspace:
@@ -73,4 +79,8 @@ def workspace(system: System, rows: int) -> Workspace:
         jac=np.zeros((rows, 3 * bodies)),
         nu=np.zeros(rows),
         gamma=np.zeros(rows),
+        pose=np.zeros(3 * bodies),
+        delta=np.zeros(3 * bodies),
+        rate=np.zeros(3 * bodies),
+        right=np.zeros(rows),
     )

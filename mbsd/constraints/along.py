@@ -8,10 +8,10 @@
 
 from __future__ import annotations
 
-from mbsd.jit import kernel
+from mbsd.jit import inlined
 
 
-@kernel
+@inlined
 def rows(system, drive, ws):
     """Residual (m) and Jacobian."""
     table, jac = system.along, ws.jac
@@ -28,7 +28,7 @@ def rows(system, drive, ws):
         jac[r, bj + 2] = -ux * ws.arm[j, 1] + uy * ws.arm[j, 0]
 
 
-@kernel
+@inlined
 def gamma_rows(system, v, ws):
     """Acceleration right-hand side (m/s^2) without f''."""
     table = system.along

@@ -7,10 +7,10 @@
 
 from __future__ import annotations
 
-from mbsd.jit import kernel
+from mbsd.jit import inlined
 
 
-@kernel
+@inlined
 def rows(system, q, drive, ws):
     """Residual (rad) and Jacobian."""
     table = system.angle
@@ -22,7 +22,7 @@ def rows(system, q, drive, ws):
         ws.jac[r, bj + 2] = 1.0
 
 
-@kernel
+@inlined
 def gamma_rows(system, ws):
     """Acceleration right-hand side (rad/s^2) without f''."""
     for k in range(system.angle.shape[0]):

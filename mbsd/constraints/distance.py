@@ -13,10 +13,10 @@ from __future__ import annotations
 
 import math
 
-from mbsd.jit import kernel
+from mbsd.jit import inlined
 
 
-@kernel
+@inlined
 def rows(system, drive, ws):
     """Residual (m) and Jacobian."""
     table, jac = system.distance, ws.jac
@@ -34,7 +34,7 @@ def rows(system, drive, ws):
         jac[r, bj + 2] = -ux * ws.arm[j, 1] + uy * ws.arm[j, 0]
 
 
-@kernel
+@inlined
 def gamma_rows(system, v, ws):
     """Acceleration right-hand side (m/s^2) without f''."""
     table = system.distance

@@ -7,10 +7,10 @@
 
 from __future__ import annotations
 
-from mbsd.jit import kernel
+from mbsd.jit import inlined
 
 
-@kernel
+@inlined
 def rows(system, ws):
     """Residual (m) and Jacobian."""
     table, phi, jac = system.point, ws.phi, ws.jac
@@ -25,7 +25,7 @@ def rows(system, ws):
         jac[r + 1, bj + 1], jac[r + 1, bj + 2] = 1.0, ws.arm[j, 0]
 
 
-@kernel
+@inlined
 def gamma_rows(system, v, ws):
     """Acceleration right-hand side (m/s^2); v is (3 nb,)."""
     table, gamma = system.point, ws.gamma

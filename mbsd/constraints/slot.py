@@ -8,10 +8,10 @@
 
 from __future__ import annotations
 
-from mbsd.jit import kernel
+from mbsd.jit import inlined
 
 
-@kernel
+@inlined
 def rows(system, ws):
     """Residual (m) and Jacobian."""
     table, jac = system.slot, ws.jac
@@ -29,7 +29,7 @@ def rows(system, ws):
         jac[r, bj + 2] = -nx * ws.arm[j, 1] + ny * ws.arm[j, 0]
 
 
-@kernel
+@inlined
 def gamma_rows(system, v, ws):
     """Acceleration right-hand side (m/s^2)."""
     table = system.slot

@@ -7,20 +7,41 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 TOLERANCE = 0.018
 """Largest distance of the mesh from the true surface (mm)."""
 ANGLE = 0.3
 """Largest angle between neighbouring facets of a curved face (rad)."""
 
+_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _TIMESTAMP = re.compile(rb"(FILE_NAME\('[^']*',)'[^']*'")
 
 
 def stl_bytes(solid: Any) -> bytes:
-    """Binary STL of a ``cadquery.Solid``, in mm."""
+    """Binary STL of a ``cadquery.Solid``, in mm, its triangles in an order of their own.
+
+    The kernel gives the same triangles each time, but those of a face with many holes in another order, and
+    normals that differ in their last bits.
+    """
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "solid.stl"
         solid.exportStl(str(path), TOLERANCE, ANGLE, ascii=False, relative=False, parallel=False)
-        return path.read_bytes()
+        triangles = np.frombuffer(path.read_bytes(), dtype=_TRIANGLE, offset=84).copy()
+    corners = triangles["corners"] + np.float32(0)  # -0 becomes 0
+    lowest = np.array([min(range(3), key=lambda i: tuple(corner[i])) for corner in corners.tolist()], dtype=int)
+    turn = (lowest[:, None] + np.arange(3)) % 3  # same winding, lowest corner first
+    corners = np.take_along_axis(corners, turn[:, :, None], axis=1)
+    corners = corners[np.lexsort(corners.reshape(-1, 9).T[::-1])]
+    triangles["corners"] = corners
+    triangles["normal"] = _normals(corners.astype(float))
+    return b"mbsd".ljust(80) + len(triangles).to_bytes(4, "little") + triangles.tobytes()
+
+
+def _normals(corners: np.ndarray) -> np.ndarray:
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(across, axis=1, keepdims=True)
+    return across / np.where(length > 0, length, 1.0) + 0.0
 
 
 def step_bytes(solid: Any, name: str) -> bytes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import importlib
 import sys
 import traceback
@@ -47,6 +48,12 @@ def load(name: str, file: File) -> ModuleType:
 def params(name: str) -> Any:
     """The default parameters of a mechanism: ``Params()`` of its mechanism.py. Raises UserError as :func:`load`."""
     module = load(name, "mechanism")
+    if dataclasses.is_dataclass(module.Params):
+        for field in dataclasses.fields(module.Params):
+            if field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING:
+                raise UserError(
+                    f"{_shown(Path(str(module.__file__)))}: Params.{field.name} has no default; give it one"
+                )
     with author_code(name):
         return module.Params()
 

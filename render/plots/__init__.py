@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from shared.console import say
-from shared.contract import read_motion
+from shared.contract import Motion, read_motion
 from shared.files import sources_hash, whole_file
 from shared.paths import ROOT, Out
 from shared.stages import Stage, key_of, versions
@@ -18,10 +18,7 @@ def run(name: str) -> None:
     """
     out = Out(name)
     motion = read_motion(out.motion)
-    names = ["path", "bodies", "reactions", "hodographs", "energy"]
-    names += [f"point-{point}" for point in motion.points]
-    names += [f"slider-{body}" for body in motion.bodies if _only_slides(motion.bodies[body].theta)]
-    outputs = {plot: out.plots / f"{plot}.png" for plot in names}
+    outputs = {plot: out.plots / f"{plot}.png" for plot in plots_of(motion)}
     sources = sources_hash(Path(__file__).parent, ROOT / "shared" / "contract.py")
     key = key_of(out.motion, sources, versions("matplotlib", "numpy"))
     stage = Stage(out, "plots", key, list(outputs.values()))
@@ -38,6 +35,15 @@ def run(name: str) -> None:
         older.unlink()
     stage.done()
     say("plots", f"{out.name}: {len(outputs)} plots in {out.plots}")
+
+
+def plots_of(motion: Motion) -> list[str]:
+    """Names of the plots that this motion has something to show in."""
+    names = ["path", "bodies", "energy"]
+    if motion.joints:
+        names += ["reactions", "hodographs"]
+    names += [f"point-{point}" for point in motion.points]
+    return names + [f"slider-{name}" for name, body in motion.bodies.items() if _only_slides(body.theta)]
 
 
 def _only_slides(theta: list[float]) -> bool:

@@ -12,6 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.transforms import blended_transform_factory
+from scipy.optimize import isotonic_regression
 
 SIZE = (10.0, 6.25)
 """Inches; 1600 x 1000 pixels."""
@@ -103,23 +104,13 @@ def label_ends(axes: Axes, x: float, lines: Sequence[tuple[str, float, str]], ga
 
 
 def spread(wanted: np.ndarray, gap: float, height: float) -> np.ndarray:
-    """Positions in the order of ``wanted``: ``gap`` apart where ``height`` has room, each near its own wish."""
+    """Positions in the order of ``wanted``: ``gap`` apart where ``height`` has room, each near its own wish.
+
+    Least squares: with ``gap`` times its rank taken off each wish, the answer need only not fall.
+    """
     order = np.argsort(wanted, kind="stable")
     gap = min(gap, height / max(len(wanted) - 1, 1))
-    groups: list[list[float]] = []  # [centre, members]: runs of touching labels, each centred on its wishes
-    for wish in wanted[order]:
-        groups.append([float(wish), 1.0])
-        while len(groups) > 1 and groups[-1][0] - groups[-2][0] < gap * (groups[-1][1] + groups[-2][1]) / 2:
-            centre, members = groups.pop()
-            other, others = groups.pop()
-            total = members + others
-            groups.append([(centre * members + other * others) / total, total])
+    ranks = gap * np.arange(len(wanted))
     placed = np.empty(len(wanted))
-    index = 0
-    for centre, members in groups:
-        half = gap * (members - 1) / 2
-        centre = min(max(centre, half), height - half)
-        for k in range(int(members)):
-            placed[order[index]] = centre - half + k * gap
-            index += 1
+    placed[order] = np.clip(isotonic_regression(wanted[order] - ranks).x, 0.0, height - ranks[-1]) + ranks
     return placed

@@ -1,0 +1,171 @@
+"""Plots: drawn from data.json alone, the same bytes each time, and showing the numbers they were given."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.figure import Figure
+from PIL import Image
+
+from render import plots
+from render.plots.figures import figure
+from render.plots.horizon import horizon
+from render.plots.style import spread
+from shared.contract import Motion, write_motion
+from shared.errors import UserError
+from shared.paths import Out
+from tests.motions import four_bar_motion
+
+MOTION = four_bar_motion(steps=72)
+NAMES = ["bodies", "energy", "hodographs", "path", "point-P", "reactions"]
+
+
+@pytest.fixture
+def out(out_root: Path) -> Out:
+    out = Out("four_bar")
+    write_motion(out.motion, MOTION)
+    return out
+
+
+def shown(drawn: Figure) -> set[str]:
+    """Every text on the page."""
+    drawn.canvas.draw()
+    return {text.get_text() for text in drawn.findobj(lambda artist: hasattr(artist, "get_text"))}
+
+
+def overlaps(drawn: Figure) -> list[tuple[str, str]]:
+    """Pairs of labels that cover each other."""
+    drawn.canvas.draw()
+    texts = [t for axes in drawn.axes for t in axes.texts if t.get_text()]
+    boxes = [(t.get_text(), t.get_window_extent()) for t in texts]
+    return [(a, b) for i, (a, box) in enumerate(boxes) for b, other in boxes[i + 1 :] if box.overlaps(other)]
+
+
+def test_all_plots_are_written_once(out: Out, capsys: pytest.CaptureFixture[str]) -> None:
+    plots.run("four-bar")
+    assert sorted(path.stem for path in out.plots.glob("*")) == NAMES
+    assert all(Image.open(path).size == (1600, 1000) for path in out.plots.glob("*.png"))
+    before = {path: (path.stat().st_mtime_ns, path.read_bytes()) for path in out.plots.iterdir()}
+    capsys.readouterr()
+    plots.run("four_bar")
+    assert capsys.readouterr().out == ""
+    assert before == {path: (path.stat().st_mtime_ns, path.read_bytes()) for path in out.plots.iterdir()}
+    (out.plots / "path.png").write_bytes(b"")
+    (out.plots / "point-Q.png").write_bytes(b"of a point that is no more")
+    plots.run("four_bar")
+    assert {path: path.read_bytes() for path in out.plots.iterdir()} == {
+        p: content for p, (_, content) in before.items()
+    }
+    assert all(b"Software" not in content and b"tIME" not in content for _, content in before.values())
+
+
+def test_without_a_motion_the_stage_says_what_to_make(out_root: Path) -> None:
+    with pytest.raises(UserError, match=r"data\.json does not exist"):
+        plots.run("four_bar")
+
+
+@pytest.mark.parametrize("plot", NAMES)
+def test_no_label_covers_another(plot: str) -> None:
+    assert overlaps(figure(plot, MOTION)) == []
+
+
+@pytest.mark.parametrize("plot", [name for name in NAMES if name not in ("path",)])
+def test_axes_carry_units(plot: str) -> None:
+    drawn = figure(plot, MOTION)
+    labels = [axes.get_ylabel() for axes in drawn.axes] + [drawn.axes[-1].get_xlabel()]
+    assert all("(" in label and label.endswith(")") for label in labels), labels
+
+
+def test_lines_hold_the_numbers_of_the_motion() -> None:
+    angle, speed, acceleration = figure("bodies", MOTION).axes
+    rocker = MOTION.bodies["rocker"]
+    for axes, series in ((angle, np.degrees(rocker.theta)), (speed, rocker.omega), (acceleration, rocker.alpha)):
+        (line,) = [line for line in axes.lines if line.get_label() == "rocker"]
+        np.testing.assert_array_equal(line.get_ydata(), series)
+        np.testing.assert_allclose(line.get_xdata(), np.linspace(0, 360, 73), atol=1e-9)
+    force, torque = figure("reactions", MOTION).axes
+    (line,) = [line for line in force.lines if line.get_label() == "C"]
+    np.testing.assert_array_equal(line.get_ydata(), np.hypot(MOTION.joints["C"].fx, MOTION.joints["C"].fy))
+    (line,) = [line for line in torque.lines if line.get_label() == "motor"]
+    np.testing.assert_array_equal(line.get_ydata(), MOTION.drivers["motor"].effort)
+
+
+def test_the_path_shows_joints_points_and_bodies() -> None:
+    assert {"A", "B", "C", "D", "P", "crank", "coupler", "rocker", "Four-bar: path"} <= shown(figure("path", MOTION))
+
+
+def test_the_axis_is_the_angle_of_one_forward_driver_else_time() -> None:
+    assert horizon(MOTION).label == "motor angle (deg)"
+    motor = MOTION.drivers["motor"]
+    swinging = msgspec.structs.replace(motor, value=list(np.sin(np.multiply(6, MOTION.time))))
+    pushing = msgspec.structs.replace(motor, kind="coordinate")
+    for drivers in ({"motor": swinging}, {"motor": pushing}, {"motor": motor, "second": motor}, {}):
+        other = msgspec.structs.replace(MOTION, drivers=drivers)
+        assert horizon(other).label == "time (s)"
+        np.testing.assert_array_equal(horizon(other).values, MOTION.time)
+
+
+def with_slider_and_torque() -> Motion:
+    """The four-bar with a body that only slides, a joint that carries torque and a driver that pushes."""
+    count = len(MOTION.time)
+    body = msgspec.structs.replace(
+        MOTION.bodies["rocker"], theta=[0.0] * count, omega=[0.0] * count, alpha=[0.0] * count
+    )
+    guide = msgspec.structs.replace(
+        MOTION.joints["C"],
+        kind="prismatic",
+        bodies=("ground", "slider"),
+        torque=[0.1 * x for x in MOTION.joints["C"].fx],
+    )
+    pusher = msgspec.structs.replace(MOTION.drivers["motor"], kind="distance")
+    return msgspec.structs.replace(
+        MOTION,
+        bodies={**MOTION.bodies, "slider": body},
+        joints={**MOTION.joints, "guide": guide},
+        drivers={**MOTION.drivers, "pusher": pusher},
+        points={},
+    )
+
+
+def test_a_slider_a_joint_torque_and_a_pusher_get_their_plots(out: Out) -> None:
+    motion = with_slider_and_torque()
+    write_motion(out.motion, motion)
+    plots.run("four_bar")
+    assert (out.plots / "slider-slider.png").is_file()
+    assert not list(out.plots.glob("point-*"))
+    labels = [axes.get_ylabel() for axes in figure("reactions", motion).axes]
+    assert labels == ["reaction force (N)", "reaction torque (N m)", "driver torque (N m)", "driver force (N)"]
+    assert all(overlaps(figure(plot, motion)) == [] for plot in ("reactions", "bodies", "hodographs"))
+
+
+def test_many_bodies_and_joints_stay_readable() -> None:
+    bodies = {f"link_{i:02d}": MOTION.bodies["rocker"] for i in range(40)}
+    joints = {f"J{i:02d}": MOTION.joints["A"] for i in range(40)}
+    motion = msgspec.structs.replace(MOTION, bodies=bodies, joints=joints)
+    assert overlaps(figure("bodies", motion)) == []
+    assert overlaps(figure("reactions", motion)) == []
+    assert len([axes for axes in figure("hodographs", motion).axes if axes.get_visible()]) == 12
+
+
+def test_a_motion_without_drivers_or_joints_is_drawn() -> None:
+    motion = msgspec.structs.replace(MOTION, drivers={}, joints={}, points={}, period=None)
+    assert plots.plots_of(motion) == ["path", "bodies", "energy"]
+    for plot in plots.plots_of(motion):
+        shown(figure(plot, motion))
+
+
+@given(st.lists(st.floats(0, 300), min_size=1, max_size=12), st.floats(5, 20))
+def test_labels_are_spread_apart_in_their_order(wishes: list[float], gap: float) -> None:
+    placed = spread(np.array(wishes), gap, 300.0)
+    order = np.argsort(wishes, kind="stable")
+    assert all(b - a >= min(gap, 300 / max(len(wishes) - 1, 1)) - 1e-6 for a, b in pairwise(placed[order]))
+    assert placed.min() >= -1e-6
+    assert placed.max() <= 300 + 1e-6
+    if len(wishes) == 1:
+        assert placed[0] == wishes[0]

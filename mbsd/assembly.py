@@ -23,17 +23,17 @@ def evaluate_position(system, q, drive, ws):
 
 @inlined
 def evaluate_nu(system, drive, ws):
-    """Fill ws.nu: f' in driven rows, else zero."""
-    for r in range(ws.nu.shape[0]):
-        ws.nu[r] = 0.0
+    """Fill ws.right with nu: f' in driven rows, else zero."""
+    for r in range(ws.right.shape[0]):
+        ws.right[r] = 0.0
     for table in (system.angle, system.along, system.distance):
         for k in range(table.shape[0]):
-            ws.nu[table[k, 2]] = drive[table[k, 3], 1]
+            ws.right[table[k, 2]] = drive[table[k, 3], 1]
 
 
 @inlined
 def evaluate_gamma(system, v, drive, ws):
-    """Fill ws.gamma at velocities v (3 nb,), after evaluate_position at the same pose."""
+    """Fill ws.right with gamma at velocities v (3 nb,), after evaluate_position at the same pose."""
     point.gamma_rows(system, v, ws)
     angle.gamma_rows(system, ws)
     slot.gamma_rows(system, v, ws)
@@ -41,7 +41,7 @@ def evaluate_gamma(system, v, drive, ws):
     distance.gamma_rows(system, v, ws)
     for table in (system.angle, system.along, system.distance):
         for k in range(table.shape[0]):
-            ws.gamma[table[k, 2]] += drive[table[k, 3], 2]
+            ws.right[table[k, 2]] += drive[table[k, 3], 2]
 
 
 @kernel

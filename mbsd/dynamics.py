@@ -1,4 +1,4 @@
-"""Inverse dynamics along a known motion, and how well that motion fulfils its equations.
+"""Inverse dynamics along a known motion.
 
     J^T lam = Q - M a                  Q: gravity
     reaction on body b = -J_b^T lam, given at the joint's second marker: fx, fy, torque
@@ -9,46 +9,28 @@ M is constant and diagonal because q holds centres of mass. Source: Haug 1989, c
 
 from __future__ import annotations
 
-from mbsd.assembly import evaluate_gamma, evaluate_nu, residual_and_jacobian
+from mbsd.assembly import evaluate_gamma, residual_and_jacobian
 from mbsd.elimination import factorise, solve_transposed
 from mbsd.jit import kernel
 
 
 @kernel
-def inverse_dynamics(system, seq, fac, ws, first_row, second_marker, drives, q, v, a, lam, wrench, checks, jacobians):
+def inverse_dynamics(system, seq, fac, ws, first_row, second_marker, drives, q, v, loads, lam, wrench, phi, gamma, jacobians):
     """Multipliers and reactions at every time.
 
-    q, v, a (T, 3 nb); lam (T, m); wrench (T, joints, 3): fx, fy, torque on the second body at ``second_marker``;
-    checks (T, 4): largest |Phi|, |J v - nu|, |J a - gamma| and |d(T + V)/dt - power of the drivers|;
-    jacobians (T, m, n) for the singularity margin.
+    q, v (T, 3 nb); loads (T, 3 nb): Q - M a; filled: lam, phi, gamma (T, m), jacobians (T, m, n) and
+    wrench (T, joints, 3): fx, fy, torque on the second body at ``second_marker``.
     """
-    n3 = q.shape[1]
-    rhs = ws.rate
     for k in range(q.shape[0]):
         residual_and_jacobian(system, q[k], drives[k], ws)
-        evaluate_nu(system, drives[k], ws)
-        evaluate_gamma(system, v[k], drives[k], ws)
         factorise(seq, ws.jac, fac)
-        power = 0.0
-        for b in range(system.mass.shape[0]):
-            for c in range(3):
-                load = system.mass[b] * system.gravity[c] if c < 2 else 0.0
-                inertia = system.mass[b] if c < 2 else system.inertia[b]
-                rhs[3 * b + c] = load - inertia * a[k, 3 * b + c]
-                power -= rhs[3 * b + c] * v[k, 3 * b + c]
-        solve_transposed(seq, fac, rhs, lam[k])
-        for r in range(ws.phi.shape[0]):
-            rate, bend = -ws.nu[r], -ws.gamma[r]
-            for c in range(3, n3):
-                jacobians[k, r, c - 3] = ws.jac[r, c]
-                rate += ws.jac[r, c] * v[k, c]
-                bend += ws.jac[r, c] * a[k, c]
-            checks[k, 0] = max(checks[k, 0], abs(ws.phi[r]))
-            checks[k, 1] = max(checks[k, 1], abs(rate))
-            checks[k, 2] = max(checks[k, 2], abs(bend))
-            power += lam[k, r] * ws.nu[r]
-        checks[k, 3] = abs(power)
+        solve_transposed(seq, fac, loads[k], lam[k])
         joint_wrenches(system, ws, first_row, second_marker, lam[k], wrench[k])
+        evaluate_gamma(system, v[k], drives[k], ws)
+        for r in range(ws.phi.shape[0]):
+            phi[k, r], gamma[k, r] = ws.phi[r], ws.right[r]
+            for c in range(3, q.shape[1]):
+                jacobians[k, r, c - 3] = ws.jac[r, c]
 
 
 @kernel

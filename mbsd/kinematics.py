@@ -66,7 +66,7 @@ def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, st
     Returns (status, index): DONE and T, or why and at which index the step was refused.
     """
     n3 = q.shape[1]
-    pose, delta, rate, minus_phi = ws.pose, ws.delta, ws.rate, ws.right
+    pose, delta, right = ws.pose, ws.delta, ws.right
     for k in range(start, times.shape[0]):
         if k > 0:
             _predict(q, v, a, times, k, times[k], pose)
@@ -79,9 +79,9 @@ def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, st
             determinant, margin = factorise(seq, ws.jac, fac)
             if margin < 1e-12:
                 return SINGULAR, k
-            for r in range(minus_phi.shape[0]):
-                minus_phi[r] = -ws.phi[r]
-            solve(seq, fac, minus_phi, delta)
+            for r in range(right.shape[0]):
+                right[r] = -ws.phi[r]
+            solve(seq, fac, right, delta)
             change = 0.0
             for c in range(3, n3):
                 pose[c] += delta[c]
@@ -113,12 +113,13 @@ def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, st
         for r in range(ws.phi.shape[0]):
             worst = max(worst, abs(ws.phi[r]))
         residual[k] = worst
-        evaluate_nu(system, drives[k], ws)
-        solve(seq, fac, ws.nu, rate)
-        for c in range(3, n3):
-            v[k, c] = rate[c]
-        evaluate_gamma(system, rate, drives[k], ws)
-        solve(seq, fac, ws.gamma, delta)
-        for c in range(3, n3):
-            a[k, c] = delta[c]
+        for level in range(2):  # velocities, then accelerations, with the same factors
+            if level == 0:
+                evaluate_nu(system, drives[k], ws)
+            else:
+                evaluate_gamma(system, v[k], drives[k], ws)
+            solve(seq, fac, ws.right, delta)
+            target = v if level == 0 else a
+            for c in range(3, n3):
+                target[k, c] = delta[c]
     return DONE, times.shape[0]

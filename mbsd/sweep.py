@@ -25,6 +25,10 @@ REDUNDANT_GAP = 1e-7
 """Largest gap, in sizes, by which redundant joints may disagree."""
 
 
+JACOBIAN_NUMBERS = 4_000_000
+"""How many numbers of Jacobians are held at once."""
+
+
 @dataclass
 class Prepared:
     """A mechanism ready to be solved over and over: arrays, closed start pose, elimination sequence."""
@@ -173,52 +177,76 @@ def sweep(
     q, v, a, inserted = ready._march(grid)
     packed = ready.packed
     drives = packed.drives(grid)
-    count, rows = len(grid), len(packed.ws.phi)
-    lam = np.zeros((count, rows))
-    wrench = np.zeros((count, len(packed.joints), 3))
-    checks = np.zeros((count, 4))
-    margin = np.zeros(count)
-    chunk = max(1, 4_000_000 // max(1, rows * packed.coordinates))
-    for k in range(0, count, chunk):
-        part = slice(k, min(k + chunk, count))
-        jacobians = np.zeros((part.stop - k, rows, packed.coordinates))
-        inverse_dynamics(
-            packed.system, ready.sequence, ready.factors, packed.ws, packed.first_row, packed.markers[:, 1],
-            drives[part], q[part], v[part], a[part], lam[part], wrench[part], checks[part], jacobians,
-        )  # fmt: skip
-        scaled = jacobians * packed.row_scale()[:, None] * packed.column_scale()
-        kept = np.linalg.svd(scaled[:, ready.sequence.rows], compute_uv=False)
-        margin[part] = kept[:, -1] / kept[:, 0]
-        if ready.mobility.redundant_rows:
-            _least_norm(packed, jacobians, q[part], a[part], lam[part], wrench[part])
+    efforts = _efforts(ready, drives, q, v, a)
+    shape = (len(grid), -1, 3)
     return Solution(
         mechanism=m,
         packed=packed,
         t=grid,
-        q=q.reshape(count, -1, 3),
-        v=v.reshape(count, -1, 3),
-        a=a.reshape(count, -1, 3),
-        wrench=wrench,
-        lam=lam,
+        q=q.reshape(shape),
+        v=v.reshape(shape),
+        a=a.reshape(shape),
+        wrench=efforts.wrench,
+        lam=efforts.lam,
         drives=drives,
-        singularity_margin=margin,
-        stats=Stats(*(float(c) for c in checks.max(axis=0)), steps=count, inserted_steps=inserted),
+        singularity_margin=efforts.margin,
+        stats=Stats(*efforts.residuals, steps=len(grid), inserted_steps=inserted),
         mobility=ready.mobility,
     )
 
 
+@dataclass
+class _Efforts:
+    """Inverse dynamics of a motion, and how well the motion fulfils its equations."""
+
+    lam: np.ndarray
+    wrench: np.ndarray
+    margin: np.ndarray
+    residuals: np.ndarray
+    """(4,) largest |Phi|, |J v - nu|, |J a - gamma| and |d(T + V)/dt - power of the drivers|."""
+
+
+def _efforts(ready: Prepared, drives: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> _Efforts:
+    packed, system = ready.packed, ready.packed.system
+    count, rows = len(q), len(packed.ws.phi)
+    inertia = np.stack([system.mass, system.mass, system.inertia], axis=1).ravel()
+    weight = np.zeros((len(system.mass), 3))
+    weight[:, :2] = system.mass[:, None] * system.gravity
+    loads = weight.ravel() - inertia * a
+    nu = np.zeros((count, rows))
+    nu[:, packed.driver_rows :] = drives[:, 1:, 1]
+    out = _Efforts(np.zeros((count, rows)), np.zeros((count, len(packed.joints), 3)), np.zeros(count), np.zeros(4))
+    chunk = max(1, JACOBIAN_NUMBERS // max(1, rows * packed.coordinates))
+    for k in range(0, count, chunk):
+        at = slice(k, min(k + chunk, count))
+        jac = np.zeros((at.stop - k, rows, packed.coordinates))
+        phi, gamma = np.zeros((2, at.stop - k, rows))
+        inverse_dynamics(
+            system, ready.sequence, ready.factors, packed.ws, packed.first_row, packed.markers[:, 1].copy(),
+            drives[at], q[at], v[at], loads[at], out.lam[at], out.wrench[at], phi, gamma, jac,
+        )  # fmt: skip
+        scaled = jac[:, ready.sequence.rows] * packed.row_scale()[ready.sequence.rows, None] * packed.column_scale()
+        singular = np.linalg.svd(scaled, compute_uv=False)
+        out.margin[at] = singular[:, -1] / singular[:, 0]
+        if ready.mobility.redundant_rows:
+            _least_norm(packed, jac, q[at], loads[at], out.lam[at], out.wrench[at])
+        rate = np.einsum("trc,tc->tr", jac, v[at, 3:]) - nu[at]
+        bend = np.einsum("trc,tc->tr", jac, a[at, 3:]) - gamma
+        power = (loads[at] * v[at]).sum(axis=1) - (out.lam[at] * nu[at]).sum(axis=1)
+        worst = [np.abs(error).max(initial=0.0) for error in (phi, rate, bend, power)]
+        out.residuals = np.maximum(out.residuals, worst)
+    return out
+
+
 def _least_norm(
-    packed: Packed, jacobians: np.ndarray, q: np.ndarray, a: np.ndarray, lam: np.ndarray, wrench: np.ndarray
+    packed: Packed, jacobians: np.ndarray, q: np.ndarray, loads: np.ndarray, lam: np.ndarray, wrench: np.ndarray
 ) -> None:
     """Redundant joints share the load in many ways; take the multipliers of least norm."""
-    system = packed.system
-    inertia = np.stack([system.mass, system.mass, system.inertia], axis=1).ravel()[3:]
-    load = np.zeros((len(system.mass), 3))
-    load[:, :2] = system.mass[:, None] * system.gravity
+    none = np.zeros((len(packed.motions) + 1, 3))
     for k, jac in enumerate(jacobians):
-        lam[k] = np.linalg.lstsq(jac.T, load.ravel()[3:] - inertia * a[k, 3:], rcond=1e-9)[0]
-        residual_and_jacobian(system, q[k], np.zeros((len(packed.motions) + 1, 3)), packed.ws)
-        joint_wrenches(system, packed.ws, packed.first_row, packed.markers[:, 1], lam[k], wrench[k])
+        lam[k] = np.linalg.lstsq(jac.T, loads[k, 3:], rcond=1e-9)[0]
+        residual_and_jacobian(packed.system, q[k], none, packed.ws)
+        joint_wrenches(packed.system, packed.ws, packed.first_row, packed.markers[:, 1].copy(), lam[k], wrench[k])
 
 
 def _times(

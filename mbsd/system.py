@@ -53,16 +53,11 @@ class Workspace(NamedTuple):
     """(m,) residual."""
     jac: Any
     """(m, 3 nb) dPhi/dq, ground included."""
-    nu: Any
-    """(m,) J v = nu."""
-    gamma: Any
-    """(m,) J a = gamma."""
+    right: Any
+    """(m,) right-hand side: -Phi, nu or gamma."""
     pose: Any
     delta: Any
-    rate: Any
     """(3 nb,) of the Newton iteration."""
-    right: Any
-    """(m,) right-hand side."""
 
 
 def workspace(system: System, rows: int) -> Workspace:
@@ -77,10 +72,7 @@ def workspace(system: System, rows: int) -> Workspace:
         axis=np.zeros((markers, 2)),
         phi=np.zeros(rows),
         jac=np.zeros((rows, 3 * bodies)),
-        nu=np.zeros(rows),
-        gamma=np.zeros(rows),
+        right=np.zeros(rows),
         pose=np.zeros(3 * bodies),
         delta=np.zeros(3 * bodies),
-        rate=np.zeros(3 * bodies),
-        right=np.zeros(rows),
     )

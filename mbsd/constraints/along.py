@@ -44,7 +44,7 @@ def gamma_rows(system, v, ws):
         rate_y = v[bj + 1] + wj * ws.arm[j, 0] - v[bi + 1] - wi * ws.arm[i, 0]
         convective_x = -wj * wj * ws.arm[j, 0] + wi * wi * ws.arm[i, 0]
         convective_y = -wj * wj * ws.arm[j, 1] + wi * wi * ws.arm[i, 1]
-        ws.gamma[r] = -(
+        ws.right[r] = -(
             ux * convective_x
             + uy * convective_y
             + 2.0 * wi * (nx * rate_x + ny * rate_y)

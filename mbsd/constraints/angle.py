@@ -26,4 +26,4 @@ def rows(system, q, drive, ws):
 def gamma_rows(system, ws):
     """Acceleration right-hand side (rad/s^2) without f''."""
     for k in range(system.angle.shape[0]):
-        ws.gamma[system.angle[k, 2]] = 0.0
+        ws.right[system.angle[k, 2]] = 0.0

@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 SWEEP_SAMPLES = 120
 """Poses over the motion from which the swept space is taken."""
 TRAIL_RINGS = 160
-TRAIL_GAP = 0.002
+TRAIL_GAP = 0.001
 """Height (m) of a trail over the body that carries its point, if the shot gives none."""
 
 

@@ -49,7 +49,7 @@ class Trail(_Strict, frozen=True):
     colour: Colour = (1.0, 0.30, 0.04)
     tail: Annotated[float, msgspec.Meta(gt=0, le=1)] = 0.92
     """Length behind the point, in turns."""
-    radius: Annotated[float, msgspec.Meta(gt=0, le=0.1)] = 0.004
+    radius: Annotated[float, msgspec.Meta(gt=0, le=0.1)] = 0.0046
     """At the point, as a part of the size of the swept motion."""
     z: float | None = None
     """Height (m); null is just above the body that carries the point."""

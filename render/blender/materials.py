@@ -52,9 +52,9 @@ def _anodised(graph: Graph, surface: SurfaceSpec) -> Any:
     """Dyed oxide on blasted aluminium: a coloured metal under a thin clear layer."""
     return _principled(
         graph,
-        Base_Color=surface.colour,
+        Base_Color=tuple(0.8 * c for c in surface.colour),
         Metallic=1.0,
-        Roughness=_cloudy(graph, surface.roughness + 0.04, 0.06, 60.0),
+        Roughness=_cloudy(graph, surface.roughness + 0.02, 0.06, 60.0),
         Coat_Weight=0.18,
         Coat_Roughness=0.16,
         Coat_IOR=1.5,
@@ -67,7 +67,7 @@ def _brushed(graph: Graph, surface: SurfaceSpec) -> Any:
     stretched = graph.add("Mapping", Vector=place, Scale=(14.0, 900.0, 40.0)).outputs[0]
     streaks = graph.add("TexNoise", Vector=stretched, Scale=1.0, Detail=3.0, Roughness=0.6).outputs[0]
     rough = graph.math("ADD", surface.roughness - 0.06, graph.math("MULTIPLY", streaks, 0.16))
-    tone = graph.math("ADD", 0.66, graph.math("MULTIPLY", streaks, 0.20))
+    tone = graph.math("ADD", 0.58, graph.math("MULTIPLY", streaks, 0.20))
     colour = graph.add("VectorMath", {"operation": "SCALE"}, Scale=tone)
     graph.set(colour, 0, surface.colour)
     tangent = graph.add("Tangent", {"direction_type": "RADIAL", "axis": "Y"}).outputs[0]
@@ -85,7 +85,7 @@ def _satin(graph: Graph, surface: SurfaceSpec) -> Any:
     """Hard black anodising: dark, with a wide soft sheen."""
     return _principled(
         graph,
-        Base_Color=tuple(1.5 * c for c in surface.colour),
+        Base_Color=surface.colour,
         Metallic=0.35,
         Roughness=_cloudy(graph, surface.roughness - 0.06, 0.05, 40.0),
         Specular_IOR_Level=0.8,

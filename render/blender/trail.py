@@ -12,7 +12,7 @@ from render.blender.nodes import Graph
 from render.scene import Point, TrailSpec
 
 SIDES = 10
-BRIGHTNESS = 3.2
+BRIGHTNESS = 3.6
 
 
 def build(scene: Any, trail: TrailSpec) -> Any:
@@ -48,7 +48,7 @@ def vertices(path: list[Point], radius: float) -> np.ndarray:
     up = np.array([0.0, 0.0, 1.0])
     angle = np.arange(SIDES) * 2 * np.pi / SIDES
     rim = np.cos(angle)[None, :, None] * across[:, None, :] + np.sin(angle)[None, :, None] * up
-    thickness = radius * (0.18 + 0.82 * _fade(len(line)) ** 0.8)
+    thickness = radius * (0.30 + 0.70 * _fade(len(line)) ** 0.8)
     return (line[:, None, :] + rim * thickness[:, None, None]).reshape(-1, 3).astype(np.float32)
 
 
@@ -74,7 +74,7 @@ def _light(trail: TrailSpec) -> Any:
     strength = graph.math("MULTIPLY", fade, BRIGHTNESS)
     light = graph.add("Emission", Color=trail.colour, Strength=strength).outputs[0]
     gone = graph.add("BsdfTransparent").outputs[0]
-    mix = graph.add("MixShader", Fac=graph.math("MINIMUM", 1.0, graph.math("MULTIPLY", fade, 4.0)))
+    mix = graph.add("MixShader", Fac=graph.math("MINIMUM", 1.0, graph.math("MULTIPLY", fade, 10.0)))
     graph.set(mix, 1, gone)
     graph.set(mix, 2, light)
     graph.add("OutputMaterial", Surface=mix.outputs[0])

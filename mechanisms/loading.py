@@ -48,8 +48,9 @@ def load(name: str, file: File) -> ModuleType:
 def params(name: str) -> Any:
     """The default parameters of a mechanism: ``Params()`` of its mechanism.py. Raises UserError as :func:`load`."""
     module = load(name, "mechanism")
-    if dataclasses.is_dataclass(module.Params):
-        for field in dataclasses.fields(module.Params):
+    kind: Any = module.Params
+    if dataclasses.is_dataclass(kind):
+        for field in dataclasses.fields(kind):
             if field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING:
                 raise UserError(
                     f"{_shown(Path(str(module.__file__)))}: Params.{field.name} has no default; give it one"
@@ -99,7 +100,8 @@ class _MechanismFiles(MetaPathFinder):
         package, _, rest = fullname.partition(".")
         folder, dot, file = rest.partition(".")
         source = MECHANISMS / folder / f"{file}.py"
-        if package != "mechanisms" or not dot or not source.is_file():
+        ours = package == "mechanisms" and dot and (MECHANISMS / folder / "mechanism.py").is_file()
+        if not ours or not source.is_file():
             return None
         return spec_from_file_location(fullname, source, loader=_SourceOnly(fullname, str(source)))
 

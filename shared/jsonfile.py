@@ -32,7 +32,7 @@ def encode(document: msgspec.Struct) -> bytes:
     return msgspec.json.format(msgspec.json.encode(document), indent=1) + b"\n"
 
 
-def write[T: msgspec.Struct](path: Path, document: T) -> None:
+def write(path: Path, document: msgspec.Struct) -> None:
     """Check numbers, types and ranges of ``document`` and write it whole.
 
     Raises UserError naming the field, and leaves an older file as it was.

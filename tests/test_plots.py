@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from PIL import Image
 
 from render import plots
@@ -36,7 +37,7 @@ def out(out_root: Path) -> Out:
 def shown(drawn: Figure) -> set[str]:
     """Every text on the page."""
     drawn.canvas.draw()
-    return {text.get_text() for text in drawn.findobj(lambda artist: hasattr(artist, "get_text"))}
+    return {text.get_text() for text in drawn.findobj(Text) if isinstance(text, Text)}
 
 
 def overlaps(drawn: Figure) -> list[tuple[str, str]]:
@@ -88,7 +89,7 @@ def test_lines_hold_the_numbers_of_the_motion() -> None:
     for axes, series in ((angle, np.degrees(rocker.theta)), (speed, rocker.omega), (acceleration, rocker.alpha)):
         (line,) = [line for line in axes.lines if line.get_label() == "rocker"]
         np.testing.assert_array_equal(line.get_ydata(), series)
-        np.testing.assert_allclose(line.get_xdata(), np.linspace(0, 360, 73), atol=1e-9)
+        np.testing.assert_allclose(np.asarray(line.get_xdata()), np.linspace(0, 360, 73), atol=1e-9)
     force, torque = figure("reactions", MOTION).axes
     (line,) = [line for line in force.lines if line.get_label() == "C"]
     np.testing.assert_array_equal(line.get_ydata(), np.hypot(MOTION.joints["C"].fx, MOTION.joints["C"].fy))

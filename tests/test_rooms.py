@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import subprocess
 import sys
 from pathlib import Path
 
@@ -51,3 +52,18 @@ def test_import_linter_sees_every_other_folder() -> None:
         for file in (ROOT / room).rglob("*.py"):
             if file not in FILES:
                 assert (file.parent / "__init__.py").is_file(), file
+
+
+HEAVY = {"bpy", "cadquery", "trimesh", "manifold3d", "matplotlib", "numba", "scipy", "rich"}
+STAGES = [
+    "mechanisms.parts_stage", "mechanisms.solve_stage", "mechanisms.clearance_stage", "mechanisms.shot_stage",
+    "render.plots", "render.still", "render.frames", "render.film", "render.blend",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("module", STAGES)
+def test_a_stage_loads_nothing_heavy_before_it_knows_that_it_must_run(module: str) -> None:
+    code = f"import sys, {module}; print(*(set(sys.modules) & {HEAVY!r}))"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == []

@@ -42,7 +42,7 @@ def reactions(motion: Motion) -> Figure:
     )
     for axes, (label, lines) in zip(rows(figure, len(panels)), panels, strict=True):
         draw(axes, over, label, lines)
-    over.dress(axes)
+    over.dress(figure.axes[-1])
     return figure
 
 

@@ -76,7 +76,7 @@ def _skeleton(axes: Axes, motion: Motion, step: int, *, strong: bool) -> None:
             axes.plot(*joints[0], "s", color=ink, markersize=15, alpha=0.9, zorder=5)
         if strong:
             origin = [(motion.bodies[body].x[step], motion.bodies[body].y[step])]
-            middle = np.mean(joints or corners or origin, axis=0)
+            middle = tuple(np.mean(joints or corners or origin, axis=0))
             axes.annotate(
                 body, middle, (7, -11), textcoords="offset points", path_effects=HALO, color=ink, fontsize=10, zorder=9
             )

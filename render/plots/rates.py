@@ -26,7 +26,7 @@ def bodies(motion: Motion) -> Figure:
         series = {name: np.asarray(getattr(body, field)) for name, body in motion.bodies.items()}
         scale = np.degrees(1.0) if field == "theta" else 1.0
         draw(axes, over, label, [(name, scale * values, colour(i)) for i, (name, values) in enumerate(series.items())])
-    over.dress(axes)
+    over.dress(figure.axes[-1])
     return figure
 
 
@@ -76,5 +76,5 @@ def _plane_motion(motion: Motion, moving: PointMotion | BodyMotion, title: str, 
         if rate:
             lines.insert(0, (f"|{rate}|", np.hypot(x, y), INK))
         draw(axes, over, label, lines)
-    over.dress(axes)
+    over.dress(figure.axes[-1])
     return figure

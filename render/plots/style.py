@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -25,7 +26,7 @@ PALETTE = ("#0b62a8", "#d1500a", "#00805e", "#a83a82", "#8a6d00", "#5a4fcf", "#b
 LABELLED = 10
 """Lines that get a label each; of more, the largest are labelled and the others drawn faint."""
 
-RC = {
+RC: dict[Any, Any] = {
     "figure.dpi": DPI,
     "savefig.dpi": DPI,
     "font.family": "DejaVu Sans",
@@ -62,7 +63,8 @@ def house_style() -> Iterator[None]:
     """The project's settings alone; a matplotlibrc of the user's does not change a plot."""
     with mpl.rc_context():
         mpl.rcdefaults()
-        mpl.rcParams.update(RC)
+        for key, value in RC.items():
+            mpl.rcParams[key] = value
         yield
 
 

@@ -43,7 +43,7 @@ import numba  # noqa: E402  (the folder must be set first)
 
 numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]  # in case numba was imported before us
 
-_OPTIONS = {"cache": True, "error_model": "numpy", "_nrt": False}
+_OPTIONS = {"cache": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True, "no_rewrites": True}
 # _nrt off: kernels allocate nothing, and without it numba counts references to every array of a tuple (2x slower)
 
 kernel = numba.njit(**_OPTIONS)

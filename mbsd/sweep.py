@@ -190,7 +190,7 @@ def sweep(
         lam=efforts.lam,
         drives=drives,
         singularity_margin=efforts.margin,
-        stats=Stats(*efforts.residuals, steps=len(grid), inserted_steps=inserted),
+        stats=Stats(*(float(r) for r in efforts.residuals), steps=len(grid), inserted_steps=inserted),
         mobility=ready.mobility,
     )
 

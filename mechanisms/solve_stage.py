@@ -1,0 +1,156 @@
+"""The stage ``solve``: mechanism.py and the masses of parts.json to data.json."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from mechanisms import loading
+from shared import console, contract
+from shared.errors import UserError
+from shared.files import sources_hash
+from shared.paths import MECHANISMS, ROOT, Out
+from shared.stages import Stage, key_of, versions
+
+if TYPE_CHECKING:
+    from mbsd import Mechanism, Solution
+
+
+def run(name: str) -> None:
+    """Solve one mechanism unless data.json already stands for the same inputs. Raises UserError."""
+    out = Out(name)
+    parts = contract.read_parts(out.parts)
+    masses = {body: (solids.mass, solids.z) for body, solids in parts.bodies.items()}
+    packages = versions("numpy", "scipy", "numba")
+    key = key_of(
+        MECHANISMS / name / "mechanism.py",
+        sources_hash(ROOT / "mbsd", ROOT / "mechanisms" / "solve_stage.py", ROOT / "shared" / "contract.py"),
+        masses,
+        packages,
+    )
+    stage = Stage(out, "solve", key, [out.motion])
+    if stage.is_fresh():
+        console.say("solve", f"{name}: nothing to do")
+        return
+    solution = solve(name, parts)
+    contract.write_motion(out.motion, to_motion(solution, parts, key, packages))
+    stage.done()
+    console.say("solve", f"{name}: {_summary(solution)}")
+
+
+def solve(name: str, parts: contract.Parts) -> Solution:
+    """Build the mechanism, give it the masses of its parts and solve its motion.
+
+    ``mechanism.py`` may define ``motion(m, p) -> Solution`` to say what is solved; without it one period of the
+    driver is. Raises UserError.
+    """
+    from mbsd import MechanismError
+
+    module = loading.load(name, "mechanism")
+    p = loading.params(name)
+    try:
+        with loading.author_code(name):
+            m = module.build(p)
+        apply_masses(m, parts)
+        with loading.author_code(name):
+            motion: Any = getattr(module, "motion", None)
+            return motion(m, p) if motion else m.sweep()
+    except MechanismError as error:
+        raise UserError(str(error)) from error
+
+
+def apply_masses(m: Mechanism, parts: contract.Parts) -> None:
+    """Masses from CAD, by body name. Raises UserError if names do not match."""
+    bodies = set(m.bodies) - {"ground"}
+    solids = set(parts.bodies) - {"ground"}
+    for missing, where, there in ((bodies - solids, "parts.py", solids), (solids - bodies, "mechanism.py", bodies)):
+        if missing:
+            raise UserError(
+                f"{m.name}: {where} has no body '{min(missing)}'; it has: {', '.join(sorted(there)) or 'none'}. "
+                "mechanism.py and parts.py must name the same bodies"
+            )
+    for name in bodies:
+        mass = parts.bodies[name].mass
+        m.set_mass(name, mass.mass, mass.com, mass.inertia)
+
+
+def to_motion(
+    solution: Solution, parts: contract.Parts, inputs: str, packages: dict[str, str]
+) -> contract.Motion:
+    """The solution as the contract has it: plain lists, author's frames."""
+    import mbsd
+
+    m = solution.mechanism
+    frame_fields = ("x", "y", "theta", "vx", "vy", "omega", "ax", "ay", "alpha")
+    bodies = {
+        name: contract.BodyMotion(
+            **{field: getattr(solution.body(name), field).tolist() for field in frame_fields},
+            z=parts.bodies[name].z,
+            mass=body.mass,
+            com=body.com,
+            inertia=body.inertia,
+        )
+        for name, body in m.bodies.items()
+        if name != "ground"
+    }
+    joints = {
+        name: contract.JointMotion(
+            kind=joint.kind.name,
+            bodies=joint.bodies,
+            **{field: getattr(solution.joint(name), field).tolist() for field in ("x", "y", "fx", "fy", "torque")},
+        )
+        for name, joint in m.joints.items()
+    }
+    drivers = {
+        name: contract.DriverMotion(
+            kind=driver.kind.name.removeprefix("drive_"),
+            **{field: getattr(solution.driver(name), field).tolist() for field in ("value", "effort", "power")},
+        )
+        for name, driver in m.drivers.items()
+    }
+    points = {
+        name: contract.PointMotion(
+            body=marker.body.name,
+            **{field: getattr(solution.point(name), field).tolist() for field in ("x", "y", "vx", "vy", "ax", "ay")},
+        )
+        for name, marker in m.traces.items()
+    }
+    stats = solution.stats
+    return contract.Motion(
+        mechanism=m.name,
+        provenance=contract.Provenance(inputs=inputs, versions=packages | {"mbsd": mbsd.__version__}),
+        gravity=(float(m.gravity[0]), float(m.gravity[1])) if m.gravity else (0.0, 0.0),
+        period=solution.period,
+        time=solution.t.tolist(),
+        bodies=bodies,
+        joints=joints,
+        drivers=drivers,
+        points=points,
+        energy=contract.Energy(
+            kinetic=solution.energy.kinetic.tolist(), potential=solution.energy.potential.tolist()
+        ),
+        diagnostics=contract.Diagnostics(
+            position_residual=stats.position_residual,
+            velocity_residual=stats.velocity_residual,
+            acceleration_residual=stats.acceleration_residual,
+            power_residual=stats.power_residual,
+            dof=solution.mobility.dof,
+            redundant=list(solution.mobility.redundant),
+            singularity_margin=solution.singularity_margin.tolist(),
+        ),
+    )
+
+
+def _summary(solution: Solution) -> str:
+    peaks = [
+        f"{name} up to {abs(driver.effort).max():.3g} {'N m' if driver.angular else 'N'}"
+        for name in solution.mechanism.drivers
+        for driver in [solution.driver(name)]
+    ]
+    return ", ".join(
+        [
+            f"{len(solution.t)} times over {solution.t[-1] - solution.t[0]:.4g} s",
+            f"{solution.mobility.dof} degree{'s' * (solution.mobility.dof != 1)} of freedom",
+            f"closed to {solution.stats.position_residual:.0e} m",
+            *peaks,
+        ]
+    )

@@ -25,6 +25,7 @@ def make_targets(document: Path) -> set[str]:
     """Targets named as ``make target`` in code, inline or in a block; a placeholder like <name> is made real."""
     text = document.read_text()
     code = "\n".join(re.findall(r"`([^`\n]+)`", text)) + "\n" + "\n".join(code for _, code in BLOCK.findall(text))
+    code = re.sub(r'="[^"]*"', "=x", code)
     targets = set()
     for line in re.findall(r"\bmake ((?:[a-z][a-z_<>-]*|[A-Z]+=\S+)(?: (?:[a-z][a-z_<>-]*|[A-Z]+=\S+))*)", code):
         targets |= {word.replace("<name>", "four-bar") for word in line.split() if "=" not in word}

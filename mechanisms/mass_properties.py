@@ -37,7 +37,5 @@ def combined(masses: Iterable[Mass]) -> Mass:
         return Mass(mass=0.0, com=(0.0, 0.0), inertia=0.0, volume=sum(piece.volume for piece in pieces))
     x = sum(piece.mass * piece.com[0] for piece in pieces) / mass
     y = sum(piece.mass * piece.com[1] for piece in pieces) / mass
-    inertia = sum(
-        piece.inertia + piece.mass * ((piece.com[0] - x) ** 2 + (piece.com[1] - y) ** 2) for piece in pieces
-    )
+    inertia = sum(piece.inertia + piece.mass * ((piece.com[0] - x) ** 2 + (piece.com[1] - y) ** 2) for piece in pieces)
     return Mass(mass=mass, com=(x, y), inertia=inertia, volume=sum(piece.volume for piece in pieces))

@@ -55,6 +55,11 @@ def step_bytes(solid: Any, name: str) -> bytes:
         return _TIMESTAMP.sub(rb"\1'1970-01-01T00:00:00'", path.read_bytes(), count=1)
 
 
+def read_triangles(stl: bytes) -> np.ndarray:
+    """(n, 3, 3): the corners (mm) of the triangles of a binary STL, as float64."""
+    return np.frombuffer(stl, dtype=_TRIANGLE, offset=84)["corners"].astype(float)
+
+
 def read_mesh(stl: bytes) -> Any:
     """The ``trimesh.Trimesh`` of a binary STL, equal corners joined."""
     import io

@@ -99,9 +99,7 @@ def _body(name: str, body: str, solids: list[Any], files: dict[str, bytes]) -> B
 
     pieces = {solid.name: _piece(name, body, solid, files) for solid in solids}
     main = pieces[solids[0].name]
-    return BodyParts(
-        pieces=pieces, mass=combined(piece.mass for piece in pieces.values()), z=(sum(main.z_range)) / 2
-    )
+    return BodyParts(pieces=pieces, mass=combined(piece.mass for piece in pieces.values()), z=(sum(main.z_range)) / 2)
 
 
 def _piece(name: str, body: str, solid: Any, files: dict[str, bytes]) -> Piece:

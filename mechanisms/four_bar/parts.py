@@ -66,8 +66,10 @@ def coupler(length: float) -> list[Solid]:
     eye = Eye(13.0, PIVOT.running)
     tracer = Eye(7.0, 4.0 + PIVOT.fit.press, above=1.5, boss=5.2)
     joints = [(0.0, 0.0, eye), (length, 0.0, eye), (*TRACER, tracer)]
-    plate = plate_link(joints, COUPLER, waist=160.0, rims=(2.6, 6.4, 6.4))
-    plate = engraved(plate, text("B", 5.0, 20.0, 1.0) + text("C", 5.0, length - 20.0, 1.0), COUPLER)
+    plate = plate_link(joints, COUPLER, waist=240.0, rims=(2.6, 6.4, 6.4))
+    plate = engraved(
+        plate, text("B", 6.0, 18.0, 1.4, width=1.1) + text("C", 6.0, length - 18.0, 1.4, width=1.1), COUPLER
+    )
     top = Z_COUPLER + COUPLER + 1.5 + PIVOT.fit.seat
     return [
         Solid("coupler", placed(plate, z=Z_COUPLER), "aluminium", 4),
@@ -101,7 +103,9 @@ def ground(length: float) -> list[Solid]:
     bolts = [(x + u, v) for x in (0.0, length) for u, v in bolt_circle(31.0, 3)]
     plate = base_plate((x0, y0, x1, y1), PLATE, 12.0, corners, tapped=[(x, y, 3.4, 9.0) for x, y in bolts])
     marks = rule(length, 0.0, y0 + 3.4) + dial(0.0, 0.0, 22.5, 10.0)
-    marks += text("A", 6.0, -33.0, 0.0) + text("D", 6.0, length + 28.0, 0.0)
+    marks += text("A", 7.0, -34.0, 0.0, width=1.2) + text("D", 7.0, length + 30.0, 0.0, width=1.2)
+    for tens in range(0, int(length) + 1, 20):
+        marks += text(str(tens), 2.6, tens, y0 + 9.0, width=0.45)
     solids = [Solid("base_plate", engraved(plate, marks, 0.0), "aluminium_black", len(corners))]
     for joint, x, height, link_z, thickness in (
         ("A", 0.0, PEDESTAL_A, Z_CRANK, CRANK),

@@ -11,12 +11,12 @@ from collections.abc import Sequence
 import cadquery as cq
 
 from shared.shapes import outline
-from shared.shapes.build import extruded
 
 Stroke = list[tuple[float, ...]]
 
 LETTERS: dict[str, list[Stroke]] = {
-    # strokes in a box 1 high, none touching itself; an entry of four numbers is an arc, through a point to its end
+    # strokes in a box 1 high, none touching itself unless it is a closed ring; an entry of four numbers is an arc,
+    # through a point to its end
     "A": [[(0.0, 0.0), (0.36, 1.0), (0.72, 0.0)], [(0.14, 0.36), (0.58, 0.36)]],
     "B": [
         [(0.0, 0.0), (0.0, 1.0)],
@@ -28,79 +28,97 @@ LETTERS: dict[str, list[Stroke]] = {
     "E": [[(0.52, 1.0), (0.0, 1.0), (0.0, 0.0), (0.52, 0.0)], [(0.0, 0.52), (0.42, 0.52)]],
     "F": [[(0.52, 1.0), (0.0, 1.0), (0.0, 0.0)], [(0.0, 0.52), (0.42, 0.52)]],
     "G": [[(0.66, 0.86), (0.0, 0.5, 0.66, 0.14), (0.66, 0.48), (0.40, 0.48)]],
-    "O": [[(0.36, 1.0), (0.0, 0.5, 0.36, 0.0)], [(0.36, 0.0), (0.72, 0.5, 0.36, 1.0)]],
+    "O": [[(0.36, 0.0), (0.72, 0.5, 0.36, 1.0), (0.0, 0.5, 0.36, 0.0)]],
     "P": [[(0.0, 0.0), (0.0, 1.0)], [(0.0, 1.0), (0.32, 1.0), (0.59, 0.735, 0.32, 0.47), (0.0, 0.47)]],
-    "0": [[(0.28, 1.0), (0.0, 0.5, 0.28, 0.0)], [(0.28, 0.0), (0.56, 0.5, 0.28, 1.0)]],
+    "0": [[(0.28, 0.0), (0.56, 0.5, 0.28, 1.0), (0.0, 0.5, 0.28, 0.0)]],
     "1": [[(0.0, 0.78), (0.22, 1.0), (0.22, 0.0)]],
     "2": [[(0.03, 0.76), (0.29, 1.0, 0.50, 0.62), (0.0, 0.0), (0.56, 0.0)]],
     "3": [[(0.02, 0.82), (0.52, 0.76, 0.22, 0.54)], [(0.22, 0.54), (0.56, 0.24, 0.0, 0.16)]],
-    "4": [[(0.40, 0.0), (0.40, 1.0), (0.0, 0.3), (0.58, 0.3)]],
+    "4": [[(0.40, 0.0), (0.40, 1.0)], [(0.40, 1.0), (0.0, 0.3), (0.58, 0.3)]],
     "5": [[(0.50, 1.0), (0.09, 1.0), (0.04, 0.56), (0.56, 0.31, 0.0, 0.1)]],
-    "6": [[(0.44, 1.0), (0.06, 0.46)], [(0.06, 0.46), (0.28, 0.0, 0.5, 0.46)], [(0.06, 0.46), (0.28, 0.6, 0.5, 0.46)]],
+    "6": [[(0.28, 0.0), (0.54, 0.27, 0.28, 0.54), (0.02, 0.27, 0.28, 0.0)], [(0.06, 0.36), (0.15, 0.72, 0.44, 1.0)]],
     "7": [[(0.0, 1.0), (0.54, 1.0), (0.16, 0.0)]],
-    "8": [
-        [(0.28, 1.0), (0.05, 0.77, 0.28, 0.54)],
-        [(0.28, 0.54), (0.51, 0.77, 0.28, 1.0)],
-        [(0.28, 0.54), (0.0, 0.27, 0.28, 0.0)],
-        [(0.28, 0.0), (0.56, 0.27, 0.28, 0.54)],
-    ],
-    "9": [[(0.12, 0.0), (0.5, 0.54)], [(0.5, 0.54), (0.28, 1.0, 0.06, 0.54)], [(0.06, 0.54), (0.28, 0.4, 0.5, 0.54)]],
+    "8": [[(0.28, 0.0), (0.56, 0.27, 0.28, 0.54), (0.0, 0.27, 0.28, 0.0)], [(0.15, 0.55), (0.28, 1.0, 0.41, 0.55)]],
+    "9": [[(0.28, 0.46), (0.54, 0.73, 0.28, 1.0), (0.02, 0.73, 0.28, 0.46)], [(0.50, 0.64), (0.41, 0.28, 0.12, 0.0)]],
 }
 
 
 def text(
     word: str, height: float, x: float, y: float, turn: float = 0.0, width: float = 0.0, spacing: float = 0.4
-) -> list[cq.Wire]:
-    """Outlines of the strokes of ``word``, its middle at (x, y), turned by ``turn`` degrees.
+) -> list[cq.Face]:
+    """The strokes of ``word``, its middle at (x, y), turned by ``turn`` degrees.
 
     ``height`` of the letters and ``width`` of the cutter in mm (by default a sixth of the height).
     Raises ValueError for a letter that is not in :data:`LETTERS`.
     """
     width = width or height / 6
-    wires, cursor = [], 0.0
+    faces, cursor = [], 0.0
     for letter in word:
         if letter not in LETTERS:
             raise ValueError(f"cannot engrave {letter!r}; there are strokes for {''.join(LETTERS)}")
         strokes = LETTERS[letter]
-        wires += [_stroke(stroke, height, cursor * height, width) for stroke in strokes]
+        faces += [_stroke(stroke, height, cursor * height, width) for stroke in strokes]
         cursor += max(max(entry[0::2]) for stroke in strokes for entry in stroke) + spacing
     middle = (cursor - spacing) * height / 2
     shift = cq.Location(cq.Vector(x, y, 0), cq.Vector(0, 0, 1), turn) * cq.Location(cq.Vector(-middle, -height / 2, 0))
-    return [wire.moved(shift) for wire in wires]
+    return [face.moved(shift) for face in faces]
 
 
-def rule(length: float, x: float, y: float, marks: tuple[float, float] = (2.0, 3.6), width: float = 0.5) -> list[cq.Wire]:
+def rule(
+    length: float, x: float, y: float, marks: tuple[float, float] = (2.0, 3.6), width: float = 0.5
+) -> list[cq.Face]:
     """Strokes of a scale along +x from (x, y): a short one every 5 mm, a long one every 10 mm, towards +y."""
-    wires = []
+    faces = []
     for i in range(math.floor(length / 5 + 1e-9) + 1):
         reach = marks[1] if i % 2 == 0 else marks[0]
-        wires.append(groove((x + 5.0 * i, y), (x + 5.0 * i, y + reach), width))
-    return wires
+        faces.append(groove((x + 5.0 * i, y), (x + 5.0 * i, y + reach), width))
+    return faces
 
 
-def dial(x: float, y: float, radius: float, step: float, marks: tuple[float, float] = (1.8, 3.6)) -> list[cq.Wire]:
+def dial(x: float, y: float, radius: float, step: float, marks: tuple[float, float] = (1.8, 3.6)) -> list[cq.Face]:
     """Strokes round (x, y), outwards from ``radius``: one every ``step`` degrees, a long one every 30."""
-    wires = []
+    faces = []
     for i in range(round(360 / step)):
         angle = math.radians(i * step)
         reach = radius + (marks[1] if (i * step) % 30 == 0 else marks[0])
         c, s = math.cos(angle), math.sin(angle)
-        wires.append(groove((x + radius * c, y + radius * s), (x + reach * c, y + reach * s), 0.5))
-    return wires
+        faces.append(groove((x + radius * c, y + radius * s), (x + reach * c, y + reach * s), 0.5))
+    return faces
 
 
-def groove(start: tuple[float, float], end: tuple[float, float], width: float) -> cq.Wire:
+def groove(start: tuple[float, float], end: tuple[float, float], width: float) -> cq.Face:
     """One straight stroke with round ends."""
-    return outline.hull([(*start, width / 2), (*end, width / 2)])
+    return cq.Face.makeFromWires(outline.hull([(*start, width / 2), (*end, width / 2)]))
 
 
-def engraved(shape: cq.Workplane, strokes: Sequence[cq.Wire], z: float, depth: float = 0.4) -> cq.Workplane:
+def engraved(shape: cq.Workplane, strokes: Sequence[cq.Face], z: float, depth: float = 0.4) -> cq.Workplane:
     """Cut the strokes ``depth`` mm into the face at height ``z``. Blind: no through hole is added."""
-    tools = [extruded(stroke, depth + 0.5, z - depth).val() for stroke in strokes]
-    return shape.newObject([shape.val().cut(*tools)])  # type: ignore[union-attr]
+    up = cq.Vector(0, 0, depth + 0.5)
+    for group in _apart(strokes):
+        tools = [cq.Solid.extrudeLinear(s.translate(cq.Vector(0, 0, z - depth)), up) for s in group]
+        shape = shape.newObject([shape.val().cut(*tools)])  # type: ignore[union-attr]
+    return shape
 
 
-def _stroke(stroke: Stroke, height: float, shift: float, width: float) -> cq.Wire:
+def _apart(strokes: Sequence[cq.Face]) -> list[list[cq.Face]]:
+    """Few groups of strokes that do not overlap: one cut with tools that overlap each other may tear the face."""
+    groups: list[list[tuple[cq.Face, cq.BoundBox]]] = []
+    for stroke in strokes:
+        box = stroke.BoundingBox()
+        for group in groups:
+            if not any(_overlap(box, other) for _, other in group):
+                group.append((stroke, box))
+                break
+        else:
+            groups.append([(stroke, box)])
+    return [[stroke for stroke, _ in group] for group in groups]
+
+
+def _overlap(a: cq.BoundBox, b: cq.BoundBox) -> bool:
+    return a.xmin < b.xmax and b.xmin < a.xmax and a.ymin < b.ymax and b.ymin < a.ymax
+
+
+def _stroke(stroke: Stroke, height: float, shift: float, width: float) -> cq.Face:
     def at(u: float, v: float) -> cq.Vector:
         return cq.Vector(u * height + shift, v * height, 0)
 
@@ -113,4 +131,6 @@ def _stroke(stroke: Stroke, height: float, shift: float, width: float) -> cq.Wir
             edges.append(cq.Edge.makeLine(before, after))
         else:
             edges.append(cq.Edge.makeThreePointArc(before, at(*entry[:2]), after))
-    return cq.Wire.assembleEdges(edges).offset2D(width / 2, "arc")[0]
+    line = cq.Wire.assembleEdges(edges)
+    outer = line.offset2D(width / 2, "arc")[0]
+    return cq.Face.makeFromWires(outer, line.offset2D(-width / 2, "arc") if line.IsClosed() else [])

@@ -19,9 +19,9 @@ class Pivot:
 
     pin: float = 8.0
     bushing: float = 11.0
-    flange: float = 16.0
+    flange: float = 17.6
     flange_thickness: float = 1.2
-    washer: float = 15.4
+    washer: float = 14.0
     washer_thickness: float = 1.0
     clip_thickness: float = 1.0
     groove_depth: float = 0.45

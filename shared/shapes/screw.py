@@ -40,5 +40,12 @@ def socket_screw(nominal: float, length: float) -> cq.Workplane:
     )
     hexagon = SOCKET[nominal]
     socket = cq.Workplane(origin=(0, 0, k / 2)).polygon(6, hexagon / math.cos(math.pi / 6)).extrude(k)
-    mouth = turned([(0, k - 0.1 * k), (hexagon / 2 - 0.02 * k, k - 0.1 * k), (hexagon / 2 + 0.2 * k, k + 0.12 * k), (0, k + 0.12 * k)])
+    mouth = turned(
+        [
+            (0, k - 0.1 * k),
+            (hexagon / 2 - 0.02 * k, k - 0.1 * k),
+            (hexagon / 2 + 0.2 * k, k + 0.12 * k),
+            (0, k + 0.12 * k),
+        ]
+    )
     return body.cut(socket).cut(mouth)

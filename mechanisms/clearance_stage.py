@@ -1,0 +1,207 @@
+"""The ``clearance`` stage: proves that no two pieces of different bodies touch over the motion in data.json.
+
+Every pair of pieces of two bodies is settled by the first of these that suffices:
+
+1. Circles. Pieces whose circles in the plane stay apart do not meet.
+2. Layers. The motion is planar, so pieces at different heights stay apart, whatever the motion.
+3. Turn. Bodies with a revolute joint between them turn about one axis: the gap at every angle at once (turn.py).
+   This also covers a pin in its hole with 0.1 mm of room.
+4. Motion. The exact gap of the two meshes at poses chosen so that the gap can not close between them (sweep.py).
+
+What is proven: at every moment of the motion, taken as cubic between the samples of data.json, the meshes stay at
+least half the limit apart, and the gap is above the limit at every measured pose. Meshes lie within
+``parts_files.TOLERANCE`` of the solids. Pieces of one body are not compared with each other.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+from shared.clearance import Clearance, PairClearance, write_clearance
+from shared.console import say
+from shared.contract import Motion, Parts, Provenance, read_motion, read_parts
+from shared.errors import UserError
+from shared.files import sources_hash
+from shared.paths import ROOT, Out
+from shared.shapes.units import metres, mm
+from shared.stages import Stage, key_of, versions
+
+if TYPE_CHECKING:
+    from mechanisms.clearance.path import BodyPath
+    from mechanisms.clearance.pieces import MeshPiece
+    from mechanisms.clearance.sweep import Sweep
+
+LIMIT = 0.05
+"""Smaller gaps between two bodies are refused (mm)."""
+REACH = 5.0
+"""Larger gaps are not measured (mm)."""
+PACKAGES = ("manifold3d", "numpy", "scipy")
+SOURCES = [ROOT / "mechanisms" / "clearance", ROOT / "mechanisms" / "clearance_stage.py"]
+
+
+def run(name: str) -> None:
+    """Check mechanism ``name`` and write clearance.json, unless motion and parts are those of the last check.
+
+    Raises UserError naming both pieces, the time, the depth or gap, and the remedy, if two pieces come too near.
+    """
+    out = Out(name)
+    parts, motion = read_parts(out.parts), read_motion(out.motion)
+    key = key_of(out.parts, out.motion, sources_hash(*SOURCES), versions(*PACKAGES), LIMIT, REACH)
+    stage = Stage(out, "clearance", key, [out.clearance])
+    if stage.is_fresh():
+        say("clearance", f"{out.name}: up to date")
+        return
+    from mechanisms.clearance.pieces import read_pieces
+
+    found = check(parts, motion, read_pieces(parts, out.parts_folder), key)
+    write_clearance(out.clearance, found)
+    stage.done()
+    say("clearance", _summary(found))
+
+
+def check(
+    parts: Parts, motion: Motion, pieces: list[MeshPiece], key: str, limit: float = LIMIT, reach: float = REACH
+) -> Clearance:
+    """Check every pair of ``pieces`` of different bodies. ``limit`` and ``reach`` in mm; raises UserError as :func:`run`."""
+    from mechanisms.clearance.path import paths
+    from mechanisms.clearance.sweep import Sweep
+
+    name = parts.mechanism
+    lost = sorted({piece.body for piece in pieces} - {"ground"} - set(motion.bodies))
+    if lost:
+        raise UserError(
+            f"{name}: parts.json has a body '{lost[0]}' that data.json does not move; "
+            "use the names of mechanism.py in parts()"
+        )
+    where = paths(motion)
+    error = _interpolation_error(name, where, pieces, limit)
+    axes = _axes(motion, where)
+    pairs: list[PairClearance] = []
+    refused: list[tuple[Sweep, float, float]] = []
+    apart = 0
+    for first, second in combinations(pieces, 2):
+        if first.body == second.body:
+            continue
+        sweep = Sweep(first, second, where[first.body], where[second.body])
+        height = _height_gap(first, second)
+        if height >= reach or sweep.circle_gap() >= reach:
+            apart += 1
+            continue
+        if height >= limit:
+            pairs.append(_pair(first, second, height, height, None, "layers", 0))
+            continue
+        found = _turn(first, second, axes, sweep, limit, reach)
+        if found is None:
+            least = sweep.least(limit, reach)
+            if least.gap < limit or least.proven <= 0:
+                refused.append((sweep, least.gap, least.time))
+                continue
+            found = _pair(first, second, least.gap, least.proven, least.time, "motion", least.poses)
+        if found.gap < metres(reach):
+            pairs.append(found)
+        else:
+            apart += 1
+    if refused:
+        raise UserError(_refusal(name, refused, limit))
+    return Clearance(
+        mechanism=name,
+        provenance=Provenance(inputs=key, versions=versions(*PACKAGES)),
+        limit=metres(limit),
+        interpolation_error=metres(error),
+        pairs=sorted(pairs, key=lambda pair: (pair.gap, pair.pieces)),
+        apart=apart,
+    )
+
+
+def _interpolation_error(name: str, where: dict[str, BodyPath], pieces: list[MeshPiece], limit: float) -> float:
+    import numpy as np
+
+    error = 0.0
+    for piece in pieces:
+        reach = float(np.linalg.norm(piece.centre)) + piece.radius
+        error = max(error, where[piece.body].interpolation_error(reach))
+    if error > limit / 4:
+        raise UserError(
+            f"{name}: between the {len(where['ground'].time)} samples of data.json the parts may be {error:.3g} mm off "
+            f"what is checked, allowed {limit / 4:g} mm; solve with more steps"
+        )
+    return error
+
+
+def _axes(motion: Motion, where: dict[str, BodyPath]) -> dict[frozenset[str], dict[str, object]]:
+    """For bodies that a revolute joint connects: the axis as a point (mm) in the frame of either."""
+    import numpy as np
+
+    from mechanisms.clearance.path import relative
+
+    found: dict[frozenset[str], dict[str, object]] = {}
+    for joint in motion.joints.values():
+        if joint.kind != "revolute":
+            continue
+        at = np.column_stack([np.array(joint.x) * mm(1), np.array(joint.y) * mm(1), np.zeros(len(joint.x))])
+        seen = {body: relative(at, where[body].pose)[:, :2] for body in joint.bodies}
+        if all(np.ptp(point, axis=0).max() < 1e-4 for point in seen.values()):
+            found[frozenset(joint.bodies)] = {body: point.mean(axis=0) for body, point in seen.items()}
+    return found
+
+
+def _turn(first, second, axes, sweep, limit: float, reach: float) -> PairClearance | None:  # noqa: ANN001
+    """The pair's gap at every angle of the joint between its bodies; None if there is none, or that is not enough."""
+    from mechanisms.clearance.turn import turn_gap
+
+    axis = axes.get(frozenset((first.body, second.body)))
+    if axis is None:
+        return None
+    about = [piece.triangles - [axis[piece.body][0], axis[piece.body][1], 0.0] for piece in (first, second)]
+    gap = turn_gap(about[0], about[1], reach)
+    if gap < limit or sweep.gap_at(float(sweep.times[0]), reach) < limit:
+        return None
+    return _pair(first, second, gap, gap, None, "turn", 1)
+
+
+def _height_gap(first: MeshPiece, second: MeshPiece) -> float:
+    return max(first.z_range[0] - second.z_range[1], second.z_range[0] - first.z_range[1])
+
+
+def _pair(first, second, gap: float, proven: float, time: float | None, proof, poses: int) -> PairClearance:  # noqa: ANN001
+    return PairClearance(
+        bodies=(first.body, second.body),
+        pieces=(first.name, second.name),
+        gap=metres(gap),
+        proven=metres(proven),
+        time=time,
+        proof=proof,
+        poses=poses,
+    )
+
+
+def _refusal(name: str, refused: list[tuple[Sweep, float, float]], limit: float) -> str:
+    """One sentence on the worst pair, a word on the others."""
+    measured = [(sweep, gap, time, sweep.overlap(time)) for sweep, gap, time in refused]
+    measured.sort(key=lambda item: (-item[3].depth, item[1]))
+    sweep, gap, time, overlap = measured[0]
+    pair = f"{sweep.mover.body}: {sweep.mover.name} and {sweep.still.body}: {sweep.still.name}"
+    remedy = "move one to another layer, make it smaller, or cut it out where the other passes (parts.py)"
+    if overlap.depth > 0:
+        text = (
+            f"{name}: {pair} collide: deepest at t={overlap.time:.4g} s by {overlap.depth:.3g} mm, "
+            f"touching between t={overlap.first:.4g} s and t={overlap.last:.4g} s; {remedy}"
+        )
+    else:
+        text = f"{name}: {pair} come as near as {gap:.3g} mm at t={time:.4g} s, required {limit:g} mm; {remedy}"
+    others = [f"{s.mover.name} and {s.still.name}" for s, *_ in measured[1:]]
+    if others:
+        more = f" and {len(others) - 5} more" if len(others) > 5 else ""
+        text += f". Also too near: {', '.join(others[:5])}{more}"
+    return text
+
+
+def _summary(found: Clearance) -> str:
+    count = len(found.pairs) + found.apart
+    text = f"{found.mechanism}: {count} pairs of pieces, none touch"
+    if found.pairs:
+        nearest = found.pairs[0]
+        when = "at every angle" if nearest.time is None else f"at t={nearest.time:.3g} s"
+        text += f"; nearest {nearest.pieces[0]} and {nearest.pieces[1]}: {mm(nearest.gap):.3f} mm {when}"
+    return text

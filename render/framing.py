@@ -17,6 +17,8 @@ from render.presets import ASPECT
 Array = NDArray[np.float64]
 SENSOR = 36.0
 """Width of the sensor, mm."""
+NEAREST = 0.5
+"""The camera stays this far, in sizes of what it films, from the nearest point, however slender that is."""
 REFERENCE_WIDTH = 1280
 """The width, in pixels, in which the shot's blur is given."""
 
@@ -55,7 +57,8 @@ def fit(points: Array, azimuth: float, elevation: float, lens: float, margin: fl
     tv = half_width(lens) / ASPECT * room
     cu, wu = _between(u, w, tu)
     cv, wv = _between(v, w, tv)
-    depth = min(wu, wv)
+    size = float(np.linalg.norm(np.ptp(points, axis=0)))
+    depth = min(wu, wv, float(w.min()) - NEAREST * size)
     position = np.array([cu, cv, depth]) @ axes(azimuth, elevation)
     return position, float((w.min() + w.max()) / 2 - depth)
 

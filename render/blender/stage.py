@@ -28,10 +28,9 @@ class Stage:
     def show(self, index: int) -> None:
         """Go to state ``index``."""
         self.scene.frame_set(index)
-        for thing, spec, path in zip(
-            self.trails, self.job.scene.trails, self.job.states[index].trails if self.trails else [], strict=True
-        ):
-            trail.place(thing, path, spec.radius)
+        for which, thing in enumerate(self.trails):
+            path = self.job.states[index].trails[which]
+            trail.place(thing, path, self.job.scene.trails[which].radius)
 
 
 def build(job: Job) -> Stage:
@@ -60,10 +59,8 @@ def build(job: Job) -> Stage:
 
 def bake_trails(stage: Stage) -> None:
     """Give each trail a shape per frame, so that a saved scene plays it."""
-    for thing, spec, states in (
-        (thing, spec, [state.trails[i] for state in stage.job.states])
-        for i, (thing, spec) in enumerate(zip(stage.trails, stage.job.scene.trails, strict=True))
-    ):
+    for which, thing in enumerate(stage.trails):
+        spec, states = stage.job.scene.trails[which], [state.trails[which] for state in stage.job.states]
         trail.place(thing, states[0], spec.radius)
         for path in states:
             block = thing.shape_key_add(from_mix=False)

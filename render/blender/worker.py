@@ -59,6 +59,7 @@ def _settings(scene: Any, job: Job) -> None:
     render.image_settings.color_mode = "RGB"
     render.image_settings.color_depth = "8"
     render.image_settings.compression = 30
+    render.dither_intensity = 0.0 if job.flat else 1.0  # without it the dark floor shows bands
     render.use_persistent_data = True
     render.use_motion_blur = job.motion_blur and job.flat is None
     render.motion_blur_shutter = 0.5

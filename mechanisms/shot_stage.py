@@ -20,6 +20,7 @@ def run(name: str) -> None:
     key = key_of(MECHANISMS / out.name / "shot.py", ROOT / "shared" / "shot.py")
     stage = Stage(out, "shot", key, [out.shot])
     if stage.is_fresh():
+        say("shot", f"{out.name}: nothing to do")
         return
     shot = load(out.name, "shot").shot
     if not isinstance(shot, Shot):

@@ -13,6 +13,7 @@ from shared.errors import UserError
 
 PLAIN_INTERVAL = 5.0
 """Seconds between two lines of progress in a log."""
+RED, YELLOW, CYAN = "31", "33", "36"
 
 
 class Progress(Protocol):
@@ -25,17 +26,17 @@ class Progress(Protocol):
 
 def say(stage: str, text: str) -> None:
     """Print one line, ``stage: text``."""
-    _line(stage, text, "bold cyan", sys.stdout)
+    _line(stage, text, CYAN, sys.stdout)
 
 
 def warn(stage: str, text: str) -> None:
     """Print one line of warning on stderr."""
-    _line(stage, f"warning: {text}", "bold yellow", sys.stderr)
+    _line(stage, f"warning: {text}", YELLOW, sys.stderr)
 
 
 def fail(text: str) -> None:
     """Print one line ``error: text`` on stderr."""
-    _line("error", text, "bold red", sys.stderr)
+    _line("error", text, RED, sys.stderr)
 
 
 @contextmanager
@@ -141,12 +142,8 @@ def _is_terminal(stream: IO[str]) -> bool:
     return stream.isatty() and os.environ.get("TERM") != "dumb"
 
 
-def _line(stage: str, text: str, style: str, stream: IO[str]) -> None:
-    """One line; rich is loaded for a terminal alone, it would double the start of a stage that has nothing to do."""
-    if not _is_terminal(stream):
-        print(f"{stage}: {text}", file=stream, flush=True)
-        return
-    from rich.console import Console
-    from rich.text import Text
-
-    Console(file=stream, highlight=False, soft_wrap=True).print(Text.assemble((stage, style), ": ", text))
+def _line(stage: str, text: str, colour: str, stream: IO[str]) -> None:
+    """One line; without rich, whose loading would double the start of a stage that has nothing to do."""
+    if _is_terminal(stream) and not os.environ.get("NO_COLOR"):
+        stage = f"\x1b[1;{colour}m{stage}\x1b[0m"
+    print(f"{stage}: {text}", file=stream, flush=True)

@@ -147,7 +147,7 @@ def test_the_shot_stage_writes_the_shot_once(
     with monkeypatch.context() as patch:
         patch.setattr(shot_stage, "load", lambda *_: pytest.fail("touched only, yet loaded again"))
         shot_stage.run(folder.name)
-    assert capsys.readouterr().out == ""
+    assert capsys.readouterr().out == f"shot: {folder.name}: nothing to do\n"
     out.shot.write_text("{}")
     shot_stage.run(folder.name)
     assert read_shot(out.shot).turns == 2

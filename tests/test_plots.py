@@ -55,7 +55,7 @@ def test_all_plots_are_written_once(out: Out, capsys: pytest.CaptureFixture[str]
     before = {path: (path.stat().st_mtime_ns, path.read_bytes()) for path in out.plots.iterdir()}
     capsys.readouterr()
     plots.run("four_bar")
-    assert capsys.readouterr().out == ""
+    assert capsys.readouterr().out == "plots: four_bar: nothing to do\n"
     assert before == {path: (path.stat().st_mtime_ns, path.read_bytes()) for path in out.plots.iterdir()}
     (out.plots / "path.png").write_bytes(b"")
     (out.plots / "point-Q.png").write_bytes(b"of a point that is no more")
@@ -142,7 +142,21 @@ def test_a_slider_a_joint_torque_and_a_pusher_get_their_plots(out: Out) -> None:
     assert not list(out.plots.glob("point-*"))
     labels = [axes.get_ylabel() for axes in figure("reactions", motion).axes]
     assert labels == ["reaction force (N)", "reaction torque (N m)", "driver torque (N m)", "driver force (N)"]
-    assert all(overlaps(figure(plot, motion)) == [] for plot in ("reactions", "bodies", "hodographs"))
+    assert all(overlaps(figure(plot, motion)) == [] for plot in ("path", "reactions", "bodies", "hodographs"))
+
+
+def test_joints_in_one_place_share_a_label_and_sliders_have_no_angle() -> None:
+    motion = with_slider_and_torque()
+    assert {"C, guide", "slider"} <= shown(figure("path", motion))
+    assert "slider" not in shown(figure("bodies", motion))
+
+
+def test_along_one_axis_there_is_one_line() -> None:
+    count = len(MOTION.time)
+    still = msgspec.structs.replace(MOTION.points["P"], y=[0.02] * count, vy=[0.0] * count, ay=[0.0] * count)
+    motion = msgspec.structs.replace(MOTION, points={"P": still})
+    assert {"x", "vx", "ax"} <= shown(figure("point-P", motion))
+    assert not {"y", "vy", "ay", "|v|", "|a|"} & shown(figure("point-P", motion))
 
 
 def test_many_bodies_and_joints_stay_readable() -> None:

@@ -23,6 +23,7 @@ def run(name: str) -> None:
     key = key_of(out.motion, sources, versions("matplotlib", "numpy"))
     stage = Stage(out, "plots", key, list(outputs.values()))
     if stage.is_fresh():
+        say("plots", f"{out.name}: nothing to do")
         return
 
     from render.plots.figures import figure  # matplotlib takes a second to load

@@ -73,7 +73,8 @@ def hodographs(motion: Motion) -> Figure:
             "",
             (fx[top], fy[top]),
             (0, 0),
-            arrowprops={"arrowstyle": "-|>", "color": INK, "linewidth": 1.1, "shrinkA": 0, "shrinkB": 0},
+            arrowprops={"arrowstyle": "-|>", "color": INK, "linewidth": 1.1, "shrinkA": 0, "shrinkB": 0, "zorder": 1.5},
+            zorder=1.5,
         )
         axes.set_title(
             f"{name}: {joint.bodies[0]} on {joint.bodies[1]}, at most {math.hypot(fx[top], fy[top]):.3g} N",

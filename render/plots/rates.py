@@ -13,6 +13,9 @@ from render.plots.horizon import Horizon, horizon
 from render.plots.style import FAINT, INK, LABELLED, PALETTE, colour, label_ends, page, rows
 from shared.contract import BodyMotion, Motion, PointMotion
 
+STILL = 1e-9
+"""m or rad: what varies less stands still."""
+KINDS = (("", "position (m)"), ("v", "velocity (m/s)"), ("a", "acceleration (m/s²)"))
 Line = tuple[str, np.ndarray, str]
 """Label, values, colour."""
 
@@ -22,10 +25,12 @@ def bodies(motion: Motion) -> Figure:
     figure = page(motion.mechanism, "angles of the bodies", "angle, angular velocity and angular acceleration")
     kinds = (("theta", "angle (deg)"), ("omega", "velocity (rad/s)"), ("alpha", "acceleration (rad/s²)"))
     over = horizon(motion)
+    inks = list(motion.bodies)
+    turning = [name for name, body in motion.bodies.items() if np.ptp(body.theta) > STILL] or inks
     for axes, (field, label) in zip(rows(figure, 3), kinds, strict=True):
-        series = {name: np.asarray(getattr(body, field)) for name, body in motion.bodies.items()}
+        series = {name: np.asarray(getattr(motion.bodies[name], field)) for name in turning}
         scale = np.degrees(1.0) if field == "theta" else 1.0
-        draw(axes, over, label, [(name, scale * values, colour(i)) for i, (name, values) in enumerate(series.items())])
+        draw(axes, over, label, [(name, scale * values, colour(inks.index(name))) for name, values in series.items()])
     over.dress(figure.axes[-1])
     return figure
 
@@ -33,12 +38,14 @@ def bodies(motion: Motion) -> Figure:
 def point(motion: Motion, name: str) -> Figure:
     """Components and magnitudes of a traced point's motion."""
     traced = motion.points[name]
-    return _plane_motion(motion, traced, f"traced point {name}", f"fixed to {traced.body}; x, y and magnitude")
+    return _plane_motion(motion, traced, f"traced point {name}", f"fixed to {traced.body}; components and magnitude")
 
 
 def slider(motion: Motion, name: str) -> Figure:
     """The motion of a body that does not turn."""
-    return _plane_motion(motion, motion.bodies[name], f"sliding body {name}", "its origin; x, y and magnitude")
+    return _plane_motion(
+        motion, motion.bodies[name], f"sliding body {name}", "the origin of its frame; it does not turn"
+    )
 
 
 def draw(axes: Axes, over: Horizon, label: str, lines: Sequence[Line], *, zero: bool = True) -> None:
@@ -63,18 +70,14 @@ def draw(axes: Axes, over: Horizon, label: str, lines: Sequence[Line], *, zero: 
 
 
 def _plane_motion(motion: Motion, moving: PointMotion | BodyMotion, title: str, subtitle: str) -> Figure:
+    """Three rows of components, with magnitudes; along an axis alone that component says it all."""
     figure = page(motion.mechanism, title, subtitle)
-    kinds = (
-        ("", "position (m)"),
-        ("v", "velocity (m/s)"),
-        ("a", "acceleration (m/s²)"),
-    )
     over = horizon(motion)
-    for axes, (rate, label) in zip(rows(figure, 3), kinds, strict=True):
-        x, y = (np.asarray(getattr(moving, rate + axis)) for axis in "xy")
-        lines: list[Line] = [(f"{rate}x", x, PALETTE[0]), (f"{rate}y", y, PALETTE[1])]
-        if rate:
-            lines.insert(0, (f"|{rate}|", np.hypot(x, y), INK))
+    components = {axis: ink for axis, ink in zip("xy", PALETTE, strict=False) if np.ptp(getattr(moving, axis)) > STILL}
+    for axes, (rate, label) in zip(rows(figure, 3), KINDS, strict=True):
+        lines = [(rate + axis, np.asarray(getattr(moving, rate + axis)), ink) for axis, ink in components.items()]
+        if rate and len(components) == 2:
+            lines.insert(0, (f"|{rate}|", np.hypot(lines[0][1], lines[1][1]), INK))
         draw(axes, over, label, lines)
     over.dress(figure.axes[-1])
     return figure

@@ -1,0 +1,85 @@
+"""Names beside the points they belong to, each on the side where most room is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from render.plots.style import HALO
+
+DISTANCE = 15.0
+"""Pixels between a point and its name."""
+DIRECTIONS = np.radians(np.arange(45, 405, 45))
+
+
+@dataclass(frozen=True)
+class _Label:
+    text: str
+    at: tuple[float, float]
+    colour: str
+    size: float
+    weight: str
+
+
+class Labels:
+    """Collects names and what they must not cover, then places them one by one."""
+
+    def __init__(self, axes: Axes) -> None:
+        self.axes = axes
+        self.labels: list[_Label] = []
+        self.lines: list[np.ndarray] = []
+
+    def add(self, text: str, at: tuple[float, float], colour: str, size: float = 10.5, weight: str = "normal") -> None:
+        """A name for the point ``at`` (data coordinates)."""
+        self.labels.append(_Label(text, at, colour, size, weight))
+
+    def avoid_lines(self, corners: list[tuple[float, float]]) -> None:
+        """A line that the names should leave free (data coordinates)."""
+        self.lines.append(np.asarray(corners, dtype=float))
+
+    def write(self) -> None:
+        """Place every name; the limits of the axes must be final in all but their aspect."""
+        self.axes.apply_aspect()
+        to_pixels = self.axes.transData.transform
+        obstacles = np.concatenate(
+            [_sampled(to_pixels(line)) for line in self.lines] + [to_pixels([label.at]) for label in self.labels]
+            or [np.empty((0, 2))]
+        )
+        frame = self.axes.get_window_extent()
+        boxes: list[np.ndarray] = []
+        scale = self.axes.get_figure(root=True).dpi / 72  # type: ignore[union-attr]
+        for label in self.labels:
+            half = np.array([0.32 * label.size * len(label.text) + 2.0, 0.55 * label.size + 1.0]) * scale
+            origin = to_pixels(label.at)
+            middles = [
+                origin + np.array([np.cos(a), np.sin(a)]) * (DISTANCE + half * [abs(np.cos(a)), abs(np.sin(a))])
+                for a in DIRECTIONS
+            ]
+            middle = min(middles, key=lambda m: _cost(m, half, obstacles, boxes, frame.extents))
+            boxes.append(np.array([middle - half, middle + half]))
+            x, y = self.axes.transData.inverted().transform(middle)
+            self.axes.text(
+                x, y, label.text, ha="center", va="center", color=label.colour, fontsize=label.size,
+                fontweight=label.weight, path_effects=HALO, zorder=10,
+            )  # fmt: skip
+
+
+def _cost(
+    middle: np.ndarray, half: np.ndarray, obstacles: np.ndarray, boxes: list[np.ndarray], frame: np.ndarray
+) -> float:
+    """Points of lines under the name count one each; another name under it, or the frame's edge, counts much more."""
+    covered = float((np.abs(obstacles - middle) < half).all(axis=1).sum())
+    near = float((np.abs(obstacles - middle) < half + 6.0).all(axis=1).sum())
+    low, high = middle - half, middle + half
+    clashes = sum(bool((low < box[1]).all() and (high > box[0]).all()) for box in boxes)
+    outside = bool((low < frame[:2]).any() or (high > frame[2:]).any())
+    return covered + 0.3 * near + 1000.0 * clashes + 500.0 * outside
+
+
+def _sampled(corners: np.ndarray, step: float = 4.0) -> np.ndarray:
+    """Points every ``step`` pixels along a line."""
+    lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(corners, axis=0).T))])
+    at = np.arange(0.0, lengths[-1] + step, step)
+    return np.stack([np.interp(at, lengths, corners[:, k]) for k in range(2)], axis=1)

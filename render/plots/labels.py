@@ -57,7 +57,7 @@ class Labels:
                 origin + np.array([np.cos(a), np.sin(a)]) * (DISTANCE + half * [abs(np.cos(a)), abs(np.sin(a))])
                 for a in DIRECTIONS
             ]
-            middle = min(middles, key=lambda m: _cost(m, half, obstacles, boxes, frame.extents))
+            middle = min(middles, key=lambda m: _cost(m, half, obstacles, boxes, np.asarray(frame.extents)))
             boxes.append(np.array([middle - half, middle + half]))
             x, y = self.axes.transData.inverted().transform(middle)
             self.axes.text(

@@ -17,7 +17,7 @@ from mbsd.assembly import residual_and_jacobian
 from mbsd.errors import MobilityError, SingularPoseError
 from mbsd.model import Mechanism
 from mbsd.packing import Packed, pack
-from mbsd.start import CLOSED, assemble, close
+from mbsd.start import CLOSED, assemble, close, rough_pose
 
 RANK_TOLERANCE = 1e-8
 """A row that adds less than this part of itself to the others repeats them."""
@@ -76,39 +76,58 @@ def joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
     )
 
 
+def refuse_overdriven(m: Mechanism, packed: Packed) -> None:
+    """If the joints close without the drivers, see whether these are too many; raises MobilityError if so."""
+    none = np.zeros((len(packed.motions) + 1, 3))
+    q, worst = close(packed, rough_pose(m, packed, none, 0), none, packed.driver_rows)
+    if worst <= CLOSED:
+        _refuse_idle_drivers(packed, joint_mobility(packed, q), _best_rows(packed, q)[1])
+
+
 def choose_rows(packed: Packed, q: np.ndarray, time: float) -> np.ndarray:
     """(n,) independent rows that fix all coordinates, drivers included.
 
     Raises MobilityError for a missing or superfluous driver, SingularPoseError where only this pose is at fault.
     """
     joints = joint_mobility(packed, q)
-    poses = [q, *_nearby(packed, q)]
-    ranked = [independent_rows(scaled_jacobian(packed, pose)) for pose in poses]
-    kept = max(ranked, key=len)
-    drivers = packed.joints[len(packed.joints) - len(packed.motions) :]
-    idle = [d for k, d in enumerate(drivers) if packed.driver_rows + k not in set(kept)]
-    if idle:
-        others = [d.name for d in drivers if d not in idle]
-        fixed = f"driver '{others[0]}'" if len(others) == 1 else "drivers " + ", ".join(f"'{name}'" for name in others)
-        raise MobilityError(
-            f"{packed.name}: driver '{idle[0].name}' drives a freedom that "
-            f"{'the joints and ' + fixed if others else 'the joints'} already fix: "
-            f"{joints.dof} degrees of freedom, {len(drivers)} drivers. Remove one driver or free a joint."
-        )
+    here, kept, best = _best_rows(packed, q)
+    _refuse_idle_drivers(packed, joints, kept)
     if len(kept) < packed.coordinates:
         missing = packed.coordinates - len(kept)
-        free = _moving(packed, scaled_jacobian(packed, poses[int(np.argmax([len(r) for r in ranked]))]))
+        free = _moving(packed, scaled_jacobian(packed, best))
         raise MobilityError(
             f"{packed.name}: {missing} of {joints.dof} degrees of freedom {'is' if missing == 1 else 'are'} not driven: "
             f"{', '.join(free)} can still move. Add {'a driver' if missing == 1 else f'{missing} drivers'}, "
             "for example m.drive_angle(...)."
         )
-    if len(ranked[0]) < len(kept):
+    if len(here) < len(kept):
         raise SingularPoseError(
             f"{packed.name}: the start pose at t = {time:.6g} s is singular (a toggle or change point): the drivers do not "
             "fix the motion here. Start a little before or after it, or drive another body."
         )
     return np.array(kept)
+
+
+def _best_rows(packed: Packed, q: np.ndarray) -> tuple[list[int], list[int], np.ndarray]:
+    """Independent rows at q, at the pose near it (or q) that has most of them, and that pose."""
+    poses = [q, *_nearby(packed, q)]
+    ranked = [independent_rows(scaled_jacobian(packed, pose)) for pose in poses]
+    best = max(range(len(poses)), key=lambda k: len(ranked[k]))
+    return ranked[0], ranked[best], poses[best]
+
+
+def _refuse_idle_drivers(packed: Packed, joints: Mobility, kept: list[int]) -> None:
+    drivers = packed.joints[len(packed.joints) - len(packed.motions) :]
+    idle = [d for k, d in enumerate(drivers) if packed.driver_rows + k not in set(kept)]
+    if not idle:
+        return
+    others = [f"'{d.name}'" for d in drivers if d not in idle]
+    fixed = "the joints" + (f" and driver{'s' * (len(others) > 1)} {', '.join(others)}" if others else "")
+    raise MobilityError(
+        f"{packed.name}: driver '{idle[0].name}' drives a freedom that {fixed} already fix: "
+        f"{joints.dof} degree{'s' * (joints.dof != 1)} of freedom, {len(drivers)} drivers. "
+        "Remove one driver or free a joint."
+    )
 
 
 def scaled_jacobian(packed: Packed, q: np.ndarray) -> np.ndarray:

@@ -15,6 +15,10 @@ from mbsd.motions import Motion
 from mbsd.system import System, Workspace, workspace
 
 
+SMALLEST_SIZE = 1e-12
+"""Below this (m) all joints sit at the centres of mass, and 1 m serves as size."""
+
+
 @dataclass
 class Packed:
     """A mechanism as arrays, and where its names are in them."""
@@ -34,7 +38,7 @@ class Packed:
     motions: list[Motion]
     """Of the drivers, in order; motion k of the tables is ``motions[k - 1]``."""
     size: float
-    """Characteristic length (m): the largest distance between two joints of one body."""
+    """Characteristic length (m): the largest distance between joints, or joint and centre of mass, of one body."""
 
     @property
     def coordinates(self) -> int:
@@ -122,13 +126,13 @@ def pack(m: Mechanism) -> Packed:
         first_row=np.array(first_row, np.int64),
         markers=np.array(marker_of, np.int64).reshape(-1, 2),
         motions=motions,
-        size=_size(local, marker_body, lengths),
+        size=_size(system, lengths),
     )
 
 
-def _size(local: np.ndarray, marker_body: np.ndarray, lengths: list[float]) -> float:
-    extents = list(lengths)
-    for body in np.unique(marker_body):
-        extents.append(float(np.linalg.norm(np.ptp(local[marker_body == body], axis=0))))
-    largest = max(extents, default=0.0)
-    return largest if largest > 0 else 1.0
+def _size(system: System, lengths: list[float]) -> float:
+    extents = [*lengths, *np.hypot(*system.marker_arm.T)]
+    for body in np.unique(system.marker_body):
+        extents.append(float(np.linalg.norm(np.ptp(system.marker_arm[system.marker_body == body], axis=0))))
+    largest = float(max(extents, default=0.0))
+    return largest if largest > SMALLEST_SIZE else 1.0

@@ -196,6 +196,8 @@ def _short_links(m: Mechanism, packed: Packed, joint: Joint, drive: np.ndarray) 
     if held:
         label = " and ".join(name for name, _, _ in held)
         spans.append((label, float(np.linalg.norm(sum(vector for _, vector, _ in held)))))
+    order = list(m.bodies)
+    spans.sort(key=lambda span: order.index(span[0]) if span[0] in order else -1)
     longest = max(spans, key=lambda span: span[1])
     others = [span for span in spans if span is not longest]
     reach = sum(length for _, length in others)

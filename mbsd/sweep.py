@@ -13,7 +13,7 @@ from mbsd.assembly import residual_and_jacobian
 from mbsd.dynamics import inverse_dynamics, joint_wrenches
 from mbsd.elimination import Elimination, Factors, plan
 from mbsd.errors import AssemblyError, BranchError, ModelError, SingularPoseError
-from mbsd.mobility import Mobility, choose_rows, joint_mobility
+from mbsd.mobility import Mobility, choose_rows, joint_mobility, refuse_overdriven
 from mbsd.model import Mechanism
 from mbsd.packing import Packed, pack
 from mbsd.solution import Solution, Stats
@@ -137,7 +137,11 @@ def prepare(m: Mechanism, start: float = 0.0, end: float = 1.0) -> Prepared:
     packed = pack(m)
     packed.motions = [law.over(start, end) for law in packed.motions]
     _refuse_bad_laws(packed, start, end)
-    q0 = assemble(m, packed, start)
+    try:
+        q0 = assemble(m, packed, start)
+    except AssemblyError:
+        refuse_overdriven(m, packed)
+        raise
     kept = choose_rows(packed, q0, start)
     sequence, factors = plan(_sample_jacobians(packed), kept)
     return Prepared(packed, q0, start, sequence, factors, joint_mobility(packed, q0))

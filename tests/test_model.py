@@ -1,0 +1,66 @@
+"""Models that cannot be are refused when they are built, by name."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from mbsd import Mechanism, ModelError, constant_rate
+
+
+def _two_bars() -> Mechanism:
+    m = Mechanism("pair")
+    m.bar("a", 1.0)
+    m.bar("b", 2.0)
+    return m
+
+
+@pytest.mark.parametrize(
+    ("build", "says"),
+    [
+        (lambda m: m.bar("a", 1.0), "two of the name 'a'"),
+        (lambda m: m.body("", 1.0), "needs a name"),
+        (lambda m: m.bar("c", 0.0), "length 0 m; it must be positive"),
+        (lambda m: m.bar("c", math.nan), "length is nan"),
+        (lambda m: m.bar("c", "long"), "must be a number"),
+        (lambda m: m.body("c", mass=-1.0), "'c' has mass -1 kg; it cannot be negative"),
+        (lambda m: m.body("c", inertia=-1.0), "inertia -1 kg m"),
+        (lambda m: m.body("c", com=(math.inf, 0)), "com of 'c' is inf"),
+        (lambda m: m.body("c", com=(1, 2, 3)), r"com of body 'c' is \(1, 2, 3\)"),
+        (lambda m: m.known_body("z"), "no body 'z'; there is: ground, a, b"),
+        (lambda m: m.ground.at(math.nan, 0), "ground.at: x is nan"),
+        (lambda m: m.ground.end, "'ground' is no bar"),
+        (lambda m: m.revolute("A", m.bodies["a"].start, m.bodies["a"].end), "connects 'a' with itself"),
+        (lambda m: m.revolute("A", m.ground.at(0, 0), Mechanism("x").bar("q", 1).end), "'q' of another mechanism"),
+        (lambda m: m.revolute("A", m.ground, m.bodies["a"].start), "needs two markers"),
+        (lambda m: m.distance("D", m.bodies["a"].end, m.bodies["b"].end, 0.0), "length 0 m"),
+        (lambda m: m.drive_angle("motor", m.bodies["a"], 3.0), "needs a motion law"),
+        (lambda m: m.drive_angle("motor", "a", constant_rate(1)), "needs a body"),
+        (lambda m: m.trace("P", Mechanism("x").bar("q", 1).end), "another mechanism"),
+        (lambda m: m.start_near(z=3), "no body 'z'"),
+        (lambda m: m.start_near(a=(1, 2)), r"give degrees, or \(x, y, degrees\)"),
+        (lambda m: m.sweep(steps=0), "steps is 0"),
+        (lambda m: m.sweep(duration=-1.0), "duration is -1.0 s"),
+        (lambda m: m.sweep(times=[0.0, 0.0]), "rising"),
+        (lambda m: Mechanism("x", gravity=(0, math.nan)), "gravity is nan"),
+        (lambda m: Mechanism(""), "needs a name"),
+        (lambda m: Mechanism("empty").sweep(duration=1.0), "no body beside ground"),
+    ],
+)
+def test_refused(build, says: str) -> None:
+    with pytest.raises(ModelError, match=says):
+        build(_two_bars())
+
+
+def test_a_refused_body_leaves_nothing_behind() -> None:
+    m = _two_bars()
+    with pytest.raises(ModelError):
+        m.body("c", mass=-1)
+    assert list(m.bodies) == ["ground", "a", "b"]
+
+
+def test_a_uniform_rod_needs_its_mass_only() -> None:
+    rod = Mechanism("rod").bar("rod", 0.6, mass=2.0)
+    assert rod.com == (0.3, 0.0)
+    assert rod.inertia == pytest.approx(2.0 * 0.36 / 12)

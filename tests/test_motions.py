@@ -1,0 +1,73 @@
+"""Every law of motion: its rate and acceleration are the derivatives of its value."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mbsd import ModelError, constant_rate, cycloidal, function, harmonic, polynomial, table
+from mbsd.motions import EXAMPLES, Motion
+
+
+def test_every_law_has_an_example() -> None:
+    assert {type(example) for example in EXAMPLES} == set(Motion.__subclasses__())
+
+
+@pytest.mark.parametrize("law", EXAMPLES, ids=lambda law: type(law).__name__)
+def test_rates_are_derivatives(law: Motion) -> None:
+    ready = law.over(0.0, 1.4)
+    t, h = np.linspace(0.0517, 1.3529, 53), 1e-4  # off the knots
+    before, now, after = ready(t - h), ready(t), ready(t + h)
+    scale = max(1.0, float(np.abs(now).max()))
+    np.testing.assert_allclose((after[:, 0] - before[:, 0]) / (2 * h), now[:, 1], atol=1e-6 * scale)
+    np.testing.assert_allclose((after[:, 1] - before[:, 1]) / (2 * h), now[:, 2], atol=1e-5 * scale)
+
+
+@given(rise=st.floats(-3, 3), duration=st.floats(0.1, 10), begin=st.floats(-1, 1))
+def test_cycloidal_dwells_before_and_after(rise: float, duration: float, begin: float) -> None:
+    law = cycloidal(rise, duration, begin)
+    values = law(np.array([begin - 1, begin, begin + duration, begin + duration + 1]))
+    np.testing.assert_allclose(values[:, 0], [0, 0, rise, rise], atol=1e-12)
+    np.testing.assert_allclose(values[:, 1:], 0.0, atol=1e-9 * max(1, abs(rise)) / min(1, duration) ** 2)
+
+
+def test_table_goes_through_its_rows_and_repeats_when_periodic() -> None:
+    t = np.linspace(0.0, 2.0, 31)
+    law = table(t, np.sin(math.pi * t), periodic=True)
+    np.testing.assert_allclose(law(t)[:, 0], np.sin(math.pi * t), atol=1e-13)
+    np.testing.assert_allclose(law(t + 4.0), law(t), atol=1e-10)
+    assert law.period == 2.0
+
+
+def test_function_without_derivatives_gets_them_from_a_fit() -> None:
+    t = np.linspace(0.0, 3.0, 200)
+    fitted = function(lambda x: math.sin(2 * x)).over(0.0, 3.0)(t)
+    np.testing.assert_allclose(fitted[:, 0], np.sin(2 * t), atol=1e-11)
+    np.testing.assert_allclose(fitted[:, 1], 2 * np.cos(2 * t), atol=1e-8)
+    np.testing.assert_allclose(fitted[:, 2], -4 * np.sin(2 * t), atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (lambda: constant_rate(math.nan), "rate is nan"),
+        (lambda: harmonic(1.0, math.inf), "rate is inf"),
+        (lambda: polynomial(), "at least one coefficient"),
+        (lambda: cycloidal(1.0, -2.0), "duration is -2.0 s"),
+        (lambda: table([0, 1, 2], [0, 1, 2]), "six numbers or more"),
+        (lambda: table([0, 1, 1, 2, 3, 4], range(6)), r"times\[2\] does not"),
+        (lambda: table(range(6), [0, 1, 2, 3, 4, 5], periodic=True), "is not the first"),
+        (lambda: table(range(6), [0, 1, 2, math.nan, 4, 5]), "finite"),
+        (lambda: table(range(6), range(6))(np.array([7.0])), "covers 0 .. 5 s"),
+        (lambda: function(math.sin, math.cos), "both derivatives"),
+        (lambda: function(lambda t: math.nan)(np.array([0.0, 1.0])), "gives nan at t = 0 s"),
+        (lambda: function(lambda t: abs(t - 0.5)).over(0.0, 1.0), "not smooth"),
+    ],
+)
+def test_bad_laws_are_refused(make, says: str) -> None:
+    with pytest.raises(ModelError, match=says):
+        make()

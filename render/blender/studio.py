@@ -45,17 +45,17 @@ class Look:
 
 LOOKS = {
     "studio": Look(
-        floor=(0.024, 0.027, 0.033),
-        floor_roughness=0.40,
+        floor=(0.016, 0.019, 0.026),
+        floor_roughness=0.34,
         world=(0.016, 0.018, 0.024),
         exposure=0.1,
         contrast="AgX - High Contrast",
         softboxes=(
-            Softbox("overhead", (-0.8, 3.4, 2.5), (4.2, 2.0), 64.0, (1.0, 0.985, 0.96), (0.0, 0.3, 0.0), fades=True),
-            Softbox("pool", (0.9, 1.8, 4.2), (0.5, 0.5), 70.0, (1.0, 0.97, 0.94), (0.1, 0.35, -0.3), 50.0),
-            Softbox("rim cool", (-3.2, 1.4, 0.9), (0.5, 2.8), 60.0, (0.42, 0.68, 1.0)),
-            Softbox("rim warm", (3.2, 0.9, 0.8), (0.5, 2.8), 52.0, (1.0, 0.58, 0.28)),
-            Softbox("fill", (-1.2, -3.8, 1.6), (3.4, 1.6), 30.0, (0.84, 0.91, 1.0)),
+            Softbox("overhead", (-0.3, 3.4, 2.5), (5.0, 2.0), 68.0, (1.0, 0.985, 0.96), (0.0, 0.3, 0.0), fades=True),
+            Softbox("pool", (1.3, -0.3, 4.2), (0.6, 0.6), 70.0, (1.0, 0.97, 0.94), (0.15, 0.4, -0.3), 48.0),
+            Softbox("rim cool", (-3.2, 1.4, 0.9), (0.6, 2.8), 105.0, (0.42, 0.68, 1.0)),
+            Softbox("rim warm", (3.2, 0.9, 0.8), (0.6, 2.8), 90.0, (1.0, 0.58, 0.28)),
+            Softbox("fill", (-1.2, -3.8, 1.6), (3.4, 1.6), 52.0, (0.84, 0.91, 1.0)),
         ),
     ),
     "daylight": Look(
@@ -119,7 +119,7 @@ def _backdrop(scene: Any, studio: StudioSpec, look: Look) -> None:
     paint = bpy.data.materials.new("backdrop")
     paint.use_nodes = True
     graph = Graph(paint.node_tree).clear()
-    shader = graph.add("BsdfPrincipled", Base_Color=look.floor, Roughness=look.floor_roughness, Specular_IOR_Level=0.35)
+    shader = graph.add("BsdfPrincipled", Base_Color=look.floor, Roughness=look.floor_roughness, Specular_IOR_Level=0.5)
     graph.add("OutputMaterial", Surface=shader.outputs[0])
     mesh.materials.append(paint)
 

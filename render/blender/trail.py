@@ -71,10 +71,10 @@ def _light(trail: TrailSpec) -> Any:
     made.cycles.emission_sampling = "NONE"  # a thin light sampled at random is all noise
     graph = Graph(made.node_tree).clear()
     fade = graph.add("Attribute", {"attribute_name": "fade"}).outputs["Fac"]
-    strength = graph.math("MULTIPLY", fade, BRIGHTNESS)
+    strength = graph.math("MULTIPLY", graph.math("ADD", 0.25, graph.math("MULTIPLY", fade, 0.75)), BRIGHTNESS)
     light = graph.add("Emission", Color=trail.colour, Strength=strength).outputs[0]
     gone = graph.add("BsdfTransparent").outputs[0]
-    mix = graph.add("MixShader", Fac=graph.math("MINIMUM", 1.0, graph.math("MULTIPLY", fade, 10.0)))
+    mix = graph.add("MixShader", Fac=graph.math("MINIMUM", 1.0, graph.math("MULTIPLY", fade, 4.0)))
     graph.set(mix, 1, gone)
     graph.set(mix, 2, light)
     graph.add("OutputMaterial", Surface=mix.outputs[0])

@@ -18,7 +18,7 @@ from __future__ import annotations
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from shared.clearance import Clearance, PairClearance, write_clearance
+from shared.clearance import Clearance, PairClearance, Proof, write_clearance
 from shared.console import say
 from shared.contract import Motion, Parts, Provenance, read_motion, read_parts
 from shared.errors import UserError
@@ -28,16 +28,21 @@ from shared.shapes.units import metres, mm
 from shared.stages import Stage, key_of, versions
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from mechanisms.clearance.path import BodyPath
     from mechanisms.clearance.pieces import MeshPiece
     from mechanisms.clearance.sweep import Sweep
+
+type Axes = dict[frozenset[str], dict[str, np.ndarray]]
+"""By pair of bodies: the axis of their joint, as a point (mm) in the frame of either."""
 
 LIMIT = 0.05
 """Smaller gaps between two bodies are refused (mm)."""
 REACH = 5.0
 """Larger gaps are not measured (mm)."""
 PACKAGES = ("manifold3d", "numpy", "scipy")
-SOURCES = [ROOT / "mechanisms" / "clearance", ROOT / "mechanisms" / "clearance_stage.py"]
+SOURCES = [ROOT / "mechanisms" / name for name in ("clearance", "clearance_stage.py", "parts_files.py")]
 
 
 def run(name: str) -> None:
@@ -63,7 +68,7 @@ def run(name: str) -> None:
 def check(
     parts: Parts, motion: Motion, pieces: list[MeshPiece], key: str, limit: float = LIMIT, reach: float = REACH
 ) -> Clearance:
-    """Check every pair of ``pieces`` of different bodies. ``limit`` and ``reach`` in mm; raises UserError as :func:`run`."""
+    """Check every pair of ``pieces`` of different bodies; ``limit`` and ``reach`` in mm. Raises as :func:`run`."""
     from mechanisms.clearance.path import paths
     from mechanisms.clearance.sweep import Sweep
 
@@ -83,9 +88,12 @@ def check(
     for first, second in combinations(pieces, 2):
         if first.body == second.body:
             continue
-        sweep = Sweep(first, second, where[first.body], where[second.body])
         height = _height_gap(first, second)
-        if height >= reach or sweep.circle_gap() >= reach:
+        if height >= reach:
+            apart += 1
+            continue
+        sweep = Sweep(first, second, where[first.body], where[second.body])
+        if sweep.circle_gap() >= reach:
             apart += 1
             continue
         if height >= limit:
@@ -129,13 +137,13 @@ def _interpolation_error(name: str, where: dict[str, BodyPath], pieces: list[Mes
     return error
 
 
-def _axes(motion: Motion, where: dict[str, BodyPath]) -> dict[frozenset[str], dict[str, object]]:
+def _axes(motion: Motion, where: dict[str, BodyPath]) -> Axes:
     """For bodies that a revolute joint connects: the axis as a point (mm) in the frame of either."""
     import numpy as np
 
     from mechanisms.clearance.path import relative
 
-    found: dict[frozenset[str], dict[str, object]] = {}
+    found: Axes = {}
     for joint in motion.joints.values():
         if joint.kind != "revolute":
             continue
@@ -146,7 +154,9 @@ def _axes(motion: Motion, where: dict[str, BodyPath]) -> dict[frozenset[str], di
     return found
 
 
-def _turn(first, second, axes, sweep, limit: float, reach: float) -> PairClearance | None:  # noqa: ANN001
+def _turn(
+    first: MeshPiece, second: MeshPiece, axes: Axes, sweep: Sweep, limit: float, reach: float
+) -> PairClearance | None:
     """The pair's gap at every angle of the joint between its bodies; None if there is none, or that is not enough."""
     from mechanisms.clearance.turn import turn_gap
 
@@ -154,17 +164,19 @@ def _turn(first, second, axes, sweep, limit: float, reach: float) -> PairClearan
     if axis is None:
         return None
     about = [piece.triangles - [axis[piece.body][0], axis[piece.body][1], 0.0] for piece in (first, second)]
-    gap = turn_gap(about[0], about[1], reach)
-    if gap < limit or sweep.gap_at(float(sweep.times[0]), reach) < limit:
+    gap, proven = turn_gap(about[0], about[1], reach)
+    if proven < limit or sweep.gap_at(float(sweep.times[0]), reach) < limit:
         return None
-    return _pair(first, second, gap, gap, None, "turn", 1)
+    return _pair(first, second, gap, proven, None, "turn", 1)
 
 
 def _height_gap(first: MeshPiece, second: MeshPiece) -> float:
     return max(first.z_range[0] - second.z_range[1], second.z_range[0] - first.z_range[1])
 
 
-def _pair(first, second, gap: float, proven: float, time: float | None, proof, poses: int) -> PairClearance:  # noqa: ANN001
+def _pair(
+    first: MeshPiece, second: MeshPiece, gap: float, proven: float, time: float | None, proof: Proof, poses: int
+) -> PairClearance:
     return PairClearance(
         bodies=(first.body, second.body),
         pieces=(first.name, second.name),

@@ -15,6 +15,7 @@ ANGLE = 0.3
 """Largest angle between neighbouring facets of a curved face (rad)."""
 
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+_PRODUCT = re.compile(rb"= PRODUCT\('[^']*',\s*'[^']*'")
 _TIMESTAMP = re.compile(rb"(FILE_NAME\('[^']*',)'[^']*'")
 
 
@@ -45,14 +46,14 @@ def _normals(corners: np.ndarray) -> np.ndarray:
 
 
 def step_bytes(solid: Any, name: str) -> bytes:
-    """STEP of a ``cadquery.Solid``, in mm, its product called ``name`` and its time of writing left out."""
-    from OCP.Interface import Interface_Static
-
+    """STEP of a ``cadquery.Solid``, in mm. Its product is called ``name``; when it was written is left out."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "solid.step"
-        Interface_Static.SetCVal_s("write.step.product.name", name)
         solid.exportStep(str(path))
-        return _TIMESTAMP.sub(rb"\1'1970-01-01T00:00:00'", path.read_bytes(), count=1)
+        content = path.read_bytes()
+    content = _TIMESTAMP.sub(rb"\1'1970-01-01T00:00:00'", content, count=1)
+    # by itself the kernel numbers the products of a process
+    return _PRODUCT.sub(f"= PRODUCT('{name}','{name}'".encode(), content, count=1)
 
 
 def read_triangles(stl: bytes) -> np.ndarray:

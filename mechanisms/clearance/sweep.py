@@ -8,6 +8,7 @@ The gap at a pose is the exact distance of the two meshes (manifold3d), 0 if the
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -77,7 +78,7 @@ class Sweep:
             return Least(gaps[times[0]], times[0], gaps[times[0]], 1)
         best = min(gaps, key=gaps.__getitem__)
         proven = gaps[best]
-        todo = list(zip(times, times[1:], strict=False))
+        todo = list(pairwise(times))
         while todo:
             if gaps[best] < limit or len(gaps) > MOST_POSES:
                 return Least(gaps[best], best, 0.0, len(gaps))

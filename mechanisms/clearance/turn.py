@@ -17,28 +17,31 @@ ROUNDING = 1e-4
 """Boxes are widened to multiples of this (mm), so that those of a turned part coincide."""
 
 
-def turn_gap(first: np.ndarray, second: np.ndarray, reach: float) -> float:
-    """A lower bound (mm) of the gap between two meshes (n, 3, 3) about the z axis, at every angle of either.
+def turn_gap(first: np.ndarray, second: np.ndarray, reach: float) -> tuple[float, float]:
+    """The gap (mm) between two meshes (n, 3, 3) that turn about the z axis: what is reached, and what is proven.
 
-    Gaps beyond ``reach`` are given as ``reach``. Holds for surfaces; whether one mesh is inside the other is to be
-    seen at a single pose. Never above the true bound; below it by :data:`RESOLUTION` at most, as a rule.
+    The first number is the distance of two points that some angle brings there; the second is below the gap at
+    every angle, and less than the first by :data:`RESOLUTION` as a rule. Gaps beyond ``reach`` are given as
+    ``reach``. Holds for surfaces; whether one mesh is inside the other is to be seen at a single pose.
     """
     a, b = first, second
-    best = reach
+    best, proven = reach, 0.0
     for _ in range(ROUNDS):
         box_a, box_b = _boxes(a), _boxes(b)
         a, box_a = _near(a, box_a, _hull(box_b), best)
         b, box_b = _near(b, box_b, _hull(box_a), best)
         if not len(a) or not len(b):
-            return best
+            break
         best = min(best, _reached(a, b))
         low_a, low_b = _bounds(box_a, box_b)
-        bound = min(float(low_a.min()), reach)
-        if best - bound <= RESOLUTION:
-            return bound
-        keep_a, keep_b = low_a < best - RESOLUTION, low_b < best - RESOLUTION
-        a, b = _split(a[keep_a]), _split(b[keep_b])
-    return bound
+        proven = float(low_a.min())
+        enough = best - RESOLUTION if best < reach else reach
+        if proven >= enough:
+            break
+        a, b = _split(a[low_a < enough]), _split(b[low_b < enough])
+    else:
+        return best, proven
+    return (best, max(best - RESOLUTION, 0.0)) if best < reach else (reach, reach)
 
 
 def _boxes(t: np.ndarray) -> np.ndarray:

@@ -26,6 +26,7 @@ class Eye:
 
     @property
     def boss_radius(self) -> float:
+        """The radius that the boss gets (mm)."""
         return self.boss or self.radius - 1.8
 
 

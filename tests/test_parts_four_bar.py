@@ -1,0 +1,109 @@
+"""The four-bar's own solids: made by the stage, put together as in the film."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mechanisms.clearance.pieces import MeshPiece, read_pieces
+from mechanisms.four_bar.mechanism import Params
+from shared.contract import Parts, read_parts
+from shared.errors import UserError
+from tests.built_four_bar import make_parts
+
+
+@pytest.fixture(scope="module")
+def roots(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """The parts made twice, by two processes."""
+    first, second = tmp_path_factory.mktemp("first"), tmp_path_factory.mktemp("second")
+    for root in (first, second):
+        result = make_parts(root)
+        assert result.returncode == 0, result.stderr
+    return first, second
+
+
+@pytest.fixture(scope="module")
+def parts(roots: tuple[Path, Path]) -> Parts:
+    return read_parts(roots[0] / "four_bar" / "parts" / "parts.json")
+
+
+@pytest.fixture(scope="module")
+def pieces(roots: tuple[Path, Path], parts: Parts) -> dict[str, MeshPiece]:
+    return {piece.name: piece for piece in read_pieces(parts, roots[0] / "four_bar" / "parts")}
+
+
+def test_two_processes_write_the_same_bytes(roots: tuple[Path, Path]) -> None:
+    first, second = (sorted(path for path in root.rglob("*") if path.is_file()) for root in roots)
+    assert [path.name for path in first] == [path.name for path in second]
+    assert len([path for path in first if path.suffix in (".stl", ".step")]) > 40
+    for one, other in zip(first, second, strict=True):
+        assert one.read_bytes() == other.read_bytes(), one.name
+
+
+def test_a_second_run_has_nothing_to_do(roots: tuple[Path, Path]) -> None:
+    result = make_parts(roots[0])
+    assert result.stdout == "parts: four_bar: up to date\n"
+
+
+def test_a_lost_or_damaged_file_is_made_again(roots: tuple[Path, Path]) -> None:
+    folder = roots[1] / "four_bar" / "parts"
+    (folder / "crank.stl").unlink()
+    with (folder / "rocker.step").open("ab") as damaged:
+        damaged.write(b" ")
+    result = make_parts(roots[1])
+    assert "2 files written" in result.stdout
+    for file in ("crank.stl", "rocker.step"):
+        assert (folder / file).read_bytes() == (roots[0] / "four_bar" / "parts" / file).read_bytes()
+
+
+def test_every_body_has_its_pieces_and_masses(parts: Parts) -> None:
+    assert list(parts.bodies) == ["ground", "crank", "coupler", "rocker"]
+    for body in parts.bodies.values():
+        assert body.mass.mass == pytest.approx(sum(piece.mass.mass for piece in body.pieces.values()))
+        assert body.mass.inertia > max(piece.mass.inertia for piece in body.pieces.values())
+    assert sum(piece.triangles for body in parts.bodies.values() for piece in body.pieces.values()) < 130_000
+    lengths = {"crank": Params().crank, "coupler": Params().coupler, "rocker": Params().rocker}
+    for body, length in lengths.items():
+        assert 0.2 * length < parts.bodies[body].mass.com[0] < 0.8 * length
+
+
+def test_each_body_is_on_a_layer_of_its_own(parts: Parts) -> None:
+    ranges = [next(iter(parts.bodies[body].pieces.values())).z_range for body in ("crank", "coupler", "rocker")]
+    for (_, top), (bottom, _) in zip(ranges, ranges[1:], strict=False):
+        assert top < bottom
+
+
+def test_the_coupler_carries_the_point_that_is_traced(pieces: dict[str, MeshPiece]) -> None:
+    corners = pieces["stylus_P"].triangles.reshape(-1, 3)
+    tip = corners[corners[:, 2] > corners[:, 2].max() - 0.01]
+    assert (tip[:, :2].min(axis=0) + tip[:, :2].max(axis=0)) / 2 == pytest.approx([60.0, 30.0], abs=0.01)
+    assert pieces["stylus_P"].body == "coupler"
+
+
+def test_pieces_of_one_body_do_not_overlap(pieces: dict[str, MeshPiece]) -> None:
+    """Meshes cut corners by up to the tolerance of the mesh: a gap of a fit may be closed by that, not by more."""
+    touching = 0
+    for first, second in combinations(pieces.values(), 2):
+        if first.body == second.body:
+            gap = first.manifold.min_gap(second.manifold, 0.1)
+            common = (first.manifold ^ second.manifold).volume()
+            touching += gap < 0.1
+            assert common < 0.5, f"{first.name} and {second.name} share {common:.3f} mm^3"
+    assert touching > 20  # they do sit in each other
+
+
+def test_pins_stand_where_the_joints_are(pieces: dict[str, MeshPiece]) -> None:
+    joints = {"pin_A": (0, 0), "pin_B": (40, 0), "pin_C": (90, 0), "pin_D": (120, 0)}
+    for name, point in joints.items():
+        assert pieces[name].centre == pytest.approx(np.array(point), abs=0.02)
+
+
+def test_a_file_that_was_swapped_is_noticed(roots: tuple[Path, Path], parts: Parts, tmp_path: Path) -> None:
+    for path in (roots[0] / "four_bar" / "parts").iterdir():
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    (tmp_path / "crank.stl").write_bytes((tmp_path / "rocker.stl").read_bytes())
+    with pytest.raises(UserError, match=r"crank\.stl is not the file that parts\.json describes"):
+        read_pieces(parts, tmp_path)

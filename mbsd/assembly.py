@@ -1,6 +1,6 @@
 """The compiled evaluation: residual, Jacobian, velocity and acceleration right-hand sides of all constraints.
 
-    Phi(q, t) = 0,   J v = nu,   J a = gamma
+Phi(q, t) = 0,   J v = nu,   J a = gamma
 """
 
 from __future__ import annotations

@@ -15,7 +15,9 @@ from mbsd.jit import kernel
 
 
 @kernel
-def inverse_dynamics(system, seq, fac, ws, first_row, second_marker, drives, q, v, loads, lam, wrench, phi, gamma, jacobians):
+def inverse_dynamics(
+    system, seq, fac, ws, first_row, second_marker, drives, q, v, loads, lam, wrench, phi, gamma, jacobians
+):
     """Multipliers and reactions at every time.
 
     q, v (T, 3 nb); loads (T, 3 nb): Q - M a; filled: lam, phi, gamma (T, m), jacobians (T, m, n) and

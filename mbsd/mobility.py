@@ -96,14 +96,15 @@ def choose_rows(packed: Packed, q: np.ndarray, time: float) -> np.ndarray:
         missing = packed.coordinates - len(kept)
         free = _moving(packed, scaled_jacobian(packed, best))
         raise MobilityError(
-            f"{packed.name}: {missing} of {joints.dof} degrees of freedom {'is' if missing == 1 else 'are'} not driven: "
-            f"{', '.join(free)} can still move. Add {'a driver' if missing == 1 else f'{missing} drivers'}, "
+            f"{packed.name}: {missing} of {joints.dof} degrees of freedom "
+            f"{'is' if missing == 1 else 'are'} not driven: {', '.join(free)} can still move. "
+            f"Add {'a driver' if missing == 1 else f'{missing} drivers'}, "
             "for example m.drive_angle(...)."
         )
     if len(here) < len(kept):
         raise SingularPoseError(
-            f"{packed.name}: the start pose at t = {time:.6g} s is singular (a toggle or change point): the drivers do not "
-            "fix the motion here. Start a little before or after it, or drive another body."
+            f"{packed.name}: the start pose at t = {time:.6g} s is singular (a toggle or change point): "
+            "the drivers do not fix the motion here. Start a little before or after it, or drive another body."
         )
     return np.array(kept)
 

@@ -27,7 +27,8 @@ from mbsd.joints.pin_in_slot import PIN_IN_SLOT
 from mbsd.joints.prismatic import PRISMATIC
 from mbsd.joints.revolute import REVOLUTE
 from mbsd.joints.weld import WELD
-from mbsd.motions import Function, Motion
+from mbsd.motions import Motion
+from mbsd.motions.function import Function
 
 if TYPE_CHECKING:
     from mbsd.mobility import Mobility
@@ -300,7 +301,8 @@ class Mechanism:
         for marker in (i, j):
             if not isinstance(marker, Marker):
                 raise ModelError(
-                    f"{self.name}: {what} '{name}' needs two markers, got {marker!r}; write body.at(x, y), bar.start or bar.end"
+                    f"{self.name}: {what} '{name}' needs two markers, got {marker!r}; "
+                    "write body.at(x, y), bar.start or bar.end"
                 )
             self._own_body(marker.body, f"{what} '{name}'")
         if i.body is j.body:
@@ -311,8 +313,8 @@ class Mechanism:
         if kind.driven:
             if not (isinstance(law, Motion) or callable(law)):
                 raise ModelError(
-                    f"{self.name}: driver '{name}' needs a motion law, got {law!r}; say constant_rate(...), harmonic(...), "
-                    "or a function of time"
+                    f"{self.name}: driver '{name}' needs a motion law, got {law!r}; "
+                    "say constant_rate(...), harmonic(...), or a function of time"
                 )
             motion = law if isinstance(law, Motion) else Function(law)
         joint = Joint(kind, name, i, j, length, motion)
@@ -335,9 +337,8 @@ class Mechanism:
         return _number(f"{self.name}: {what}", value)
 
     def __repr__(self) -> str:
-        return (
-            f"<Mechanism {self.name}: {len(self.bodies) - 1} bodies, {len(self.joints)} joints, {len(self.drivers)} drivers>"
-        )
+        bodies, joints, drivers = len(self.bodies) - 1, len(self.joints), len(self.drivers)
+        return f"<Mechanism {self.name}: {bodies} bodies, {joints} joints, {drivers} drivers>"
 
 
 def _number(what: str, value: object) -> float:

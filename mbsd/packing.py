@@ -14,7 +14,6 @@ from mbsd.model import Joint, Mechanism
 from mbsd.motions import Motion
 from mbsd.system import System, Workspace, workspace
 
-
 SMALLEST_SIZE = 1e-12
 """Below this (m) all joints sit at the centres of mass, and 1 m serves as size."""
 

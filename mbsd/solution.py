@@ -1,11 +1,11 @@
 """Results by name: arrays over time in the author's body frames, SI units.
 
-    sol.t                              (T,) s
-    sol.body("coupler").theta          also x, y, vx, vy, omega, ax, ay, alpha
-    sol.joint("B").reaction            (T, 2) force on the joint's second body; fx, fy, torque, x, y, magnitude
-    sol.driver("motor").torque         also effort, force, value, rate, power
-    sol.point("P").x                   of traced points
-    sol.energy.kinetic, .potential
+sol.t                              (T,) s
+sol.body("coupler").theta          also x, y, vx, vy, omega, ax, ay, alpha
+sol.joint("B").reaction            (T, 2) force on the joint's second body; fx, fy, torque, x, y, magnitude
+sol.driver("motor").torque         also effort, force, value, rate, power
+sol.point("P").x                   of traced points
+sol.energy.kinetic, .potential
 """
 
 from __future__ import annotations
@@ -232,8 +232,9 @@ class Solution:
         ]
         body = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in rows)
         return (
-            f"<p><b>{html.escape(self.mechanism.name)}</b>: {html.escape(str(self.mobility))}; {len(self.t)} times from "
-            f"{self.t[0]:g} to {self.t[-1]:g} s; largest residual {self.stats.position_residual:.1e}</p>"
+            f"<p><b>{html.escape(self.mechanism.name)}</b>: {html.escape(str(self.mobility))}; "
+            f"{len(self.t)} times from {self.t[0]:g} to {self.t[-1]:g} s; "
+            f"largest residual {self.stats.position_residual:.1e}</p>"
             f"<table><tr><th>quantity</th><th>min</th><th>max</th></tr>{body}</table>"
         )
 
@@ -258,7 +259,9 @@ class Solution:
 
     def _index(self, name: str, names: list[str], what: str) -> int:
         if name not in names:
-            raise ModelError(f"{self.mechanism.name}: there is no {what} '{name}'; there is: {', '.join(names) or 'none'}")
+            raise ModelError(
+                f"{self.mechanism.name}: there is no {what} '{name}'; there is: {', '.join(names) or 'none'}"
+            )
         return names.index(name)
 
 

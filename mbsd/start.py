@@ -7,13 +7,13 @@ author put it. Bodies without a rough angle are tried at several angles.
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 
 import numpy as np
 
 from mbsd.assembly import residual_and_jacobian
 from mbsd.errors import AssemblyError
-from mbsd.model import Joint, Mechanism
+from mbsd.model import Mechanism
+from mbsd.open_loops import turned, why_open
 from mbsd.packing import Packed
 
 CLOSED = 1e-10
@@ -36,7 +36,7 @@ def assemble(m: Mechanism, packed: Packed, time: float) -> np.ndarray:
         if best is None or worst < best[0]:
             best = worst, q
     assert best is not None
-    raise AssemblyError(_why_open(m, packed, best[1], drive, time))
+    raise AssemblyError(why_open(m, packed, best[1], drive, time))
 
 
 def close(packed: Packed, q: np.ndarray, drive: np.ndarray, rows: int | None = None) -> tuple[np.ndarray, float]:
@@ -80,7 +80,7 @@ def rough_pose(m: Mechanism, packed: Packed, drive: np.ndarray, attempt: int) ->
     for name, start in m.starts.items():
         if start.place is not None:
             b = packed.body_names.index(name)
-            q[b, :2] = start.place + _turned(angle[b], packed.com[b])
+            q[b, :2] = start.place + turned(angle[b], packed.com[b])
             placed.add(b)
     for reach in ("point", "distance", "slot", "along", "angle"):
         while _place_one(packed, q, placed, reach):
@@ -130,7 +130,7 @@ def _place_one(packed: Packed, q: np.ndarray, placed: set[int], constraint: str)
         target = _marker_place(packed, q, base)
         if constraint == "distance":
             target = target + np.array([system.distance_length[k], 0.0])
-        q[body, :2] = target - _turned(q[body, 2], system.marker_arm[new])
+        q[body, :2] = target - turned(q[body, 2], system.marker_arm[new])
         placed.add(body)
         return True
     return False
@@ -138,12 +138,7 @@ def _place_one(packed: Packed, q: np.ndarray, placed: set[int], constraint: str)
 
 def _marker_place(packed: Packed, q: np.ndarray, marker: int) -> np.ndarray:
     b = packed.system.marker_body[marker]
-    return q[b, :2] + _turned(q[b, 2], packed.system.marker_arm[marker])
-
-
-def _turned(angle: float, vector: np.ndarray) -> np.ndarray:
-    c, s = math.cos(angle), math.sin(angle)
-    return np.array([c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]])
+    return q[b, :2] + turned(q[b, 2], packed.system.marker_arm[marker])
 
 
 def _unwind_angles(packed: Packed, q: np.ndarray) -> None:
@@ -153,86 +148,3 @@ def _unwind_angles(packed: Packed, q: np.ndarray) -> None:
         if motion == 0:
             gap = q[3 * system.marker_body[j] + 2] - q[3 * system.marker_body[i] + 2] - system.angle_offset[k]
             system.angle_offset[k] += 2 * math.pi * round(gap / (2 * math.pi))
-
-
-# -- why it stays open ------------------------------------------------------------------------------------------
-
-
-def _why_open(m: Mechanism, packed: Packed, q: np.ndarray, drive: np.ndarray, time: float) -> str:
-    residual_and_jacobian(packed.system, q, drive, packed.ws)
-    phi = packed.ws.phi
-    gaps = [float(np.abs(phi[a:b] * packed.row_scale()[a:b]).max()) for a, b in pairwise(packed.first_row)]
-    worst = int(np.argmax(gaps))
-    joint = packed.joints[worst]
-    rows = slice(packed.first_row[worst], packed.first_row[worst + 1])
-    what = "driver" if joint.kind.driven else "joint"
-    gap = f"{1000 * float(np.linalg.norm(phi[rows])):.3g} mm"
-    if joint.kind.constraints == ("angle",):
-        gap = f"{math.degrees(float(phi[rows][0])):.3g} degrees"
-    hint = _short_links(m, packed, joint, drive)
-    return (
-        f"{m.name}: the links do not close at t = {time:.6g} s: {what} {joint.name} stays open by {gap} at best. "
-        + (hint or "Check the lengths and joint places, or give other rough angles with start_near.")
-    )
-
-
-def _short_links(m: Mechanism, packed: Packed, joint: Joint, drive: np.ndarray) -> str:
-    """In a loop of pinned links: the one that is longer than the others together, if so."""
-    loop = _loop_through(m, joint)
-    if loop is None:
-        return ""
-    driven = {
-        j.j.body.name: float(drive[k + 1, 0])
-        for k, j in enumerate(m.drivers.values())
-        if j.kind.name == "drive_angle" and j.motion is not None
-    }
-    parts: list[tuple[str, np.ndarray, bool]] = []  # bodies, vector in the world if it is fixed, fixed?
-    for body, entry, leave in loop:
-        vector = np.array([leave.x - entry.x, leave.y - entry.y])
-        fixed = body == "ground" or body in driven
-        parts.append((body, _turned(driven.get(body, 0.0), vector) if fixed else vector, fixed))
-    held = [part for part in parts if part[2]]
-    spans = [(name, float(np.linalg.norm(vector))) for name, vector, fixed in parts if not fixed]
-    if held:
-        label = " and ".join(name for name, _, _ in held)
-        spans.append((label, float(np.linalg.norm(sum(vector for _, vector, _ in held)))))
-    order = list(m.bodies)
-    spans.sort(key=lambda span: order.index(span[0]) if span[0] in order else -1)
-    longest = max(spans, key=lambda span: span[1])
-    others = [span for span in spans if span is not longest]
-    reach = sum(length for _, length in others)
-    if longest[1] <= reach:
-        return ""
-    together = " + ".join(name for name, _ in others)
-    return (
-        f"The links are too short: {together} = {reach:.4g} m must reach {longest[1]:.4g} m "
-        f"({'between the ends of ' if longest[0].count(' and ') else ''}{longest[0]})."
-    )
-
-
-def _loop_through(m: Mechanism, joint: Joint) -> list | None:
-    """Bodies around the shortest loop of pins through ``joint``: (name, marker in, marker out); None if there is none."""
-    pins = [j for j in m.joints.values() if j.kind.name == "revolute"]
-    if joint not in pins:
-        loops = [loop for pin in pins if (loop := _loop_through(m, pin))]
-        return min(loops, key=len, default=None)
-    paths = [[(joint.j.body.name, joint.j)]]
-    seen = {joint.j.body.name}
-    while paths:
-        path = paths.pop(0)
-        name, entry = path[-1]
-        if name == joint.i.body.name:
-            return _with_exits(path, joint)
-        for pin in pins:
-            if pin is joint:
-                continue
-            for here, there in ((pin.i, pin.j), (pin.j, pin.i)):
-                if here.body.name == name and there.body.name not in seen:
-                    seen.add(there.body.name)
-                    paths.append([*path[:-1], (name, entry, here), (there.body.name, there)])
-    return None
-
-
-def _with_exits(path: list, joint: Joint) -> list:
-    name, entry = path[-1]
-    return [*path[:-1], (name, entry, joint.i)]

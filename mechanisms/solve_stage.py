@@ -73,9 +73,7 @@ def apply_masses(m: Mechanism, parts: contract.Parts) -> None:
         m.set_mass(name, mass.mass, mass.com, mass.inertia)
 
 
-def to_motion(
-    solution: Solution, parts: contract.Parts, inputs: str, packages: dict[str, str]
-) -> contract.Motion:
+def to_motion(solution: Solution, parts: contract.Parts, inputs: str, packages: dict[str, str]) -> contract.Motion:
     """The solution as the contract has it: plain lists, author's frames."""
     import mbsd
 
@@ -125,9 +123,7 @@ def to_motion(
         joints=joints,
         drivers=drivers,
         points=points,
-        energy=contract.Energy(
-            kinetic=solution.energy.kinetic.tolist(), potential=solution.energy.potential.tolist()
-        ),
+        energy=contract.Energy(kinetic=solution.energy.kinetic.tolist(), potential=solution.energy.potential.tolist()),
         diagnostics=contract.Diagnostics(
             position_residual=stats.position_residual,
             velocity_residual=stats.velocity_residual,

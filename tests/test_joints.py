@@ -36,8 +36,8 @@ def _everything(system, q, v, drive, ws, nu, gamma):
 def _example(kind: JointKind, seed: int, to_ground: bool) -> Packed:
     random = np.random.default_rng(seed)
     m = Mechanism("example")
-    first = m.ground if to_ground else m.body("first", 1.0, random.normal(size=2), 1.0)
-    second = m.body("second", 1.0, random.normal(size=2), 1.0)
+    first = m.ground if to_ground else m.body("first", 1.0, list(random.normal(size=2)), 1.0)
+    second = m.body("second", 1.0, list(random.normal(size=2)), 1.0)
     kind.example(m, first.at(*random.normal(size=3)), second.at(*random.normal(size=3)))
     return pack(m)
 

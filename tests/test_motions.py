@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbsd import ModelError, constant_rate, cycloidal, function, harmonic, polynomial, table
-from mbsd.motions import EXAMPLES, Motion
+from mbsd.motions import Motion
+from mbsd.motions.examples import EXAMPLES
 
 
 def test_every_law_has_an_example() -> None:

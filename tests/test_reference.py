@@ -130,7 +130,10 @@ def test_peaucellier_draws_an_exact_line() -> None:
     long, side, r = expected["L"], expected["s"], expected["r"]
     m = Mechanism("peaucellier")
     crank = m.bar("crank", r)
-    bars = {name: m.bar(name, long if name.startswith("long") else side) for name in ("long1", "long2", "c1", "c2", "p1", "p2")}
+    bars = {
+        name: m.bar(name, long if name.startswith("long") else side)
+        for name in ("long1", "long2", "c1", "c2", "p1", "p2")
+    }
     m.revolute("Q", m.ground.at(r, 0), crank.start)
     for k in "12":
         m.revolute(f"O{k}", m.ground.at(0, 0), bars[f"long{k}"].start)
@@ -163,7 +166,7 @@ def _pmks(case: dict[str, Any]) -> Solution:
 
     def marker(link: str, at: np.ndarray, angle: float = 0.0) -> Marker:
         body, base = origin[link]
-        return body.at(*map(float, at - base), angle)
+        return body.at(float(at[0] - base[0]), float(at[1] - base[1]), angle)
 
     for joint in case["joints"]:
         first, second = joint["links"]
@@ -171,7 +174,7 @@ def _pmks(case: dict[str, Any]) -> Solution:
             m.revolute(joint["id"], marker(first, place[joint["id"]]), marker(second, place[joint["id"]]))
         else:
             axis = joint["guide_axis"]
-            guide = m.ground.at(*map(float, place[joint["id"]]), math.atan2(axis[1], axis[0]))
+            guide = marker("ground", place[joint["id"]], math.atan2(axis[1], axis[0]))
             m.pin_in_slot(joint["id"], guide, marker(first, place[joint["id"]]))
     for joint in case["joints"]:
         link = next(name for name in joint["links"] if name != "ground")
@@ -185,7 +188,8 @@ def _pmks(case: dict[str, Any]) -> Solution:
 
 
 @pytest.mark.parametrize(
-    "name", ["pmks_teaching_four_bar", "pmks_teaching_slider_crank", "pmks_slider_crank_tracer", "pmks_steep_slider_crank"]
+    "name",
+    ["pmks_teaching_four_bar", "pmks_teaching_slider_crank", "pmks_slider_crank_tracer", "pmks_steep_slider_crank"],
 )
 def test_pmks(name: str) -> None:
     case = _case(name)
@@ -222,7 +226,7 @@ def _ondsel(case: dict[str, Any]) -> Solution:
     for joint in case["joints"]:
         (a, pa), (b, pb) = joint["a"], joint["b"]
         turn = math.atan2(joint["axis"][1], joint["axis"][0]) if "axis" in joint else 0.0
-        i, j = bodies[a].at(*pa, turn), bodies[b].at(*pb, turn)
+        i, j = bodies[a].at(pa[0], pa[1], turn), bodies[b].at(pb[0], pb[1], turn)
         m.revolute(joint["id"], i, j) if joint["type"] == "revolute" else m.prismatic(joint["id"], i, j)
     crank = bodies["Part1"]
     start = case["bodies"][0]["phi"]

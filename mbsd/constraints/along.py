@@ -1,9 +1,9 @@
 """Coordinate constraint: how far marker j lies along the x axis of marker i.
 
-    u     = unit axis of marker i;   d = p_j - p_i;   n = u_perp;   u' = omega_i n
-    Phi   = u . d - f(t)                                      1 row
-    J     = [u, u . s_perp_j] on body j;  [-u, n . d - u . s_perp_i] on body i
-    gamma = -( u . (c_j - c_i) + 2 omega_i n . d' - omega_i^2 u . d ) + f''
+u     = unit axis of marker i;   d = p_j - p_i;   n = u_perp;   u' = omega_i n
+Phi   = u . d - f(t)                                      1 row
+J     = [u, u . s_perp_j] on body j;  [-u, n . d - u . s_perp_i] on body i
+gamma = -( u . (c_j - c_i) + 2 omega_i n . d' - omega_i^2 u . d ) + f''
 """
 
 from __future__ import annotations

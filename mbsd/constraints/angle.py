@@ -1,8 +1,8 @@
 """Angle constraint: body j is turned by a fixed or driven angle against body i.
 
-    Phi   = theta_j - theta_i - offset - f(t)       1 row
-    J     = 1 on theta_j, -1 on theta_i
-    nu    = f',  gamma = f''
+Phi   = theta_j - theta_i - offset - f(t)       1 row
+J     = 1 on theta_j, -1 on theta_i
+nu    = f',  gamma = f''
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Point constraint: markers i and j share one point.
 
-    Phi   = p_j - p_i                  2 rows
-    J     = [I, s_perp_j] on body j, -[I, s_perp_i] on body i
-    gamma = -(c_j - c_i)               c = -omega^2 s, the convective acceleration
+Phi   = p_j - p_i                  2 rows
+J     = [I, s_perp_j] on body j, -[I, s_perp_i] on body i
+gamma = -(c_j - c_i)               c = -omega^2 s, the convective acceleration
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Slot constraint: the point of marker j lies on the x axis of marker i.
 
-    n     = u_perp_i, unit normal of the slot;   d = p_j - p_i;   n = R n_local, so n' = -omega_i u
-    Phi   = n . d                                             1 row
-    J     = [n, n . s_perp_j] on body j;  [-n, -u . d - n . s_perp_i] on body i
-    gamma = -( n . (c_j - c_i) - 2 omega_i u . d' - omega_i^2 n . d )
+n     = u_perp_i, unit normal of the slot;   d = p_j - p_i;   n = R n_local, so n' = -omega_i u
+Phi   = n . d                                             1 row
+J     = [n, n . s_perp_j] on body j;  [-n, -u . d - n . s_perp_i] on body i
+gamma = -( n . (c_j - c_i) - 2 omega_i u . d' - omega_i^2 n . d )
 """
 
 from __future__ import annotations

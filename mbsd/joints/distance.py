@@ -9,4 +9,6 @@ from __future__ import annotations
 
 from mbsd.joints.kind import JointKind, register
 
-DISTANCE = register(JointKind("distance", ("distance",), example=lambda m, i, j: m.distance("example", i, j, length=0.7)))
+DISTANCE = register(
+    JointKind("distance", ("distance",), example=lambda m, i, j: m.distance("example", i, j, length=0.7))
+)

@@ -1,0 +1,44 @@
+"""Harmonic:  f = mean + amplitude sin(rate t + phase)"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.motions.law import Motion, Times, refuse_non_finite
+
+
+@dataclass(frozen=True)
+class Harmonic(Motion):
+    """See :func:`harmonic`."""
+
+    amplitude: float
+    rate: float
+    phase: float = 0.0
+    mean: float = 0.0
+
+    @property
+    def period(self) -> float | None:
+        """One swing."""
+        return 2 * math.pi / abs(self.rate) if self.rate else None
+
+    def __call__(self, times: Times) -> np.ndarray:
+        """(T,) times to (T, 3): f, f', f''."""
+        angle = self.rate * times + self.phase
+        sine, cosine = np.sin(angle), np.cos(angle)
+        return np.stack(
+            [
+                self.mean + self.amplitude * sine,
+                self.amplitude * self.rate * cosine,
+                -self.amplitude * self.rate**2 * sine,
+            ],
+            axis=1,
+        )
+
+
+def harmonic(amplitude: float, rate: float, phase: float = 0.0, mean: float = 0.0) -> Motion:
+    """``mean + amplitude sin(rate t + phase)``; rate in rad/s."""
+    refuse_non_finite("harmonic", amplitude=amplitude, rate=rate, phase=phase, mean=mean)
+    return Harmonic(float(amplitude), float(rate), float(phase), float(mean))

@@ -1,0 +1,30 @@
+"""Polynomial:  f = c0 + c1 t + c2 t^2 + ..."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.errors import ModelError
+from mbsd.motions.law import Motion, Times, refuse_non_finite
+
+
+@dataclass(frozen=True)
+class Polynomial(Motion):
+    """See :func:`polynomial`."""
+
+    coefficients: tuple[float, ...]
+
+    def __call__(self, times: Times) -> np.ndarray:
+        """(T,) times to (T, 3): f, f', f''."""
+        law = np.polynomial.Polynomial(self.coefficients)
+        return np.stack([law(times), law.deriv(1)(times), law.deriv(2)(times)], axis=1)
+
+
+def polynomial(*coefficients: float) -> Motion:
+    """``c0 + c1 t + c2 t^2 + ...``"""
+    if not coefficients:
+        raise ModelError("polynomial: give at least one coefficient, c0 first")
+    refuse_non_finite("polynomial", **{f"c{k}": c for k, c in enumerate(coefficients)})
+    return Polynomial(tuple(float(c) for c in coefficients))

@@ -1,0 +1,62 @@
+"""Table: a quintic spline through given values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from mbsd.errors import ModelError
+from mbsd.motions.law import Motion, Times
+
+
+@dataclass(frozen=True, eq=False)
+class Table(Motion):
+    """See :func:`table`."""
+
+    times: np.ndarray
+    values: np.ndarray
+    periodic: bool = False
+    _spline: list = field(default_factory=list, repr=False)
+
+    @property
+    def period(self) -> float | None:
+        """The table's span, if it was declared periodic."""
+        return float(self.times[-1] - self.times[0]) if self.periodic else None
+
+    def __call__(self, times: Times) -> np.ndarray:
+        """(T,) times to (T, 3): f, f', f''."""
+        first, last = self.times[0], self.times[-1]
+        if not self._spline:
+            from scipy.interpolate import make_interp_spline
+
+            ends = "periodic" if self.periodic else None
+            self._spline.append(make_interp_spline(self.times, self.values, k=5, bc_type=ends))
+        if self.periodic:
+            times = first + np.mod(times - first, last - first)
+        elif np.min(times) < first - 1e-12 or np.max(times) > last + 1e-12:
+            raise ModelError(
+                f"table: asked for t = {np.min(times):g} .. {np.max(times):g} s, "
+                f"the table covers {first:g} .. {last:g} s; add rows, or declare it periodic"
+            )
+        spline = self._spline[0]
+        return np.stack([spline(times), spline(times, 1), spline(times, 2)], axis=1)
+
+
+def table(times: object, values: object, periodic: bool = False) -> Motion:
+    """Quintic spline through ``values`` (rad or m) at rising ``times`` (s), six rows or more.
+
+    ``periodic``: the last value equals the first and the motion repeats with continuous derivatives.
+    """
+    t, f = np.asarray(times, float), np.asarray(values, float)
+    if t.ndim != 1 or t.shape != f.shape or len(t) < 6:
+        raise ModelError(f"table: times {t.shape} and values {f.shape} must be two lists of six numbers or more")
+    if not (np.isfinite(t).all() and np.isfinite(f).all()):
+        raise ModelError("table: times and values must be finite numbers")
+    if not (np.diff(t) > 0).all():
+        raise ModelError(f"table: times must rise; times[{int(np.argmin(np.diff(t) > 0)) + 1}] does not")
+    if periodic and abs(f[-1] - f[0]) > 1e-12 * max(1.0, float(np.abs(f).max())):
+        raise ModelError(f"table: periodic, but the last value {f[-1]:g} is not the first {f[0]:g}")
+    if periodic:
+        f = np.concatenate([f[:-1], f[:1]])
+    return Table(t, f, periodic)

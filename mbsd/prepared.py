@@ -1,0 +1,182 @@
+"""A mechanism made ready, and the march along its driven motion: refused steps are halved, errors are worded."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd import kinematics
+from mbsd.assembly import residual_and_jacobian
+from mbsd.elimination import Elimination, Factors, plan
+from mbsd.errors import AssemblyError, BranchError, ModelError, SingularPoseError
+from mbsd.mobility import Mobility, choose_rows, joint_mobility, refuse_overdriven
+from mbsd.model import Mechanism
+from mbsd.packing import Packed, pack
+from mbsd.start import assemble
+
+SHORTEST_STEP = 1e-7
+"""A step refused at this part of the output step is not cured by halving."""
+REDUNDANT_GAP = 1e-7
+"""Largest gap, in sizes, by which redundant joints may disagree."""
+
+
+@dataclass
+class Prepared:
+    """A mechanism ready to be solved over and over: arrays, closed start pose, elimination sequence."""
+
+    packed: Packed
+    q0: np.ndarray
+    """(3 nb,) closed start pose."""
+    start_time: float
+    sequence: Elimination
+    factors: Factors
+    mobility: Mobility
+
+    def kinematics(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """(T, nb, 3) positions, velocities and accelerations of the centres of mass and angles; ground is body 0."""
+        q, v, a, _ = self.march(times)
+        shape = (len(times), -1, 3)
+        return q.reshape(shape), v.reshape(shape), a.reshape(shape)
+
+    def march(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
+        """Run the kernel; halve the steps it refuses. Also returns how many steps were inserted."""
+        packed = self.packed
+        grid = np.ascontiguousarray(times, float)
+        drives = packed.drives(grid)
+        wanted = np.ones(len(grid), bool)
+        first = 0
+        q, v, a, residual, sign = self._arrays(len(grid))
+        q[0] = self.q0
+        while True:
+            status, index = kinematics.sweep(
+                packed.system,
+                self.sequence,
+                self.factors,
+                packed.ws,
+                packed.size,
+                grid,
+                drives,
+                q,
+                v,
+                a,
+                residual,
+                sign,
+                first,
+            )
+            if status == kinematics.DONE:
+                break
+            if index == 0:
+                raise self._refused(status, grid, 0, drives, q, v)
+            middle = (grid[index - 1] + grid[index]) / 2
+            if not middle - grid[index - 1] > SHORTEST_STEP * float(np.ptp(times)) / len(times):
+                raise self._refused(status, grid, index, drives, q, v)
+            grid = np.insert(grid, index, middle)
+            drives = np.insert(drives, index, packed.drives(np.array([middle]))[0], axis=0)
+            wanted = np.insert(wanted, index, False)
+            q, v, a = (np.insert(array, index, 0.0, axis=0) for array in (q, v, a))
+            residual, sign = np.insert(residual, index, 0.0), np.insert(sign, index, 0.0)
+            first = index
+        self._refuse_disagreeing(grid, residual, q, drives)
+        if wanted.all():
+            return q, v, a, 0
+        return q[wanted], v[wanted], a[wanted], int((~wanted).sum())
+
+    def _arrays(self, count: int) -> tuple[np.ndarray, ...]:
+        n3 = len(self.q0)
+        return np.zeros((count, n3)), np.zeros((count, n3)), np.zeros((count, n3)), np.zeros(count), np.zeros(count)
+
+    def _refuse_disagreeing(self, grid: np.ndarray, residual: np.ndarray, q: np.ndarray, drives: np.ndarray) -> None:
+        """Rows left out as redundant must hold too."""
+        k = int(np.argmax(residual))
+        if residual[k] <= REDUNDANT_GAP * max(self.packed.size, 1.0):
+            return
+        residual_and_jacobian(self.packed.system, q[k], drives[k], self.packed.ws)
+        joint = self.packed.joint_of_row(int(np.argmax(np.abs(self.packed.ws.phi))))
+        raise AssemblyError(
+            f"{self.packed.name}: at t = {grid[k]:.6g} s redundant joint {joint.name} is open by "
+            f"{residual[k]:.3g} (m or rad) while all others close: the lengths do not agree. "
+            "Correct them, or leave the joint out."
+        )
+
+    def _refused(
+        self, status: int, grid: np.ndarray, index: int, drives: np.ndarray, q: np.ndarray, v: np.ndarray
+    ) -> Exception:
+        """The error for a step that halving does not cure."""
+        packed = self.packed
+        last = max(index - 1, 0)
+        rates = np.abs(v[last].reshape(-1, 3)[1:, 2])
+        where = f"t = {grid[last]:.6g} s ({self._driver_values(drives[last])})"
+        if index == 0:
+            return SingularPoseError(
+                f"{packed.name}: the start pose at {where} is singular (a toggle or change point): "
+                "the drivers do not fix the motion here. Start a little before or after it, or drive another body."
+            )
+        bodies = packed.body_names[1:]
+        fastest = ", ".join(bodies[b] for b in np.argsort(-rates)[:2])
+        if status == kinematics.BRANCH_DOUBT:
+            return BranchError(
+                f"{packed.name}: after {where} the motion would jump to the other assembly, and steps down to "
+                f"{grid[index] - grid[last]:.1e} s do not cure it ({fastest} move fastest). The pose there is a change "
+                "point, or a law jumps; end the motion before it."
+            )
+        return SingularPoseError(
+            f"{packed.name}: the links cannot follow the drivers beyond {where}: a toggle, where {fastest} run away "
+            f"(up to {rates.max():.3g} rad/s). Drive within the reachable range, change the lengths, "
+            "or drive another body."
+        )
+
+    def _driver_values(self, drive: np.ndarray) -> str:
+        drivers = self.packed.joints[len(self.packed.joints) - len(self.packed.motions) :]
+        parts = []
+        for k, driver in enumerate(drivers):
+            value = float(drive[k + 1, 0])
+            angle = driver.kind.constraints == ("angle",)
+            parts.append(
+                f"{driver.name} at {math.degrees(value):.4g} degrees" if angle else f"{driver.name} at {value:.4g} m"
+            )
+        return ", ".join(parts)
+
+
+def prepare(m: Mechanism, start: float = 0.0, end: float = 1.0) -> Prepared:
+    """Check mobility and close the start pose of ``m`` for a motion from ``start`` to ``end`` (s)."""
+    if len(m.bodies) < 2:
+        raise ModelError(f"{m.name}: there is no body beside ground; add one with m.bar(...) or m.body(...)")
+    packed = pack(m)
+    packed.motions = [law.over(start, end) for law in packed.motions]
+    _refuse_bad_laws(packed, start, end)
+    try:
+        q0 = assemble(m, packed, start)
+    except AssemblyError:
+        refuse_overdriven(m, packed)
+        raise
+    kept = choose_rows(packed, q0, start)
+    sequence, factors = plan(_sample_jacobians(packed), kept)
+    return Prepared(packed, q0, start, sequence, factors, joint_mobility(packed, q0))
+
+
+def _refuse_bad_laws(packed: Packed, start: float, end: float) -> None:
+    drivers = packed.joints[len(packed.joints) - len(packed.motions) :]
+    for driver, law in zip(drivers, packed.motions, strict=True):
+        values = law(np.linspace(start, end, 17))
+        if not np.isfinite(values).all():
+            raise ModelError(f"{packed.name}: driver '{driver.name}': its law gives {values[~np.isfinite(values)][0]}")
+        if driver.kind.constraints == ("distance",) and values[:, 0].min() <= 0:
+            raise ModelError(
+                f"{packed.name}: driver '{driver.name}' imposes a distance of {values[:, 0].min():.4g} m; "
+                "it must stay positive"
+            )
+
+
+def _sample_jacobians(packed: Packed) -> np.ndarray:
+    """(4, m, n) at unrelated poses, to see which entries are constant."""
+    random = np.random.default_rng(2)
+    none = np.zeros((len(packed.motions) + 1, 3))
+    samples = []
+    for _ in range(4):
+        q = np.zeros(3 * len(packed.body_names))
+        q[3:] = random.uniform(-2.0, 2.0, packed.coordinates) * packed.column_scale()
+        residual_and_jacobian(packed.system, q, none, packed.ws)
+        samples.append(packed.ws.jac[:, 3:].copy())
+    return np.array(samples)

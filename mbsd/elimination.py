@@ -22,6 +22,10 @@ import numpy as np
 from mbsd.jit import inlined
 
 
+INDEX = np.uint32
+"""Unsigned, so that compiled indexing need not look for negative numbers."""
+
+
 class Elimination(NamedTuple):
     """The sequence, as constant arrays; n unknowns, p constant pivots, k = n - p in the dense block."""
 
@@ -112,17 +116,17 @@ def plan(samples: np.ndarray, kept_rows: np.ndarray) -> tuple[Elimination, Facto
         upper += [(slot[r, int(j)], at_row[r], at_column[int(j)]) for j in others]
         update += [(slot[int(i), int(j)], slot[int(i), c], slot[r, int(j)]) for i in targets for j in others]
     size = int(open_rows.sum())
-    block = np.zeros((size, size), np.int64)
+    block = np.zeros((size, size), INDEX)
     for a, r in enumerate(np.flatnonzero(open_rows)):
         for b, c in enumerate(np.flatnonzero(open_columns)):
             block[a, b] = slot.get((int(r), int(c)), 0)
     sequence = Elimination(
-        rows=np.array(kept_rows, np.int64)[np.array(row_order, np.int64)],
-        columns=np.array(column_order, np.int64) + 3,
+        rows=np.array(kept_rows, INDEX)[np.array(row_order, INDEX)],
+        columns=np.array(column_order, INDEX) + 3,
         scale=scale,
         read=_triples(read),
         read_scale=np.array(read_scale, float),
-        cleared=np.array(cleared, np.int64),
+        cleared=np.array(cleared, INDEX),
         update=_triples(update),
         lower=_triples(lower),
         upper=_triples(upper),
@@ -132,7 +136,7 @@ def plan(samples: np.ndarray, kept_rows: np.ndarray) -> tuple[Elimination, Facto
 
 
 def _triples(rows: list) -> np.ndarray:
-    return np.array(rows, np.int64).reshape(-1, 3)
+    return np.array(rows, INDEX).reshape(-1, 3)
 
 
 def _cheapest_pivot(

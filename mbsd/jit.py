@@ -38,6 +38,7 @@ def _cache_folder() -> Path:
 
 
 os.environ.setdefault("NUMBA_CACHE_DIR", str(_cache_folder()))
+os.environ.setdefault("NUMBA_CPU_NAME", "generic")  # one code for all machines, and faster on loops this short
 
 import numba  # noqa: E402  (the folder must be set first)
 

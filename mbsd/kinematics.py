@@ -57,6 +57,17 @@ def _predict(q, v, a, t, k, time, out):
             out[c] = q[k - 1, c] + ahead * (v[k - 1, c] + 0.5 * ahead * a[k - 1, c])
 
 
+@inlined
+def _extent(delta, per_metre):
+    """Largest part of a change of pose (3 nb,): lengths in sizes, angles in rad; NaN counts as infinite."""
+    largest = 0.0
+    for b in range(3, delta.shape[0], 3):
+        part = max(abs(delta[b]) * per_metre, abs(delta[b + 1]) * per_metre, abs(delta[b + 2]))
+        if not part <= largest:
+            largest = part if part == part else np.inf
+    return largest
+
+
 @kernel
 def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, start):
     """Solve positions, velocities and accelerations at ``times[start:]``; rows before ``start`` are known.
@@ -65,7 +76,7 @@ def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, st
     filled. With ``start`` 0, q[0] must hold the assembled pose. ``size`` is the mechanism's length (m).
     Returns (status, index): DONE and T, or why and at which index the step was refused.
     """
-    n3 = q.shape[1]
+    n3, per_metre = q.shape[1], 1.0 / size
     pose, delta, right = ws.pose, ws.delta, ws.right
     for k in range(start, times.shape[0]):
         if k > 0:
@@ -82,12 +93,9 @@ def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, st
             for r in range(right.shape[0]):
                 right[r] = -ws.phi[r]
             solve(seq, fac, right, delta)
-            change = 0.0
             for c in range(3, n3):
                 pose[c] += delta[c]
-                part = abs(delta[c]) if c % 3 == 2 else abs(delta[c]) / size
-                if not part <= change:
-                    change = part
+            change = _extent(delta, per_metre)
             if iteration == 0:
                 first = change
             if change <= TOLERANCE:
@@ -98,10 +106,9 @@ def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, st
         if not change <= ROUNDING:
             return NO_CONTRACTION, k
         if k > 0:
-            step = 0.0
             for c in range(3, n3):
-                part = abs(pose[c] - q[k - 1, c])
-                step = max(step, part if c % 3 == 2 else part / size)
+                delta[c] = pose[c] - q[k - 1, c]
+            step = _extent(delta, per_metre)
             if first > SUSPICIOUS * step + 1e-9:
                 return BRANCH_DOUBT, k
             if determinant != sign[k - 1] and first > CONFIRMED * step + 1e-9:

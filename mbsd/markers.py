@@ -18,17 +18,20 @@ from mbsd.jit import inlined
 
 @inlined
 def place(system, q, ws):
-    """Fill arm, position and axis of every marker from q (3 nb,), ground included."""
+    """Fill arm, position and axis of the markers from q (3 nb,); those of ground never change."""
     for b in range(1, system.mass.shape[0]):
         theta = q[3 * b + 2]
         ws.cos_sin[b, 0] = math.cos(theta)
         ws.cos_sin[b, 1] = math.sin(theta)
-    for k in range(system.marker_body.shape[0]):
+    for k in system.moving:
         b = system.marker_body[k]
         c, s = ws.cos_sin[b, 0], ws.cos_sin[b, 1]
         x, y = system.marker_arm[k, 0], system.marker_arm[k, 1]
         arm_x, arm_y = c * x - s * y, s * x + c * y
         ws.arm[k, 0], ws.arm[k, 1] = arm_x, arm_y
         ws.position[k, 0], ws.position[k, 1] = q[3 * b] + arm_x, q[3 * b + 1] + arm_y
+    for k in system.directed:
+        b = system.marker_body[k]
+        c, s = ws.cos_sin[b, 0], ws.cos_sin[b, 1]
         x, y = system.marker_axis[k, 0], system.marker_axis[k, 1]
         ws.axis[k, 0], ws.axis[k, 1] = c * x - s * y, s * x + c * y

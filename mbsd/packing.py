@@ -111,6 +111,8 @@ def pack(m: Mechanism) -> Packed:
         marker_body=marker_body,
         marker_arm=local - com[marker_body] if len(markers) else np.zeros((0, 2)),
         marker_axis=np.stack([np.cos(angles), np.sin(angles)], axis=1),
+        moving=np.flatnonzero(marker_body),
+        directed=_directed(as_table, marker_body),
         angle_offset=np.array(offsets, float),
         distance_length=np.array(lengths, float),
         **as_table,
@@ -127,6 +129,12 @@ def pack(m: Mechanism) -> Packed:
         motions=motions,
         size=_size(system, lengths),
     )
+
+
+def _directed(tables: dict[str, np.ndarray], marker_body: np.ndarray) -> np.ndarray:
+    """First markers of slots and coordinates, on moving bodies."""
+    first = np.concatenate([tables["slot"][:, 0], tables["along"][:, 0]])
+    return np.unique(first[marker_body[first] > 0])
 
 
 def _size(system: System, lengths: list[float]) -> float:

@@ -26,6 +26,10 @@ class System(NamedTuple):
     """(nm, 2) from the centre of mass, body axes (m)."""
     marker_axis: Any
     """(nm, 2) unit x axis of the marker, body axes."""
+    moving: Any
+    """Markers on moving bodies."""
+    directed: Any
+    """Those of them whose axis a constraint uses."""
     point: Any
     angle: Any
     slot: Any
@@ -65,11 +69,13 @@ def workspace(system: System, rows: int) -> Workspace:
     bodies, markers = len(system.mass), len(system.marker_body)
     cos_sin = np.zeros((bodies, 2))
     cos_sin[:, 0] = 1.0
+    on_ground = system.marker_body == 0
+    at_rest = np.where(on_ground[:, None], system.marker_arm, 0.0)
     return Workspace(
         cos_sin=cos_sin,
-        arm=np.zeros((markers, 2)),
-        position=np.zeros((markers, 2)),
-        axis=np.zeros((markers, 2)),
+        arm=at_rest.copy(),
+        position=at_rest.copy(),
+        axis=np.where(on_ground[:, None], system.marker_axis, 0.0),
         phi=np.zeros(rows),
         jac=np.zeros((rows, 3 * bodies)),
         right=np.zeros(rows),

@@ -11,8 +11,8 @@ from typing import IO, NoReturn, Protocol
 
 from shared.errors import UserError
 
-PLAIN_INTERVAL = 5.0
-"""Seconds between two lines of progress in a log."""
+SHORTEST, LONGEST = 5.0, 60.0
+"""Seconds between two lines of progress in a log; the gap grows with the time that has passed."""
 RED, YELLOW, CYAN = "31", "33", "36"
 
 
@@ -121,7 +121,8 @@ class _PlainProgress(_Pace):
     def advance(self, n: int = 1, note: str = "") -> None:
         self.count += n
         now = time.monotonic()
-        if self.count >= self.total or now - self.last_line >= PLAIN_INTERVAL:
+        gap = min(max(SHORTEST, 0.05 * (now - self.started)), LONGEST)
+        if self.count >= self.total or now - self.last_line >= gap:
             self.last_line = now
             say(self.label, f"{self.count}/{self.total}, {self.words(note)}")
 

@@ -39,6 +39,21 @@ def test_progress_in_a_log_tells_count_pace_and_time_left(
     assert len(lines) == 7  # every third frame, and the last
 
 
+def test_a_long_run_does_not_flood_its_log(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    now = [0.0]
+    monkeypatch.setattr(console.time, "monotonic", lambda: now[0])
+    gaps, before = [], 0.0
+    with console.progress("frames", 36000) as bar:
+        for _ in range(36000):
+            now[0] += 1.0
+            bar.advance()
+            if capsys.readouterr().out:
+                gaps.append(now[0] - before)
+                before = now[0]
+    assert min(gaps[:-1]) == 5.0
+    assert max(gaps) == 60.0
+
+
 def test_progress_that_is_not_finished_says_nothing_false(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(ValueError, match="boom"), console.progress("frames", 3) as bar:
         bar.advance()

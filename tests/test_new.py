@@ -55,6 +55,31 @@ def test_a_new_mechanism_runs_whole_and_then_has_nothing_to_do(tree: Path) -> No
     assert before == {p: p.stat().st_mtime_ns for p in out.rglob("*") if p.is_file()}
 
 
+def changed(tree: Path, edit: tuple[str, str, str]) -> set[str]:
+    """Results that an edit (file, old text, new text) of my_linkage changes, when all its stages run again."""
+    out = tree / "out" / "my_linkage"
+    before = {p: p.stat().st_mtime_ns for p in out.rglob("*") if p.is_file()}
+    file = tree / "mechanisms" / "my_linkage" / edit[0]
+    text = file.read_text()
+    assert edit[1] in text
+    file.write_text(text.replace(edit[1], edit[2]))
+    for command in ("parts", "solve", "clearance", "shot"):
+        done = stage(tree, "mechanisms", command, "my_linkage")
+        assert done.returncode == 0, (command, done.stderr)
+    after = {p: p.stat().st_mtime_ns for p in out.rglob("*") if p.is_file() and ".stamps" not in p.parts}
+    return {p.relative_to(out).as_posix() for p, at in after.items() if before.get(p) != at}
+
+
+def test_an_edit_redoes_what_follows_from_it_and_nothing_else(tree: Path) -> None:
+    assert changed(tree, ("shot.py", "turns=3", "turns=2")) == {"shot.json"}
+    assert changed(tree, ("shot.py", "# degrees;", "# in degrees;")) <= {"shot.json"}
+    faster = changed(tree, ("mechanism.py", "speed: float = 2 * pi", "speed: float = 4 * pi"))
+    assert faster == {"data.json", "clearance.json"}
+    longer = changed(tree, ("mechanism.py", "rod: float = 0.100", "rod: float = 0.104"))
+    assert {"data.json", "clearance.json", "parts/parts.json", "parts/rod.stl", "parts/rail_left.stl"} <= longer
+    assert not {"shot.json", "parts/crank.stl", "parts/slider.stl", "parts/pin_A.step"} & longer
+
+
 def test_what_exists_is_not_touched() -> None:
     before = (MECHANISMS / "four_bar" / "mechanism.py").read_bytes()
     with pytest.raises(UserError, match=r"mechanisms/four_bar/ is there already"):

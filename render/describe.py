@@ -13,7 +13,7 @@ from render.framing import CameraPose, depth_of_field, fit, orbit
 from render.framing import axes as camera_axes
 from render.poses import Poses, moment
 from render.scene import LabelSpec, PieceSpec, Point, Scene, State, StudioSpec, SurfaceSpec, TrailSpec
-from render.solids import prism, read_vertices, swept
+from render.swept import SweptSpace
 from shared.contract import Motion, Parts, Piece
 from shared.errors import UserError
 from shared.files import file_hash
@@ -21,11 +21,11 @@ from shared.materials import MATERIALS
 from shared.shot import Shot, Surface, Trail, refuse_unknown
 
 Array = NDArray[np.float64]
-SWEEP_SAMPLES = 120
-"""Poses over the motion from which the swept space is taken."""
 TRAIL_RINGS = 160
 TRAIL_GAP = 0.001
 """Height (m) of a trail over the body that carries its point, if the shot gives none."""
+LABEL_GAP = 0.012
+"""Height of a label over its pin, as a part of the size of the swept motion."""
 
 
 class Film:
@@ -37,6 +37,8 @@ class Film:
         self.poses = Poses(motion)
         refuse_unknown(shot, motion, parts)
         self._refuse_mismatch()
+        paths = {trail.point: self._trail_z(trail) for trail in self.trails}
+        self.space = SweptSpace(self.poses, parts, folder, paths)
 
     @property
     def trails(self) -> tuple[Trail, ...]:
@@ -60,15 +62,15 @@ class Film:
                 for body, name, piece in self._pieces()
             ],
             trails=[
-                TrailSpec(name=t.point, colour=t.colour, radius=t.radius * self.size, rings=TRAIL_RINGS)
+                TrailSpec(name=t.point, colour=t.colour, radius=t.radius * self.space.size, rings=TRAIL_RINGS)
                 for t in self.trails
             ],
-            labels=[LabelSpec(text=s.text, size=s.size * self.size, colour=s.colour) for s in self.shot.labels],
+            labels=[LabelSpec(text=s.text, size=s.size * self.space.size, colour=s.colour) for s in self.shot.labels],
             studio=StudioSpec(
                 look=self.shot.look,
-                centre=_point(self._middle),
-                radius=self.size / 2,
-                floor=float(self._cloud[:, 2].min()),
+                centre=_point(self.space.middle),
+                radius=self.space.size / 2,
+                floor=float(self.space.all[:, 2].min()),
                 azimuth=math.radians(self.shot.camera.azimuth),
             ),
         )
@@ -79,7 +81,7 @@ class Film:
         return State(
             bodies={name: self.poses.body(name, at) for name in self.parts.bodies},
             trails=[self._path(trail, frame) for trail in self.trails],
-            labels=[self._label_place(label.at, at.time, frame) for label in self.shot.labels],
+            labels=[self._label_place(label.at, frame) for label in self.shot.labels],
             camera=self.camera(frame),
         )
 
@@ -94,7 +96,7 @@ class Film:
             azimuth += swing * math.sin(phase)
             position = target - camera_axes(azimuth, elevation)[2] * distance
         forward = camera_axes(azimuth, elevation)[2]
-        depths = (self._moving_cloud - position) @ forward
+        depths = (self.space.moving - position) @ forward
         focus, fstop = depth_of_field(float(depths.min()), float(depths.max()), shot.lens, shot.blur)
         return CameraPose(
             position=_point(position), azimuth=azimuth, elevation=elevation, lens=shot.lens, focus=focus, fstop=fstop
@@ -105,48 +107,12 @@ class Film:
         """Camera position, the point it looks at, and their distance."""
         shot = self.shot.camera
         elevation, azimuth = math.radians(shot.elevation), math.radians(shot.azimuth)
-        position, distance = fit(self._cloud, azimuth, elevation, shot.lens, shot.margin)
+        position, distance = fit(self.space.all, azimuth, elevation, shot.lens, shot.margin)
         target = position + camera_axes(azimuth, elevation)[2] * distance
         if shot.orbit:
             swing = azimuth + math.radians(shot.orbit) * np.linspace(-1, 1, 9)
-            distance = orbit(self._cloud, target, swing, elevation, shot.lens, shot.margin)
+            distance = orbit(self.space.all, target, swing, elevation, shot.lens, shot.margin)
         return position, target, distance
-
-    @cached_property
-    def _clouds(self) -> dict[str, Array]:
-        """The space each body sweeps, as points (n, 3); trails count as their point's body."""
-        frames = [moment(self.motion, i, SWEEP_SAMPLES) for i in range(SWEEP_SAMPLES)]
-        clouds: dict[str, Array] = {}
-        for body, solids in self.parts.bodies.items():
-            poses = np.array([self.poses.body(body, at) for at in frames])
-            if np.ptp(poses, axis=0).max() < 1e-12:
-                poses = poses[:1]
-            outlines = [prism(read_vertices(self.folder / piece.stl)) for piece in solids.pieces.values()]
-            if outlines:
-                clouds[body] = swept(np.concatenate(outlines), poses)
-        times = np.array([at.time for at in frames])
-        for trail in self.trails:
-            path = self.poses.point(trail.point, times)
-            clouds[f"trail {trail.point}"] = np.column_stack([path, np.full(len(path), self._trail_z(trail))])
-        return clouds
-
-    @cached_property
-    def _cloud(self) -> Array:
-        return np.concatenate(list(self._clouds.values()))
-
-    @cached_property
-    def _moving_cloud(self) -> Array:
-        moving = [cloud for body, cloud in self._clouds.items() if body in self.motion.bodies or " " in body]
-        return np.concatenate(moving) if moving else self._cloud
-
-    @cached_property
-    def _middle(self) -> Array:
-        return (self._cloud.min(axis=0) + self._cloud.max(axis=0)) / 2
-
-    @cached_property
-    def size(self) -> float:
-        """Diagonal (m) of the box around everything over the whole motion."""
-        return float(np.linalg.norm(np.ptp(self._cloud, axis=0)))
 
     def _pieces(self) -> list[tuple[str, str, Piece]]:
         return [(b, n, p) for b, solids in self.parts.bodies.items() for n, p in solids.pieces.items()]
@@ -183,13 +149,17 @@ class Film:
         z = self._trail_z(trail)
         return [(float(x), float(y), z) for x, y in self.poses.point(trail.point, times)]
 
-    def _label_place(self, name: str, time: float, frame: int) -> Point:
-        top = float(self._moving_cloud[:, 2].max()) + 0.02 * self.size
+    def _label_place(self, name: str, frame: int) -> Point:
+        """Just above the highest piece that its joint or point goes through."""
+        at = moment(self.motion, frame, self.shot.frames_per_turn)
         if name in self.motion.points:
-            x, y = self.poses.point(name, np.array([time]))[0]
+            x, y = (float(value) for value in self.poses.point(name, np.array([at.time]))[0])
+            bodies = (self.motion.points[name].body,)
         else:
-            x, y = self.poses.joint(name, moment(self.motion, frame, self.shot.frames_per_turn))
-        return float(x), float(y), top
+            x, y = self.poses.joint(name, at)
+            bodies = self.motion.joints[name].bodies
+        tops = [top for body in bodies for top in self.space.tops_at(body, x, y, at)]
+        return x, y, max(tops, default=float(self.space.moving[:, 2].max())) + LABEL_GAP * self.space.size
 
     def _refuse_mismatch(self) -> None:
         """The solids' bodies are the motion's; only the ground has no motion. Files are those parts.json describes."""

@@ -97,6 +97,7 @@ list: install ## the mechanisms and what is made of them
 
 check: install ## versions, system libraries, render device, disk space
 	@$(PYTHON) -m shared.check
+	@$(PYTHON) -m render.device_check
 
 install: ## uv, Python 3.13, every package at its locked version, compiled kernels
 	@sh tools/install.sh

@@ -302,3 +302,19 @@ def test_clean_removes_the_results_and_leaves_a_folder_of_the_users_alone(tmp_pa
     assert not (tmp_path / "out").exists()
     assert mine.exists()
     assert str(mine) in done.stderr
+
+
+def test_check_tells_versions_libraries_disk_and_device() -> None:
+    done = run("make", "-o", "install", "check")
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    assert [line.partition(":")[0] for line in lines] == [
+        "python",
+        "packages",
+        "system libraries",
+        "disk",
+        "render device",
+    ]
+    assert re.search(r"numpy \d+\.\d+\.\d+, .*bpy 5\.2", lines[1])
+    assert re.search(r"\d+ GB free", lines[3])
+    assert re.search(r"(CPU|OPTIX|CUDA|HIP|METAL|ONEAPI).*, Blender 5\.2", lines[4])

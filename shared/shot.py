@@ -90,7 +90,7 @@ class Shot(_Strict, frozen=True):
     labels: tuple[Label, ...] = ()
     materials: dict[str, str | Surface] = {}
     """Other surfaces for the film alone, by ``body`` or ``body/piece``: the name of a material or a Surface."""
-    poster: Unit = 0.12
+    poster: Unit = 0.3
     """Which moment the poster shows, as a part of a turn."""
 
     @property

@@ -8,5 +8,5 @@ shot = Shot(
     seconds_per_turn=4.0,
     fps=30,
     trails=(Trail(point="P"),),
-    poster=0.12,
+    poster=0.3,
 )

@@ -56,4 +56,6 @@ def refuse_unfit(name: str) -> None:
     if name in mechanism_names():
         raise UserError(f"mechanisms/{name}/ is there already; choose another name than: {known}")
     if (MECHANISMS / name).exists() or (MECHANISMS / f"{name}.py").exists():
-        raise UserError(f"mechanisms/ has a file or folder '{name}' already, which is no mechanism; choose another name")
+        raise UserError(
+            f"mechanisms/ has a file or folder '{name}' already, which is no mechanism; choose another name"
+        )

@@ -164,8 +164,10 @@ def _turn(
     if axis is None:
         return None
     about = [piece.triangles - [axis[piece.body][0], axis[piece.body][1], 0.0] for piece in (first, second)]
-    gap, proven = turn_gap(about[0], about[1], reach)
-    if proven < limit or sweep.gap_at(float(sweep.times[0]), reach) < limit:
+    if sweep.gap_at(float(sweep.times[0]), reach) < limit:
+        return None
+    gap, proven = turn_gap(about[0], about[1], reach, limit)
+    if proven < limit:
         return None
     return _pair(first, second, gap, proven, None, "turn", 1)
 
@@ -190,9 +192,9 @@ def _pair(
 
 def _refusal(name: str, refused: list[tuple[Sweep, float, float]], limit: float) -> str:
     """One sentence on the worst pair, a word on the others."""
-    measured = [(sweep, gap, time, sweep.overlap(time)) for sweep, gap, time in refused]
-    measured.sort(key=lambda item: (-item[3].depth, item[1]))
-    sweep, gap, time, overlap = measured[0]
+    refused = sorted(refused, key=lambda item: (-item[0].depth_at(item[2]), item[1]))
+    sweep, gap, time = refused[0]
+    overlap = sweep.overlap(time)
     pair = f"{sweep.mover.body}: {sweep.mover.name} and {sweep.still.body}: {sweep.still.name}"
     remedy = "move one to another layer, make it smaller, or cut it out where the other passes (parts.py)"
     if overlap.depth > 0:
@@ -202,7 +204,7 @@ def _refusal(name: str, refused: list[tuple[Sweep, float, float]], limit: float)
         )
     else:
         text = f"{name}: {pair} come as near as {gap:.3g} mm at t={time:.4g} s, required {limit:g} mm; {remedy}"
-    others = [f"{s.mover.name} and {s.still.name}" for s, *_ in measured[1:]]
+    others = [f"{s.mover.name} and {s.still.name}" for s, *_ in refused[1:]]
     if others:
         more = f" and {len(others) - 5} more" if len(others) > 5 else ""
         text += f". Also too near: {', '.join(others[:5])}{more}"

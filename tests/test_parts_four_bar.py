@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from itertools import combinations
+from dataclasses import replace
+from itertools import combinations, pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from mechanisms.clearance.pieces import MeshPiece, read_pieces
+from mechanisms.clearance_stage import check
 from mechanisms.four_bar.mechanism import Params
 from shared.contract import Parts, read_parts
 from shared.errors import UserError
 from tests.built_four_bar import make_parts
+from tests.motions import four_bar_motion
 
 
 @pytest.fixture(scope="module")
@@ -72,7 +75,7 @@ def test_every_body_has_its_pieces_and_masses(parts: Parts) -> None:
 
 def test_each_body_is_on_a_layer_of_its_own(parts: Parts) -> None:
     ranges = [next(iter(parts.bodies[body].pieces.values())).z_range for body in ("crank", "coupler", "rocker")]
-    for (_, top), (bottom, _) in zip(ranges, ranges[1:], strict=False):
+    for (_, top), (bottom, _) in pairwise(ranges):
         assert top < bottom
 
 
@@ -99,6 +102,32 @@ def test_pins_stand_where_the_joints_are(pieces: dict[str, MeshPiece]) -> None:
     joints = {"pin_A": (0, 0), "pin_B": (40, 0), "pin_C": (90, 0), "pin_D": (120, 0)}
     for name, point in joints.items():
         assert pieces[name].centre == pytest.approx(np.array(point), abs=0.02)
+
+
+def test_no_two_parts_touch_over_the_motion(pieces: dict[str, MeshPiece], parts: Parts) -> None:
+    found = check(parts, four_bar_motion(), list(pieces.values()), "key")
+    gaps = {frozenset(pair.pieces): pair for pair in found.pairs}
+    for joint, pin in (("A", "pin_A"), ("B", "pin_B"), ("C", "pin_C"), ("D", "pin_D")):
+        for side in ("low", "high"):
+            assert gaps[frozenset((pin, f"bushing_{joint}_{side}"))].gap == pytest.approx(0.1e-3, abs=0.02e-3)
+    assert gaps[frozenset(("washer_B", "bushing_B_low"))].gap == pytest.approx(0.4e-3, abs=1e-6)
+
+
+@pytest.mark.parametrize(("layers", "victim"), [(-1, "crank"), (1, "rocker")])
+def test_a_coupler_on_the_wrong_layer_collides(
+    pieces: dict[str, MeshPiece], parts: Parts, layers: int, victim: str
+) -> None:
+    """The stage says which parts, when and how deep."""
+    shifted = [
+        replace(piece, triangles=piece.triangles + np.array([0.0, 0.0, 9.8 * layers]))
+        if piece.body == "coupler"
+        else piece
+        for piece in pieces.values()
+    ]
+    with pytest.raises(UserError, match=r"four_bar: .* collide: deepest at t=.* s by .* mm") as caught:
+        check(parts, four_bar_motion(), shifted, "key")
+    assert "coupler" in str(caught.value)
+    assert victim in str(caught.value)
 
 
 def test_a_file_that_was_swapped_is_noticed(roots: tuple[Path, Path], parts: Parts, tmp_path: Path) -> None:

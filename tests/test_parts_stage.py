@@ -12,6 +12,8 @@ import cadquery as cq
 import pytest
 
 from mechanisms import parts_stage
+from mechanisms.mesh_check import check_mesh, only_solid
+from mechanisms.parts_files import read_mesh, stl_bytes
 from mechanisms.traced_params import traced
 from shared.contract import read_parts
 from shared.errors import UserError
@@ -135,10 +137,7 @@ def test_what_is_wrong_is_named(bench: Bench, parts: Any, message: str) -> None:
 
 
 def test_a_mesh_that_is_off_in_volume_is_refused() -> None:
-    from mechanisms.mesh_check import check_mesh
-    from mechanisms.parts_files import read_mesh, stl_bytes
-
-    solid = washer("a", 0.0).shape.val()
+    solid = only_solid(washer("a", 0.0).shape, "a")
     mesh = read_mesh(stl_bytes(solid))
     with pytest.raises(UserError, match=r"a: its mesh has .* allowed 0.5%; a fillet has probably failed"):
         check_mesh(mesh, 1.01 * solid.Volume(), 1, "a")

@@ -102,8 +102,8 @@ def test_bushing(inner: float, wall: float, flange: float, length: float) -> Non
 def test_circlip_is_open_and_has_two_eyes(inner: float, thickness: float) -> None:
     solid, _ = checked(circlip(inner, thickness), 2)
     assert solid.Center().x != 0.0
-    middle = placed(circlip(inner, thickness), turn=180.0).val().Center()
-    assert middle.x == pytest.approx(-solid.Center().x)
+    turned = only_solid(placed(circlip(inner, thickness), turn=180.0), "turned")
+    assert turned.Center().x == pytest.approx(-solid.Center().x)
 
 
 @few
@@ -120,7 +120,7 @@ def test_socket_screw(nominal: float) -> None:
 
 
 def test_an_unknown_screw_is_refused() -> None:
-    with pytest.raises(ValueError, match="no socket screw M7; there is M2, M2.5"):
+    with pytest.raises(ValueError, match=r"no socket screw M7; there is M2, M2\.5"):
         socket_screw(7.0, 20.0)
 
 
@@ -145,7 +145,7 @@ def test_every_letter_engraves(letter: str) -> None:
     block = extruded(outline.rounded_rectangle(-8, -8, 8, 8, 1.0), 3.0)
     shape = engraving.engraved(block, engraving.text(letter, 6.0, 0.0, 0.0), 3.0)
     solid, _ = checked(shape, 0)
-    assert 0.5 < block.val().Volume() - solid.Volume() < 10.0
+    assert 0.5 < only_solid(block, "block").Volume() - solid.Volume() < 10.0
 
 
 def test_rule_and_dial_engrave() -> None:
@@ -177,7 +177,7 @@ def test_sizes_that_do_not_fit_are_refused(make, message: str) -> None:
 
 def test_a_pivot_leaves_its_fits() -> None:
     pivot = Pivot()
-    low, high = (piece.shape.val() for piece in pivot.bushings("B", 0, 0, 10.0, 8.0))
+    low, high = (only_solid(piece.shape, piece.name) for piece in pivot.bushings("B", 0, 0, 10.0, 8.0))
     assert low.distance(high) == pytest.approx(0.2 + 2 * pivot.fit.seat, abs=1e-6)
     bolt = only_solid(pin(pivot.pin, 40.0), "pin")
     assert low.distance(bolt) == pytest.approx(pivot.fit.running / 2, abs=1e-6)

@@ -73,9 +73,11 @@ class Sweep:
     def least(self, limit: float, reach: float) -> Least:
         """The least gap; stops early below ``limit``. Proven over all time, not only at the measured poses."""
         times = [float(t) for t in np.interp(np.linspace(0, 1, START + 1), _share(self.times), self.times)]
-        gaps = {time: self.gap_at(time, reach) for time in times}
-        if self.travel[-1] == 0:
-            return Least(gaps[times[0]], times[0], gaps[times[0]], 1)
+        gaps: dict[float, float] = {}
+        for time in times:
+            gaps[time] = self.gap_at(time, reach)
+            if gaps[time] < limit or self.travel[-1] == 0:
+                return Least(gaps[time], time, gaps[time] if gaps[time] >= limit else 0.0, len(gaps))
         best = min(gaps, key=gaps.__getitem__)
         proven = gaps[best]
         todo = list(pairwise(times))
@@ -94,16 +96,16 @@ class Sweep:
         time, gap = self._polished(best, sorted(gaps), reach)
         return Least(gap, time, min(proven, gap), len(gaps))
 
-    def overlap(self, around: float, count: int = 180) -> Overlap:
+    def overlap(self, around: float, count: int = 120) -> Overlap:
         """Look at ``count`` poses and at ``around`` for the deepest overlap."""
         times = np.unique(np.append(np.linspace(self.times[0], self.times[-1], count), around))
-        depth = np.array([self._depth(float(time)) for time in times])
+        depth = np.array([self.depth_at(float(time)) for time in times])
         touching = times[depth > 0] if depth.any() else np.array([around])
         deepest = int(depth.argmax()) if depth.any() else int(np.argmin(np.abs(times - around)))
         return Overlap(float(times[deepest]), float(depth[deepest]), float(touching[0]), float(touching[-1]))
 
-    def _depth(self, time: float) -> float:
-        """The least width of what the two pieces share: its height, or its width in the plane."""
+    def depth_at(self, time: float) -> float:
+        """How deep (mm) the pieces overlap: the least width of what they share, in height or in the plane."""
         common = self.still.manifold ^ self._moved(time)
         if common.is_empty():
             return 0.0

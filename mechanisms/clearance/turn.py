@@ -17,12 +17,13 @@ ROUNDING = 1e-4
 """Boxes are widened to multiples of this (mm), so that those of a turned part coincide."""
 
 
-def turn_gap(first: np.ndarray, second: np.ndarray, reach: float) -> tuple[float, float]:
+def turn_gap(first: np.ndarray, second: np.ndarray, reach: float, limit: float = 0.0) -> tuple[float, float]:
     """The gap (mm) between two meshes (n, 3, 3) that turn about the z axis: what is reached, and what is proven.
 
     The first number is the distance of two points that some angle brings there; the second is below the gap at
     every angle, and less than the first by :data:`RESOLUTION` as a rule. Gaps beyond ``reach`` are given as
-    ``reach``. Holds for surfaces; whether one mesh is inside the other is to be seen at a single pose.
+    ``reach``; a gap that is seen to be below ``limit`` is not looked at further. Holds for surfaces; whether one
+    mesh is inside the other is to be seen at a single pose.
     """
     a, b = first, second
     best, proven = reach, 0.0
@@ -33,6 +34,8 @@ def turn_gap(first: np.ndarray, second: np.ndarray, reach: float) -> tuple[float
         if not len(a) or not len(b):
             break
         best = min(best, _reached(a, b))
+        if best < limit:
+            return best, 0.0
         low_a, low_b = _bounds(box_a, box_b)
         proven = float(low_a.min())
         enough = best - RESOLUTION if best < reach else reach
@@ -55,7 +58,7 @@ def _boxes(t: np.ndarray) -> np.ndarray:
 
 
 def _least_radius(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The least r of each triangle, and the z of that point (of an edge's point, if the axis pierces the triangle)."""
+    """The least r of each triangle (0 if the axis pierces it), and (n, 2) the nearest point of its edges, in (r, z)."""
     p, q = t, np.roll(t, -1, axis=1)
     d = q - p
     length = np.einsum("nij,nij->ni", d[:, :, :2], d[:, :, :2])
@@ -66,7 +69,8 @@ def _least_radius(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     rows = np.arange(len(t))
     side = p[:, :, 0] * q[:, :, 1] - p[:, :, 1] * q[:, :, 0]
     pierced = (side > 0).all(axis=1) | (side < 0).all(axis=1)
-    return np.where(pierced, 0.0, r[rows, edge]), nearest[rows, edge, 2]
+    on_edge = np.column_stack([r[rows, edge], nearest[rows, edge, 2]])
+    return np.where(pierced, 0.0, on_edge[:, 0]), on_edge
 
 
 def _hull(box: np.ndarray) -> np.ndarray:
@@ -108,9 +112,9 @@ def _reached(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def _samples(t: np.ndarray) -> np.ndarray:
-    """(n, 2) in (r, z): the corners of the triangles, and their points nearest to the axis."""
+    """(n, 2) in (r, z): the corners of the triangles, and the points of their edges nearest to the axis."""
     corners = np.column_stack([np.hypot(t[:, :, 0], t[:, :, 1]).ravel(), t[:, :, 2].ravel()])
-    return np.concatenate([corners, np.column_stack(_least_radius(t))])
+    return np.concatenate([corners, _least_radius(t)[1]])
 
 
 def _split(t: np.ndarray) -> np.ndarray:

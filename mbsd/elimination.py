@@ -21,7 +21,6 @@ import numpy as np
 
 from mbsd.jit import inlined
 
-
 INDEX = np.uint32
 """Unsigned, so that compiled indexing need not look for negative numbers."""
 
@@ -203,13 +202,13 @@ def _factorise_block(seq, fac):
 
 
 @inlined
-def solve(seq, fac, rhs, x):
-    """J x = rhs: rhs (m,) by row of J; x (3 nb,) by coordinate, ground's entries untouched."""
+def solve(seq, fac, sign, rhs, x):
+    """J x = sign * rhs: rhs (m,) by row of J; x (3 nb,) by coordinate, ground's entries untouched."""
     w, block, mixed, y = fac.values, fac.block, fac.mixed, fac.side
     n, k = seq.rows.shape[0], block.shape[0]
     p = n - k
     for e in range(n):
-        y[e] = seq.scale[e] * rhs[seq.rows[e]]
+        y[e] = sign * seq.scale[e] * rhs[seq.rows[e]]
     for e in range(seq.lower.shape[0]):
         y[seq.lower[e, 1]] -= w[seq.lower[e, 0]] * y[seq.lower[e, 2]]
     for a in range(k):

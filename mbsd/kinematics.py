@@ -38,23 +38,32 @@ DONE, NO_CONTRACTION, BRANCH_DOUBT, SINGULAR = 0, 1, 2, 3
 
 @inlined
 def _predict(q, v, a, t, k, time, out):
-    """Pose at ``time`` from results 0 .. k-1 (the last two, or the last alone)."""
+    """Pose at ``time`` from results 0 .. k-1: the quintic through the last two, or the last alone.
+
+    With s = ahead / h the quintic is linear in the six data, so its five factors are found once for all coordinates.
+    """
     ahead = time - t[k - 1]
     h = t[k - 1] - t[k - 2] if k > 1 else 0.0
+    from_q, from_v, from_a, earlier_v, earlier_a = 0.0, ahead, 0.5 * ahead * ahead, 0.0, 0.0
     if ahead < LONGEST_STRETCH * h:
         s = ahead / h
-        for c in range(3, q.shape[1]):
-            q1, speed, bend = q[k - 1, c], v[k - 1, c] * h, a[k - 1, c] * h * h
-            d0 = q[k - 2, c] - q1 + speed - 0.5 * bend
-            d1 = v[k - 2, c] * h - speed + bend
-            d2 = a[k - 2, c] * h * h - bend
-            c3 = -(10.0 * d0 + 4.0 * d1 + 0.5 * d2)
-            c5 = c3 + d1 + 4.0 * d0
-            c4 = d0 + c3 + c5
-            out[c] = q1 + s * (speed + s * (0.5 * bend + s * (c3 + s * (c4 + s * c5))))
-    else:
-        for c in range(3, q.shape[1]):
-            out[c] = q[k - 1, c] + ahead * (v[k - 1, c] + 0.5 * ahead * a[k - 1, c])
+        cube = s * s * s
+        from_q = -cube * (10.0 + s * (15.0 + 6.0 * s))
+        p1 = -cube * (4.0 + s * (7.0 + 3.0 * s))
+        p2 = -cube * (0.5 + s * (1.0 + 0.5 * s))
+        from_v = h * (s + from_q - p1)
+        from_a = h * h * (0.5 * s * s - 0.5 * from_q + p1 - p2)
+        earlier_v, earlier_a = h * p1, h * h * p2
+    last, before = k - 1, max(k - 2, 0)
+    for c in range(3, q.shape[1]):
+        out[c] = (
+            q[last, c]
+            + from_q * (q[before, c] - q[last, c])
+            + from_v * v[last, c]
+            + earlier_v * v[before, c]
+            + from_a * a[last, c]
+            + earlier_a * a[before, c]
+        )
 
 
 @inlined
@@ -77,7 +86,7 @@ def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, st
     Returns (status, index): DONE and T, or why and at which index the step was refused.
     """
     n3, per_metre = q.shape[1], 1.0 / size
-    pose, delta, right = ws.pose, ws.delta, ws.right
+    pose, delta = ws.pose, ws.delta
     for k in range(start, times.shape[0]):
         if k > 0:
             _predict(q, v, a, times, k, times[k], pose)
@@ -90,9 +99,7 @@ def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, st
             determinant, margin = factorise(seq, ws.jac, fac)
             if margin < 1e-12:
                 return SINGULAR, k
-            for r in range(right.shape[0]):
-                right[r] = -ws.phi[r]
-            solve(seq, fac, right, delta)
+            solve(seq, fac, -1.0, ws.phi, delta)
             for c in range(3, n3):
                 pose[c] += delta[c]
             change = _extent(delta, per_metre)
@@ -125,8 +132,5 @@ def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, st
                 evaluate_nu(system, drives[k], ws)
             else:
                 evaluate_gamma(system, v[k], drives[k], ws)
-            solve(seq, fac, ws.right, delta)
-            target = v if level == 0 else a
-            for c in range(3, n3):
-                target[k, c] = delta[c]
+            solve(seq, fac, 1.0, ws.right, v[k] if level == 0 else a[k])
     return DONE, times.shape[0]

@@ -66,7 +66,7 @@ class Workspace(NamedTuple):
 
 def workspace(system: System, rows: int) -> Workspace:
     """Scratch for ``rows`` constraint rows. Entries of ``jac`` outside the pattern stay zero for ever."""
-    bodies, markers = len(system.mass), len(system.marker_body)
+    bodies = len(system.mass)
     cos_sin = np.zeros((bodies, 2))
     cos_sin[:, 0] = 1.0
     on_ground = system.marker_body == 0

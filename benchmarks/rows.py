@@ -1,0 +1,39 @@
+"""A row of a benchmark, the table on the console, and out/bench.json."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+
+from shared.files import write_bytes
+from shared.paths import out_root
+
+
+@dataclass(frozen=True)
+class Row:
+    """One code on one problem: seconds for the whole problem, error as the problem defines it."""
+
+    problem: str
+    code: str
+    version: str
+    settings: str
+    seconds: float
+    error: float
+
+
+def write(rows: Sequence[Row]) -> None:
+    """out/bench.json, whole."""
+    text = json.dumps([asdict(row) for row in rows], indent=1) + "\n"
+    write_bytes(out_root() / "bench.json", text.encode())
+
+
+def show(rows: Sequence[Row], steps: int) -> None:
+    """Print the rows, with the time against the first row's code."""
+    base = rows[0].seconds
+    print(f"\n{rows[0].problem}")
+    print(f"  {'code':<12}{'version':<10}{'us/step':>10}{'x mbsd':>9}{'error':>10}  settings")
+    for row in rows:
+        micro = row.seconds / steps * 1e6
+        numbers = f"{micro:>10.3f}{row.seconds / base:>9.2f}{row.error:>10.1e}"
+        print(f"  {row.code:<12}{row.version:<10}{numbers}  {row.settings}")

@@ -12,7 +12,7 @@ from render.blender.nodes import Graph
 from render.scene import Point, TrailSpec
 
 SIDES = 10
-BRIGHTNESS = 3.6
+BRIGHTNESS = 2.9
 
 
 def build(scene: Any, trail: TrailSpec) -> Any:

@@ -172,6 +172,8 @@ class Film:
                 f"{name}: parts.json has solids for {', '.join(unknown)}, which do not move in data.json; "
                 f"it has: {', '.join(self.motion.bodies)}"
             )
+        if not self._pieces():
+            raise UserError(f"{name}: parts.json has no solids, so there is nothing to see; make the parts again")
         for _, _, piece in self._pieces():
             if file_hash(self.folder / piece.stl) != piece.stl_sha256:
                 raise UserError(f"{name}: {piece.stl} is not the file parts.json describes; make the parts again")

@@ -90,6 +90,14 @@ def test_the_prism_holds_every_vertex(vertices: np.ndarray):
     assert np.all((outline @ directions.T).max(axis=0) >= (vertices @ directions.T).max(axis=0) - 1e-12)
 
 
+def test_parts_without_a_solid_are_refused(out_root: Path):
+    out = film_fixture.write()
+    parts = read_parts(out.parts)
+    parts.bodies = {}
+    with pytest.raises(UserError, match=r"four_bar: parts\.json has no solids"):
+        Film(read_motion(out.motion), parts, Shot(trails=()), out.parts_folder)
+
+
 def test_a_truncated_stl_is_refused(out_root: Path):
     out = film_fixture.write()
     path = out.parts_folder / "crank-crank.stl"

@@ -27,6 +27,7 @@ def choose(scene: Any) -> str:
             for device in preferences.devices:
                 device.use = device.type == backend
             scene.cycles.device = "GPU"
+            scene.cycles.denoising_use_gpu = True
             return f"{backend}: {', '.join(sorted({device.name for device in gpus}))}"
     preferences.compute_device_type = "NONE"
     scene.cycles.device = "CPU"

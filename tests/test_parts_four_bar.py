@@ -11,11 +11,13 @@ import pytest
 
 from mechanisms.clearance.pieces import MeshPiece, read_pieces
 from mechanisms.clearance_stage import check
+from mechanisms.four_bar import parts as four_bar
 from mechanisms.four_bar.mechanism import Params
 from shared.contract import Parts, read_parts
 from shared.errors import UserError
 from tests.built_four_bar import make_parts
 from tests.motions import four_bar_motion
+from tests.shape_checks import checked
 
 
 @pytest.fixture(scope="module")
@@ -128,6 +130,15 @@ def test_a_coupler_on_the_wrong_layer_collides(
         check(parts, four_bar_motion(), shifted, "key")
     assert "coupler" in str(caught.value)
     assert victim in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "lengths", [{"crank": 0.036, "ground": 0.100}, {"crank": 0.050, "coupler": 0.140, "rocker": 0.110, "ground": 0.150}]
+)
+def test_other_lengths_give_sound_solids(lengths: dict[str, float]) -> None:
+    for solids in four_bar.parts(Params(**lengths)).values():
+        for solid in solids:
+            checked(solid.shape, solid.through_holes)
 
 
 def test_a_file_that_was_swapped_is_noticed(roots: tuple[Path, Path], parts: Parts, tmp_path: Path) -> None:

@@ -67,9 +67,8 @@ def coupler(length: float) -> list[Solid]:
     tracer = Eye(7.0, 4.0 + PIVOT.fit.press, above=1.5, boss=5.2)
     joints = [(0.0, 0.0, eye), (length, 0.0, eye), (*TRACER, tracer)]
     plate = plate_link(joints, COUPLER, waist=240.0, rims=(2.6, 6.4, 6.4))
-    plate = engraved(
-        plate, text("B", 6.0, 18.0, 1.4, width=1.1) + text("C", 6.0, length - 18.0, 1.4, width=1.1), COUPLER
-    )
+    letters = text("B", 6.5, 18.0, 1.4, width=1.3) + text("C", 6.5, length - 18.0, 1.4, width=1.3)
+    plate = engraved(plate, letters, COUPLER, depth=0.6)
     top = Z_COUPLER + COUPLER + 1.5 + PIVOT.fit.seat
     return [
         Solid("coupler", placed(plate, z=Z_COUPLER), "aluminium", 4),

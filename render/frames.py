@@ -67,8 +67,9 @@ class Tally:
     cycles: float = 0.0
 
     def write(self, store: FrameStore, preset: Preset, wall: float) -> None:
-        """Keep it in timing.json, unless nothing was made."""
-        if not self.rendered:
+        """Keep it in timing.json, unless this was but the rest of a longer run: Blender's start would dominate it."""
+        longer = store.read_timing()
+        if not self.rendered or (longer is not None and self.rendered < longer.rendered / 4):
             return
         timing = Timing(
             preset=preset.name,

@@ -33,7 +33,7 @@ class FrameIndex(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
 
 
 class Timing(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
-    """timing.json: how long the last run that rendered anything took. Seconds."""
+    """timing.json: how long the last run of some length took. Seconds."""
 
     schema: Literal["mbsd.timing"] = "mbsd.timing"
     schema_version: Literal[1] = 1

@@ -71,6 +71,7 @@ def test_three_turns_cost_one_and_a_changed_colour_costs_all(out_root: Path, cap
     film.run("four-bar", TINY)
     assert "1 of 6 pictures to render" in capsys.readouterr().out
     assert np.array_equal(pixels(damaged), whole)
+    assert jsonfile.read(store.timing, Timing) == timing  # one picture says little about the pace
     assert out.film("tiny").read_bytes() == content
     assert {name for name, at in stamps(store).items() if first.get(name) != at} == {damaged.name}
 

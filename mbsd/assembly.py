@@ -22,29 +22,41 @@ def evaluate_position(system, q, drive, ws):
 
 
 @inlined
-def evaluate_nu(system, drive, ws):
-    """Fill ws.right with nu: f' in driven rows, else zero."""
-    for r in range(ws.right.shape[0]):
-        ws.right[r] = 0.0
+def evaluate_nu(system, drive, nu):
+    """Fill nu (m,): f' in driven rows, else zero."""
+    for r in range(nu.shape[0]):
+        nu[r] = 0.0
     for table in (system.angle, system.along, system.distance):
         for k in range(table.shape[0]):
-            ws.right[table[k, 2]] = drive[table[k, 3], 1]
+            nu[table[k, 2]] = drive[table[k, 3], 1]
 
 
 @inlined
-def evaluate_gamma(system, v, drive, ws):
-    """Fill ws.right with gamma at velocities v (3 nb,), after evaluate_position at the same pose."""
-    point.gamma_rows(system, v, ws)
-    angle.gamma_rows(system, ws)
-    slot.gamma_rows(system, v, ws)
-    along.gamma_rows(system, v, ws)
-    distance.gamma_rows(system, v, ws)
+def evaluate_gamma(system, v, drive, ws, gamma):
+    """Fill gamma (m,) at velocities v (3 nb,), after evaluate_position at the same pose."""
+    point.gamma_rows(system, v, ws, gamma)
+    angle.gamma_rows(system, gamma)
+    slot.gamma_rows(system, v, ws, gamma)
+    along.gamma_rows(system, v, ws, gamma)
+    distance.gamma_rows(system, v, ws, gamma)
     for table in (system.angle, system.along, system.distance):
         for k in range(table.shape[0]):
-            ws.right[table[k, 2]] += drive[table[k, 3], 2]
+            gamma[table[k, 2]] += drive[table[k, 3], 2]
 
 
 @kernel
 def residual_and_jacobian(system, q, drive, ws):
     """evaluate_position as a function of its own, for callers outside the compiled loops."""
     evaluate_position(system, q, drive, ws)
+
+
+@kernel
+def tabulate(system, drives, q, v, ws, phi, jacobians, gamma):
+    """phi, gamma (T, m) and Jacobians without ground's columns (T, m, n) along a motion q, v (T, 3 nb)."""
+    for k in range(q.shape[0]):
+        residual_and_jacobian(system, q[k], drives[k], ws)
+        evaluate_gamma(system, v[k], drives[k], ws, gamma[k])
+        for r in range(ws.phi.shape[0]):
+            phi[k, r] = ws.phi[r]
+            for c in range(3, q.shape[1]):
+                jacobians[k, r, c - 3] = ws.jac[r, c]

@@ -60,9 +60,9 @@ class Factors(NamedTuple):
     order: Any
     """(k,) row order of the block."""
     mixed: Any
-    """(k,) scratch."""
+    """(k, 2) scratch."""
     side: Any
-    """(n,) right-hand side, then the solution, by position."""
+    """(n, 2) right-hand sides, then the solutions, by position."""
 
 
 def plan(samples: np.ndarray, kept_rows: np.ndarray) -> tuple[Elimination, Factors]:
@@ -131,7 +131,9 @@ def plan(samples: np.ndarray, kept_rows: np.ndarray) -> tuple[Elimination, Facto
         upper=_triples(upper),
         block=block,
     )
-    return sequence, Factors(values, np.zeros((size, size)), np.zeros(size, np.int64), np.zeros(size), np.zeros(n))
+    return sequence, Factors(
+        values, np.zeros((size, size)), np.zeros(size, np.int64), np.zeros((size, 2)), np.zeros((n, 2))
+    )
 
 
 def _triples(rows: list) -> np.ndarray:
@@ -202,52 +204,34 @@ def _factorise_block(seq, fac):
 
 
 @inlined
-def solve(seq, fac, sign, rhs, x):
-    """J x = sign * rhs: rhs (m,) by row of J; x (3 nb,) by coordinate, ground's entries untouched."""
+def solve(seq, fac, sides, rhs, x):
+    """J x = rhs for the first ``sides`` (1 or 2) right-hand sides at once.
+
+    rhs (2, m) by row of J; x (2, 3 nb) by coordinate, ground's entries untouched.
+    """
     w, block, mixed, y = fac.values, fac.block, fac.mixed, fac.side
     n, k = seq.rows.shape[0], block.shape[0]
     p = n - k
     for e in range(n):
-        y[e] = sign * seq.scale[e] * rhs[seq.rows[e]]
+        for s in range(sides):
+            y[e, s] = seq.scale[e] * rhs[s, seq.rows[e]]
     for e in range(seq.lower.shape[0]):
-        y[seq.lower[e, 1]] -= w[seq.lower[e, 0]] * y[seq.lower[e, 2]]
+        for s in range(sides):
+            y[seq.lower[e, 1], s] -= w[seq.lower[e, 0]] * y[seq.lower[e, 2], s]
     for a in range(k):
-        mixed[a] = y[p + fac.order[a]]
-        for c in range(a):
-            mixed[a] -= block[a, c] * mixed[c]
+        for s in range(sides):
+            mixed[a, s] = y[p + fac.order[a], s]
+            for c in range(a):
+                mixed[a, s] -= block[a, c] * mixed[c, s]
     for a in range(k - 1, -1, -1):
-        for c in range(a + 1, k):
-            mixed[a] -= block[a, c] * mixed[c]
-        mixed[a] *= block[a, a]
-        y[p + a] = mixed[a]
+        for s in range(sides):
+            for c in range(a + 1, k):
+                mixed[a, s] -= block[a, c] * mixed[c, s]
+            mixed[a, s] *= block[a, a]
+            y[p + a, s] = mixed[a, s]
     for e in range(seq.upper.shape[0] - 1, -1, -1):
-        y[seq.upper[e, 1]] -= w[seq.upper[e, 0]] * y[seq.upper[e, 2]]
+        for s in range(sides):
+            y[seq.upper[e, 1], s] -= w[seq.upper[e, 0]] * y[seq.upper[e, 2], s]
     for e in range(n):
-        x[seq.columns[e]] = y[e]
-
-
-@inlined
-def solve_transposed(seq, fac, rhs, x):
-    """J^T x = rhs: rhs (3 nb,) by coordinate; x (m,) by row of J, rows that are not kept get 0."""
-    w, block, mixed, y = fac.values, fac.block, fac.mixed, fac.side
-    n, k = seq.rows.shape[0], block.shape[0]
-    p = n - k
-    for e in range(n):
-        y[e] = rhs[seq.columns[e]]
-    for e in range(seq.upper.shape[0]):
-        y[seq.upper[e, 2]] -= w[seq.upper[e, 0]] * y[seq.upper[e, 1]]
-    for a in range(k):
-        mixed[a] = y[p + a]
-        for c in range(a):
-            mixed[a] -= block[c, a] * mixed[c]
-        mixed[a] *= block[a, a]
-    for a in range(k - 1, -1, -1):
-        for c in range(a + 1, k):
-            mixed[a] -= block[c, a] * mixed[c]
-        y[p + fac.order[a]] = mixed[a]
-    for e in range(seq.lower.shape[0] - 1, -1, -1):
-        y[seq.lower[e, 2]] -= w[seq.lower[e, 0]] * y[seq.lower[e, 1]]
-    for e in range(x.shape[0]):
-        x[e] = 0.0
-    for e in range(n):
-        x[seq.rows[e]] = seq.scale[e] * y[e]
+        for s in range(sides):
+            x[s, seq.columns[e]] = y[e, s]

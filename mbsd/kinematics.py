@@ -86,7 +86,7 @@ def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, st
     Returns (status, index): DONE and T, or why and at which index the step was refused.
     """
     n3, per_metre = q.shape[1], 1.0 / size
-    pose, delta = ws.pose, ws.delta
+    pose, delta, right = ws.pose, ws.delta, ws.right
     for k in range(start, times.shape[0]):
         if k > 0:
             _predict(q, v, a, times, k, times[k], pose)
@@ -94,15 +94,18 @@ def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, st
             for c in range(n3):
                 pose[c] = q[0, c]
         first, last = 0.0, np.inf
+        evaluate_nu(system, drives[k], right[1])
         for iteration in range(MAX_ITERATIONS):
             evaluate_position(system, pose, drives[k], ws)
             determinant, margin = factorise(seq, ws.jac, fac)
             if margin < 1e-12:
                 return SINGULAR, k
-            solve(seq, fac, -1.0, ws.phi, delta)
+            for r in range(ws.phi.shape[0]):
+                right[0, r] = -ws.phi[r]
+            solve(seq, fac, 2, right, delta)
             for c in range(3, n3):
-                pose[c] += delta[c]
-            change = _extent(delta, per_metre)
+                pose[c] += delta[0, c]
+            change = _extent(delta[0], per_metre)
             if iteration == 0:
                 first = change
             if change <= TOLERANCE:
@@ -114,8 +117,8 @@ def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, st
             return NO_CONTRACTION, k
         if k > 0:
             for c in range(3, n3):
-                delta[c] = pose[c] - q[k - 1, c]
-            step = _extent(delta, per_metre)
+                delta[0, c] = pose[c] - q[k - 1, c]
+            step = _extent(delta[0], per_metre)
             if first > SUSPICIOUS * step + 1e-9:
                 return BRANCH_DOUBT, k
             if determinant != sign[k - 1] and first > CONFIRMED * step + 1e-9:
@@ -127,10 +130,10 @@ def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, st
         for r in range(ws.phi.shape[0]):
             worst = max(worst, abs(ws.phi[r]))
         residual[k] = worst
-        for level in range(2):  # velocities, then accelerations, with the same factors
-            if level == 0:
-                evaluate_nu(system, drives[k], ws)
-            else:
-                evaluate_gamma(system, v[k], drives[k], ws)
-            solve(seq, fac, 1.0, ws.right, v[k] if level == 0 else a[k])
+        for c in range(3, n3):
+            v[k, c] = delta[1, c]
+        evaluate_gamma(system, v[k], drives[k], ws, right[0])
+        solve(seq, fac, 1, right, delta)
+        for c in range(3, n3):
+            a[k, c] = delta[0, c]
     return DONE, times.shape[0]

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mbsd.efforts import efforts
 from mbsd.errors import ModelError
+from mbsd.inverse_dynamics import inverse_dynamics
 from mbsd.model import Mechanism
 from mbsd.prepared import prepare
 from mbsd.solution import Solution, Stats
@@ -21,7 +21,7 @@ def sweep(m: Mechanism, duration: float | None, steps: int, times: Sequence[floa
     q, v, a, inserted = ready.march(grid)
     packed = ready.packed
     drives = packed.drives(grid)
-    loads = efforts(ready, drives, q, v, a)
+    loads = inverse_dynamics(ready, drives, q, v, a)
     shape = (len(grid), -1, 3)
     return Solution(
         mechanism=m,

@@ -58,10 +58,11 @@ class Workspace(NamedTuple):
     jac: Any
     """(m, 3 nb) dPhi/dq, ground included."""
     right: Any
-    """(m,) right-hand side: -Phi, nu or gamma."""
+    """(2, m) right-hand sides: -Phi and nu, then gamma."""
     pose: Any
-    delta: Any
     """(3 nb,) of the Newton iteration."""
+    delta: Any
+    """(2, 3 nb) its correction, and the velocities."""
 
 
 def workspace(system: System, rows: int) -> Workspace:
@@ -78,7 +79,7 @@ def workspace(system: System, rows: int) -> Workspace:
         axis=np.where(on_ground[:, None], system.marker_axis, 0.0),
         phi=np.zeros(rows),
         jac=np.zeros((rows, 3 * bodies)),
-        right=np.zeros(rows),
+        right=np.zeros((2, rows)),
         pose=np.zeros(3 * bodies),
-        delta=np.zeros(3 * bodies),
+        delta=np.zeros((2, 3 * bodies)),
     )

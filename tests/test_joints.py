@@ -25,12 +25,8 @@ SEEDS = range(5)
 @kernel
 def _everything(system, q, v, drive, ws, nu, gamma):
     evaluate_position(system, q, drive, ws)
-    evaluate_nu(system, drive, ws)
-    for r in range(nu.shape[0]):
-        nu[r] = ws.right[r]
-    evaluate_gamma(system, v, drive, ws)
-    for r in range(nu.shape[0]):
-        gamma[r] = ws.right[r]
+    evaluate_nu(system, drive, nu)
+    evaluate_gamma(system, v, drive, ws, gamma)
 
 
 def _example(kind: JointKind, seed: int, to_ground: bool) -> Packed:

@@ -29,7 +29,7 @@ def rows(system, drive, ws):
 
 
 @inlined
-def gamma_rows(system, v, ws):
+def gamma_rows(system, v, ws, gamma):
     """Acceleration right-hand side (m/s^2) without f''."""
     table = system.along
     for k in range(table.shape[0]):
@@ -44,7 +44,7 @@ def gamma_rows(system, v, ws):
         rate_y = v[bj + 1] + wj * ws.arm[j, 0] - v[bi + 1] - wi * ws.arm[i, 0]
         convective_x = -wj * wj * ws.arm[j, 0] + wi * wi * ws.arm[i, 0]
         convective_y = -wj * wj * ws.arm[j, 1] + wi * wi * ws.arm[i, 1]
-        ws.right[r] = -(
+        gamma[r] = -(
             ux * convective_x
             + uy * convective_y
             + 2.0 * wi * (nx * rate_x + ny * rate_y)

@@ -23,7 +23,7 @@ def rows(system, q, drive, ws):
 
 
 @inlined
-def gamma_rows(system, ws):
+def gamma_rows(system, gamma):
     """Acceleration right-hand side (rad/s^2) without f''."""
     for k in range(system.angle.shape[0]):
-        ws.right[system.angle[k, 2]] = 0.0
+        gamma[system.angle[k, 2]] = 0.0

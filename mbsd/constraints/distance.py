@@ -35,7 +35,7 @@ def rows(system, drive, ws):
 
 
 @inlined
-def gamma_rows(system, v, ws):
+def gamma_rows(system, v, ws, gamma):
     """Acceleration right-hand side (m/s^2) without f''."""
     table = system.distance
     for k in range(table.shape[0]):
@@ -51,4 +51,4 @@ def gamma_rows(system, v, ws):
         convective_x = -wj * wj * ws.arm[j, 0] + wi * wi * ws.arm[i, 0]
         convective_y = -wj * wj * ws.arm[j, 1] + wi * wi * ws.arm[i, 1]
         across = ux * rate_y - uy * rate_x
-        ws.right[r] = -(ux * convective_x + uy * convective_y + across * across / length)
+        gamma[r] = -(ux * convective_x + uy * convective_y + across * across / length)

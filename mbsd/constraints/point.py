@@ -26,11 +26,11 @@ def rows(system, ws):
 
 
 @inlined
-def gamma_rows(system, v, ws):
+def gamma_rows(system, v, ws, gamma):
     """Acceleration right-hand side (m/s^2); v is (3 nb,)."""
-    table, right = system.point, ws.right
+    table = system.point
     for k in range(table.shape[0]):
         i, j, r = table[k, 0], table[k, 1], table[k, 2]
         wi, wj = v[3 * system.marker_body[i] + 2], v[3 * system.marker_body[j] + 2]
-        right[r] = wj * wj * ws.arm[j, 0] - wi * wi * ws.arm[i, 0]
-        right[r + 1] = wj * wj * ws.arm[j, 1] - wi * wi * ws.arm[i, 1]
+        gamma[r] = wj * wj * ws.arm[j, 0] - wi * wi * ws.arm[i, 0]
+        gamma[r + 1] = wj * wj * ws.arm[j, 1] - wi * wi * ws.arm[i, 1]

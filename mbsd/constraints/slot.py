@@ -30,7 +30,7 @@ def rows(system, ws):
 
 
 @inlined
-def gamma_rows(system, v, ws):
+def gamma_rows(system, v, ws, gamma):
     """Acceleration right-hand side (m/s^2)."""
     table = system.slot
     for k in range(table.shape[0]):
@@ -45,7 +45,7 @@ def gamma_rows(system, v, ws):
         rate_y = v[bj + 1] + wj * ws.arm[j, 0] - v[bi + 1] - wi * ws.arm[i, 0]
         convective_x = -wj * wj * ws.arm[j, 0] + wi * wi * ws.arm[i, 0]
         convective_y = -wj * wj * ws.arm[j, 1] + wi * wi * ws.arm[i, 1]
-        ws.right[r] = -(
+        gamma[r] = -(
             nx * convective_x
             + ny * convective_y
             - 2.0 * wi * (ux * rate_x + uy * rate_y)

@@ -1,0 +1,98 @@
+"""Inverse dynamics along a known motion: multipliers, reactions, efforts, and how exact the motion is.
+
+    J^T lam = Q - M a                  Q: gravity
+    reaction on body b = -J_b^T lam, given at the joint's second marker: fx, fy, torque
+    effort of a driver = -lam of its row;  power = effort f'
+
+M is constant and diagonal because q holds centres of mass. Where joints are redundant the loads share in many ways;
+the multipliers of least norm are taken. Source: Haug 1989, ch. 6.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.assembly import tabulate
+from mbsd.packing import Packed
+from mbsd.prepared import Prepared
+
+JACOBIAN_NUMBERS = 4_000_000
+"""How many numbers of Jacobians are held at once."""
+
+
+@dataclass
+class Efforts:
+    """Over the times of a motion."""
+
+    lam: np.ndarray
+    """(T, m) multipliers."""
+    wrench: np.ndarray
+    """(T, joints, 3) fx, fy, torque on the second body at its marker."""
+    margin: np.ndarray
+    """(T,) smallest over largest singular value of the scaled Jacobian."""
+    residuals: np.ndarray
+    """(4,) largest |Phi|, |J v - nu|, |J a - gamma| and |d(T + V)/dt - power of the drivers|."""
+
+
+def inverse_dynamics(ready: Prepared, drives: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> Efforts:
+    """Solve for the multipliers of the motion q, v, a (T, 3 nb) and check it against its equations."""
+    packed, system = ready.packed, ready.packed.system
+    count, rows = len(q), len(packed.ws.phi)
+    inertia = np.stack([system.mass, system.mass, system.inertia], axis=1).ravel()
+    weight = np.zeros((len(system.mass), 3))
+    weight[:, :2] = system.mass[:, None] * system.gravity
+    loads = weight.ravel() - inertia * a
+    nu = np.zeros((count, rows))
+    nu[:, packed.driver_rows :] = drives[:, 1:, 1]
+    out = Efforts(np.zeros((count, rows)), np.zeros((count, len(packed.joints), 3)), np.zeros(count), np.zeros(4))
+    kept = ready.sequence.rows.astype(np.int64)
+    chunk = max(1, JACOBIAN_NUMBERS // max(1, rows * packed.coordinates))
+    for start in range(0, count, chunk):
+        at = slice(start, min(start + chunk, count))
+        phi, gamma = np.zeros((2, at.stop - start, rows))
+        jac = np.zeros((at.stop - start, rows, packed.coordinates))
+        tabulate(system, drives[at], q[at], v[at], packed.ws, phi, jac, gamma)
+        scaled = jac[:, kept] * packed.row_scale()[kept, None] * packed.column_scale()
+        singular = np.linalg.svd(scaled, compute_uv=False)
+        out.margin[at] = singular[:, -1] / singular[:, 0]
+        lam = out.lam[at]
+        if ready.mobility.redundant_rows:
+            for k, matrix in enumerate(jac):
+                lam[k] = np.linalg.lstsq(matrix.T, loads[start + k, 3:], rcond=1e-9)[0]
+        else:
+            lam[:] = np.linalg.solve(jac.transpose(0, 2, 1), loads[at, 3:, None])[..., 0]
+        out.wrench[at] = _wrenches(packed, jac, q[at], lam)
+        rate = np.einsum("trc,tc->tr", jac, v[at, 3:]) - nu[at]
+        bend = np.einsum("trc,tc->tr", jac, a[at, 3:]) - gamma
+        power = (loads[at] * v[at]).sum(axis=1) - (lam * nu[at]).sum(axis=1)
+        worst = [np.abs(error).max(initial=0.0) for error in (phi, rate, bend, power)]
+        out.residuals = np.maximum(out.residuals, worst)
+    return out
+
+
+def _wrenches(packed: Packed, jac: np.ndarray, q: np.ndarray, lam: np.ndarray) -> np.ndarray:
+    """(T, joints, 3) -J_b^T lam on each joint's second body b, moved from its centre of mass to the second marker.
+
+    Ground has no columns; as second body it takes the opposite of what the first body gets.
+    """
+    system = packed.system
+    out = np.zeros((len(lam), len(packed.joints), 3))
+    for joint, (i, j) in enumerate(packed.markers):
+        rows = slice(packed.first_row[joint], packed.first_row[joint + 1])
+        body, sign = (system.marker_body[j], -1.0) if system.marker_body[j] else (system.marker_body[i], 1.0)
+        columns = slice(3 * body - 3, 3 * body)
+        push = sign * np.einsum("trc,tr->tc", jac[:, rows, columns], lam[:, rows])
+        arm = _places(packed, q, j) - q[:, 3 * body : 3 * body + 2]
+        push[:, 2] -= arm[:, 0] * push[:, 1] - arm[:, 1] * push[:, 0]
+        out[:, joint] = push
+    return out
+
+
+def _places(packed: Packed, q: np.ndarray, marker: int) -> np.ndarray:
+    """(T, 2) world places of a marker."""
+    body = packed.system.marker_body[marker]
+    x, y = packed.system.marker_arm[marker]
+    c, s = np.cos(q[:, 3 * body + 2]), np.sin(q[:, 3 * body + 2])
+    return q[:, 3 * body : 3 * body + 2] + np.stack([c * x - s * y, s * x + c * y], axis=1)

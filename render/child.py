@@ -11,11 +11,11 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from types import FrameType
 
 import msgspec
 
 from render.blender.job import Answer, Job
+from render.signals import terminable
 from shared.errors import UserError
 from shared.paths import ROOT, out_root
 
@@ -33,7 +33,7 @@ def blender(job: Job) -> Iterator[Iterator[Answer]]:
     scratch.mkdir(parents=True, exist_ok=True)
     process: subprocess.Popen[bytes] | None = None
     try:
-        with _terminable(), tempfile.TemporaryFile(dir=scratch) as chat:
+        with terminable(), tempfile.TemporaryFile(dir=scratch) as chat:
             paper = scratch / "job.json"
             paper.write_bytes(msgspec.json.encode(job))
             process = subprocess.Popen(
@@ -100,22 +100,3 @@ def _is_running(process: int) -> bool:
     except PermissionError:
         return True
     return True
-
-
-@contextmanager
-def _terminable() -> Iterator[None]:
-    """SIGTERM and SIGHUP leave through the finally blocks, like Ctrl-C."""
-
-    def leave(number: int, _: FrameType | None) -> None:
-        raise SystemExit(128 + number)
-
-    try:
-        before = {number: signal.signal(number, leave) for number in (signal.SIGTERM, signal.SIGHUP)}
-    except ValueError:  # not the main thread, which alone gets signals
-        yield
-        return
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

@@ -6,6 +6,7 @@ import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 
+from render.signals import terminable
 from shared.errors import UserError
 from shared.files import whole_file
 
@@ -21,7 +22,7 @@ SETTINGS = (
 def encode(pictures: Sequence[Path], fps: int, film: Path) -> None:
     """Write ``film`` whole from PNGs in order. Raises UserError if ffmpeg is missing or fails, with its last word."""
     command = [ffmpeg(), "-y", "-loglevel", "error", "-f", "image2pipe", "-framerate", str(fps), "-c:v", "png"]
-    with whole_file(film) as target:
+    with terminable(), whole_file(film) as target:
         process = subprocess.Popen(
             [*command, "-i", "-", *SETTINGS, str(target)],
             stdin=subprocess.PIPE,

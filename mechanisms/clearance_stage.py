@@ -55,7 +55,7 @@ def run(name: str) -> None:
     key = key_of(out.parts, out.motion, sources_hash(*SOURCES), versions(*PACKAGES), LIMIT, REACH)
     stage = Stage(out, "clearance", key, [out.clearance])
     if stage.is_fresh():
-        say("clearance", f"{out.name}: up to date")
+        say("clearance", f"{out.name}: nothing to do")
         return
     from mechanisms.clearance.pieces import read_pieces
 

@@ -39,7 +39,7 @@ def run(name: str) -> None:
     given = params(out.name)
     known = Stage(out, "parts", "", []).notes().get("reads")
     if known is not None and Stage(out, "parts", _key(out.name, given, known), [out.parts]).is_fresh():
-        say("parts", f"{out.name}: up to date")
+        say("parts", f"{out.name}: nothing to do")
         return
     bodies, reads = _build(out.name, given)
     key = _key(out.name, given, reads)

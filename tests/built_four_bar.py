@@ -1,4 +1,4 @@
-"""The parts of the four-bar, made once a test session in a process of its own."""
+"""The parts of the four-bar, made in a process of its own."""
 
 from __future__ import annotations
 
@@ -11,12 +11,19 @@ from shared.paths import ROOT
 
 
 def make_parts(out_root: Path, name: str = "four_bar") -> subprocess.CompletedProcess[str]:
-    """``python -m mechanisms parts <name>`` into ``out_root``."""
-    return subprocess.run(
+    """``python -m mechanisms parts <name>`` into ``out_root``, to its end."""
+    process = start_parts(out_root, name)
+    stdout, stderr = process.communicate()
+    return subprocess.CompletedProcess(process.args, process.returncode, stdout, stderr)
+
+
+def start_parts(out_root: Path, name: str = "four_bar") -> subprocess.Popen[str]:
+    """The same, not waited for."""
+    return subprocess.Popen(
         [sys.executable, "-m", "mechanisms", "parts", name],
         cwd=ROOT,
         env=os.environ | {"MBSD_OUT": str(out_root)},
-        capture_output=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
         text=True,
-        check=False,
     )

@@ -244,7 +244,7 @@ for frame in json.loads(sys.argv[2]):
         matrix = bpy.data.objects[thing].evaluated_get(graph).matrix_world
         found[f"{thing} {frame}"] = [matrix[0][3], matrix[1][3], matrix[0][0], matrix[1][0]]
     trail = bpy.data.objects["trail P"].evaluated_get(graph).data
-    ring = [trail.vertices[i].co for i in range(10)]
+    ring = [trail.vertices[i].co for i in range(40, 50)]  # after the rings of the round cap
     found[f"trail {frame}"] = [sum(v[k] for v in ring) / 10 for k in range(2)]
 found["range"] = [scene.frame_start, scene.frame_end, scene.render.fps]
 open(sys.argv[3], "w").write(json.dumps(found))

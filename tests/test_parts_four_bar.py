@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import replace
 from itertools import combinations, pairwise
 from pathlib import Path
@@ -9,13 +10,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mechanisms import clearance_stage
 from mechanisms.clearance.pieces import MeshPiece, read_pieces
 from mechanisms.clearance_stage import check
 from mechanisms.four_bar import parts as four_bar
 from mechanisms.four_bar.mechanism import Params
-from shared.contract import Parts, read_parts
+from shared.clearance import read_clearance
+from shared.contract import Parts, read_parts, write_motion
 from shared.errors import UserError
-from tests.built_four_bar import make_parts
+from shared.paths import Out
+from tests.built_four_bar import make_parts, start_parts
 from tests.motions import four_bar_motion
 from tests.shape_checks import checked
 
@@ -24,9 +28,9 @@ from tests.shape_checks import checked
 def roots(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     """The parts made twice, by two processes."""
     first, second = tmp_path_factory.mktemp("first"), tmp_path_factory.mktemp("second")
-    for root in (first, second):
-        result = make_parts(root)
-        assert result.returncode == 0, result.stderr
+    for process in [start_parts(first), start_parts(second)]:
+        _, errors = process.communicate()
+        assert process.returncode == 0, errors
     return first, second
 
 
@@ -50,7 +54,7 @@ def test_two_processes_write_the_same_bytes(roots: tuple[Path, Path]) -> None:
 
 def test_a_second_run_has_nothing_to_do(roots: tuple[Path, Path]) -> None:
     result = make_parts(roots[0])
-    assert result.stdout == "parts: four_bar: up to date\n"
+    assert result.stdout == "parts: four_bar: nothing to do\n"
 
 
 def test_a_lost_or_damaged_file_is_made_again(roots: tuple[Path, Path]) -> None:
@@ -113,6 +117,27 @@ def test_no_two_parts_touch_over_the_motion(pieces: dict[str, MeshPiece], parts:
         for side in ("low", "high"):
             assert gaps[frozenset((pin, f"bushing_{joint}_{side}"))].gap == pytest.approx(0.1e-3, abs=0.02e-3)
     assert gaps[frozenset(("washer_B", "bushing_B_low"))].gap == pytest.approx(0.4e-3, abs=1e-6)
+
+
+def test_the_clearance_stage_writes_its_proof_and_then_has_nothing_to_do(
+    roots: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shutil.copytree(roots[0] / "four_bar", tmp_path / "four_bar")
+    monkeypatch.setenv("MBSD_OUT", str(tmp_path))
+    out = Out("four_bar")
+    write_motion(out.motion, four_bar_motion())
+    clearance_stage.run("four_bar")
+    assert "none touch; nearest pin_" in capsys.readouterr().out
+    first = out.clearance.read_bytes()
+    assert read_clearance(out.clearance).pairs[0].proven > 0.05e-3
+    clearance_stage.run("four_bar")
+    assert capsys.readouterr().out == "clearance: four_bar: nothing to do\n"
+    out.clearance.unlink()
+    clearance_stage.run("four_bar")
+    assert out.clearance.read_bytes() == first
+    write_motion(out.motion, four_bar_motion(speed=1.0))
+    clearance_stage.run("four_bar")
+    assert "none touch" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(("layers", "victim"), [(-1, "crank"), (1, "rocker")])

@@ -1,0 +1,104 @@
+"""Every folder of mechanisms/, without being told: it solves, closes, has its solids, fits its shot, touches nothing."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mechanisms import loading
+from shared import contract
+from shared.paths import ROOT, Out, mechanism_names
+from shared.shot import read_shot
+
+
+def _stage(name: str, stage: str, root: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "mechanisms", stage, name],
+        cwd=ROOT,
+        env=os.environ | {"MBSD_OUT": str(root)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.fixture(scope="module", params=mechanism_names())
+def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
+    """All stages before the pictures, run as a user runs them."""
+    root = tmp_path_factory.mktemp(request.param)
+    for stage in ("parts", "solve", "clearance", "shot"):
+        run = _stage(request.param, stage, root)
+        assert run.returncode == 0, f"{stage}: {run.stdout}{run.stderr}"
+    return request.param, root
+
+
+@pytest.fixture
+def out(made: tuple[str, Path], monkeypatch: pytest.MonkeyPatch) -> Out:
+    monkeypatch.setenv("MBSD_OUT", str(made[1]))
+    return Out(made[0])
+
+
+def test_it_closes_and_its_drivers_fix_every_freedom(out: Out) -> None:
+    motion = contract.read_motion(out.motion)
+    assert motion.diagnostics.dof == len(motion.drivers)
+    assert motion.diagnostics.position_residual < 1e-10
+    assert motion.diagnostics.velocity_residual < 1e-8
+    assert motion.diagnostics.acceleration_residual < 1e-6
+    assert min(motion.diagnostics.singularity_margin) > 1e-4
+
+
+def test_pins_of_two_bodies_stay_together(out: Out) -> None:
+    """From the file alone: both sides of every revolute joint, placed by the poses of their bodies, coincide."""
+    motion = contract.read_motion(out.motion)
+    m = loading.load(out.name, "mechanism").build(loading.params(out.name))
+    for joint in m.joints.values():
+        if joint.kind.name != "revolute":
+            continue
+        places = []
+        for marker in (joint.i, joint.j):
+            body = motion.bodies.get(marker.body.name)
+            if body is None:
+                places.append(np.broadcast_to([marker.x, marker.y], (len(motion.time), 2)))
+                continue
+            c, s = np.cos(body.theta), np.sin(body.theta)
+            x = np.array(body.x) + c * marker.x - s * marker.y
+            places.append(np.stack([x, np.array(body.y) + s * marker.x + c * marker.y], axis=1))
+        np.testing.assert_allclose(places[0], places[1], atol=1e-12)
+
+
+def test_solids_and_bodies_have_the_same_names_and_masses(out: Out) -> None:
+    motion, parts = contract.read_motion(out.motion), contract.read_parts(out.parts)
+    assert set(parts.bodies) - {"ground"} == set(motion.bodies)
+    for name, body in motion.bodies.items():
+        assert (body.mass, body.com, body.inertia) == (
+            parts.bodies[name].mass.mass,
+            parts.bodies[name].mass.com,
+            parts.bodies[name].mass.inertia,
+        )
+        assert body.mass > 0
+
+
+def test_the_shot_names_what_there_is(out: Out) -> None:
+    motion = contract.read_motion(out.motion)
+    shot = read_shot(out.shot)
+    assert {trail.point for trail in shot.trails} <= set(motion.points)
+
+
+def test_a_second_run_has_nothing_to_do(made: tuple[str, Path]) -> None:
+    name, root = made
+    before = {path: path.read_bytes() for path in sorted(root.rglob("*.json"))}
+    for stage in ("parts", "solve", "clearance", "shot"):
+        assert "nothing to do" in _stage(name, stage, root).stdout
+    assert {path: path.read_bytes() for path in sorted(root.rglob("*.json"))} == before
+
+
+def test_solving_anew_gives_the_same_bytes(made: tuple[str, Path], out: Out) -> None:
+    before = out.motion.read_bytes()
+    out.motion.unlink()
+    assert _stage(*[made[0], "solve", made[1]]).returncode == 0
+    assert out.motion.read_bytes() == before

@@ -1,5 +1,7 @@
 """The last line of ``make check``: the device that the film will be rendered on."""
 
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
 from __future__ import annotations
 
 import os

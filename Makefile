@@ -23,12 +23,12 @@ export PYRIGHT_PYTHON_IGNORE_WARNINGS := 1
 
 # A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
 define upto_motion
-	@$(MECHANISMS) parts $(name)
-	@$(MECHANISMS) solve $(name)
+@$(MECHANISMS) parts $(name)
+@$(MECHANISMS) solve $(name)
 endef
 define upto_shot
-	$(upto_motion)
-	@$(MECHANISMS) shot $(name)
+$(upto_motion)
+@$(MECHANISMS) shot $(name)
 endef
 
 help: ## this list

@@ -37,6 +37,7 @@ def encode(pictures: Sequence[Path], fps: int, film: Path) -> None:
             pass  # ffmpeg gave up; its reason follows
         except BaseException:
             process.kill()
+            process.wait()
             raise
         _, said = process.communicate()
         if process.returncode:

@@ -12,6 +12,8 @@ from render.blender.nodes import Graph
 from render.scene import Point, TrailSpec
 
 SIDES = 10
+CAP = 4
+"""Rings of the round end at the point."""
 BRIGHTNESS = 2.9
 
 
@@ -21,15 +23,17 @@ def build(scene: Any, trail: TrailSpec) -> Any:
 
     mesh = bpy.data.meshes.new(f"trail {trail.name}")
     faces = []
-    for ring in range(trail.rings - 1):
+    rings = trail.rings + CAP
+    for ring in range(rings - 1):
         for side in range(SIDES):
             a, b = ring * SIDES + side, ring * SIDES + (side + 1) % SIDES
             faces.append((a, b, b + SIDES, a + SIDES))
     faces.append(tuple(reversed(range(SIDES))))
-    mesh.from_pydata([(0.0, 0.0, 0.0)] * (trail.rings * SIDES), [], faces)
+    mesh.from_pydata([(0.0, 0.0, 0.0)] * (rings * SIDES), [], faces)
     mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
     fade = mesh.attributes.new("fade", "FLOAT", "POINT")
-    fade.data.foreach_set("value", np.repeat(_fade(trail.rings), SIDES).astype(np.float32))
+    values = np.concatenate([np.ones(CAP), _fade(trail.rings)])
+    fade.data.foreach_set("value", np.repeat(values, SIDES).astype(np.float32))
     mesh.materials.append(_light(trail))
     thing = bpy.data.objects.new(mesh.name, mesh)
     thing.visible_shadow = False
@@ -39,7 +43,7 @@ def build(scene: Any, trail: TrailSpec) -> Any:
 
 
 def vertices(path: list[Point], radius: float) -> np.ndarray:
-    """Vertices (rings * SIDES, 3), float32, of the tube along ``path``, from the point backwards."""
+    """Vertices ((CAP + rings) * SIDES, 3), float32, of the tube along ``path``, from the point backwards."""
     line = np.asarray(path)
     along = np.gradient(line[:, :2], axis=0)
     length = np.linalg.norm(along, axis=1, keepdims=True)
@@ -49,7 +53,11 @@ def vertices(path: list[Point], radius: float) -> np.ndarray:
     angle = np.arange(SIDES) * 2 * np.pi / SIDES
     rim = np.cos(angle)[None, :, None] * across[:, None, :] + np.sin(angle)[None, :, None] * up
     thickness = radius * (0.30 + 0.70 * _fade(len(line)) ** 0.8)
-    return (line[:, None, :] + rim * thickness[:, None, None]).reshape(-1, 3).astype(np.float32)
+    tube = line[:, None, :] + rim * thickness[:, None, None]
+    angle = np.linspace(0.1, 1.0, CAP, endpoint=False)[:, None, None] * np.pi / 2
+    ahead = np.append(-along[0], 0.0)
+    cap = line[0] + radius * (np.cos(angle) * ahead + np.sin(angle) * rim[0])
+    return np.concatenate([cap, tube]).reshape(-1, 3).astype(np.float32)
 
 
 def place(thing: Any, path: list[Point], radius: float) -> None:

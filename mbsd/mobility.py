@@ -76,12 +76,12 @@ def joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
     )
 
 
-def refuse_overdriven(m: Mechanism, packed: Packed) -> None:
+def refuse_overdriven(m: Mechanism, packed: Packed, time: float) -> None:
     """If the joints close without the drivers, see whether these are too many; raises MobilityError if so."""
     none = np.zeros((len(packed.motions) + 1, 3))
     q, worst = close(packed, rough_pose(m, packed, none, 0), none, packed.driver_rows)
     if worst <= CLOSED:
-        _refuse_idle_drivers(packed, joint_mobility(packed, q), _best_rows(packed, q)[1])
+        _refuse_idle_drivers(packed, joint_mobility(packed, q), _best_rows(packed, q)[1], time)
 
 
 def choose_rows(packed: Packed, q: np.ndarray, time: float) -> np.ndarray:
@@ -91,12 +91,12 @@ def choose_rows(packed: Packed, q: np.ndarray, time: float) -> np.ndarray:
     """
     joints = joint_mobility(packed, q)
     here, kept, best = _best_rows(packed, q)
-    _refuse_idle_drivers(packed, joints, kept)
+    _refuse_idle_drivers(packed, joints, kept, time)
     if len(kept) < packed.coordinates:
         missing = packed.coordinates - len(kept)
         free = _moving(packed, scaled_jacobian(packed, best))
         raise MobilityError(
-            f"{packed.name}: {missing} of {joints.dof} degrees of freedom "
+            f"{packed.name}: at t = {time:.6g} s {missing} of {joints.dof} degrees of freedom "
             f"{'is' if missing == 1 else 'are'} not driven: {', '.join(free)} can still move. "
             f"Add {'a driver' if missing == 1 else f'{missing} drivers'}, "
             "for example m.drive_angle(...)."
@@ -117,7 +117,7 @@ def _best_rows(packed: Packed, q: np.ndarray) -> tuple[list[int], list[int], np.
     return ranked[0], ranked[best], poses[best]
 
 
-def _refuse_idle_drivers(packed: Packed, joints: Mobility, kept: list[int]) -> None:
+def _refuse_idle_drivers(packed: Packed, joints: Mobility, kept: list[int], time: float) -> None:
     drivers = packed.joints[len(packed.joints) - len(packed.motions) :]
     idle = [d for k, d in enumerate(drivers) if packed.driver_rows + k not in set(kept)]
     if not idle:
@@ -125,7 +125,7 @@ def _refuse_idle_drivers(packed: Packed, joints: Mobility, kept: list[int]) -> N
     others = [f"'{d.name}'" for d in drivers if d not in idle]
     fixed = "the joints" + (f" and driver{'s' * (len(others) > 1)} {', '.join(others)}" if others else "")
     raise MobilityError(
-        f"{packed.name}: driver '{idle[0].name}' drives a freedom that {fixed} already fix: "
+        f"{packed.name}: at t = {time:.6g} s driver '{idle[0].name}' drives a freedom that {fixed} already fix: "
         f"{joints.dof} degree{'s' * (joints.dof != 1)} of freedom, {len(drivers)} drivers. "
         "Remove one driver or free a joint."
     )

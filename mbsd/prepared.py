@@ -18,6 +18,8 @@ from mbsd.start import assemble
 
 SHORTEST_STEP = 1e-7
 """A step refused at this part of the output step is not cured by halving."""
+RUNAWAY = 30.0
+"""Turning this many times faster than usual is the mark of a toggle; at a change point rates stay as they are."""
 REDUNDANT_GAP = 1e-7
 """Largest gap, in sizes, by which redundant joints may disagree."""
 
@@ -115,16 +117,22 @@ class Prepared:
             )
         bodies = packed.body_names[1:]
         fastest = ", ".join(bodies[b] for b in np.argsort(-rates)[:2])
+        usual = float(np.median(np.abs(v[: last + 1].reshape(last + 1, -1, 3)[:, 1:, 2]).max(axis=1)))
+        if rates.max() > RUNAWAY * usual:
+            return SingularPoseError(
+                f"{packed.name}: the links cannot follow the drivers beyond {where}: a toggle, where {fastest} run away "
+                f"({rates.max():.3g} rad/s, {usual:.3g} rad/s before). Drive within the reachable range, change the "
+                "lengths, or drive another body."
+            )
         if status == kinematics.BRANCH_DOUBT:
             return BranchError(
                 f"{packed.name}: after {where} the motion would jump to the other assembly, and steps down to "
-                f"{grid[index] - grid[last]:.1e} s do not cure it ({fastest} move fastest). The pose there is a change "
-                "point, or a law jumps; end the motion before it."
+                f"{grid[index] - grid[last]:.1e} s do not cure it. A law jumps there, or the pose is a change point; "
+                "end the motion before it."
             )
         return SingularPoseError(
-            f"{packed.name}: the links cannot follow the drivers beyond {where}: a toggle, where {fastest} run away "
-            f"(up to {rates.max():.3g} rad/s). Drive within the reachable range, change the lengths, "
-            "or drive another body."
+            f"{packed.name}: the pose at {where} is a change point: the linkage can go on in two ways and the drivers do "
+            "not decide which. End the motion before it, choose times that do not fall on it, or add a link that decides."
         )
 
     def _driver_values(self, drive: np.ndarray) -> str:
@@ -149,7 +157,7 @@ def prepare(m: Mechanism, start: float = 0.0, end: float = 1.0) -> Prepared:
     try:
         q0 = assemble(m, packed, start)
     except AssemblyError:
-        refuse_overdriven(m, packed)
+        refuse_overdriven(m, packed, start)
         raise
     kept = choose_rows(packed, q0, start)
     sequence, factors = plan(_sample_jacobians(packed), kept)

@@ -145,3 +145,18 @@ def test_a_sweep_without_a_natural_duration_asks_for_one() -> None:
     m.drive_angle("motor", m.bodies["crank"], lambda t: t)
     with pytest.raises(ModelError, match="duration"):
         m.sweep()
+
+
+def test_a_change_point_that_no_output_falls_on_is_passed_on_the_same_branch() -> None:
+    m = parallelogram(extra=False)
+    m.drive_angle("motor", m.bodies["left"], constant_rate(1.0, math.radians(60)))
+    sol = m.sweep(steps=500)
+    np.testing.assert_allclose(sol.body("coupler").theta, 0.0, atol=1e-9)
+    assert min(sol.singularity_margin) > 1e-5
+
+
+def test_a_change_point_that_an_output_falls_on_is_refused_with_the_reason() -> None:
+    m = parallelogram(extra=False)
+    m.drive_angle("motor", m.bodies["left"], constant_rate(1.0, math.radians(60)))
+    with pytest.raises(SingularPoseError, match=r"motor at 180 degrees\) is a change point"):
+        m.sweep(steps=360)

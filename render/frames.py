@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shutil
 import time
 from collections.abc import Sequence
@@ -21,6 +22,8 @@ from shared.errors import UserError
 from shared.paths import Out, out_root
 from shared.stages import Stage
 
+FEWEST_SAMPLES = 500_000
+"""In one picture, for its time to say something about another size."""
 RESERVE = 200e6
 """Bytes left free on the disk beside the frames."""
 
@@ -138,9 +141,10 @@ def render(pictures: Pictures, store: FrameStore, frames: Sequence[int], what: s
     if not missing:
         return
     _refuse_full_disk(name, preset, store, len(missing))
-    known = _seconds_a_picture(preset, store)
+    known = _forecast(preset, store)
     if known is not None:
-        say("frames", f"{name}: forecast {duration(known * len(missing))} at {known:.1f} s a frame, as measured before")
+        each, source = known
+        say("frames", f"{name}: forecast {duration(each * len(missing))} at {duration(each)} a frame, {source}")
     with blender(pictures.job(missing, store)) as answers, progress(f"{name} {preset.name}", len(missing)) as bar:
         for answer in answers:
             if answer.device:
@@ -155,14 +159,21 @@ def render(pictures: Pictures, store: FrameStore, frames: Sequence[int], what: s
             bar.advance()
 
 
-def _seconds_a_picture(preset: Preset, store: FrameStore) -> float | None:
-    """From the last run of this preset, else scaled from another run on this machine; None if there was none."""
+def _forecast(preset: Preset, store: FrameStore) -> tuple[float, str] | None:
+    """Seconds a picture, and where the number is from; None if nothing comparable was rendered here yet.
+
+    The last run of this preset counts, else the run nearest in size, scaled by samples. Below a certain size it is
+    not the samples that take the time, so postage stamps do not count.
+    """
     own = store.read_timing()
     if own is not None:
-        return own.cycles / own.rendered
+        return own.cycles / own.rendered, "as measured before"
     others = [FrameStore(path.parent).read_timing() for path in sorted(out_root().glob("*/frames/*/timing.json"))]
-    scaled = [t.cycles / t.rendered * preset.work / t.work for t in others if t is not None]
-    return sorted(scaled)[len(scaled) // 2] if scaled else None
+    known = [timing for timing in others if timing is not None and timing.work >= FEWEST_SAMPLES]
+    if not known:
+        return None
+    nearest = min(known, key=lambda timing: abs(math.log(timing.work / preset.work)))
+    return nearest.cycles / nearest.rendered * preset.work / nearest.work, f"scaled from {nearest.preset}"
 
 
 def _refuse_full_disk(name: str, preset: Preset, store: FrameStore, count: int) -> None:

@@ -100,17 +100,18 @@ def test_a_full_disk_is_refused_before_the_start(out_root: Path, monkeypatch: py
 
 def test_the_forecast_scales_what_was_measured(out_root: Path):
     store = FrameStore(Out("four_bar").frames("draft"))
-    jsonfile.write(
-        store.timing,
-        Timing(preset="draft", device="CPU", work=1000, rendered=10, wall=33.0, cycles=30.0, overhead=1.1),
-    )
-    wanted = Preset("preview", 40, 100, 1)
-    assert frames._seconds_a_picture(wanted, FrameStore(Out("slider").frames("preview"))) == pytest.approx(12.0)
-    assert frames._seconds_a_picture(PRESETS["draft"], store) == pytest.approx(3.0)
+    for preset, work, cycles in (("stamp", 5000, 10.0), ("draft", 10**6, 30.0), ("final", 10**9, 50_000.0)):
+        timing = Timing(
+            preset=preset, device="CPU", work=work, rendered=10, wall=1.1 * cycles, cycles=cycles, overhead=1.1
+        )
+        jsonfile.write(FrameStore(Out("four_bar").frames(preset)).timing, timing)
+    other = FrameStore(Out("slider").frames("preview"))
+    assert frames._forecast(Preset("preview", 2000, 2000, 1), other) == (pytest.approx(12.0), "scaled from draft")
+    assert frames._forecast(PRESETS["draft"], store) == (pytest.approx(3.0), "as measured before")
 
 
 def test_nothing_measured_means_no_forecast_yet(out_root: Path):
-    assert frames._seconds_a_picture(TINY, FrameStore(Out("four_bar").frames("tiny"))) is None
+    assert frames._forecast(TINY, FrameStore(Out("four_bar").frames("tiny"))) is None
 
 
 @pytest.mark.parametrize(

@@ -26,9 +26,8 @@ def evaluate_nu(system, drive, nu):
     """Fill nu (m,): f' in driven rows, else zero."""
     for r in range(nu.shape[0]):
         nu[r] = 0.0
-    for table in (system.angle, system.along, system.distance):
-        for k in range(table.shape[0]):
-            nu[table[k, 2]] = drive[table[k, 3], 1]
+    for k in range(system.driven.shape[0]):
+        nu[system.driven[k, 0]] = drive[system.driven[k, 1], 1]
 
 
 @inlined
@@ -39,9 +38,8 @@ def evaluate_gamma(system, v, drive, ws, gamma):
     slot.gamma_rows(system, v, ws, gamma)
     along.gamma_rows(system, v, ws, gamma)
     distance.gamma_rows(system, v, ws, gamma)
-    for table in (system.angle, system.along, system.distance):
-        for k in range(table.shape[0]):
-            gamma[table[k, 2]] += drive[table[k, 3], 2]
+    for k in range(system.driven.shape[0]):
+        gamma[system.driven[k, 0]] += drive[system.driven[k, 1], 2]
 
 
 @kernel

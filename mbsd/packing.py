@@ -113,6 +113,7 @@ def pack(m: Mechanism) -> Packed:
         marker_axis=np.stack([np.cos(angles), np.sin(angles)], axis=1),
         moving=np.flatnonzero(marker_body),
         directed=_directed(as_table, marker_body),
+        driven=np.array([row[2:] for rows in tables.values() for row in rows if row[3]], np.int64).reshape(-1, 2),
         angle_offset=np.array(offsets, float),
         distance_length=np.array(lengths, float),
         **as_table,

@@ -120,9 +120,9 @@ class Prepared:
         usual = float(np.median(np.abs(v[: last + 1].reshape(last + 1, -1, 3)[:, 1:, 2]).max(axis=1)))
         if rates.max() > RUNAWAY * usual:
             return SingularPoseError(
-                f"{packed.name}: the links cannot follow the drivers beyond {where}: a toggle, where {fastest} run away "
-                f"({rates.max():.3g} rad/s, {usual:.3g} rad/s before). Drive within the reachable range, change the "
-                "lengths, or drive another body."
+                f"{packed.name}: the links cannot follow the drivers beyond {where}: a toggle, where {fastest} "
+                f"run away ({rates.max():.3g} rad/s, {usual:.3g} rad/s before). Drive within the reachable "
+                "range, change the lengths, or drive another body."
             )
         if status == kinematics.BRANCH_DOUBT:
             return BranchError(
@@ -131,8 +131,9 @@ class Prepared:
                 "end the motion before it."
             )
         return SingularPoseError(
-            f"{packed.name}: the pose at {where} is a change point: the linkage can go on in two ways and the drivers do "
-            "not decide which. End the motion before it, choose times that do not fall on it, or add a link that decides."
+            f"{packed.name}: the pose at {where} is a change point: the linkage can go on in two ways and the "
+            "drivers do not decide which. End the motion before it, choose times that do not fall on it, or add a link "
+            "that decides."
         )
 
     def _driver_values(self, drive: np.ndarray) -> str:

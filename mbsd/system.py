@@ -36,6 +36,8 @@ class System(NamedTuple):
     along: Any
     distance: Any
     """(k, 4) int constraint tables."""
+    driven: Any
+    """(drivers, 2) row and motion of each driven constraint."""
     angle_offset: Any
     """(k,) rad, for the rows of ``angle``."""
     distance_length: Any

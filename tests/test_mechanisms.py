@@ -1,4 +1,4 @@
-"""Every folder of mechanisms/, without being told: it solves, closes, has its solids, fits its shot, touches nothing."""
+"""Every folder of mechanisms/, without being told: it solves, closes, has its solids, fits its shot, never touches."""
 
 from __future__ import annotations
 

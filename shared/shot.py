@@ -46,7 +46,7 @@ class Trail(_Strict, frozen=True):
     """The path of a traced point, a thin light that fades behind it."""
 
     point: str
-    colour: Colour = (1.0, 0.20, 0.012)
+    colour: Colour = (0.90, 0.24, 0.0)
     tail: Annotated[float, msgspec.Meta(gt=0, le=1)] = 0.92
     """Length behind the point, in turns."""
     radius: Annotated[float, msgspec.Meta(gt=0, le=0.1)] = 0.0046

@@ -13,6 +13,8 @@ TOLERANCE = 0.018
 """Largest distance of the mesh from the true surface (mm)."""
 ANGLE = 0.3
 """Largest angle between neighbouring facets of a curved face (rad)."""
+VOLUME_GOAL = 4.5e-3
+"""Relative difference to the solid's volume at which a mesh is fine enough."""
 
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _PRODUCT = re.compile(rb"= PRODUCT\('[^']*',\s*'[^']*'")
@@ -22,13 +24,15 @@ _TIMESTAMP = re.compile(rb"(FILE_NAME\('[^']*',)'[^']*'")
 def stl_bytes(solid: Any) -> bytes:
     """Binary STL of a ``cadquery.Solid``, in mm, its triangles in an order of their own.
 
+    Small parts get a finer mesh than :data:`TOLERANCE` until it holds their volume to :data:`VOLUME_GOAL`.
     The kernel gives the same triangles each time, but those of a face with many holes in another order, and
     normals that differ in their last bits.
     """
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "solid.stl"
-        solid.exportStl(str(path), TOLERANCE, ANGLE, ascii=False, relative=False, parallel=False)
-        triangles = np.frombuffer(path.read_bytes(), dtype=_TRIANGLE, offset=84).copy()
+    volume = solid.Volume()
+    for finer in (1, 2, 4):
+        triangles = _mesh(solid, TOLERANCE / finer, ANGLE / finer)
+        if abs(_volume(triangles["corners"].astype(float)) / volume - 1) < VOLUME_GOAL:
+            break
     corners = triangles["corners"] + np.float32(0)  # -0 becomes 0
     lowest = np.array([min(range(3), key=lambda i: tuple(corner[i])) for corner in corners.tolist()], dtype=int)
     turn = (lowest[:, None] + np.arange(3)) % 3  # same winding, lowest corner first
@@ -37,6 +41,20 @@ def stl_bytes(solid: Any) -> bytes:
     triangles["corners"] = corners
     triangles["normal"] = _normals(corners.astype(float))
     return b"mbsd".ljust(80) + len(triangles).to_bytes(4, "little") + triangles.tobytes()
+
+
+def _mesh(solid: Any, tolerance: float, angle: float) -> np.ndarray:
+    from OCP.BRepTools import BRepTools
+
+    BRepTools.Clean_s(solid.wrapped)  # a mesh that is there already would be kept
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "solid.stl"
+        solid.exportStl(str(path), tolerance, angle, ascii=False, relative=False, parallel=False)
+        return np.frombuffer(path.read_bytes(), dtype=_TRIANGLE, offset=84).copy()
+
+
+def _volume(corners: np.ndarray) -> float:
+    return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
 
 
 def _normals(corners: np.ndarray) -> np.ndarray:

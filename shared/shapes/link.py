@@ -22,12 +22,12 @@ class Eye:
     above: float = 0.0
     below: float = 0.0
     boss: float = 0.0
-    """Radius of the boss; 0 takes a little less than ``radius``."""
+    """Radius of the boss; 0 takes 2 mm less than ``radius``."""
 
     @property
     def boss_radius(self) -> float:
         """The radius that the boss gets (mm)."""
-        return self.boss or self.radius - 1.8
+        return self.boss or self.radius - 2.0
 
 
 def link(
@@ -52,7 +52,7 @@ def link(
         if thickness - 2 * pocket < 1.0:
             raise ValueError(f"pockets of {pocket:g} mm leave less than 1 mm of a web of {thickness:g} mm")
         shape = _milled_out(shape, _pocket_outline(length, start, end, widths, rim), thickness, pocket)
-    return _with_eyes(shape, [(0.0, 0.0, start), (length, 0.0, end)], thickness)
+    return _with_eyes(shape, [(0.0, 0.0, start), (length, 0.0, end)], thickness, edge)
 
 
 def plate_link(
@@ -70,15 +70,16 @@ def plate_link(
     """
     holes = [outline.window([(x, y) for x, y, _ in joints], rims, corner)] if rims else []
     shape = extruded(outline.hull([(x, y, eye.radius) for x, y, eye in joints], waist), thickness, holes=holes)
-    return _with_eyes(eased(shape, edge), joints, thickness)
+    return _with_eyes(eased(shape, edge), joints, thickness, edge)
 
 
 def _with_eyes(
-    shape: cq.Workplane, joints: Sequence[tuple[float, float, Eye]], thickness: float, chamfer: float = 0.4
+    shape: cq.Workplane, joints: Sequence[tuple[float, float, Eye]], thickness: float, edge: float, chamfer: float = 0.4
 ) -> cq.Workplane:
     for x, y, eye in joints:
-        shape = with_boss(shape, x, y, thickness, eye.boss_radius, eye.above, root=1.0)
-        shape = with_boss(shape, x, y, 0.0, eye.boss_radius, -eye.below, root=1.0)
+        root = min(1.0, eye.radius - edge - eye.boss_radius - 0.2)  # ends on the flat, short of the rounded edge
+        shape = with_boss(shape, x, y, thickness, eye.boss_radius, eye.above, root)
+        shape = with_boss(shape, x, y, 0.0, eye.boss_radius, -eye.below, root)
         shape = shape.cut(placed(bore(eye.bore, -eye.below, thickness + eye.above, chamfer), x, y))
     return shape
 

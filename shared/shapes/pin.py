@@ -43,10 +43,12 @@ def pin(
         profile += [(r, length - c), (r - c, length), *_centre_mark(length, r)]
         return turned(profile)
     top, edge = length + head.height, head.diameter / 2
-    shoulder = top - head.dome
-    profile += [(r, length), (edge - 0.3, length), (edge, length + 0.3), (edge, shoulder)]
     rim = edge * 0.55
-    middle = (rim + (edge - rim) * math.cos(math.pi / 4), shoulder + head.dome * math.sin(math.pi / 4))
+    dome = min(head.dome, edge - rim)
+    shoulder, arch = top - dome, ((edge - rim) ** 2 + dome**2) / (2 * dome)  # level where it meets the flat top
+    half = math.asin(min((edge - rim) / arch, 1.0)) / 2
+    middle = (rim + arch * math.sin(half), top - arch * (1 - math.cos(half)))
+    profile += [(r, length), (edge - 0.3, length), (edge, length + 0.3), (edge, shoulder)]
     profile += [(*middle, rim, top), *_centre_mark(top, r)]
     return turned(profile)
 

@@ -7,13 +7,19 @@ from pathlib import Path
 
 import msgspec
 
+from shared.clearance import Clearance
 from shared.contract import Motion, Parts
 from shared.files import write_bytes
 from shared.paths import ROOT
 from shared.shot import Shot
 
 FOLDER = ROOT / "docs" / "schema"
-PUBLISHED: dict[str, type[msgspec.Struct]] = {"motion": Motion, "parts": Parts, "shot": Shot}
+PUBLISHED: dict[str, type[msgspec.Struct]] = {
+    "motion": Motion,
+    "parts": Parts,
+    "clearance": Clearance,
+    "shot": Shot,
+}
 
 
 def content(kind: type[msgspec.Struct]) -> bytes:

@@ -13,7 +13,7 @@ import pytest
 from mechanisms import loading
 from shared import contract
 from shared.paths import ROOT, Out, mechanism_names
-from shared.shot import read_shot
+from shared.shot import read_shot, refuse_unknown
 
 
 def _stage(name: str, stage: str, root: Path) -> subprocess.CompletedProcess[str]:
@@ -84,9 +84,7 @@ def test_solids_and_bodies_have_the_same_names_and_masses(out: Out) -> None:
 
 
 def test_the_shot_names_what_there_is(out: Out) -> None:
-    motion = contract.read_motion(out.motion)
-    shot = read_shot(out.shot)
-    assert {trail.point for trail in shot.trails} <= set(motion.points)
+    refuse_unknown(read_shot(out.shot), contract.read_motion(out.motion), contract.read_parts(out.parts))
 
 
 def test_a_second_run_has_nothing_to_do(made: tuple[str, Path]) -> None:
@@ -100,5 +98,5 @@ def test_a_second_run_has_nothing_to_do(made: tuple[str, Path]) -> None:
 def test_solving_anew_gives_the_same_bytes(made: tuple[str, Path], out: Out) -> None:
     before = out.motion.read_bytes()
     out.motion.unlink()
-    assert _stage(*[made[0], "solve", made[1]]).returncode == 0
+    assert _stage(made[0], "solve", made[1]).returncode == 0
     assert out.motion.read_bytes() == before

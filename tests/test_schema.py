@@ -9,11 +9,29 @@ import jsonschema
 import pytest
 
 from shared import jsonfile, schema
+from shared.clearance import Clearance, PairClearance
+from shared.contract import Provenance
 from shared.shot import Shot
 from tests.motions import four_bar_motion
 from tests.test_contract import parts_document
 
-DOCUMENTS = {"motion": four_bar_motion(steps=3), "parts": parts_document(), "shot": Shot()}
+PAIR = PairClearance(
+    bodies=("ground", "crank"), pieces=("pin_A", "bushing_A"), gap=9e-5, proven=9e-5, time=None, proof="turn", poses=0
+)
+CLEARANCE = Clearance(
+    mechanism="four_bar",
+    provenance=Provenance(inputs="0" * 64, versions={}),
+    limit=5e-5,
+    interpolation_error=1e-9,
+    pairs=[PAIR],
+    apart=3,
+)
+DOCUMENTS = {
+    "motion": four_bar_motion(steps=3),
+    "parts": parts_document(),
+    "clearance": CLEARANCE,
+    "shot": Shot(),
+}
 
 
 def published(name: str) -> dict[str, Any]:

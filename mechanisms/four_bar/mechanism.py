@@ -8,12 +8,13 @@ from mbsd import Mechanism, constant_rate
 
 @dataclass(frozen=True)
 class Params:
-    """Lengths between pin centres (m) and the crank's speed (rad/s)."""
+    """Lengths between pin centres, the point P on the coupler (m), and the crank's speed (rad/s)."""
 
     ground: float = 0.120
     crank: float = 0.040
     coupler: float = 0.120
     rocker: float = 0.090
+    tracer: tuple[float, float] = (0.060, 0.030)
     speed: float = 2 * pi
 
 
@@ -26,6 +27,6 @@ def build(p: Params) -> Mechanism:
     m.revolute("C", coupler.end, rocker.end)
     m.revolute("D", m.ground.at(p.ground, 0), rocker.start)
     m.drive_angle("motor", crank, constant_rate(p.speed))
-    m.trace("P", coupler.at(0.06, 0.03))
+    m.trace("P", coupler.at(*p.tracer))
     m.start_near(crank=0, coupler=45, rocker=100)  # degrees; picks the assembly branch
     return m

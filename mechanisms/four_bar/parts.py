@@ -16,9 +16,6 @@ from shared.shapes.solid import Solid, placed
 from shared.shapes.units import mm
 
 PIVOT = Pivot()
-TRACER = (60.0, 30.0)
-"""The coupler point P, in the coupler's frame."""
-
 PLATE, FOOT = 12.0, 3.0
 PEDESTAL_A = 8.0
 CRANK, COUPLER, ROCKER = 7.0, 6.0, 7.0
@@ -41,7 +38,7 @@ def parts(p: Params) -> dict[str, list[Solid]]:
     return {
         "ground": ground(mm(p.ground)),
         "crank": crank(mm(p.crank)),
-        "coupler": coupler(mm(p.coupler)),
+        "coupler": coupler(mm(p.coupler), (mm(p.tracer[0]), mm(p.tracer[1]))),
         "rocker": rocker(mm(p.rocker)),
     }
 
@@ -61,11 +58,11 @@ def crank(length: float) -> list[Solid]:
     ]
 
 
-def coupler(length: float) -> list[Solid]:
+def coupler(length: float, p: tuple[float, float]) -> list[Solid]:
     """A windowed plate that runs on pins B and C and carries the stylus at P."""
     eye = Eye(13.0, PIVOT.running)
     tracer = Eye(7.0, 4.0 + PIVOT.fit.press, above=1.5, boss=5.2)
-    joints = [(0.0, 0.0, eye), (length, 0.0, eye), (*TRACER, tracer)]
+    joints = [(0.0, 0.0, eye), (length, 0.0, eye), (*p, tracer)]
     plate = plate_link(joints, COUPLER, waist=240.0, rims=(2.6, 6.4, 6.4))
     letters = text("B", 6.5, 18.0, 1.4, width=1.3) + text("C", 6.5, length - 18.0, 1.4, width=1.3)
     plate = engraved(plate, letters, COUPLER, depth=0.6)
@@ -74,7 +71,7 @@ def coupler(length: float) -> list[Solid]:
         Solid("coupler", placed(plate, z=Z_COUPLER), "aluminium", 4),
         *PIVOT.bushings("B", 0, 0, Z_COUPLER, COUPLER),
         *PIVOT.bushings("C", length, 0, Z_COUPLER, COUPLER),
-        Solid("stylus_P", placed(stylus(4.0, COUPLER + 1.0, 7.0, 0.9), *TRACER, top), "brass", 0),
+        Solid("stylus_P", placed(stylus(4.0, COUPLER + 1.0, 7.0, 0.9), *p, top), "brass", 0),
     ]
 
 

@@ -44,7 +44,11 @@ def _predict(q, v, a, t, k, time, out):
     """
     ahead = time - t[k - 1]
     h = t[k - 1] - t[k - 2] if k > 1 else 0.0
-    from_q, from_v, from_a, earlier_v, earlier_a = 0.0, ahead, 0.5 * ahead * ahead, 0.0, 0.0
+    from_q = 0.0
+    from_v = ahead
+    from_a = 0.5 * ahead * ahead
+    earlier_v = 0.0
+    earlier_a = 0.0
     if ahead < LONGEST_STRETCH * h:
         s = ahead / h
         cube = s * s * s
@@ -53,8 +57,10 @@ def _predict(q, v, a, t, k, time, out):
         p2 = -cube * (0.5 + s * (1.0 + 0.5 * s))
         from_v = h * (s + from_q - p1)
         from_a = h * h * (0.5 * s * s - 0.5 * from_q + p1 - p2)
-        earlier_v, earlier_a = h * p1, h * h * p2
-    last, before = k - 1, max(k - 2, 0)
+        earlier_v = h * p1
+        earlier_a = h * h * p2
+    last = k - 1
+    before = max(k - 2, 0)
     for c in range(3, q.shape[1]):
         out[c] = (
             q[last, c]
@@ -85,15 +91,19 @@ def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, st
     filled. With ``start`` 0, q[0] must hold the assembled pose. ``size`` is the mechanism's length (m).
     Returns (status, index): DONE and T, or why and at which index the step was refused.
     """
-    n3, per_metre = q.shape[1], 1.0 / size
-    pose, delta, right = ws.pose, ws.delta, ws.right
+    n3 = q.shape[1]
+    per_metre = 1.0 / size
+    pose = ws.pose
+    delta = ws.delta
+    right = ws.right
     for k in range(start, times.shape[0]):
         if k > 0:
             _predict(q, v, a, times, k, times[k], pose)
         else:
             for c in range(n3):
                 pose[c] = q[0, c]
-        first, last = 0.0, np.inf
+        first = 0.0
+        last = np.inf
         evaluate_nu(system, drives[k], right[1])
         for iteration in range(MAX_ITERATIONS):
             evaluate_position(system, pose, drives[k], ws)

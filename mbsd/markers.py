@@ -25,13 +25,21 @@ def place(system, q, ws):
         ws.cos_sin[b, 1] = math.sin(theta)
     for k in system.moving:
         b = system.marker_body[k]
-        c, s = ws.cos_sin[b, 0], ws.cos_sin[b, 1]
-        x, y = system.marker_arm[k, 0], system.marker_arm[k, 1]
-        arm_x, arm_y = c * x - s * y, s * x + c * y
-        ws.arm[k, 0], ws.arm[k, 1] = arm_x, arm_y
-        ws.position[k, 0], ws.position[k, 1] = q[3 * b] + arm_x, q[3 * b + 1] + arm_y
+        c = ws.cos_sin[b, 0]
+        s = ws.cos_sin[b, 1]
+        x = system.marker_arm[k, 0]
+        y = system.marker_arm[k, 1]
+        arm_x = c * x - s * y
+        arm_y = s * x + c * y
+        ws.arm[k, 0] = arm_x
+        ws.arm[k, 1] = arm_y
+        ws.position[k, 0] = q[3 * b] + arm_x
+        ws.position[k, 1] = q[3 * b + 1] + arm_y
     for k in system.directed:
         b = system.marker_body[k]
-        c, s = ws.cos_sin[b, 0], ws.cos_sin[b, 1]
-        x, y = system.marker_axis[k, 0], system.marker_axis[k, 1]
-        ws.axis[k, 0], ws.axis[k, 1] = c * x - s * y, s * x + c * y
+        c = ws.cos_sin[b, 0]
+        s = ws.cos_sin[b, 1]
+        x = system.marker_axis[k, 0]
+        y = system.marker_axis[k, 1]
+        ws.axis[k, 0] = c * x - s * y
+        ws.axis[k, 1] = s * x + c * y

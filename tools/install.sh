@@ -36,7 +36,7 @@ make_environment() {
     fi
     rm -f .venv/requirements.lock .venv/requirements-bench.lock
     echo "install: packages of requirements.lock (3 GB when all are new)"
-    "$uv" pip sync --quiet --python $python --require-hashes requirements.lock || {
+    "$uv" pip sync --quiet --python $python --compile-bytecode --require-hashes requirements.lock || {
         echo "error: the packages of requirements.lock could not be installed; uv says why above." \
             "The same command goes on from here" >&2
         exit 1

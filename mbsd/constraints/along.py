@@ -14,17 +14,24 @@ from mbsd.jit import inlined
 @inlined
 def rows(system, drive, ws):
     """Residual (m) and Jacobian."""
-    table, jac = system.along, ws.jac
+    table = system.along
+    jac = ws.jac
     for k in range(table.shape[0]):
-        i, j, r = table[k, 0], table[k, 1], table[k, 2]
-        bi, bj = 3 * system.marker_body[i], 3 * system.marker_body[j]
-        ux, uy = ws.axis[i, 0], ws.axis[i, 1]
+        i = table[k, 0]
+        j = table[k, 1]
+        r = table[k, 2]
+        bi = 3 * system.marker_body[i]
+        bj = 3 * system.marker_body[j]
+        ux = ws.axis[i, 0]
+        uy = ws.axis[i, 1]
         dx = ws.position[j, 0] - ws.position[i, 0]
         dy = ws.position[j, 1] - ws.position[i, 1]
         ws.phi[r] = ux * dx + uy * dy - drive[table[k, 3], 0]
-        jac[r, bi], jac[r, bi + 1] = -ux, -uy
+        jac[r, bi] = -ux
+        jac[r, bi + 1] = -uy
         jac[r, bi + 2] = -uy * dx + ux * dy - (-ux * ws.arm[i, 1] + uy * ws.arm[i, 0])
-        jac[r, bj], jac[r, bj + 1] = ux, uy
+        jac[r, bj] = ux
+        jac[r, bj + 1] = uy
         jac[r, bj + 2] = -ux * ws.arm[j, 1] + uy * ws.arm[j, 0]
 
 
@@ -33,11 +40,17 @@ def gamma_rows(system, v, ws, gamma):
     """Acceleration right-hand side (m/s^2) without f''."""
     table = system.along
     for k in range(table.shape[0]):
-        i, j, r = table[k, 0], table[k, 1], table[k, 2]
-        bi, bj = 3 * system.marker_body[i], 3 * system.marker_body[j]
-        ux, uy = ws.axis[i, 0], ws.axis[i, 1]
-        nx, ny = -uy, ux
-        wi, wj = v[bi + 2], v[bj + 2]
+        i = table[k, 0]
+        j = table[k, 1]
+        r = table[k, 2]
+        bi = 3 * system.marker_body[i]
+        bj = 3 * system.marker_body[j]
+        ux = ws.axis[i, 0]
+        uy = ws.axis[i, 1]
+        nx = -uy
+        ny = ux
+        wi = v[bi + 2]
+        wj = v[bj + 2]
         dx = ws.position[j, 0] - ws.position[i, 0]
         dy = ws.position[j, 1] - ws.position[i, 1]
         rate_x = v[bj] - wj * ws.arm[j, 1] - v[bi] + wi * ws.arm[i, 1]

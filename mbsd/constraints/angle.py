@@ -16,7 +16,8 @@ def rows(system, q, drive, ws):
     table = system.angle
     for k in range(table.shape[0]):
         r = table[k, 2]
-        bi, bj = 3 * system.marker_body[table[k, 0]], 3 * system.marker_body[table[k, 1]]
+        bi = 3 * system.marker_body[table[k, 0]]
+        bj = 3 * system.marker_body[table[k, 1]]
         ws.phi[r] = q[bj + 2] - q[bi + 2] - system.angle_offset[k] - drive[table[k, 3], 0]
         ws.jac[r, bi + 2] = -1.0
         ws.jac[r, bj + 2] = 1.0

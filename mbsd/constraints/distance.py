@@ -19,18 +19,25 @@ from mbsd.jit import inlined
 @inlined
 def rows(system, drive, ws):
     """Residual (m) and Jacobian."""
-    table, jac = system.distance, ws.jac
+    table = system.distance
+    jac = ws.jac
     for k in range(table.shape[0]):
-        i, j, r = table[k, 0], table[k, 1], table[k, 2]
-        bi, bj = 3 * system.marker_body[i], 3 * system.marker_body[j]
+        i = table[k, 0]
+        j = table[k, 1]
+        r = table[k, 2]
+        bi = 3 * system.marker_body[i]
+        bj = 3 * system.marker_body[j]
         dx = ws.position[j, 0] - ws.position[i, 0]
         dy = ws.position[j, 1] - ws.position[i, 1]
         length = math.sqrt(dx * dx + dy * dy)
-        ux, uy = dx / length, dy / length
+        ux = dx / length
+        uy = dy / length
         ws.phi[r] = length - system.distance_length[k] - drive[table[k, 3], 0]
-        jac[r, bi], jac[r, bi + 1] = -ux, -uy
+        jac[r, bi] = -ux
+        jac[r, bi + 1] = -uy
         jac[r, bi + 2] = ux * ws.arm[i, 1] - uy * ws.arm[i, 0]
-        jac[r, bj], jac[r, bj + 1] = ux, uy
+        jac[r, bj] = ux
+        jac[r, bj + 1] = uy
         jac[r, bj + 2] = -ux * ws.arm[j, 1] + uy * ws.arm[j, 0]
 
 
@@ -39,13 +46,18 @@ def gamma_rows(system, v, ws, gamma):
     """Acceleration right-hand side (m/s^2) without f''."""
     table = system.distance
     for k in range(table.shape[0]):
-        i, j, r = table[k, 0], table[k, 1], table[k, 2]
-        bi, bj = 3 * system.marker_body[i], 3 * system.marker_body[j]
-        wi, wj = v[bi + 2], v[bj + 2]
+        i = table[k, 0]
+        j = table[k, 1]
+        r = table[k, 2]
+        bi = 3 * system.marker_body[i]
+        bj = 3 * system.marker_body[j]
+        wi = v[bi + 2]
+        wj = v[bj + 2]
         dx = ws.position[j, 0] - ws.position[i, 0]
         dy = ws.position[j, 1] - ws.position[i, 1]
         length = math.sqrt(dx * dx + dy * dy)
-        ux, uy = dx / length, dy / length
+        ux = dx / length
+        uy = dy / length
         rate_x = v[bj] - wj * ws.arm[j, 1] - v[bi] + wi * ws.arm[i, 1]
         rate_y = v[bj + 1] + wj * ws.arm[j, 0] - v[bi + 1] - wi * ws.arm[i, 0]
         convective_x = -wj * wj * ws.arm[j, 0] + wi * wi * ws.arm[i, 0]

@@ -13,16 +13,25 @@ from mbsd.jit import inlined
 @inlined
 def rows(system, ws):
     """Residual (m) and Jacobian."""
-    table, phi, jac = system.point, ws.phi, ws.jac
+    table = system.point
+    phi = ws.phi
+    jac = ws.jac
     for k in range(table.shape[0]):
-        i, j, r = table[k, 0], table[k, 1], table[k, 2]
-        bi, bj = 3 * system.marker_body[i], 3 * system.marker_body[j]
+        i = table[k, 0]
+        j = table[k, 1]
+        r = table[k, 2]
+        bi = 3 * system.marker_body[i]
+        bj = 3 * system.marker_body[j]
         phi[r] = ws.position[j, 0] - ws.position[i, 0]
         phi[r + 1] = ws.position[j, 1] - ws.position[i, 1]
-        jac[r, bi], jac[r, bi + 2] = -1.0, ws.arm[i, 1]
-        jac[r + 1, bi + 1], jac[r + 1, bi + 2] = -1.0, -ws.arm[i, 0]
-        jac[r, bj], jac[r, bj + 2] = 1.0, -ws.arm[j, 1]
-        jac[r + 1, bj + 1], jac[r + 1, bj + 2] = 1.0, ws.arm[j, 0]
+        jac[r, bi] = -1.0
+        jac[r, bi + 2] = ws.arm[i, 1]
+        jac[r + 1, bi + 1] = -1.0
+        jac[r + 1, bi + 2] = -ws.arm[i, 0]
+        jac[r, bj] = 1.0
+        jac[r, bj + 2] = -ws.arm[j, 1]
+        jac[r + 1, bj + 1] = 1.0
+        jac[r + 1, bj + 2] = ws.arm[j, 0]
 
 
 @inlined
@@ -30,7 +39,10 @@ def gamma_rows(system, v, ws, gamma):
     """Acceleration right-hand side (m/s^2); v is (3 nb,)."""
     table = system.point
     for k in range(table.shape[0]):
-        i, j, r = table[k, 0], table[k, 1], table[k, 2]
-        wi, wj = v[3 * system.marker_body[i] + 2], v[3 * system.marker_body[j] + 2]
+        i = table[k, 0]
+        j = table[k, 1]
+        r = table[k, 2]
+        wi = v[3 * system.marker_body[i] + 2]
+        wj = v[3 * system.marker_body[j] + 2]
         gamma[r] = wj * wj * ws.arm[j, 0] - wi * wi * ws.arm[i, 0]
         gamma[r + 1] = wj * wj * ws.arm[j, 1] - wi * wi * ws.arm[i, 1]

@@ -14,18 +14,26 @@ from mbsd.jit import inlined
 @inlined
 def rows(system, ws):
     """Residual (m) and Jacobian."""
-    table, jac = system.slot, ws.jac
+    table = system.slot
+    jac = ws.jac
     for k in range(table.shape[0]):
-        i, j, r = table[k, 0], table[k, 1], table[k, 2]
-        bi, bj = 3 * system.marker_body[i], 3 * system.marker_body[j]
-        ux, uy = ws.axis[i, 0], ws.axis[i, 1]
-        nx, ny = -uy, ux
+        i = table[k, 0]
+        j = table[k, 1]
+        r = table[k, 2]
+        bi = 3 * system.marker_body[i]
+        bj = 3 * system.marker_body[j]
+        ux = ws.axis[i, 0]
+        uy = ws.axis[i, 1]
+        nx = -uy
+        ny = ux
         dx = ws.position[j, 0] - ws.position[i, 0]
         dy = ws.position[j, 1] - ws.position[i, 1]
         ws.phi[r] = nx * dx + ny * dy
-        jac[r, bi], jac[r, bi + 1] = -nx, -ny
+        jac[r, bi] = -nx
+        jac[r, bi + 1] = -ny
         jac[r, bi + 2] = -(ux * dx + uy * dy) - (-nx * ws.arm[i, 1] + ny * ws.arm[i, 0])
-        jac[r, bj], jac[r, bj + 1] = nx, ny
+        jac[r, bj] = nx
+        jac[r, bj + 1] = ny
         jac[r, bj + 2] = -nx * ws.arm[j, 1] + ny * ws.arm[j, 0]
 
 
@@ -34,11 +42,17 @@ def gamma_rows(system, v, ws, gamma):
     """Acceleration right-hand side (m/s^2)."""
     table = system.slot
     for k in range(table.shape[0]):
-        i, j, r = table[k, 0], table[k, 1], table[k, 2]
-        bi, bj = 3 * system.marker_body[i], 3 * system.marker_body[j]
-        ux, uy = ws.axis[i, 0], ws.axis[i, 1]
-        nx, ny = -uy, ux
-        wi, wj = v[bi + 2], v[bj + 2]
+        i = table[k, 0]
+        j = table[k, 1]
+        r = table[k, 2]
+        bi = 3 * system.marker_body[i]
+        bj = 3 * system.marker_body[j]
+        ux = ws.axis[i, 0]
+        uy = ws.axis[i, 1]
+        nx = -uy
+        ny = ux
+        wi = v[bi + 2]
+        wj = v[bj + 2]
         dx = ws.position[j, 0] - ws.position[i, 0]
         dy = ws.position[j, 1] - ws.position[i, 1]
         rate_x = v[bj] - wj * ws.arm[j, 1] - v[bi] + wi * ws.arm[i, 1]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from mbsd.constraints import along, angle, distance, point, slot
 from mbsd.jit import inlined, kernel
-from mbsd.markers import place
+from mbsd.markers import move, place
 
 
 @inlined
@@ -33,11 +33,12 @@ def evaluate_nu(system, drive, nu):
 @inlined
 def evaluate_gamma(system, v, drive, ws, gamma):
     """Fill gamma (m,) at velocities v (3 nb,), after evaluate_position at the same pose."""
-    point.gamma_rows(system, v, ws, gamma)
+    move(system, v, ws)
+    point.gamma_rows(system, ws, gamma)
     angle.gamma_rows(system, gamma)
     slot.gamma_rows(system, v, ws, gamma)
     along.gamma_rows(system, v, ws, gamma)
-    distance.gamma_rows(system, v, ws, gamma)
+    distance.gamma_rows(system, ws, gamma)
     for k in range(system.driven.shape[0]):
         gamma[system.driven[k, 0]] += drive[system.driven[k, 1], 2]
 

@@ -1,4 +1,4 @@
-"""Where the markers are: one kernel for all of them.
+"""Where the markers are and how they move: one kernel for all of them.
 
     arm      s = R(theta) s_local
     position p = r + s
@@ -43,3 +43,15 @@ def place(system, q, ws):
         y = system.marker_axis[k, 1]
         ws.axis[k, 0] = c * x - s * y
         ws.axis[k, 1] = s * x + c * y
+
+
+@inlined
+def move(system, v, ws):
+    """Fill velocity and convective acceleration of the markers from v (3 nb,), after place at the same pose."""
+    for k in system.moving:
+        b = 3 * system.marker_body[k]
+        omega = v[b + 2]
+        ws.velocity[k, 0] = v[b] - omega * ws.arm[k, 1]
+        ws.velocity[k, 1] = v[b + 1] + omega * ws.arm[k, 0]
+        ws.convective[k, 0] = -omega * omega * ws.arm[k, 0]
+        ws.convective[k, 1] = -omega * omega * ws.arm[k, 1]

@@ -55,6 +55,10 @@ class Workspace(NamedTuple):
     """(nm, 2) world."""
     axis: Any
     """(nm, 2) unit, world."""
+    velocity: Any
+    """(nm, 2) world."""
+    convective: Any
+    """(nm, 2) convective acceleration -omega^2 arm, world."""
     phi: Any
     """(m,) residual."""
     jac: Any
@@ -79,6 +83,8 @@ def workspace(system: System, rows: int) -> Workspace:
         arm=at_rest.copy(),
         position=at_rest.copy(),
         axis=np.where(on_ground[:, None], system.marker_axis, 0.0),
+        velocity=np.zeros_like(at_rest),
+        convective=np.zeros_like(at_rest),
         phi=np.zeros(rows),
         jac=np.zeros((rows, 3 * bodies)),
         right=np.zeros((2, rows)),

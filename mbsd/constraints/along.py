@@ -43,23 +43,10 @@ def gamma_rows(system, v, ws, gamma):
         i = table[k, 0]
         j = table[k, 1]
         r = table[k, 2]
-        bi = 3 * system.marker_body[i]
-        bj = 3 * system.marker_body[j]
         ux = ws.axis[i, 0]
         uy = ws.axis[i, 1]
-        nx = -uy
-        ny = ux
-        wi = v[bi + 2]
-        wj = v[bj + 2]
-        dx = ws.position[j, 0] - ws.position[i, 0]
-        dy = ws.position[j, 1] - ws.position[i, 1]
-        rate_x = v[bj] - wj * ws.arm[j, 1] - v[bi] + wi * ws.arm[i, 1]
-        rate_y = v[bj + 1] + wj * ws.arm[j, 0] - v[bi + 1] - wi * ws.arm[i, 0]
-        convective_x = -wj * wj * ws.arm[j, 0] + wi * wi * ws.arm[i, 0]
-        convective_y = -wj * wj * ws.arm[j, 1] + wi * wi * ws.arm[i, 1]
-        gamma[r] = -(
-            ux * convective_x
-            + uy * convective_y
-            + 2.0 * wi * (nx * rate_x + ny * rate_y)
-            - wi * wi * (ux * dx + uy * dy)
-        )
+        omega = v[3 * system.marker_body[i] + 2]
+        reach = ux * (ws.position[j, 0] - ws.position[i, 0]) + uy * (ws.position[j, 1] - ws.position[i, 1])
+        across = -uy * (ws.velocity[j, 0] - ws.velocity[i, 0]) + ux * (ws.velocity[j, 1] - ws.velocity[i, 1])
+        bend = ux * (ws.convective[j, 0] - ws.convective[i, 0]) + uy * (ws.convective[j, 1] - ws.convective[i, 1])
+        gamma[r] = -(bend + 2.0 * omega * across - omega * omega * reach)

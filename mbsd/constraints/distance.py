@@ -42,25 +42,18 @@ def rows(system, drive, ws):
 
 
 @inlined
-def gamma_rows(system, v, ws, gamma):
+def gamma_rows(system, ws, gamma):
     """Acceleration right-hand side (m/s^2) without f''."""
     table = system.distance
     for k in range(table.shape[0]):
         i = table[k, 0]
         j = table[k, 1]
         r = table[k, 2]
-        bi = 3 * system.marker_body[i]
-        bj = 3 * system.marker_body[j]
-        wi = v[bi + 2]
-        wj = v[bj + 2]
         dx = ws.position[j, 0] - ws.position[i, 0]
         dy = ws.position[j, 1] - ws.position[i, 1]
         length = math.sqrt(dx * dx + dy * dy)
         ux = dx / length
         uy = dy / length
-        rate_x = v[bj] - wj * ws.arm[j, 1] - v[bi] + wi * ws.arm[i, 1]
-        rate_y = v[bj + 1] + wj * ws.arm[j, 0] - v[bi + 1] - wi * ws.arm[i, 0]
-        convective_x = -wj * wj * ws.arm[j, 0] + wi * wi * ws.arm[i, 0]
-        convective_y = -wj * wj * ws.arm[j, 1] + wi * wi * ws.arm[i, 1]
-        across = ux * rate_y - uy * rate_x
-        gamma[r] = -(ux * convective_x + uy * convective_y + across * across / length)
+        across = ux * (ws.velocity[j, 1] - ws.velocity[i, 1]) - uy * (ws.velocity[j, 0] - ws.velocity[i, 0])
+        bend = ux * (ws.convective[j, 0] - ws.convective[i, 0]) + uy * (ws.convective[j, 1] - ws.convective[i, 1])
+        gamma[r] = -(bend + across * across / length)

@@ -35,14 +35,12 @@ def rows(system, ws):
 
 
 @inlined
-def gamma_rows(system, v, ws, gamma):
-    """Acceleration right-hand side (m/s^2); v is (3 nb,)."""
+def gamma_rows(system, ws, gamma):
+    """Acceleration right-hand side (m/s^2)."""
     table = system.point
     for k in range(table.shape[0]):
         i = table[k, 0]
         j = table[k, 1]
         r = table[k, 2]
-        wi = v[3 * system.marker_body[i] + 2]
-        wj = v[3 * system.marker_body[j] + 2]
-        gamma[r] = wj * wj * ws.arm[j, 0] - wi * wi * ws.arm[i, 0]
-        gamma[r + 1] = wj * wj * ws.arm[j, 1] - wi * wi * ws.arm[i, 1]
+        gamma[r] = ws.convective[i, 0] - ws.convective[j, 0]
+        gamma[r + 1] = ws.convective[i, 1] - ws.convective[j, 1]

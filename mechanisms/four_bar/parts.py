@@ -25,6 +25,8 @@ CRANK_BOSS = 4.4
 PIN_END = 1.2
 """What a pin shows beyond its circlip."""
 HEAD = Head(14.0, 4.0, 1.6)
+TIP = 14.4
+"""Of the stylus above the coupler: its trail passes over the rocker and the head of pin C."""
 
 # Heights, from the base up: each link lies between its number and its number + thickness.
 Z_CRANK = PEDESTAL_A + PIVOT.washer_room + PIVOT.fit.axial + PIVOT.flange_room
@@ -71,7 +73,7 @@ def coupler(length: float, p: tuple[float, float]) -> list[Solid]:
         Solid("coupler", placed(plate, z=Z_COUPLER), "aluminium", 4),
         *PIVOT.bushings("B", 0, 0, Z_COUPLER, COUPLER),
         *PIVOT.bushings("C", length, 0, Z_COUPLER, COUPLER),
-        Solid("stylus_P", placed(stylus(4.0, COUPLER + 1.0, 7.0, 0.9), *p, top), "brass", 0),
+        Solid("stylus_P", placed(stylus(4.0, COUPLER + 1.0, TIP, 0.9), *p, top), "brass", 0),
     ]
 
 

@@ -73,6 +73,15 @@ def test_a_killed_writer_keeps_the_old_file(target: Path) -> None:
     assert target.read_bytes() == b"old"
 
 
+def test_what_a_killed_writer_left_is_removed_once_it_is_old(target: Path) -> None:
+    fresh, old = target.with_name(".data-fresh.json"), target.with_name(".data-old.json")
+    for left in (fresh, old):
+        left.write_bytes(b"part")
+    os.utime(old, (0, 0))
+    write_bytes(target, b"new")
+    assert sorted(target.parent.iterdir()) == [fresh, target]
+
+
 def test_a_real_limit_on_file_size_keeps_the_old_file(target: Path) -> None:
     code = (
         "import resource, signal, sys; from pathlib import Path\n"

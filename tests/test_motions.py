@@ -52,6 +52,14 @@ def test_function_without_derivatives_gets_them_from_a_fit() -> None:
     np.testing.assert_allclose(fitted[:, 2], -4 * np.sin(2 * t), atol=1e-6)
 
 
+@pytest.mark.parametrize("law", [lambda t: 2 * math.pi * t, lambda t: 0.7, lambda t: 0.0, lambda t: 1e-6 * t * t + 3.0])
+def test_straight_lines_and_constants_are_smooth_laws(law) -> None:
+    values = function(law).over(0.0, 2.0)(np.array([0.0, 0.4, 2.0]))
+    np.testing.assert_allclose(values[:, 0], [law(0.0), law(0.4), law(2.0)], atol=1e-12)
+    np.testing.assert_allclose(values[:, 1], (law(1.0 + 1e-3) - law(1.0 - 1e-3)) / 2e-3, atol=1e-5)
+    np.testing.assert_allclose(values[:, 2], 0.0, atol=1e-5)
+
+
 @pytest.mark.parametrize(
     ("make", "says"),
     [

@@ -151,6 +151,47 @@ def test_peaucellier_draws_an_exact_line() -> None:
     assert np.ptp(pen.y) > 3.0
 
 
+def test_chebyshev_crossed_rockers_draw_nearly_a_line() -> None:
+    expected = _case("analytic_chebyshev")["expected"]
+    m = Mechanism("chebyshev")
+    left, right, coupler = m.bar("left", 5.0), m.bar("right", 5.0), m.bar("coupler", 2.0)
+    m.revolute("A", m.ground.at(0, 0), left.start)
+    m.revolute("B", m.ground.at(4, 0), right.start)
+    m.revolute("C", left.end, coupler.end)
+    m.revolute("D", right.end, coupler.start)
+    m.trace("middle", coupler.at(1.0, 0.0))
+    first, last = math.pi / 2, math.atan2(4.0, 3.0)  # from x = 0 to the middle; the other half is its mirror
+    m.drive_angle("hand", left, lambda t: first + (last - first) * t)
+    m.start_near(right=143, coupler=90)
+    point = m.sweep(duration=1.0, steps=4000).point("middle")
+    assert np.abs(point.y - 4).max() == pytest.approx(expected["max_abs_dev_from_y4_for_0<=x<=4"], rel=1e-6)
+    np.testing.assert_allclose([point.x[0], point.y[0], point.x[-1], point.y[-1]], [0, 4, 2, 4], atol=1e-12)
+
+
+def test_pantograph_scales_the_path_and_the_speed() -> None:
+    k = _case("analytic_pantograph")["expected"]["k_example"]
+    long, short = 0.25, 0.25 / k
+    m = Mechanism("pantograph")
+    near, far = m.bar("near", long), m.bar("far", long)  # O-A, A-P
+    link, brace = m.bar("link", long - short), m.bar("brace", short)  # parallel to far and near
+    crank = m.bar("crank", 0.03)
+    m.revolute("O", m.ground.at(0, 0), near.start)
+    m.revolute("A", near.end, far.start)
+    m.revolute("B", near.at(short, 0), brace.start)
+    m.revolute("C", far.at(short, 0), link.end)
+    m.revolute("Q", brace.end, link.start)
+    m.revolute("M", m.ground.at(0.12, 0.05), crank.start)
+    m.revolute("K", crank.end, brace.end)
+    m.drive_angle("motor", crank, constant_rate(2.0))
+    m.trace("pen", far.end)
+    m.trace("guide", crank.end)
+    m.start_near(crank=0, near=70, far=-40, link=70, brace=-40)
+    sol = m.sweep()
+    pen, guide = sol.point("pen"), sol.point("guide")
+    for field in RATES:
+        np.testing.assert_allclose(getattr(pen, field), k * getattr(guide, field), atol=1e-11)
+
+
 # -- PMKS -------------------------------------------------------------------------------------------------------
 
 

@@ -54,7 +54,11 @@ class Function(Motion):
             if coarse is not None:
                 between = nodes[1::2]
                 bend = fine(between)[:, 2]
-                change = float(np.abs(bend - coarse(between)[:, 2]).max() / max(1e-9, np.abs(bend).max()))
+                usual = (np.ptp(fine.values) + 1e-3 * np.abs(fine.values).max()) / (last - first) ** 2
+                size = max(
+                    float(np.abs(bend).max()), float(usual), 1e-300
+                )  # a straight line has no f'' to compare with
+                change = float(np.abs(bend - coarse(between)[:, 2]).max()) / size
                 if change < FIT_TOLERANCE:
                     return fine
             coarse = fine

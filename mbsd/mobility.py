@@ -41,9 +41,9 @@ class Mobility:
     """Bodies that can move."""
 
     def __str__(self) -> str:
-        text = f"{self.dof} degrees of freedom ({self.nominal} nominal)"
+        text = f"{self.dof} degree{'s' * (self.dof != 1)} of freedom ({self.nominal} nominal)"
         if self.redundant:
-            text += f", {self.redundant_rows} redundant rows, removable at {', '.join(self.redundant)}"
+            text += f", {self.redundant_rows} redundant row{'s' * (self.redundant_rows != 1)}, removable at {', '.join(self.redundant)}"
         return text + (", start pose singular" if self.singular else "")
 
 

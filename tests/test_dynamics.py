@@ -152,7 +152,7 @@ def test_frame_and_notebook_views() -> None:
     assert {"P.ax [m/s^2]", "B.fx [N]", "motor.effort [N m]", "kinetic [J]"} <= set(frame.columns)
     shown = sol._repr_html_()
     assert "coupler.theta [rad]" in shown
-    assert "1 degrees of freedom" in shown
+    assert "1 degree of freedom" in shown
     assert "random" in repr(sol)
 
 

@@ -43,7 +43,8 @@ class Mobility:
     def __str__(self) -> str:
         text = f"{self.dof} degree{'s' * (self.dof != 1)} of freedom ({self.nominal} nominal)"
         if self.redundant:
-            text += f", {self.redundant_rows} redundant row{'s' * (self.redundant_rows != 1)}, removable at {', '.join(self.redundant)}"
+            rows = f"{self.redundant_rows} redundant row{'s' * (self.redundant_rows != 1)}"
+            text += f", {rows}, removable at {', '.join(self.redundant)}"
         return text + (", start pose singular" if self.singular else "")
 
 

@@ -72,7 +72,7 @@ def _predict(q, v, a, t, k, time, out):
         )
 
 
-@inlined
+@kernel
 def _extent(delta, per_metre):
     """Largest part of a change of pose (3 nb,): lengths in sizes, angles in rad; NaN counts as infinite."""
     largest = 0.0

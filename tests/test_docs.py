@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import os
 import re
 import subprocess
@@ -30,6 +31,20 @@ def make_targets(document: Path) -> set[str]:
     for line in re.findall(r"\bmake ((?:[a-z][a-z_<>-]*|[A-Z]+=\S+)(?: (?:[a-z][a-z_<>-]*|[A-Z]+=\S+))*)", code):
         targets |= {word.replace("<name>", "four-bar") for word in line.split() if "=" not in word}
     return targets
+
+
+def test_the_readme_shows_the_four_bar_as_it_is() -> None:
+    shown = blocks(ROOT / "README.md", "python")[0]
+    file = (ROOT / "mechanisms" / "four_bar" / "mechanism.py").read_text()
+    assert _without_docstrings(shown) == _without_docstrings(file)
+
+
+def _without_docstrings(code: str) -> str:
+    tree = ast.parse(code)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Module | ast.FunctionDef | ast.ClassDef) and ast.get_docstring(node) is not None:
+            node.body = node.body[1:]
+    return ast.dump(tree)
 
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())

@@ -9,7 +9,7 @@ trap 'rm -f "$constraints"' EXIT
 
 compile() {
     "$uv" pip compile pyproject.toml --quiet --universal --python-version 3.13 --generate-hashes \
-        --no-annotate --no-header --no-emit-index-url --no-emit-find-links "$@" >/dev/null
+        --no-annotate --no-header "$@" >/dev/null
 }
 
 compile --extra pandas --extra studio --extra dev -o requirements.lock "$@"

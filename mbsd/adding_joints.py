@@ -1,0 +1,102 @@
+"""The methods of a Mechanism that add joints and drivers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from mbsd.body import Body, Marker
+from mbsd.drivers.angle import DRIVE_ANGLE
+from mbsd.drivers.coordinate import DRIVE_COORDINATE
+from mbsd.drivers.distance import DRIVE_DISTANCE
+from mbsd.drivers.relative_angle import DRIVE_RELATIVE_ANGLE
+from mbsd.errors import ModelError
+from mbsd.joint import Joint
+from mbsd.joints.distance import DISTANCE
+from mbsd.joints.kind import JointKind
+from mbsd.joints.pin_in_slot import PIN_IN_SLOT
+from mbsd.joints.prismatic import PRISMATIC
+from mbsd.joints.revolute import REVOLUTE
+from mbsd.joints.weld import WELD
+from mbsd.mechanism_base import MechanismBase
+from mbsd.motions import Motion
+from mbsd.motions.function import Function
+
+Law = Motion | Callable[[float], float]
+
+
+class AddingJoints(MechanismBase):
+    """Joints take two markers, drivers a motion law besides; all return the Joint."""
+
+    def revolute(self, name: str, i: Marker, j: Marker) -> Joint:
+        """A pin: markers i and j share one point."""
+        return self._join(REVOLUTE, name, i, j)
+
+    def prismatic(self, name: str, i: Marker, j: Marker) -> Joint:
+        """A slider: marker j moves along the x axis of marker i and does not turn against it."""
+        return self._join(PRISMATIC, name, i, j)
+
+    def weld(self, name: str, i: Marker, j: Marker) -> Joint:
+        """Marker j is fixed to marker i in place and direction."""
+        return self._join(WELD, name, i, j)
+
+    def distance(self, name: str, i: Marker, j: Marker, length: float) -> Joint:
+        """A massless rod of the given length (m) between the points of markers i and j."""
+        length = self._number(f"joint '{name}': length", length)
+        if length <= 0:
+            raise ModelError(
+                f"{self.name}: distance joint '{name}' has length {length:g} m; it must be positive "
+                "(use a revolute joint for two points that coincide)"
+            )
+        return self._join(DISTANCE, name, i, j, length=length)
+
+    def pin_in_slot(self, name: str, slot: Marker, pin: Marker) -> Joint:
+        """The point of marker ``pin`` moves along the x axis of marker ``slot``."""
+        return self._join(PIN_IN_SLOT, name, slot, pin)
+
+    # -- drivers ------------------------------------------------------------------------------------------------
+
+    def drive_angle(self, name: str, body: Body, law: Law) -> Joint:
+        """Impose the absolute angle of a body (rad)."""
+        self._own_body(body, f"driver '{name}'")
+        return self._join(DRIVE_ANGLE, name, self.ground.origin, body.origin, law=law)
+
+    def drive_relative_angle(self, name: str, first: Body, second: Body, law: Law) -> Joint:
+        """Impose the angle of body ``second`` against body ``first`` (rad)."""
+        self._own_body(first, f"driver '{name}'")
+        self._own_body(second, f"driver '{name}'")
+        return self._join(DRIVE_RELATIVE_ANGLE, name, first.origin, second.origin, law=law)
+
+    def drive_coordinate(self, name: str, i: Marker, j: Marker, law: Law) -> Joint:
+        """Impose how far marker j lies along the x axis of marker i (m)."""
+        return self._join(DRIVE_COORDINATE, name, i, j, law=law)
+
+    def drive_distance(self, name: str, i: Marker, j: Marker, law: Law) -> Joint:
+        """Impose the distance of the points of markers i and j (m), as a linear actuator does."""
+        return self._join(DRIVE_DISTANCE, name, i, j, law=law)
+
+    def _join(self, kind: JointKind, name: str, i: Marker, j: Marker, law: Law | None = None, **params: Any) -> Joint:
+        what = "driver" if kind.driven else "joint"
+        self._new_name(name, self.joints | self.drivers, what)
+        for marker in (i, j):
+            if not isinstance(marker, Marker):
+                raise ModelError(
+                    f"{self.name}: {what} '{name}' needs two markers, got {marker!r}; "
+                    "write body.at(x, y), bar.start or bar.end"
+                )
+            self._own_body(marker.body, f"{what} '{name}'")
+        if i.body is j.body:
+            raise ModelError(
+                f"{self.name}: {what} '{name}' connects '{i.body.name}' with itself; give markers of two bodies"
+            )
+        motion = None
+        if kind.driven:
+            if not (isinstance(law, Motion) or callable(law)):
+                raise ModelError(
+                    f"{self.name}: driver '{name}' needs a motion law, got {law!r}; "
+                    "say constant_rate(...), harmonic(...), or a function of time"
+                )
+            motion = law if isinstance(law, Motion) else Function(law)
+        joint = Joint(kind, name, i, j, params, motion)
+        (self.drivers if kind.driven else self.joints)[name] = joint
+        return joint

@@ -1,0 +1,74 @@
+"""Bodies and the markers fixed to them. SI units; angles in radians."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.errors import ModelError
+
+
+@dataclass(frozen=True, eq=False)
+class Marker:
+    """A frame fixed to a body: ``x``, ``y`` (m) and ``angle`` (rad) in the body's frame."""
+
+    body: Body
+    x: float
+    y: float
+    angle: float = 0.0
+
+
+@dataclass(eq=False)
+class Body:
+    """A rigid body with the frame its author chose. Ground is body 0 and never moves.
+
+    mass (kg), com (m, body frame), inertia about the centre of mass (kg m^2).
+    """
+
+    name: str
+    mass: float = 0.0
+    com: tuple[float, float] = (0.0, 0.0)
+    inertia: float = 0.0
+    length: float | None = None
+    """Of a bar (m); None for other bodies."""
+
+    def at(self, x: float, y: float, angle: float = 0.0) -> Marker:
+        """The marker at (x, y) in this body's frame (m), its x axis turned by ``angle`` (rad)."""
+        for what, value in (("x", x), ("y", y), ("angle", angle)):
+            finite_number(f"{self.name}.at: {what}", value)
+        return Marker(self, float(x), float(y), float(angle))
+
+    @property
+    def origin(self) -> Marker:
+        """The body's own frame."""
+        return self.at(0.0, 0.0)
+
+    @property
+    def start(self) -> Marker:
+        """A bar's first end: its frame's origin."""
+        self._bar_length("start")
+        return self.at(0.0, 0.0)
+
+    @property
+    def end(self) -> Marker:
+        """A bar's second end, at (length, 0)."""
+        return self.at(self._bar_length("end"), 0.0)
+
+    def _bar_length(self, what: str) -> float:
+        if self.length is None:
+            raise ModelError(f"{self.name}.{what}: '{self.name}' is no bar; use {self.name}.at(x, y)")
+        return self.length
+
+    def __repr__(self) -> str:
+        return f"<Body {self.name}: {self.mass:g} kg>"
+
+
+def finite_number(what: str, value: object) -> float:
+    """``value`` as a float; raises ModelError if it is no finite number."""
+    if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
+        raise ModelError(f"{what} is {value!r}; it must be a number")
+    if not math.isfinite(value):
+        raise ModelError(f"{what} is {value}; it must be finite")
+    return float(value)

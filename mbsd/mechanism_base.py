@@ -1,0 +1,117 @@
+"""What a mechanism holds: named bodies, joints, drivers, traces and rough starts; bodies and shared checks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from mbsd.body import Body, Marker, finite_number
+from mbsd.errors import ModelError
+from mbsd.joint import Joint
+
+STANDARD_GRAVITY = (0.0, -9.80665)
+"""m/s^2, ISO 80000-3."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """Rough pose of a body at the start: angle (rad) and, if given, place of its frame (m)."""
+
+    angle: float
+    place: tuple[float, float] | None = None
+
+
+@dataclass(eq=False)
+class MechanismBase:
+    """What a mechanism holds, and the checks that all its methods share. See :class:`mbsd.model.Mechanism`."""
+
+    name: str
+    gravity: tuple[float, float] | None = STANDARD_GRAVITY
+    bodies: dict[str, Body] = field(default_factory=dict)
+    joints: dict[str, Joint] = field(default_factory=dict)
+    drivers: dict[str, Joint] = field(default_factory=dict)
+    traces: dict[str, Marker] = field(default_factory=dict)
+    starts: dict[str, Start] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not self.name or not isinstance(self.name, str):
+            raise ModelError(f"a mechanism needs a name, got {self.name!r}")
+        gravity = self.gravity if self.gravity is not None else (0.0, 0.0)
+        if len(gravity) != 2:
+            raise ModelError(f"{self.name}: gravity is {gravity!r}; it must be (gx, gy) in m/s^2, or None")
+        self.gravity = (self._number("gravity", gravity[0]), self._number("gravity", gravity[1]))
+        self.bodies["ground"] = Body("ground")
+
+    # -- bodies -------------------------------------------------------------------------------------------------
+
+    @property
+    def ground(self) -> Body:
+        """The frame that does not move."""
+        return self.bodies["ground"]
+
+    def body(self, name: str, mass: float = 0.0, com: Sequence[float] = (0.0, 0.0), inertia: float = 0.0) -> Body:
+        """Add a body. Raises ModelError on a name already used or an impossible mass."""
+        self._new_name(name, self.bodies, "body")
+        body = self.bodies[name] = Body(name)
+        try:
+            self.set_mass(name, mass, com, inertia)
+        except ModelError:
+            del self.bodies[name]
+            raise
+        return body
+
+    def bar(
+        self,
+        name: str,
+        length: float,
+        mass: float = 0.0,
+        com: Sequence[float] | None = None,
+        inertia: float | None = None,
+    ) -> Body:
+        """Add a bar from ``start`` (0, 0) to ``end`` (length, 0).
+
+        With a mass and nothing else it is a uniform slender rod: com at the middle, inertia m l^2 / 12.
+        """
+        length = self._number(f"bar '{name}': length", length)
+        if length <= 0:
+            raise ModelError(f"{self.name}: bar '{name}' has length {length:g} m; it must be positive")
+        com = (length / 2, 0.0) if com is None else com
+        inertia = mass * length**2 / 12 if inertia is None else inertia
+        body = self.body(name, mass, com, inertia)
+        body.length = length
+        return body
+
+    def set_mass(self, name: str, mass: float, com: Sequence[float], inertia: float) -> None:
+        """Set mass (kg), centre of mass (m, body frame) and inertia about it (kg m^2), as from CAD."""
+        body = self.known_body(name)
+        if len(com) != 2:
+            raise ModelError(f"{self.name}: com of body '{name}' is {com!r}; it must be (x, y)")
+        values = [self._number(f"mass of body '{name}'", mass), self._number(f"inertia of body '{name}'", inertia)]
+        for what, value, unit in zip(("mass", "inertia"), values, ("kg", "kg m^2"), strict=True):
+            if value < 0:
+                raise ModelError(f"{self.name}: body '{name}' has {what} {value:g} {unit}; it cannot be negative")
+        body.mass, body.inertia = values
+        body.com = (self._number(f"com of '{name}'", com[0]), self._number(f"com of '{name}'", com[1]))
+
+    def known_body(self, name: str) -> Body:
+        """The body of this name; raises ModelError with the known names."""
+        if name not in self.bodies:
+            raise ModelError(f"{self.name}: there is no body '{name}'; there is: {', '.join(self.bodies)}")
+        return self.bodies[name]
+
+    # -- checks -------------------------------------------------------------------------------------------------
+
+    def _own_body(self, body: Body, what: str) -> None:
+        if not isinstance(body, Body):
+            raise ModelError(f"{self.name}: {what} needs a body, got {body!r}")
+        if self.bodies.get(body.name) is not body:
+            raise ModelError(f"{self.name}: {what} uses body '{body.name}' of another mechanism")
+
+    def _new_name(self, name: str, taken: dict, what: str) -> None:
+        if not isinstance(name, str) or not name:
+            raise ModelError(f"{self.name}: a {what} needs a name, got {name!r}")
+        if name in taken:
+            raise ModelError(f"{self.name}: there are two of the name '{name}'; the {what} needs another")
+
+    def _number(self, what: str, value: object) -> float:
+        return finite_number(f"{self.name}: {what}", value)

@@ -97,7 +97,7 @@ def pack(m: Mechanism) -> Packed:
             if constraint == "angle":
                 offsets.append(joint.i.angle - joint.j.angle)
             if constraint == "distance":
-                lengths.append(joint.params["length"])
+                lengths.append(joint.params.get("length", 0.0))  # a driver imposes all of it
         first_row.append(row)
     markers = [marker for joint in joints for marker in (joint.i, joint.j)]
     local = np.array([(marker.x, marker.y) for marker in markers], float).reshape(-1, 2)

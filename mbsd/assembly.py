@@ -51,11 +51,11 @@ def residual_and_jacobian(system, q, drive, ws):
 
 @kernel
 def tabulate(system, drives, q, v, ws, phi, jacobians, gamma):
-    """phi, gamma (T, m) and Jacobians without ground's columns (T, m, n) along a motion q, v (T, 3 nb)."""
+    """phi, gamma (T, m) and compact Jacobians (T, m, 6) along a motion q, v (T, 3 nb)."""
     for k in range(q.shape[0]):
         residual_and_jacobian(system, q[k], drives[k], ws)
         evaluate_gamma(system, v[k], drives[k], ws, gamma[k])
         for r in range(ws.phi.shape[0]):
             phi[k, r] = ws.phi[r]
-            for c in range(3, q.shape[1]):
-                jacobians[k, r, c - 3] = ws.jac[r, c]
+            for c in range(6):
+                jacobians[k, r, c] = ws.jac[r, c]

@@ -35,7 +35,7 @@ class Elimination(NamedTuple):
     scale: Any
     """(n,) factor of each row: one over its constant pivot, 1 in the block."""
     read: Any
-    """(r, 3): value, row and column of J: entries copied before each factorisation."""
+    """(r, 3): value, row and column of the compact J: entries copied before each factorisation."""
     read_scale: Any
     """(r,)"""
     cleared: Any
@@ -65,8 +65,11 @@ class Factors(NamedTuple):
     """(n, 2) right-hand sides, then the solutions, by position."""
 
 
-def plan(samples: np.ndarray, kept_rows: np.ndarray) -> tuple[Elimination, Factors]:
-    """Find the sequence from Jacobians (s, m, n) at s unrelated poses: what is the same in all is constant."""
+def plan(samples: np.ndarray, kept_rows: np.ndarray, row_body: np.ndarray) -> tuple[Elimination, Factors]:
+    """Find the sequence from Jacobians (s, m, n) at s unrelated poses: what is the same in all is constant.
+
+    ``row_body`` (m, 2): the bodies of each row, to find an entry in the compact J (m, 6).
+    """
     matrices = samples[:, kept_rows, :]
     n = len(kept_rows)
     value = matrices[0].copy()
@@ -105,7 +108,8 @@ def plan(samples: np.ndarray, kept_rows: np.ndarray) -> tuple[Elimination, Facto
         if own_constant[r, c] and not changed[r, c]:
             values[k] = fixed_value[r, c] * scale_of[r]
         elif own[r, c]:
-            read.append((k, int(kept_rows[r]), c + 3))
+            row = int(kept_rows[r])
+            read.append((k, row, c % 3 + (0 if row_body[row, 0] == c // 3 + 1 else 3)))
             read_scale.append(scale_of[r])
         else:
             cleared.append(k)
@@ -155,7 +159,7 @@ def _cheapest_pivot(
 
 @inlined
 def factorise(seq, jac, fac):
-    """Factor J (m, 3 nb).
+    """Factor J, compact (m, 6).
 
     Returns (sign, margin): sign of the block's determinant, and its smallest over its largest pivot; 0 if singular.
     """

@@ -52,8 +52,9 @@ def inverse_dynamics(ready: Prepared, drives: np.ndarray, q: np.ndarray, v: np.n
     for start in range(0, count, chunk):
         at = slice(start, min(start + chunk, count))
         phi, gamma = np.zeros((2, at.stop - start, rows))
-        jac = np.zeros((at.stop - start, rows, packed.coordinates))
-        tabulate(system, drives[at], q[at], v[at], packed.ws, phi, jac, gamma)
+        compact = np.zeros((at.stop - start, rows, 6))
+        tabulate(system, drives[at], q[at], v[at], packed.ws, phi, compact, gamma)
+        jac = packed.spread(compact)
         scaled = jac[:, kept] * packed.row_scale()[kept, None] * packed.column_scale()
         singular = np.linalg.svd(scaled, compute_uv=False)
         out.margin[at] = singular[:, -1] / singular[:, 0]

@@ -135,7 +135,7 @@ def _refuse_idle_drivers(packed: Packed, joints: Mobility, kept: list[int], time
 def scaled_jacobian(packed: Packed, q: np.ndarray) -> np.ndarray:
     """(m, n) dimensionless Jacobian at q, ground's columns left out."""
     residual_and_jacobian(packed.system, q, np.zeros((len(packed.motions) + 1, 3)), packed.ws)
-    return packed.ws.jac[:, 3:] * packed.row_scale()[:, None] * packed.column_scale()
+    return packed.jacobian() * packed.row_scale()[:, None] * packed.column_scale()
 
 
 def independent_rows(jac: np.ndarray) -> list[int]:

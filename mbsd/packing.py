@@ -70,6 +70,19 @@ class Packed:
         """(n,) size of a unit step of each coordinate: ``size`` for x and y, 1 for theta."""
         return np.tile([self.size, self.size, 1.0], len(self.body_names) - 1)
 
+    def jacobian(self) -> np.ndarray:
+        """(m, n) of the last evaluation, ground's columns left out."""
+        return self.spread(self.ws.jac)
+
+    def spread(self, compact: np.ndarray) -> np.ndarray:
+        """Compact Jacobians (..., m, 6) as matrices (..., m, n), ground's columns left out."""
+        rows, bodies = np.arange(compact.shape[-2])[:, None], self.system.row_body
+        out = np.zeros((*compact.shape[:-1], self.coordinates + 3))
+        for side in (0, 1):
+            columns = 3 * bodies[:, side, None] + np.arange(3)
+            out[..., rows, columns] = compact[..., 3 * side : 3 * side + 3]
+        return out[..., 3:]
+
 
 def pack(m: Mechanism) -> Packed:
     """Build the arrays of a mechanism."""
@@ -113,6 +126,7 @@ def pack(m: Mechanism) -> Packed:
         marker_axis=np.stack([np.cos(angles), np.sin(angles)], axis=1),
         moving=np.flatnonzero(marker_body),
         directed=_directed(as_table, marker_body),
+        row_body=marker_body[np.repeat(np.array(marker_of, np.int64).reshape(-1, 2), np.diff(first_row), axis=0)],
         driven=np.array([row[2:] for rows in tables.values() for row in rows if row[3]], np.int64).reshape(-1, 2),
         angle_offset=np.array(offsets, float),
         distance_length=np.array(lengths, float),

@@ -161,7 +161,7 @@ def prepare(m: Mechanism, start: float = 0.0, end: float = 1.0) -> Prepared:
         refuse_overdriven(m, packed, start)
         raise
     kept = choose_rows(packed, q0, start)
-    sequence, factors = plan(_sample_jacobians(packed), kept)
+    sequence, factors = plan(_sample_jacobians(packed), kept, packed.system.row_body)
     return Prepared(packed, q0, start, sequence, factors, joint_mobility(packed, q0))
 
 
@@ -187,5 +187,5 @@ def _sample_jacobians(packed: Packed) -> np.ndarray:
         q = np.zeros(3 * len(packed.body_names))
         q[3:] = random.uniform(-2.0, 2.0, packed.coordinates) * packed.column_scale()
         residual_and_jacobian(packed.system, q, none, packed.ws)
-        samples.append(packed.ws.jac[:, 3:].copy())
+        samples.append(packed.jacobian())
     return np.array(samples)

@@ -53,7 +53,7 @@ def close(packed: Packed, q: np.ndarray, drive: np.ndarray, rows: int | None = N
     if rows == 0:
         return q, 0.0
     for _ in range(200):
-        jac = packed.ws.jac[:rows, 3:] * row_scale[:, None] * column_scale
+        jac = packed.jacobian()[:rows] * row_scale[:, None] * column_scale
         if not (np.isfinite(jac).all() and np.isfinite(phi).all()):
             return q, math.inf
         step = np.linalg.lstsq(jac, -phi, rcond=1e-9)[0]

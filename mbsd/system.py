@@ -1,6 +1,6 @@
 """Arrays that the kernels work on: System (constant), Workspace (scratch). Made by model.py, changed by nobody else.
 
-Bodies are numbered 0 .. nb-1; body 0 is ground, whose columns of the Jacobian are computed and not used.
+Bodies are numbered 0 .. nb-1; body 0 is ground. A row of the Jacobian touches two bodies, so six numbers hold it.
 A constraint table has one row per constraint: marker i, marker j, first row in J, motion (0: none, constant 0).
 """
 
@@ -38,6 +38,8 @@ class System(NamedTuple):
     """(k, 4) int constraint tables."""
     driven: Any
     """(drivers, 2) row and motion of each driven constraint."""
+    row_body: Any
+    """(m, 2) first and second body of each row."""
     angle_offset: Any
     """(k,) rad, for the rows of ``angle``."""
     distance_length: Any
@@ -62,7 +64,7 @@ class Workspace(NamedTuple):
     phi: Any
     """(m,) residual."""
     jac: Any
-    """(m, 3 nb) dPhi/dq, ground included."""
+    """(m, 6) dPhi/dq on the first body (x, y, theta), then on the second; what falls on ground is not used."""
     right: Any
     """(2, m) right-hand sides: -Phi and nu, then gamma."""
     pose: Any
@@ -72,7 +74,7 @@ class Workspace(NamedTuple):
 
 
 def workspace(system: System, rows: int) -> Workspace:
-    """Scratch for ``rows`` constraint rows. Entries of ``jac`` outside the pattern stay zero for ever."""
+    """Scratch for ``rows`` constraint rows. Entries of ``jac`` that no constraint writes stay zero for ever."""
     bodies = len(system.mass)
     cos_sin = np.zeros((bodies, 2))
     cos_sin[:, 0] = 1.0
@@ -86,7 +88,7 @@ def workspace(system: System, rows: int) -> Workspace:
         velocity=np.zeros_like(at_rest),
         convective=np.zeros_like(at_rest),
         phi=np.zeros(rows),
-        jac=np.zeros((rows, 3 * bodies)),
+        jac=np.zeros((rows, 6)),
         right=np.zeros((2, rows)),
         pose=np.zeros(3 * bodies),
         delta=np.zeros((2, 3 * bodies)),

@@ -59,7 +59,7 @@ class _Path:
         rows = len(self.packed.ws.phi)
         nu, gamma = np.zeros(rows), np.zeros(rows)
         _everything(self.packed.system, here if q is None else q, v, drive, self.packed.ws, nu, gamma)
-        return self.packed.ws.phi.copy(), self.packed.ws.jac[:, 3:].copy(), nu, gamma
+        return self.packed.ws.phi.copy(), self.packed.jacobian(), nu, gamma
 
     def rate(self, t: float) -> np.ndarray:
         _, v, _ = self.at(t)

@@ -19,8 +19,8 @@ def rows(system, q, drive, ws):
         bi = 3 * system.marker_body[table[k, 0]]
         bj = 3 * system.marker_body[table[k, 1]]
         ws.phi[r] = q[bj + 2] - q[bi + 2] - system.angle_offset[k] - drive[table[k, 3], 0]
-        ws.jac[r, bi + 2] = -1.0
-        ws.jac[r, bj + 2] = 1.0
+        ws.jac[r, 2] = -1.0
+        ws.jac[r, 5] = 1.0
 
 
 @inlined

@@ -25,20 +25,18 @@ def rows(system, drive, ws):
         i = table[k, 0]
         j = table[k, 1]
         r = table[k, 2]
-        bi = 3 * system.marker_body[i]
-        bj = 3 * system.marker_body[j]
         dx = ws.position[j, 0] - ws.position[i, 0]
         dy = ws.position[j, 1] - ws.position[i, 1]
         length = math.sqrt(dx * dx + dy * dy)
         ux = dx / length
         uy = dy / length
         ws.phi[r] = length - system.distance_length[k] - drive[table[k, 3], 0]
-        jac[r, bi] = -ux
-        jac[r, bi + 1] = -uy
-        jac[r, bi + 2] = ux * ws.arm[i, 1] - uy * ws.arm[i, 0]
-        jac[r, bj] = ux
-        jac[r, bj + 1] = uy
-        jac[r, bj + 2] = -ux * ws.arm[j, 1] + uy * ws.arm[j, 0]
+        jac[r, 0] = -ux
+        jac[r, 1] = -uy
+        jac[r, 2] = ux * ws.arm[i, 1] - uy * ws.arm[i, 0]
+        jac[r, 3] = ux
+        jac[r, 4] = uy
+        jac[r, 5] = -ux * ws.arm[j, 1] + uy * ws.arm[j, 0]
 
 
 @inlined

@@ -20,18 +20,16 @@ def rows(system, ws):
         i = table[k, 0]
         j = table[k, 1]
         r = table[k, 2]
-        bi = 3 * system.marker_body[i]
-        bj = 3 * system.marker_body[j]
         phi[r] = ws.position[j, 0] - ws.position[i, 0]
         phi[r + 1] = ws.position[j, 1] - ws.position[i, 1]
-        jac[r, bi] = -1.0
-        jac[r, bi + 2] = ws.arm[i, 1]
-        jac[r + 1, bi + 1] = -1.0
-        jac[r + 1, bi + 2] = -ws.arm[i, 0]
-        jac[r, bj] = 1.0
-        jac[r, bj + 2] = -ws.arm[j, 1]
-        jac[r + 1, bj + 1] = 1.0
-        jac[r + 1, bj + 2] = ws.arm[j, 0]
+        jac[r, 0] = -1.0
+        jac[r, 2] = ws.arm[i, 1]
+        jac[r + 1, 1] = -1.0
+        jac[r + 1, 2] = -ws.arm[i, 0]
+        jac[r, 3] = 1.0
+        jac[r, 5] = -ws.arm[j, 1]
+        jac[r + 1, 4] = 1.0
+        jac[r + 1, 5] = ws.arm[j, 0]
 
 
 @inlined

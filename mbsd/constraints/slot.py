@@ -20,8 +20,6 @@ def rows(system, ws):
         i = table[k, 0]
         j = table[k, 1]
         r = table[k, 2]
-        bi = 3 * system.marker_body[i]
-        bj = 3 * system.marker_body[j]
         ux = ws.axis[i, 0]
         uy = ws.axis[i, 1]
         nx = -uy
@@ -29,12 +27,12 @@ def rows(system, ws):
         dx = ws.position[j, 0] - ws.position[i, 0]
         dy = ws.position[j, 1] - ws.position[i, 1]
         ws.phi[r] = nx * dx + ny * dy
-        jac[r, bi] = -nx
-        jac[r, bi + 1] = -ny
-        jac[r, bi + 2] = -(ux * dx + uy * dy) - (-nx * ws.arm[i, 1] + ny * ws.arm[i, 0])
-        jac[r, bj] = nx
-        jac[r, bj + 1] = ny
-        jac[r, bj + 2] = -nx * ws.arm[j, 1] + ny * ws.arm[j, 0]
+        jac[r, 0] = -nx
+        jac[r, 1] = -ny
+        jac[r, 2] = -(ux * dx + uy * dy) - (-nx * ws.arm[i, 1] + ny * ws.arm[i, 0])
+        jac[r, 3] = nx
+        jac[r, 4] = ny
+        jac[r, 5] = -nx * ws.arm[j, 1] + ny * ws.arm[j, 0]
 
 
 @inlined

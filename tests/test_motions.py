@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbsd import ModelError, constant_rate, cycloidal, function, harmonic, polynomial, table
+from mbsd.laws import pack_laws, tabulate_law
 from mbsd.motions import Motion
 from mbsd.motions.examples import EXAMPLES
 
@@ -26,6 +27,15 @@ def test_rates_are_derivatives(law: Motion) -> None:
     scale = max(1.0, float(np.abs(now).max()))
     np.testing.assert_allclose((after[:, 0] - before[:, 0]) / (2 * h), now[:, 1], atol=1e-6 * scale)
     np.testing.assert_allclose((after[:, 1] - before[:, 1]) / (2 * h), now[:, 2], atol=1e-5 * scale)
+
+
+@pytest.mark.parametrize("law", EXAMPLES, ids=lambda law: type(law).__name__)
+def test_compiled_laws_are_the_same_laws(law: Motion) -> None:
+    t = np.linspace(0.0, 1.4, 301)
+    laws, out = pack_laws([law.over(0.0, 1.4).compiled(0.0, 1.4)]), np.zeros((301, 3))
+    tabulate_law(laws, 1, t, out)
+    expected = law.over(0.0, 1.4)(t)
+    np.testing.assert_allclose(out, expected, rtol=1e-9, atol=1e-9 * max(1.0, float(np.abs(expected).max())))
 
 
 @given(rise=st.floats(-3, 3), duration=st.floats(0.1, 10), begin=st.floats(-1, 1))

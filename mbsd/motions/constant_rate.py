@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mbsd.motions.law import Motion, Times, refuse_non_finite
+
+if TYPE_CHECKING:
+    from mbsd.laws import Compiled
 
 
 @dataclass(frozen=True)
@@ -21,6 +25,12 @@ class ConstantRate(Motion):
     def period(self) -> float | None:
         """One turn, for an angle."""
         return 2 * math.pi / abs(self.rate) if self.rate else None
+
+    def compiled(self, first: float, last: float) -> Compiled:
+        """As kernels evaluate it."""
+        from mbsd.laws import POLYNOMIAL
+
+        return POLYNOMIAL, np.array([self.start, self.rate], float)
 
     def __call__(self, times: Times) -> np.ndarray:
         """(T,) times to (T, 3): f, f', f''."""

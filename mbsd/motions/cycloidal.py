@@ -7,11 +7,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mbsd.errors import ModelError
 from mbsd.motions.law import Motion, Times, refuse_non_finite
+
+if TYPE_CHECKING:
+    from mbsd.laws import Compiled
 
 
 @dataclass(frozen=True)
@@ -22,6 +26,12 @@ class Cycloidal(Motion):
     duration: float
     begin: float = 0.0
     start: float = 0.0
+
+    def compiled(self, first: float, last: float) -> Compiled:
+        """As kernels evaluate it."""
+        from mbsd.laws import CYCLOIDAL
+
+        return CYCLOIDAL, np.array([self.rise, self.duration, self.begin, self.start], float)
 
     def __call__(self, times: Times) -> np.ndarray:
         """(T,) times to (T, 3): f, f', f''."""

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mbsd.motions.law import Motion, Times, refuse_non_finite
+
+if TYPE_CHECKING:
+    from mbsd.laws import Compiled
 
 
 @dataclass(frozen=True)
@@ -23,6 +27,12 @@ class Harmonic(Motion):
     def period(self) -> float | None:
         """One swing."""
         return 2 * math.pi / abs(self.rate) if self.rate else None
+
+    def compiled(self, first: float, last: float) -> Compiled:
+        """As kernels evaluate it."""
+        from mbsd.laws import HARMONIC
+
+        return HARMONIC, np.array([self.amplitude, self.rate, self.phase, self.mean], float)
 
     def __call__(self, times: Times) -> np.ndarray:
         """(T,) times to (T, 3): f, f', f''."""

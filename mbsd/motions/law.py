@@ -4,12 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mbsd.errors import ModelError
 
+if TYPE_CHECKING:
+    from mbsd.laws import Compiled
+
 Times = np.ndarray
+COMPILED_PIECES = (256, 1024, 4096, 16384, 65536)
+"""Tried in turn for a law that has no compiled form of its own."""
+COMPILED_TOLERANCE = np.array([1e-12, 1e-10, 1e-8])
+"""Of f, f' and f'' halfway between the samples, relative to their largest values."""
 
 
 def refuse_non_finite(law: str, **numbers: float) -> None:
@@ -31,6 +39,21 @@ class Motion:
     def over(self, first: float, last: float) -> Motion:
         """The law made ready for times ``first`` .. ``last`` (s)."""
         return self
+
+    def compiled(self, first: float, last: float) -> Compiled:
+        """The law as kernels evaluate it over ``first`` .. ``last`` (s): quintic pieces unless the law knows better."""
+        from mbsd.laws import hermite_pieces, pack_laws, tabulate_law
+
+        last = last if last > first else first + 1.0
+        for count in COMPILED_PIECES:
+            times = np.linspace(first, last, 2 * count + 1)
+            samples = self(times)
+            law = hermite_pieces(times[::2], samples[::2])
+            check = np.zeros_like(samples)
+            tabulate_law(pack_laws([law]), 1, times, check)
+            if (np.abs(check - samples) <= COMPILED_TOLERANCE * (np.abs(samples).max(axis=0) + 1e-300)).all():
+                break
+        return law
 
     def __call__(self, times: Times) -> np.ndarray:
         """(T,) times to (T, 3): f, f', f''."""

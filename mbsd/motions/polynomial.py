@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mbsd.errors import ModelError
 from mbsd.motions.law import Motion, Times, refuse_non_finite
+
+if TYPE_CHECKING:
+    from mbsd.laws import Compiled
 
 
 @dataclass(frozen=True)
@@ -15,6 +19,12 @@ class Polynomial(Motion):
     """See :func:`polynomial`."""
 
     coefficients: tuple[float, ...]
+
+    def compiled(self, first: float, last: float) -> Compiled:
+        """As kernels evaluate it."""
+        from mbsd.laws import POLYNOMIAL
+
+        return POLYNOMIAL, np.array(self.coefficients, float)
 
     def __call__(self, times: Times) -> np.ndarray:
         """(T,) times to (T, 3): f, f', f''."""

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mbsd.errors import ModelError
 from mbsd.motions.law import Motion, Times
+
+if TYPE_CHECKING:
+    from mbsd.laws import Compiled
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,6 +27,13 @@ class Table(Motion):
     def period(self) -> float | None:
         """The table's span, if it was declared periodic."""
         return float(self.times[-1] - self.times[0]) if self.periodic else None
+
+    def compiled(self, first: float, last: float) -> Compiled:
+        """The spline's own pieces. Raises ModelError if the table does not cover ``first`` .. ``last`` (s)."""
+        from mbsd.laws import spline_pieces
+
+        self(np.array([first, last]))
+        return spline_pieces(self._spline[0], self.periodic)
 
     def __call__(self, times: Times) -> np.ndarray:
         """(T,) times to (T, 3): f, f', f''."""

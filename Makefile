@@ -119,8 +119,9 @@ bench: install ## the solver beside its peers: a table, and out/bench.json
 	@sh tools/install.sh bench
 	@$(PYTHON) -m benchmarks
 
-schema: install ## write docs/schema/ from shared/contract.py and shared/shot.py
+schema: install ## write docs/schema/ from shared/contract.py, shared/shot.py and the solver's joints and laws
 	@$(PYTHON) -m shared.schema
+	@$(PYTHON) -m mbsd.saving.schema docs/schema/model.schema.json
 
 lock: ## choose versions anew within pyproject.toml: requirements.lock, requirements-bench.lock
 	@sh tools/lock.sh

@@ -10,6 +10,7 @@ Everything wrong is refused here, by name, before anything is solved.
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -72,6 +73,24 @@ class Mechanism(AddingJoints):
         from mbsd.sweep import sweep
 
         return sweep(self, duration, steps, times)
+
+    # -- files --------------------------------------------------------------------------------------------------
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the model as JSON (docs/schema/model.schema.json), whole, the same bytes for the same model.
+
+        Raises ModelError for what a file cannot hold, a Python function, and when it cannot be written.
+        """
+        from mbsd.saving.file import save
+
+        save(self, path)
+
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> Mechanism:
+        """The model that :meth:`save` wrote. Raises ModelError naming the file, the field and the remedy."""
+        from mbsd.saving.file import load
+
+        return load(path)
 
     def __repr__(self) -> str:
         bodies, joints, drivers = len(self.bodies) - 1, len(self.joints), len(self.drivers)

@@ -67,7 +67,7 @@ class _Path:
         return jac @ v[3:] - nu
 
 
-def _all_kinds() -> list[JointKind]:
+def all_kinds() -> list[JointKind]:
     for package in (mbsd.joints, mbsd.drivers):
         for module in pkgutil.iter_modules(package.__path__):
             importlib.import_module(f"{package.__name__}.{module.name}")
@@ -77,11 +77,11 @@ def _all_kinds() -> list[JointKind]:
 def test_each_file_registers_its_kind() -> None:
     files = {m.name for m in pkgutil.iter_modules(mbsd.joints.__path__)} - {"kind"}
     files |= {f"drive_{m.name}" for m in pkgutil.iter_modules(mbsd.drivers.__path__)}
-    assert files == {kind.name for kind in _all_kinds()}
+    assert files == {kind.name for kind in all_kinds()}
 
 
 @pytest.mark.parametrize("to_ground", [False, True], ids=["two_bodies", "to_ground"])
-@pytest.mark.parametrize("kind", _all_kinds(), ids=lambda kind: kind.name)
+@pytest.mark.parametrize("kind", all_kinds(), ids=lambda kind: kind.name)
 def test_equations_agree_with_differences(kind: JointKind, to_ground: bool) -> None:
     for seed in SEEDS:
         packed = _example(kind, seed, to_ground)

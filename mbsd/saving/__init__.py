@@ -1,0 +1,1 @@
+"""Models as JSON files: the document, its file, its published schema. Led by the registries."""

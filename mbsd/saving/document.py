@@ -1,0 +1,169 @@
+"""A mechanism as a document of plain data (SI, radians), and back.
+
+    {"schema": "mbsd.model", "schema_version": 1, "name": ..., "gravity": [gx, gy],
+     "bodies": {"crank": {"mass", "com", "inertia", "length"}},
+     "joints": {"A": {"kind", "i": {"body", "x", "y", "angle"}, "j": ..., "params"}},
+     "drivers": the same with "law", "traces": {"P": marker}, "starts": {"crank": {"angle", "place"}}}
+
+Kinds and laws are those of the registries: a joint is rebuilt by the method of its kind's name, from its markers, its
+params and its law, so a new kind needs no word here. What does not come back equal is refused when it is saved.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, fields
+from typing import Any
+
+from mbsd.body import Body, Marker
+from mbsd.errors import ModelError
+from mbsd.joint import Joint
+from mbsd.joints.kind import KINDS
+from mbsd.mechanism_base import Start
+from mbsd.model import Mechanism
+from mbsd.saving.entry import Entry
+from mbsd.saving.laws import called, law_from, plain
+
+SCHEMA, SCHEMA_VERSION = "mbsd.model", 1
+
+
+def document(m: Mechanism) -> dict[str, Any]:
+    """The mechanism as JSON types. Raises ModelError naming what a file cannot hold."""
+    written = _write(m)
+    if _write(build(written)) != written:
+        raise ModelError(f"{m.name}: the model does not come back from a file as it is; build it in Python instead")
+    return written
+
+
+def build(written: Mapping[str, Any], where: str = "model") -> Mechanism:
+    """The mechanism of a document. Raises ModelError naming the field (``where`` is the file) and the remedy."""
+    top = Entry(written, where)
+    _refuse_other_version(top)
+    m = Mechanism(top.text("name"), top.numbers("gravity", 2))
+    for name, entry in top.entries("bodies"):
+        _read_body(m, name, entry)
+    for part in ("joints", "drivers"):
+        for name, entry in top.entries(part):
+            _read_joint(m, part, name, entry)
+    for name, entry in top.entries("traces"):
+        entry.within(lambda name=name, entry=entry: m.trace(name, _read_marker(m, entry)))
+    for name, entry in top.entries("starts"):
+        entry.within(lambda name=name: m.known_body(name))
+        place = entry.numbers("place", 2) if entry.get("place") is not None else None
+        m.starts[name] = Start(entry.number("angle"), place)
+        entry.refuse_others("angle", "place")
+    top.refuse_others("schema", "schema_version", *(field.name for field in fields(Mechanism)))
+    return m
+
+
+# -- writing ----------------------------------------------------------------------------------------------------
+
+
+def _write(m: Mechanism) -> dict[str, Any]:
+    parts = {
+        "name": m.name,
+        "gravity": list(m.gravity or ()),
+        "bodies": {name: _body(body) for name, body in m.bodies.items() if name != "ground"},
+        "joints": {name: _joint(m, joint) for name, joint in m.joints.items()},
+        "drivers": {name: _joint(m, driver) for name, driver in m.drivers.items()},
+        "traces": {name: plain(marker, name) for name, marker in m.traces.items()},
+        "starts": {name: _state(start) for name, start in m.starts.items()},
+    }
+    missing = [field.name for field in fields(m) if field.name not in parts and getattr(m, field.name)]
+    if missing:
+        raise ModelError(f"{m.name}: {', '.join(missing)} of the model cannot be saved; build it in Python instead")
+    return {"schema": SCHEMA, "schema_version": SCHEMA_VERSION} | parts
+
+
+def _body(body: Body) -> dict[str, Any]:
+    return {"mass": body.mass, "com": list(body.com), "inertia": body.inertia, "length": body.length}
+
+
+def _joint(m: Mechanism, joint: Joint) -> dict[str, Any]:
+    what = f"{m.name}: {'driver' if joint.kind.driven else 'joint'} '{joint.name}'"
+    out = {"kind": joint.kind.name, "i": plain(joint.i, what), "j": plain(joint.j, what)}
+    out["params"] = {key: plain(value, f"{what}: {key}") for key, value in joint.params.items()}
+    if joint.motion is not None:
+        out["law"] = plain(joint.motion, f"{what}: its law")
+    return out
+
+
+def _state(state: Any) -> dict[str, Any]:
+    return {key: list(value) if isinstance(value, tuple) else value for key, value in asdict(state).items()}
+
+
+# -- reading ----------------------------------------------------------------------------------------------------
+
+
+def _refuse_other_version(top: Entry) -> None:
+    for key, wanted in (("schema", SCHEMA), ("schema_version", SCHEMA_VERSION)):
+        found = top.get(key)
+        if found != wanted:
+            said = "missing" if found is None else repr(found)
+            raise ModelError(
+                f"{top.where}: {key} is {said}, this program reads {wanted!r}; save the model again with this version"
+            )
+
+
+def _read_body(m: Mechanism, name: str, entry: Entry) -> None:
+    mass, inertia, com = entry.number("mass"), entry.number("inertia"), entry.numbers("com", 2)
+    entry.refuse_others("mass", "com", "inertia", "length")
+    if entry.get("length") is None:
+        entry.within(lambda: m.body(name, mass, com, inertia))
+    else:
+        entry.within(lambda: m.bar(name, entry.number("length"), mass, com, inertia))
+
+
+def _read_marker(m: Mechanism, entry: Entry) -> Marker:
+    body = entry.within(lambda: m.known_body(entry.text("body")))
+    entry.refuse_others("body", "x", "y", "angle")
+    return body.at(entry.number("x"), entry.number("y"), entry.number("angle"))
+
+
+def _read_joint(m: Mechanism, part: str, name: str, entry: Entry) -> None:
+    kinds = {key: kind for key, kind in KINDS.items() if kind.driven == (part == "drivers")}
+    kind = kinds.get(entry.text("kind"))
+    if kind is None:
+        raise ModelError(
+            f"{entry.where}: there is no {part[:-1]} of kind '{entry.text('kind')}'; there is: {', '.join(kinds)}"
+        )
+    entry.refuse_others("kind", "i", "j", "params", *(["law"] if kind.driven else []))
+    markers = [_read_marker(m, entry.entry(key)) for key in ("i", "j")]
+    params = {key: _value(m, value, entry) for key, value in entry.entry("params").data.items()}
+    laws = [law_from(entry.entry("law").data, entry.where)] if kind.driven else []
+    add(getattr(m, kind.name), entry.where, name, markers, params, laws)
+
+
+def _value(m: Mechanism, value: Any, entry: Entry) -> Any:
+    """A parameter: numbers as they are, a law, a body or a marker from its object."""
+    if isinstance(value, dict) and "law" in value:
+        return law_from(value, entry.where)
+    if isinstance(value, dict) and set(value) == {"body"}:
+        return entry.within(lambda: m.known_body(value["body"]))
+    if isinstance(value, dict) and set(value) == {"body", "x", "y", "angle"}:
+        return _read_marker(m, Entry(value, f"{entry.where}.params"))
+    return value
+
+
+def add(
+    method: Callable[..., Any],
+    where: str,
+    name: str,
+    markers: Sequence[Marker],
+    params: Mapping[str, Any],
+    laws: Sequence[Any],
+) -> None:
+    """Call a method of Mechanism that adds a joint, driver or force.
+
+    Its parameters that are markers or bodies take the last of ``markers`` in order, those that are laws ``laws``,
+    the rest come from ``params`` by name.
+    """
+    named = dict(params)
+    slots = [p for p in inspect.signature(method).parameters.values() if p.name not in named and p.name != "name"]
+    places = [p for p in slots if str(p.annotation) in ("Marker", "Body")]
+    for slot, marker in zip(places, markers[len(markers) - len(places) :], strict=False):
+        named[slot.name] = marker if str(slot.annotation) == "Marker" else marker.body
+    for slot, law in zip([p for p in slots if str(p.annotation) == "Law"], laws, strict=False):
+        named[slot.name] = law
+    called(method, where, [name], named)

@@ -1,0 +1,79 @@
+"""One object of a document, read field by field; every refusal names the file and the field."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from mbsd.errors import ModelError
+
+
+class Entry:
+    """An object of a JSON document and where it stands: ``my.json: joints.A``."""
+
+    def __init__(self, data: Any, where: str) -> None:
+        if not isinstance(data, Mapping):
+            raise ModelError(f"{where} is {_short(data)}; it must be an object")
+        self.data = data
+        self.where = where
+
+    def get(self, key: str) -> Any:
+        """The value as it is, None if there is none."""
+        return self.data.get(key)
+
+    def number(self, key: str) -> float:
+        """A finite number."""
+        return _number(self._needed(key), f"{self.where}.{key}")
+
+    def numbers(self, key: str, count: int) -> tuple[Any, ...]:
+        """A list of ``count`` finite numbers."""
+        values = self._needed(key)
+        if not isinstance(values, list) or len(values) != count:
+            raise ModelError(f"{self.where}.{key} is {_short(values)}; it must be a list of {count} numbers")
+        return tuple(_number(value, f"{self.where}.{key}[{k}]") for k, value in enumerate(values))
+
+    def text(self, key: str) -> str:
+        """A string."""
+        value = self._needed(key)
+        if not isinstance(value, str):
+            raise ModelError(f"{self.where}.{key} is {_short(value)}; it must be a text")
+        return value
+
+    def entry(self, key: str) -> Entry:
+        """An object within."""
+        return Entry(self._needed(key), f"{self.where}.{key}")
+
+    def entries(self, key: str) -> Iterator[tuple[str, Entry]]:
+        """The named objects of a table such as ``bodies``."""
+        table = self.entry(key)
+        for name in table.data:
+            yield name, table.entry(name)
+
+    def within[T](self, read: Callable[[], T]) -> T:
+        """What ``read`` returns; its ModelError gets the place in the file."""
+        try:
+            return read()
+        except ModelError as error:
+            raise ModelError(f"{self.where}: {error}") from error
+
+    def refuse_others(self, *known: str) -> None:
+        """Raise ModelError for a field that is not one of ``known``."""
+        others = [key for key in self.data if key not in known]
+        if others:
+            raise ModelError(f"{self.where}: there is no field '{others[0]}'; there is: {', '.join(known)}")
+
+    def _needed(self, key: str) -> Any:
+        if key not in self.data:
+            raise ModelError(f"{self.where}: the field '{key}' is missing")
+        return self.data[key]
+
+
+def _number(value: Any, where: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ModelError(f"{where} is {_short(value)}; it must be a number")
+    return float(value)
+
+
+def _short(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -1,0 +1,109 @@
+"""Laws and other values of a model as plain data, and back.
+
+A law is one file with a function of its name, whose parameters are fields of what it returns:
+``harmonic(amplitude, rate, phase, mean)`` is kept as ``{"law": "harmonic", "amplitude": ..., ...}``. So a new file in
+one of LAW_PACKAGES is saved and loaded without a word here.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import inspect
+import pkgutil
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from mbsd.body import Body, Marker
+from mbsd.errors import ModelError
+
+LAW_PACKAGES = ("mbsd.motions", "mbsd.curves")
+"""Folders of laws, one file a law."""
+
+
+@cache
+def factories() -> dict[str, Callable[..., Any]]:
+    """Every law's function by its name."""
+    found: dict[str, Callable[..., Any]] = {}
+    for package in LAW_PACKAGES:
+        if importlib.util.find_spec(package) is None:
+            continue
+        for file in pkgutil.iter_modules(importlib.import_module(package).__path__):
+            factory = getattr(importlib.import_module(f"{package}.{file.name}"), file.name, None)
+            if callable(factory):
+                found[file.name] = factory
+    return found
+
+
+def loadable_laws() -> dict[str, Callable[..., Any]]:
+    """The laws that are numbers alone, and no Python function."""
+    return {
+        name: factory
+        for name, factory in factories().items()
+        if not any("Callable" in str(p.annotation) for p in inspect.signature(factory).parameters.values())
+    }
+
+
+def plain(value: Any, where: str) -> Any:
+    """``value`` as JSON types; raises ModelError naming ``where`` if it is a function or another live object."""
+    if value is None or isinstance(value, bool | str | int | float):
+        return value
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if isinstance(value, Marker):
+        return {"body": value.body.name, "x": value.x, "y": value.y, "angle": value.angle}
+    if isinstance(value, Body):
+        return {"body": value.name}
+    if isinstance(value, Mapping):
+        return {str(key): plain(item, f"{where}.{key}") for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item, f"{where}[{k}]") for k, item in enumerate(value)]
+    name = type(value).__module__.rpartition(".")[2]
+    factory = factories().get(name)
+    if factory is None or type(value).__module__ != factory.__module__:
+        described = f"the Python function {_name(value)}" if callable(value) else f"a {type(value).__name__}"
+        raise ModelError(
+            f"{where} is {described}, which a file cannot hold; give it as numbers, say with table(times, values), "
+            "or build the model in Python"
+        )
+    return {"law": name} | {
+        parameter: plain(getattr(value, parameter), where) for parameter in inspect.signature(factory).parameters
+    }
+
+
+def law_from(data: Mapping[str, Any], where: str) -> Any:
+    """The law that :func:`plain` made ``data`` of; raises ModelError naming ``where``."""
+    name = data.get("law")
+    known = loadable_laws()
+    factory = known.get(name) if isinstance(name, str) else None
+    if factory is None:
+        raise ModelError(f"{where}: there is no law {name!r}; there is: {', '.join(sorted(known))}")
+    numbers = {key: value for key, value in data.items() if key != "law"}
+    if any(isinstance(value, dict) for value in numbers.values()):
+        numbers = {k: law_from(v, f"{where}.{k}") if isinstance(v, dict) else v for k, v in numbers.items()}
+    arguments: list[Any] = []
+    for parameter in inspect.signature(factory).parameters.values():
+        if parameter.kind is inspect.Parameter.VAR_POSITIONAL:
+            arguments += numbers.pop(parameter.name, [])
+    return called(factory, where, arguments, numbers)
+
+
+def called(function: Callable[..., Any], where: str, arguments: list[Any], named: Mapping[str, Any]) -> Any:
+    """``function`` called; arguments that are missing, unknown or of a wrong type become a ModelError."""
+    try:
+        bound = inspect.signature(function).bind(*arguments, **named)
+    except TypeError as error:
+        raise ModelError(f"{where}: {error}") from None
+    try:
+        return function(*bound.args, **bound.kwargs)
+    except ModelError as error:
+        raise ModelError(f"{where}: {error}") from error
+    except (TypeError, ValueError) as error:
+        raise ModelError(f"{where}: a number is expected, {error}") from error
+
+
+def _name(value: Any) -> str:
+    return f"'{getattr(value, '__qualname__', type(value).__qualname__)}'"

@@ -1,0 +1,113 @@
+"""The published schema of a saved model: ``make schema`` writes docs/schema/model.schema.json.
+
+Kinds and laws are read off the registries and the signatures of their methods.
+"""
+
+from __future__ import annotations
+
+import inspect
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from mbsd.joints.kind import KINDS
+from mbsd.model import Mechanism
+from mbsd.saving.document import SCHEMA, SCHEMA_VERSION
+from mbsd.saving.file import write_whole
+from mbsd.saving.laws import loadable_laws
+
+NUMBER: dict[str, Any] = {"type": "number"}
+PAIR: dict[str, Any] = {"type": "array", "items": NUMBER, "minItems": 2, "maxItems": 2}
+TYPES: dict[str, dict[str, Any]] = {
+    "float": NUMBER,
+    "int": {"type": "integer"},
+    "bool": {"type": "boolean"},
+    "str": {"type": "string"},
+    "Sequence[float]": {"type": "array", "items": NUMBER},
+}
+
+
+def schema() -> dict[str, Any]:
+    """The JSON Schema of a saved model."""
+    marker = _object({"body": {"type": "string"}, "x": NUMBER, "y": NUMBER, "angle": NUMBER})
+    body = _object(
+        {
+            "mass": {"type": "number", "minimum": 0},
+            "com": PAIR,
+            "inertia": {"type": "number", "minimum": 0},
+            "length": {"type": ["number", "null"], "exclusiveMinimum": 0},
+        }
+    )
+    start = _object({"angle": NUMBER, "place": {"anyOf": [PAIR, {"type": "null"}]}})
+    laws = [_object({"law": {"const": name}}, _parameters(f)) for name, f in loadable_laws().items()]
+    top = {
+        "schema": {"const": SCHEMA},
+        "schema_version": {"const": SCHEMA_VERSION},
+        "name": {"type": "string", "minLength": 1},
+        "gravity": PAIR,
+        "bodies": _table("body"),
+        "joints": _table("joint"),
+        "drivers": _table("driver"),
+        "traces": _table("marker"),
+        "starts": _table("start"),
+    }
+    definitions = {"marker": marker, "body": body, "start": start, "law": {"oneOf": laws}}
+    definitions["joint"] = {"oneOf": [_kind(name) for name, kind in KINDS.items() if not kind.driven]}
+    definitions["driver"] = {"oneOf": [_kind(name) for name, kind in KINDS.items() if kind.driven]}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Model",
+        "description": "A mechanism: SI units, radians, counter-clockwise. Body 'ground' is always there.",
+        **_object(top),
+        "$defs": definitions,
+    }
+
+
+def content() -> bytes:
+    """The schema as published."""
+    return (json.dumps(schema(), indent=2) + "\n").encode()
+
+
+def _kind(name: str) -> dict[str, Any]:
+    reference = {"$ref": "#/$defs/marker"}
+    fixed: dict[str, Any] = {"kind": {"const": name}, "i": reference, "j": reference}
+    fixed["params"] = _object({}, _parameters(getattr(Mechanism, name)))
+    if KINDS[name].driven:
+        fixed["law"] = {"$ref": "#/$defs/law"}
+    return _object(fixed)
+
+
+def _parameters(function: Callable[..., Any]) -> dict[str, tuple[dict[str, Any], bool]]:
+    """What a method or law takes beside names, markers, bodies and laws: its schema, and whether it must be there."""
+    out = {}
+    for p in inspect.signature(function).parameters.values():
+        words = [word.strip() for word in str(p.annotation).split("|")]
+        if p.name in ("self", "name") or words[0] in ("Marker", "Body", "Law"):
+            continue
+        known = TYPES.get(words[0], {})
+        if p.kind is inspect.Parameter.VAR_POSITIONAL:
+            known = {"type": "array", "items": known}
+        if "None" in words:
+            known = {"anyOf": [known, {"type": "null"}]} if known else known
+        out[p.name] = known, p.default is inspect.Parameter.empty
+    return out
+
+
+def _object(fixed: dict[str, Any], optional: dict[str, tuple[dict[str, Any], bool]] | None = None) -> dict[str, Any]:
+    optional = optional or {}
+    return {
+        "type": "object",
+        "properties": fixed | {name: known for name, (known, _) in optional.items()},
+        "required": [*fixed, *(name for name, (_, needed) in optional.items() if needed)],
+        "additionalProperties": False,
+    }
+
+
+def _table(name: str) -> dict[str, Any]:
+    return {"type": "object", "additionalProperties": {"$ref": f"#/$defs/{name}"}}
+
+
+if __name__ == "__main__":
+    write_whole(Path(sys.argv[1]), content())

@@ -8,9 +8,11 @@ Kernels are compiled and scipy is loaded only when something is solved; this imp
 from mbsd.errors import (
     AssemblyError,
     BranchError,
+    InitialConditionWarning,
     MechanismError,
     MobilityError,
     ModelError,
+    SimulationError,
     SingularPoseError,
 )
 from mbsd.model import STANDARD_GRAVITY, Body, Joint, Marker, Mechanism
@@ -23,6 +25,7 @@ __all__ = [
     "AssemblyError",
     "Body",
     "BranchError",
+    "InitialConditionWarning",
     "Joint",
     "Marker",
     "Mechanism",
@@ -30,6 +33,7 @@ __all__ = [
     "MobilityError",
     "ModelError",
     "Motion",
+    "SimulationError",
     "SingularPoseError",
     "constant_rate",
     "cycloidal",

@@ -23,5 +23,13 @@ class BranchError(MechanismError):
     """The motion would jump to the other assembly, and smaller steps do not cure it."""
 
 
+class SimulationError(MechanismError):
+    """The integration cannot go on: steps shrink to nothing, or numbers are no longer finite."""
+
+
+class InitialConditionWarning(UserWarning):
+    """Given start values do not fit the joints and were changed; the message says which and how."""
+
+
 class SingularPoseError(MechanismError):
     """A toggle or a change point: the drivers no longer fix the motion here."""

@@ -17,6 +17,7 @@ import numpy as np
 from mbsd.assembly import tabulate
 from mbsd.packing import Packed
 from mbsd.prepared import Prepared
+from mbsd.reactions import wrenches
 
 JACOBIAN_NUMBERS = 4_000_000
 """How many numbers of Jacobians are held at once."""
@@ -64,36 +65,10 @@ def inverse_dynamics(ready: Prepared, drives: np.ndarray, q: np.ndarray, v: np.n
                 lam[k] = np.linalg.lstsq(matrix.T, loads[start + k, 3:], rcond=1e-9)[0]
         else:
             lam[:] = np.linalg.solve(jac.transpose(0, 2, 1), loads[at, 3:, None])[..., 0]
-        out.wrench[at] = _wrenches(packed, jac, q[at], lam)
+        out.wrench[at] = wrenches(packed, compact, q[at], lam)
         rate = np.einsum("trc,tc->tr", jac, v[at, 3:]) - nu[at]
         bend = np.einsum("trc,tc->tr", jac, a[at, 3:]) - gamma
         power = (loads[at] * v[at]).sum(axis=1) - (lam * nu[at]).sum(axis=1)
         worst = [np.abs(error).max(initial=0.0) for error in (phi, rate, bend, power)]
         out.residuals = np.maximum(out.residuals, worst)
     return out
-
-
-def _wrenches(packed: Packed, jac: np.ndarray, q: np.ndarray, lam: np.ndarray) -> np.ndarray:
-    """(T, joints, 3) -J_b^T lam on each joint's second body b, moved from its centre of mass to the second marker.
-
-    Ground has no columns; as second body it takes the opposite of what the first body gets.
-    """
-    system = packed.system
-    out = np.zeros((len(lam), len(packed.joints), 3))
-    for joint, (i, j) in enumerate(packed.markers):
-        rows = slice(packed.first_row[joint], packed.first_row[joint + 1])
-        body, sign = (system.marker_body[j], -1.0) if system.marker_body[j] else (system.marker_body[i], 1.0)
-        columns = slice(3 * body - 3, 3 * body)
-        push = sign * np.einsum("trc,tr->tc", jac[:, rows, columns], lam[:, rows])
-        arm = _places(packed, q, j) - q[:, 3 * body : 3 * body + 2]
-        push[:, 2] -= arm[:, 0] * push[:, 1] - arm[:, 1] * push[:, 0]
-        out[:, joint] = push
-    return out
-
-
-def _places(packed: Packed, q: np.ndarray, marker: int) -> np.ndarray:
-    """(T, 2) world places of a marker."""
-    body = packed.system.marker_body[marker]
-    x, y = packed.system.marker_arm[marker]
-    c, s = np.cos(q[:, 3 * body + 2]), np.sin(q[:, 3 * body + 2])
-    return q[:, 3 * body : 3 * body + 2] + np.stack([c * x - s * y, s * x + c * y], axis=1)

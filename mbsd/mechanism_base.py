@@ -21,6 +21,14 @@ class Start:
     place: tuple[float, float] | None = None
 
 
+@dataclass(frozen=True)
+class StartVelocity:
+    """Given velocity of a body at the start: rad/s and, if given, m/s of its frame."""
+
+    omega: float
+    place: tuple[float, float] | None = None
+
+
 @dataclass(eq=False)
 class MechanismBase:
     """What a mechanism holds, and the checks that all its methods share. See :class:`mbsd.model.Mechanism`."""
@@ -32,6 +40,7 @@ class MechanismBase:
     drivers: dict[str, Joint] = field(default_factory=dict)
     traces: dict[str, Marker] = field(default_factory=dict)
     starts: dict[str, Start] = field(default_factory=dict)
+    velocities: dict[str, StartVelocity] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if not self.name or not isinstance(self.name, str):

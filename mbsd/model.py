@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +20,7 @@ from mbsd.adding_joints import AddingJoints
 from mbsd.body import Body, Marker
 from mbsd.errors import ModelError
 from mbsd.joint import Joint
-from mbsd.mechanism_base import STANDARD_GRAVITY, Start
+from mbsd.mechanism_base import STANDARD_GRAVITY, Start, StartVelocity
 
 if TYPE_CHECKING:
     from mbsd.mobility import Mobility
@@ -54,6 +54,23 @@ class Mechanism(AddingJoints):
             x, y, degrees = (self._number(f"start of '{name}'", value) for value in pose)
             self.starts[name] = Start(math.radians(degrees), (x, y))
 
+    def start_moving(self, **velocities: float | Sequence[float]) -> None:
+        """Velocities at the start of a simulation: rad/s, or (vx, vy, omega) of the body's frame in m/s and rad/s.
+
+        Bodies that are not named move as their joints make them, with the least kinetic energy. Where joints and
+        drivers forbid a given value, it is changed and the simulation tells so.
+        """
+        for name, velocity in velocities.items():
+            self.known_body(name)
+            what = f"start velocity of '{name}'"
+            if isinstance(velocity, int | float):
+                self.velocities[name] = StartVelocity(self._number(what, velocity))
+                continue
+            if len(velocity) != 3:
+                raise ModelError(f"{self.name}: {what} is {velocity!r}; give rad/s, or (vx, vy, omega)")
+            vx, vy, omega = (self._number(what, value) for value in velocity)
+            self.velocities[name] = StartVelocity(omega, (vx, vy))
+
     # -- what it can compute ------------------------------------------------------------------------------------
 
     def mobility(self) -> Mobility:
@@ -73,6 +90,29 @@ class Mechanism(AddingJoints):
         from mbsd.sweep import sweep
 
         return sweep(self, duration, steps, times)
+
+    def simulate(
+        self,
+        duration: float | None = None,
+        steps: int = 360,
+        times: Sequence[float] | np.ndarray | None = None,
+        method: str = "dop853",
+        tolerance: float = 1e-7,
+        step: float | None = None,
+        progress: Callable[[float], None] | None = None,
+    ) -> Solution:
+        """Forward dynamics from ``start_near`` and ``start_moving``: M a + J^T lam = Q, J a = gamma.
+
+        ``steps`` equal output steps over ``duration`` seconds, both ends included; ``times`` (s), rising, replaces
+        both. ``method`` names an integrator (mbsd/integrators). Methods with an error estimate keep to ``tolerance``
+        (relative to the mechanism's size, to 1 rad, and to speeds); those with a fixed step take ``step`` (s), by
+        default the time between outputs. ``progress`` is called with the part done (0 .. 1).
+
+        Raises AssemblyError where the links do not close, SimulationError where the integration cannot go on.
+        """
+        from mbsd.dynamics.simulate import simulate
+
+        return simulate(self, duration, steps, times, method, tolerance, step, progress)
 
     # -- files --------------------------------------------------------------------------------------------------
 

@@ -154,7 +154,7 @@ def prepare(m: Mechanism, start: float = 0.0, end: float = 1.0) -> Prepared:
         raise ModelError(f"{m.name}: there is no body beside ground; add one with m.bar(...) or m.body(...)")
     packed = pack(m)
     packed.motions = [law.over(start, end) for law in packed.motions]
-    _refuse_bad_laws(packed, start, end)
+    refuse_bad_laws(packed, start, end)
     try:
         q0 = assemble(m, packed, start)
     except AssemblyError:
@@ -165,7 +165,8 @@ def prepare(m: Mechanism, start: float = 0.0, end: float = 1.0) -> Prepared:
     return Prepared(packed, q0, start, sequence, factors, joint_mobility(packed, q0))
 
 
-def _refuse_bad_laws(packed: Packed, start: float, end: float) -> None:
+def refuse_bad_laws(packed: Packed, start: float, end: float) -> None:
+    """Raise ModelError for a law that is not finite, or imposes a distance that is not positive."""
     drivers = packed.joints[len(packed.joints) - len(packed.motions) :]
     for driver, law in zip(drivers, packed.motions, strict=True):
         values = law(np.linspace(start, end, 17))

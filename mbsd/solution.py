@@ -142,6 +142,10 @@ class Solution:
     """(T,) smallest over largest singular value of the scaled Jacobian; 0 at a singular pose."""
     stats: Stats
     mobility: Mobility
+    work: np.ndarray | None = None
+    """(T,) of loads and drivers since the start (J), of a simulation: T + V - work stays constant."""
+    changes: tuple[str, ...] = ()
+    """What was changed of the given start of a simulation to make it consistent."""
 
     def body(self, name: str) -> FrameView:
         """Motion of a body's frame."""

@@ -1,0 +1,1 @@
+"""Forward dynamics: M a + J^T lam = Q, J a = gamma, from consistent initial conditions."""

@@ -1,0 +1,186 @@
+"""A mechanism made ready for forward dynamics: arrays, independent rows, elimination sequence, consistent start."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.dynamics.acceleration import derivative
+from mbsd.dynamics.arrays import Dynamics, Scratch, scratch_for
+from mbsd.dynamics.initial import Initial, consistent
+from mbsd.dynamics.schur import plan_schur
+from mbsd.errors import MobilityError, ModelError, SimulationError
+from mbsd.integrators import state as run_state
+from mbsd.integrators.kind import Integrator
+from mbsd.laws import pack_laws
+from mbsd.mobility import Mobility, independent_rows, joint_mobility, scaled_jacobian
+from mbsd.model import Mechanism
+from mbsd.packing import Packed, pack
+from mbsd.prepared import refuse_bad_laws
+
+LIFT = 1e-7
+"""Inertia given to coordinates without any, as part of a usual one, and refined away."""
+REFINEMENTS = 4
+"""Passes that solve the equations of motion where inertia was lifted."""
+BALANCED = 1e-8
+"""Part of the largest load that may stay unbalanced at the start; more means a massless body that nothing holds."""
+STEPS_AT_ONCE = 2000
+"""Between two looks at the clock and the keyboard."""
+OUTPUTS_LONGEST = 25
+"""A step covers this part of the duration at most, so that short loads are not stepped over."""
+
+
+@dataclass
+class PreparedDynamics:
+    """A mechanism that can be simulated over and over."""
+
+    packed: Packed
+    dynamics: Dynamics
+    initial: Initial
+    start: float
+    end: float
+    mobility: Mobility
+
+    def run(
+        self,
+        method: Integrator,
+        times: np.ndarray,
+        tolerance: float,
+        step: float,
+        progress: Callable[[float], None] | None = None,
+    ) -> tuple[run_state.State, run_state.Output]:
+        """Integrate to the last of ``times`` (s), which begin with the start. Raises SimulationError."""
+        packed = self.packed
+        rows = len(packed.ws.phi)
+        state = run_state.start_state(np.stack([self.initial.q, self.initial.v]), rows, float(times[0]))
+        out = run_state.output_for(times, len(self.initial.q), rows)
+        scratch = self.scratch(method)
+        settings = self.settings(tolerance, step, float(times[-1] - times[0]))
+        end = float(times[-1])
+        while True:
+            status = method.advance(self.dynamics, scratch, state, out, settings, end, STEPS_AT_ONCE)
+            if progress is not None:
+                progress((state.clock[run_state.TIME] - times[0]) / (end - times[0]))
+            if status == run_state.REACHED:
+                return state, out
+            if status != run_state.PAUSED:
+                raise self._cannot_go_on(status, method, state, tolerance)
+
+    def scratch(self, method: Integrator) -> Scratch:
+        """Scratch for one run."""
+        return scratch_for(self.dynamics, self.packed.ws, len(self.packed.motions), method.stages)
+
+    def settings(self, tolerance: float, step: float, duration: float) -> run_state.Settings:
+        """Tolerances in the mechanism's own sizes."""
+        one = np.concatenate([np.ones(3), self.packed.column_scale()]) * tolerance
+        return run_state.Settings(np.stack([one, one]), tolerance, duration / OUTPUTS_LONGEST, step)
+
+    def _cannot_go_on(
+        self, status: int, method: Integrator, state: run_state.State, tolerance: float
+    ) -> SimulationError:
+        time, speeds = state.clock[run_state.TIME], np.abs(state.y[1].reshape(-1, 3)[1:])
+        fastest = self.packed.body_names[1 + int(np.argmax((speeds / [self.packed.size, self.packed.size, 1]).max(1)))]
+        where = f"{self.packed.name}: {method.name} stops at t = {time:.6g} s, where '{fastest}' is fastest"
+        if status == run_state.NO_CONVERGENCE:
+            return SimulationError(
+                f"{where}: the equations of a step have no solution near the last one. Take a smaller step, "
+                "or look for a force or law that jumps."
+            )
+        if method.fixed_step:
+            return SimulationError(
+                f"{where}: numbers are no longer finite after a step of {state.clock[run_state.STEP] or 0:.3g} s. "
+                "Take a smaller step, or method='dop853'; a stiff damper asks for an implicit method."
+            )
+        return SimulationError(
+            f"{where}: steps below {state.clock[run_state.STEP]:.1e} s do not meet the tolerance {tolerance:g}. "
+            "The pose is singular here, or a force jumps or grows without bound; change the lengths, smooth the force, "
+            "or loosen the tolerance."
+        )
+
+
+def prepare_dynamics(m: Mechanism, start: float, end: float) -> PreparedDynamics:
+    """Check the model and find consistent initial conditions for a simulation from ``start`` to ``end`` (s)."""
+    if len(m.bodies) < 2:
+        raise ModelError(f"{m.name}: there is no body beside ground; add one with m.bar(...) or m.body(...)")
+    packed = pack(m)
+    packed.motions = [law.over(start, end) for law in packed.motions]
+    refuse_bad_laws(packed, start, end)
+    inertia, lifted, metric = _inertias(packed)
+    initial = consistent(m, packed, start, _inverse(metric))
+    kept, mobility = _rows(packed, initial.q)
+    schur, _ = plan_schur(packed.system.row_body, _blocks(packed, kept))
+    dynamics = Dynamics(
+        system=packed.system,
+        laws=pack_laws([law.compiled(start, end) for law in packed.motions]),
+        schur=schur,
+        inertia=inertia,
+        inverse=_inverse(lifted),
+        metric=_inverse(metric),
+        weight=inertia * np.tile([*packed.system.gravity, 0.0], len(packed.body_names)),
+        passes=1 if (inertia[3:] > 0).all() else REFINEMENTS,
+        baumgarte=np.zeros(2),
+        per_size=1.0 / np.concatenate([np.ones(3), packed.column_scale()]),
+    )
+    ready = PreparedDynamics(packed, dynamics, initial, start, end, mobility)
+    _refuse_unheld(ready)
+    return ready
+
+
+def _inertias(packed: Packed) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(3 nb,) M; M lifted a little where it is zero; M with a usual inertia there."""
+    system = packed.system
+    inertia = np.stack([system.mass, system.mass, system.inertia], axis=1).ravel()
+    mass = float(system.mass.max()) or 1.0
+    usual = np.tile([mass, mass, mass * packed.size**2], len(system.mass))
+    return inertia, np.where(inertia > 0, inertia, LIFT * usual), np.where(inertia > 0, inertia, usual)
+
+
+def _inverse(inertia: np.ndarray) -> np.ndarray:
+    out = 1.0 / inertia
+    out[:3] = 0.0
+    return out
+
+
+def _rows(packed: Packed, q: np.ndarray) -> tuple[list[int], Mobility]:
+    """Independent rows, those of joints before those of drivers. Raises MobilityError for superfluous drivers."""
+    mobility = joint_mobility(packed, q)
+    kept = independent_rows(scaled_jacobian(packed, q))
+    drivers = len(packed.ws.phi) - packed.driver_rows
+    if drivers > mobility.dof:
+        raise MobilityError(
+            f"{packed.name}: {drivers} drivers for {mobility.dof} degree{'s' * (mobility.dof != 1)} of freedom; "
+            "remove a driver or free a joint"
+        )
+    return kept, mobility
+
+
+def _blocks(packed: Packed, kept: list[int]) -> np.ndarray:
+    """(B, 2) kept rows in pairs of one joint; -1 where there is no second."""
+    chosen = set(kept)
+    blocks = []
+    for first, last in zip(packed.first_row[:-1], packed.first_row[1:], strict=True):
+        rows = [row for row in range(first, last) if row in chosen]
+        blocks += [(rows[k], rows[k + 1] if k + 1 < len(rows) else -1) for k in range(0, len(rows), 2)]
+    return np.array(blocks, np.int64).reshape(-1, 2)
+
+
+def _refuse_unheld(ready: PreparedDynamics) -> None:
+    """A coordinate without inertia that neither joints nor springs hold cannot balance its load."""
+    dynamics, packed = ready.dynamics, ready.packed
+    if dynamics.passes == 1:
+        return
+    state = np.stack([ready.initial.q, ready.initial.v])
+    out, lam = np.zeros_like(state), np.zeros(len(packed.ws.phi))
+    scratch = scratch_for(dynamics, packed.ws, len(packed.motions), 1)
+    derivative(dynamics, scratch, ready.start, state, out, lam)
+    left = np.abs(scratch.force - dynamics.inertia * out[1])[3:]
+    largest = max(float(np.abs(dynamics.weight[3:]).max()), float(np.abs(dynamics.inertia * out[1]).max()), 1e-300)
+    if not np.isfinite(out).all() or (left > BALANCED * largest * packed.size).any():
+        worst = int(np.nanargmax(np.where(np.isfinite(left), left, np.inf)))
+        raise MobilityError(
+            f"{packed.name}: body '{packed.body_names[1 + worst // 3]}' has no inertia in "
+            f"{('x', 'y', 'angle')[worst % 3]}, and nothing holds it there against a load of {left[worst]:.3g} "
+            "(N or N m). Give it a mass and an inertia, or another joint."
+        )

@@ -1,0 +1,124 @@
+"""Forward dynamics from start to end, as a Solution."""
+
+from __future__ import annotations
+
+import importlib
+import math
+import pkgutil
+import warnings
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+import mbsd.integrators
+from mbsd.assembly import tabulate
+from mbsd.dynamics.prepare import PreparedDynamics, prepare_dynamics
+from mbsd.errors import InitialConditionWarning, ModelError
+from mbsd.integrators.kind import INTEGRATORS, Integrator
+from mbsd.integrators.state import ACCEPTED, Output, State
+from mbsd.model import Mechanism
+from mbsd.reactions import generalised, times_compact, wrenches
+from mbsd.solution import Solution, Stats
+
+
+def simulate(
+    m: Mechanism,
+    duration: float | None,
+    steps: int,
+    times: Sequence[float] | np.ndarray | None,
+    method: str,
+    tolerance: float,
+    step: float | None,
+    progress: Callable[[float], None] | None,
+) -> Solution:
+    """See :meth:`mbsd.model.Mechanism.simulate`."""
+    integrator = integrator_named(m.name, method)
+    grid = output_times(m.name, duration, steps, times)
+    for what, value in (("tolerance", tolerance), ("step", step)):
+        if value is not None and not (math.isfinite(value) and value > 0):
+            raise ModelError(f"{m.name}: {what} is {value}; it must be positive")
+    ready = prepare_dynamics(m, float(grid[0]), float(grid[-1]))
+    if ready.initial.changes:
+        warnings.warn(
+            f"{m.name}: the start was made consistent: " + "; ".join(ready.initial.changes),
+            InitialConditionWarning,
+            stacklevel=3,
+        )
+    state, out = ready.run(integrator, grid, tolerance, step or float(np.diff(grid).max()), progress)
+    return solution(m, ready, state, out)
+
+
+def integrator_named(model: str, method: str) -> Integrator:
+    """The integrator of this name; raises ModelError with the known names."""
+    if method not in INTEGRATORS:
+        for module in pkgutil.iter_modules(mbsd.integrators.__path__):
+            importlib.import_module(f"mbsd.integrators.{module.name}")
+    if method not in INTEGRATORS:
+        raise ModelError(f"{model}: there is no integrator '{method}'; there is: {', '.join(sorted(INTEGRATORS))}")
+    return INTEGRATORS[method]
+
+
+def output_times(
+    model: str, duration: float | None, steps: int, times: Sequence[float] | np.ndarray | None
+) -> np.ndarray:
+    """(T,) rising output times (s). Raises ModelError for anything else."""
+    if times is not None:
+        grid = np.asarray(times, float)
+        if grid.ndim != 1 or len(grid) < 2 or not np.isfinite(grid).all() or not (np.diff(grid) > 0).all():
+            raise ModelError(f"{model}: times must be two or more rising finite numbers")
+        return grid
+    if isinstance(steps, bool) or not isinstance(steps, int | np.integer) or steps < 1:
+        raise ModelError(f"{model}: steps is {steps!r}; it must be a whole number above zero")
+    if duration is None:
+        raise ModelError(f"{model}: say how long: simulate(duration=...) in seconds, or simulate(times=...)")
+    if not (math.isfinite(duration) and duration > 0):
+        raise ModelError(f"{model}: duration is {duration} s; it must be positive")
+    return np.linspace(0.0, duration, int(steps) + 1)
+
+
+def solution(m: Mechanism, ready: PreparedDynamics, state: State, out: Output) -> Solution:
+    """The results by name, with reactions and residuals."""
+    packed = ready.packed
+    count, rows = len(out.t), len(packed.ws.phi)
+    drives = packed.drives(out.t)
+    q, v = np.ascontiguousarray(out.y[:, 0]), np.ascontiguousarray(out.y[:, 1])
+    phi, gamma, compact = np.zeros((count, rows)), np.zeros((count, rows)), np.zeros((count, rows, 6))
+    tabulate(packed.system, drives, q, v, packed.ws, phi, compact, gamma)
+    lam = _least_norm(ready, compact, out.lam)
+    nu = np.zeros((count, rows))
+    nu[:, packed.driver_rows :] = drives[:, 1:, 1]
+    loads = ready.dynamics.weight - ready.dynamics.inertia * out.a - generalised(packed, compact, lam)
+    loads[:, :3] = 0.0
+    residuals = [
+        np.abs(phi).max(initial=0.0),
+        np.abs(times_compact(packed, compact, v) - nu).max(initial=0.0),
+        np.abs(times_compact(packed, compact, out.a) - gamma).max(initial=0.0),
+        np.abs((loads * v).sum(axis=1)).max(initial=0.0),
+    ]
+    shape = (count, -1, 3)
+    return Solution(
+        mechanism=m,
+        packed=packed,
+        t=out.t,
+        q=q.reshape(shape),
+        v=v.reshape(shape),
+        a=out.a.reshape(shape),
+        wrench=wrenches(packed, compact, q, lam),
+        lam=lam,
+        drives=drives,
+        singularity_margin=np.sqrt(np.clip(out.margin, 0.0, None)),
+        stats=Stats(*(float(r) for r in residuals), steps=int(state.count[ACCEPTED]), inserted_steps=0),
+        mobility=ready.mobility,
+        work=out.work,
+        changes=ready.initial.changes,
+    )
+
+
+def _least_norm(ready: PreparedDynamics, compact: np.ndarray, lam: np.ndarray) -> np.ndarray:
+    """Where joints are redundant the loads share in many ways; the multipliers of least norm are taken."""
+    if not ready.mobility.redundant_rows:
+        return lam
+    packed = ready.packed
+    return np.array(
+        [np.linalg.lstsq(j.T, j.T @ one, rcond=1e-9)[0] for j, one in zip(packed.spread(compact), lam, strict=True)]
+    )

@@ -19,6 +19,7 @@ def main() -> int:
     m.revolute("A", m.ground.at(0, 0), crank.start)
     m.drive_angle("motor", crank, constant_rate(1.0))
     m.sweep(steps=4)
+    m.simulate(0.1, steps=4)
     print(f"mbsd: kernels ready in {time.perf_counter() - started:.1f} s")
     return 0
 

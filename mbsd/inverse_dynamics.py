@@ -15,7 +15,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.assembly import tabulate
-from mbsd.packing import Packed
 from mbsd.prepared import Prepared
 from mbsd.reactions import wrenches
 

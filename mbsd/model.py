@@ -58,7 +58,7 @@ class Mechanism(AddingJoints):
         """Velocities at the start of a simulation: rad/s, or (vx, vy, omega) of the body's frame in m/s and rad/s.
 
         Bodies that are not named move as their joints make them, with the least kinetic energy. Where joints and
-        drivers forbid a given value, it is changed and the simulation tells so.
+        drivers forbid a given value, it is changed and the simulation warns.
         """
         for name, velocity in velocities.items():
             self.known_body(name)

@@ -44,8 +44,8 @@ def times_compact(packed: Packed, compact: np.ndarray, x: np.ndarray) -> np.ndar
 
 def generalised(packed: Packed, compact: np.ndarray, lam: np.ndarray) -> np.ndarray:
     """(T, 3 nb) J^T lam for compact J (T, m, 6) and lam (T, m); ground's entries hold what ground takes."""
-    out = np.zeros((len(lam), len(packed.body_names), 3))
+    out = np.zeros((len(packed.body_names), len(lam), 3))
     for side in (0, 1):
         parts = compact[..., 3 * side : 3 * side + 3] * lam[..., None]
-        np.add.at(out, (slice(None), packed.system.row_body[:, side]), parts)
-    return out.reshape(len(lam), -1)
+        np.add.at(out, packed.system.row_body[:, side], parts.swapaxes(0, 1))
+    return out.swapaxes(0, 1).reshape(len(lam), -1)

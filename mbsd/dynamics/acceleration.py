@@ -40,7 +40,7 @@ def accelerate(dyn, scratch, t, state, a, lam):
     evaluate_laws(dyn.laws, drive.shape[0], t, drive)
     evaluate_position(system, q, drive, ws)
     evaluate_gamma(system, v, drive, ws, gamma)
-    scratch.report[0] = factor_schur(schur, dyn.inverse, ws.jac, factors)
+    scratch.report[0] = factor_schur(schur, dyn.inverse, ws.jac, factors, 0.0)
     for c in range(n3):
         force[c] = dyn.weight[c]
         a[c] = 0.0

@@ -57,6 +57,8 @@ class Scratch(NamedTuple):
     """(stages,) of loads and drivers (W)."""
     dense: Any
     """(8, 2, 3 nb) coefficients of a dense output."""
+    dense_work: Any
+    """(7,) the same for the work (J)."""
     report: Any
     """(4,) margin of the last factors; first and last change of the last projection (sizes, rad)."""
 
@@ -74,5 +76,6 @@ def scratch_for(dynamics: Dynamics, workspace: Any, drivers: int, stages: int) -
         stages=np.zeros((stages, 2, n3)),
         power=np.zeros(stages),
         dense=np.zeros((8, 2, n3)),
+        dense_work=np.zeros(7),
         report=np.zeros(4),
     )

@@ -34,8 +34,10 @@ class Initial:
     """(3 nb,) centres of mass (m) and angles (rad)."""
     v: np.ndarray
     """(3 nb,) m/s, rad/s."""
-    changes: tuple[str, ...]
-    """One sentence for each given value that could not be held."""
+    poses: tuple[str, ...]
+    """One sentence for each start_near value that was moved to close the links."""
+    velocities: tuple[str, ...]
+    """One sentence for each start_moving value that the joints forbid."""
 
 
 def consistent(m: Mechanism, packed: Packed, time: float, metric: np.ndarray) -> Initial:
@@ -46,7 +48,7 @@ def consistent(m: Mechanism, packed: Packed, time: float, metric: np.ndarray) ->
     drive = packed.drives(np.array([time]))[0]
     q, told = _pose(m, packed, time, drive)
     v, told_velocities = _velocities(m, packed, q, drive, metric)
-    return Initial(q, v, tuple(told + told_velocities))
+    return Initial(q, v, tuple(told), tuple(told_velocities))
 
 
 def _pose(m: Mechanism, packed: Packed, time: float, drive: np.ndarray) -> tuple[np.ndarray, list[str]]:
@@ -71,7 +73,9 @@ def _pose(m: Mechanism, packed: Packed, time: float, drive: np.ndarray) -> tuple
         if abs(gap) / size[c] > TOLD:
             body, what = packed.body_names[c // 3], COORDINATES[c % 3]
             if c % 3 == 2:
-                told.append(f"the angle of '{body}' is {math.degrees(q[c]):.6g} degrees, not {math.degrees(target):.6g}")
+                told.append(
+                    f"the angle of '{body}' is {math.degrees(q[c]):.6g} degrees, not {math.degrees(target):.6g}"
+                )
             else:
                 told.append(f"the {what} of the centre of mass of '{body}' is {q[c]:.6g} m, not {target:.6g}")
     return q, told

@@ -12,6 +12,9 @@ from mbsd.dynamics.schur import factor_schur, solve_schur, subtract_forces, time
 from mbsd.jit import kernel
 from mbsd.laws import evaluate_laws
 
+LIFT = 1e-11
+"""Of the diagonal of S, relative: where joints nearly depend (singular poses), rounding in Phi is not blown up."""
+
 
 @kernel
 def project(dyn, scratch, t, state, passes):
@@ -32,7 +35,7 @@ def project(dyn, scratch, t, state, passes):
     evaluate_nu(system, drive, nu)
     for step in range(passes):
         evaluate_position(system, state[0], drive, ws)
-        factor_schur(schur, dyn.metric, ws.jac, factors)
+        factor_schur(schur, dyn.metric, ws.jac, factors, LIFT)
         for k in range(schur.rows.shape[0]):
             for s in range(2):
                 r = schur.rows[k, s]

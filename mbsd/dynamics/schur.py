@@ -158,8 +158,9 @@ def _minimum_degree(neighbours: list[set[int]]) -> tuple[np.ndarray, list[set[in
 
 
 @inlined
-def factor_schur(schur, inverse, jac, fac):
+def factor_schur(schur, inverse, jac, fac, lift):
     """Factor S at the compact J (m, 6); ``inverse`` (3 nb,) is the diagonal of W^-1, zero for ground.
+    ``lift`` is added to the diagonal of S, relative to it.
 
     Returns the smallest part of a block's determinant that elimination leaves of it: 0 where rows depend.
     """
@@ -193,6 +194,8 @@ def factor_schur(schur, inverse, jac, fac):
         value[t, 2] += arm[i, 3] * weighted[j, 0] + arm[i, 4] * weighted[j, 1] + arm[i, 5] * weighted[j, 2]
         value[t, 3] += arm[i, 3] * weighted[j, 3] + arm[i, 4] * weighted[j, 4] + arm[i, 5] * weighted[j, 5]
     for k in range(count):
+        value[k, 0] += lift * value[k, 0]
+        value[k, 3] += lift * value[k, 3]
         low[k, 0] = value[k, 0] * value[k, 3]
     margin = 1.0
     for k in range(count):

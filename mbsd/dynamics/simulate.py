@@ -38,9 +38,9 @@ def simulate(
         if value is not None and not (math.isfinite(value) and value > 0):
             raise ModelError(f"{m.name}: {what} is {value}; it must be positive")
     ready = prepare_dynamics(m, float(grid[0]), float(grid[-1]))
-    if ready.initial.changes:
+    if ready.initial.velocities:
         warnings.warn(
-            f"{m.name}: the start was made consistent: " + "; ".join(ready.initial.changes),
+            f"{m.name}: the start was made consistent: " + "; ".join(ready.initial.velocities),
             InitialConditionWarning,
             stacklevel=3,
         )
@@ -110,7 +110,7 @@ def solution(m: Mechanism, ready: PreparedDynamics, state: State, out: Output) -
         stats=Stats(*(float(r) for r in residuals), steps=int(state.count[ACCEPTED]), inserted_steps=0),
         mobility=ready.mobility,
         work=out.work,
-        changes=ready.initial.changes,
+        changes=ready.initial.poses + ready.initial.velocities,
     )
 
 

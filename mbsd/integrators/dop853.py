@@ -17,7 +17,7 @@ import math
 
 from mbsd.dynamics.acceleration import accelerate, derivative
 from mbsd.dynamics.projection import project
-from mbsd.integrators.dop853_tableau import B, C, D, E3, E5, A
+from mbsd.integrators.dop853_tableau import E3, E5, A, B, C, D
 from mbsd.integrators.kind import Integrator, register
 from mbsd.integrators.state import (
     ACCEPTED,
@@ -41,6 +41,11 @@ from mbsd.jit import inlined, kernel
 STAGES = 16
 SMALLEST_STEP = 1e-13
 """Part of the longest step at which a run gives up."""
+
+CONTRACTION = 0.1
+"""The second projection must change the pose by less than this part of the first."""
+ROUNDING = 1e-9
+"""Changes below this (sizes, rad) are rounding in an ill-conditioned pose, and accepted."""
 
 
 @inlined
@@ -86,8 +91,9 @@ def _first_step(dyn, scratch, state, settings):
 
 
 @kernel
-def _interpolant(dyn, scratch, state, h):
-    """Coefficients of the dense output of the step that ends in scratch.state, from the state before it."""
+def _interpolant(dyn, scratch, state, h, work):
+    """Coefficients of the dense output of the step that ends in scratch.state and does ``work`` (J)."""
+    power = scratch.power
     k = scratch.stages
     dense = scratch.dense
     n3 = state.y.shape[1]
@@ -105,7 +111,7 @@ def _interpolant(dyn, scratch, state, h):
                 for j in range(s):
                     change += A[s, j] * k[j, part, c]
                 dense[7, part, c] = state.y[part, c] + h * change
-        scratch.power[s] = derivative(dyn, scratch, t + C[s] * h, dense[7], k[s], scratch.ws.right[1])
+        power[s] = derivative(dyn, scratch, t + C[s] * h, dense[7], k[s], scratch.ws.right[1])
     for row in range(4):
         for part in range(2):
             for c in range(3, n3):
@@ -113,11 +119,18 @@ def _interpolant(dyn, scratch, state, h):
                 for j in range(16):
                     change += D[row, j] * k[j, part, c]
                 dense[3 + row, part, c] = h * change
+        change = 0.0
+        for j in range(16):
+            change += D[row, j] * power[j]
+        scratch.dense_work[3 + row] = h * change
+    scratch.dense_work[0] = work
+    scratch.dense_work[1] = h * power[0] - work
+    scratch.dense_work[2] = 2.0 * work - h * (power[12] + power[0])
 
 
 @inlined
 def _interpolate(scratch, state, x):
-    """scratch.state at the part x of the step whose coefficients stand in scratch.dense."""
+    """scratch.state at the part x of the step whose coefficients stand in scratch.dense; returns the work so far."""
     dense = scratch.dense
     for part in range(2):
         for c in range(3, state.y.shape[1]):
@@ -126,14 +139,10 @@ def _interpolate(scratch, state, x):
                 value += dense[row, part, c]
                 value *= x if row % 2 == 0 else 1.0 - x
             scratch.state[part, c] = state.y[part, c] + value
-
-
-@inlined
-def _work_within(scratch, h, x, whole):
-    """Work since the begin of the step at its part x: the cubic through the powers and works at both ends."""
-    p0 = h * scratch.power[0]
-    p1 = h * scratch.power[12]
-    return x * p0 + x * x * (3.0 * whole - 2.0 * p0 - p1) + x * x * x * (p0 + p1 - 2.0 * whole)
+    work = 0.0
+    for row in range(6, -1, -1):
+        work = (work + scratch.dense_work[row]) * (x if row % 2 == 0 else 1.0 - x)
+    return work
 
 
 @kernel
@@ -209,7 +218,7 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
             rejected = True
             continue
         project(dyn, scratch, t + h, trial, 2)
-        if not scratch.report[2] <= max(0.1 * scratch.report[1], 1e-12):
+        if not scratch.report[2] <= max(CONTRACTION * scratch.report[1], ROUNDING):
             if h < SMALLEST_STEP * settings.longest:
                 return NOT_FINITE
             state.clock[STEP] = 0.5 * h
@@ -225,16 +234,15 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
             state.dy[1, c] = k[12, 1, c]
         following = state.count[NEXT]
         if following < out.t.shape[0] and out.t[following] < reached:
-            _interpolant(dyn, scratch, state, h)
+            _interpolant(dyn, scratch, state, h, work)
             state.count[EVALUATIONS] += 3
             for part in range(2):  # record and the interpolant use trial: the end of the step waits in dense[7]
                 for c in range(3, n3):
                     scratch.dense[7, part, c] = y[part, c] + scratch.dense[0, part, c]
             while following < out.t.shape[0] and out.t[following] < reached:
                 x = (out.t[following] - t) / h
-                _interpolate(scratch, state, x)
-                so_far = state.clock[WORK] + _work_within(scratch, h, x, work)
-                record(dyn, scratch, out, following, so_far)
+                so_far = _interpolate(scratch, state, x)
+                record(dyn, scratch, out, following, state.clock[WORK] + so_far)
                 following += 1
                 state.count[NEXT] = following
             for part in range(2):

@@ -64,7 +64,9 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
         for part in range(2):
             for c in range(3, n3):
                 y[part, c] += h / 6.0 * (k[0, part, c] + 2.0 * (k[1, part, c] + k[2, part, c]) + k[3, part, c])
-        state.clock[WORK] += h / 6.0 * (scratch.power[0] + 2.0 * (scratch.power[1] + scratch.power[2]) + scratch.power[3])
+        state.clock[WORK] += (
+            h / 6.0 * (scratch.power[0] + 2.0 * (scratch.power[1] + scratch.power[2]) + scratch.power[3])
+        )
         project(dyn, scratch, reached, y, 2)
         state.clock[POWER] = derivative(dyn, scratch, reached, y, state.dy, state.lam)
         state.clock[TIME] = reached

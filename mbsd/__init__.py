@@ -12,6 +12,7 @@ from mbsd.errors import (
     MechanismError,
     MobilityError,
     ModelError,
+    ModelWarning,
     SimulationError,
     SingularPoseError,
 )
@@ -32,6 +33,7 @@ __all__ = [
     "MechanismError",
     "MobilityError",
     "ModelError",
+    "ModelWarning",
     "Motion",
     "SimulationError",
     "SingularPoseError",

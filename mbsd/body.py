@@ -65,6 +65,15 @@ class Body:
         return f"<Body {self.name}: {self.mass:g} kg>"
 
 
+def number_pair(what: str, value: object) -> tuple[float, float]:
+    """``value`` as two floats; raises ModelError if it is anything else."""
+    try:
+        x, y = value  # pyright: ignore[reportGeneralTypeIssues]
+    except (TypeError, ValueError):
+        raise ModelError(f"{what} is {value!r}; it must be two numbers (x, y)") from None
+    return finite_number(what, x), finite_number(what, y)
+
+
 def finite_number(what: str, value: object) -> float:
     """``value`` as a float; raises ModelError if it is no finite number."""
     if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):

@@ -33,3 +33,7 @@ class InitialConditionWarning(UserWarning):
 
 class SingularPoseError(MechanismError):
     """A toggle or a change point: the drivers no longer fix the motion here."""
+
+
+class ModelWarning(UserWarning):
+    """A number of the model looks as if a unit was mixed up; see :meth:`mbsd.model.Mechanism.check`."""

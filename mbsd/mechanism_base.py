@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from mbsd.body import Body, Marker, finite_number
+from mbsd.body import Body, Marker, finite_number, number_pair
 from mbsd.errors import ModelError
 from mbsd.joint import Joint
 
@@ -42,13 +42,13 @@ class MechanismBase:
     starts: dict[str, Start] = field(default_factory=dict)
     velocities: dict[str, StartVelocity] = field(default_factory=dict)
 
+    findings_told = False
+    """Whether suspicious units were told; see mbsd/check.py."""
+
     def __post_init__(self) -> None:
-        if not self.name or not isinstance(self.name, str):
-            raise ModelError(f"a mechanism needs a name, got {self.name!r}")
+        self._new_name(self.name, {}, "mechanism")
         gravity = self.gravity if self.gravity is not None else (0.0, 0.0)
-        if len(gravity) != 2:
-            raise ModelError(f"{self.name}: gravity is {gravity!r}; it must be (gx, gy) in m/s^2, or None")
-        self.gravity = (self._number("gravity", gravity[0]), self._number("gravity", gravity[1]))
+        self.gravity = number_pair(f"{self.name}: gravity (m/s^2)", gravity)
         self.bodies["ground"] = Body("ground")
 
     # -- bodies -------------------------------------------------------------------------------------------------
@@ -85,6 +85,7 @@ class MechanismBase:
         if length <= 0:
             raise ModelError(f"{self.name}: bar '{name}' has length {length:g} m; it must be positive")
         com = (length / 2, 0.0) if com is None else com
+        mass = self._number(f"mass of body '{name}'", mass)
         inertia = mass * length**2 / 12 if inertia is None else inertia
         body = self.body(name, mass, com, inertia)
         body.length = length
@@ -93,14 +94,13 @@ class MechanismBase:
     def set_mass(self, name: str, mass: float, com: Sequence[float], inertia: float) -> None:
         """Set mass (kg), centre of mass (m, body frame) and inertia about it (kg m^2), as from CAD."""
         body = self.known_body(name)
-        if len(com) != 2:
-            raise ModelError(f"{self.name}: com of body '{name}' is {com!r}; it must be (x, y)")
+        centre = number_pair(f"{self.name}: com of body '{name}' (m)", com)
         values = [self._number(f"mass of body '{name}'", mass), self._number(f"inertia of body '{name}'", inertia)]
         for what, value, unit in zip(("mass", "inertia"), values, ("kg", "kg m^2"), strict=True):
             if value < 0:
                 raise ModelError(f"{self.name}: body '{name}' has {what} {value:g} {unit}; it cannot be negative")
         body.mass, body.inertia = values
-        body.com = (self._number(f"com of '{name}'", com[0]), self._number(f"com of '{name}'", com[1]))
+        body.com = centre
 
     def known_body(self, name: str) -> Body:
         """The body of this name; raises ModelError with the known names."""
@@ -117,8 +117,8 @@ class MechanismBase:
             raise ModelError(f"{self.name}: {what} uses body '{body.name}' of another mechanism")
 
     def _new_name(self, name: str, taken: dict, what: str) -> None:
-        if not isinstance(name, str) or not name:
-            raise ModelError(f"{self.name}: a {what} needs a name, got {name!r}")
+        if not isinstance(name, str) or not name or name != name.strip() or not name.isprintable():
+            raise ModelError(f"{self.name}: a {what} needs a name without spaces around it, got {name!r}")
         if name in taken:
             raise ModelError(f"{self.name}: there are two of the name '{name}'; the {what} needs another")
 

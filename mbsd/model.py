@@ -23,6 +23,7 @@ from mbsd.joint import Joint
 from mbsd.mechanism_base import STANDARD_GRAVITY, Start, StartVelocity
 
 if TYPE_CHECKING:
+    from mbsd.check import Finding
     from mbsd.mobility import Mobility
     from mbsd.solution import Solution
 
@@ -35,6 +36,8 @@ class Mechanism(AddingJoints):
     def trace(self, name: str, marker: Marker) -> Marker:
         """Follow a point: its path, velocity and acceleration are in the solution."""
         self._new_name(name, self.traces, "trace")
+        if not isinstance(marker, Marker):
+            raise ModelError(f"{self.name}: trace '{name}' needs a marker, got {marker!r}; write body.at(x, y)")
         self._own_body(marker.body, f"trace '{name}'")
         self.traces[name] = marker
         return marker
@@ -46,10 +49,10 @@ class Mechanism(AddingJoints):
         """
         for name, pose in poses.items():
             self.known_body(name)
-            if isinstance(pose, int | float):
+            if isinstance(pose, int | float | np.number):
                 self.starts[name] = Start(math.radians(self._number(f"start of '{name}'", pose)))
                 continue
-            if len(pose) != 3:
+            if not isinstance(pose, Sequence | np.ndarray) or len(pose) != 3:
                 raise ModelError(f"{self.name}: start of '{name}' is {pose!r}; give degrees, or (x, y, degrees)")
             x, y, degrees = (self._number(f"start of '{name}'", value) for value in pose)
             self.starts[name] = Start(math.radians(degrees), (x, y))
@@ -63,13 +66,19 @@ class Mechanism(AddingJoints):
         for name, velocity in velocities.items():
             self.known_body(name)
             what = f"start velocity of '{name}'"
-            if isinstance(velocity, int | float):
+            if isinstance(velocity, int | float | np.number):
                 self.velocities[name] = StartVelocity(self._number(what, velocity))
                 continue
-            if len(velocity) != 3:
+            if not isinstance(velocity, Sequence | np.ndarray) or len(velocity) != 3:
                 raise ModelError(f"{self.name}: {what} is {velocity!r}; give rad/s, or (vx, vy, omega)")
             vx, vy, omega = (self._number(what, value) for value in velocity)
             self.velocities[name] = StartVelocity(omega, (vx, vy))
+
+    def check(self) -> list[Finding]:
+        """Numbers that look like a mixed-up unit, with remedies; the first solution warns of them (ModelWarning)."""
+        from mbsd.check import check
+
+        return check(self)
 
     # -- what it can compute ------------------------------------------------------------------------------------
 
@@ -87,8 +96,10 @@ class Mechanism(AddingJoints):
         ``steps`` equal steps over ``duration`` seconds, both ends included; by default one period of the first
         driver that has one. ``times`` (s), rising, replaces both.
         """
+        from mbsd.check import tell
         from mbsd.sweep import sweep
 
+        tell(self, stacklevel=2)
         return sweep(self, duration, steps, times)
 
     def simulate(
@@ -110,8 +121,10 @@ class Mechanism(AddingJoints):
 
         Raises AssemblyError where the links do not close, SimulationError where the integration cannot go on.
         """
+        from mbsd.check import tell
         from mbsd.dynamics.simulate import simulate
 
+        tell(self, stacklevel=2)
         return simulate(self, duration, steps, times, method, tolerance, step, progress)
 
     # -- files --------------------------------------------------------------------------------------------------

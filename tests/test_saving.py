@@ -78,6 +78,7 @@ def test_random_models_come_back_number_for_number(lengths: Any, masses: Any, tu
     m = four_bars.model(lengths, 1.3, masses, turned, (0.2, -0.7))
     m.trace("P", m.bodies["coupler"].at(0.1, 0.2, 0.3))
     m.start_near(rocker=(1.0, 2.0, 30.0))
+    m.start_moving(crank=turned, coupler=(0.1, turned, -2.0))
     written = document(m)
     assert document(build(json.loads(json.dumps(written)))) == written
 

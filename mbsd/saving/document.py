@@ -3,7 +3,8 @@
     {"schema": "mbsd.model", "schema_version": 1, "name": ..., "gravity": [gx, gy],
      "bodies": {"crank": {"mass", "com", "inertia", "length"}},
      "joints": {"A": {"kind", "i": {"body", "x", "y", "angle"}, "j": ..., "params"}},
-     "drivers": the same with "law", "traces": {"P": marker}, "starts": {"crank": {"angle", "place"}}}
+     "drivers": the same with "law", "traces": {"P": marker}, "starts": {"crank": {"angle", "place"}},
+     "velocities": {"crank": {"omega", "place"}}}
 
 Kinds and laws are those of the registries: a joint is rebuilt by the method of its kind's name, from its markers, its
 params and its law, so a new kind needs no word here. What does not come back equal is refused when it is saved.
@@ -20,7 +21,7 @@ from mbsd.body import Body, Marker
 from mbsd.errors import ModelError
 from mbsd.joint import Joint
 from mbsd.joints.kind import KINDS
-from mbsd.mechanism_base import Start
+from mbsd.mechanism_base import Start, StartVelocity
 from mbsd.model import Mechanism
 from mbsd.saving.entry import Entry
 from mbsd.saving.laws import called, law_from, plain
@@ -49,10 +50,9 @@ def build(written: Mapping[str, Any], where: str = "model") -> Mechanism:
     for name, entry in top.entries("traces"):
         entry.within(lambda name=name, entry=entry: m.trace(name, _read_marker(m, entry)))
     for name, entry in top.entries("starts"):
-        entry.within(lambda name=name: m.known_body(name))
-        place = entry.numbers("place", 2) if entry.get("place") is not None else None
-        m.starts[name] = Start(entry.number("angle"), place)
-        entry.refuse_others("angle", "place")
+        m.starts[name] = Start(*_read_state(m, name, entry, "angle"))
+    for name, entry in top.entries("velocities"):
+        m.velocities[name] = StartVelocity(*_read_state(m, name, entry, "omega"))
     top.refuse_others("schema", "schema_version", *(field.name for field in fields(Mechanism)))
     return m
 
@@ -69,6 +69,7 @@ def _write(m: Mechanism) -> dict[str, Any]:
         "drivers": {name: _joint(m, driver) for name, driver in m.drivers.items()},
         "traces": {name: plain(marker, name) for name, marker in m.traces.items()},
         "starts": {name: _state(start) for name, start in m.starts.items()},
+        "velocities": {name: _state(velocity) for name, velocity in m.velocities.items()},
     }
     missing = [field.name for field in fields(m) if field.name not in parts and getattr(m, field.name)]
     if missing:
@@ -119,6 +120,13 @@ def _read_marker(m: Mechanism, entry: Entry) -> Marker:
     body = entry.within(lambda: m.known_body(entry.text("body")))
     entry.refuse_others("body", "x", "y", "angle")
     return body.at(entry.number("x"), entry.number("y"), entry.number("angle"))
+
+
+def _read_state(m: Mechanism, name: str, entry: Entry, turn: str) -> tuple[float, tuple[float, float] | None]:
+    """A start pose or velocity: about the angle, and of the body's frame if given."""
+    entry.within(lambda: m.known_body(name))
+    entry.refuse_others(turn, "place")
+    return entry.number(turn), entry.numbers("place", 2) if entry.get("place") is not None else None
 
 
 def _read_joint(m: Mechanism, part: str, name: str, entry: Entry) -> None:

@@ -40,7 +40,9 @@ def schema() -> dict[str, Any]:
             "length": {"type": ["number", "null"], "exclusiveMinimum": 0},
         }
     )
-    start = _object({"angle": NUMBER, "place": {"anyOf": [PAIR, {"type": "null"}]}})
+    start, velocity = (
+        _object({key: NUMBER, "place": {"anyOf": [PAIR, {"type": "null"}]}}) for key in ("angle", "omega")
+    )
     laws = [_object({"law": {"const": name}}, _parameters(f)) for name, f in loadable_laws().items()]
     top = {
         "schema": {"const": SCHEMA},
@@ -52,8 +54,9 @@ def schema() -> dict[str, Any]:
         "drivers": _table("driver"),
         "traces": _table("marker"),
         "starts": _table("start"),
+        "velocities": _table("velocity"),
     }
-    definitions = {"marker": marker, "body": body, "start": start, "law": {"oneOf": laws}}
+    definitions = {"marker": marker, "body": body, "start": start, "velocity": velocity, "law": {"oneOf": laws}}
     definitions["joint"] = {"oneOf": [_kind(name) for name, kind in KINDS.items() if not kind.driven]}
     definitions["driver"] = {"oneOf": [_kind(name) for name, kind in KINDS.items() if kind.driven]}
     return {

@@ -1,0 +1,215 @@
+"""Numbers that are allowed but look as if a unit was mixed up, each told with its remedy.
+
+Only what is off by more than machines ever are counts: sizes a hundredfold apart, masses 1e5 apart, an inertia whose
+radius of gyration is 20 sizes, marker angles of whole degrees beyond a turn. Silence proves nothing.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.body import Body, Marker
+from mbsd.errors import ModelWarning
+from mbsd.joint import Joint
+from mbsd.mechanism_base import MechanismBase
+
+SIZE_GAP = 100.0
+"""Between neighbours in the sorted list of sizes; millimetres taken for metres are 1000 apart."""
+MASS_GAP = 1e5
+"""Between neighbours in the sorted list of masses."""
+WIDEST_GYRATION = 20.0
+"""Radius of gyration over size. There is no lower bound: a point mass has none, and tiny inertias stand for zero."""
+FARTHEST_COM = 30.0
+"""Centre of mass from the body's joints, over the larger of the body's and the mechanism's size."""
+LARGE, THIN = 10.0, 0.05
+"""A body larger than this (m) and lighter than this (kg/m) is a wire, or millimetres."""
+TURNS = 2.0
+"""A marker or law turned by more turns than this, in whole degrees, was meant in degrees."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One suspicious number: whose it is, what is odd, what to do."""
+
+    name: str
+    problem: str
+    remedy: str
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.problem}. {self.remedy}"
+
+
+def check(m: MechanismBase) -> list[Finding]:
+    """Everything in ``m`` that looks like a mixed-up unit, in the order of the checks above."""
+    sizes = body_sizes(m)
+    return [
+        *_gravity(m),
+        *_sizes(m, sizes),
+        *_masses(m),
+        *_mass_properties(m, sizes),
+        *_marker_angles(m),
+        *_law_angles(m),
+        *_start_angles(m),
+    ]
+
+
+def tell(m: MechanismBase, stacklevel: int) -> None:
+    """Warn of every finding, once in the life of a mechanism; the warning points ``stacklevel`` callers up."""
+    if m.findings_told:
+        return
+    m.findings_told = True
+    for finding in check(m):
+        warnings.warn(f"{m.name}: {finding}", ModelWarning, stacklevel=stacklevel + 1)
+
+
+def body_sizes(m: MechanismBase) -> dict[str, float]:
+    """The usual distance (m) from joint to joint of each body, or a bar's length; 0 where there are no two."""
+    places: dict[str, list[tuple[float, float]]] = {name: [] for name in m.bodies}
+    for joint in m.joints.values():
+        for marker in (joint.i, joint.j):
+            places[marker.body.name].append((marker.x, marker.y))
+    return {name: max(_spacing(places[name]), body.length or 0.0) for name, body in m.bodies.items()}
+
+
+def _spacing(places: list[tuple[float, float]]) -> float:
+    """Median step from each place to the next: what it is measured in shows, how many there are does not."""
+    if len(places) < 2:
+        return 0.0
+    steps = np.hypot(*np.diff(np.array(places), axis=0).T)
+    return float(np.median(steps[steps > 0])) if steps.any() else 0.0
+
+
+def _gravity(m: MechanismBase) -> Iterator[Finding]:
+    size = math.hypot(*(m.gravity or (0.0, 0.0)))
+    for unit, factor in (("mm/s^2", 1e3), ("cm/s^2", 1e2)):
+        if 9.7 < size / factor < 9.9:
+            yield Finding("gravity", f"{size:g} m/s^2 looks like {unit}", f"Gravity is in m/s^2: {size / factor:g}")
+
+
+def _odd_ones_out(values: dict[str, float], gap: float) -> tuple[list[str], float]:
+    """The smaller group of names where the sorted values leap by ``gap`` or more, and a typical value of the others."""
+    names = sorted((name for name, value in values.items() if value > 0), key=lambda name: values[name])
+    for k in range(1, len(names)):
+        if values[names[k]] >= gap * values[names[k - 1]]:
+            odd, usual = (names[k:], names[:k]) if len(names) - k <= k else (names[:k], names[k:])
+            return odd, float(np.median([values[name] for name in usual]))
+    return [], 0.0
+
+
+def _sizes(m: MechanismBase, sizes: dict[str, float]) -> Iterator[Finding]:
+    lengths = sizes | {f"joint {name}": float(j.params.get("length", 0.0)) for name, j in m.joints.items()}
+    odd, usual = _odd_ones_out(lengths, SIZE_GAP)
+    for name in odd:
+        yield Finding(
+            name,
+            f"{_metres(lengths[name])} long beside {_metres(usual)} of the others",
+            "Lengths are in metres: divide millimetres by 1000",
+        )
+    for name, body in m.bodies.items():
+        if name not in odd and sizes[name] > LARGE and 0 < body.mass < THIN * sizes[name]:
+            yield Finding(
+                name,
+                f"{_metres(sizes[name])} long and {body.mass:g} kg heavy, a wire",
+                "Lengths are in metres: divide millimetres by 1000",
+            )
+
+
+def _masses(m: MechanismBase) -> Iterator[Finding]:
+    masses = {name: body.mass for name, body in m.bodies.items()}
+    odd, usual = _odd_ones_out(masses, MASS_GAP)
+    for name in odd:
+        yield Finding(
+            name,
+            f"{masses[name]:g} kg beside {usual:g} kg of the others",
+            "Masses are in kilograms: divide grams by 1000; leave a mass out to neglect it",
+        )
+
+
+def _mass_properties(m: MechanismBase, sizes: dict[str, float]) -> Iterator[Finding]:
+    whole = float(np.median([size for size in sizes.values() if size > 0] or [0.0]))
+    for name, body in m.bodies.items():
+        size = max(sizes[name], whole)
+        if body.mass == 0 or size == 0:
+            continue
+        away = _com_distance(m, body)
+        if away > FARTHEST_COM * size:
+            yield Finding(
+                name,
+                f"its centre of mass is {_metres(away)} from its joints, {away / size:.3g} times its size",
+                "com is in metres, in the body's own frame",
+            )
+            continue
+        gyration = math.sqrt(body.inertia / body.mass)
+        reach = max(size, away)
+        if gyration > WIDEST_GYRATION * reach:
+            yield Finding(
+                name,
+                f"inertia {body.inertia:g} kg m^2 and mass {body.mass:g} kg make a radius of gyration of "
+                f"{_metres(gyration)} on a body of {_metres(reach)}",
+                "Inertia is about the centre of mass in kg m^2: kg mm^2 times 1e-6, g mm^2 times 1e-9; "
+                f"a slender rod has {body.mass * reach**2 / 12:.3g}",
+            )
+
+
+def _com_distance(m: MechanismBase, body: Body) -> float:
+    """From the centre of mass to the nearest joint of the body (m), 0 without joints."""
+    markers = [marker for j in m.joints.values() for marker in (j.i, j.j) if marker.body is body]
+    return min((math.hypot(k.x - body.com[0], k.y - body.com[1]) for k in markers), default=0.0)
+
+
+def _marker_angles(m: MechanismBase) -> Iterator[Finding]:
+    named: list[tuple[str, Marker]] = [(f"trace {name}", marker) for name, marker in m.traces.items()]
+    for joint in (*m.joints.values(), *m.drivers.values()):
+        named += [(joint.name, joint.i), (joint.name, joint.j)]
+    for name, marker in named:
+        if _in_degrees(marker.angle, 1.0):
+            yield Finding(
+                name,
+                f"its marker on {marker.body.name} is turned by {marker.angle:g} rad",
+                f"Marker angles are in radians: write math.radians({marker.angle:g})",
+            )
+
+
+def _law_angles(m: MechanismBase) -> Iterator[Finding]:
+    for driver in m.drivers.values():
+        if not _angular(driver):
+            continue
+        for word in ("start", "amplitude", "phase", "mean", "rise"):
+            value = getattr(driver.motion, word, 0.0)
+            if isinstance(value, float) and _in_degrees(value, TURNS):
+                yield Finding(
+                    driver.name,
+                    f"{word} of its law is {value:g} rad, {abs(value) / (2 * math.pi):.3g} turns",
+                    f"Laws of angles are in radians: write math.radians({value:g})",
+                )
+
+
+def _start_angles(m: MechanismBase) -> Iterator[Finding]:
+    for name, start in m.starts.items():
+        degrees = math.degrees(start.angle)
+        twelfths = degrees / (math.pi / 12)
+        near = round(twelfths)
+        if 0 < abs(near) <= 24 and abs(100 * degrees - round(100 * degrees)) > 1e-6 and abs(twelfths - near) < 1e-3:
+            yield Finding(
+                name,
+                f"start_near({name}={degrees:g}) is {degrees:g} degrees, and {15 * near} degrees in radians",
+                f"start_near takes degrees: write {15 * near} if that is meant",
+            )
+
+
+def _angular(driver: Joint) -> bool:
+    return driver.kind.units[1] == "rad"
+
+
+def _in_degrees(angle: float, turns: float) -> bool:
+    """Whole degrees, and more turns than an angle in radians has a reason for."""
+    return abs(angle) > turns * 2 * math.pi and angle == round(angle)
+
+
+def _metres(length: float) -> str:
+    return f"{length * 1000:.3g} mm" if length < 1 else f"{length:.4g} m"

@@ -6,6 +6,7 @@ author put it. Bodies without a rough angle are tried at several angles.
 
 from __future__ import annotations
 
+import heapq
 import math
 
 import numpy as np
@@ -29,7 +30,7 @@ def assemble(m: Mechanism, packed: Packed, time: float) -> np.ndarray:
     best: tuple[float, np.ndarray] | None = None
     for attempt in range(ATTEMPTS):
         q = rough_pose(m, packed, drive, attempt)
-        _unwind_angles(packed, q)
+        unwind_angles(packed, q)
         q, worst = close(packed, q, drive)
         if worst <= CLOSED:
             return q
@@ -83,8 +84,7 @@ def rough_pose(m: Mechanism, packed: Packed, drive: np.ndarray, attempt: int) ->
             q[b, :2] = start.place + turned(angle[b], packed.com[b])
             placed.add(b)
     for reach in ("point", "distance", "slot", "along", "angle"):
-        while _place_one(packed, q, placed, reach):
-            pass
+        _place_along(packed, q, placed, reach)
     return q.ravel()
 
 
@@ -99,6 +99,7 @@ def _rough_angles(m: Mechanism, packed: Packed, drive: np.ndarray, attempt: int)
             known.add(b)
     system = packed.system
     for _ in packed.body_names:  # angles pass on along welds, sliders and driven angles
+        before = len(known)
         for (i, j, _row, motion), offset in zip(system.angle, system.angle_offset, strict=True):
             bi, bj = system.marker_body[i], system.marker_body[j]
             turn = offset + drive[motion, 0]
@@ -111,20 +112,31 @@ def _rough_angles(m: Mechanism, packed: Packed, drive: np.ndarray, attempt: int)
             elif bj in known and bi not in known:
                 angle[bi] = angle[bj] - turn
                 known.add(bi)
+        if len(known) == before:
+            break
     for b in range(len(angle)):
         if b not in known and attempt:
             angle[b] = random.uniform(-math.pi, math.pi)
     return angle
 
 
-def _place_one(packed: Packed, q: np.ndarray, placed: set[int], constraint: str) -> bool:
-    """Place one more body by a joint of the given constraint to a placed one; False if there is none."""
+def _place_along(packed: Packed, q: np.ndarray, placed: set[int], constraint: str) -> None:
+    """Place bodies by joints of the given constraint to placed ones, always the first such joint of the table."""
     system = packed.system
     table = getattr(system, constraint)
-    for k, (i, j, _row, _motion) in enumerate(table):
-        bi, bj = int(system.marker_body[i]), int(system.marker_body[j])
+    pairs = [(int(system.marker_body[i]), int(system.marker_body[j])) for i, j, _row, _motion in table]
+    at_body: dict[int, list[int]] = {}
+    for k, pair in enumerate(pairs):
+        for body in pair:
+            at_body.setdefault(body, []).append(k)
+    queue = [k for k, (bi, bj) in enumerate(pairs) if (bi in placed) != (bj in placed)]
+    heapq.heapify(queue)
+    while queue:
+        k = heapq.heappop(queue)
+        bi, bj = pairs[k]
         if (bi in placed) == (bj in placed):
             continue
+        i, j, _row, _motion = table[k]
         base, new = (i, j) if bi in placed else (j, i)
         body = bj if bi in placed else bi
         target = _marker_place(packed, q, base)
@@ -132,8 +144,8 @@ def _place_one(packed: Packed, q: np.ndarray, placed: set[int], constraint: str)
             target = target + np.array([system.distance_length[k], 0.0])
         q[body, :2] = target - turned(q[body, 2], system.marker_arm[new])
         placed.add(body)
-        return True
-    return False
+        for other in at_body[body]:
+            heapq.heappush(queue, other)
 
 
 def _marker_place(packed: Packed, q: np.ndarray, marker: int) -> np.ndarray:
@@ -141,7 +153,7 @@ def _marker_place(packed: Packed, q: np.ndarray, marker: int) -> np.ndarray:
     return q[b, :2] + turned(q[b, 2], packed.system.marker_arm[marker])
 
 
-def _unwind_angles(packed: Packed, q: np.ndarray) -> None:
+def unwind_angles(packed: Packed, q: np.ndarray) -> None:
     """Angles of welds and sliders hold up to whole turns: take the turn nearest to the rough pose."""
     system = packed.system
     for k, (i, j, _row, motion) in enumerate(system.angle):

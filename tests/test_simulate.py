@@ -11,7 +11,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
-from mbsd import InitialConditionWarning, Mechanism, MobilityError, ModelError, constant_rate, harmonic
+from mbsd import AssemblyError, InitialConditionWarning, Mechanism, MobilityError, ModelError, constant_rate, harmonic
+from mbsd.dynamics import prepare
 
 A02 = json.loads((Path(__file__).parent / "reference" / "iftomm_a02_n_four_bar_n2.json").read_text())["expected"][0]
 G = 9.81
@@ -201,4 +202,49 @@ def test_refusals_name_the_remedy() -> None:
     m.drive_angle("motor", m.bodies["bob"], constant_rate(1.0))
     m.drive_angle("motor again", m.bodies["bob"], constant_rate(1.0))
     with pytest.raises(MobilityError, match="2 drivers for 1 degree"):
+        m.simulate(1.0)
+
+
+def hanging_chain(links: int) -> Mechanism:
+    m = Mechanism("chain", gravity=(0.0, -G))
+    before = m.ground.at(0, 0)
+    for k in range(links):
+        link = m.bar(f"link {k}", 0.1, mass=0.2)
+        m.revolute(f"P{k}", before, link.start)
+        m.start_near(**{f"link {k}": -90.0 + 40.0 * math.sin(k)})
+        before = link.end
+    m.start_moving(**{"link 0": 1.5})
+    return m
+
+
+@pytest.mark.parametrize("build", [lambda: n_four_bar(4), pendulum, lambda: hanging_chain(12)])
+def test_the_route_of_large_mechanisms_starts_like_that_of_small_ones(build, monkeypatch: pytest.MonkeyPatch) -> None:
+    m = build()
+    small = prepare.prepare_dynamics(m, 0.0, 1.0)
+    monkeypatch.setattr(prepare, "MANY_COORDINATES", 0)
+    large = prepare.prepare_dynamics(m, 0.0, 1.0)
+    np.testing.assert_allclose(large.initial.q, small.initial.q, atol=1e-11)
+    np.testing.assert_allclose(large.initial.v, small.initial.v, atol=1e-9)
+    assert large.mobility.dof == small.mobility.dof
+
+
+def test_the_route_of_large_mechanisms_finds_redundant_rows(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(prepare, "MANY_COORDINATES", 0)
+    m = four_bar(0.5)
+    m.revolute("C again", m.bodies["coupler"].end, m.bodies["rocker"].end)
+    assert prepare.prepare_dynamics(m, 0.0, 1.0).mobility.redundant_rows == 2
+
+
+def test_a_thousand_bodies_in_loops_keep_their_energy() -> None:
+    sol = n_four_bar(500).simulate(1.0, steps=4, tolerance=1e-6)
+    assert sol.stats.position_residual < 1e-9
+    assert np.ptp(sol.energy.total) < 1e-6 * sol.energy.kinetic.max()
+    assert sol.mobility.dof == 1
+
+
+def test_links_of_a_large_mechanism_that_do_not_close_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(prepare, "MANY_COORDINATES", 0)
+    m = four_bar(0.5)
+    m.distance("tie", m.ground.at(5.0, 0.0), m.bodies["coupler"].end, 0.5)
+    with pytest.raises(AssemblyError, match="stays open"):
         m.simulate(1.0)

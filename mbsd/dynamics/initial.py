@@ -53,11 +53,11 @@ def consistent(m: Mechanism, packed: Packed, time: float, metric: np.ndarray) ->
 
 def _pose(m: Mechanism, packed: Packed, time: float, drive: np.ndarray) -> tuple[np.ndarray, list[str]]:
     q = assemble(m, packed, time)
-    given = _given_coordinates(m, packed)
+    given = given_coordinates(m, packed)
     if not given:
         return q, []
     size = np.concatenate([np.ones(3), packed.column_scale()])
-    targets = np.array([_nearest(q, c, value) for c, value in given])
+    targets = np.array([nearest_turn(q, c, value) for c, value in given])
     wanted = np.array([c for c, _ in given])
     if (np.abs(q[wanted] - targets) / size[wanted]).max() > 1e-12:
         residual_and_jacobian(packed.system, q, drive, packed.ws)
@@ -67,8 +67,14 @@ def _pose(m: Mechanism, packed: Packed, time: float, drive: np.ndarray) -> tuple
         kept = independent_rows(np.vstack([rows, units]))
         held = [k - len(rows) for k in kept if k >= len(rows)]
         q = _close_holding(packed, q, drive, wanted[held], targets[held])
+    return q, tell_coordinates(packed, q, list(zip(wanted, targets, strict=True)))
+
+
+def tell_coordinates(packed: Packed, q: np.ndarray, given: list[tuple[int, float]]) -> list[str]:
+    """A sentence for each given (coordinate, value) that the pose q (3 nb,) does not hold."""
+    size = np.concatenate([np.ones(3), packed.column_scale()])
     told = []
-    for c, target in zip(wanted, targets, strict=True):
+    for c, target in given:
         gap = q[c] - target
         if abs(gap) / size[c] > TOLD:
             body, what = packed.body_names[c // 3], COORDINATES[c % 3]
@@ -78,13 +84,15 @@ def _pose(m: Mechanism, packed: Packed, time: float, drive: np.ndarray) -> tuple
                 )
             else:
                 told.append(f"the {what} of the centre of mass of '{body}' is {q[c]:.6g} m, not {target:.6g}")
-    return q, told
+    return told
 
 
-def _given_coordinates(m: Mechanism, packed: Packed) -> list[tuple[int, float]]:
+def given_coordinates(m: Mechanism, packed: Packed) -> list[tuple[int, float]]:
+    """Coordinates (index in (3 nb,), value) that start_near gives, in its order."""
     given = []
+    number = {name: b for b, name in enumerate(packed.body_names)}
     for name, start in m.starts.items():
-        b = packed.body_names.index(name)
+        b = number[name]
         given.append((3 * b + 2, start.angle))
         if start.place is not None:
             c, s = math.cos(start.angle), math.sin(start.angle)
@@ -93,8 +101,8 @@ def _given_coordinates(m: Mechanism, packed: Packed) -> list[tuple[int, float]]:
     return given
 
 
-def _nearest(q: np.ndarray, c: int, value: float) -> float:
-    """Angles count up to whole turns."""
+def nearest_turn(q: np.ndarray, c: int, value: float) -> float:
+    """``value`` of coordinate c, for an angle up to whole turns."""
     return value + 2 * math.pi * round((q[c] - value) / (2 * math.pi)) if c % 3 == 2 else value
 
 
@@ -133,7 +141,8 @@ def _velocities(
     v = np.zeros(len(q))
     if not m.velocities and not nu.any():
         return v, []
-    rows, values, names = _given_velocities(m, packed, q)
+    given, values, names = given_velocities(m, packed, q)
+    rows = _as_matrix(given, packed.coordinates)
     column_scale = packed.column_scale()
     kept = independent_rows(np.vstack([jac * column_scale, rows * column_scale]))
     everything = np.vstack([jac, rows])[kept]
@@ -149,28 +158,34 @@ def _velocities(
     return v, told
 
 
-def _given_velocities(
+def given_velocities(
     m: Mechanism, packed: Packed, q: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, list[tuple[str, str]]]:
-    """Rows P (k, n), values (k,) and what they are, in the order given; a body's frame moves, not its centre."""
-    rows, values, names = [], [], []
+) -> tuple[list[dict[int, float]], np.ndarray, list[tuple[str, str]]]:
+    """What start_moving gives: rows as {coordinate: factor}, values (k,), names and units, in the order given.
+
+    The velocity is that of a body's frame, not of its centre of mass.
+    """
+    rows: list[dict[int, float]] = []
+    values, names = [], []
+    number = {name: b for b, name in enumerate(packed.body_names)}
     for name, velocity in m.velocities.items():
-        b = packed.body_names.index(name)
+        b = number[name]
         c, s = math.cos(q[3 * b + 2]), math.sin(q[3 * b + 2])
         x, y = packed.com[b]
-        arm = c * x - s * y, s * x + c * y
-        turn = np.zeros(packed.coordinates)
-        turn[3 * b - 1] = 1.0
-        rows.append(turn)
+        rows.append({3 * b + 2: 1.0})
         values.append(velocity.omega)
         names.append((f"the angular velocity of '{name}'", "rad/s"))
         if velocity.place is None:
             continue
-        for axis, perpendicular in ((0, arm[1]), (1, -arm[0])):
-            row = np.zeros(packed.coordinates)
-            row[3 * b - 3 + axis] = 1.0
-            row[3 * b - 1] = perpendicular
-            rows.append(row)
-            values.append(velocity.place[axis])
-            names.append((f"v{'xy'[axis]} of '{name}'", "m/s"))
-    return np.array(rows).reshape(-1, packed.coordinates), np.array(values, float), names
+        rows += [{3 * b: 1.0, 3 * b + 2: s * x + c * y}, {3 * b + 1: 1.0, 3 * b + 2: -(c * x - s * y)}]
+        values += velocity.place
+        names += [(f"vx of '{name}'", "m/s"), (f"vy of '{name}'", "m/s")]
+    return rows, np.array(values, float), names
+
+
+def _as_matrix(rows: list[dict[int, float]], coordinates: int) -> np.ndarray:
+    out = np.zeros((len(rows), coordinates))
+    for k, row in enumerate(rows):
+        for c, factor in row.items():
+            out[k, c - 3] = factor
+    return out

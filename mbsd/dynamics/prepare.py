@@ -10,6 +10,7 @@ import numpy as np
 from mbsd.dynamics.acceleration import derivative
 from mbsd.dynamics.arrays import Dynamics, Scratch, scratch_for
 from mbsd.dynamics.initial import Initial, consistent
+from mbsd.dynamics.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
 from mbsd.dynamics.schur import plan_schur
 from mbsd.errors import MobilityError, ModelError, SimulationError
 from mbsd.integrators import state as run_state
@@ -108,9 +109,11 @@ def prepare_dynamics(m: Mechanism, start: float, end: float) -> PreparedDynamics
     packed.motions = [law.over(start, end) for law in packed.motions]
     refuse_bad_laws(packed, start, end)
     inertia, lifted, metric = _inertias(packed)
-    initial = consistent(m, packed, start, _inverse(metric))
-    kept, mobility = _rows(packed, initial.q)
-    schur, _ = plan_schur(packed.system.row_body, _blocks(packed, kept))
+    large = packed.coordinates > MANY_COORDINATES
+    initial = (consistent_large if large else consistent)(m, packed, start, _inverse(metric))
+    kept, mobility = independent_large(packed, start, initial.q) if large else _rows(packed, initial.q)
+    _refuse_superfluous_drivers(packed, mobility)
+    schur, _ = plan_schur(packed.system.row_body, blocks_of(packed, set(kept)))
     dynamics = Dynamics(
         system=packed.system,
         laws=pack_laws([law.compiled(start, end) for law in packed.motions]),
@@ -144,26 +147,18 @@ def _inverse(inertia: np.ndarray) -> np.ndarray:
 
 
 def _rows(packed: Packed, q: np.ndarray) -> tuple[list[int], Mobility]:
-    """Independent rows, those of joints before those of drivers. Raises MobilityError for superfluous drivers."""
+    """Independent rows, those of joints before those of drivers."""
     mobility = joint_mobility(packed, q)
-    kept = independent_rows(scaled_jacobian(packed, q))
+    return independent_rows(scaled_jacobian(packed, q)), mobility
+
+
+def _refuse_superfluous_drivers(packed: Packed, mobility: Mobility) -> None:
     drivers = len(packed.ws.phi) - packed.driver_rows
     if drivers > mobility.dof:
         raise MobilityError(
             f"{packed.name}: {drivers} drivers for {mobility.dof} degree{'s' * (mobility.dof != 1)} of freedom; "
             "remove a driver or free a joint"
         )
-    return kept, mobility
-
-
-def _blocks(packed: Packed, kept: list[int]) -> np.ndarray:
-    """(B, 2) kept rows in pairs of one joint; -1 where there is no second."""
-    chosen = set(kept)
-    blocks = []
-    for first, last in zip(packed.first_row[:-1], packed.first_row[1:], strict=True):
-        rows = [row for row in range(first, last) if row in chosen]
-        blocks += [(rows[k], rows[k + 1] if k + 1 < len(rows) else -1) for k in range(0, len(rows), 2)]
-    return np.array(blocks, np.int64).reshape(-1, 2)
 
 
 def _refuse_unheld(ready: PreparedDynamics) -> None:

@@ -54,7 +54,7 @@ class SchurFactors(NamedTuple):
     value: Any
     """(s, 4) S, then with D^-1 in the first B slots."""
     low: Any
-    """(s, 4) L."""
+    """(s, 4) L; the first B hold the diagonal of S before (0, 3) and what elimination leaves of it (1, 2)."""
     side: Any
     """(B, 2, 2) right-hand sides, then solutions: block, row, side."""
 
@@ -196,12 +196,15 @@ def factor_schur(schur, inverse, jac, fac, lift):
     for k in range(count):
         value[k, 0] += lift * value[k, 0]
         value[k, 3] += lift * value[k, 3]
-        low[k, 0] = value[k, 0] * value[k, 3]
+        low[k, 0] = value[k, 0]
+        low[k, 3] = value[k, 3]
     margin = 1.0
     for k in range(count):
         cross = 0.5 * (value[k, 1] + value[k, 2])
         det = value[k, 0] * value[k, 3] - cross * cross
-        left = det / low[k, 0]
+        low[k, 1] = value[k, 0] / low[k, 0]
+        low[k, 2] = det / value[k, 0] / low[k, 3]
+        left = low[k, 1] * low[k, 2]
         if not left >= margin:
             margin = left
         inverse_det = 1.0 / det

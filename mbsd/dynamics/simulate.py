@@ -12,10 +12,12 @@ import numpy as np
 
 import mbsd.integrators
 from mbsd.assembly import tabulate
+from mbsd.dynamics.large import MANY_COORDINATES
 from mbsd.dynamics.prepare import PreparedDynamics, prepare_dynamics
 from mbsd.errors import InitialConditionWarning, ModelError
 from mbsd.integrators.kind import INTEGRATORS, Integrator
 from mbsd.integrators.state import ACCEPTED, Output, State
+from mbsd.inverse_dynamics import JACOBIAN_NUMBERS
 from mbsd.model import Mechanism
 from mbsd.reactions import generalised, times_compact, wrenches
 from mbsd.solution import Solution, Stats
@@ -82,19 +84,26 @@ def solution(m: Mechanism, ready: PreparedDynamics, state: State, out: Output) -
     count, rows = len(out.t), len(packed.ws.phi)
     drives = packed.drives(out.t)
     q, v = np.ascontiguousarray(out.y[:, 0]), np.ascontiguousarray(out.y[:, 1])
-    phi, gamma, compact = np.zeros((count, rows)), np.zeros((count, rows)), np.zeros((count, rows, 6))
-    tabulate(packed.system, drives, q, v, packed.ws, phi, compact, gamma)
-    lam = _least_norm(ready, compact, out.lam)
-    nu = np.zeros((count, rows))
-    nu[:, packed.driver_rows :] = drives[:, 1:, 1]
-    loads = ready.dynamics.weight - ready.dynamics.inertia * out.a - generalised(packed, compact, lam)
-    loads[:, :3] = 0.0
-    residuals = [
-        np.abs(phi).max(initial=0.0),
-        np.abs(times_compact(packed, compact, v) - nu).max(initial=0.0),
-        np.abs(times_compact(packed, compact, out.a) - gamma).max(initial=0.0),
-        np.abs((loads * v).sum(axis=1)).max(initial=0.0),
-    ]
+    lam, wrench, residuals = np.zeros((count, rows)), np.zeros((count, len(packed.joints), 3)), np.zeros(4)
+    chunk = max(1, JACOBIAN_NUMBERS // max(1, 6 * rows))
+    for start in range(0, count, chunk):
+        at = slice(start, min(start + chunk, count))
+        phi, gamma = np.zeros((2, at.stop - start, rows))
+        compact = np.zeros((at.stop - start, rows, 6))
+        tabulate(packed.system, drives[at], q[at], v[at], packed.ws, phi, compact, gamma)
+        lam[at] = _least_norm(ready, compact, out.lam[at])
+        wrench[at] = wrenches(packed, compact, q[at], lam[at])
+        nu = np.zeros_like(phi)
+        nu[:, packed.driver_rows :] = drives[at, 1:, 1]
+        loads = ready.dynamics.weight - ready.dynamics.inertia * out.a[at] - generalised(packed, compact, lam[at])
+        loads[:, :3] = 0.0
+        errors = (
+            phi,
+            times_compact(packed, compact, v[at]) - nu,
+            times_compact(packed, compact, out.a[at]) - gamma,
+            (loads * v[at]).sum(axis=1),
+        )
+        residuals = np.maximum(residuals, [np.abs(error).max(initial=0.0) for error in errors])
     shape = (count, -1, 3)
     return Solution(
         mechanism=m,
@@ -103,7 +112,7 @@ def solution(m: Mechanism, ready: PreparedDynamics, state: State, out: Output) -
         q=q.reshape(shape),
         v=v.reshape(shape),
         a=out.a.reshape(shape),
-        wrench=wrenches(packed, compact, q, lam),
+        wrench=wrench,
         lam=lam,
         drives=drives,
         singularity_margin=np.sqrt(np.clip(out.margin, 0.0, None)),
@@ -115,8 +124,11 @@ def solution(m: Mechanism, ready: PreparedDynamics, state: State, out: Output) -
 
 
 def _least_norm(ready: PreparedDynamics, compact: np.ndarray, lam: np.ndarray) -> np.ndarray:
-    """Where joints are redundant the loads share in many ways; the multipliers of least norm are taken."""
-    if not ready.mobility.redundant_rows:
+    """Where joints are redundant the loads share in many ways; the multipliers of least norm are taken.
+
+    In large mechanisms one set of joints carries all instead: the others' multipliers are zero.
+    """
+    if not ready.mobility.redundant_rows or ready.packed.coordinates > MANY_COORDINATES:
         return lam
     packed = ready.packed
     return np.array(

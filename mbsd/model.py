@@ -23,7 +23,10 @@ from mbsd.joint import Joint
 from mbsd.mechanism_base import STANDARD_GRAVITY, Start, StartVelocity
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from mbsd.check import Finding
+    from mbsd.drawing.picture import Picture, Svg
     from mbsd.mobility import Mobility
     from mbsd.solution import Solution
 
@@ -126,6 +129,25 @@ class Mechanism(AddingJoints):
 
         tell(self, stacklevel=2)
         return simulate(self, duration, steps, times, method, tolerance, step, progress)
+
+    # -- pictures -----------------------------------------------------------------------------------------------
+
+    def draw(self, ax: Axes | None = None, frames: bool = True, names: bool = True) -> Picture:
+        """The skeleton at the start, with joints by their standard symbols, into ``ax`` or a figure of its own.
+
+        ``frames`` shows the bodies' axes (x red, y green). Links that do not close are shown where they were put.
+        A notebook shows the result, ``.save(path)`` writes it. Needs the extra ``draw``.
+        """
+        from mbsd.drawing.pose import start_pose
+        from mbsd.drawing.skeleton import draw
+
+        return draw(self, start_pose(self), ax, frames, names)
+
+    def topology(self) -> Svg:
+        """Bodies and joints as a diagram, redundant joints in red; a notebook shows it, ``.save(path)`` writes SVG."""
+        from mbsd.drawing.topology import topology
+
+        return topology(self)
 
     # -- files --------------------------------------------------------------------------------------------------
 

@@ -22,7 +22,9 @@ from mbsd.errors import ModelError
 
 if TYPE_CHECKING:
     import pandas
+    from matplotlib.axes import Axes
 
+    from mbsd.drawing.picture import Picture
     from mbsd.mobility import Mobility
     from mbsd.model import Mechanism
     from mbsd.packing import Packed
@@ -221,6 +223,23 @@ class Solution:
             out |= {f"{name}.value [{value}]": view.value, f"{name}.effort [{effort}]": view.effort}
             out[f"{name}.power [W]"] = view.power
         return out | {"kinetic [J]": self.energy.kinetic, "potential [J]": self.energy.potential}
+
+    def draw(
+        self,
+        t: float | None = None,
+        step: int | None = None,
+        ax: Axes | None = None,
+        frames: bool = False,
+        names: bool = True,
+    ) -> Picture:
+        """The skeleton at time ``t`` (s, the nearest output) or at an output ``step``, with the paths of traced points.
+
+        See :meth:`mbsd.model.Mechanism.draw`.
+        """
+        from mbsd.drawing.pose import pose_of
+        from mbsd.drawing.skeleton import draw
+
+        return draw(self.mechanism, pose_of(self, t, step), ax, frames, names)
 
     def __repr__(self) -> str:
         return (

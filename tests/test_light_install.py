@@ -52,7 +52,8 @@ sol._repr_html_()
 with tempfile.TemporaryDirectory() as folder:
     m.save(os.path.join(folder, "model.json"))
     assert Mechanism.load(os.path.join(folder, "model.json")).mobility().dof == 1
-for extra, ask in (("pandas", sol.to_frame),):
+assert m.topology()._repr_svg_().startswith("<svg")
+for extra, ask in (("pandas", sol.to_frame), ("draw", m.draw), ("draw", sol.draw)):
     try:
         ask()
     except ModelError as error:

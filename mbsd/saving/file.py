@@ -19,7 +19,7 @@ def save(m: Mechanism, path: str | os.PathLike[str]) -> None:
     written = document(m)
     _refuse_non_finite(written, m.name)
     content = json.dumps(written, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-    write_whole(Path(path), content.encode())
+    write_whole(path, content.encode())
 
 
 def load(path: str | os.PathLike[str]) -> Mechanism:
@@ -36,9 +36,9 @@ def load(path: str | os.PathLike[str]) -> Mechanism:
     return build(written, f"{path}: model")
 
 
-def write_whole(path: Path, content: bytes) -> None:
+def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
     """Write a file by a temporary file beside the target, then a rename: no part of a file ever has the final name."""
-    temporary: Path | None = None
+    path, temporary = Path(path), None
     try:
         handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
         temporary = Path(name)

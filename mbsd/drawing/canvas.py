@@ -1,0 +1,97 @@
+"""Axes with a unit: all symbols are drawn in multiples of it, and what is drawn is kept as an obstacle for names."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mbsd.drawing.look import INK, PAPER
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Point = np.ndarray
+
+
+@dataclass(frozen=True)
+class Label:
+    """A name to be placed near ``anchor``, at least ``clearance`` units away from it."""
+
+    text: str
+    anchor: Point
+    clearance: float
+    colour: str
+    size: float
+
+
+@dataclass(eq=False)
+class Canvas:
+    """Where symbols are drawn. ``unit`` (m) is about the radius of a pin's outer circle."""
+
+    ax: Axes
+    unit: float
+    obstacles: list[Point] = field(default_factory=list)
+    """(k, 2) points of what is drawn (m)."""
+    supports: list[Point] = field(default_factory=list)
+    """Pins that have ground's sign already."""
+    labels: list[Label] = field(default_factory=list)
+
+    def line(
+        self, points: Sequence[Point] | Point, colour: str = INK, width: float = 1.4, order: float = 4, **more: Any
+    ):
+        """A polyline (m); width in points."""
+        path = np.asarray(points, float)
+        self.keep(path)
+        self.ax.plot(*path.T, color=colour, linewidth=width, zorder=order, solid_capstyle="round", **more)
+
+    def shape(
+        self,
+        points: Point,
+        edge: str = INK,
+        fill: str = PAPER,
+        width: float = 1.4,
+        order: float = 4,
+        alpha: float = 1.0,
+    ) -> None:
+        """A closed outline (m), filled; ``alpha`` is that of the filling."""
+        from matplotlib.colors import to_rgba
+
+        self.keep(np.vstack([points, points[:1]]))
+        self.ax.fill(
+            *points.T, facecolor=to_rgba(fill, alpha), edgecolor=edge, linewidth=width, zorder=order, joinstyle="round"
+        )
+
+    def circle(self, centre: Point, radius: float, **look: Any) -> None:
+        """A circle of ``radius`` units."""
+        turn = np.linspace(0.0, 2 * math.pi, 49)[:-1]
+        self.shape(centre + radius * self.unit * np.stack([np.cos(turn), np.sin(turn)], axis=1), **look)
+
+    def hatched(self, a: Point, b: Point, side: Point, order: float = 1.5) -> None:
+        """The sign of ground: a line from a to b (m) with strokes on ``side`` (a direction)."""
+        self.line([a, b], order=order)
+        along = b - a
+        length = float(np.hypot(*along))
+        count = max(3, round(length / (0.62 * self.unit)))
+        lean = (side - along / length) * 0.55 * self.unit
+        for k in range(count):
+            root = a + along * (k + 0.8) / count
+            self.line([root, root + lean], width=0.9, order=order)
+
+    def label(self, text: str, anchor: Point, clearance: float, colour: str = INK, size: float = 10.0) -> None:
+        """Ask for a name; it is placed when all is drawn. Names that share a place are one: ``A, B``."""
+        for k, other in enumerate(self.labels):
+            if other.colour == colour and float(np.hypot(*(other.anchor - anchor))) < 0.2 * self.unit:
+                self.labels[k] = replace(other, text=f"{other.text}, {text}")
+                return
+        self.labels.append(Label(text, anchor, clearance, colour, size))
+
+    def keep(self, path: Point) -> None:
+        """Remember a polyline as an obstacle, sampled every half unit."""
+        for a, b in itertools.pairwise(path):
+            steps = max(1, math.ceil(float(np.hypot(*(b - a))) / (0.5 * self.unit)))
+            self.obstacles.append(a + (b - a) * np.linspace(0.0, 1.0, min(steps, 400) + 1)[:, None])

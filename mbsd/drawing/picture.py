@@ -1,0 +1,78 @@
+"""A drawing that a notebook shows by itself and a script saves."""
+
+from __future__ import annotations
+
+import io
+import os
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from mbsd.errors import ModelError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+DPI = 150
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """A drawing in matplotlib axes. ``save(path)`` writes png, svg or pdf by the path's suffix."""
+
+    ax: Axes
+    own: bool
+    """Whether the figure was made for this drawing; if not, its owner shows it."""
+
+    @property
+    def figure(self) -> Figure:
+        """The whole figure."""
+        figure = self.ax.get_figure(root=True)
+        if figure is None:
+            raise ModelError("the axes of this drawing were removed from their figure; draw again")
+        return figure
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the figure, the same bytes each time; the suffix chooses png, svg or pdf."""
+        suffix = os.path.splitext(path)[1].removeprefix(".").lower()
+        if suffix not in _UNDATED:
+            raise ModelError(f"{os.fspath(path)}: a drawing is saved as {', '.join(_UNDATED)}; end the path with one")
+        content = self._content(suffix)
+        from mbsd.saving.file import write_whole
+
+        write_whole(path, content)
+
+    def _content(self, suffix: str) -> bytes:
+        import matplotlib as mpl
+
+        buffer = io.BytesIO()
+        with mpl.rc_context({"svg.hashsalt": "mbsd", "svg.fonttype": "path"}):
+            self.figure.savefig(buffer, format=suffix, dpi=DPI, metadata=_UNDATED[suffix])
+        return buffer.getvalue()
+
+    def _repr_png_(self) -> bytes | None:
+        return self._content("png") if self.own else None
+
+    def _repr_svg_(self) -> str | None:
+        return self._content("svg").decode() if self.own else None
+
+
+_UNDATED: dict[str, dict[str, Any]] = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
+
+
+@dataclass(frozen=True)
+class Svg:
+    """A diagram as SVG text."""
+
+    text: str
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the diagram as an .svg file."""
+        from mbsd.saving.file import write_whole
+
+        if not os.fspath(path).lower().endswith(".svg"):
+            raise ModelError(f"{os.fspath(path)}: a topology diagram is saved as svg; end the path with .svg")
+        write_whole(path, self.text.encode())
+
+    def _repr_svg_(self) -> str:
+        return self.text

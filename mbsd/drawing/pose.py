@@ -1,0 +1,97 @@
+"""Where every body's frame is at one moment: of a model at its start, or of a solution at a step."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.body import Marker
+from mbsd.errors import AssemblyError, ModelError
+from mbsd.model import Mechanism
+
+if TYPE_CHECKING:
+    from mbsd.solution import Solution
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Frames of all bodies (m, rad) in the author's sense, ground included."""
+
+    frames: dict[str, tuple[float, float, float]]
+    title: str
+    closed: bool = True
+    paths: dict[str, np.ndarray] = field(default_factory=dict)
+    """(T, 2) of traced points."""
+    travel: dict[str, np.ndarray] = field(default_factory=dict)
+    """(T,) place of a sliding joint's second marker along the axis of the first (m)."""
+
+    def place(self, marker: Marker) -> np.ndarray:
+        """(2,) of a marker in the world (m)."""
+        return self.of(marker.body.name, marker.x, marker.y)
+
+    def of(self, body: str, x: float, y: float) -> np.ndarray:
+        """(2,) of a point of a body (m)."""
+        x0, y0, theta = self.frames[body]
+        c, s = math.cos(theta), math.sin(theta)
+        return np.array([x0 + c * x - s * y, y0 + s * x + c * y])
+
+    def axis(self, marker: Marker) -> np.ndarray:
+        """(2,) unit x axis of a marker in the world."""
+        angle = self.frames[marker.body.name][2] + marker.angle
+        return np.array([math.cos(angle), math.sin(angle)])
+
+
+def start_pose(m: Mechanism) -> Pose:
+    """The closed start pose; the rough one, said not to be closed, if the links do not reach."""
+    from mbsd.packing import pack
+    from mbsd.start import assemble, rough_pose
+
+    packed = pack(m)
+    closed = True
+    try:
+        q = assemble(m, packed, 0.0)
+    except AssemblyError:
+        closed = False
+        q = rough_pose(m, packed, packed.drives(np.zeros(1))[0], 0)
+    q = q.reshape(-1, 3)
+    frames = {}
+    for b, name in enumerate(packed.body_names):
+        c, s = math.cos(q[b, 2]), math.sin(q[b, 2])
+        x, y = packed.com[b]
+        frames[name] = (float(q[b, 0] - c * x + s * y), float(q[b, 1] - s * x - c * y), float(q[b, 2]))
+    return Pose(frames, "" if closed else "the joints in red do not close", closed)
+
+
+def pose_of(sol: Solution, t: float | None, step: int | None) -> Pose:
+    """The pose at time ``t`` (s; the nearest output) or at output ``step``; the first by default."""
+    m = sol.mechanism
+    if t is not None and step is not None:
+        raise ModelError(f"{m.name}: give a time t or a step to draw, not both")
+    if t is not None:
+        slack = 1e-9 * float(np.ptp(sol.t))
+        if not sol.t[0] - slack <= t <= sol.t[-1] + slack:
+            raise ModelError(f"{m.name}: t = {t} s is outside of the solution, {sol.t[0]:g} .. {sol.t[-1]:g} s")
+        step = int(np.argmin(np.abs(sol.t - t)))
+    step = 0 if step is None else step
+    if isinstance(step, bool) or not isinstance(step, int | np.integer) or not -len(sol.t) <= step < len(sol.t):
+        raise ModelError(f"{m.name}: step is {step!r}; the solution has steps 0 .. {len(sol.t) - 1}")
+    views = {name: sol.body(name) for name in m.bodies}
+    frames = {n: (float(v.x[step]), float(v.y[step]), float(v.theta[step])) for n, v in views.items()}
+    points = {name: sol.point(name) for name in m.traces}
+    travel = {}
+    for name, joint in (m.joints | m.drivers).items():
+        first, second = views[joint.i.body.name], views[joint.j.body.name]
+        gap = _path(second, joint.j) - _path(first, joint.i)
+        angle = first.theta + joint.i.angle
+        travel[name] = gap[:, 0] * np.cos(angle) + gap[:, 1] * np.sin(angle)
+    paths = {name: np.stack([view.x, view.y], axis=1) for name, view in points.items()}
+    return Pose(frames, f"t = {sol.t[step]:.4g} s", True, paths, travel)
+
+
+def _path(view, marker: Marker) -> np.ndarray:
+    """(T, 2) of a marker, from the motion of its body's frame."""
+    c, s = np.cos(view.theta), np.sin(view.theta)
+    return np.stack([view.x + c * marker.x - s * marker.y, view.y + s * marker.x + c * marker.y], axis=1)

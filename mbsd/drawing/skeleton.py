@@ -1,0 +1,178 @@
+"""The skeleton: links by their joints, joints by the standard symbols, frames, centres of mass, traced points."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.body import Marker
+from mbsd.drawing.canvas import Canvas
+from mbsd.drawing.look import AXIS_X, AXIS_Y, FAINT, INK, QUIET, colour
+from mbsd.drawing.names import place_names
+from mbsd.drawing.outline import rounded
+from mbsd.drawing.picture import Picture
+from mbsd.drawing.pose import Pose
+from mbsd.drawing.symbols import Place, draw_joint, free_side
+from mbsd.errors import ModelError
+from mbsd.model import Mechanism
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+WIDTH, TALLEST, FLATTEST = 7.0, 7.0, 2.6
+"""Of a figure of our own (inches)."""
+UNITS_ACROSS = 34.0
+"""Units in the larger side of a drawing."""
+SMALLEST = 1e-12
+"""A unit (m) below this is the rounding of one single place."""
+SLIDING = ("prismatic", "pin_in_slot")
+
+
+def draw(m: Mechanism, pose: Pose, ax: Axes | None, frames: bool, names: bool) -> Picture:
+    """Draw ``m`` in ``pose`` into ``ax``, or into a figure of its own."""
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError as error:
+        raise ModelError("drawing needs matplotlib: install mbsd[draw]") from error
+    points = {name: _points(m, pose, name) for name in m.bodies}
+    everything = np.concatenate([*points.values(), *pose.paths.values(), np.zeros((0, 2))])
+    if not len(everything):
+        everything = np.zeros((1, 2))
+    low, high = everything.min(axis=0), everything.max(axis=0)
+    unit = _unit(high - low, points)
+    low, high = low - 3.4 * unit, high + 3.4 * unit
+    own = ax is None
+    if ax is None:
+        ax = _axes(high - low)
+    canvas = Canvas(ax, unit)
+    colours = {name: colour(k) for k, name in enumerate(name for name in m.bodies if name != "ground")}
+    for path in pose.paths.values():
+        canvas.line(path, QUIET, 1.2, order=1, alpha=0.8)
+    for name in colours:
+        _link(canvas, m, pose, name, points[name], colours[name], frames)
+    if frames:
+        _frame(canvas, pose, "ground", 2.6)
+    for joint in (*m.joints.values(), *m.drivers.values()):
+        draw_joint(canvas, Place(joint, pose, colours, _side(m, pose, points, joint.j, unit)))
+    for name, marker in m.traces.items():
+        canvas.circle(pose.place(marker), 0.3, fill=colours.get(marker.body.name, INK), order=9, width=0.8)
+        canvas.label(name, pose.place(marker), 0.5, colours.get(marker.body.name, INK))
+    for name in colours:
+        canvas.label(name, _middle(pose, points[name]), 1.1, colours[name], 9.5)
+    _finish(ax, low, high, m.name, pose)
+    picture = Picture(ax, own)
+    if own:  # the layout is settled once, so that names stand right and every format is the same picture
+        picture.figure.draw_without_rendering()
+        picture.figure.set_layout_engine("none")
+    if names:
+        place_names(canvas)
+    return picture
+
+
+def _points(m: Mechanism, pose: Pose, name: str) -> np.ndarray:
+    """(k, 2) of all that a body carries: joints, traced points, the places where others slide on it."""
+    out: list[np.ndarray] = []
+    for joint in (*m.joints.values(), *m.drivers.values()):
+        if joint.kind.driven and joint.kind.units[1] == "rad":
+            continue
+        slides = joint.kind.name in SLIDING
+        if joint.j.body.name == name:
+            out.append(pose.place(joint.j))
+        if joint.i.body.name == name:
+            start, axis = pose.place(joint.i), pose.axis(joint.i)
+            reached = pose.place(joint.j) - start
+            out += [start + float(reached @ axis) * axis] if slides else []
+            out += [] if slides and name == "ground" else [start]
+            if slides and joint.name in pose.travel:
+                out += [start + s * axis for s in (pose.travel[joint.name].min(), pose.travel[joint.name].max())]
+    out += [pose.place(marker) for marker in m.traces.values() if marker.body.name == name]
+    length = m.bodies[name].length
+    if length is not None:
+        out += [pose.of(name, 0.0, 0.0), pose.of(name, length, 0.0)]
+    if not out and name != "ground":
+        out.append(pose.of(name, *m.bodies[name].com))
+    return np.array(out).reshape(-1, 2)
+
+
+def _unit(size: np.ndarray, points: dict[str, np.ndarray]) -> float:
+    """A 34th of the drawing, less where the links are shorter than four of them."""
+    largest = float(size.max())
+    lengths = [float(np.hypot(*np.ptp(p, axis=0))) for name, p in points.items() if len(p) > 1 and name != "ground"]
+    lengths = [length for length in lengths if length > 1e-3 * largest]
+    unit = largest / UNITS_ACROSS
+    if lengths:
+        unit = min(unit, 0.2 * float(np.median(lengths)))
+    return unit if unit > SMALLEST else 1.0 / UNITS_ACROSS
+
+
+def _link(canvas: Canvas, m: Mechanism, pose: Pose, name: str, points: np.ndarray, edge: str, frames: bool) -> None:
+    """A body: a rounded outline around what it carries, its centre of mass and its frame."""
+    body = m.bodies[name]
+    sliding = any(j.kind.name == "prismatic" and j.j.body is body for j in m.joints.values())
+    extent = float(np.hypot(*np.ptp(points, axis=0)))
+    if extent > 0.5 * canvas.unit or not sliding:
+        canvas.shape(rounded(points, 0.95 * canvas.unit), edge=edge, fill=edge, width=1.5, order=2, alpha=0.16)
+    if body.mass > 0:
+        _centre_of_mass(canvas, pose.of(name, *body.com))
+    if frames:
+        _frame(canvas, pose, name, 1.9)
+
+
+def _centre_of_mass(canvas: Canvas, centre: np.ndarray) -> None:
+    """The quartered circle."""
+    canvas.circle(centre, 0.42, order=5, width=0.9)
+    for first in (0.0, math.pi):
+        turn = np.linspace(first, first + math.pi / 2, 9)
+        rim = centre + 0.42 * canvas.unit * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+        canvas.shape(np.vstack([centre, rim]), fill=INK, order=5.1, width=0.0)
+
+
+def _frame(canvas: Canvas, pose: Pose, name: str, length: float) -> None:
+    """A body's axes: x red, y green."""
+    origin = pose.of(name, 0.0, 0.0)
+    for tip, ink in (((1.0, 0.0), AXIS_X), ((0.0, 1.0), AXIS_Y)):
+        end = origin + length * canvas.unit * (pose.of(name, *tip) - origin)
+        canvas.line([origin, end], ink, 1.3, order=6)
+
+
+def _side(m: Mechanism, pose: Pose, points: dict[str, np.ndarray], j: Marker, unit: float) -> np.ndarray:
+    """Where ground's sign has room: away from the links that leave the pin, those of other joints there included."""
+    pin = pose.place(j)
+    here = [joint for joint in m.joints.values() if np.hypot(*(pose.place(joint.j) - pin)) < 0.2 * unit]
+    moving = {name: None for joint in here for name in joint.bodies if name != "ground"}
+    away = [p - pin for name in moving for p in points[name] if np.hypot(*(p - pin)) > 0.2 * unit]
+    return free_side([math.atan2(y, x) for x, y in away])
+
+
+def _middle(pose: Pose, points: np.ndarray) -> np.ndarray:
+    return (points.min(axis=0) + points.max(axis=0)) / 2 if len(points) < 3 else points.mean(axis=0)
+
+
+def _axes(size: np.ndarray) -> Axes:
+    """Axes of a figure of our own, shaped like the drawing; it does not belong to pyplot."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    height = min(max(WIDTH * float(size[1] / size[0]), FLATTEST), TALLEST)
+    width = min(max(height * float(size[0] / size[1]), 0.6 * WIDTH), WIDTH)
+    figure = Figure(figsize=(width + 0.8, height + 0.8), layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure.subplots()
+
+
+def _finish(ax: Axes, low: np.ndarray, high: np.ndarray, name: str, pose: Pose) -> None:
+    """Equal axes in metres, quiet."""
+    ax.set_aspect("equal", adjustable="box")
+    ax.set_xlim(low[0], high[0])
+    ax.set_ylim(low[1], high[1])
+    ax.set_axisbelow(True)
+    ax.grid(color=FAINT, linewidth=0.7)
+    for spine in ax.spines.values():
+        spine.set_visible(False)
+    ax.tick_params(colors=QUIET, labelsize=8, length=0)
+    ax.set_xlabel("x [m]", color=QUIET, fontsize=8.5)
+    ax.set_ylabel("y [m]", color=QUIET, fontsize=8.5)
+    title = name.replace("_", " ") + (f",  {pose.title}" if pose.title else "")
+    ax.set_title(title, loc="left", color=INK, fontsize=11)

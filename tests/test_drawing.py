@@ -1,0 +1,223 @@
+"""Drawings: every kind has its mark in the right place, names do not cover each other, equal models equal bytes."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from mbsd import Mechanism, ModelError, constant_rate
+from mbsd.drawing.outline import hull, rounded
+from mbsd.drawing.pose import pose_of, start_pose
+from mbsd.drawing.symbols import free_side
+from mbsd.joints.kind import JointKind
+from tests import four_bars
+from tests.test_joints import all_kinds
+from tests.test_mobility import four_bar, parallelogram
+
+
+def slider_crank() -> Mechanism:
+    m = Mechanism("slider_crank")
+    crank, rod, slider = m.bar("crank", 0.05, 0.2), m.bar("rod", 0.15, 0.3), m.body("slider", 0.5)
+    m.revolute("O", m.ground.at(0, 0), crank.start)
+    m.revolute("A", crank.end, rod.start)
+    m.revolute("B", rod.end, slider.origin)
+    m.prismatic("guide", m.ground.at(0, 0), slider.origin)
+    m.drive_angle("motor", crank, constant_rate(10.0, math.radians(50)))
+    m.trace("P", rod.at(0.075, 0.02))
+    m.start_near(crank=50, rod=-15)
+    return m
+
+
+def words(ax: Axes) -> dict[str, tuple[float, float, float, float]]:
+    """Names in the drawing and their boxes (pixels)."""
+    return {t.get_text(): t.get_window_extent().extents for t in ax.texts}
+
+
+@pytest.mark.parametrize("build", [four_bar, parallelogram, slider_crank], ids=lambda build: build.__name__)
+def test_every_name_is_there_and_none_covers_another(build) -> None:
+    m = build()
+    found = words(m.draw().ax)
+    shown = {name for text in found for name in text.split(", ")}
+    assert shown == {*m.bodies, *m.joints, *m.drivers, *m.traces} - {"ground"}
+    for a, b in itertools.combinations(found.values(), 2):
+        assert a[2] < b[0] or b[2] < a[0] or a[3] < b[1] or b[3] < a[1]
+
+
+def test_pins_stand_where_the_joints_are() -> None:
+    m = slider_crank()
+    sol = m.sweep(steps=24)
+    ax = sol.draw(step=7).ax
+    centres = [
+        np.asarray(patch.get_path().vertices)[:-1].mean(axis=0) for patch in ax.patches if patch.get_zorder() == 8
+    ]
+    for name in ("O", "A", "B"):
+        view = sol.joint(name)
+        nearest = min(np.hypot(*(c - [view.x[7], view.y[7]])) for c in centres)
+        assert nearest < 1e-9
+    trails = [np.asarray(line.get_path().vertices) for line in ax.lines if line.get_zorder() == 1]
+    (trail,) = (path for path in trails if len(path) == 25)
+    np.testing.assert_allclose(trail[:, 1], sol.point("P").y)
+
+
+def test_the_start_is_that_of_the_solution() -> None:
+    m = slider_crank()
+    start, first = start_pose(m), pose_of(m.sweep(steps=4), None, None)
+    for name, frame in start.frames.items():
+        np.testing.assert_allclose(frame, first.frames[name], atol=1e-12)
+
+
+def test_a_time_or_a_step_not_both_and_within_the_solution() -> None:
+    sol = slider_crank().sweep(duration=0.2, steps=10)
+    assert pose_of(sol, 0.1004, None).title == pose_of(sol, None, 5).title == "t = 0.1 s"
+    assert pose_of(sol, None, -1).title == "t = 0.2 s"
+    for arguments, says in (
+        ((0.1, 5), "not both"),
+        ((0.3, None), "t = 0.3 s is outside of the solution, 0 .. 0.2 s"),
+        ((math.nan, None), "outside"),
+        ((None, 11), "steps 0 .. 10"),
+        ((None, 1.5), "step is 1.5"),
+    ):
+        with pytest.raises(ModelError, match=says):
+            sol.draw(*arguments)
+
+
+@pytest.mark.parametrize("to_ground", [False, True], ids=["two_bodies", "to_ground"])
+@pytest.mark.parametrize("kind", all_kinds(), ids=lambda kind: kind.name)
+def test_every_kind_can_be_drawn(kind: JointKind, to_ground: bool) -> None:
+    m = Mechanism("example")
+    first = m.ground if to_ground else m.body("first", 1.0, (0.4, 0.1), 0.3)
+    kind.example(m, first.at(0.11, 0.2, 0.3), m.body("second", 1.5, (0.3, 0.0), 0.2).at(-0.4, 0.5, -0.6))
+    picture = m.draw()
+    assert "example" in words(picture.ax)
+    assert picture.ax.get_aspect() == 1.0
+    assert "example" in {element.text for element in ET.fromstring(m.topology().text).iter()}
+
+
+def test_links_that_do_not_close_are_shown_open() -> None:
+    m = four_bar(rocker=0.01)
+    picture = m.draw()
+    assert picture.ax.get_title(loc="left") == "four bar,  the joints in red do not close"
+    assert any(line.get_color() == "#c81e1e" for line in picture.ax.lines)
+    assert "do not close" in m.topology().text
+
+
+def test_a_notebook_shows_it_and_files_have_equal_bytes(tmp_path: Path) -> None:
+    pictures = [four_bar().draw() for _ in range(2)]
+    assert (pictures[0]._repr_png_() or b"").startswith(b"\x89PNG")
+    assert "<svg" in (pictures[0]._repr_svg_() or "")
+    for suffix in ("png", "svg", "pdf"):
+        for k, picture in enumerate(pictures):
+            picture.save(tmp_path / f"{k}.{suffix}")
+        assert (tmp_path / f"0.{suffix}").read_bytes() == (tmp_path / f"1.{suffix}").read_bytes()
+    with pytest.raises(ModelError, match="saved as png, svg, pdf"):
+        pictures[0].save(tmp_path / "x.jpg")
+    with pytest.raises(ModelError, match=r"end the path with \.svg"):
+        four_bar().topology().save(tmp_path / "x.png")
+    four_bar().topology().save(tmp_path / "x.svg")
+    assert (tmp_path / "x.svg").read_text() == four_bar().topology().text
+
+
+def test_axes_of_the_user_are_used_and_shown_by_the_user() -> None:
+    left, right = Figure().subplots(1, 2)
+    picture = four_bar().draw(ax=left)
+    assert picture.ax is left
+    assert picture._repr_png_() is None
+    assert picture._repr_svg_() is None
+    assert len(left.patches) > 10
+    assert not right.patches
+
+
+@given(points=st.lists(st.tuples(st.floats(-5, 5), st.floats(-5, 5)), min_size=1, max_size=8))
+def test_an_outline_keeps_its_distance_from_every_point(points: list[tuple[float, float]]) -> None:
+    places = np.round(np.array(points), 3)
+    outline = rounded(places, 0.5)
+    assert np.hypot(*(outline[:, None] - places).transpose(2, 0, 1)).min() >= 0.5 - 1e-9
+    corners = hull(places)
+    reach = np.hypot(*(outline[:, None] - corners).transpose(2, 0, 1)).min(axis=1)
+    assert reach.max() <= 0.5 + 1e-9  # arcs end on the corners; straight parts run between them
+
+
+@pytest.mark.parametrize(
+    ("directions", "side"),
+    [
+        ([], (0, -1)),
+        ([0.0], (0, -1)),
+        ([-1.5], (0, 1)),
+        ([-1.5, 1.5], (-1, 0)),
+        ([-1.2, 1.2, 3.1], (1, 0)),
+    ],
+)
+def test_ground_is_below_unless_a_link_is_there(directions: list[float], side: tuple[int, int]) -> None:
+    np.testing.assert_array_equal(free_side(directions), side)
+
+
+def boxes(text: str) -> list[tuple[float, float, float, float]]:
+    """Boxes of the bodies in a topology diagram."""
+    out = []
+    for element in ET.fromstring(text).iter():
+        if element.tag.endswith("rect") and element.attrib.get("rx") == "7":
+            x, y, width, height = (float(element.attrib[key]) for key in ("x", "y", "width", "height"))
+            out.append((x, y, x + width, y + height))
+    return out
+
+
+def test_the_topology_names_all_and_marks_the_redundant() -> None:
+    m = parallelogram()
+    text = m.topology().text
+    shown = {e.text for e in ET.fromstring(text).iter() if e.tag.endswith("text")}
+    assert {
+        *m.bodies,
+        *m.joints,
+        "1 degree of freedom (0 nominal), 1 redundant row, removable at F; no driver",
+    } <= shown
+    assert [e.text for e in ET.fromstring(text).iter() if e.text and "redundant" in e.text][1:] == [
+        "revolute, redundant"
+    ]
+    assert text.count("stroke-dasharray") == 2
+    assert len(boxes(text)) == len(m.bodies)
+    assert "stroke-dasharray" not in parallelogram(extra=False).topology().text
+
+
+@given(extra=st.lists(st.tuples(st.integers(0, 7), st.integers(0, 7)), max_size=5), count=st.integers(1, 8))
+def test_boxes_of_bodies_do_not_overlap(extra: list[tuple[int, int]], count: int) -> None:
+    m = Mechanism("random")
+    bodies = [m.ground, *(m.bar(f"link {k}", 1.0) for k in range(count))]
+    for k in range(count):
+        m.revolute(f"J{k}", bodies[k].at(1, 0), bodies[k + 1].at(0, 0))
+    for k, (a, b) in enumerate(extra):
+        if a != b and max(a, b) <= count:
+            m.pin_in_slot(f"S{k}", bodies[a].at(0.5, 0), bodies[b].at(0.5, 0.1))
+    for a, b in itertools.combinations(boxes(m.topology().text), 2):
+        assert a[2] < b[0] or b[2] < a[0] or a[3] < b[1] or b[3] < a[1]
+
+
+def test_names_are_escaped_and_a_huge_model_is_refused() -> None:
+    m = Mechanism("a<b>&c")
+    m.revolute('pin "1" <&>', m.ground.at(0, 0), m.bar("<link>", 1.0).start)
+    ET.fromstring(m.topology().text)
+    big = Mechanism("big")
+    for k in range(700):
+        big.bar(f"b{k}", 1.0)
+    with pytest.raises(ModelError, match="701 bodies, joints and drivers are too many"):
+        big.topology()
+
+
+def test_an_empty_model_is_ground_alone() -> None:
+    m = Mechanism("empty")
+    assert "ground" in m.topology().text
+    assert m.draw().ax.get_title(loc="left") == "empty"
+
+
+def test_the_driven_random_four_bar_is_drawn_closed() -> None:
+    picture = four_bars.model((4.0, 1.0, 3.5, 3.0)).draw(frames=False, names=False)
+    assert not picture.ax.texts
+    assert picture.ax.get_title(loc="left") == "random"

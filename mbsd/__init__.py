@@ -5,6 +5,7 @@
 Kernels are compiled and scipy is loaded only when something is solved; this import stays light.
 """
 
+from mbsd.curves import Curve, curve
 from mbsd.errors import (
     AssemblyError,
     BranchError,
@@ -26,6 +27,7 @@ __all__ = [
     "AssemblyError",
     "Body",
     "BranchError",
+    "Curve",
     "InitialConditionWarning",
     "Joint",
     "Marker",
@@ -38,6 +40,7 @@ __all__ = [
     "SimulationError",
     "SingularPoseError",
     "constant_rate",
+    "curve",
     "cycloidal",
     "function",
     "harmonic",

@@ -1,6 +1,6 @@
 """Inverse dynamics along a known motion: multipliers, reactions, efforts, and how exact the motion is.
 
-    J^T lam = Q - M a                  Q: gravity
+    J^T lam = Q - M a                  Q: gravity and forces
     reaction on body b = -J_b^T lam, given at the joint's second marker: fx, fy, torque
     effort of a driver = -lam of its row;  power = effort f'
 
@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.assembly import tabulate
+from mbsd.loads import compiled_laws, loads_along, pack_loads
 from mbsd.prepared import Prepared
 from mbsd.reactions import wrenches
 
@@ -36,7 +37,9 @@ class Efforts:
     """(4,) largest |Phi|, |J v - nu|, |J a - gamma| and |d(T + V)/dt - power of the drivers|."""
 
 
-def inverse_dynamics(ready: Prepared, drives: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> Efforts:
+def inverse_dynamics(
+    ready: Prepared, times: np.ndarray, drives: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray
+) -> Efforts:
     """Solve for the multipliers of the motion q, v, a (T, 3 nb) and check it against its equations."""
     packed, system = ready.packed, ready.packed.system
     count, rows = len(q), len(packed.ws.phi)
@@ -44,6 +47,9 @@ def inverse_dynamics(ready: Prepared, drives: np.ndarray, q: np.ndarray, v: np.n
     weight = np.zeros((len(system.mass), 3))
     weight[:, :2] = system.mass[:, None] * system.gravity
     loads = weight.ravel() - inertia * a
+    if packed.forces:
+        laws = compiled_laws(packed, float(times[0]), float(times[-1]))
+        loads += loads_along(packed, pack_loads(packed), laws, times, q, v)
     nu = np.zeros((count, rows))
     nu[:, packed.driver_rows :] = drives[:, 1:, 1]
     out = Efforts(np.zeros((count, rows)), np.zeros((count, len(packed.joints), 3)), np.zeros(count), np.zeros(4))

@@ -16,9 +16,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.adding_forces import AddingForces
 from mbsd.adding_joints import AddingJoints
 from mbsd.body import Body, Marker
 from mbsd.errors import ModelError
+from mbsd.force import Force
 from mbsd.joint import Joint
 from mbsd.mechanism_base import STANDARD_GRAVITY, Start, StartVelocity
 
@@ -30,10 +32,10 @@ if TYPE_CHECKING:
     from mbsd.mobility import Mobility
     from mbsd.solution import Solution
 
-__all__ = ["STANDARD_GRAVITY", "Body", "Joint", "Marker", "Mechanism", "Start"]
+__all__ = ["STANDARD_GRAVITY", "Body", "Force", "Joint", "Marker", "Mechanism", "Start"]
 
 
-class Mechanism(AddingJoints):
+class Mechanism(AddingJoints, AddingForces):
     """Bodies, joints, drivers and traced points, by name. ``gravity`` in m/s^2; None turns it off."""
 
     def trace(self, name: str, marker: Marker) -> Marker:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.joints.kind import ROWS
-from mbsd.model import Joint, Mechanism
+from mbsd.model import Force, Joint, Mechanism
 from mbsd.motions import Motion
 from mbsd.system import System, Workspace, workspace
 
@@ -34,6 +34,9 @@ class Packed:
     """(joints + 1,) of each joint in J."""
     markers: np.ndarray
     """(joints, 2) marker numbers i, j."""
+    forces: list[Force]
+    force_markers: np.ndarray
+    """(forces, 2) marker numbers i, j."""
     motions: list[Motion]
     """Of the drivers, in order; motion k of the tables is ``motions[k - 1]``."""
     size: float
@@ -112,7 +115,9 @@ def pack(m: Mechanism) -> Packed:
             if constraint == "distance":
                 lengths.append(joint.params.get("length", 0.0))  # a driver imposes all of it
         first_row.append(row)
-    markers = [marker for joint in joints for marker in (joint.i, joint.j)]
+    forces = list(m.forces.values())
+    force_markers = 2 * len(joints) + np.arange(2 * len(forces)).reshape(-1, 2)
+    markers = [marker for part in (*joints, *forces) for marker in (part.i, part.j)]
     local = np.array([(marker.x, marker.y) for marker in markers], float).reshape(-1, 2)
     marker_body = np.array([number[marker.body.name] for marker in markers], np.int64)
     angles = np.array([marker.angle for marker in markers], float)
@@ -125,7 +130,7 @@ def pack(m: Mechanism) -> Packed:
         marker_arm=local - com[marker_body] if len(markers) else np.zeros((0, 2)),
         marker_axis=np.stack([np.cos(angles), np.sin(angles)], axis=1),
         moving=np.flatnonzero(marker_body),
-        directed=_directed(as_table, marker_body),
+        directed=_directed(as_table, marker_body, force_markers[:, 0]),
         row_body=marker_body[np.repeat(np.array(marker_of, np.int64).reshape(-1, 2), np.diff(first_row), axis=0)],
         driven=np.array([row[2:] for rows in tables.values() for row in rows if row[3]], np.int64).reshape(-1, 2),
         angle_offset=np.array(offsets, float),
@@ -141,14 +146,16 @@ def pack(m: Mechanism) -> Packed:
         joints=joints,
         first_row=np.array(first_row, np.int64),
         markers=np.array(marker_of, np.int64).reshape(-1, 2),
+        forces=forces,
+        force_markers=force_markers,
         motions=motions,
         size=_size(system, lengths),
     )
 
 
-def _directed(tables: dict[str, np.ndarray], marker_body: np.ndarray) -> np.ndarray:
-    """First markers of slots and coordinates, on moving bodies."""
-    first = np.concatenate([tables["slot"][:, 0], tables["along"][:, 0]])
+def _directed(tables: dict[str, np.ndarray], marker_body: np.ndarray, of_forces: np.ndarray) -> np.ndarray:
+    """First markers of slots, coordinates and forces, on moving bodies."""
+    first = np.concatenate([tables["slot"][:, 0], tables["along"][:, 0], of_forces])
     return np.unique(first[marker_body[first] > 0])
 
 

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.errors import ModelError
+from mbsd.potential import potential_of
 
 if TYPE_CHECKING:
     import pandas
@@ -145,7 +146,8 @@ class Solution:
     stats: Stats
     mobility: Mobility
     work: np.ndarray | None = None
-    """(T,) of loads and drivers since the start (J), of a simulation: T + V - work stays constant."""
+    """(T,) of forces and drivers since the start (J), gravity left out, of a simulation."""
+
     changes: tuple[str, ...] = ()
     """What was changed of the given start of a simulation to make it consistent."""
 
@@ -178,10 +180,26 @@ class Solution:
 
     @cached_property
     def energy(self) -> EnergyView:
-        """Kinetic and potential energy of the whole mechanism; potential is 0 at the world's origin."""
+        """Kinetic and potential energy of the whole mechanism, springs included; weight counts from the origin."""
         mass, inertia, gravity = self.packed.system.mass, self.packed.system.inertia, self.packed.system.gravity
         kinetic = 0.5 * (mass * (self.v[..., 0] ** 2 + self.v[..., 1] ** 2) + inertia * self.v[..., 2] ** 2).sum(axis=1)
-        return EnergyView(kinetic, -(mass[:, None] * self.q[..., :2] @ gravity[:, None]).sum(axis=(1, 2)))
+        potential = -(mass[:, None] * self.q[..., :2] @ gravity[:, None]).sum(axis=(1, 2))
+        for force in self.packed.forces:
+            potential = potential + potential_of(self.packed, force, self.q.reshape(len(self.t), -1))
+        return EnergyView(kinetic, potential)
+
+    @cached_property
+    def audit(self) -> np.ndarray | None:
+        """(T,) T + V - work of what has no potential (J), of a simulation: constant but for the integrator's error.
+
+        V holds gravity, springs and other forces with a potential; drivers, dampers and loads from outside do work.
+        """
+        if self.work is None:
+            return None
+        elastic = np.zeros(len(self.t))
+        for force in self.packed.forces:
+            elastic = elastic + potential_of(self.packed, force, self.q.reshape(len(self.t), -1))
+        return self.energy.total - (self.work + elastic - elastic[0])
 
     @cached_property
     def period(self) -> float | None:

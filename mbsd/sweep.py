@@ -21,7 +21,7 @@ def sweep(m: Mechanism, duration: float | None, steps: int, times: Sequence[floa
     q, v, a, inserted = ready.march(grid)
     packed = ready.packed
     drives = packed.drives(grid)
-    loads = inverse_dynamics(ready, drives, q, v, a)
+    loads = inverse_dynamics(ready, grid, drives, q, v, a)
     shape = (len(grid), -1, 3)
     return Solution(
         mechanism=m,

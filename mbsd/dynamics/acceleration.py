@@ -17,6 +17,7 @@ from mbsd.assembly import evaluate_gamma, evaluate_position
 from mbsd.dynamics.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
 from mbsd.jit import inlined, kernel
 from mbsd.laws import evaluate_laws
+from mbsd.loads import apply_loads
 
 
 @inlined
@@ -46,6 +47,8 @@ def accelerate(dyn, scratch, t, state, a, lam):
         a[c] = 0.0
     for r in range(lam.shape[0]):
         lam[r] = 0.0
+    if dyn.loads.element.shape[0] > 0:
+        power = apply_loads(system, dyn.loads, dyn.laws, t, q, v, ws, force)
     alpha = dyn.baumgarte[0]
     beta = dyn.baumgarte[1]
     if alpha > 0.0:

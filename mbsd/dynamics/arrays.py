@@ -19,6 +19,8 @@ class Dynamics(NamedTuple):
     """mbsd.system.System"""
     laws: Any
     """mbsd.laws.Laws: 1 .. drivers are the drivers' laws of time."""
+    loads: Any
+    """mbsd.loads.Loads"""
     schur: Any
     """mbsd.dynamics.schur.Schur"""
     inertia: Any

@@ -25,6 +25,7 @@ from mbsd.dynamics.schur import factor_schur, plan_schur
 from mbsd.errors import AssemblyError
 from mbsd.jit import kernel
 from mbsd.laws import pack_laws
+from mbsd.loads import pack_loads
 from mbsd.mobility import Mobility
 from mbsd.model import Mechanism
 from mbsd.open_loops import why_open
@@ -90,7 +91,9 @@ def _projector(packed: Packed, time: float, inverse: np.ndarray) -> Dynamics:
     laws = pack_laws([law.compiled(time, time) for law in packed.motions])
     size = np.concatenate([np.ones(3), packed.column_scale()])
     nothing = np.zeros_like(inverse)
-    return Dynamics(packed.system, laws, schur, nothing, inverse, inverse, nothing, 1, np.zeros(2), 1.0 / size)
+    return Dynamics(
+        packed.system, laws, pack_loads(packed), schur, nothing, inverse, inverse, nothing, 1, np.zeros(2), 1.0 / size
+    )
 
 
 def _close(m: Mechanism, packed: Packed, time: float, rough: np.ndarray, inverse: np.ndarray) -> np.ndarray:

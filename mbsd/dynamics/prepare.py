@@ -15,7 +15,7 @@ from mbsd.dynamics.schur import plan_schur
 from mbsd.errors import MobilityError, ModelError, SimulationError
 from mbsd.integrators import state as run_state
 from mbsd.integrators.kind import Integrator
-from mbsd.laws import pack_laws
+from mbsd.loads import compiled_laws, pack_loads
 from mbsd.mobility import Mobility, independent_rows, joint_mobility, scaled_jacobian
 from mbsd.model import Mechanism
 from mbsd.packing import Packed, pack
@@ -116,7 +116,8 @@ def prepare_dynamics(m: Mechanism, start: float, end: float) -> PreparedDynamics
     schur, _ = plan_schur(packed.system.row_body, blocks_of(packed, set(kept)))
     dynamics = Dynamics(
         system=packed.system,
-        laws=pack_laws([law.compiled(start, end) for law in packed.motions]),
+        laws=compiled_laws(packed, start, end),
+        loads=pack_loads(packed),
         schur=schur,
         inertia=inertia,
         inverse=_inverse(lifted),

@@ -18,6 +18,7 @@ from mbsd.errors import InitialConditionWarning, ModelError
 from mbsd.integrators.kind import INTEGRATORS, Integrator
 from mbsd.integrators.state import ACCEPTED, Output, State
 from mbsd.inverse_dynamics import JACOBIAN_NUMBERS
+from mbsd.loads import loads_along
 from mbsd.model import Mechanism
 from mbsd.reactions import generalised, times_compact, wrenches
 from mbsd.solution import Solution, Stats
@@ -95,7 +96,8 @@ def solution(m: Mechanism, ready: PreparedDynamics, state: State, out: Output) -
         wrench[at] = wrenches(packed, compact, q[at], lam[at])
         nu = np.zeros_like(phi)
         nu[:, packed.driver_rows :] = drives[at, 1:, 1]
-        loads = ready.dynamics.weight - ready.dynamics.inertia * out.a[at] - generalised(packed, compact, lam[at])
+        loads = loads_along(packed, ready.dynamics.loads, ready.dynamics.laws, out.t[at], q[at], v[at])
+        loads += ready.dynamics.weight - ready.dynamics.inertia * out.a[at] - generalised(packed, compact, lam[at])
         loads[:, :3] = 0.0
         errors = (
             phi,

@@ -1,0 +1,77 @@
+"""What a force is made of, and the registry that one test walks through.
+
+A force is one scalar element or several, and the magnitude of an element is a sum of terms. An element measures a
+scalar x of two markers and acts along it, so that a positive magnitude F makes x grow:
+
+    LINE   x = |p_j - p_i|                  F along the line, apart
+    TURN   x = theta_j - theta_i            F is a torque on j, -F on i
+    AXIS   x = u_i . (p_j - p_i)            F along the x axis of marker i
+    PUSH   x = t                            F on body j at marker j, along the x axis of marker i; i feels nothing
+
+    generalised force  Q = F (dx/dq)^T;     power F x'
+
+    CONSTANT   a                            LAW_VALUE   a law(x)
+    LINEAR     -a (x - b)                   LAW_RATE    a law(x')
+    DAMPING    -a x'                        LAW_TIME    a law(t)
+    POWER      a (x + b)^c                  DRY         -a tanh(x' / b)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mbsd.body import Marker
+    from mbsd.force import Force
+    from mbsd.model import Mechanism
+
+LINE, TURN, AXIS, PUSH = 0, 1, 2, 3
+CONSTANT, LINEAR, DAMPING, POWER, LAW_VALUE, LAW_RATE, LAW_TIME, DRY = 0, 1, 2, 3, 4, 5, 6, 7
+POTENTIAL_TERMS = (LINEAR, POWER, LAW_VALUE)
+"""Terms that count as potential energy; the others do work."""
+
+
+@dataclass(frozen=True)
+class Term:
+    """One term of a magnitude; ``law`` names one of the force's laws."""
+
+    kind: int
+    a: float = 1.0
+    b: float = 0.0
+    c: float = 0.0
+    law: str | None = None
+
+
+@dataclass(frozen=True)
+class Element:
+    """One scalar element. ``turned`` turns the x axis of marker i by a right angle (AXIS, PUSH)."""
+
+    kind: int
+    terms: tuple[Term, ...]
+    turned: bool = False
+
+
+@dataclass(frozen=True)
+class ForceKind:
+    """A kind of force."""
+
+    name: str
+    elements: Callable[[Force], tuple[Element, ...]]
+    """What a force of this kind is made of."""
+    example: Callable[[Mechanism, Marker, Marker], object]
+    """Adds one of this kind between two markers of different bodies."""
+
+
+FORCE_KINDS: dict[str, ForceKind] = {}
+
+
+def register(kind: ForceKind) -> ForceKind:
+    """Enter a kind; raises ValueError if its name is taken or the example missing."""
+    if not callable(kind.example):
+        raise ValueError(f"{kind.name}: an example is missing; the registry test needs one")
+    if kind.name in FORCE_KINDS:
+        raise ValueError(f"{kind.name}: registered twice")
+    FORCE_KINDS[kind.name] = kind
+    return kind

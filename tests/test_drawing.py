@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 import xml.etree.ElementTree as ET
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,6 +21,7 @@ from mbsd.drawing.outline import hull, rounded
 from mbsd.drawing.pose import pose_of, start_pose
 from mbsd.drawing.symbols import free_side
 from mbsd.joints.kind import JointKind
+from shared.paths import ROOT
 from tests import four_bars
 from tests.test_joints import all_kinds
 from tests.test_mobility import four_bar, parallelogram
@@ -221,3 +224,19 @@ def test_the_driven_random_four_bar_is_drawn_closed() -> None:
     picture = four_bars.model((4.0, 1.0, 3.5, 3.0)).draw(frames=False, names=False)
     assert not picture.ax.texts
     assert picture.ax.get_title(loc="left") == "random"
+
+
+def test_the_diagrams_of_the_documents_are_those_of_their_code() -> None:
+    blocks = re.findall(r"^```python\n(.*?)^```$", (ROOT / "docs" / "model.md").read_text(), re.MULTILINE | re.DOTALL)
+    made: dict[str, Any] = {}
+    exec("\n".join(blocks[:3]), made)
+    for model, name in ((made["m"].draw()._repr_svg_(), "drawing"), (made["wide"].topology().text, "topology")):
+        file = ROOT / "docs" / f"model_{name}.svg"
+        assert file.stat().st_size < 300_000
+        assert _marks(model) == _marks(file.read_text())
+
+
+def _marks(svg: str) -> list[str]:
+    """What a diagram says and how many shapes it has; places may differ in the last digit from machine to machine."""
+    elements = list(ET.fromstring(svg).iter())
+    return sorted(e.text for e in elements if e.tag.endswith("text") and e.text) + [e.tag for e in elements]

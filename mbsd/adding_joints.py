@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
-from mbsd.body import Body, Marker
+from mbsd.body import Body, Marker, number_pair
 from mbsd.drivers.angle import DRIVE_ANGLE
 from mbsd.drivers.coordinate import DRIVE_COORDINATE
 from mbsd.drivers.distance import DRIVE_DISTANCE
 from mbsd.drivers.relative_angle import DRIVE_RELATIVE_ANGLE
 from mbsd.errors import ModelError
 from mbsd.joint import Joint
+from mbsd.joints.belt import BELT
 from mbsd.joints.distance import DISTANCE
+from mbsd.joints.gear_pair import GEAR_PAIR
 from mbsd.joints.kind import JointKind
 from mbsd.joints.pin_in_slot import PIN_IN_SLOT
 from mbsd.joints.prismatic import PRISMATIC
@@ -53,6 +55,54 @@ class AddingJoints(MechanismBase):
     def pin_in_slot(self, name: str, slot: Marker, pin: Marker) -> Joint:
         """The point of marker ``pin`` moves along the x axis of marker ``slot``."""
         return self._join(PIN_IN_SLOT, name, slot, pin)
+
+    # -- rolling ------------------------------------------------------------------------------------------------
+
+    def gear_pair(
+        self,
+        name: str,
+        i: Marker,
+        j: Marker,
+        radius_i: float,
+        radius_j: float,
+        internal: bool = False,
+        phase: Sequence[float] | None = None,
+    ) -> Joint:
+        """Two gears with centres at i and j and the given pitch radii (m); ``internal``: i is the ring around j.
+
+        They mesh as they stand at the start; ``phase`` gives angles of both bodies (rad) that belong together.
+        """
+        radii = self._radii(name, radius_i=radius_i, radius_j=radius_j)
+        if internal and radius_i <= radius_j:
+            raise ModelError(
+                f"{self.name}: gear_pair '{name}' is internal, so radius_i = {radius_i:g} m is the ring's and must be "
+                f"above radius_j = {radius_j:g} m; give the ring first"
+            )
+        return self._join(GEAR_PAIR, name, i, j, None, **radii, internal=bool(internal), phase=self._phase(name, phase))
+
+    def belt(
+        self,
+        name: str,
+        i: Marker,
+        j: Marker,
+        radius_i: float,
+        radius_j: float,
+        crossed: bool = False,
+        phase: Sequence[float] | None = None,
+    ) -> Joint:
+        """A belt or chain over pulleys with centres at i and j (m), open or crossed; ``phase`` as in gear_pair."""
+        radii = self._radii(name, radius_i=radius_i, radius_j=radius_j)
+        return self._join(BELT, name, i, j, None, **radii, crossed=bool(crossed), phase=self._phase(name, phase))
+
+    def _radii(self, name: str, **radii: float) -> dict[str, float]:
+        out = {key: self._number(f"joint '{name}': {key}", value) for key, value in radii.items()}
+        for key, value in out.items():
+            if value <= 0:
+                raise ModelError(f"{self.name}: joint '{name}' has {key} {value:g} m; it must be positive")
+        return out
+
+    def _phase(self, name: str, phase: Sequence[float] | None) -> tuple[float, float] | None:
+        return None if phase is None else number_pair(f"{self.name}: joint '{name}': phase (rad)", phase)
 
     # -- drivers ------------------------------------------------------------------------------------------------
 

@@ -5,7 +5,7 @@ Phi(q, t) = 0,   J v = nu,   J a = gamma
 
 from __future__ import annotations
 
-from mbsd.constraints import along, angle, distance, point, slot
+from mbsd.constraints import along, angle, distance, point, slot, special
 from mbsd.jit import inlined, kernel
 from mbsd.markers import move, place
 
@@ -19,6 +19,8 @@ def evaluate_position(system, q, drive, ws):
     slot.rows(system, ws)
     along.rows(system, drive, ws)
     distance.rows(system, drive, ws)
+    if system.special.shape[0] > 0:
+        special.rows(system, q, drive, ws)
 
 
 @inlined
@@ -39,6 +41,8 @@ def evaluate_gamma(system, v, drive, ws, gamma):
     slot.gamma_rows(system, v, ws, gamma)
     along.gamma_rows(system, v, ws, gamma)
     distance.gamma_rows(system, ws, gamma)
+    if system.special.shape[0] > 0:
+        special.gamma_rows(system, v, ws, gamma)
     for k in range(system.driven.shape[0]):
         gamma[system.driven[k, 0]] += drive[system.driven[k, 1], 2]
 

@@ -23,7 +23,7 @@ def why_open(m: Mechanism, packed: Packed, q: np.ndarray, drive: np.ndarray, tim
     rows = slice(packed.first_row[worst], packed.first_row[worst + 1])
     what = "driver" if joint.kind.driven else "joint"
     gap = f"{1000 * float(np.linalg.norm(phi[rows])):.3g} mm"
-    if joint.kind.constraints == ("angle",):
+    if packed.row_scale()[rows][0] == 1.0 and len(phi[rows]) == 1 and joint.kind.angular:
         gap = f"{math.degrees(float(phi[rows][0])):.3g} degrees"
     hint = _short_links(m, packed, joint, drive)
     return (

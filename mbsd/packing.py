@@ -9,9 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.joints.kind import ROWS
+from mbsd.joints.kind import ROWS, SPECIALS
 from mbsd.model import Force, Joint, Mechanism
 from mbsd.motions import Motion
+from mbsd.specials import Specials
 from mbsd.system import System, Workspace, workspace
 
 SMALLEST_SIZE = 1e-12
@@ -39,6 +40,8 @@ class Packed:
     """(forces, 2) marker numbers i, j."""
     motions: list[Motion]
     """Of the drivers, in order; motion k of the tables is ``motions[k - 1]``."""
+    specials: Specials
+    """Constraints of relative pose by name, and the user's functions among them."""
     size: float
     """Characteristic length (m): the largest distance between joints, or joint and centre of mass, of one body."""
 
@@ -67,6 +70,7 @@ class Packed:
         """(m,) what makes residual rows dimensionless: 1 / size for lengths, 1 for angles."""
         scale = np.full(int(self.first_row[-1]), 1.0 / self.size)
         scale[self.system.angle[:, 2]] = 1.0
+        scale[self.specials.angular_rows] = 1.0
         return scale
 
     def column_scale(self) -> np.ndarray:
@@ -94,9 +98,11 @@ def pack(m: Mechanism) -> Packed:
     com = np.array([body.com for body in bodies], float)
     joints = [*m.joints.values(), *m.drivers.values()]
     motions: list[Motion] = []
-    tables: dict[str, list[tuple[int, int, int, int]]] = {name: [] for name in ROWS}
+    tables: dict[str, list[tuple[int, int, int, int]]] = {name: [] for name in ROWS if name not in SPECIALS}
+    specials = Specials()
     offsets: list[float] = []
     lengths: list[float] = []
+    extents: list[float] = []
     first_row = [0]
     marker_of = []
     for k, joint in enumerate(joints):
@@ -108,12 +114,16 @@ def pack(m: Mechanism) -> Packed:
             motion = len(motions)
         row = first_row[-1]
         for constraint in joint.kind.constraints:
-            tables[constraint].append((i, j, row, motion))
+            if constraint in SPECIALS:
+                specials.add(constraint, joint, (i, j, row, motion))
+            else:
+                tables[constraint].append((i, j, row, motion))
             row += ROWS[constraint]
             if constraint == "angle":
                 offsets.append(joint.i.angle - joint.j.angle)
             if constraint == "distance":
                 lengths.append(joint.params.get("length", 0.0))  # a driver imposes all of it
+        extents += [joint.params[key] for key in joint.kind.lengths]
         first_row.append(row)
     forces = list(m.forces.values())
     force_markers = 2 * len(joints) + np.arange(2 * len(forces)).reshape(-1, 2)
@@ -122,6 +132,7 @@ def pack(m: Mechanism) -> Packed:
     marker_body = np.array([number[marker.body.name] for marker in markers], np.int64)
     angles = np.array([marker.angle for marker in markers], float)
     as_table = {name: np.array(rows, np.int64).reshape(-1, 4) for name, rows in tables.items()}
+    special, addresses, numbers = specials.arrays(marker_body)
     system = System(
         mass=np.array([body.mass for body in bodies], float),
         inertia=np.array([body.inertia for body in bodies], float),
@@ -130,9 +141,12 @@ def pack(m: Mechanism) -> Packed:
         marker_arm=local - com[marker_body] if len(markers) else np.zeros((0, 2)),
         marker_axis=np.stack([np.cos(angles), np.sin(angles)], axis=1),
         moving=np.flatnonzero(marker_body),
-        directed=_directed(as_table, marker_body, force_markers[:, 0]),
+        directed=_directed(marker_body, as_table["slot"][:, 0], as_table["along"][:, 0], special[:, 0], force_markers[:, 0]),
+        special=special,
+        address=addresses,
+        numbers=numbers,
         row_body=marker_body[np.repeat(np.array(marker_of, np.int64).reshape(-1, 2), np.diff(first_row), axis=0)],
-        driven=np.array([row[2:] for rows in tables.values() for row in rows if row[3]], np.int64).reshape(-1, 2),
+        driven=_driven(*as_table.values(), special),
         angle_offset=np.array(offsets, float),
         distance_length=np.array(lengths, float),
         **as_table,
@@ -149,13 +163,20 @@ def pack(m: Mechanism) -> Packed:
         forces=forces,
         force_markers=force_markers,
         motions=motions,
-        size=_size(system, lengths),
+        specials=specials,
+        size=_size(system, lengths + extents),
     )
 
 
-def _directed(tables: dict[str, np.ndarray], marker_body: np.ndarray, of_forces: np.ndarray) -> np.ndarray:
-    """First markers of slots, coordinates and forces, on moving bodies."""
-    first = np.concatenate([tables["slot"][:, 0], tables["along"][:, 0], of_forces])
+def _driven(*tables: np.ndarray) -> np.ndarray:
+    """(drivers, 2) row and motion of the driven rows."""
+    rows = np.concatenate([table[:, 2:4] for table in tables])
+    return rows[rows[:, 1] > 0]
+
+
+def _directed(marker_body: np.ndarray, *first_markers: np.ndarray) -> np.ndarray:
+    """Those of the first markers of slots, coordinates, relative poses and forces that are on moving bodies."""
+    first = np.concatenate(first_markers)
     return np.unique(first[marker_body[first] > 0])
 
 

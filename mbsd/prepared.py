@@ -14,6 +14,7 @@ from mbsd.errors import AssemblyError, BranchError, ModelError, SingularPoseErro
 from mbsd.mobility import Mobility, choose_rows, joint_mobility, refuse_overdriven
 from mbsd.model import Mechanism
 from mbsd.packing import Packed, pack
+from mbsd.specials import ACTIVE, ROW
 from mbsd.start import assemble
 
 SHORTEST_STEP = 1e-7
@@ -67,6 +68,7 @@ class Prepared:
                 sign,
                 first,
             )
+            packed.specials.check()
             if status == kinematics.DONE:
                 break
             if index == 0:
@@ -141,10 +143,8 @@ class Prepared:
         parts = []
         for k, driver in enumerate(drivers):
             value = float(drive[k + 1, 0])
-            angle = driver.kind.constraints == ("angle",)
-            parts.append(
-                f"{driver.name} at {math.degrees(value):.4g} degrees" if angle else f"{driver.name} at {value:.4g} m"
-            )
+            at = f"{math.degrees(value):.4g} degrees" if driver.kind.angular else f"{value:.4g} m"
+            parts.append(f"{driver.name} at {at}")
         return ", ".join(parts)
 
 
@@ -184,9 +184,13 @@ def _sample_jacobians(packed: Packed) -> np.ndarray:
     random = np.random.default_rng(2)
     none = np.zeros((len(packed.motions) + 1, 3))
     samples = []
+    special, rows = packed.system.special, packed.system.special[:, ROW]
+    special[:, ACTIVE] = 0  # their entries may be constant here and there, as in the dwell of a Geneva: none counts
     for _ in range(4):
         q = np.zeros(3 * len(packed.body_names))
         q[3:] = random.uniform(-2.0, 2.0, packed.coordinates) * packed.column_scale()
         residual_and_jacobian(packed.system, q, none, packed.ws)
+        packed.ws.jac[rows] = random.uniform(1.0, 2.0, (len(rows), 6))
         samples.append(packed.jacobian())
+    special[:, ACTIVE] = 1
     return np.array(samples)

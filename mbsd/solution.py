@@ -175,7 +175,7 @@ class Solution:
         k = self._index(name, list(self.mechanism.drivers), "driver")
         row = self.packed.driver_rows + k
         value, rate, acceleration = self.drives[:, k + 1].T
-        angular = self.mechanism.drivers[name].kind.constraints == ("angle",)
+        angular = self.mechanism.drivers[name].kind.angular
         return DriverView(name, angular, value, rate, acceleration, -self.lam[:, row])
 
     @cached_property

@@ -16,6 +16,7 @@ from mbsd.errors import AssemblyError
 from mbsd.model import Mechanism
 from mbsd.open_loops import turned, why_open
 from mbsd.packing import Packed
+from mbsd.specials import let_phases_go, take_phases
 
 CLOSED = 1e-10
 """Largest residual of a closed pose, in sizes (m) and rad."""
@@ -31,13 +32,23 @@ def assemble(m: Mechanism, packed: Packed, time: float) -> np.ndarray:
     for attempt in range(ATTEMPTS):
         q = rough_pose(m, packed, drive, attempt)
         unwind_angles(packed, q)
-        q, worst = close(packed, q, drive)
+        q, worst = _close_with_phases(packed, q, drive)
         if worst <= CLOSED:
             return q
         if best is None or worst < best[0]:
             best = worst, q
     assert best is not None
+    packed.specials.check()
     raise AssemblyError(why_open(m, packed, best[1], drive, time))
+
+
+def _close_with_phases(packed: Packed, q: np.ndarray, drive: np.ndarray) -> tuple[np.ndarray, float]:
+    """Close all rows that say where bodies are; the others mesh as they then stand."""
+    let_phases_go(packed)
+    q, worst = close(packed, q, drive)
+    if worst <= CLOSED and take_phases(packed, q, drive):
+        q, worst = close(packed, q, drive)
+    return q, worst
 
 
 def close(packed: Packed, q: np.ndarray, drive: np.ndarray, rows: int | None = None) -> tuple[np.ndarray, float]:

@@ -36,6 +36,12 @@ class System(NamedTuple):
     along: Any
     distance: Any
     """(k, 4) int constraint tables."""
+    special: Any
+    """(k, 7) int table of the constraints of relative pose; columns in mbsd/constraints/special.py."""
+    address: Any
+    """(k,) of their equations."""
+    numbers: Any
+    """All numbers of all of them; those that the start pose decides are set when it is closed."""
     driven: Any
     """(drivers, 2) row and motion of each driven constraint."""
     row_body: Any
@@ -61,6 +67,10 @@ class Workspace(NamedTuple):
     """(nm, 2) world."""
     convective: Any
     """(nm, 2) convective acceleration -omega^2 arm, world."""
+    relative: Any
+    """(16,) relative pose of one special constraint, then scratch of its equation."""
+    equation: Any
+    """(k, 10) value, gradient and second derivatives of the special constraints."""
     phi: Any
     """(m,) residual."""
     jac: Any
@@ -87,6 +97,8 @@ def workspace(system: System, rows: int) -> Workspace:
         axis=np.where(on_ground[:, None], system.marker_axis, 0.0),
         velocity=np.zeros_like(at_rest),
         convective=np.zeros_like(at_rest),
+        relative=np.zeros(16),
+        equation=np.zeros((len(system.special), 10)),
         phi=np.zeros(rows),
         jac=np.zeros((rows, 6)),
         right=np.zeros((2, rows)),

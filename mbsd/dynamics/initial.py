@@ -19,7 +19,8 @@ from mbsd.assembly import residual_and_jacobian
 from mbsd.mobility import independent_rows
 from mbsd.model import Mechanism
 from mbsd.packing import Packed
-from mbsd.start import CLOSED, LONGEST_STEP, assemble
+from mbsd.specials import let_phases_go, take_phases
+from mbsd.start import CLOSED, LONGEST_STEP, assemble, close
 
 TOLD = 1e-6
 """Smallest change of a given value that is told: sizes, rad, and the same by seconds relative to the given speeds."""
@@ -56,6 +57,7 @@ def _pose(m: Mechanism, packed: Packed, time: float, drive: np.ndarray) -> tuple
     given = given_coordinates(m, packed)
     if not given:
         return q, []
+    let_phases_go(packed)
     size = np.concatenate([np.ones(3), packed.column_scale()])
     targets = np.array([nearest_turn(q, c, value) for c, value in given])
     wanted = np.array([c for c, _ in given])
@@ -67,6 +69,8 @@ def _pose(m: Mechanism, packed: Packed, time: float, drive: np.ndarray) -> tuple
         kept = independent_rows(np.vstack([rows, units]))
         held = [k - len(rows) for k in kept if k >= len(rows)]
         q = _close_holding(packed, q, drive, wanted[held], targets[held])
+    if take_phases(packed, q, drive):
+        q = close(packed, q, drive)[0]
     return q, tell_coordinates(packed, q, list(zip(wanted, targets, strict=True)))
 
 

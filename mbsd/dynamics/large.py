@@ -30,6 +30,7 @@ from mbsd.mobility import Mobility
 from mbsd.model import Mechanism
 from mbsd.open_loops import why_open
 from mbsd.packing import Packed
+from mbsd.specials import active_rows, let_phases_go, take_phases
 from mbsd.start import CLOSED, LONGEST_STEP, rough_pose, unwind_angles
 
 MANY_COORDINATES = 600
@@ -62,7 +63,11 @@ def consistent_large(m: Mechanism, packed: Packed, time: float, inverse: np.ndar
     size = np.concatenate([np.ones(3), packed.column_scale()])
     light = size**2
     light[:3] = 0.0
-    q = _close(m, packed, time, rough, _weighed(light, [c for c, _ in given]))
+    let_phases_go(packed)
+    weights = _weighed(light, [c for c, _ in given])
+    q = _close(m, packed, time, rough, weights)
+    if take_phases(packed, q, drive):
+        q = _close(m, packed, time, q, weights)
     told = tell_coordinates(packed, q, [(c, nearest_turn(q, c, value)) for c, value in given])
     rows, values, names = given_velocities(m, packed, q)
     v = _velocities(packed, time, q, inverse, rows, values)
@@ -86,8 +91,8 @@ def _weighed(inverse: np.ndarray, heavy: list[int]) -> np.ndarray:
 
 
 def _projector(packed: Packed, time: float, inverse: np.ndarray) -> Dynamics:
-    """All rows, with ``inverse`` as metric."""
-    schur, _ = plan_schur(packed.system.row_body, blocks_of(packed, set(range(len(packed.ws.phi)))))
+    """All rows that take part, with ``inverse`` as metric."""
+    schur, _ = plan_schur(packed.system.row_body, blocks_of(packed, active_rows(packed)))
     laws = pack_laws([law.compiled(time, time) for law in packed.motions])
     size = np.concatenate([np.ones(3), packed.column_scale()])
     nothing = np.zeros_like(inverse)

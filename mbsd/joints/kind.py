@@ -5,14 +5,30 @@ A kind names its constraints in the order of its rows. It must bring an example,
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from mbsd.model import Marker, Mechanism
 
-ROWS = {"point": 2, "angle": 1, "slot": 1, "along": 1, "distance": 1}
+
+@dataclass(frozen=True)
+class Special:
+    """A constraint F(x, y, a) of the relative pose, one row; see mbsd/constraints/special.py."""
+
+    equation: str
+    """File in mbsd/constraints."""
+    unit: str
+    """Of the residual: m or rad."""
+    phased: bool = False
+    """Its constant is taken from the closed start pose: it holds how the bodies roll on each other, not where."""
+
+
+SPECIALS: dict[str, Special] = {
+    "gear": Special("gear", "m", phased=True),
+}
+ROWS = {"point": 2, "angle": 1, "slot": 1, "along": 1, "distance": 1} | dict.fromkeys(SPECIALS, 1)
 """Rows that each constraint takes in J."""
 
 
@@ -27,6 +43,17 @@ class JointKind:
     driven: bool = False
     units: tuple[str, str] = ("N", "N m")
     """Units of a driver's effort and, unused for joints, of its value."""
+    numbers: Callable[[Mapping[str, Any]], Sequence[Sequence[float]]] | None = None
+    """From a joint's params: the numbers of each special constraint, in their order."""
+    lengths: tuple[str, ...] = ()
+    """Params that are lengths (m) and tell how large the mechanism is."""
+    saved: bool = True
+    """Whether a file can hold its params; a Python function cannot be saved."""
+
+    @property
+    def angular(self) -> bool:
+        """Whether a driver of this kind imposes an angle."""
+        return self.units[1] == "rad"
 
     @property
     def rows(self) -> int:

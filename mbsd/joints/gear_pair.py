@@ -1,0 +1,25 @@
+"""Gear pair: two gears with centres at markers i and j roll on each other without slip.
+
+    external   Phi = r_i (theta_i - phi) + r_j (theta_j - phi) - c      constraint `gear`, 1 row
+    internal   Phi = r_i (theta_i - phi) - r_j (theta_j - phi) - c      gear i is the ring around gear j
+
+phi is the direction of the line of centres, so the centres may be fixed or carried by an arm (planetary trains). The
+joint holds the turning only; pins hold the centres. The reaction on body j is the force at its pitch point as a force
+at its centre and a torque; it acts along the tangent, without the separating part of a pressure angle.
+"""
+
+from __future__ import annotations
+
+from mbsd.joints.kind import JointKind, register
+
+GEAR_PAIR = register(
+    JointKind(
+        "gear_pair",
+        ("gear",),
+        example=lambda m, i, j: m.gear_pair("example", i, j, radius_i=0.5, radius_j=0.2, internal=True),
+        numbers=lambda params: [
+            (params["radius_i"], -params["radius_j"] if params["internal"] else params["radius_j"])
+        ],
+        lengths=("radius_i", "radius_j"),
+    )
+)

@@ -116,3 +116,24 @@ def test_gears_that_cannot_be_are_refused() -> None:
         m.gear_pair("g", first.origin, second.origin, 0.1, 0.2, internal=True)
     with pytest.raises(ModelError, match="phase"):
         m.gear_pair("g", first.origin, second.origin, 0.1, 0.2, phase=(1.0,))
+
+
+def test_a_planetary_train_moves_freely_with_its_energy_and_ratios() -> None:
+    """Ring braked by a weld, a rod on the carrier swings: the gears add their inertia, energy stays."""
+    m = Mechanism("swinging_train", gravity=(0.0, -9.81))
+    sun, carrier = m.body("sun", 0.3, (0, 0), 1e-3), m.body("carrier", 1.0, (0.2, 0.0), 0.01)
+    planet, ring = m.body("planet", 0.1, (0, 0), 2e-4), m.body("ring", 1.0)
+    m.weld("brake", m.ground.origin, ring.origin)
+    m.revolute("sun axle", m.ground.origin, sun.origin)
+    m.revolute("carrier axle", m.ground.origin, carrier.origin)
+    m.revolute("planet axle", carrier.at(SUN + PLANET, 0), planet.origin)
+    m.gear_pair("sun-planet", sun.origin, planet.origin, SUN, PLANET)
+    m.gear_pair("ring-planet", ring.origin, planet.origin, RING, PLANET, internal=True)
+    m.start_near(carrier=0, sun=10, planet=20)
+    sol = m.simulate(duration=2.0, steps=200, tolerance=1e-10)
+    reduced = 1.0 * 0.2**2 + 0.01 + 0.1 * 0.05**2 + 25 * 1e-3 + (5 / 3) ** 2 * 2e-4  # on the carrier, by Willis
+    load = 9.81 * (1.0 * 0.2 + 0.1 * 0.05)
+    carrier_view = sol.body("carrier")
+    np.testing.assert_allclose(carrier_view.alpha, -load * np.cos(carrier_view.theta) / reduced, rtol=1e-8, atol=1e-8)
+    np.testing.assert_allclose(sol.body("sun").theta, math.radians(10) + 5 * carrier_view.theta, atol=1e-9)
+    assert np.ptp(sol.energy.total) < 1e-7

@@ -62,6 +62,7 @@ class PreparedDynamics:
         end = float(times[-1])
         while True:
             status = method.advance(self.dynamics, scratch, state, out, settings, end, STEPS_AT_ONCE)
+            packed.specials.check()
             if progress is not None:
                 progress((state.clock[run_state.TIME] - times[0]) / (end - times[0]))
             if status == run_state.REACHED:

@@ -141,7 +141,9 @@ def pack(m: Mechanism) -> Packed:
         marker_arm=local - com[marker_body] if len(markers) else np.zeros((0, 2)),
         marker_axis=np.stack([np.cos(angles), np.sin(angles)], axis=1),
         moving=np.flatnonzero(marker_body),
-        directed=_directed(marker_body, as_table["slot"][:, 0], as_table["along"][:, 0], special[:, 0], force_markers[:, 0]),
+        directed=_directed(
+            marker_body, as_table["slot"][:, 0], as_table["along"][:, 0], special[:, 0], force_markers[:, 0]
+        ),
         special=special,
         address=addresses,
         numbers=numbers,

@@ -31,7 +31,7 @@ def factories() -> dict[str, Callable[..., Any]]:
     for package in LAW_PACKAGES:
         if importlib.util.find_spec(package) is None:
             continue
-        for file in pkgutil.iter_modules(importlib.import_module(package).__path__):
+        for file in pkgutil.iter_modules(getattr(importlib.import_module(package), "__path__", [])):
             factory = getattr(importlib.import_module(f"{package}.{file.name}"), file.name, None)
             if callable(factory):
                 found[file.name] = factory

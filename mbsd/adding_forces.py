@@ -13,10 +13,10 @@ from mbsd.force import Force
 from mbsd.forces.bushing import BUSHING
 from mbsd.forces.curve_of_angle import CURVE_OF_ANGLE
 from mbsd.forces.curve_of_length import CURVE_OF_LENGTH
+from mbsd.forces.force import FORCE
 from mbsd.forces.gas import GAS
 from mbsd.forces.gravitation import GRAVITATION
 from mbsd.forces.kind import ForceKind
-from mbsd.forces.push import PUSH_FORCE
 from mbsd.forces.spring import SPRING
 from mbsd.forces.torque import TORQUE
 from mbsd.forces.torsion_spring import TORSION_SPRING
@@ -89,9 +89,10 @@ class AddingForces(MechanismBase):
                 raise ModelError(f"{self.name}: force '{name}' has no direction; give a vector that is not zero")
             angle = math.atan2(y, x)
         params, laws = self._amount(name, "force", force)
+        params["direction"] = angle
         base = self.ground if frame is None else frame
         self._own_body(base, f"force '{name}'")
-        return self._add_force(PUSH_FORCE, name, base.at(0.0, 0.0, angle), at, params, laws, same_body=True)
+        return self._add_force(FORCE, name, base.at(0.0, 0.0, angle), at, params, laws, same_body=True)
 
     def curve_of_length(
         self, name: str, i: Marker, j: Marker, of_length: Curve | None = None, of_rate: Curve | None = None

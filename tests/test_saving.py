@@ -17,9 +17,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mbsd import Mechanism, ModelError, constant_rate, function, table
+from mbsd import Mechanism, ModelError, constant_rate, curve, function, harmonic, table
 from mbsd.body import Body
+from mbsd.forces.kind import FORCE_KINDS, ForceKind
 from mbsd.joints.kind import KINDS, JointKind
+from mbsd.loads import compiled_laws, loads_along, pack_loads
 from mbsd.motions import Motion
 from mbsd.motions.examples import EXAMPLES
 from mbsd.motions.function import Function
@@ -28,6 +30,9 @@ from mbsd.saving.document import build, document
 from mbsd.saving.schema import content, schema
 from shared.paths import ROOT
 from tests import four_bars
+from tests.test_forces import all_kinds as force_kinds
+from tests.test_forces import example as force_example
+from tests.test_forces import motion as force_motion
 from tests.test_joints import all_kinds
 
 
@@ -55,6 +60,41 @@ def test_every_kind_comes_back(kind: JointKind, tmp_path: Path) -> None:
         np.testing.assert_array_equal(array, getattr(there.system, name), err_msg=name)
     times = np.linspace(0.0, 1.0, 7)
     np.testing.assert_array_equal(here.drives(times), there.drives(times))
+
+
+@pytest.mark.parametrize("to_ground", [False, True], ids=["two_bodies", "to_ground"])
+@pytest.mark.parametrize("kind", force_kinds(), ids=lambda kind: kind.name)
+def test_every_kind_of_force_comes_back(kind: ForceKind, to_ground: bool, tmp_path: Path) -> None:
+    m, here = force_example(kind, 3, to_ground)
+    jsonschema.validate(document(m), schema())
+    there = pack(_back(m, tmp_path))
+    t, q, v = force_motion(here, 1)
+    for a, b in zip(pack_loads(here), pack_loads(there), strict=True):
+        np.testing.assert_array_equal(a, b)
+    loads = [
+        loads_along(packed, pack_loads(packed), compiled_laws(packed, 0.0, 1.0), t, q, v) for packed in (here, there)
+    ]
+    np.testing.assert_array_equal(*loads)
+    assert np.abs(loads[0]).max() > 0
+
+
+def test_forces_with_laws_curves_and_frames_come_back(tmp_path: Path) -> None:
+    m = Mechanism("loads")
+    a, b = m.body("a", 1.0, inertia=1.0), m.body("b", 2.0, inertia=1.0)
+    m.force("wind", a.at(0.1, 0), harmonic(3.0, 2.0), direction=(1.0, 2.0))
+    m.force("jet", a.at(0.1, 0.2), 4.0, direction=0.3, frame=a)
+    m.torque("drive", b, harmonic(1.0, 5.0), against=a)
+    m.torque("brake", b, -0.5)
+    m.motor("motor", a, b, curve([0, 1, 2], [3, 2, 0]))
+    m.curve_of_length("buffer", a.origin, b.origin, of_length=curve([0, 1, 2], [3, 2, 0], "linear"))
+    jsonschema.validate(document(m), schema())
+    loaded = _back(m, tmp_path)
+    assert [f.kind.name for f in loaded.forces.values()] == [f.kind.name for f in m.forces.values()]
+    assert loaded.forces["drive"].i.body.name == "a"
+    assert loaded.forces["jet"].i.angle == 0.3
+    m.force("user", b.origin, lambda t: 3.0 * t)
+    with pytest.raises(ModelError, match=r"loads: force 'user': force is the Python function .*table\("):
+        m.save(tmp_path / "model.json")
 
 
 @pytest.mark.parametrize("law", EXAMPLES, ids=lambda law: type(law).__name__)
@@ -102,8 +142,10 @@ def test_the_published_schema_is_current() -> None:
 
 
 def test_the_schema_knows_every_kind() -> None:
-    known = {k["properties"]["kind"]["const"] for part in ("joint", "driver") for k in schema()["$defs"][part]["oneOf"]}
-    assert known == set(KINDS)
+    parts = {part: schema()["$defs"][part]["oneOf"] for part in ("joint", "driver", "force")}
+    known = {part: {kind["properties"]["kind"]["const"] for kind in kinds} for part, kinds in parts.items()}
+    assert known["joint"] | known["driver"] == set(KINDS)
+    assert known["force"] == set(FORCE_KINDS)
 
 
 def _change(*path: str, to: Any) -> Callable[[dict], None]:

@@ -3,22 +3,25 @@
     {"schema": "mbsd.model", "schema_version": 1, "name": ..., "gravity": [gx, gy],
      "bodies": {"crank": {"mass", "com", "inertia", "length"}},
      "joints": {"A": {"kind", "i": {"body", "x", "y", "angle"}, "j": ..., "params"}},
-     "drivers": the same with "law", "traces": {"P": marker}, "starts": {"crank": {"angle", "place"}},
-     "velocities": {"crank": {"omega", "place"}}}
+     "drivers": the same with "law", "forces": the same with "laws", "traces": {"P": marker},
+     "starts": {"crank": {"angle", "place"}}, "velocities": {"crank": {"omega", "place"}}}
 
-Kinds and laws are those of the registries: a joint is rebuilt by the method of its kind's name, from its markers, its
-params and its law, so a new kind needs no word here. What does not come back equal is refused when it is saved.
+Kinds and laws are those of the registries: a joint or force is rebuilt by the method of its kind's name, from its
+markers, its params and its laws, so a new kind needs no word here. What does not come back equal is refused when it
+is saved.
 """
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, fields
 from typing import Any
 
 from mbsd.body import Body, Marker
 from mbsd.errors import ModelError
+from mbsd.force import Force
+from mbsd.forces.kind import FORCE_KINDS
 from mbsd.joint import Joint
 from mbsd.joints.kind import KINDS
 from mbsd.mechanism_base import Start, StartVelocity
@@ -47,6 +50,8 @@ def build(written: Mapping[str, Any], where: str = "model") -> Mechanism:
     for part in ("joints", "drivers"):
         for name, entry in top.entries(part):
             _read_joint(m, part, name, entry)
+    for name, entry in top.entries("forces"):
+        _read_force(m, name, entry)
     for name, entry in top.entries("traces"):
         entry.within(lambda name=name, entry=entry: m.trace(name, _read_marker(m, entry)))
     for name, entry in top.entries("starts"):
@@ -67,6 +72,7 @@ def _write(m: Mechanism) -> dict[str, Any]:
         "bodies": {name: _body(body) for name, body in m.bodies.items() if name != "ground"},
         "joints": {name: _joint(m, joint) for name, joint in m.joints.items()},
         "drivers": {name: _joint(m, driver) for name, driver in m.drivers.items()},
+        "forces": {name: _force(m, force) for name, force in m.forces.items()},
         "traces": {name: plain(marker, name) for name, marker in m.traces.items()},
         "starts": {name: _state(start) for name, start in m.starts.items()},
         "velocities": {name: _state(velocity) for name, velocity in m.velocities.items()},
@@ -88,6 +94,13 @@ def _joint(m: Mechanism, joint: Joint) -> dict[str, Any]:
     if joint.motion is not None:
         out["law"] = plain(joint.motion, f"{what}: its law")
     return out
+
+
+def _force(m: Mechanism, force: Force) -> dict[str, Any]:
+    what = f"{m.name}: force '{force.name}'"
+    out = {"kind": force.kind.name, "i": plain(force.i, what), "j": plain(force.j, what)}
+    out["params"] = {key: plain(value, f"{what}: {key}") for key, value in force.params.items()}
+    return out | {"laws": {key: plain(law, f"{what}: {key}") for key, law in force.laws.items()}}
 
 
 def _state(state: Any) -> dict[str, Any]:
@@ -130,17 +143,34 @@ def _read_state(m: Mechanism, name: str, entry: Entry, turn: str) -> tuple[float
 
 
 def _read_joint(m: Mechanism, part: str, name: str, entry: Entry) -> None:
-    kinds = {key: kind for key, kind in KINDS.items() if kind.driven == (part == "drivers")}
+    kind = _kind(entry, part[:-1], {key: kind for key, kind in KINDS.items() if kind.driven == (part == "drivers")})
+    entry.refuse_others("kind", "i", "j", "params", *(["law"] if kind.driven else []))
+    method = getattr(m, kind.name)
+    named = _params(m, entry)
+    if kind.driven:
+        [law] = [p.name for p in inspect.signature(method).parameters.values() if str(p.annotation) == "Law"]
+        named[law] = law_from(entry.entry("law").data, entry.where)
+    _add(m, method, name, entry, named)
+
+
+def _read_force(m: Mechanism, name: str, entry: Entry) -> None:
+    kind = _kind(entry, "force", FORCE_KINDS)
+    entry.refuse_others("kind", "i", "j", "params", "laws")
+    laws = {key: law_from(law.data, law.where) for key, law in entry.entries("laws")}
+    _add(m, getattr(m, kind.name), name, entry, _params(m, entry) | laws)
+
+
+def _kind[K](entry: Entry, what: str, kinds: Mapping[str, K]) -> K:
     kind = kinds.get(entry.text("kind"))
     if kind is None:
         raise ModelError(
-            f"{entry.where}: there is no {part[:-1]} of kind '{entry.text('kind')}'; there is: {', '.join(kinds)}"
+            f"{entry.where}: there is no {what} of kind '{entry.text('kind')}'; there is: {', '.join(kinds)}"
         )
-    entry.refuse_others("kind", "i", "j", "params", *(["law"] if kind.driven else []))
-    markers = [_read_marker(m, entry.entry(key)) for key in ("i", "j")]
-    params = {key: _value(m, value, entry) for key, value in entry.entry("params").data.items()}
-    laws = [law_from(entry.entry("law").data, entry.where)] if kind.driven else []
-    add(getattr(m, kind.name), entry.where, name, markers, params, laws)
+    return kind
+
+
+def _params(m: Mechanism, entry: Entry) -> dict[str, Any]:
+    return {key: _value(m, value, entry) for key, value in entry.entry("params").data.items()}
 
 
 def _value(m: Mechanism, value: Any, entry: Entry) -> Any:
@@ -154,24 +184,17 @@ def _value(m: Mechanism, value: Any, entry: Entry) -> Any:
     return value
 
 
-def add(
-    method: Callable[..., Any],
-    where: str,
-    name: str,
-    markers: Sequence[Marker],
-    params: Mapping[str, Any],
-    laws: Sequence[Any],
-) -> None:
+def _add(m: Mechanism, method: Callable[..., Any], name: str, entry: Entry, named: dict[str, Any]) -> None:
     """Call a method of Mechanism that adds a joint, driver or force.
 
-    Its parameters that are markers or bodies take the last of ``markers`` in order, those that are laws ``laws``,
-    the rest come from ``params`` by name.
+    Its parameters that must be markers or bodies take the last of markers i and j in order, a body that may be given
+    (``against``, ``frame``) takes what is left; all others are ``named``.
     """
-    named = dict(params)
-    slots = [p for p in inspect.signature(method).parameters.values() if p.name not in named and p.name != "name"]
-    places = [p for p in slots if str(p.annotation) in ("Marker", "Body")]
-    for slot, marker in zip(places, markers[len(markers) - len(places) :], strict=False):
+    markers = [_read_marker(m, entry.entry(key)) for key in ("i", "j")]
+    slots = [p for p in inspect.signature(method).parameters.values() if p.name not in named]
+    needed = [p for p in slots if str(p.annotation) in ("Marker", "Body")]
+    given = [p for p in slots if str(p.annotation) == "Body | None"]
+    left = markers[: len(markers) - len(needed)]
+    for slot, marker in [*zip(needed, markers[len(left) :], strict=False), *zip(given, left, strict=False)]:
         named[slot.name] = marker if str(slot.annotation) == "Marker" else marker.body
-    for slot, law in zip([p for p in slots if str(p.annotation) == "Law"], laws, strict=False):
-        named[slot.name] = law
-    called(method, where, [name], named)
+    called(method, entry.where, [name], named)

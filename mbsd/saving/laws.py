@@ -1,16 +1,16 @@
 """Laws and other values of a model as plain data, and back.
 
-A law is one file with a function of its name, whose parameters are fields of what it returns:
+A law is a class with a function of its name beside it, whose parameters are fields of what it returns:
 ``harmonic(amplitude, rate, phase, mean)`` is kept as ``{"law": "harmonic", "amplitude": ..., ...}``. So a new file in
-one of LAW_PACKAGES is saved and loaded without a word here.
+one of LAW_PLACES is saved and loaded without a word here.
 """
 
 from __future__ import annotations
 
 import importlib
-import importlib.util
 import inspect
 import pkgutil
+import re
 from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
@@ -20,22 +20,26 @@ import numpy as np
 from mbsd.body import Body, Marker
 from mbsd.errors import ModelError
 
-LAW_PACKAGES = ("mbsd.motions", "mbsd.curves")
-"""Folders of laws, one file a law."""
+LAW_PLACES = ("mbsd.motions", "mbsd.curves")
+"""Folders and files of laws."""
 
 
 @cache
 def factories() -> dict[str, Callable[..., Any]]:
-    """Every law's function by its name."""
+    """Every law's function by its name, which is that of its class in small letters: ConstantRate, constant_rate."""
     found: dict[str, Callable[..., Any]] = {}
-    for package in LAW_PACKAGES:
-        if importlib.util.find_spec(package) is None:
-            continue
-        for file in pkgutil.iter_modules(getattr(importlib.import_module(package), "__path__", [])):
-            factory = getattr(importlib.import_module(f"{package}.{file.name}"), file.name, None)
-            if callable(factory):
-                found[file.name] = factory
+    for place in LAW_PLACES:
+        module = importlib.import_module(place)
+        files = [f"{place}.{file.name}" for file in pkgutil.iter_modules(getattr(module, "__path__", []))]
+        for file in files or [place]:
+            content = vars(importlib.import_module(file))
+            classes = [v for v in content.values() if isinstance(v, type) and v.__module__ == file]
+            found |= {name: content[name] for name in map(_small, classes) if callable(content.get(name))}
     return found
+
+
+def _small(law: type) -> str:
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", law.__name__).lower()
 
 
 def loadable_laws() -> dict[str, Callable[..., Any]]:
@@ -61,7 +65,7 @@ def plain(value: Any, where: str) -> Any:
         return {str(key): plain(item, f"{where}.{key}") for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [plain(item, f"{where}[{k}]") for k, item in enumerate(value)]
-    name = type(value).__module__.rpartition(".")[2]
+    name = _small(type(value))
     factory = factories().get(name)
     if factory is None or type(value).__module__ != factory.__module__:
         described = f"the Python function {_name(value)}" if callable(value) else f"a {type(value).__name__}"

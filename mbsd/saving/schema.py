@@ -12,6 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from mbsd.forces.kind import FORCE_KINDS
 from mbsd.joints.kind import KINDS
 from mbsd.model import Mechanism
 from mbsd.saving.document import SCHEMA, SCHEMA_VERSION
@@ -26,6 +27,7 @@ TYPES: dict[str, dict[str, Any]] = {
     "bool": {"type": "boolean"},
     "str": {"type": "string"},
     "Sequence[float]": {"type": "array", "items": NUMBER},
+    "None": {"type": "null"},
 }
 
 
@@ -52,6 +54,7 @@ def schema() -> dict[str, Any]:
         "bodies": _table("body"),
         "joints": _table("joint"),
         "drivers": _table("driver"),
+        "forces": _table("force"),
         "traces": _table("marker"),
         "starts": _table("start"),
         "velocities": _table("velocity"),
@@ -59,6 +62,7 @@ def schema() -> dict[str, Any]:
     definitions = {"marker": marker, "body": body, "start": start, "velocity": velocity, "law": {"oneOf": laws}}
     definitions["joint"] = {"oneOf": [_kind(name) for name, kind in KINDS.items() if not kind.driven]}
     definitions["driver"] = {"oneOf": [_kind(name) for name, kind in KINDS.items() if kind.driven]}
+    definitions["force"] = {"oneOf": [_force(name) for name in FORCE_KINDS]}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Model",
@@ -82,18 +86,32 @@ def _kind(name: str) -> dict[str, Any]:
     return _object(fixed)
 
 
+def _force(name: str) -> dict[str, Any]:
+    reference = {"$ref": "#/$defs/marker"}
+    method = getattr(Mechanism, name)
+    params, law = _parameters(method), ({"$ref": "#/$defs/law"}, False)
+    laws = {p.name: law for p in inspect.signature(method).parameters.values() if _words(p)[0] in ("Amount", "Curve")}
+    amounts = {key: (NUMBER, False) for key in laws if key in params}
+    fixed = {"kind": {"const": name}, "i": reference, "j": reference}
+    return _object(fixed | {"params": _object({}, params | amounts), "laws": _object({}, laws)})
+
+
+def _words(p: inspect.Parameter) -> list[str]:
+    """The types of a parameter."""
+    return [word.strip() for word in str(p.annotation).split("|")]
+
+
 def _parameters(function: Callable[..., Any]) -> dict[str, tuple[dict[str, Any], bool]]:
     """What a method or law takes beside names, markers, bodies and laws: its schema, and whether it must be there."""
     out = {}
     for p in inspect.signature(function).parameters.values():
-        words = [word.strip() for word in str(p.annotation).split("|")]
-        if p.name in ("self", "name") or words[0] in ("Marker", "Body", "Law"):
+        words = _words(p)
+        if p.name in ("self", "name") or words[0] in ("Marker", "Body", "Law", "Curve"):
             continue
-        known = TYPES.get(words[0], {})
+        types = [TYPES[word] for word in words if word in TYPES]
+        known = types[0] if len(types) == 1 else {"anyOf": types} if types else {}
         if p.kind is inspect.Parameter.VAR_POSITIONAL:
             known = {"type": "array", "items": known}
-        if "None" in words:
-            known = {"anyOf": [known, {"type": "null"}]} if known else known
         out[p.name] = known, p.default is inspect.Parameter.empty
     return out
 

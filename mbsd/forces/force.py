@@ -16,6 +16,8 @@ def _elements(force):
     return (Element(PUSH, (term,)),)
 
 
-PUSH_FORCE = register(
-    ForceKind("push", _elements, example=lambda m, i, j: m.force("example", j, 3.0, direction=(0.6, 0.8), frame=i.body))
+FORCE = register(
+    ForceKind(
+        "force", _elements, example=lambda m, i, j: m.force("example", j, 3.0, direction=(0.6, 0.8), frame=i.body)
+    )
 )

@@ -164,7 +164,7 @@ def _com_distance(m: MechanismBase, body: Body) -> float:
 
 def _marker_angles(m: MechanismBase) -> Iterator[Finding]:
     named: list[tuple[str, Marker]] = [(f"trace {name}", marker) for name, marker in m.traces.items()]
-    for joint in (*m.joints.values(), *m.drivers.values()):
+    for joint in (*m.joints.values(), *m.drivers.values(), *m.forces.values()):
         named += [(joint.name, joint.i), (joint.name, joint.j)]
     for name, marker in named:
         if _in_degrees(marker.angle, 1.0):

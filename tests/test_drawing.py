@@ -14,15 +14,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from mbsd import Mechanism, ModelError, constant_rate
+from mbsd.drawing import look
+from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.outline import hull, rounded
 from mbsd.drawing.pose import pose_of, start_pose
 from mbsd.drawing.symbols import free_side
+from mbsd.drawing.wheels import draw_gear_pair
+from mbsd.forces.kind import ForceKind
 from mbsd.joints.kind import JointKind
 from shared.paths import ROOT
 from tests import four_bars
+from tests.test_forces import all_kinds as force_kinds
+from tests.test_forces import example as force_example
 from tests.test_joints import all_kinds
 from tests.test_mobility import four_bar, parallelogram
 
@@ -103,6 +110,49 @@ def test_every_kind_can_be_drawn(kind: JointKind, to_ground: bool) -> None:
     assert "example" in words(picture.ax)
     assert picture.ax.get_aspect() == 1.0
     assert "example" in {element.text for element in ET.fromstring(m.topology().text).iter()}
+
+
+@pytest.mark.parametrize("to_ground", [False, True], ids=["two_bodies", "to_ground"])
+@pytest.mark.parametrize("kind", force_kinds(), ids=lambda kind: kind.name)
+def test_every_kind_of_force_can_be_drawn(kind: ForceKind, to_ground: bool) -> None:
+    m, _ = force_example(kind, 1, to_ground)
+    ax = m.draw().ax
+    assert "example" in words(ax)
+    assert any(line.get_color() == look.LOAD for line in ax.lines) or any(
+        to_hex(patch.get_edgecolor()) == look.LOAD for patch in ax.patches
+    )
+    assert "example" in {element.text for element in ET.fromstring(m.topology().text).iter()}
+
+
+@given(
+    teeth=st.tuples(st.integers(12, 30), st.integers(12, 30), st.integers(40, 70)),
+    turned=st.floats(-3.0, 3.0),
+)
+def test_gears_that_touch_show_a_tooth_at_a_gap(teeth: tuple[int, int, int], turned: float) -> None:
+    sun, planet, _ = (0.01 * n for n in teeth)
+    ring = sun + 2 * planet
+    m = Mechanism("train")
+    bodies = {name: m.body(name) for name in ("sun", "planet", "ring")}
+    place = (sun + planet) * np.array([math.cos(turned), math.sin(turned)])
+    m.revolute("A", m.ground.origin, bodies["sun"].origin)
+    m.revolute("B", m.ground.at(*place), bodies["planet"].origin)
+    m.revolute("C", m.ground.origin, bodies["ring"].origin)
+    m.gear_pair("inner", bodies["sun"].origin, bodies["planet"].origin, sun, planet)
+    m.gear_pair("outer", bodies["ring"].origin, bodies["planet"].origin, ring, planet, internal=True)
+    colours = dict.fromkeys(m.bodies, "#000000")
+    canvas = Canvas(Figure().subplots(), 0.02)
+    for joint in (m.joints["inner"], m.joints["outer"]):
+        draw_gear_pair(canvas, joint, start_pose(m), colours)
+
+    def out(name: str, radius: float, direction: float) -> float:
+        """1 at a tooth of a gear's outside, -1 at a gap."""
+        count, phase = canvas.wheels[name, radius]
+        return math.cos(count * direction - phase)
+
+    line = math.atan2(place[1], place[0])
+    assert out("sun", sun, line) == pytest.approx(-out("planet", planet, line + math.pi), abs=1e-6)
+    # the ring's teeth point inwards: its outward profile is the negative
+    assert -out("ring", ring, line) == pytest.approx(out("planet", planet, line), abs=1e-6)
 
 
 def test_links_that_do_not_close_are_shown_open() -> None:

@@ -39,6 +39,8 @@ class Canvas:
     """(k, 2) points of what is drawn (m)."""
     supports: list[Point] = field(default_factory=list)
     """Pins that have ground's sign already."""
+    wheels: dict[tuple[str, float], tuple[int, float]] = field(default_factory=dict)
+    """Teeth and phase (rad) of the gears drawn, by body and radius."""
     labels: list[Label] = field(default_factory=list)
 
     def line(
@@ -70,6 +72,24 @@ class Canvas:
         """A circle of ``radius`` units."""
         turn = np.linspace(0.0, 2 * math.pi, 49)[:-1]
         self.shape(centre + radius * self.unit * np.stack([np.cos(turn), np.sin(turn)], axis=1), **look)
+
+    def band(self, outer: Point, inner: Point, colour: str) -> None:
+        """What lies between two closed outlines (m)."""
+        from matplotlib.colors import to_rgba
+        from matplotlib.patches import PathPatch
+        from matplotlib.path import Path
+
+        self.keep(outer)
+        self.keep(inner)
+        ring = Path.make_compound_path(Path(outer, closed=True), Path(inner[::-1], closed=True))
+        self.ax.add_patch(PathPatch(ring, facecolor=to_rgba(colour, 0.12), edgecolor=colour, linewidth=1.3, zorder=1.7))
+
+    def head(self, tip: Point, direction: Point, colour: str) -> None:
+        """The head of an arrow."""
+        along = direction / np.hypot(*direction) * self.unit
+        across = np.array([-along[1], along[0]])
+        points = np.array([tip, tip - 0.85 * along + 0.36 * across, tip - 0.85 * along - 0.36 * across])
+        self.shape(points, edge=colour, fill=colour, width=0.6, order=9.6)
 
     def hatched(self, a: Point, b: Point, side: Point, order: float = 1.5) -> None:
         """The sign of ground: a line from a to b (m) with strokes on ``side`` (a direction)."""

@@ -1,15 +1,17 @@
 """Small signs of the joint kinds for the topology diagram, as SVG elements about a centre.
 
-A kind without a sign of its own gets a diamond; drivers a turning or a straight arrow.
+A kind without a sign of its own gets a diamond; drivers a turning or a straight arrow, forces a zigzag.
 """
 
 from __future__ import annotations
 
 from mbsd.drawing.look import PAPER
 from mbsd.drawing.svg_text import d, tag
+from mbsd.forces.kind import FORCE_KINDS
 from mbsd.joints.kind import KINDS
 
 STROKE = 1.8
+WHEELS = ("gear_pair", "belt")
 
 
 def icon(kind: str, x: float, y: float, radius: float, colour: str) -> list[str]:
@@ -33,9 +35,18 @@ def _inside(kind: str, x: float, y: float, r: float, colour: str) -> list[str]:
         return [_stroke(d("M", x - 0.48 * r, y, "h", 0.96 * r), colour), *ends]
     if kind in KINDS and KINDS[kind].driven:
         return (_turning if KINDS[kind].units[1] == "rad" else _pushing)(x, y, r, colour)
+    if kind in WHEELS:
+        return [_disc(x - 0.26 * r, y, 0.3 * r, colour), _disc(x + 0.3 * r, y, 0.22 * r, colour)]
+    if kind in FORCE_KINDS:
+        return [_stroke(d("M", x - 0.72 * r, y, "h", 0.2 * r, *_zigzag(r), "h", 0.2 * r), colour)]
     half = 0.5 * r
     diamond = d("M", x - half, y, "l", half, -half, "l", half, half, "l", -half, half, "z")
     return [_stroke(diamond, colour)]
+
+
+def _zigzag(r: float) -> list[str | float]:
+    up, step = 0.36 * r, 0.26 * r
+    return ["l", step / 2, -up, "l", step, 2 * up, "l", step, -2 * up, "l", step, 2 * up, "l", step / 2, -up]
 
 
 def _turning(x: float, y: float, r: float, colour: str) -> list[str]:

@@ -9,12 +9,14 @@ import numpy as np
 
 from mbsd.body import Marker
 from mbsd.drawing.canvas import Canvas
+from mbsd.drawing.loads import draw_force
 from mbsd.drawing.look import AXIS_X, AXIS_Y, FAINT, INK, QUIET, colour
 from mbsd.drawing.names import place_names
 from mbsd.drawing.outline import rounded
 from mbsd.drawing.picture import Picture
 from mbsd.drawing.pose import Pose
 from mbsd.drawing.symbols import Place, draw_joint, free_side
+from mbsd.drawing.wheels import name_place, reach
 from mbsd.errors import ModelError
 from mbsd.model import Mechanism
 
@@ -25,6 +27,8 @@ WIDTH, TALLEST, FLATTEST = 7.0, 7.0, 2.6
 """Of a figure of our own (inches)."""
 UNITS_ACROSS = 34.0
 """Units in the larger side of a drawing."""
+UNPLACED = ("force", "torque", "torsion_spring", "curve_of_angle")
+"""Forces whose first marker is a direction or a body, no place."""
 SMALLEST = 1e-12
 """A unit (m) below this is the rounding of one single place."""
 SLIDING = ("prismatic", "pin_in_slot")
@@ -37,7 +41,9 @@ def draw(m: Mechanism, pose: Pose, ax: Axes | None, frames: bool, names: bool) -
     except ImportError as error:
         raise ModelError("drawing needs matplotlib: install mbsd[draw]") from error
     points = {name: _points(m, pose, name) for name in m.bodies}
-    everything = np.concatenate([*points.values(), *pose.paths.values(), np.zeros((0, 2))])
+    wheels = [reach(joint, pose) for joint in m.joints.values()]
+    loads = [pose.place(force.j).reshape(1, 2) for force in m.forces.values()]
+    everything = np.concatenate([*points.values(), *pose.paths.values(), *wheels, *loads])
     if not len(everything):
         everything = np.zeros((1, 2))
     low, high = everything.min(axis=0), everything.max(axis=0)
@@ -56,11 +62,15 @@ def draw(m: Mechanism, pose: Pose, ax: Axes | None, frames: bool, names: bool) -
         _frame(canvas, pose, "ground", 2.6)
     for joint in (*m.joints.values(), *m.drivers.values()):
         draw_joint(canvas, Place(joint, pose, colours, _side(m, pose, points, joint.j, unit)))
+    for force in m.forces.values():
+        draw_force(canvas, force, pose)
     for name, marker in m.traces.items():
         canvas.circle(pose.place(marker), 0.3, fill=colours.get(marker.body.name, INK), order=9, width=0.8)
         canvas.label(name, pose.place(marker), 0.5, colours.get(marker.body.name, INK))
     for name in colours:
-        canvas.label(name, _middle(pose, points[name]), 1.1, colours[name], 9.5)
+        rim = name_place(m, pose, name, unit)
+        place, clearance = (_middle(points[name]), 1.1) if rim is None else (rim, 0.4)
+        canvas.label(name, place, clearance, colours[name], 9.5)
     _finish(ax, low, high, m.name, pose)
     picture = Picture(ax, own)
     if own:  # the layout is settled once, so that names stand right and every format is the same picture
@@ -87,6 +97,9 @@ def _points(m: Mechanism, pose: Pose, name: str) -> np.ndarray:
             out += [] if slides and name == "ground" else [start]
             if slides and joint.name in pose.travel:
                 out += [start + s * axis for s in (pose.travel[joint.name].min(), pose.travel[joint.name].max())]
+    for force in m.forces.values():
+        ends = [force.j] if force.kind.name in UNPLACED else [force.i, force.j]
+        out += [pose.place(marker) for marker in ends if marker.body.name == name]
     out += [pose.place(marker) for marker in m.traces.values() if marker.body.name == name]
     length = m.bodies[name].length
     if length is not None:
@@ -146,7 +159,7 @@ def _side(m: Mechanism, pose: Pose, points: dict[str, np.ndarray], j: Marker, un
     return free_side([math.atan2(y, x) for x, y in away])
 
 
-def _middle(pose: Pose, points: np.ndarray) -> np.ndarray:
+def _middle(points: np.ndarray) -> np.ndarray:
     return (points.min(axis=0) + points.max(axis=0)) / 2 if len(points) < 3 else points.mean(axis=0)
 
 

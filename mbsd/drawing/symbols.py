@@ -14,6 +14,7 @@ import numpy as np
 from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.look import INK, MOVED, PAPER, QUIET, WRONG
 from mbsd.drawing.pose import Pose
+from mbsd.drawing.wheels import draw_belt, draw_gear_pair
 from mbsd.joint import Joint
 
 PIN = 0.62
@@ -177,7 +178,7 @@ def _drive_angle(canvas: Canvas, place: Place) -> None:
     angles = toward + np.radians(np.linspace(20, 120, 25))
     arc = centre + 2.1 * u * np.stack([np.cos(angles), np.sin(angles)], axis=1)
     canvas.line(arc[:-2], MOVED, 1.8, order=7)
-    _head(canvas, arc[-1], arc[-1] - arc[-3])
+    canvas.head(arc[-1], arc[-1] - arc[-3], MOVED)
     canvas.label(place.joint.name, arc[12], 0.3, MOVED)
 
 
@@ -187,7 +188,7 @@ def _drive_coordinate(canvas: Canvas, place: Place) -> None:
     normal = normal if normal[1] > 0 or (normal[1] == 0 and normal[0] > 0) else -normal
     start = place.j + 1.9 * u * normal
     canvas.line([start - 1.4 * u * axis, start + 1.1 * u * axis], MOVED, 1.8, order=7)
-    _head(canvas, start + 1.6 * u * axis, axis)
+    canvas.head(start + 1.6 * u * axis, axis, MOVED)
     canvas.label(place.joint.name, start, 0.3, MOVED)
 
 
@@ -204,20 +205,14 @@ def _drive_distance(canvas: Canvas, place: Place) -> None:
     canvas.label(place.joint.name, (a + b) / 2, 0.8, MOVED)
 
 
-def _head(canvas: Canvas, tip: np.ndarray, direction: np.ndarray) -> None:
-    """The head of an arrow."""
-    along = direction / np.hypot(*direction) * canvas.unit
-    across = np.array([-along[1], along[0]])
-    points = np.array([tip, tip - 0.85 * along + 0.36 * across, tip - 0.85 * along - 0.36 * across])
-    canvas.shape(points, edge=MOVED, fill=MOVED, width=0.6, order=7)
-
-
 SYMBOLS: dict[str, Callable[[Canvas, Place], None]] = {
     "revolute": _revolute,
     "prismatic": _prismatic,
     "pin_in_slot": _slot,
     "weld": _weld,
     "distance": _distance,
+    "gear_pair": lambda canvas, place: draw_gear_pair(canvas, place.joint, place.pose, place.colours),
+    "belt": lambda canvas, place: draw_belt(canvas, place.joint, place.pose, place.colours),
     "drive_angle": _drive_angle,
     "drive_relative_angle": _drive_angle,
     "drive_coordinate": _drive_coordinate,

@@ -1,4 +1,4 @@
-"""The topology as SVG: bodies as boxes, joints and drivers as signs between them, redundant joints in red."""
+"""The topology as SVG: bodies as boxes, joints, drivers and forces as signs between them, redundant ones in red."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from mbsd.drawing.icons import icon
 from mbsd.drawing.picture import Svg
 from mbsd.drawing.svg_text import d, tag
 from mbsd.errors import AssemblyError, ModelError
+from mbsd.force import Force
+from mbsd.joint import Joint
 from mbsd.mobility import Mobility
 from mbsd.model import Mechanism
 
@@ -39,7 +41,7 @@ class Node:
 
 def topology(m: Mechanism) -> Svg:
     """See :meth:`mbsd.model.Mechanism.topology`."""
-    joints = [*m.joints.values(), *m.drivers.values()]
+    joints = [*m.joints.values(), *m.drivers.values(), *m.forces.values()]
     if len(m.bodies) + len(joints) > MOST_NODES:
         raise ModelError(
             f"{m.name}: {len(m.bodies) + len(joints)} bodies, joints and drivers are too many for one diagram "
@@ -48,9 +50,9 @@ def topology(m: Mechanism) -> Svg:
     found, said = _mobility(m)
     redundant = set(found.redundant) if found else set()
     nodes = [_body(m, name, k) for k, name in enumerate(m.bodies)]
-    nodes += [_joint(j.name, j.kind.name, j.kind.driven, j.name in redundant) for j in joints]
+    nodes += [_joint(j, j.name in redundant) for j in joints]
     number = {name: k for k, name in enumerate(m.bodies)}
-    edges = [(number[name], len(number) + k) for k, joint in enumerate(joints) for name in joint.bodies]
+    edges = [(number[name], len(number) + k) for k, joint in enumerate(joints) for name in dict.fromkeys(joint.bodies)]
     places = layout(edges, np.array([node.size for node in nodes]), EDGE) * np.array([1.0, -1.0])
     return Svg(_svg(m.name, said, nodes, edges, places, redundant))
 
@@ -76,10 +78,12 @@ def _body(m: Mechanism, name: str, k: int) -> Node:
     return Node(name, below, "body", look.colour(k - 1), (width, BODY_HEIGHT + 12))
 
 
-def _joint(name: str, kind: str, driven: bool, redundant: bool) -> Node:
+def _joint(joint: Joint | Force, redundant: bool) -> Node:
+    name, kind = joint.name, joint.kind.name
     words = kind.replace("_", " ")
     below = f"{words}, redundant" if redundant else words
-    colour = look.WRONG if redundant else look.MOVED if driven else look.INK
+    colour = look.LOAD if isinstance(joint, Force) else look.MOVED if joint.kind.driven else look.INK
+    colour = look.WRONG if redundant else colour
     width = max(2 * JOINT, _width(name, 12), _width(below, 9.5))
     return Node(name, below, kind, colour, (width + 12, 2 * JOINT + 34))
 
@@ -108,7 +112,8 @@ def _svg(
     for a, b in edges:
         (x1, y1), (x2, y2) = places[a], _middle(nodes[b], places[b])
         ink = look.WRONG if nodes[b].name in redundant else look.QUIET
-        dashes = {"stroke_dasharray": "5 4"} if nodes[b].name in redundant else {}
+        loose = {"stroke_dasharray": "1.5 3.5", "stroke_linecap": "round"} if nodes[b].colour == look.LOAD else {}
+        dashes = {"stroke_dasharray": "5 4"} if nodes[b].name in redundant else loose
         out.append(tag("line", x1=x1, y1=y1, x2=x2, y2=y2, stroke=ink, stroke_width=1.6, **dashes))
     for node, place in zip(nodes, places, strict=True):
         out += _drawn_body(node, place) if node.kind in ("body", "ground") else _drawn_joint(node, place)

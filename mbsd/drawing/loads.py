@@ -1,0 +1,88 @@
+"""Signs of forces: a zigzag between two points, a spiral between two bodies, an arrow for a load from outside."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from mbsd.drawing.canvas import Canvas
+from mbsd.drawing.look import LOAD
+from mbsd.drawing.pose import Pose
+from mbsd.force import Force
+from mbsd.forces.kind import AXIS, DAMPING, LINE, PUSH, TURN
+
+COILS = 5, 12
+"""Fewest and most; between them one for each 1.4 units."""
+
+
+def draw_force(canvas: Canvas, force: Force, pose: Pose) -> None:
+    """The sign of what the force's first element measures."""
+    element = force.kind.elements(force)[0]
+    i, j = pose.place(force.i), pose.place(force.j)
+    if element.kind == TURN:
+        _turning(canvas, force, j)
+    elif element.kind == PUSH:
+        way = -1.0 if force.params.get("force", 0.0) < 0 else 1.0
+        _arrow(canvas, force.name, j, way * pose.axis(force.i))
+    elif force.kind.name == "gravitation":
+        canvas.line([i, j], LOAD, 1.0, order=3, linestyle=(0, (1, 2)))
+        canvas.label(force.name, (i + j) / 2, 0.4, LOAD)
+    elif element.kind == LINE or len(force.kind.elements(force)) == 1:
+        end = i + float((j - i) @ pose.axis(force.i)) * pose.axis(force.i) if element.kind == AXIS else j
+        damped = any(term.kind == DAMPING and term.a != 0.0 for term in element.terms)
+        _coil(canvas, i, end, damped)
+        for point in (i, end):
+            canvas.circle(point, 0.26, edge=LOAD, fill=LOAD, order=5.5, width=0.5)
+        canvas.label(force.name, (i + end) / 2, 1.3, LOAD)
+    else:  # springs along both axes: a bushing
+        for radius in (1.0, 0.5):
+            canvas.circle(j, radius, edge=LOAD, order=3.2, width=1.2, alpha=0.3)
+        canvas.label(force.name, j, 1.2, LOAD)
+
+
+def _coil(canvas: Canvas, i: np.ndarray, j: np.ndarray, damped: bool) -> None:
+    """A spring; beside it a dashpot where there is damping."""
+    length = float(np.hypot(*(j - i)))
+    if length < 0.2 * canvas.unit:
+        canvas.circle(j, 0.9, edge=LOAD, order=3.2, width=1.2, alpha=0.3)
+        return
+    along = (j - i) / length
+    across = np.array([-along[1], along[0]])
+    half = min(0.65 * canvas.unit, 0.3 * length)
+    shift = 1.1 * half * across if damped else np.zeros(2)
+    first, last = i + 0.18 * length * along, j - 0.18 * length * along
+    coils = int(np.clip(round(0.64 * length / (1.4 * canvas.unit)), *COILS))
+    steps = np.linspace(0.0, 1.0, 2 * coils + 2)
+    sides = np.array([0.0, *([1.0, -1.0] * coils), 0.0])
+    zigzag = first + steps[:, None] * (last - first) + half * sides[:, None] * across + shift
+    canvas.line([i, first, *zigzag, last, j], LOAD, 1.3, order=3)
+    if damped:
+        middle = (first + last) / 2
+        cup = 0.22 * float(np.hypot(*(last - first))) * along
+        wall = 0.55 * half * across
+        pot = np.array([middle + cup + wall, middle - cup + wall, middle - cup - wall, middle + cup - wall])
+        canvas.line(pot - shift, LOAD, 1.3, order=3)
+        canvas.line([first, first - shift, middle - cup - shift], LOAD, 1.3, order=3)
+        canvas.line([last, last - shift, middle - shift], LOAD, 1.3, order=3)
+        canvas.line([middle - shift + 0.8 * wall, middle - shift - 0.8 * wall], LOAD, 1.8, order=3)
+
+
+def _turning(canvas: Canvas, force: Force, centre: np.ndarray) -> None:
+    """A spiral spring; an arrow around the centre where it is a torque from outside or a motor."""
+    spring = "stiffness" in force.params or "of_angle" in force.laws
+    turn = np.linspace(-0.4, 5 * math.pi if spring else 1.2 * math.pi, 90)
+    radius = (0.8 + 1.2 * turn / turn[-1] if spring else np.full(len(turn), 1.7)) * canvas.unit
+    path = centre + radius[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    canvas.line(path, LOAD, 1.3, order=7)
+    if not spring:
+        canvas.head(path[-1] + (path[-1] - path[-2]), path[-1] - path[-2], LOAD)
+    canvas.label(force.name, centre, 2.2, LOAD)
+
+
+def _arrow(canvas: Canvas, name: str, at: np.ndarray, along: np.ndarray) -> None:
+    tail = at - 4.0 * canvas.unit * along
+    tip = at - 0.75 * canvas.unit * along
+    canvas.line([tail, tip - 0.5 * canvas.unit * along], LOAD, 2.0, order=9.5)
+    canvas.head(tip, along, LOAD)
+    canvas.label(name, tail, 0.4, LOAD)

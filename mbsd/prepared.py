@@ -9,6 +9,9 @@ import numpy as np
 
 from mbsd import kinematics
 from mbsd.assembly import residual_and_jacobian
+from mbsd.assur.groups import Groups
+from mbsd.assur.plan import describe, plan_groups
+from mbsd.assur.solve import SOLVED, solve_groups
 from mbsd.elimination import Elimination, Factors, plan
 from mbsd.errors import AssemblyError, BranchError, ModelError, SingularPoseError
 from mbsd.mobility import Mobility, choose_rows, joint_mobility, refuse_overdriven
@@ -36,6 +39,15 @@ class Prepared:
     sequence: Elimination
     factors: Factors
     mobility: Mobility
+    groups: Groups | None
+    """Where the mechanism falls apart into groups with closed forms; else Newton-Raphson solves it as a whole."""
+
+    @property
+    def route(self) -> str:
+        """How positions are found."""
+        if self.groups is None:
+            return "Newton-Raphson"
+        return f"closed form: {describe(self.groups, self.packed.body_names)}"
 
     def kinematics(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(T, nb, 3) positions, velocities and accelerations of the centres of mass and angles; ground is body 0."""
@@ -44,10 +56,31 @@ class Prepared:
         return q.reshape(shape), v.reshape(shape), a.reshape(shape)
 
     def march(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
-        """Run the kernel; halve the steps it refuses. Also returns how many steps were inserted."""
-        packed = self.packed
+        """Closed forms where they serve, else Newton-Raphson; also returns how many steps were inserted."""
         grid = np.ascontiguousarray(times, float)
-        drives = packed.drives(grid)
+        drives = self.packed.drives(grid)
+        if self.groups is not None:
+            closed = self._closed_form(self.groups, grid, drives)
+            if closed is not None:
+                return *closed, 0
+        return self._newton(times, grid, drives)
+
+    def _closed_form(
+        self, groups: Groups, grid: np.ndarray, drives: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+        """Positions, velocities, accelerations; None where a step is in doubt and Newton-Raphson must look closer."""
+        n3 = len(self.q0)
+        q, v, a = np.zeros((len(grid), n3)), np.zeros((len(grid), n3)), np.zeros((len(grid), n3))
+        turn, point = np.zeros((n3 // 3, 2)), np.zeros((3, 8))
+        turn[0, 0] = 1.0
+        status, _ = solve_groups(groups, self.q0, grid, drives, q, v, a, turn, point)
+        return (q, v, a) if status == SOLVED else None
+
+    def _newton(
+        self, times: np.ndarray, grid: np.ndarray, drives: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
+        """Run the kernel; halve the steps it refuses."""
+        packed = self.packed
         wanted = np.ones(len(grid), bool)
         first = 0
         q, v, a, residual, sign = self._arrays(len(grid))
@@ -162,7 +195,9 @@ def prepare(m: Mechanism, start: float = 0.0, end: float = 1.0) -> Prepared:
         raise
     kept = choose_rows(packed, q0, start)
     sequence, factors = plan(_sample_jacobians(packed), kept, packed.system.row_body)
-    return Prepared(packed, q0, start, sequence, factors, joint_mobility(packed, q0))
+    mobility = joint_mobility(packed, q0)
+    groups = plan_groups(packed, q0, mobility.redundant_rows)
+    return Prepared(packed, q0, start, sequence, factors, mobility, groups)
 
 
 def refuse_bad_laws(packed: Packed, start: float, end: float) -> None:

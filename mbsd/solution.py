@@ -145,6 +145,8 @@ class Solution:
     """(T,) smallest over largest singular value of the scaled Jacobian; 0 at a singular pose."""
     stats: Stats
     mobility: Mobility
+    route: str = "integration"
+    """How positions were found: in closed form group by group, by Newton-Raphson, or by integration."""
     work: np.ndarray | None = None
     """(T,) of forces and drivers since the start (J), gravity left out, of a simulation."""
 

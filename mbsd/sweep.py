@@ -36,6 +36,7 @@ def sweep(m: Mechanism, duration: float | None, steps: int, times: Sequence[floa
         singularity_margin=loads.margin,
         stats=Stats(*(float(r) for r in loads.residuals), steps=len(grid), inserted_steps=inserted),
         mobility=ready.mobility,
+        route=ready.route,
     )
 
 

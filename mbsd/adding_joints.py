@@ -12,13 +12,20 @@ from mbsd.drivers.distance import DRIVE_DISTANCE
 from mbsd.drivers.relative_angle import DRIVE_RELATIVE_ANGLE
 from mbsd.errors import ModelError
 from mbsd.joint import Joint
+from mbsd.joints.angle_lock import ANGLE_LOCK
 from mbsd.joints.belt import BELT
+from mbsd.joints.constraint import CONSTRAINT
 from mbsd.joints.distance import DISTANCE
 from mbsd.joints.gear_pair import GEAR_PAIR
+from mbsd.joints.geneva import GENEVA
 from mbsd.joints.kind import JointKind
 from mbsd.joints.pin_in_slot import PIN_IN_SLOT
+from mbsd.joints.point_on_curve import POINT_ON_CURVE
 from mbsd.joints.prismatic import PRISMATIC
+from mbsd.joints.rack_and_pinion import RACK_AND_PINION
 from mbsd.joints.revolute import REVOLUTE
+from mbsd.joints.rolling_disc import ROLLING_DISC
+from mbsd.joints.rolling_on_curve import ROLLING_ON_CURVE
 from mbsd.joints.weld import WELD
 from mbsd.mechanism_base import MechanismBase
 from mbsd.motions import Motion
@@ -93,6 +100,97 @@ class AddingJoints(MechanismBase):
         """A belt or chain over pulleys with centres at i and j (m), open or crossed; ``phase`` as in gear_pair."""
         radii = self._radii(name, radius_i=radius_i, radius_j=radius_j)
         return self._join(BELT, name, i, j, None, **radii, crossed=bool(crossed), phase=self._phase(name, phase))
+
+    def rack_and_pinion(
+        self, name: str, rack: Marker, pinion: Marker, radius: float, phase: Sequence[float] | None = None
+    ) -> Joint:
+        """A pinion of the given pitch radius (m) about marker ``pinion`` on the x axis of marker ``rack``."""
+        radii = self._radii(name, radius=radius)
+        return self._join(RACK_AND_PINION, name, rack, pinion, None, **radii, phase=self._phase(name, phase))
+
+    def rolling_disc(
+        self, name: str, line: Marker, disc: Marker, radius: float, phase: Sequence[float] | None = None
+    ) -> Joint:
+        """A disc of the given radius (m) about marker ``disc`` rolls on the y side of marker ``line``'s x axis."""
+        radii = self._radii(name, radius=radius)
+        return self._join(ROLLING_DISC, name, line, disc, None, **radii, phase=self._phase(name, phase))
+
+    def rolling_on_curve(
+        self,
+        name: str,
+        curve: Marker,
+        disc: Marker,
+        points: Sequence[Sequence[float]],
+        radius: float,
+        closed: bool = False,
+    ) -> Joint:
+        """A disc of the given radius (m) about marker ``disc`` rolls on the left of a curve through ``points`` (k, 2).
+
+        The points are in the axes of marker ``curve`` (m); beyond its ends an open curve goes on straight.
+        """
+        import numpy as np
+
+        from mbsd.curve_numbers import checked_points, curvature, curve_pieces
+
+        what = f"{self.name}: joint '{name}'"
+        radii, plain = self._radii(name, radius=radius), checked_points(what, points, closed)
+        tightest = float(curvature(*curve_pieces(np.array(plain), closed)).max())
+        if tightest * radius >= 1.0:
+            raise ModelError(
+                f"{what}: the curve is bent to a radius of {1 / tightest:.4g} m, where a disc of {radius:.4g} m "
+                "touches twice; use a smaller disc or a smoother curve"
+            )
+        return self._join(ROLLING_ON_CURVE, name, curve, disc, None, points=plain, closed=bool(closed), **radii)
+
+    # -- curves and functions -----------------------------------------------------------------------------------
+
+    def point_on_curve(
+        self,
+        name: str,
+        curve: Marker,
+        point: Marker,
+        points: Sequence[Sequence[float]],
+        closed: bool = False,
+        distance: float = 0.0,
+    ) -> Joint:
+        """Marker ``point`` moves on a curve through ``points`` (k, 2) in the axes of marker ``curve`` (m).
+
+        ``distance`` (m) is how far it stays to the left of the curve; beyond its ends an open curve goes on straight.
+        """
+        from mbsd.curve_numbers import checked_points
+
+        what = f"{self.name}: joint '{name}'"
+        plain = checked_points(what, points, closed)
+        distance = self._number(f"joint '{name}': distance", distance)
+        return self._join(
+            POINT_ON_CURVE, name, curve, point, None, points=plain, closed=bool(closed), distance=distance
+        )
+
+    def geneva(self, name: str, crank: Marker, wheel: Marker, slots: int, radius: float) -> Joint:
+        """A Geneva: the pin at ``radius`` (m) on the x axis of marker ``crank`` indexes a wheel with ``slots`` slots.
+
+        The x axis of marker ``wheel`` is a slot. The radius must be the distance of the centres times sin(pi / slots).
+        """
+        if isinstance(slots, bool) or not isinstance(slots, int) or slots < 3:
+            raise ModelError(f"{self.name}: joint '{name}' has slots = {slots!r}; it must be a whole number from 3 on")
+        return self._join(GENEVA, name, crank, wheel, None, slots=slots, **self._radii(name, radius=radius))
+
+    def angle_lock(self, name: str, i: Marker, j: Marker) -> Joint:
+        """Marker j keeps the direction of marker i and is free to move."""
+        return self._join(ANGLE_LOCK, name, i, j)
+
+    def constraint(
+        self, name: str, i: Marker, j: Marker, function: Callable[[float, float, float], float], unit: str = "m"
+    ) -> Joint:
+        """``function(x, y, a)`` of the pose of marker j in the axes of marker i (m, rad) is zero.
+
+        Python or numba.njit; its derivatives are found. ``unit`` is that of its value, "m" or "rad".
+        """
+        if not callable(function):
+            raise ModelError(f"{self.name}: joint '{name}' needs a function of x, y and the angle, got {function!r}")
+        if unit not in ("m", "rad"):
+            raise ModelError(f"{self.name}: joint '{name}' has the unit {unit!r}; it must be 'm' or 'rad'")
+        return self._join(CONSTRAINT, name, i, j, None, function=function, unit=unit)
 
     def _radii(self, name: str, **radii: float) -> dict[str, float]:
         out = {key: self._number(f"joint '{name}': {key}", value) for key, value in radii.items()}

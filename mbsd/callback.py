@@ -192,12 +192,12 @@ else:
 
     @intrinsic
     def call(typing, address, t, inputs, outputs):  # pyright: ignore[reportUnusedParameter]
-        """Call the function at ``address``: t, inputs (n,) to outputs (m,), contiguous arrays."""
+        """Call the function at ``address``: t, inputs (n,) to outputs (m,), contiguous arrays or pointers."""
 
         def code(context, builder, signature, arguments):
             where, time, *arrays = arguments
             data = [
-                context.make_array(kind)(context, builder, array).data
+                array if isinstance(kind, types.CPointer) else context.make_array(kind)(context, builder, array).data
                 for kind, array in zip(signature.args[2:], arrays, strict=True)
             ]
             double = cgutils.ir.DoubleType()

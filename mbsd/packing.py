@@ -99,7 +99,7 @@ def pack(m: Mechanism) -> Packed:
     joints = [*m.joints.values(), *m.drivers.values()]
     motions: list[Motion] = []
     tables: dict[str, list[tuple[int, int, int, int]]] = {name: [] for name in ROWS if name not in SPECIALS}
-    specials = Specials()
+    specials = Specials(m.name)
     offsets: list[float] = []
     lengths: list[float] = []
     extents: list[float] = []

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.errors import ModelError
 from mbsd.joint import Joint
 from mbsd.joints.kind import SPECIALS
 
@@ -29,6 +30,7 @@ SAME_PLACE = 1e-6
 class Specials:
     """The special constraints of a mechanism in the order of the table ``System.special``."""
 
+    mechanism: str
     names: list[str] = field(default_factory=list)
     joints: list[Joint] = field(default_factory=list)
     places: list[tuple[int, int, int, int]] = field(default_factory=list)
@@ -45,7 +47,8 @@ class Specials:
     @property
     def angular_rows(self) -> list[int]:
         """Rows whose residual is an angle."""
-        return [place[2] for name, place in zip(self.names, self.places, strict=True) if SPECIALS[name].unit == "rad"]
+        entries = zip(self.names, self.joints, self.places, strict=True)
+        return [place[2] for name, joint, place in entries if joint.params.get("unit", SPECIALS[name].unit) == "rad"]
 
     @property
     def phased(self) -> list[int]:
@@ -69,6 +72,11 @@ class Specials:
         return np.array(rows, np.int64), np.array(addresses, np.int64), np.concatenate(numbers)
 
     def _own_numbers(self, joint: Joint, place: tuple[int, int, int, int]) -> list[float]:
+        if "function" in joint.params:
+            from mbsd.user_constraint import derivatives
+
+            self.callbacks.append(derivatives(joint.params["function"], f"{self.mechanism}: joint '{joint.name}'"))
+            return [float(self.callbacks[-1].address)]
         nth = sum(1 for other in self.places if other[:2] == place[:2] and other[2] < place[2])
         assert joint.kind.numbers is not None
         return [float(number) for number in joint.kind.numbers(joint.params)[nth]]
@@ -117,6 +125,20 @@ def take_phases(packed: Packed, q: np.ndarray, drive: np.ndarray) -> bool:
         residual_and_jacobian(system, pose, drive, packed.ws)
         system.numbers[at + PHASE] = packed.ws.equation[k, 0]
     return given
+
+
+def refuse_impossible(packed: Packed, q: np.ndarray) -> None:
+    """Raise ModelError for a joint that cannot be with its markers as they stand in the closed pose q (3 nb,)."""
+    for joint, place in zip(packed.specials.joints, packed.specials.places, strict=True):
+        if joint.kind.problem is None:
+            continue
+        i, j = place[:2]
+        dx, dy = _place(packed, q, j) - _place(packed, q, i)
+        turn = q[3 * packed.system.marker_body[i] + 2] + joint.i.angle
+        c, s = math.cos(turn), math.sin(turn)
+        problem = joint.kind.problem(joint.params, c * dx + s * dy, c * dy - s * dx)
+        if problem is not None:
+            raise ModelError(f"{packed.name}: {joint.kind.name} '{joint.name}': {problem}")
 
 
 def _place(packed: Packed, q: np.ndarray, marker: int) -> np.ndarray:

@@ -16,7 +16,7 @@ from mbsd.errors import AssemblyError
 from mbsd.model import Mechanism
 from mbsd.open_loops import turned, why_open
 from mbsd.packing import Packed
-from mbsd.specials import let_phases_go, take_phases
+from mbsd.specials import let_phases_go, refuse_impossible, take_phases
 
 CLOSED = 1e-10
 """Largest residual of a closed pose, in sizes (m) and rad."""
@@ -34,6 +34,7 @@ def assemble(m: Mechanism, packed: Packed, time: float) -> np.ndarray:
         unwind_angles(packed, q)
         q, worst = _close_with_phases(packed, q, drive)
         if worst <= CLOSED:
+            refuse_impossible(packed, q)
             return q
         if best is None or worst < best[0]:
             best = worst, q

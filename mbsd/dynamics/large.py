@@ -30,7 +30,7 @@ from mbsd.mobility import Mobility
 from mbsd.model import Mechanism
 from mbsd.open_loops import why_open
 from mbsd.packing import Packed
-from mbsd.specials import active_rows, let_phases_go, take_phases
+from mbsd.specials import active_rows, let_phases_go, refuse_impossible, take_phases
 from mbsd.start import CLOSED, LONGEST_STEP, rough_pose, unwind_angles
 
 MANY_COORDINATES = 600
@@ -66,6 +66,7 @@ def consistent_large(m: Mechanism, packed: Packed, time: float, inverse: np.ndar
     let_phases_go(packed)
     weights = _weighed(light, [c for c, _ in given])
     q = _close(m, packed, time, rough, weights)
+    refuse_impossible(packed, q)
     if take_phases(packed, q, drive):
         q = _close(m, packed, time, q, weights)
     told = tell_coordinates(packed, q, [(c, nearest_turn(q, c, value)) for c, value in given])

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from mbsd.model import Marker, Mechanism
 
 
@@ -27,6 +29,13 @@ class Special:
 
 SPECIALS: dict[str, Special] = {
     "gear": Special("gear", "m", phased=True),
+    "rack": Special("linear", "m", phased=True),
+    "height": Special("linear", "m"),
+    "curve": Special("curve", "m"),
+    "curve_rolling": Special("curve_rolling", "m", phased=True),
+    "support": Special("support", "m"),
+    "geneva": Special("geneva", "rad"),
+    "user": Special("user", "m"),
 }
 ROWS = {"point": 2, "angle": 1, "slot": 1, "along": 1, "distance": 1} | dict.fromkeys(SPECIALS, 1)
 """Rows that each constraint takes in J."""
@@ -43,8 +52,10 @@ class JointKind:
     driven: bool = False
     units: tuple[str, str] = ("N", "N m")
     """Units of a driver's effort and, unused for joints, of its value."""
-    numbers: Callable[[Mapping[str, Any]], Sequence[Sequence[float]]] | None = None
+    numbers: Callable[[Mapping[str, Any]], Sequence[Sequence[float] | np.ndarray]] | None = None
     """From a joint's params: the numbers of each special constraint, in their order."""
+    problem: Callable[[Mapping[str, Any], float, float], str | None] | None = None
+    """From params and the place (x, y) of marker j against marker i at the start: why this joint cannot be."""
     lengths: tuple[str, ...] = ()
     """Params that are lengths (m) and tell how large the mechanism is."""
     saved: bool = True

@@ -60,7 +60,7 @@ def schema() -> dict[str, Any]:
         "velocities": _table("velocity"),
     }
     definitions = {"marker": marker, "body": body, "start": start, "velocity": velocity, "law": {"oneOf": laws}}
-    definitions["joint"] = {"oneOf": [_kind(name) for name, kind in KINDS.items() if not kind.driven]}
+    definitions["joint"] = {"oneOf": [_kind(name) for name, kind in KINDS.items() if kind.saved and not kind.driven]}
     definitions["driver"] = {"oneOf": [_kind(name) for name, kind in KINDS.items() if kind.driven]}
     definitions["force"] = {"oneOf": [_force(name) for name in FORCE_KINDS]}
     return {

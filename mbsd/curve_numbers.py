@@ -1,0 +1,88 @@
+"""Curves in the body's frame as the numbers that constraints/curve_pieces.py reads.
+
+Source of the spline: de Boor, A Practical Guide to Splines; the parameter is the length of the chords.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from mbsd.errors import ModelError
+
+LEAST_PIECES, LEAST_PARTS = 128, 4
+"""Pieces in all, and for each piece of the spline: the nearest node leads to the foot, arc lengths are exact."""
+
+
+def curve_pieces(points: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Breaks (p + 1,) and coefficients (p, 2, 6), lowest first, of a spline of degree 5 through points (k, 2).
+
+    Fewer than six points give a lower degree, two a straight line. A closed curve returns to its first point smoothly.
+    """
+    from scipy.interpolate import make_interp_spline
+
+    if closed:
+        points = np.vstack([points, points[:1]])
+    u = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    degree = 5 if closed else min(5, len(points) - 1)
+    degree -= degree in (2, 4)  # even degrees put their knots between the points
+    spline = make_interp_spline(u, points, k=degree, bc_type="periodic" if closed else None)
+    breaks = np.unique(spline.t)
+    breaks = breaks[(breaks >= u[0]) & (breaks <= u[-1])]
+    parts = max(LEAST_PARTS, math.ceil(LEAST_PIECES / (len(breaks) - 1)))
+    shares = np.arange(parts) / parts
+    breaks = np.append((breaks[:-1, None] + np.diff(breaks)[:, None] * shares).ravel(), breaks[-1])
+    coefficients = np.zeros((len(breaks) - 1, 2, 6))
+    for power in range(degree + 1):
+        coefficients[:, :, power] = spline(breaks[:-1], power) / math.factorial(power)
+    return breaks, coefficients
+
+
+def curve_numbers(
+    breaks: np.ndarray, coefficients: np.ndarray, closed: bool, distance: float, radius: float
+) -> np.ndarray:
+    """The own numbers of a curve constraint; a closed curve ends with arc length and turning of a round."""
+    fine = 8
+    nodes, weights = np.polynomial.legendre.leggauss(fine)
+    h = np.diff(breaks)
+    powers = np.arange(1, 6)
+    slopes = coefficients[:, :, 1:] * powers
+
+    def tangent(s: np.ndarray) -> np.ndarray:
+        """(p, 2) derivative at local parameters s (p,)."""
+        return (slopes * s[:, None, None] ** np.arange(5)).sum(axis=2)
+
+    speeds = [np.hypot(*tangent(h * (1 + node) / 2).T) for node in nodes]
+    arc = np.concatenate([[0.0], np.cumsum(h / 2 * sum(w * v for w, v in zip(weights, speeds, strict=True)))])
+    ends = np.vstack([tangent(np.zeros(len(h))), tangent(h)[-1:]])
+    turning = np.unwrap(np.arctan2(ends[:, 1], ends[:, 0]))
+    rows = np.column_stack([breaks[:-1], coefficients.reshape(len(h), 12), arc[:-1], turning[:-1]])
+    head = [distance, radius, float(closed), breaks[-1] - breaks[0], len(h)]
+    return np.concatenate([head, rows.ravel(), [arc[-1], turning[-1] - turning[0]]])
+
+
+def curvature(breaks: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
+    """(p,) signed curvature (1/m) at the begin of each piece, positive to the left."""
+    dx, dy = coefficients[:, 0, 1], coefficients[:, 1, 1]
+    ddx, ddy = 2 * coefficients[:, 0, 2], 2 * coefficients[:, 1, 2]
+    return (dx * ddy - dy * ddx) / np.hypot(dx, dy) ** 3
+
+
+def checked_points(what: str, points: object, closed: bool) -> list[list[float]]:
+    """Points (k, 2) as plain data. Raises ModelError for what is no curve."""
+    array = np.asarray(points, float)
+    if array.ndim != 2 or array.shape[1] != 2 or len(array) < (6 if closed else 2):
+        raise ModelError(
+            f"{what}: points of shape {array.shape} must be {'six' if closed else 'two'} or more rows of x, y (m)"
+        )
+    if not np.isfinite(array).all():
+        raise ModelError(f"{what}: point {int(np.argmin(np.isfinite(array).all(axis=1)))} is not finite")
+    if closed and np.array_equal(array[0], array[-1]):
+        array = array[:-1]
+    steps = np.hypot(*np.diff(np.vstack([array, array[:1]]) if closed else array, axis=0).T)
+    if not steps.min() > 1e-9 * steps.max():
+        raise ModelError(f"{what}: points {int(np.argmin(steps))} and the next are the same; remove one")
+    if not math.isfinite(float(steps.sum())):
+        raise ModelError(f"{what}: the points are too far apart")
+    return array.tolist()

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.errors import ModelError
+from mbsd.errors import AssemblyError
 from mbsd.joint import Joint
 from mbsd.joints.kind import SPECIALS
 
@@ -128,7 +128,7 @@ def take_phases(packed: Packed, q: np.ndarray, drive: np.ndarray) -> bool:
 
 
 def refuse_impossible(packed: Packed, q: np.ndarray) -> None:
-    """Raise ModelError for a joint that cannot be with its markers as they stand in the closed pose q (3 nb,)."""
+    """Raise AssemblyError for a joint that cannot be with its markers as they stand in the closed pose q (3 nb,)."""
     for joint, place in zip(packed.specials.joints, packed.specials.places, strict=True):
         if joint.kind.problem is None:
             continue
@@ -138,7 +138,7 @@ def refuse_impossible(packed: Packed, q: np.ndarray) -> None:
         c, s = math.cos(turn), math.sin(turn)
         problem = joint.kind.problem(joint.params, c * dx + s * dy, c * dy - s * dx)
         if problem is not None:
-            raise ModelError(f"{packed.name}: {joint.kind.name} '{joint.name}': {problem}")
+            raise AssemblyError(f"{packed.name}: {joint.kind.name} '{joint.name}': {problem}")
 
 
 def _place(packed: Packed, q: np.ndarray, marker: int) -> np.ndarray:

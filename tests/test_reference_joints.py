@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, ModelError, constant_rate
+from mbsd import AssemblyError, Mechanism, constant_rate
 
 FOLDER = Path(__file__).parent / "reference"
 
@@ -78,7 +78,9 @@ def test_a_geneva_goes_on_turn_after_turn_and_needs_its_radius() -> None:
     m.revolute("W", m.ground.at(0.1, 0), other.origin)
     m.geneva("index", crank.origin, other.origin, 4, 0.05)
     m.drive_angle("motor", crank, constant_rate(1.0))
-    with pytest.raises(ModelError, match=r"geneva: geneva 'index': the pin would hit the slots.*0.0707107 m, not 0.05"):
+    with pytest.raises(
+        AssemblyError, match=r"geneva: geneva 'index': the pin would hit the slots.*0.0707107 m, not 0.05"
+    ):
         m.sweep()
 
 
@@ -138,7 +140,8 @@ def test_v_engine_shaking_force(row: dict[str, float]) -> None:
     m.start_near(crank=90)
     steps = 256
     sol = m.sweep(duration=2 * math.pi / speed, steps=steps)
-    force = sum(-mass * np.stack([sol.body(f"{n} piston").ax, sol.body(f"{n} piston").ay]) for n in ("left", "right"))
+    pistons = [sol.body(f"{name} piston") for name in ("left", "right")]
+    force = -mass * np.array([sum(view.ax for view in pistons), sum(view.ay for view in pistons)])
     harmonics = np.fft.rfft(force[:, :-1], axis=1) / steps * 2 / (mass * r * speed**2)
     n = rod / r
     second = 1 + 1 / (4 * n**2) + 15 / (128 * n**4) + 35 / (512 * n**6)  # of F0 / n

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from mbsd.body import Body, Marker, number_pair
 from mbsd.drivers.angle import DRIVE_ANGLE
 from mbsd.drivers.coordinate import DRIVE_COORDINATE
 from mbsd.drivers.distance import DRIVE_DISTANCE
 from mbsd.drivers.relative_angle import DRIVE_RELATIVE_ANGLE
-from mbsd.errors import ModelError
+from mbsd.errors import ModelError, ModelWarning
 from mbsd.joint import Joint
 from mbsd.joints.angle_lock import ANGLE_LOCK
 from mbsd.joints.belt import BELT
+from mbsd.joints.cam_flat import CAM_FLAT
+from mbsd.joints.cam_roller import CAM_ROLLER
 from mbsd.joints.constraint import CONSTRAINT
 from mbsd.joints.distance import DISTANCE
 from mbsd.joints.gear_pair import GEAR_PAIR
@@ -30,6 +33,9 @@ from mbsd.joints.weld import WELD
 from mbsd.mechanism_base import MechanismBase
 from mbsd.motions import Motion
 from mbsd.motions.function import Function
+
+if TYPE_CHECKING:
+    from mbsd.cams import CamProfile
 
 Law = Motion | Callable[[float], float]
 
@@ -165,6 +171,36 @@ class AddingJoints(MechanismBase):
         return self._join(
             POINT_ON_CURVE, name, curve, point, None, points=plain, closed=bool(closed), distance=distance
         )
+
+    def cam_roller(self, name: str, cam: Marker, roller: Marker, profile: CamProfile | Mapping[str, Any]) -> Joint:
+        """The centre of a roller follower (marker ``roller``) on a cam with its frame at marker ``cam``.
+
+        ``profile``: from mbsd.cams.roller_cam or oscillating_roller_cam. Warns (ModelWarning) of an undercut.
+        """
+        return self._join(CAM_ROLLER, name, cam, roller, None, profile=self._cam(name, profile, flat=False))
+
+    def cam_flat(self, name: str, cam: Marker, face: Marker, profile: CamProfile | Mapping[str, Any]) -> Joint:
+        """A flat face (x axis of marker ``face``, its y axis away from the cam) on a cam with frame at marker ``cam``.
+
+        ``profile``: from mbsd.cams.flat_cam or oscillating_flat_cam. Warns (ModelWarning) of an undercut.
+        """
+        return self._join(CAM_FLAT, name, cam, face, None, profile=self._cam(name, profile, flat=True))
+
+    def _cam(self, name: str, profile: CamProfile | Mapping[str, Any], flat: bool) -> dict[str, Any]:
+        from mbsd.cams import CamProfile, cam_from
+
+        if not isinstance(profile, CamProfile):
+            if not isinstance(profile, Mapping):
+                raise ModelError(f"{self.name}: joint '{name}' needs a profile from mbsd.cams, got {profile!r}")
+            profile = cam_from(profile)
+        if profile.flat != flat:
+            raise ModelError(
+                f"{self.name}: joint '{name}' is {'cam_flat' if flat else 'cam_roller'}, but its profile is for the "
+                f"follower '{profile.follower}'; use {'cam_roller' if flat else 'cam_flat'}"
+            )
+        if profile.undercut:
+            warnings.warn(f"{self.name}: joint '{name}': {profile.problems[0]}", ModelWarning, stacklevel=3)
+        return profile.data
 
     def geneva(self, name: str, crank: Marker, wheel: Marker, slots: int, radius: float) -> Joint:
         """A Geneva: the pin at ``radius`` (m) on the x axis of marker ``crank`` indexes a wheel with ``slots`` slots.

@@ -78,9 +78,7 @@ def test_a_geneva_goes_on_turn_after_turn_and_needs_its_radius() -> None:
     m.revolute("W", m.ground.at(0.1, 0), other.origin)
     m.geneva("index", crank.origin, other.origin, 4, 0.05)
     m.drive_angle("motor", crank, constant_rate(1.0))
-    with pytest.raises(
-        AssemblyError, match=r"geneva: geneva 'index': .* hit the slots.*0.0707107 m, not 0.05"
-    ):
+    with pytest.raises(AssemblyError, match=r"geneva: geneva 'index': .* hit the slots.*0.0707107 m, not 0.05"):
         m.sweep()
 
 

@@ -10,6 +10,7 @@ from mbsd.errors import (
     AssemblyError,
     BranchError,
     InitialConditionWarning,
+    LimitError,
     MechanismError,
     MobilityError,
     ModelError,
@@ -18,7 +19,7 @@ from mbsd.errors import (
     SingularPoseError,
 )
 from mbsd.model import STANDARD_GRAVITY, Body, Joint, Marker, Mechanism
-from mbsd.motions import Motion, constant_rate, cycloidal, function, harmonic, polynomial, table
+from mbsd.motions import Motion, constant_rate, cycloidal, function, harmonic, polynomial, recorded, table
 
 __version__ = "0.1.0"
 
@@ -30,6 +31,7 @@ __all__ = [
     "Curve",
     "InitialConditionWarning",
     "Joint",
+    "LimitError",
     "Marker",
     "Mechanism",
     "MechanismError",
@@ -45,5 +47,6 @@ __all__ = [
     "function",
     "harmonic",
     "polynomial",
+    "recorded",
     "table",
 ]

@@ -2,54 +2,43 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import Any
 
-from mbsd.body import Body, Marker, number_pair
+from mbsd.body import Body, Marker, finite_number
 from mbsd.drivers.angle import DRIVE_ANGLE
 from mbsd.drivers.coordinate import DRIVE_COORDINATE
 from mbsd.drivers.distance import DRIVE_DISTANCE
 from mbsd.drivers.relative_angle import DRIVE_RELATIVE_ANGLE
-from mbsd.errors import ModelError, ModelWarning
+from mbsd.errors import ModelError
 from mbsd.joint import Joint
-from mbsd.joints.angle_lock import ANGLE_LOCK
-from mbsd.joints.belt import BELT
-from mbsd.joints.cam_flat import CAM_FLAT
-from mbsd.joints.cam_roller import CAM_ROLLER
-from mbsd.joints.constraint import CONSTRAINT
 from mbsd.joints.distance import DISTANCE
-from mbsd.joints.gear_pair import GEAR_PAIR
-from mbsd.joints.geneva import GENEVA
 from mbsd.joints.kind import JointKind
 from mbsd.joints.pin_in_slot import PIN_IN_SLOT
-from mbsd.joints.point_on_curve import POINT_ON_CURVE
 from mbsd.joints.prismatic import PRISMATIC
-from mbsd.joints.rack_and_pinion import RACK_AND_PINION
 from mbsd.joints.revolute import REVOLUTE
-from mbsd.joints.rolling_disc import ROLLING_DISC
-from mbsd.joints.rolling_on_curve import ROLLING_ON_CURVE
 from mbsd.joints.weld import WELD
 from mbsd.mechanism_base import MechanismBase
 from mbsd.motions import Motion
 from mbsd.motions.function import Function
 
-if TYPE_CHECKING:
-    from mbsd.cams import CamProfile
-
+Limits = Sequence[float | None] | None
 Law = Motion | Callable[[float], float]
 
 
 class AddingJoints(MechanismBase):
     """Joints take two markers, drivers a motion law besides; all return the Joint."""
 
-    def revolute(self, name: str, i: Marker, j: Marker) -> Joint:
-        """A pin: markers i and j share one point."""
-        return self._join(REVOLUTE, name, i, j)
+    def revolute(self, name: str, i: Marker, j: Marker, limits: Limits = None) -> Joint:
+        """A pin: markers i and j share one point. ``limits``: of the angle of j against i (rad), None: free."""
+        return self._join(REVOLUTE, name, i, j, None, **self._limits(name, limits))
 
-    def prismatic(self, name: str, i: Marker, j: Marker) -> Joint:
-        """A slider: marker j moves along the x axis of marker i and does not turn against it."""
-        return self._join(PRISMATIC, name, i, j)
+    def prismatic(self, name: str, i: Marker, j: Marker, limits: Limits = None) -> Joint:
+        """A slider: marker j moves along the x axis of marker i and does not turn against it.
+
+        ``limits``: lower and upper place of j along that axis (m), None on a free side.
+        """
+        return self._join(PRISMATIC, name, i, j, None, **self._limits(name, limits))
 
     def weld(self, name: str, i: Marker, j: Marker) -> Joint:
         """Marker j is fixed to marker i in place and direction."""
@@ -65,178 +54,9 @@ class AddingJoints(MechanismBase):
             )
         return self._join(DISTANCE, name, i, j, length=length)
 
-    def pin_in_slot(self, name: str, slot: Marker, pin: Marker) -> Joint:
-        """The point of marker ``pin`` moves along the x axis of marker ``slot``."""
-        return self._join(PIN_IN_SLOT, name, slot, pin)
-
-    # -- rolling ------------------------------------------------------------------------------------------------
-
-    def gear_pair(
-        self,
-        name: str,
-        i: Marker,
-        j: Marker,
-        radius_i: float,
-        radius_j: float,
-        internal: bool = False,
-        phase: Sequence[float] | None = None,
-    ) -> Joint:
-        """Two gears with centres at i and j and the given pitch radii (m); ``internal``: i is the ring around j.
-
-        They mesh as they stand at the start; ``phase`` gives angles of both bodies (rad) that belong together.
-        """
-        radii = self._radii(name, radius_i=radius_i, radius_j=radius_j)
-        if internal and radius_i <= radius_j:
-            raise ModelError(
-                f"{self.name}: gear_pair '{name}' is internal, so radius_i = {radius_i:g} m is the ring's and must be "
-                f"above radius_j = {radius_j:g} m; give the ring first"
-            )
-        return self._join(GEAR_PAIR, name, i, j, None, **radii, internal=bool(internal), phase=self._phase(name, phase))
-
-    def belt(
-        self,
-        name: str,
-        i: Marker,
-        j: Marker,
-        radius_i: float,
-        radius_j: float,
-        crossed: bool = False,
-        phase: Sequence[float] | None = None,
-    ) -> Joint:
-        """A belt or chain over pulleys with centres at i and j (m), open or crossed; ``phase`` as in gear_pair."""
-        radii = self._radii(name, radius_i=radius_i, radius_j=radius_j)
-        return self._join(BELT, name, i, j, None, **radii, crossed=bool(crossed), phase=self._phase(name, phase))
-
-    def rack_and_pinion(
-        self, name: str, rack: Marker, pinion: Marker, radius: float, phase: Sequence[float] | None = None
-    ) -> Joint:
-        """A pinion of the given pitch radius (m) about marker ``pinion`` on the x axis of marker ``rack``."""
-        radii = self._radii(name, radius=radius)
-        return self._join(RACK_AND_PINION, name, rack, pinion, None, **radii, phase=self._phase(name, phase))
-
-    def rolling_disc(
-        self, name: str, line: Marker, disc: Marker, radius: float, phase: Sequence[float] | None = None
-    ) -> Joint:
-        """A disc of the given radius (m) about marker ``disc`` rolls on the y side of marker ``line``'s x axis."""
-        radii = self._radii(name, radius=radius)
-        return self._join(ROLLING_DISC, name, line, disc, None, **radii, phase=self._phase(name, phase))
-
-    def rolling_on_curve(
-        self,
-        name: str,
-        curve: Marker,
-        disc: Marker,
-        points: Sequence[Sequence[float]],
-        radius: float,
-        closed: bool = False,
-    ) -> Joint:
-        """A disc of the given radius (m) about marker ``disc`` rolls on the left of a curve through ``points`` (k, 2).
-
-        The points are in the axes of marker ``curve`` (m); beyond its ends an open curve goes on straight.
-        """
-        import numpy as np
-
-        from mbsd.curve_numbers import checked_points, curvature, curve_pieces
-
-        what = f"{self.name}: joint '{name}'"
-        radii, plain = self._radii(name, radius=radius), checked_points(what, points, closed)
-        tightest = float(curvature(*curve_pieces(np.array(plain), closed)).max())
-        if tightest * radius >= 1.0:
-            raise ModelError(
-                f"{what}: the curve is bent to a radius of {1 / tightest:.4g} m, where a disc of {radius:.4g} m "
-                "touches twice; use a smaller disc or a smoother curve"
-            )
-        return self._join(ROLLING_ON_CURVE, name, curve, disc, None, points=plain, closed=bool(closed), **radii)
-
-    # -- curves and functions -----------------------------------------------------------------------------------
-
-    def point_on_curve(
-        self,
-        name: str,
-        curve: Marker,
-        point: Marker,
-        points: Sequence[Sequence[float]],
-        closed: bool = False,
-        distance: float = 0.0,
-    ) -> Joint:
-        """Marker ``point`` moves on a curve through ``points`` (k, 2) in the axes of marker ``curve`` (m).
-
-        ``distance`` (m) is how far it stays to the left of the curve; beyond its ends an open curve goes on straight.
-        """
-        from mbsd.curve_numbers import checked_points
-
-        what = f"{self.name}: joint '{name}'"
-        plain = checked_points(what, points, closed)
-        distance = self._number(f"joint '{name}': distance", distance)
-        return self._join(
-            POINT_ON_CURVE, name, curve, point, None, points=plain, closed=bool(closed), distance=distance
-        )
-
-    def cam_roller(self, name: str, cam: Marker, roller: Marker, profile: CamProfile | Mapping[str, Any]) -> Joint:
-        """The centre of a roller follower (marker ``roller``) on a cam with its frame at marker ``cam``.
-
-        ``profile``: from mbsd.cams.roller_cam or oscillating_roller_cam. Warns (ModelWarning) of an undercut.
-        """
-        return self._join(CAM_ROLLER, name, cam, roller, None, profile=self._cam(name, profile, flat=False))
-
-    def cam_flat(self, name: str, cam: Marker, face: Marker, profile: CamProfile | Mapping[str, Any]) -> Joint:
-        """A flat face (x axis of marker ``face``, its y axis away from the cam) on a cam with frame at marker ``cam``.
-
-        ``profile``: from mbsd.cams.flat_cam or oscillating_flat_cam. Warns (ModelWarning) of an undercut.
-        """
-        return self._join(CAM_FLAT, name, cam, face, None, profile=self._cam(name, profile, flat=True))
-
-    def _cam(self, name: str, profile: CamProfile | Mapping[str, Any], flat: bool) -> dict[str, Any]:
-        from mbsd.cams import CamProfile, cam_from
-
-        if not isinstance(profile, CamProfile):
-            if not isinstance(profile, Mapping):
-                raise ModelError(f"{self.name}: joint '{name}' needs a profile from mbsd.cams, got {profile!r}")
-            profile = cam_from(profile)
-        if profile.flat != flat:
-            raise ModelError(
-                f"{self.name}: joint '{name}' is {'cam_flat' if flat else 'cam_roller'}, but its profile is for the "
-                f"follower '{profile.follower}'; use {'cam_roller' if flat else 'cam_flat'}"
-            )
-        if profile.undercut:
-            warnings.warn(f"{self.name}: joint '{name}': {profile.problems[0]}", ModelWarning, stacklevel=3)
-        return profile.data
-
-    def geneva(self, name: str, crank: Marker, wheel: Marker, slots: int, radius: float) -> Joint:
-        """A Geneva: the pin at ``radius`` (m) on the x axis of marker ``crank`` indexes a wheel with ``slots`` slots.
-
-        The x axis of marker ``wheel`` is a slot. The radius must be the distance of the centres times sin(pi / slots).
-        """
-        if isinstance(slots, bool) or not isinstance(slots, int) or slots < 3:
-            raise ModelError(f"{self.name}: joint '{name}' has slots = {slots!r}; it must be a whole number from 3 on")
-        return self._join(GENEVA, name, crank, wheel, None, slots=slots, **self._radii(name, radius=radius))
-
-    def angle_lock(self, name: str, i: Marker, j: Marker) -> Joint:
-        """Marker j keeps the direction of marker i and is free to move."""
-        return self._join(ANGLE_LOCK, name, i, j)
-
-    def constraint(
-        self, name: str, i: Marker, j: Marker, function: Callable[[float, float, float], float], unit: str = "m"
-    ) -> Joint:
-        """``function(x, y, a)`` of the pose of marker j in the axes of marker i (m, rad) is zero.
-
-        Python or numba.njit; its derivatives are found. ``unit`` is that of its value, "m" or "rad".
-        """
-        if not callable(function):
-            raise ModelError(f"{self.name}: joint '{name}' needs a function of x, y and the angle, got {function!r}")
-        if unit not in ("m", "rad"):
-            raise ModelError(f"{self.name}: joint '{name}' has the unit {unit!r}; it must be 'm' or 'rad'")
-        return self._join(CONSTRAINT, name, i, j, None, function=function, unit=unit)
-
-    def _radii(self, name: str, **radii: float) -> dict[str, float]:
-        out = {key: self._number(f"joint '{name}': {key}", value) for key, value in radii.items()}
-        for key, value in out.items():
-            if value <= 0:
-                raise ModelError(f"{self.name}: joint '{name}' has {key} {value:g} m; it must be positive")
-        return out
-
-    def _phase(self, name: str, phase: Sequence[float] | None) -> tuple[float, float] | None:
-        return None if phase is None else number_pair(f"{self.name}: joint '{name}': phase (rad)", phase)
+    def pin_in_slot(self, name: str, slot: Marker, pin: Marker, limits: Limits = None) -> Joint:
+        """The point of marker ``pin`` moves along the x axis of marker ``slot``, within ``limits`` (m)."""
+        return self._join(PIN_IN_SLOT, name, slot, pin, None, **self._limits(name, limits))
 
     # -- drivers ------------------------------------------------------------------------------------------------
 
@@ -258,6 +78,17 @@ class AddingJoints(MechanismBase):
     def drive_distance(self, name: str, i: Marker, j: Marker, law: Law) -> Joint:
         """Impose the distance of the points of markers i and j (m), as a linear actuator does."""
         return self._join(DRIVE_DISTANCE, name, i, j, law=law)
+
+    def _limits(self, name: str, limits: Limits) -> dict[str, Any]:
+        if limits is None:
+            return {}
+        what = f"{self.name}: joint '{name}': limits"
+        if not isinstance(limits, Sequence) or len(limits) != 2 or limits[0] is limits[1] is None:
+            raise ModelError(f"{what} are {limits!r}; give (lower, upper), None on a free side")
+        lower, upper = (None if end is None else finite_number(what, end) for end in limits)
+        if lower is not None and upper is not None and not lower < upper:
+            raise ModelError(f"{what} are {lower:g} .. {upper:g}; the lower must be below the upper")
+        return {"limits": (lower, upper)}
 
     def _join(self, kind: JointKind, name: str, i: Marker, j: Marker, law: Law | None = None, **params: Any) -> Joint:
         what = "driver" if kind.driven else "joint"

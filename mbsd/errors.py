@@ -31,6 +31,10 @@ class InitialConditionWarning(UserWarning):
     """Given start values do not fit the joints and were changed; the message says which and how."""
 
 
+class LimitError(MechanismError):
+    """A joint passes its limit."""
+
+
 class SingularPoseError(MechanismError):
     """A toggle or a change point: the drivers no longer fix the motion here."""
 

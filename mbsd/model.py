@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.adding_forces import AddingForces
-from mbsd.adding_joints import AddingJoints
+from mbsd.adding_machine_joints import AddingMachineJoints
 from mbsd.body import Body, Marker
 from mbsd.errors import ModelError
 from mbsd.force import Force
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["STANDARD_GRAVITY", "Body", "Force", "Joint", "Marker", "Mechanism", "Start"]
 
 
-class Mechanism(AddingJoints, AddingForces):
+class Mechanism(AddingMachineJoints, AddingForces):
     """Bodies, joints, drivers and traced points, by name. ``gravity`` in m/s^2; None turns it off."""
 
     def trace(self, name: str, marker: Marker) -> Marker:

@@ -9,6 +9,7 @@ import numpy as np
 
 from mbsd.errors import ModelError
 from mbsd.inverse_dynamics import inverse_dynamics
+from mbsd.limits import refuse_passed
 from mbsd.model import Mechanism
 from mbsd.prepared import prepare
 from mbsd.solution import Solution, Stats
@@ -21,6 +22,7 @@ def sweep(m: Mechanism, duration: float | None, steps: int, times: Sequence[floa
     q, v, a, inserted = ready.march(grid)
     packed = ready.packed
     drives = packed.drives(grid)
+    refuse_passed(packed, grid, q)
     loads = inverse_dynamics(ready, grid, drives, q, v, a)
     shape = (len(grid), -1, 3)
     return Solution(

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mbsd import ModelError, constant_rate, cycloidal, function, harmonic, polynomial, table
+from mbsd import ModelError, constant_rate, cycloidal, function, harmonic, polynomial, recorded, table
 from mbsd.laws import pack_laws, tabulate_law
 from mbsd.motions import Motion
 from mbsd.motions.examples import EXAMPLES
@@ -54,6 +54,20 @@ def test_table_goes_through_its_rows_and_repeats_when_periodic() -> None:
     assert law.period == 2.0
 
 
+@pytest.mark.parametrize("noise", [None, 1e-4], ids=["estimated", "given"])
+def test_a_record_is_smoothed_so_that_its_acceleration_can_be_used(noise: float | None) -> None:
+    t = np.linspace(0.0, 4.0, 401)
+    clean = 0.5 * np.sin(2.0 * t)
+    law = recorded(t, clean + 1e-4 * np.random.default_rng(1).standard_normal(len(t)), noise)
+    inside = np.linspace(0.2, 3.8, 300)
+    got = law(inside)
+    np.testing.assert_allclose(got[:, 0], 0.5 * np.sin(2.0 * inside), atol=2e-4)
+    np.testing.assert_allclose(got[:, 1], np.cos(2.0 * inside), atol=2e-3)
+    np.testing.assert_allclose(got[:, 2], -2.0 * np.sin(2.0 * inside), atol=0.02)
+    raw = np.gradient(np.gradient(clean + 1e-4 * np.random.default_rng(1).standard_normal(len(t)), t), t)
+    assert np.abs(raw[20:-20] + 2.0 * np.sin(2.0 * t[20:-20])).max() > 1.0  # what differences would give
+
+
 def test_function_without_derivatives_gets_them_from_a_fit() -> None:
     t = np.linspace(0.0, 3.0, 200)
     fitted = function(lambda x: math.sin(2 * x)).over(0.0, 3.0)(t)
@@ -82,6 +96,10 @@ def test_straight_lines_and_constants_are_smooth_laws(law) -> None:
         (lambda: table(range(6), [0, 1, 2, 3, 4, 5], periodic=True), "is not the first"),
         (lambda: table(range(6), [0, 1, 2, math.nan, 4, 5]), "finite"),
         (lambda: table(range(6), range(6))(np.array([7.0])), "covers 0 .. 5 s"),
+        (lambda: recorded([0, 1, 2], [0, 1, 2]), "eight|8 numbers or more"),
+        (lambda: recorded(range(9), range(9), noise=-1.0), "noise is -1.0"),
+        (lambda: recorded(range(9), [0, 1, 2, math.nan, 4, 5, 6, 7, 8]), "leave out rows"),
+        (lambda: recorded(range(9), range(9), noise=0.0)(np.array([9.5])), "covers 0 .. 8 s"),
         (lambda: function(math.sin, math.cos), "both derivatives"),
         (lambda: function(lambda t: math.nan)(np.array([0.0, 1.0])), "gives nan at t = 0 s"),
         (lambda: function(lambda t: abs(t - 0.5)).over(0.0, 1.0), "not smooth"),

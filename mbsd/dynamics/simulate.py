@@ -18,6 +18,7 @@ from mbsd.errors import InitialConditionWarning, ModelError
 from mbsd.integrators.kind import INTEGRATORS, Integrator
 from mbsd.integrators.state import ACCEPTED, Output, State
 from mbsd.inverse_dynamics import JACOBIAN_NUMBERS
+from mbsd.limits import refuse_passed
 from mbsd.loads import loads_along
 from mbsd.model import Mechanism
 from mbsd.reactions import generalised, times_compact, wrenches
@@ -48,6 +49,7 @@ def simulate(
             stacklevel=3,
         )
     state, out = ready.run(integrator, grid, tolerance, step or float(np.diff(grid).max()), progress)
+    refuse_passed(ready.packed, out.t, np.ascontiguousarray(out.y[:, 0]))
     return solution(m, ready, state, out)
 
 

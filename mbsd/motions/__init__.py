@@ -11,6 +11,7 @@ from mbsd.motions.function import function
 from mbsd.motions.harmonic import harmonic
 from mbsd.motions.law import Motion
 from mbsd.motions.polynomial import polynomial
+from mbsd.motions.recorded import recorded
 from mbsd.motions.table import table
 
-__all__ = ["Motion", "constant_rate", "cycloidal", "function", "harmonic", "polynomial", "table"]
+__all__ = ["Motion", "constant_rate", "cycloidal", "function", "harmonic", "polynomial", "recorded", "table"]

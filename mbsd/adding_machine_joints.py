@@ -1,0 +1,199 @@
+"""The methods of a Mechanism that add joints of machines: gears, rolling, curves, cams, Geneva, user-defined ones."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from mbsd.adding_joints import AddingJoints
+from mbsd.body import Marker, number_pair
+from mbsd.errors import ModelError, ModelWarning
+from mbsd.joint import Joint
+from mbsd.joints.angle_lock import ANGLE_LOCK
+from mbsd.joints.belt import BELT
+from mbsd.joints.cam_flat import CAM_FLAT
+from mbsd.joints.cam_roller import CAM_ROLLER
+from mbsd.joints.constraint import CONSTRAINT
+from mbsd.joints.gear_pair import GEAR_PAIR
+from mbsd.joints.geneva import GENEVA
+from mbsd.joints.point_on_curve import POINT_ON_CURVE
+from mbsd.joints.rack_and_pinion import RACK_AND_PINION
+from mbsd.joints.rolling_disc import ROLLING_DISC
+from mbsd.joints.rolling_on_curve import ROLLING_ON_CURVE
+
+if TYPE_CHECKING:
+    from mbsd.cams import CamProfile
+
+
+class AddingMachineJoints(AddingJoints):
+    """Joints that are functions of the relative pose of two markers; all return the Joint."""
+
+    # -- rolling ------------------------------------------------------------------------------------------------
+
+    def gear_pair(
+        self,
+        name: str,
+        i: Marker,
+        j: Marker,
+        radius_i: float,
+        radius_j: float,
+        internal: bool = False,
+        phase: Sequence[float] | None = None,
+    ) -> Joint:
+        """Two gears with centres at i and j and the given pitch radii (m); ``internal``: i is the ring around j.
+
+        They mesh as they stand at the start; ``phase`` gives angles of both bodies (rad) that belong together.
+        """
+        radii = self._radii(name, radius_i=radius_i, radius_j=radius_j)
+        if internal and radius_i <= radius_j:
+            raise ModelError(
+                f"{self.name}: gear_pair '{name}' is internal, so radius_i = {radius_i:g} m is the ring's and must be "
+                f"above radius_j = {radius_j:g} m; give the ring first"
+            )
+        return self._join(GEAR_PAIR, name, i, j, None, **radii, internal=bool(internal), phase=self._phase(name, phase))
+
+    def belt(
+        self,
+        name: str,
+        i: Marker,
+        j: Marker,
+        radius_i: float,
+        radius_j: float,
+        crossed: bool = False,
+        phase: Sequence[float] | None = None,
+    ) -> Joint:
+        """A belt or chain over pulleys with centres at i and j (m), open or crossed; ``phase`` as in gear_pair."""
+        radii = self._radii(name, radius_i=radius_i, radius_j=radius_j)
+        return self._join(BELT, name, i, j, None, **radii, crossed=bool(crossed), phase=self._phase(name, phase))
+
+    def rack_and_pinion(
+        self, name: str, rack: Marker, pinion: Marker, radius: float, phase: Sequence[float] | None = None
+    ) -> Joint:
+        """A pinion of the given pitch radius (m) about marker ``pinion`` on the x axis of marker ``rack``."""
+        radii = self._radii(name, radius=radius)
+        return self._join(RACK_AND_PINION, name, rack, pinion, None, **radii, phase=self._phase(name, phase))
+
+    def rolling_disc(
+        self, name: str, line: Marker, disc: Marker, radius: float, phase: Sequence[float] | None = None
+    ) -> Joint:
+        """A disc of the given radius (m) about marker ``disc`` rolls on the y side of marker ``line``'s x axis."""
+        radii = self._radii(name, radius=radius)
+        return self._join(ROLLING_DISC, name, line, disc, None, **radii, phase=self._phase(name, phase))
+
+    def rolling_on_curve(
+        self,
+        name: str,
+        curve: Marker,
+        disc: Marker,
+        points: Sequence[Sequence[float]],
+        radius: float,
+        closed: bool = False,
+    ) -> Joint:
+        """A disc of the given radius (m) about marker ``disc`` rolls on the left of a curve through ``points`` (k, 2).
+
+        The points are in the axes of marker ``curve`` (m); beyond its ends an open curve goes on straight.
+        """
+        import numpy as np
+
+        from mbsd.curve_numbers import checked_points, curvature, curve_pieces
+
+        what = f"{self.name}: joint '{name}'"
+        radii, plain = self._radii(name, radius=radius), checked_points(what, points, closed)
+        tightest = float(curvature(*curve_pieces(np.array(plain), closed)).max())
+        if tightest * radius >= 1.0:
+            raise ModelError(
+                f"{what}: the curve is bent to a radius of {1 / tightest:.4g} m, where a disc of {radius:.4g} m "
+                "touches twice; use a smaller disc or a smoother curve"
+            )
+        return self._join(ROLLING_ON_CURVE, name, curve, disc, None, points=plain, closed=bool(closed), **radii)
+
+    # -- curves and functions -----------------------------------------------------------------------------------
+
+    def point_on_curve(
+        self,
+        name: str,
+        curve: Marker,
+        point: Marker,
+        points: Sequence[Sequence[float]],
+        closed: bool = False,
+        distance: float = 0.0,
+    ) -> Joint:
+        """Marker ``point`` moves on a curve through ``points`` (k, 2) in the axes of marker ``curve`` (m).
+
+        ``distance`` (m) is how far it stays to the left of the curve; beyond its ends an open curve goes on straight.
+        """
+        from mbsd.curve_numbers import checked_points
+
+        what = f"{self.name}: joint '{name}'"
+        plain = checked_points(what, points, closed)
+        distance = self._number(f"joint '{name}': distance", distance)
+        return self._join(
+            POINT_ON_CURVE, name, curve, point, None, points=plain, closed=bool(closed), distance=distance
+        )
+
+    def cam_roller(self, name: str, cam: Marker, roller: Marker, profile: CamProfile | Mapping[str, Any]) -> Joint:
+        """The centre of a roller follower (marker ``roller``) on a cam with its frame at marker ``cam``.
+
+        ``profile``: from mbsd.cams.roller_cam or oscillating_roller_cam. Warns (ModelWarning) of an undercut.
+        """
+        return self._join(CAM_ROLLER, name, cam, roller, None, profile=self._cam(name, profile, flat=False))
+
+    def cam_flat(self, name: str, cam: Marker, face: Marker, profile: CamProfile | Mapping[str, Any]) -> Joint:
+        """A flat face (x axis of marker ``face``, its y axis away from the cam) on a cam with frame at marker ``cam``.
+
+        ``profile``: from mbsd.cams.flat_cam or oscillating_flat_cam. Warns (ModelWarning) of an undercut.
+        """
+        return self._join(CAM_FLAT, name, cam, face, None, profile=self._cam(name, profile, flat=True))
+
+    def _cam(self, name: str, profile: CamProfile | Mapping[str, Any], flat: bool) -> dict[str, Any]:
+        from mbsd.cams import CamProfile, cam_from
+
+        if not isinstance(profile, CamProfile):
+            if not isinstance(profile, Mapping):
+                raise ModelError(f"{self.name}: joint '{name}' needs a profile from mbsd.cams, got {profile!r}")
+            profile = cam_from(profile)
+        if profile.flat != flat:
+            raise ModelError(
+                f"{self.name}: joint '{name}' is {'cam_flat' if flat else 'cam_roller'}, but its profile is for the "
+                f"follower '{profile.follower}'; use {'cam_roller' if flat else 'cam_flat'}"
+            )
+        if profile.undercut:
+            warnings.warn(f"{self.name}: joint '{name}': {profile.problems[0]}", ModelWarning, stacklevel=3)
+        return profile.data
+
+    def geneva(self, name: str, crank: Marker, wheel: Marker, slots: int, radius: float) -> Joint:
+        """A Geneva: the pin at ``radius`` (m) on the x axis of marker ``crank`` indexes a wheel with ``slots`` slots.
+
+        The x axis of marker ``wheel`` is a slot. The radius must be the distance of the centres times sin(pi / slots).
+        """
+        if isinstance(slots, bool) or not isinstance(slots, int) or slots < 3:
+            raise ModelError(f"{self.name}: joint '{name}' has slots = {slots!r}; it must be a whole number from 3 on")
+        return self._join(GENEVA, name, crank, wheel, None, slots=slots, **self._radii(name, radius=radius))
+
+    def angle_lock(self, name: str, i: Marker, j: Marker) -> Joint:
+        """Marker j keeps the direction of marker i and is free to move."""
+        return self._join(ANGLE_LOCK, name, i, j)
+
+    def constraint(
+        self, name: str, i: Marker, j: Marker, function: Callable[[float, float, float], float], unit: str = "m"
+    ) -> Joint:
+        """``function(x, y, a)`` of the pose of marker j in the axes of marker i (m, rad) is zero.
+
+        Python or numba.njit; its derivatives are found. ``unit`` is that of its value, "m" or "rad".
+        """
+        if not callable(function):
+            raise ModelError(f"{self.name}: joint '{name}' needs a function of x, y and the angle, got {function!r}")
+        if unit not in ("m", "rad"):
+            raise ModelError(f"{self.name}: joint '{name}' has the unit {unit!r}; it must be 'm' or 'rad'")
+        return self._join(CONSTRAINT, name, i, j, None, function=function, unit=unit)
+
+    def _radii(self, name: str, **radii: float) -> dict[str, float]:
+        out = {key: self._number(f"joint '{name}': {key}", value) for key, value in radii.items()}
+        for key, value in out.items():
+            if value <= 0:
+                raise ModelError(f"{self.name}: joint '{name}' has {key} {value:g} m; it must be positive")
+        return out
+
+    def _phase(self, name: str, phase: Sequence[float] | None) -> tuple[float, float] | None:
+        return None if phase is None else number_pair(f"{self.name}: joint '{name}': phase (rad)", phase)

@@ -1,4 +1,8 @@
-"""Forces as arrays, and the compiled evaluation of all of them: elements and terms as forces/kind.py defines them."""
+"""Forces as arrays, and the compiled evaluation of all of them.
+
+Elements and terms as forces/kind.py defines them; interactions and forces of the user by the address of a function,
+so that nobody compiles what his model does not use.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +12,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from mbsd.forces.kind import AXIS, CONSTANT, DAMPING, DRY, LAW_RATE, LAW_TIME, LINE, LINEAR, POWER, PUSH, TURN
+from mbsd.interaction_loads import apply_interactions, pack_interactions
+from mbsd.interactions.law import STATE
 from mbsd.jit import kernel
 from mbsd.laws import Laws, evaluate_law, pack_laws
 from mbsd.markers import move, place
 from mbsd.motions import Motion
+from mbsd.user_loads import apply_user_forces, pack_user_forces
 
 if TYPE_CHECKING:
     from mbsd.packing import Packed
@@ -30,6 +37,22 @@ class Loads(NamedTuple):
     """(k, 3) a, b, c."""
     law: Any
     """(3,) scratch of a law."""
+    interaction: Any
+    """(n, 5) body i, body j, law of time, first number, address of the function."""
+    given: Any
+    """Of each interaction: arm of i, axis of i, arm of j (body axes), angle of j less that of i, then its own."""
+    state: Any
+    """(24,) what the function of an interaction reads."""
+    user: Any
+    """(u, 3) forces of the user: address, first of user_body, count."""
+    user_body: Any
+    """(b,)"""
+    user_com: Any
+    """(b, 2) centres of mass in the author's frames."""
+    exchange: Any
+    """(2, 6 k) inputs and outputs of a user's force on k bodies, or of an interaction."""
+    total: int
+    """Of all elements, interactions and forces of the user."""
 
 
 def pack_loads(packed: Packed) -> Loads:
@@ -45,12 +68,22 @@ def pack_loads(packed: Packed) -> Loads:
                 term.append((one.kind, numbered[one.law] if one.law else 0))
                 number.append((one.a, one.b, one.c))
             first_term.append(len(term))
+    interaction, given = pack_interactions(packed)
+    user, user_body, user_com = pack_user_forces(packed)
     return Loads(
         np.array(element, np.int64).reshape(-1, 4),
         np.array(first_term, np.int64),
         np.array(term, np.int64).reshape(-1, 2),
         np.array(number, float).reshape(-1, 3),
         np.zeros(3),
+        interaction,
+        given,
+        np.zeros(STATE),
+        user,
+        user_body,
+        user_com,
+        np.zeros((2, 6 * max(1, int(user[:, 2].max(initial=1))))),
+        len(element) + len(interaction) + len(user),
     )
 
 
@@ -94,7 +127,7 @@ def _magnitude(loads, laws, e, t, x, rate):
 
 @kernel
 def apply_loads(system, loads, laws, t, q, v, ws, load):
-    """Add the generalised forces of all elements to load (3 nb,), after place and move; returns their power (W).
+    """Add the generalised forces of all loads to load (3 nb,), after place and move; returns their power (W).
 
     What falls on ground is added too and means nothing.
     """
@@ -147,6 +180,10 @@ def apply_loads(system, loads, laws, t, q, v, ws, load):
         load[bi + 2] -= fy * ws.arm[i, 0] - fx * ws.arm[i, 1]
         if kind == AXIS:
             load[bi + 2] += force * (-uy * dx + ux * dy)
+    if loads.interaction.shape[0] > 0:
+        power += apply_interactions(loads, laws, t, q, v, ws, load)
+    if loads.user.shape[0] > 0:
+        power += apply_user_forces(loads, t, q, v, ws, load)
     return power
 
 
@@ -162,9 +199,13 @@ def tabulate_loads(system, loads, laws, times, q, v, ws, out, power):
 
 
 def loads_along(packed: Packed, loads: Loads, laws: Laws, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """(T, 3 nb) generalised forces of all loads along a motion q, v (T, 3 nb); zero for ground."""
+    """(T, 3 nb) generalised forces of all loads along a motion q, v (T, 3 nb); zero for ground.
+
+    Raises ModelError where a function of the user fails.
+    """
     out = np.zeros_like(q)
-    if len(loads.element):
+    if loads.total:
         tabulate_loads(packed.system, loads, laws, t, q, v, packed.ws, out, np.zeros(len(t)))
+        packed.specials.check()
         out[:, :3] = 0.0
     return out

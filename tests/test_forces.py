@@ -30,6 +30,7 @@ def example(kind: ForceKind, seed: int, to_ground: bool = False) -> tuple[Mechan
     m = Mechanism("example")
     first = m.ground if to_ground else m.body("first", 1.0, list(random.normal(size=2)), 1.0)
     second = m.body("second", 1.0, list(random.normal(size=2)), 1.0)
+    assert kind.example is not None
     kind.example(m, first.at(*random.normal(size=3)), second.at(*random.normal(size=3)))
     return m, pack(m)
 
@@ -53,6 +54,13 @@ def test_each_file_registers_its_kind() -> None:
     assert files == {kind.name for kind in KINDS}
 
 
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
+def test_only_loads_from_outside_push(kind: ForceKind) -> None:
+    m, _packed = example(kind, 0)
+    [force] = m.forces.values()
+    assert kind.outside or all(element.kind != PUSH for element in kind.elements(force))
+
+
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
 def test_power_is_force_times_velocity(kind: ForceKind, seed: int) -> None:
@@ -72,8 +80,9 @@ def test_pairs_act_and_react(kind: ForceKind, seed: int) -> None:
     [force] = m.forces.values()
     t, q, v = motion(packed, seed)
     load = loads_along(packed, pack_loads(packed), compiled_laws(packed, 0.0, 1.0), t, q, v).reshape(len(t), -1, 3)
-    if any(element.kind == PUSH for element in kind.elements(force)):  # a load from outside has no reaction
-        others = [b for b, name in enumerate(packed.body_names) if name != force.j.body.name]
+    if kind.outside:  # nothing feels the opposite
+        acted = {force.j.body.name} | {one.j.body.name for one in kind.interactions(force, packed)}
+        others = [b for b, name in enumerate(packed.body_names) if name not in acted]
         assert not load[:, others].any()
         return
     place = q.reshape(len(t), -1, 3)

@@ -217,3 +217,39 @@ def test_car_axis() -> None:
         [getattr(v, f)[-1] for fields in (("x", "y"), ("vx", "vy")) for v in (one, two) for f in fields]
     )
     np.testing.assert_allclose(computed, expected[:8], atol=1e-6)
+
+
+@pytest.mark.parametrize("name", ["nikravesh_mp_b_macpherson", "nikravesh_mp_c_macpherson"])
+def test_nikravesh_macpherson_on_its_tyre(name: str) -> None:
+    """The control arm is a body (B) or a massless rod (C). The tyre's law measures the centre of mass and may pull."""
+    data = case(name)
+    rows = rows_of(data)
+    m = Mechanism("macpherson", gravity=tuple(data["gravity"]))
+    wheel = m.body("wheel", 20.0, inertia=2.5)
+    if len(data["bodies"]) == 2:
+        arm = m.body("arm", 2.0, inertia=0.5)
+        m.revolute("ball", wheel.at(0, -0.07), arm.at(0.225, 0))
+        m.revolute("chassis", m.ground.at(0.12, 0.29), arm.at(-0.225, 0))
+        m.start_near(wheel=(*rows[0, 1:3], math.degrees(rows[0, 3])), arm=(*rows[0, 4:6], math.degrees(rows[0, 6])))
+    else:
+        m.distance("arm", m.ground.at(0.12, 0.29), wheel.at(0, -0.07), 0.45)
+        m.start_near(wheel=(*rows[0, 1:3], math.degrees(rows[0, 3])))
+    m.pin_in_slot("strut", wheel.at(-0.17, 0.25, math.atan2(-0.88, 0.47)), m.ground.at(0.41, 0.83))
+    m.spring("spring", wheel.at(-0.17, 0.25), m.ground.at(0.41, 0.83), 20000.0, damping=1100.0, free_length=0.34)
+
+    def tyre(t, q, v):
+        deflection = q[1] - 0.3
+        force = -(100000.0 * deflection + 1000.0 * v[1]) if deflection < 0.0 else 0.0
+        arm = math.cos(q[2]) * 0.11 - math.sin(q[2]) * -0.02
+        return 0.0, force, arm * force
+
+    m.user_force("tyre", tyre, wheel)
+    sol = simulate_at(m, rows[:, 0], tolerance=1e-8)
+    views = [sol.body(body) for body in m.bodies if body != "ground"]
+    computed = np.stack([getattr(v, f) for v in views for f in ("x", "y", "theta")], axis=1)
+    speeds = np.stack([getattr(v, f) for v in views for f in ("vx", "vy", "omega")], axis=1)
+    limits, half = data["expected"][0], 1 + computed.shape[1]
+    gap = computed - rows[:, 1:half]
+    gap -= 2 * math.pi * np.round(gap / (2 * math.pi))
+    np.testing.assert_allclose(gap, 0.0, atol=limits["tol_abs_pos"])
+    np.testing.assert_allclose(speeds, rows[:, half:], atol=limits["tol_abs_vel"])

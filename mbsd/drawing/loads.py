@@ -18,8 +18,11 @@ COILS = 5, 12
 
 def draw_force(canvas: Canvas, force: Force, pose: Pose) -> None:
     """The sign of what the force's first element measures."""
-    element = force.kind.elements(force)[0]
     i, j = pose.place(force.i), pose.place(force.j)
+    if not force.kind.elements(force):
+        draw_special(canvas, force, pose)
+        return
+    element = force.kind.elements(force)[0]
     if element.kind == TURN:
         _turning(canvas, force, j)
     elif element.kind == PUSH:
@@ -39,6 +42,15 @@ def draw_force(canvas: Canvas, force: Force, pose: Pose) -> None:
         for radius in (1.0, 0.5):
             canvas.circle(j, radius, edge=LOAD, order=3.2, width=1.2, alpha=0.3)
         canvas.label(force.name, j, 1.2, LOAD)
+
+
+def draw_special(canvas: Canvas, force: Force, pose: Pose) -> None:
+    """A ring where the force acts, on each of its bodies."""
+    bodies = force.params.get("bodies", ())
+    places = [pose.of(name, 0.0, 0.0) for name in bodies] or [pose.place(force.j)]
+    for place in places:
+        canvas.circle(place, 0.9, edge=LOAD, order=3.2, width=1.2, alpha=0.3)
+    canvas.label(force.name, places[0], 1.2, LOAD)
 
 
 def _coil(canvas: Canvas, i: np.ndarray, j: np.ndarray, damped: bool) -> None:

@@ -47,7 +47,7 @@ def accelerate(dyn, scratch, t, state, a, lam):
         a[c] = 0.0
     for r in range(lam.shape[0]):
         lam[r] = 0.0
-    if dyn.loads.element.shape[0] > 0:
+    if dyn.loads.total > 0:
         power = apply_loads(system, dyn.loads, dyn.laws, t, q, v, ws, force)
     alpha = dyn.baumgarte[0]
     beta = dyn.baumgarte[1]

@@ -172,6 +172,7 @@ def _refuse_unheld(ready: PreparedDynamics) -> None:
     out, lam = np.zeros_like(state), np.zeros(len(packed.ws.phi))
     scratch = scratch_for(dynamics, packed.ws, len(packed.motions), 1)
     derivative(dynamics, scratch, ready.start, state, out, lam)
+    packed.specials.check()
     left = np.abs(scratch.force - dynamics.inertia * out[1])[3:]
     largest = max(float(np.abs(dynamics.weight[3:]).max()), float(np.abs(dynamics.inertia * out[1]).max()), 1e-300)
     if not np.isfinite(out).all() or (left > BALANCED * largest * packed.size).any():

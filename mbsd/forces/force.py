@@ -18,6 +18,9 @@ def _elements(force):
 
 FORCE = register(
     ForceKind(
-        "force", _elements, example=lambda m, i, j: m.force("example", j, 3.0, direction=(0.6, 0.8), frame=i.body)
+        "force",
+        _elements,
+        example=lambda m, i, j: m.force("example", j, 3.0, direction=(0.6, 0.8), frame=i.body),
+        outside=True,
     )
 )

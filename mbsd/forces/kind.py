@@ -14,11 +14,14 @@ scalar x of two markers and acts along it, so that a positive magnitude F makes 
     LINEAR     -a (x - b)                   LAW_RATE    a law(x')
     DAMPING    -a x'                        LAW_TIME    a law(t)
     POWER      a (x + b)^c                  DRY         -a tanh(x' / b)
+
+What no element can say is an interaction: a function of the relative pose and velocity of two markers in a file of
+mbsd/interactions. A function of the user stands in the params as ``function``. A friction of a joint is none of these.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -26,6 +29,7 @@ if TYPE_CHECKING:
     from mbsd.body import Marker
     from mbsd.force import Force
     from mbsd.model import Mechanism
+    from mbsd.packing import Packed
 
 LINE, TURN, AXIS, PUSH = 0, 1, 2, 3
 CONSTANT, LINEAR, DAMPING, POWER, LAW_VALUE, LAW_RATE, LAW_TIME, DRY = 0, 1, 2, 3, 4, 5, 6, 7
@@ -54,14 +58,39 @@ class Element:
 
 
 @dataclass(frozen=True)
+class Interaction:
+    """A function in mbsd/interactions between two markers, its numbers, and the law of time it reads."""
+
+    function: str
+    i: Marker
+    j: Marker
+    numbers: Sequence[float]
+    law: str | None = None
+
+
+def _no_elements(force: Force) -> tuple[Element, ...]:
+    return ()
+
+
+def _no_interactions(force: Force, packed: Packed) -> Sequence[Interaction]:
+    return ()
+
+
+@dataclass(frozen=True)
 class ForceKind:
     """A kind of force."""
 
     name: str
-    elements: Callable[[Force], tuple[Element, ...]]
+    elements: Callable[[Force], tuple[Element, ...]] = _no_elements
     """What a force of this kind is made of."""
-    example: Callable[[Mechanism, Marker, Marker], object]
-    """Adds one of this kind between two markers of different bodies."""
+    example: Callable[[Mechanism, Marker, Marker], object] | None = None
+    """Adds one of this kind between two markers of different bodies; must be given."""
+    interactions: Callable[[Force, Packed], Sequence[Interaction]] = _no_interactions
+    """Beside its elements."""
+    outside: bool = False
+    """Whether it is a load from outside, to which nothing in the mechanism feels the opposite."""
+    saved: bool = True
+    """Whether a file can hold its params; a Python function cannot be saved."""
 
 
 FORCE_KINDS: dict[str, ForceKind] = {}

@@ -62,7 +62,7 @@ def schema() -> dict[str, Any]:
     definitions = {"marker": marker, "body": body, "start": start, "velocity": velocity, "law": {"oneOf": laws}}
     definitions["joint"] = {"oneOf": [_kind(name) for name, kind in KINDS.items() if kind.saved and not kind.driven]}
     definitions["driver"] = {"oneOf": [_kind(name) for name, kind in KINDS.items() if kind.driven]}
-    definitions["force"] = {"oneOf": [_force(name) for name in FORCE_KINDS]}
+    definitions["force"] = {"oneOf": [_force(name) for name, kind in FORCE_KINDS.items() if kind.saved]}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Model",

@@ -1,0 +1,95 @@
+"""Interactions as arrays, and their compiled evaluation: the relative state in, force and torque out.
+
+d  = p_j - p_i;   u unit axis of marker i, n = u_perp;   x = u . d,  y = n . d,  a = theta_j - theta_i + offset
+x' = u . d' + omega_i y,   y' = n . d' - omega_i x,   a' = omega_j - omega_i
+on body j: F at marker j and T; on body i: -F at the same point and -T;   power = F . (x', y') + T a'
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.constraints.equation import OWN, A, X, Y, evaluate
+from mbsd.interactions.law import FX, FY, LAW, LAW_RATE, OMEGA, TIME, TORQUE, VX, VY, address_of
+from mbsd.jit import internal
+from mbsd.laws import evaluate_law
+
+if TYPE_CHECKING:
+    from mbsd.packing import Packed
+
+GEOMETRY = 7
+"""Numbers of an interaction before its own."""
+
+
+def pack_interactions(packed: Packed) -> tuple[np.ndarray, np.ndarray]:
+    """The table (n, 5) and all numbers, for Loads."""
+    number = {name: b for b, name in enumerate(packed.body_names)}
+    rows, given, at, law = [], [], 0, len(packed.motions)
+    for force in packed.forces:
+        numbered = {name: law + 1 + k for k, name in enumerate(force.laws)}
+        law += len(force.laws)
+        for one in force.kind.interactions(force, packed):
+            i, j = number[one.i.body.name], number[one.j.body.name]
+            arms = [(m.x - packed.com[b, 0], m.y - packed.com[b, 1]) for m, b in ((one.i, i), (one.j, j))]
+            axis = math.cos(one.i.angle), math.sin(one.i.angle)
+            block = np.array([*arms[0], *axis, *arms[1], one.j.angle - one.i.angle, *one.numbers], float)
+            rows.append((i, j, numbered[one.law] if one.law else 0, at, address_of(one.function)))
+            given.append(block)
+            at += len(block)
+    return np.array(rows, np.int64).reshape(-1, 5), np.concatenate(given) if given else np.zeros(0)
+
+
+@internal
+def apply_interactions(loads, laws, t, q, v, ws, load):
+    """Add the generalised forces of all interactions to load (3 nb,), after place; returns their power (W)."""
+    state = loads.state
+    out = loads.exchange[1]
+    power = 0.0
+    for k in range(loads.interaction.shape[0]):
+        first = loads.interaction[k, 0]
+        second = loads.interaction[k, 1]
+        at = loads.interaction[k, 3]
+        i = 3 * first
+        j = 3 * second
+        c = ws.cos_sin[first, 0]
+        s = ws.cos_sin[first, 1]
+        arm_ix = c * loads.given[at] - s * loads.given[at + 1]
+        arm_iy = s * loads.given[at] + c * loads.given[at + 1]
+        ux = c * loads.given[at + 2] - s * loads.given[at + 3]
+        uy = s * loads.given[at + 2] + c * loads.given[at + 3]
+        c = ws.cos_sin[second, 0]
+        s = ws.cos_sin[second, 1]
+        arm_jx = c * loads.given[at + 4] - s * loads.given[at + 5]
+        arm_jy = s * loads.given[at + 4] + c * loads.given[at + 5]
+        dx = q[j] + arm_jx - q[i] - arm_ix
+        dy = q[j + 1] + arm_jy - q[i + 1] - arm_iy
+        omega = v[i + 2]
+        vx = v[j] - v[j + 2] * arm_jy - v[i] + omega * arm_iy
+        vy = v[j + 1] + v[j + 2] * arm_jx - v[i + 1] - omega * arm_ix
+        x = ux * dx + uy * dy
+        y = ux * dy - uy * dx
+        state[X] = x
+        state[Y] = y
+        state[A] = q[j + 2] - q[i + 2] + loads.given[at + 6]
+        state[VX] = ux * vx + uy * vy + omega * y
+        state[VY] = ux * vy - uy * vx - omega * x
+        state[OMEGA] = v[j + 2] - omega
+        state[TIME] = t
+        evaluate_law(laws, loads.interaction[k, 2], t, loads.law)
+        state[LAW] = loads.law[0]
+        state[LAW_RATE] = loads.law[1]
+        # functions count their own numbers from OWN
+        evaluate(loads.interaction[k, 4], loads.given[at + GEOMETRY - OWN :], state, out)
+        power += out[FX] * state[VX] + out[FY] * state[VY] + out[TORQUE] * state[OMEGA]
+        fx = out[FX] * ux - out[FY] * uy
+        fy = out[FX] * uy + out[FY] * ux
+        load[j] += fx
+        load[j + 1] += fy
+        load[j + 2] += out[TORQUE] + arm_jx * fy - arm_jy * fx
+        load[i] -= fx
+        load[i + 1] -= fy
+        load[i + 2] -= out[TORQUE] + (arm_ix + dx) * fy - (arm_iy + dy) * fx
+    return power

@@ -19,7 +19,7 @@ name = $(subst -,_,$*)
 export PYRIGHT_PYTHON_IGNORE_WARNINGS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install check list run-all all new test lint format bench schema lock clean clean-all always
+.PHONY: help install check list run-all all new test lint format bench schema docs lock clean clean-all always
 
 # A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
 define upto_motion
@@ -122,6 +122,9 @@ bench: install ## the solver beside its peers: a table, and out/bench.json
 schema: install ## write docs/schema/ from shared/contract.py, shared/shot.py and the solver's joints and laws
 	@$(PYTHON) -m shared.schema
 	@$(PYTHON) -m mbsd.saving.schema docs/schema/model.schema.json
+
+docs: install ## write docs/theory.md from the docstrings of the solver
+	@$(PYTHON) tools/theory.py
 
 lock: ## choose versions anew within pyproject.toml: requirements.lock, requirements-bench.lock
 	@sh tools/lock.sh

@@ -37,3 +37,14 @@ def show(rows: Sequence[Row], steps: int) -> None:
         micro = row.seconds / steps * 1e6
         numbers = f"{micro:>10.3f}{row.seconds / base:>9.2f}{row.error:>10.1e}"
         print(f"  {row.code:<12}{row.version:<10}{numbers}  {row.settings}")
+
+
+def show_all(rows: Sequence[Row]) -> None:
+    """Print rows of several problems, each problem with the time against the row of mbsd."""
+    for problem in dict.fromkeys(row.problem for row in rows):
+        own = [row for row in rows if row.problem == problem]
+        base = next((row.seconds for row in own if row.code == "mbsd"), own[0].seconds)
+        print(f"\n{problem}")
+        for row in own:
+            numbers = f"{1000 * row.seconds:>11.3f} ms{row.seconds / base:>9.2f}x{row.error:>10.1e}"
+            print(f"  {row.code:<18}{row.version:<10}{numbers}  {row.settings}")

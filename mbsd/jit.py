@@ -56,3 +56,6 @@ internal = numba.njit(**_OPTIONS, no_cpython_wrapper=True)  # pyright: ignore[re
 
 inlined = numba.njit(**_OPTIONS, inline="always")
 """The same for kernels whose body is copied into the caller: passing a System by value costs more than the work."""
+
+threaded = numba.njit(**_OPTIONS, nogil=True)
+"""The same for kernels that run in several threads at once, each with scratch of its own."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,6 +27,7 @@ from mbsd.mechanism_base import STANDARD_GRAVITY, Start, StartVelocity
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from mbsd.batch import Batch
     from mbsd.check import Finding
     from mbsd.drawing.picture import Picture, Svg
     from mbsd.mobility import Mobility
@@ -106,6 +107,26 @@ class Mechanism(AddingMachineJoints, AddingForces):
 
         tell(self, stacklevel=2)
         return sweep(self, duration, steps, times)
+
+    def batch(
+        self,
+        lengths: Mapping[str, Sequence[float] | np.ndarray] | None = None,
+        places: Mapping[str, Sequence[Sequence[float]] | np.ndarray] | None = None,
+        angles: Sequence[str] = (),
+        duration: float | None = None,
+        steps: int = 360,
+        threads: int | None = None,
+    ) -> Batch:
+        """Sweep n designs of this mechanism at once, tens of thousands a second: traced points, and angles asked for.
+
+        ``lengths``: bar names to (n,) lengths (m), which move the bar's ``end``. ``places``: joint names to (n, 2)
+        places (m) of the joint's marker on ground, or else of its first marker, in that body's frame; or names of
+        traced points to their places. Times are those of :meth:`sweep`. Raises ModelError for a mechanism that is not
+        made of driven bodies and dyads.
+        """
+        from mbsd.batch import batch
+
+        return batch(self, lengths or {}, places or {}, angles, duration, steps, threads)
 
     def simulate(
         self,

@@ -17,7 +17,7 @@ from mbsd.solution import Solution, Stats
 
 def sweep(m: Mechanism, duration: float | None, steps: int, times: Sequence[float] | np.ndarray | None) -> Solution:
     """See :meth:`mbsd.model.Mechanism.sweep`."""
-    grid = _times(m, duration, steps, times)
+    grid = sweep_times(m, duration, steps, times)
     ready = prepare(m, float(grid[0]), float(grid[-1]))
     q, v, a, inserted = ready.march(grid)
     packed = ready.packed
@@ -42,7 +42,10 @@ def sweep(m: Mechanism, duration: float | None, steps: int, times: Sequence[floa
     )
 
 
-def _times(m: Mechanism, duration: float | None, steps: int, times: Sequence[float] | np.ndarray | None) -> np.ndarray:
+def sweep_times(
+    m: Mechanism, duration: float | None, steps: int, times: Sequence[float] | np.ndarray | None
+) -> np.ndarray:
+    """(T,) rising times (s) of a sweep. Raises ModelError."""
     if times is not None:
         grid = np.asarray(times, float)
         if grid.ndim != 1 or len(grid) < 2 or not np.isfinite(grid).all() or not (np.diff(grid) > 0).all():

@@ -104,7 +104,7 @@ def test_a_wrong_count_of_numbers_is_told(wrap) -> None:
 
 
 def test_a_function_that_numba_cannot_compile_is_told() -> None:
-    if numba.config.DISABLE_JIT:  # pyright: ignore[reportAttributeAccessIssue]
+    if numba.config.DISABLE_JIT:  # pyright: ignore[reportAttributeAccessIssue, reportPrivateImportUsage]
         return  # it is plain Python then, and runs
     with pytest.raises(ModelError, match="swing: numba cannot compile the function"):
         Callback(numba.njit(lambda t, x: x.missing), (2,), 1, "swing")

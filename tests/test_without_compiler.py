@@ -8,15 +8,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
-FILES = (
-    "test_joints.py",
-    "test_mobility.py",
-    "test_kinematics.py",
-    "test_dynamics.py",
-    "test_reference.py",
-    "test_reference_joints.py",
-    "test_user_constraint.py",
-)
+FILES = ("test_joints.py", "test_mobility.py", "test_kinematics.py", "test_dynamics.py", "test_reference.py")
 
 
 def test_the_solver_passes_its_tests_without_numba() -> None:

@@ -40,6 +40,5 @@ POINT_ON_CURVE = register(
             distance=-0.1,
         ),
         numbers=_numbers,
-        lengths=("points",),
     )
 )

@@ -1,0 +1,218 @@
+"""Many designs of one mechanism in one call: the same linkage with other lengths and places, solved in closed form.
+
+The numbers of the groups (mbsd/assur) are linear in the places of the markers, so those of all designs are one matrix
+product. Designs share the branch of the mechanism itself.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from mbsd.assur.designs import place_designs
+from mbsd.assur.groups import BRANCH, DRIVEN, RPR, RRP, WELDED, YOKE, Groups
+from mbsd.assur.plan import plan_groups
+from mbsd.assur.solve import DOUBTED, SOLVED
+from mbsd.errors import ModelError
+from mbsd.model import Marker, Mechanism
+from mbsd.packing import Packed
+from mbsd.prepared import prepare
+
+CHUNK = 64
+"""Designs that a thread takes at once."""
+
+
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """Results of n designs at T times; NaN where a design does not close."""
+
+    t: np.ndarray
+    """(T,) s."""
+    points: dict[str, np.ndarray]
+    """(n, T, 2) of each traced point (m)."""
+    angles: dict[str, np.ndarray]
+    """(n, T) of each body asked for (rad)."""
+    closes: np.ndarray
+    """(n,) whether the links close all the way."""
+    doubted: np.ndarray
+    """(n,) whether a design was given up where its branches come near each other; sweep it alone to see more."""
+
+
+def batch(
+    m: Mechanism,
+    lengths: Mapping[str, Sequence[float] | np.ndarray],
+    places: Mapping[str, Sequence[Sequence[float]] | np.ndarray],
+    angles: Sequence[str],
+    duration: float | None,
+    steps: int,
+    threads: int | None,
+) -> Batch:
+    """See :meth:`mbsd.model.Mechanism.batch`."""
+    from mbsd.sweep import sweep_times
+
+    grid = sweep_times(m, duration, steps, None)
+    ready = prepare(m, float(grid[0]), float(grid[-1]))
+    packed, groups = ready.packed, ready.groups
+    if groups is None:
+        raise ModelError(
+            f"{m.name}: batch solves mechanisms of driven bodies and dyads (pins, sliders, slots, welds); this one "
+            "holds something else or a redundant joint. Sweep its designs one by one."
+        )
+    values, moved = _parameters(m, packed, lengths, places)
+    count = len(values)
+    numbers = _numbers(packed, ready.q0, groups, values, moved)
+    markers = list(m.traces.values())
+    arms = np.array([(p.x, p.y) for p in markers]).reshape(-1, 2)
+    bodies = np.array([packed.body_names.index(p.body.name) for p in markers], np.int64)
+    arms_of = np.tile(arms - packed.com[bodies], (count, 1, 1)) if markers else np.zeros((count, 0, 2))
+    for column, (_, trace) in enumerate(moved):
+        if trace is not None:
+            arms_of[:, trace[0], trace[1]] += values[:, column]
+    turned = np.array([_body(m, packed, name) for name in angles], np.int64)
+    out = np.empty((count, len(markers), len(grid), 2))
+    out_angles = np.empty((count, len(turned), len(grid)))
+    status = np.zeros(count, np.int64)
+    driven, fixed = _turns(groups, packed.drives(grid))
+
+    def work(first: int) -> None:
+        part = slice(first, min(first + CHUNK, count))
+        place = np.zeros((len(packed.body_names), 4))
+        place[0, 2] = 1.0
+        scratch, roots = np.zeros((2, 2)), np.zeros((len(groups.kind), 2))
+        place_designs(
+            groups, numbers[part], ready.q0, driven, fixed, place, scratch, roots,
+            bodies, arms_of[part], turned, out[part], out_angles[part], status[part],
+        )  # fmt: skip
+        for part_of in (out, out_angles):
+            part_of[part][status[part] != SOLVED] = np.nan
+
+    starts = range(0, count, CHUNK)
+    if count:
+        work(0)  # compiles before the threads start
+    with ThreadPoolExecutor(threads or os.process_cpu_count()) as pool:
+        list(pool.map(work, starts[1:]))
+    points = {name: out[:, k] for k, name in enumerate(m.traces)}
+    return Batch(
+        grid, points, {name: out_angles[:, k] for k, name in enumerate(angles)}, status == SOLVED, status == DOUBTED
+    )
+
+
+def _turns(groups: Groups, drives: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Cosine and sine of the angles that no design changes: (T, g, 2) of drivers, (g, 2) of welds and sliders."""
+    driven = np.zeros((len(drives), len(groups.kind), 2))
+    fixed = np.zeros((len(groups.kind), 2))
+    constant = {WELDED: 4, RRP: 10, RPR: 9, YOKE: 8}
+    for e, kind in enumerate(groups.kind):
+        if kind == DRIVEN:
+            angle = groups.number[e, 5] * (groups.number[e, 4] + drives[:, groups.motion[e], 0])
+            driven[:, e] = np.column_stack([np.cos(angle), np.sin(angle)])
+        elif int(kind) in constant:
+            angle = groups.number[e, constant[int(kind)]]
+            fixed[e] = math.cos(angle), math.sin(angle)
+    return driven, fixed
+
+
+def _body(m: Mechanism, packed: Packed, name: str) -> int:
+    m.known_body(name)
+    return packed.body_names.index(name)
+
+
+def _parameters(
+    m: Mechanism,
+    packed: Packed,
+    lengths: Mapping[str, Sequence[float] | np.ndarray],
+    places: Mapping[str, Sequence[Sequence[float]] | np.ndarray],
+) -> tuple[np.ndarray, list[tuple[list[tuple[int, int]], tuple[int, int] | None]]]:
+    """Changes (n, p) against the mechanism itself, and what each moves: marker coordinates, or one of a trace."""
+    columns: list[np.ndarray] = []
+    moved: list[tuple[list[tuple[int, int]], tuple[int, int] | None]] = []
+    traces = list(m.traces)
+    for name, values in lengths.items():
+        body = m.known_body(name)
+        if body.length is None:
+            raise ModelError(f"{m.name}: batch: '{name}' is no bar, so it has no length; give places instead")
+        change = _finite(m, name, values, 1)[:, 0]
+        if (change <= 0).any():
+            raise ModelError(f"{m.name}: batch: length {change.min():g} m of '{name}' must be positive")
+        ends = [
+            (number, 0)
+            for joint, pair in zip(packed.joints, packed.markers, strict=True)
+            for marker, number in zip((joint.i, joint.j), (int(pair[0]), int(pair[1])), strict=True)
+            if marker.body is body and _at_end(marker, body.length)
+        ]
+        columns.append(change - body.length)
+        moved.append((ends, None))
+        for k, trace in enumerate(traces):
+            if m.traces[trace].body is body and _at_end(m.traces[trace], body.length):
+                columns.append(change - body.length)
+                moved.append(([], (k, 0)))
+    for name, values in places.items():
+        change = _finite(m, name, values, 2)
+        if name in m.traces:
+            base, target = m.traces[name], [([], (traces.index(name), axis)) for axis in (0, 1)]
+        elif name in m.joints:
+            joint = m.joints[name]
+            first = joint.i.body is m.ground or joint.j.body is not m.ground
+            base = joint.i if first else joint.j
+            number = int(packed.markers[packed.joints.index(joint)][0 if first else 1])
+            target = [([(number, axis)], None) for axis in (0, 1)]
+        else:
+            known = ", ".join([*m.joints, *m.traces])
+            raise ModelError(f"{m.name}: batch: there is no joint or traced point '{name}'; there is: {known}")
+        columns += [change[:, 0] - base.x, change[:, 1] - base.y]
+        moved += target
+    if not columns:
+        raise ModelError(f"{m.name}: batch: nothing changes; give lengths or places")
+    sizes = {len(column) for column in columns}
+    if len(sizes) > 1:
+        raise ModelError(
+            f"{m.name}: batch: lists of {', '.join(map(str, sorted(sizes)))} designs; they must be equally long"
+        )
+    return np.column_stack(columns), moved
+
+
+def _at_end(marker: Marker, length: float) -> bool:
+    return marker.x == length and marker.y == 0.0
+
+
+def _finite(m: Mechanism, name: str, values: Any, width: int) -> np.ndarray:
+    out = np.asarray(values, float)
+    out = out[:, None] if width == 1 and out.ndim == 1 else out
+    if out.ndim != 2 or out.shape[1] != width:
+        shape = "(designs,)" if width == 1 else "(designs, 2)"
+        raise ModelError(f"{m.name}: batch: values of '{name}' have shape {np.shape(values)}; give {shape}")
+    if not np.isfinite(out).all():
+        raise ModelError(f"{m.name}: batch: values of '{name}' must be finite")
+    return out
+
+
+def _numbers(packed: Packed, q0: np.ndarray, groups: Groups, values: np.ndarray, moved: list) -> np.ndarray:
+    """(n, g, 14) numbers of the groups of all designs; exact, for they are linear in the markers' places."""
+    out = np.tile(groups.number, (len(values), 1, 1))
+    arms = packed.system.marker_arm
+    for column, (markers, _) in enumerate(moved):
+        if not markers:
+            continue
+        shifted = arms.copy()
+        for number, axis in markers:
+            shifted[number, axis] += 1.0
+        other = _with_arms(packed, shifted)
+        changed = plan_groups(other, q0, 0)
+        assert changed is not None
+        slope = changed.number - groups.number
+        for e, kind in enumerate(groups.kind):
+            if int(kind) in BRANCH:
+                slope[e, BRANCH[int(kind)]] = 0.0
+        out += values[:, column, None, None] * slope
+    return out
+
+
+def _with_arms(packed: Packed, arms: np.ndarray) -> Packed:
+
+    return replace(packed, system=packed.system._replace(marker_arm=arms))

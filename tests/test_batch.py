@@ -1,0 +1,108 @@
+"""Many designs at once: the same numbers as one sweep each, refusals, masks."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mbsd import Mechanism, ModelError, constant_rate
+
+
+def four_bar(crank: float = 0.1, coupler: float = 0.38, rocker: float = 0.3, x: float = 0.4, y: float = 0.02):
+    m = Mechanism("four-bar")
+    a, b, c = m.bar("crank", crank), m.bar("coupler", coupler), m.bar("rocker", rocker)
+    m.revolute("A", m.ground.at(0, 0), a.start)
+    m.revolute("B", a.end, b.start)
+    m.revolute("C", b.end, c.end)
+    m.revolute("D", c.start, m.ground.at(x, y))
+    m.drive_angle("motor", a, constant_rate(6.0))
+    m.trace("P", b.at(0.2, 0.1))
+    m.trace("Q", c.end)
+    m.start_near(crank=0, coupler=45, rocker=90)
+    return m
+
+
+def test_each_design_is_its_own_sweep() -> None:
+    random = np.random.default_rng(4)
+    designs = np.column_stack([random.uniform(low, high, 30) for low, high in
+                               ((0.08, 0.12), (0.35, 0.42), (0.28, 0.34), (0.38, 0.44), (-0.02, 0.04))])  # fmt: skip
+    result = four_bar().batch(
+        lengths={"crank": designs[:, 0], "coupler": designs[:, 1], "rocker": designs[:, 2]},
+        places={"D": designs[:, 3:]},
+        angles=("rocker",),
+        steps=90,
+    )
+    assert result.closes.all()
+    for k, design in enumerate(designs):
+        one = four_bar(*design).sweep(steps=90)
+        for name in ("P", "Q"):
+            path = np.column_stack([one.point(name).x, one.point(name).y])
+            np.testing.assert_allclose(result.points[name][k], path, atol=1e-12)
+        np.testing.assert_allclose(result.angles["rocker"][k], one.body("rocker").theta, atol=1e-12)
+
+
+def test_sliders_slots_and_traced_points_are_parameters_too() -> None:
+    def slider_crank(rod: float = 0.3, height: float = 0.02, at: float = 0.1) -> Mechanism:
+        m = Mechanism("slider-crank")
+        a, b, s = m.bar("crank", 0.1), m.bar("rod", rod), m.body("slider")
+        m.revolute("A", m.ground.at(0, 0), a.start)
+        m.revolute("B", a.end, b.start)
+        m.revolute("C", b.end, s.at(0.01, 0.0))
+        m.prismatic("rail", m.ground.at(0, height), s.origin)
+        m.drive_angle("motor", a, constant_rate(6.0))
+        m.trace("P", b.at(at, 0.05))
+        m.start_near(crank=0, rod=0)
+        return m
+
+    rods, heights, at = np.array([0.25, 0.3, 0.35]), np.array([0.0, 0.03, -0.02]), np.array([0.0, 0.1, 0.2])
+    result = slider_crank().batch(
+        lengths={"rod": rods},
+        places={"rail": np.column_stack([np.zeros(3), heights]), "P": np.column_stack([at, np.full(3, 0.05)])},
+        steps=60,
+    )
+    for k in range(3):
+        one = slider_crank(rods[k], heights[k], at[k]).sweep(steps=60).point("P")
+        np.testing.assert_allclose(result.points["P"][k], np.column_stack([one.x, one.y]), atol=1e-12)
+
+
+def test_designs_that_do_not_close_are_marked() -> None:
+    result = four_bar().batch(lengths={"coupler": [0.38, 0.1, 2.0]})
+    assert result.closes.tolist() == [True, False, False]
+    assert np.isnan(result.points["P"][1:]).all()
+    assert np.isfinite(result.points["P"][0]).all()
+
+
+def test_threads_change_nothing() -> None:
+    coupler = np.linspace(0.35, 0.42, 200)
+    one, two = (four_bar().batch(lengths={"coupler": coupler}, threads=n, steps=40) for n in (1, 2))
+    assert one.points["P"].tobytes() == two.points["P"].tobytes()
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({}, "nothing changes"),
+        ({"lengths": {"ground": [1.0]}}, "is no bar"),
+        ({"lengths": {"beam": [1.0]}}, "there is no body 'beam'"),
+        ({"lengths": {"crank": [0.1, -0.1]}}, "must be positive"),
+        ({"lengths": {"crank": [0.1, float("nan")]}}, "finite"),
+        ({"places": {"D": [0.1, 0.2]}}, "give \\(designs, 2\\)"),
+        ({"places": {"E": [[0.1, 0.2]]}}, "no joint or traced point 'E'"),
+        ({"lengths": {"crank": [0.1]}, "places": {"D": [[0.4, 0.0]] * 2}}, "equally long"),
+    ],
+)
+def test_wrong_designs_are_refused(options: dict, words: str) -> None:
+    with pytest.raises(ModelError, match=words):
+        four_bar().batch(**options)
+
+
+def test_a_mechanism_that_does_not_fall_apart_is_refused() -> None:
+    m = Mechanism("rod")
+    crank, rocker = m.bar("crank", 0.1), m.bar("rocker", 0.3)
+    m.revolute("A", m.ground.at(0, 0), crank.start)
+    m.revolute("D", m.ground.at(0.4, 0), rocker.start)
+    m.distance("rod", crank.end, rocker.end, 0.38)
+    m.drive_angle("motor", crank, constant_rate(6.0))
+    m.start_near(crank=0, rocker=90)
+    with pytest.raises(ModelError, match="one by one"):
+        m.batch(lengths={"crank": [0.1]})

@@ -1,0 +1,79 @@
+"""Writes docs/theory.md from the docstrings that open the solver's files: ``make docs``."""
+
+from __future__ import annotations
+
+import ast
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGE = ROOT / "docs" / "theory.md"
+SECTIONS = (
+    ("Coordinates", "", ("mbsd/markers.py",)),
+    ("Constraints", "Every joint and driver is made of these; each gives rows of Phi and J.", ("mbsd/constraints",)),
+    ("Joints", "", ("mbsd/joints",)),
+    ("Drivers", "A driver is a constraint with a law of time; its effort is minus its multiplier.", ("mbsd/drivers",)),
+    ("Laws of motion", "", ("mbsd/motions",)),
+    ("Cams", "", ("mbsd/cams",)),
+    ("Positions, velocities, accelerations", "", ("mbsd/kinematics.py", "mbsd/elimination.py", "mbsd/assur")),
+    ("Mobility", "", ("mbsd/mobility.py",)),
+    ("Inverse dynamics", "", ("mbsd/inverse_dynamics.py",)),
+    ("Forces", "", ("mbsd/forces/kind.py", "mbsd/forces", "mbsd/curves.py", "mbsd/potential.py")),
+    ("Forward dynamics", "", ("mbsd/dynamics",)),
+    ("Integrators", "", ("mbsd/integrators",)),
+    ("Analyses", "", ("mbsd/analyses",)),
+)
+FEWEST_LINES = 2
+"""A docstring of one line has no equations to show."""
+HEAD = """# Theory
+
+A body has three coordinates, x and y of its centre of mass and its angle theta; all of them are q, their rates v.
+Joints and drivers are equations Phi(q, t) = 0 with the Jacobian J. The solver finds, in this order,
+
+    Phi(q, t) = 0        positions
+    J v = nu             velocities,     nu = -dPhi/dt
+    J a = gamma          accelerations
+    M a + J^T lam = Q    multipliers lam; the reaction on body b is -J_b^T lam
+
+M is constant and diagonal, for q holds centres of mass. SI units, radians, counter-clockwise positive; `s_perp` is a
+vector turned by a right angle, (-s_y, s_x). What follows is what each file of the solver says of itself; `make docs`
+writes this page.
+"""
+
+
+def page() -> str:
+    """The page as it should be."""
+    parts = [HEAD]
+    for title, words, places in SECTIONS:
+        entries = [text for place in places for text in _entries(ROOT / place)]
+        if entries:
+            parts.append("\n".join([f"## {title}\n", *([words + "\n"] if words else []), *dict.fromkeys(entries)]))
+    return "\n".join(parts)
+
+
+def _entries(place: Path) -> list[str]:
+    files = [place] if place.suffix == ".py" else sorted(place.glob("*.py")) if place.is_dir() else []
+    return [entry for file in files if (entry := _entry(file))]
+
+
+def _entry(file: Path) -> str:
+    text = ast.get_docstring(ast.parse(file.read_text())) or ""
+    first, _, rest = text.partition("\n\n")
+    if len(rest.splitlines()) < FEWEST_LINES or file.name.startswith("__"):
+        return ""
+    source = file.relative_to(ROOT).as_posix()
+    title = file.stem.replace("_", " ").capitalize()
+    return f"### {title}\n\n{' '.join(first.split())}\n\n```text\n{rest}\n```\n\n`{source}`\n"
+
+
+def main() -> int:
+    """Write the page, or with --check tell whether it is as it should be."""
+    wanted = page()
+    if sys.argv[1:] == ["--check"]:
+        return 0 if PAGE.exists() and PAGE.read_text() == wanted else 1
+    PAGE.write_text(wanted)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

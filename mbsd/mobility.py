@@ -17,6 +17,7 @@ from mbsd.assembly import residual_and_jacobian
 from mbsd.errors import MobilityError, SingularPoseError
 from mbsd.model import Mechanism
 from mbsd.packing import Packed, pack
+from mbsd.specials import let_phases_go, take_phases
 from mbsd.start import CLOSED, assemble, close, rough_pose
 
 RANK_TOLERANCE = 1e-8
@@ -80,7 +81,9 @@ def joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
 def refuse_overdriven(m: Mechanism, packed: Packed, time: float) -> None:
     """If the joints close without the drivers, see whether these are too many; raises MobilityError if so."""
     none = np.zeros((len(packed.motions) + 1, 3))
+    let_phases_go(packed)
     q, worst = close(packed, rough_pose(m, packed, none, 0), none, packed.driver_rows)
+    take_phases(packed, q, none)
     if worst <= CLOSED:
         _refuse_idle_drivers(packed, joint_mobility(packed, q), _best_rows(packed, q)[1], time)
 

@@ -123,7 +123,7 @@ def pack(m: Mechanism) -> Packed:
                 offsets.append(joint.i.angle - joint.j.angle)
             if constraint == "distance":
                 lengths.append(joint.params.get("length", 0.0))  # a driver imposes all of it
-        extents += [joint.params[key] for key in joint.kind.lengths]
+        extents += joint.kind.extents(joint.params)
         first_row.append(row)
     forces = list(m.forces.values())
     force_markers = 2 * len(joints) + np.arange(2 * len(forces)).reshape(-1, 2)
@@ -132,13 +132,15 @@ def pack(m: Mechanism) -> Packed:
     marker_body = np.array([number[marker.body.name] for marker in markers], np.int64)
     angles = np.array([marker.angle for marker in markers], float)
     as_table = {name: np.array(rows, np.int64).reshape(-1, 4) for name, rows in tables.items()}
-    special, addresses, numbers = specials.arrays(marker_body)
+    marker_arm = local - com[marker_body] if len(markers) else np.zeros((0, 2))
+    size = _size(marker_arm, marker_body, lengths + extents)
+    special, addresses, numbers = specials.arrays(marker_body, size)
     system = System(
         mass=np.array([body.mass for body in bodies], float),
         inertia=np.array([body.inertia for body in bodies], float),
         gravity=np.array(m.gravity, float),
         marker_body=marker_body,
-        marker_arm=local - com[marker_body] if len(markers) else np.zeros((0, 2)),
+        marker_arm=marker_arm,
         marker_axis=np.stack([np.cos(angles), np.sin(angles)], axis=1),
         moving=np.flatnonzero(marker_body),
         directed=_directed(
@@ -166,7 +168,7 @@ def pack(m: Mechanism) -> Packed:
         force_markers=force_markers,
         motions=motions,
         specials=specials,
-        size=_size(system, lengths + extents),
+        size=size,
     )
 
 
@@ -182,9 +184,9 @@ def _directed(marker_body: np.ndarray, *first_markers: np.ndarray) -> np.ndarray
     return np.unique(first[marker_body[first] > 0])
 
 
-def _size(system: System, lengths: list[float]) -> float:
-    extents = [*lengths, *np.hypot(*system.marker_arm.T)]
-    for body in np.unique(system.marker_body):
-        extents.append(float(np.linalg.norm(np.ptp(system.marker_arm[system.marker_body == body], axis=0))))
+def _size(marker_arm: np.ndarray, marker_body: np.ndarray, lengths: list[float]) -> float:
+    extents = [*lengths, *np.hypot(*marker_arm.T)]
+    for body in np.unique(marker_body):
+        extents.append(float(np.linalg.norm(np.ptp(marker_arm[marker_body == body], axis=0))))
     largest = float(max(extents, default=0.0))
     return largest if largest > SMALLEST_SIZE else 1.0

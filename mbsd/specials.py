@@ -55,15 +55,15 @@ class Specials:
         """Entries whose constant comes from the start pose."""
         return [k for k, name in enumerate(self.names) if SPECIALS[name].phased]
 
-    def arrays(self, marker_body: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """The table (k, 7), the addresses (k,) and all numbers, for System."""
+    def arrays(self, marker_body: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The table (k, 7), the addresses (k,) and all numbers, for System. ``size``: of the mechanism (m)."""
         if not self.names:
             return np.zeros((0, 7), np.int64), np.zeros(0, np.int64), np.zeros(0)
         from mbsd.constraints.equation import address_of
 
         rows, numbers, at = [], [], 0
         for joint, place in zip(self.joints, self.places, strict=True):
-            own = self._own_numbers(joint, place)
+            own = self._own_numbers(joint, place, size)
             block = [joint.j.angle - joint.i.angle, 0.0, 0.0, 1.0, *own]
             rows.append((*place, at, marker_body[place[0]], 1))
             numbers.append(block)
@@ -71,11 +71,13 @@ class Specials:
         addresses = [address_of(SPECIALS[name].equation) for name in self.names]
         return np.array(rows, np.int64), np.array(addresses, np.int64), np.concatenate(numbers)
 
-    def _own_numbers(self, joint: Joint, place: tuple[int, int, int, int]) -> list[float]:
+    def _own_numbers(self, joint: Joint, place: tuple[int, int, int, int], size: float) -> list[float]:
         if "function" in joint.params:
             from mbsd.user_constraint import derivatives
 
-            self.callbacks.append(derivatives(joint.params["function"], f"{self.mechanism}: joint '{joint.name}'"))
+            self.callbacks.append(
+                derivatives(joint.params["function"], f"{self.mechanism}: joint '{joint.name}'", size)
+            )
             return [float(self.callbacks[-1].address)]
         nth = sum(1 for other in self.places if other[:2] == place[:2] and other[2] < place[2])
         assert joint.kind.numbers is not None

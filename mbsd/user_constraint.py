@@ -22,34 +22,35 @@ from mbsd.errors import ModelError
 
 COMPLEX_STEP = 1e-30
 STEP = 4e-3
-"""Of differences (m and rad); the error of sixth order is 1e-15 times the seventh derivative."""
+"""Of differences, in sizes of the mechanism and rad; the error is about 1e-15 times the seventh derivative."""
 AGREEMENT = 1e-6
 TRIALS = ((0.31, -0.42, 0.53), (-0.27, 0.66, -1.1), (0.81, 0.13, 2.2))
 
 
-def derivatives(function: Callable, what: str) -> Callback:
+def derivatives(function: Callable, what: str, size: float) -> Callback:
     """A callback of the relative pose that gives F, its gradient and second derivatives, ten numbers.
 
-    Raises ModelError if it is no function, or if numba cannot compile it.
+    ``size`` (m) is a usual length. Raises ModelError if it is no function, or if numba cannot compile it.
     """
     if not callable(function):
         raise ModelError(f"{what}: {function!r} is no function; give one of x, y and the angle")
     compiled = isinstance(function, Dispatcher)
-    by_complex = _takes_complex(function)
-    return Callback(_ten(function, by_complex, numba.njit if compiled else _as_it_is), (1, 1, 1), 10, what)
+    by_complex = _takes_complex(function, size)
+    return Callback(_ten(function, by_complex, numba.njit if compiled else _as_it_is, size), (1, 1, 1), 10, what)
 
 
 def _as_it_is(function: Callable) -> Callable:
     return function
 
 
-def _takes_complex(function: Callable) -> bool:
+def _takes_complex(function: Callable, size: float) -> bool:
     """Whether complex steps work and agree with differences wherever the function can be evaluated."""
     agreed = 0
     for trial in TRIALS:
         try:
-            plain = _gradient_by_differences(function, _as_it_is)(*trial)
-            stepped = _gradient_by_complex(function, _as_it_is)(*trial)
+            at = trial[0] * size, trial[1] * size, trial[2]
+            plain = _gradient_by_differences(function, _as_it_is, size)(*at)
+            stepped = _gradient_by_complex(function, _as_it_is, size)(*at)
         except Exception:
             continue
         both = np.array([plain, stepped], float)
@@ -61,7 +62,7 @@ def _takes_complex(function: Callable) -> bool:
     return agreed > 0
 
 
-def _gradient_by_complex(f: Any, compile_: Callable) -> Any:
+def _gradient_by_complex(f: Any, compile_: Callable, size: float) -> Any:
     h = COMPLEX_STEP
 
     def gradient(x, y, a):
@@ -74,23 +75,23 @@ def _gradient_by_complex(f: Any, compile_: Callable) -> Any:
     return compile_(gradient)
 
 
-def _gradient_by_differences(f: Any, compile_: Callable) -> Any:
-    h = STEP
+def _gradient_by_differences(f: Any, compile_: Callable, size: float) -> Any:
+    h, d = STEP, STEP * size
 
     def gradient(x, y, a):
         return (
             (
-                45.0 * (f(x + h, y, a) - f(x - h, y, a))
-                - 9.0 * (f(x + 2.0 * h, y, a) - f(x - 2.0 * h, y, a))
-                + (f(x + 3.0 * h, y, a) - f(x - 3.0 * h, y, a))
+                45.0 * (f(x + d, y, a) - f(x - d, y, a))
+                - 9.0 * (f(x + 2.0 * d, y, a) - f(x - 2.0 * d, y, a))
+                + (f(x + 3.0 * d, y, a) - f(x - 3.0 * d, y, a))
             )
-            / (60.0 * h),
+            / (60.0 * d),
             (
-                45.0 * (f(x, y + h, a) - f(x, y - h, a))
-                - 9.0 * (f(x, y + 2.0 * h, a) - f(x, y - 2.0 * h, a))
-                + (f(x, y + 3.0 * h, a) - f(x, y - 3.0 * h, a))
+                45.0 * (f(x, y + d, a) - f(x, y - d, a))
+                - 9.0 * (f(x, y + 2.0 * d, a) - f(x, y - 2.0 * d, a))
+                + (f(x, y + 3.0 * d, a) - f(x, y - 3.0 * d, a))
             )
-            / (60.0 * h),
+            / (60.0 * d),
             (
                 45.0 * (f(x, y, a + h) - f(x, y, a - h))
                 - 9.0 * (f(x, y, a + 2.0 * h) - f(x, y, a - 2.0 * h))
@@ -102,17 +103,18 @@ def _gradient_by_differences(f: Any, compile_: Callable) -> Any:
     return compile_(gradient)
 
 
-def _ten(function: Any, by_complex: bool, compile_: Callable) -> Callable:
-    gradient = (_gradient_by_complex if by_complex else _gradient_by_differences)(function, compile_)
-    h, weights = STEP, (0.75, -0.15, 1.0 / 60.0)
+def _ten(function: Any, by_complex: bool, compile_: Callable, size: float) -> Callable:
+    gradient = (_gradient_by_complex if by_complex else _gradient_by_differences)(function, compile_, size)
+    weights = (0.75, -0.15, 1.0 / 60.0)
 
     def ten(t, x, y, a):
         here = gradient(x, y, a)
         second = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
         for k in range(3):
-            step = (k + 1) * h
-            weight = weights[k] / h
             for axis in range(3):
+                h = STEP if axis == 2 else STEP * size
+                step = (k + 1) * h
+                weight = weights[k] / h
                 dx = step if axis == 0 else 0.0
                 dy = step if axis == 1 else 0.0
                 da = step if axis == 2 else 0.0

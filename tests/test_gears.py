@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbsd import Mechanism, ModelError, constant_rate
+from mbsd import Mechanism, MobilityError, ModelError, constant_rate
 
 PLANETARY = json.loads((Path(__file__).parent / "reference" / "analytic_planetary.json").read_text())
 SUN, PLANET, RING = 0.020, 0.030, 0.080  # radii in the ratio of the teeth
@@ -137,3 +137,18 @@ def test_a_planetary_train_moves_freely_with_its_energy_and_ratios() -> None:
     np.testing.assert_allclose(carrier_view.alpha, -load * np.cos(carrier_view.theta) / reduced, rtol=1e-8, atol=1e-8)
     np.testing.assert_allclose(sol.body("sun").theta, math.radians(10) + 5 * carrier_view.theta, atol=1e-9)
     assert np.ptp(sol.energy.total) < 1e-7
+
+
+def test_two_motors_on_geared_shafts_are_refused() -> None:
+    m = Mechanism("train")
+    first, second = m.body("first"), m.body("second")
+    m.revolute("A", m.ground.origin, first.origin)
+    m.revolute("B", m.ground.at(0.3, 0), second.origin)
+    m.gear_pair("teeth", first.origin, second.origin, 0.1, 0.2)
+    m.drive_angle("one", first, constant_rate(1.0))
+    assert m.mobility().dof == 1
+    m.drive_angle("two", second, constant_rate(1.0, 0.3))
+    with pytest.raises(
+        MobilityError, match="driver 'two' drives a freedom that the joints and driver 'one' already fix"
+    ):
+        m.sweep()

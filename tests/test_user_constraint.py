@@ -59,7 +59,7 @@ def test_second_derivatives_are_exact_to_rounding() -> None:
     def f(x, y, a):
         return np.exp(0.3 * x) * np.sin(y + a) + x * y * a
 
-    callback = derivatives(f, "test")
+    callback = derivatives(f, "test", 1.0)
     x, y, a = 0.4, -0.7, 1.3
     out = callback.function(0.0, x, y, a)
     e, s, c = math.exp(0.3 * x), math.sin(y + a), math.cos(y + a)

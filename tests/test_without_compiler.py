@@ -8,7 +8,15 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
-FILES = ("test_joints.py", "test_mobility.py", "test_kinematics.py", "test_dynamics.py", "test_reference.py")
+FILES = (
+    "test_joints.py",
+    "test_mobility.py",
+    "test_kinematics.py",
+    "test_dynamics.py",
+    "test_reference.py",
+    "test_reference_joints.py",
+    "test_user_constraint.py",
+)
 
 
 def test_the_solver_passes_its_tests_without_numba() -> None:

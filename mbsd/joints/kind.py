@@ -57,9 +57,17 @@ class JointKind:
     problem: Callable[[Mapping[str, Any], float, float], str | None] | None = None
     """From params and the place (x, y) of marker j against marker i at the start: why this joint cannot be."""
     lengths: tuple[str, ...] = ()
-    """Params that are lengths (m) and tell how large the mechanism is."""
+    """Params that are lengths (m), or places of a curve, and tell how large the mechanism is."""
     saved: bool = True
     """Whether a file can hold its params; a Python function cannot be saved."""
+
+    def extents(self, params: Mapping[str, Any]) -> list[float]:
+        """Lengths (m) among the params that tell how large the mechanism is."""
+        values = [params[key] for key in self.lengths]
+        return [
+            value if isinstance(value, float) else max(max(x) - min(x) for x in zip(*value, strict=True))
+            for value in values
+        ]
 
     @property
     def angular(self) -> bool:

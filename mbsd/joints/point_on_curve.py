@@ -40,5 +40,6 @@ POINT_ON_CURVE = register(
             distance=-0.1,
         ),
         numbers=_numbers,
+        lengths=("points",),
     )
 )

@@ -37,6 +37,6 @@ ROLLING_ON_CURVE = register(
             "example", i, j, [(-6, -1), (-4, -0.5), (-2, 0), (0, -0.3), (2, -0.5), (4, 0.2), (6, 0.1)], radius=0.2
         ),
         numbers=_numbers,
-        lengths=("radius",),
+        lengths=("radius", "points"),
     )
 )

@@ -197,3 +197,20 @@ def test_wrong_friction_is_refused_when_built(arguments: tuple, words: str) -> N
     with pytest.raises(ModelError, match="needs a joint of this mechanism"):
         other.friction("rub", m.joints["pin"], 0.1, radius=0.01)
     assert not m.forces
+
+
+def test_a_long_chain_with_friction_settles_too() -> None:
+    m = Mechanism("chain")
+    before = m.ground.at(0, 0)
+    for k in range(40):
+        link = m.bar(f"link{k}", 0.1, mass=0.1)
+        m.revolute(f"pin{k}", before, link.start)
+        m.friction(f"rub{k}", f"pin{k}", 0.2, radius=0.005)
+        m.start_near(**{link.name: -80.0})
+        before = link.end
+    sol = m.simulate(0.2, steps=2, tolerance=1e-6)
+    assert sol.audit is not None
+    assert sol.work is not None
+    assert sol.stats.power_residual < 1e-8
+    assert np.ptp(sol.audit) < 1e-4
+    assert sol.work[-1] < -1e-4

@@ -1,6 +1,6 @@
 """Inverse dynamics along a known motion: multipliers, reactions, efforts, and how exact the motion is.
 
-    J^T lam = Q - M a                  Q: gravity and forces, with friction by lam itself
+    J^T lam = Q - M a                  Q: gravity and forces
     reaction on body b = -J_b^T lam, given at the joint's second marker: fx, fy, torque
     effort of a driver = -lam of its row;  power = effort f'
 
@@ -15,18 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.assembly import tabulate
-from mbsd.errors import SimulationError
-from mbsd.joint_friction import JointFriction, friction_along, pack_friction
 from mbsd.loads import compiled_laws, loads_along, pack_loads
-from mbsd.packing import Packed
 from mbsd.prepared import Prepared
 from mbsd.reactions import wrenches
 
 JACOBIAN_NUMBERS = 4_000_000
 """How many numbers of Jacobians are held at once."""
-FRICTION_ROUNDS = 200
-FRICTION_SETTLED = 1e-13
-"""Friction may be wrong by this part of the largest load of its time."""
 
 
 @dataclass
@@ -56,7 +50,6 @@ def inverse_dynamics(
     if packed.forces:
         laws = compiled_laws(packed, float(times[0]), float(times[-1]))
         loads += loads_along(packed, pack_loads(packed), laws, times, q, v)
-    friction = pack_friction(packed)
     nu = np.zeros((count, rows))
     nu[:, packed.driver_rows :] = drives[:, 1:, 1]
     out = Efforts(np.zeros((count, rows)), np.zeros((count, len(packed.joints), 3)), np.zeros(count), np.zeros(4))
@@ -71,11 +64,12 @@ def inverse_dynamics(
         scaled = jac[:, kept] * packed.row_scale()[kept, None] * packed.column_scale()
         singular = np.linalg.svd(scaled, compute_uv=False)
         out.margin[at] = singular[:, -1] / singular[:, 0]
-        redundant = bool(ready.mobility.redundant_rows)
-        lam = out.lam[at] = _multipliers(jac, loads[at], redundant)
-        if len(friction.table):
-            loads[at] += _friction(packed, friction, times[at], q[at], v[at], jac, loads[at], redundant)
-            lam = out.lam[at] = _multipliers(jac, loads[at], redundant)
+        lam = out.lam[at]
+        if ready.mobility.redundant_rows:
+            for k, matrix in enumerate(jac):
+                lam[k] = np.linalg.lstsq(matrix.T, loads[start + k, 3:], rcond=1e-9)[0]
+        else:
+            lam[:] = np.linalg.solve(jac.transpose(0, 2, 1), loads[at, 3:, None])[..., 0]
         out.wrench[at] = wrenches(packed, compact, q[at], lam)
         rate = np.einsum("trc,tc->tr", jac, v[at, 3:]) - nu[at]
         bend = np.einsum("trc,tc->tr", jac, a[at, 3:]) - gamma
@@ -83,46 +77,3 @@ def inverse_dynamics(
         worst = [np.abs(error).max(initial=0.0) for error in (phi, rate, bend, power)]
         out.residuals = np.maximum(out.residuals, worst)
     return out
-
-
-def _multipliers(jac: np.ndarray, loads: np.ndarray, redundant: bool) -> np.ndarray:
-    """(T, m) by jac (T, m, n) and loads (T, 3 nb)."""
-    if redundant:
-        return np.array([np.linalg.lstsq(j.T, load[3:], rcond=1e-9)[0] for j, load in zip(jac, loads, strict=True)])
-    return np.linalg.solve(jac.transpose(0, 2, 1), loads[:, 3:, None])[..., 0]
-
-
-def _friction(
-    packed: Packed,
-    friction: JointFriction,
-    times: np.ndarray,
-    q: np.ndarray,
-    v: np.ndarray,
-    jac: np.ndarray,
-    loads: np.ndarray,
-    redundant: bool,
-) -> np.ndarray:
-    """(T, 3 nb) friction and the multipliers it depends on, settled time by time; see dynamics/settle_friction.py.
-
-    Raises SimulationError where there is none: the mechanism jams.
-    """
-    settled = FRICTION_SETTLED * np.abs(loads).max(axis=1, initial=0.0)
-    applied, found_before, gap_before = (np.zeros_like(loads) for _ in range(3))
-    for step in range(FRICTION_ROUNDS):
-        found = friction_along(packed, friction, q, v, _multipliers(jac, loads + applied, redundant))
-        gap = found - applied
-        open_still = np.abs(gap).max(axis=1) > settled
-        if step > 0 and not open_still.any():
-            return applied
-        change = gap - gap_before
-        square = (change * change).sum(axis=1)
-        usable = (square > 0.0) & (step > 0)
-        theta = np.where(usable, (gap * change).sum(axis=1) / np.where(usable, square, 1.0), 0.0)
-        applied = found - theta[:, None] * (found - found_before)
-        found_before, gap_before = found, gap
-    k = int(np.argmax(open_still))
-    names = ", ".join(f"'{force.name}'" for force in packed.forces if force.kind.of_reaction)
-    raise SimulationError(
-        f"{packed.name}: at t = {times[k]:.6g} s friction {names} and the reactions it comes from do not settle: the "
-        "mechanism jams there. Lower a coefficient, or drive another body."
-    )

@@ -46,13 +46,12 @@ def motion(packed: Packed, seed: int, count: int = 40) -> tuple[np.ndarray, np.n
     return t, q, v
 
 
-KINDS = [kind for kind in all_kinds() if not kind.of_reaction]
-"""Those that no multiplier is needed for; the others: test_friction.py."""
+KINDS = all_kinds()
 
 
 def test_each_file_registers_its_kind() -> None:
     files = {module.name for module in pkgutil.iter_modules(mbsd.forces.__path__)} - {"kind"}
-    assert files == {kind.name for kind in all_kinds()}
+    assert files == {kind.name for kind in KINDS}
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)

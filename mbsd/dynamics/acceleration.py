@@ -14,9 +14,7 @@ Source: Haug 1989, ch. 6; Baumgarte 1972, Comp. Meth. Appl. Mech. Eng. 1.
 from __future__ import annotations
 
 from mbsd.assembly import evaluate_gamma, evaluate_position
-from mbsd.dynamics.balance import balance
-from mbsd.dynamics.schur import factor_schur, times_jacobian
-from mbsd.dynamics.settle_friction import settle_friction
+from mbsd.dynamics.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
 from mbsd.jit import inlined, kernel
 from mbsd.laws import evaluate_laws
 from mbsd.loads import apply_loads
@@ -34,6 +32,7 @@ def accelerate(dyn, scratch, t, state, a, lam):
     factors = scratch.factors
     drive = scratch.drive
     force = scratch.force
+    y = factors.side
     gamma = ws.right[0]
     q = state[0]
     v = state[1]
@@ -61,9 +60,21 @@ def accelerate(dyn, scratch, t, state, a, lam):
         for k in range(system.driven.shape[0]):
             gamma[system.driven[k, 0]] += 2.0 * alpha * drive[system.driven[k, 1], 1]
     for _ in range(dyn.passes):
-        balance(dyn, scratch, gamma, a, lam)
-    if dyn.friction.table.shape[0] > 0:
-        power += settle_friction(dyn, scratch, v, a, lam)
+        for c in range(3, n3):
+            ws.pose[c] = a[c] + dyn.inverse[c] * (force[c] - dyn.inertia[c] * a[c])
+        for k in range(schur.rows.shape[0]):
+            for s in range(2):
+                r = schur.rows[k, s]
+                y[k, s, 0] = times_jacobian(factors, schur, k, s, ws.pose) - gamma[r] if r >= 0 else 0.0
+        solve_schur(schur, factors, 1)
+        subtract_forces(factors, schur, 0, force)
+        for c in range(3, n3):
+            a[c] += dyn.inverse[c] * (force[c] - dyn.inertia[c] * a[c])
+        for k in range(schur.rows.shape[0]):
+            for s in range(2):
+                r = schur.rows[k, s]
+                if r >= 0:
+                    lam[r] += y[k, s, 0]
     for k in range(system.driven.shape[0]):
         power -= lam[system.driven[k, 0]] * drive[system.driven[k, 1], 1]
     return power

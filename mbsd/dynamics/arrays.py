@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mbsd.dynamics.schur import SchurFactors, schur_factors
-from mbsd.joint_friction import JointFriction
 
 
 class Dynamics(NamedTuple):
@@ -22,7 +21,6 @@ class Dynamics(NamedTuple):
     """mbsd.laws.Laws: 1 .. drivers are the drivers' laws of time."""
     loads: Any
     """mbsd.loads.Loads"""
-    friction: JointFriction
     schur: Any
     """mbsd.dynamics.schur.Schur"""
     inertia: Any

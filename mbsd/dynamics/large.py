@@ -24,7 +24,6 @@ from mbsd.dynamics.projection import project
 from mbsd.dynamics.schur import factor_schur, plan_schur
 from mbsd.errors import AssemblyError
 from mbsd.jit import kernel
-from mbsd.joint_friction import pack_friction
 from mbsd.laws import pack_laws
 from mbsd.loads import pack_loads
 from mbsd.mobility import Mobility
@@ -99,18 +98,7 @@ def _projector(packed: Packed, time: float, inverse: np.ndarray) -> Dynamics:
     size = np.concatenate([np.ones(3), packed.column_scale()])
     nothing = np.zeros_like(inverse)
     return Dynamics(
-        system=packed.system,
-        laws=laws,
-        loads=pack_loads(packed),
-        friction=pack_friction(packed),
-        schur=schur,
-        inertia=nothing,
-        inverse=inverse,
-        metric=inverse,
-        weight=nothing,
-        passes=1,
-        baumgarte=np.zeros(2),
-        per_size=1.0 / size,
+        packed.system, laws, pack_loads(packed), schur, nothing, inverse, inverse, nothing, 1, np.zeros(2), 1.0 / size
     )
 
 

@@ -15,7 +15,6 @@ from mbsd.dynamics.schur import plan_schur
 from mbsd.errors import MobilityError, ModelError, SimulationError
 from mbsd.integrators import state as run_state
 from mbsd.integrators.kind import Integrator
-from mbsd.joint_friction import pack_friction
 from mbsd.loads import compiled_laws, pack_loads
 from mbsd.mobility import Mobility, independent_rows, joint_mobility, scaled_jacobian
 from mbsd.model import Mechanism
@@ -120,7 +119,6 @@ def prepare_dynamics(m: Mechanism, start: float, end: float) -> PreparedDynamics
         system=packed.system,
         laws=compiled_laws(packed, start, end),
         loads=pack_loads(packed),
-        friction=pack_friction(packed),
         schur=schur,
         inertia=inertia,
         inverse=_inverse(lifted),

@@ -91,8 +91,6 @@ class ForceKind:
     """Whether it is a load from outside, to which nothing in the mechanism feels the opposite."""
     saved: bool = True
     """Whether a file can hold its params; a Python function cannot be saved."""
-    of_reaction: bool = False
-    """Whether it is a friction that depends on the reaction of a joint; see mbsd/joint_friction.py."""
 
 
 FORCE_KINDS: dict[str, ForceKind] = {}

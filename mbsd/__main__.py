@@ -11,7 +11,12 @@ def main() -> int:
     if sys.argv[1:] != ["compile"]:
         print("usage: python -m mbsd compile", file=sys.stderr)
         return 2
+    import dataclasses
+
+    import numpy as np
+
     from mbsd import Mechanism, constant_rate
+    from mbsd.prepared import prepare
 
     started = time.perf_counter()
     m = Mechanism("compile")
@@ -19,6 +24,11 @@ def main() -> int:
     m.revolute("A", m.ground.at(0, 0), crank.start)
     m.drive_angle("motor", crank, constant_rate(1.0))
     m.sweep(steps=4)
+    dataclasses.replace(prepare(m), groups=None).march(
+        np.linspace(0.0, 1.0, 4)
+    )  # Newton-Raphson, where groups do not serve
+    m.trace("P", crank.end)
+    m.batch(lengths={"crank": [1.0]}, steps=4)
     m.simulate(0.1, steps=4)
     print(f"mbsd: kernels ready in {time.perf_counter() - started:.1f} s")
     return 0

@@ -11,18 +11,30 @@ import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from mbsd.assur.designs import place_designs
-from mbsd.assur.groups import BRANCH, DRIVEN, RPR, RRP, WELDED, YOKE, Groups
+from mbsd.assur.groups import BRANCH, DRIVEN, PRP, RPR, RRP, SLIDE, WELDED, YOKE, Groups
 from mbsd.assur.plan import plan_groups
 from mbsd.assur.solve import DOUBTED, SOLVED
 from mbsd.errors import ModelError
 from mbsd.model import Marker, Mechanism
 from mbsd.packing import Packed
 from mbsd.prepared import prepare
+
+
+class Moved(NamedTuple):
+    """What one parameter changes."""
+
+    markers: Sequence[tuple[int, int]] = ()
+    """Marker and axis."""
+    trace: tuple[int, int] | None = None
+    """Traced point and axis."""
+    rod: int | None = None
+    """Row of the distance constraints."""
+
 
 CHUNK = 64
 """Designs that a thread takes at once."""
@@ -61,8 +73,8 @@ def batch(
     packed, groups = ready.packed, ready.groups
     if groups is None:
         raise ModelError(
-            f"{m.name}: batch solves mechanisms of driven bodies and dyads (pins, sliders, slots, welds); this one "
-            "holds something else or a redundant joint. Sweep its designs one by one."
+            f"{m.name}: batch solves mechanisms of driven bodies and dyads (pins, sliders, slots, rods, "
+            "welds); this one holds something else or a redundant joint. Sweep its designs one by one."
         )
     values, moved = _parameters(m, packed, lengths, places)
     count = len(values)
@@ -71,9 +83,9 @@ def batch(
     arms = np.array([(p.x, p.y) for p in markers]).reshape(-1, 2)
     bodies = np.array([packed.body_names.index(p.body.name) for p in markers], np.int64)
     arms_of = np.tile(arms - packed.com[bodies], (count, 1, 1)) if markers else np.zeros((count, 0, 2))
-    for column, (_, trace) in enumerate(moved):
-        if trace is not None:
-            arms_of[:, trace[0], trace[1]] += values[:, column]
+    for column, change in enumerate(moved):
+        if change.trace is not None:
+            arms_of[:, change.trace[0], change.trace[1]] += values[:, column]
     turned = np.array([_body(m, packed, name) for name in angles], np.int64)
     out = np.empty((count, len(markers), len(grid), 2))
     out_angles = np.empty((count, len(turned), len(grid)))
@@ -104,17 +116,26 @@ def batch(
 
 
 def _turns(groups: Groups, drives: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Cosine and sine of the angles that no design changes: (T, g, 2) of drivers, (g, 2) of welds and sliders."""
+    """What no design changes: cosine and sine of driven angles, other laws (T, g, 2); turns of A and B (g, 2, 2)."""
     driven = np.zeros((len(drives), len(groups.kind), 2))
-    fixed = np.zeros((len(groups.kind), 2))
-    constant = {WELDED: 4, RRP: 10, RPR: 9, YOKE: 8}
+    fixed = np.zeros((len(groups.kind), 2, 2))
+    constant = {
+        WELDED: ((0, 4),),
+        RRP: ((1, 10),),
+        RPR: ((1, 9),),
+        YOKE: ((0, 8),),
+        PRP: ((0, 4), (1, 11)),
+        SLIDE: ((0, 4),),
+    }
     for e, kind in enumerate(groups.kind):
         if kind == DRIVEN:
             angle = groups.number[e, 5] * (groups.number[e, 4] + drives[:, groups.motion[e], 0])
             driven[:, e] = np.column_stack([np.cos(angle), np.sin(angle)])
-        elif int(kind) in constant:
-            angle = groups.number[e, constant[int(kind)]]
-            fixed[e] = math.cos(angle), math.sin(angle)
+        else:
+            driven[:, e, 0] = drives[:, groups.motion[e], 0]
+        for side, column in constant.get(int(kind), ()):
+            angle = groups.number[e, column]
+            fixed[e, side] = math.cos(angle), math.sin(angle)
     return driven, fixed
 
 
@@ -128,18 +149,24 @@ def _parameters(
     packed: Packed,
     lengths: Mapping[str, Sequence[float] | np.ndarray],
     places: Mapping[str, Sequence[Sequence[float]] | np.ndarray],
-) -> tuple[np.ndarray, list[tuple[list[tuple[int, int]], tuple[int, int] | None]]]:
+) -> tuple[np.ndarray, list[Moved]]:
     """Changes (n, p) against the mechanism itself, and what each moves: marker coordinates, or one of a trace."""
     columns: list[np.ndarray] = []
-    moved: list[tuple[list[tuple[int, int]], tuple[int, int] | None]] = []
+    moved: list[Moved] = []
     traces = list(m.traces)
     for name, values in lengths.items():
-        body = m.known_body(name)
-        if body.length is None:
+        rod = _rod(m, packed, name)
+        body = m.known_body(name) if rod is None else m.ground
+        if rod is None and body.length is None:
             raise ModelError(f"{m.name}: batch: '{name}' is no bar, so it has no length; give places instead")
         change = _finite(m, name, values, 1)[:, 0]
         if (change <= 0).any():
             raise ModelError(f"{m.name}: batch: length {change.min():g} m of '{name}' must be positive")
+        if rod is not None:
+            columns.append(change - packed.system.distance_length[rod])
+            moved.append(Moved(rod=rod))
+        if body.length is None:
+            continue
         ends = [
             (number, 0)
             for joint, pair in zip(packed.joints, packed.markers, strict=True)
@@ -147,21 +174,21 @@ def _parameters(
             if marker.body is body and _at_end(marker, body.length)
         ]
         columns.append(change - body.length)
-        moved.append((ends, None))
+        moved.append(Moved(ends))
         for k, trace in enumerate(traces):
             if m.traces[trace].body is body and _at_end(m.traces[trace], body.length):
                 columns.append(change - body.length)
-                moved.append(([], (k, 0)))
+                moved.append(Moved(trace=(k, 0)))
     for name, values in places.items():
         change = _finite(m, name, values, 2)
         if name in m.traces:
-            base, target = m.traces[name], [([], (traces.index(name), axis)) for axis in (0, 1)]
+            base, target = m.traces[name], [Moved(trace=(traces.index(name), axis)) for axis in (0, 1)]
         elif name in m.joints:
             joint = m.joints[name]
             first = joint.i.body is m.ground or joint.j.body is not m.ground
             base = joint.i if first else joint.j
             number = int(packed.markers[packed.joints.index(joint)][0 if first else 1])
-            target = [([(number, axis)], None) for axis in (0, 1)]
+            target = [Moved([(number, axis)]) for axis in (0, 1)]
         else:
             known = ", ".join([*m.joints, *m.traces])
             raise ModelError(f"{m.name}: batch: there is no joint or traced point '{name}'; there is: {known}")
@@ -175,6 +202,17 @@ def _parameters(
             f"{m.name}: batch: lists of {', '.join(map(str, sorted(sizes)))} designs; they must be equally long"
         )
     return np.column_stack(columns), moved
+
+
+def _rod(m: Mechanism, packed: Packed, name: str) -> int | None:
+    """The row among the distance constraints of a rod of this name, if there is one. Raises ModelError if unclear."""
+    joint = m.joints.get(name) if isinstance(name, str) else None
+    if joint is None or joint.kind.constraints != ("distance",):
+        return None
+    if name in m.bodies:
+        raise ModelError(f"{m.name}: batch: '{name}' is a body and a rod; give one of them another name")
+    row = packed.first_row[packed.joints.index(joint)]
+    return int(np.flatnonzero(packed.system.distance[:, 2] == row)[0])
 
 
 def _at_end(marker: Marker, length: float) -> bool:
@@ -192,18 +230,20 @@ def _finite(m: Mechanism, name: str, values: Any, width: int) -> np.ndarray:
     return out
 
 
-def _numbers(packed: Packed, q0: np.ndarray, groups: Groups, values: np.ndarray, moved: list) -> np.ndarray:
-    """(n, g, 14) numbers of the groups of all designs; exact, for they are linear in the markers' places."""
+def _numbers(packed: Packed, q0: np.ndarray, groups: Groups, values: np.ndarray, moved: list[Moved]) -> np.ndarray:
+    """(n, g, 14) numbers of the groups of all designs; exact, for they are linear in places and lengths."""
     out = np.tile(groups.number, (len(values), 1, 1))
     arms = packed.system.marker_arm
-    for column, (markers, _) in enumerate(moved):
-        if not markers:
+    for column, change in enumerate(moved):
+        if change.trace is not None:
             continue
-        shifted = arms.copy()
-        for number, axis in markers:
+        shifted, lengths = arms.copy(), packed.system.distance_length.copy()
+        for number, axis in change.markers:
             shifted[number, axis] += 1.0
-        other = _with_arms(packed, shifted)
-        changed = plan_groups(other, q0, 0)
+        if change.rod is not None:
+            lengths[change.rod] += 1.0
+        system = packed.system._replace(marker_arm=shifted, distance_length=lengths)
+        changed = plan_groups(replace(packed, system=system), q0, 0)
         assert changed is not None
         slope = changed.number - groups.number
         for e, kind in enumerate(groups.kind):
@@ -211,8 +251,3 @@ def _numbers(packed: Packed, q0: np.ndarray, groups: Groups, values: np.ndarray,
                 slope[e, BRANCH[int(kind)]] = 0.0
         out += values[:, column, None, None] * slope
     return out
-
-
-def _with_arms(packed: Packed, arms: np.ndarray) -> Packed:
-
-    return replace(packed, system=packed.system._replace(marker_arm=arms))

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.adding_interactions import AddingInteractions
+from mbsd.adding_forces import AddingForces
 from mbsd.adding_machine_joints import AddingMachineJoints
 from mbsd.body import Body, Marker
 from mbsd.errors import ModelError
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 __all__ = ["STANDARD_GRAVITY", "Body", "Force", "Joint", "Marker", "Mechanism", "Start"]
 
 
-class Mechanism(AddingMachineJoints, AddingInteractions):
+class Mechanism(AddingMachineJoints, AddingForces):
     """Bodies, joints, drivers and traced points, by name. ``gravity`` in m/s^2; None turns it off."""
 
     def trace(self, name: str, marker: Marker) -> Marker:
@@ -119,10 +119,11 @@ class Mechanism(AddingMachineJoints, AddingInteractions):
     ) -> Batch:
         """Sweep n designs of this mechanism at once, tens of thousands a second: traced points, and angles asked for.
 
-        ``lengths``: bar names to (n,) lengths (m), which move the bar's ``end``. ``places``: joint names to (n, 2)
-        places (m) of the joint's marker on ground, or else of its first marker, in that body's frame; or names of
-        traced points to their places. Times are those of :meth:`sweep`. Raises ModelError for a mechanism that is not
-        made of driven bodies and dyads.
+        ``lengths``: bar names to (n,) lengths (m), which move the bar's ``end``, or rods (distance joints) to their
+        lengths. ``places``: joint names to (n, 2) places (m) of the joint's marker on ground, or else of its first
+        marker, in that body's frame; or names of traced points to their places. Times are those of :meth:`sweep`.
+        Designs share the branch of the mechanism itself. Raises ModelError for a mechanism that is not made of driven
+        bodies and dyads.
         """
         from mbsd.batch import batch
 

@@ -59,6 +59,10 @@ class Packed:
         """The joint that owns a row of J."""
         return self.joints[int(np.searchsorted(self.first_row, row, side="right")) - 1]
 
+    def motion_of(self, number: int) -> int:
+        """The motion of a joint or driver by its place in ``joints``; 0 for joints."""
+        return max(0, number + 1 - (len(self.joints) - len(self.motions)))
+
     def drives(self, times: np.ndarray) -> np.ndarray:
         """(T, motions + 1, 3) values, rates and accelerations of all laws; index 0 is zero."""
         out = np.zeros((len(times), len(self.motions) + 1, 3))

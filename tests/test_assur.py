@@ -10,7 +10,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from mbsd import AssemblyError, Mechanism, MechanismError, constant_rate
+from mbsd import AssemblyError, Marker, Mechanism, MechanismError, constant_rate, function, harmonic
 from mbsd.assur.groups import NAMES
 from mbsd.prepared import Prepared, prepare
 
@@ -105,6 +105,62 @@ def crank_on_a_turning_base() -> Mechanism:
     return m
 
 
+def rod(turned_round: bool, actuator: bool = False) -> Mechanism:
+    """A rocker held by a massless rod from the crank's end; or a rod whose length is driven, from ground."""
+    m = Mechanism("rod")
+    rocker = m.bar("rocker", 0.3, 1.0, com=(0.1, 0.05))
+    m.revolute("C", m.ground.at(0.4, 0), rocker.start)
+    base = m.ground.at(0.05, -0.1) if actuator else crank(m).end
+    ends = base, rocker.at(0.3, 0.02)
+    ends = tuple(reversed(ends)) if turned_round else ends
+    if actuator:
+        m.drive_distance("ram", *ends, harmonic(0.08, 6.0, 0.3, 0.42))
+    else:
+        m.distance("coupler", *ends, 0.38)
+    m.start_near(rocker=90)
+    return m
+
+
+def driven_slider(turned_round: bool) -> Mechanism:
+    """A slider-crank that its slider drives; the coordinate is not measured along the rail, but askew."""
+    m = Mechanism("driven slider")
+    slider, rod, arm = m.body("slider", 1.0, com=(0.02, 0.01)), m.bar("rod", 0.3, 1.0), m.bar("arm", 0.15, 1.0)
+    m.prismatic("rail", m.ground.at(0.4, -0.05, 0.1), slider.at(0, 0.02, 0.2))
+    law = harmonic(0.08, 6.0, 0.2, -0.05 if turned_round else 0.05)
+    ends = m.ground.at(0.35, 0.0, -0.3), slider.at(0.05, 0.03, -0.4)
+    m.drive_coordinate("push", *(reversed(ends) if turned_round else ends), law)
+    m.revolute("A", slider.at(0.01, 0.03), rod.start)
+    m.revolute("B", rod.end, arm.end)
+    m.revolute("C", m.ground.at(0.1, 0), arm.start)
+    m.start_near(rod=170, arm=90)
+    return m
+
+
+def swinging_lever(m: Mechanism):
+    """A lever that swings by 0.5 rad about the origin."""
+    lever = m.bar("lever", 0.2, 1.0)
+    m.revolute("O", m.ground.at(0, 0), lever.start)
+    m.drive_angle("motor", lever, harmonic(0.5, 6.0))
+    return lever
+
+
+def two_slides(turned_round: bool, slot: bool = False) -> Mechanism:
+    """Blocks on a lever and on ground, pinned to each other; or a block on a lever with its pin in a slot of ground."""
+    m = Mechanism("two slides")
+    carrier = swinging_lever(m)
+    first = m.body("first", 1.0, com=(0.02, 0.01), inertia=0.1)
+    ends = carrier.at(0.1, 0.02, 0.2), first.at(0.01, 0.0, 0.1)
+    m.prismatic("on crank", *(reversed(ends) if turned_round else ends))
+    if slot:
+        m.pin_in_slot("on ground", m.ground.at(0.3, 0, math.pi / 2), first.at(0.0, 0.02))
+        return m
+    second = m.body("second", 1.0, com=(0.01, -0.02), inertia=0.1)
+    ends = m.ground.at(0.3, 0, math.pi / 2), second.at(0.02, 0.01, 0.3)
+    m.prismatic("on ground", *(reversed(ends) if turned_round else ends))
+    m.revolute("pin", first.at(0.0, 0.02), second.at(0.01, 0.01))
+    return m
+
+
 MODELS = {
     "RRR": four_bar,
     "RRP": lambda: slider_crank(False),
@@ -116,6 +172,15 @@ MODELS = {
     "yoke": lambda: yoke(False),
     "yoke round": lambda: yoke(True),
     "welded six-bar": six_bar_with_welds,
+    "rod": lambda: rod(False),
+    "rod round": lambda: rod(True),
+    "rod driven": lambda: rod(False, actuator=True),
+    "rod driven round": lambda: rod(True, actuator=True),
+    "driven slide": lambda: driven_slider(False),
+    "driven slide round": lambda: driven_slider(True),
+    "PRP": lambda: two_slides(False),
+    "PRP round": lambda: two_slides(True),
+    "PRP slot": lambda: two_slides(False, slot=True),
     "driven carried": crank_on_a_turning_base,
 }
 
@@ -169,6 +234,76 @@ def test_random_chains_of_dyads(seed: int, chain: int) -> None:
     assert np.abs(closed[0] - newton[0]).max() < 1e-11
 
 
+def _add_group(m: Mechanism, k: int, kind: str, reach: Marker, random: np.random.Generator) -> Marker:
+    """Hang one group between ``reach`` and ground; returns a point of it that moves."""
+    x, y = 0.6 + 0.1 * k + random.uniform(-0.05, 0.05), random.uniform(-0.1, 0.1)
+    long = m.bar(f"a{k}", random.uniform(0.6, 0.75), 1.0, com=(random.uniform(0, 0.3), 0.02), inertia=0.1)
+    if kind == "RRR":
+        other = m.bar(f"b{k}", random.uniform(0.5, 0.65), 1.0)
+        m.revolute(f"A{k}", reach, long.start)
+        m.revolute(f"B{k}", long.end, other.end)
+        m.revolute(f"C{k}", m.ground.at(x, y), other.start)
+        m.start_near(**{f"a{k}": 60.0, f"b{k}": 120.0})
+        return other.at(0.15, 0.02)
+    if kind == "RRP":
+        block = m.body(f"b{k}", 1.0, com=(0.01, 0.02), inertia=0.1)
+        m.revolute(f"A{k}", reach, long.start)
+        m.revolute(f"B{k}", long.end, block.at(0.02, 0.01))
+        m.prismatic(f"C{k}", m.ground.at(0, y - 0.05, 0.2), block.at(0, 0.01, 0.1))
+        m.start_near(**{f"a{k}": 0.0})
+        return block.at(0.05, 0.02)
+    if kind == "RPR":
+        block = m.body(f"b{k}", 1.0, com=(0.01, 0.02), inertia=0.1)
+        m.revolute(f"A{k}", reach, block.at(0.01, 0.0))
+        m.prismatic(f"B{k}", long.at(0.1, 0.02, 0.1), block.at(0.0, 0.01, 0.2))
+        m.revolute(f"C{k}", m.ground.at(x, y), long.start)
+        return long.at(0.2, 0.02)
+    if kind == "rod":
+        m.distance(f"A{k}", reach, long.at(0.45, 0.05), random.uniform(0.6, 0.7))
+        m.revolute(f"C{k}", m.ground.at(x, y), long.start)
+        m.start_near(**{f"a{k}": 100.0})
+        return long.at(0.15, 0.02)
+    m.prismatic(f"C{k}", m.ground.at(0, y - 0.05, 0.2), long.at(0, 0.01, 0.1))  # yoke
+    m.pin_in_slot(f"A{k}", long.at(0.1, 0.0, 1.4), reach)
+    return long.at(0.1, 0.02)
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    seed=st.integers(0, 10_000),
+    kinds=st.lists(st.sampled_from(["RRR", "RRP", "RPR", "rod", "yoke"]), min_size=1, max_size=4),
+)
+def test_random_chains_of_all_groups(seed: int, kinds: list[str]) -> None:
+    """Where both routes solve the motion they agree to the conditioning of the pose; else they give the same error."""
+    random = np.random.default_rng(seed)
+    m = Mechanism("chain")
+    reach = crank(m, 0.1).end
+    for k, kind in enumerate(kinds):
+        reach = _add_group(m, k, kind, reach, random)
+    times = np.linspace(0.0, 1.05, 241)
+    try:
+        ready = prepare(m, 0.0, 1.05)
+    except MechanismError:
+        assume(False)
+        raise
+    assert ready.groups is not None
+    for kind in kinds:
+        assert kind in ready.route
+    found = []
+    for route in (ready, dataclasses.replace(ready, groups=None)):
+        try:
+            found.append(route.march(times)[:3])
+        except MechanismError as error:
+            found.append(str(error))
+    if isinstance(found[1], str):
+        assert found[0] == found[1]
+        return
+    scale = max(1.0, float(np.abs(found[1][1]).max()))
+    assert np.abs(found[0][0] - found[1][0]).max() < 1e-12 * scale
+    for one, other in zip(found[0][1:], found[1][1:], strict=True):
+        assert np.abs(one - other).max() < 1e-10 * max(1.0, np.abs(other).max()) * scale
+
+
 def test_coarse_steps_are_left_to_newton() -> None:
     m = four_bar()
     times = np.linspace(0.0, 1.05, 8)
@@ -205,15 +340,57 @@ def test_parallelogram_keeps_to_the_smooth_branch_or_is_refused() -> None:
     assert follows < 1e-6, "cranks of a parallelogram turn together through its flat poses"
 
 
-def test_a_joint_without_closed_form_is_solved_by_newton() -> None:
-    m = Mechanism("rod")
-    rocker = m.bar("rocker", 0.3, 1.0)
-    m.revolute("C", m.ground.at(0.4, 0), rocker.start)
-    m.distance("rod", crank(m).end, rocker.end, 0.38)
-    m.start_near(rocker=90)
-    sol = m.sweep(1.05)
-    assert sol.route == "Newton-Raphson"
-    np.testing.assert_allclose(sol.body("rocker").theta, four_bar().sweep(1.05).body("rocker").theta, atol=1e-10)
+def driven_elbow() -> Mechanism:
+    """A four-bar whose coupler's angle against its crank is driven: three bodies that are rigid only together."""
+    m = Mechanism("elbow")
+    bars = [m.bar(name, length, 1.0) for name, length in (("crank", 0.1), ("coupler", 0.38), ("rocker", 0.3))]
+    m.revolute("O", m.ground.at(0, 0), bars[0].start)
+    m.revolute("A", bars[0].end, bars[1].start)
+    m.revolute("B", bars[1].end, bars[2].end)
+    m.revolute("C", m.ground.at(0.4, 0), bars[2].start)
+    m.drive_relative_angle("motor", bars[0], bars[1], constant_rate(0.5, 1.0))
+    m.start_near(crank=0, coupler=57, rocker=90)
+    return m
+
+
+def test_three_bodies_that_only_together_are_rigid_are_solved_by_newton() -> None:
+    assert driven_elbow().sweep(0.5).route == "Newton-Raphson"
+
+
+@pytest.mark.parametrize("name", ["driven carried", "yoke", "driven slide", "rod driven"])
+def test_a_law_that_jumps_is_refused_by_both_routes(name: str) -> None:
+    m = MODELS[name]()
+    driver = next(iter(m.drivers.values()))
+    law = driver.motion
+    assert law is not None
+    value = law(np.array([0.4]))[0, 0]
+    jump = function(lambda t: value + (0.05 if t > 0.51 else 0.0), lambda t: 0.0, lambda t: 0.0)
+    m.drivers[driver.name] = dataclasses.replace(driver, motion=jump)
+    ready = prepare(m, 0.0, 1.0)
+    assert ready.groups is not None
+    messages = []
+    for route in (ready, dataclasses.replace(ready, groups=None)):
+        with pytest.raises(MechanismError) as error:
+            route.march(np.linspace(0.0, 1.0, 41))
+        messages.append(str(error.value))
+    assert messages[0] == messages[1]
+
+
+def test_slides_that_become_parallel_are_left_to_newton() -> None:
+    """A guide on the lever that comes to lie along the slot of ground: the block runs away."""
+    m = Mechanism("runaway")
+    lever, block = m.bar("lever", 0.2, 1.0), m.body("block", 1.0, inertia=0.1)
+    m.revolute("O", m.ground.at(0, 0), lever.start)
+    m.drive_angle("motor", lever, constant_rate(1.0))
+    m.prismatic("guide", lever.start, block.origin)
+    m.pin_in_slot("slot", m.ground.at(0.3, 0, math.pi / 2), block.origin)
+    ready = prepare(m, 0.0, 2.0)
+    assert "PRP" in ready.route
+    with pytest.raises(MechanismError) as closed:
+        ready.march(np.linspace(0.0, 2.0, 201))
+    with pytest.raises(MechanismError) as newton:
+        dataclasses.replace(ready, groups=None).march(np.linspace(0.0, 2.0, 201))
+    assert str(closed.value) == str(newton.value)
 
 
 def test_the_route_is_told() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, ModelError, constant_rate
+from mbsd import Mechanism, ModelError, constant_rate, harmonic
 
 
 def four_bar(crank: float = 0.1, coupler: float = 0.38, rocker: float = 0.3, x: float = 0.4, y: float = 0.02):
@@ -96,13 +96,71 @@ def test_wrong_designs_are_refused(options: dict, words: str) -> None:
         four_bar().batch(**options)
 
 
+def test_rods_and_their_lengths() -> None:
+    def jack(length: float = 0.38, x: float = 0.4) -> Mechanism:
+        m = Mechanism("jack")
+        crank, rocker = m.bar("crank", 0.1), m.bar("rocker", 0.3)
+        m.revolute("A", m.ground.at(0, 0), crank.start)
+        m.revolute("D", m.ground.at(x, 0), rocker.start)
+        m.distance("rod", crank.end, rocker.end, length)
+        m.drive_angle("motor", crank, constant_rate(6.0))
+        arm = m.bar("arm", 0.25)
+        m.revolute("E", rocker.at(0.1, 0.02), arm.start)
+        m.drive_distance("ram", m.ground.at(0, 0.5), arm.end, harmonic(0.03, 12.0, 0.0, 0.4))
+        m.trace("P", arm.end)
+        m.start_near(crank=0, rocker=90, arm=120)
+        return m
+
+    rods, x = np.array([0.38, 0.4, 0.36]), np.array([0.4, 0.39, 0.41])
+    places = np.column_stack([x, np.zeros(3)])
+    result = jack().batch(lengths={"rod": rods}, places={"D": places}, angles=["arm"], steps=120)
+    assert result.closes.all()
+    for k in range(3):
+        one = jack(rods[k], x[k]).sweep(steps=120)
+        path = np.column_stack([one.point("P").x, one.point("P").y])
+        np.testing.assert_allclose(result.points["P"][k], path, atol=1e-12)
+        np.testing.assert_allclose(result.angles["arm"][k], one.body("arm").theta, atol=1e-12)
+
+
+@pytest.mark.parametrize("slot", [False, True])
+def test_driven_and_crossing_slides(slot: bool) -> None:
+    def slides(x: float = 0.3, height: float = 0.02) -> Mechanism:
+        m = Mechanism("slides")
+        push, lever = m.body("push"), m.bar("lever", 0.2)
+        m.prismatic("rail", m.ground.at(0.0, -0.3, 0.1), push.at(0, 0.02, 0.2))
+        m.drive_coordinate("ram", m.ground.at(0.02, -0.3, -0.1), push.at(0.01, 0.0), harmonic(0.05, 6.0, 0.1, 0.12))
+        m.revolute("O", m.ground.at(0, 0), lever.start)
+        m.pin_in_slot("fork", lever.start, push.at(0.0, 0.02))
+        first = m.body("first")
+        m.prismatic("guide", lever.at(0.1, height, 0.2), first.at(0.01, 0.0, 0.1))
+        if slot:
+            m.pin_in_slot("wall", m.ground.at(x, 0, 0.1), first.at(0.0, 0.02))
+        else:
+            second = m.body("second")
+            m.prismatic("wall", second.at(0.02, 0.01, 0.3), m.ground.at(x, 0, 0.1))
+            m.revolute("pin", second.at(0.01, 0.01), first.at(0.0, 0.02))
+        m.trace("P", first.at(0.05, 0.0))
+        m.start_near(lever=-70)
+        return m
+
+    x, height = np.array([0.3, 0.32]), np.array([0.02, -0.01])
+    walls, guides = np.column_stack([x, np.zeros(2)]), np.column_stack([np.full(2, 0.1), height])
+    moved = {"guide": guides} | ({"wall": walls} if slot else {})
+    result = slides().batch(places=moved, angles=["lever"], steps=120)
+    assert result.closes.all()
+    for k in range(2):
+        one = slides(x[k] if slot else 0.3, height[k]).sweep(steps=120)
+        assert "PRP" in one.route
+        assert "driven slide" in one.route
+        path = np.column_stack([one.point("P").x, one.point("P").y])
+        np.testing.assert_allclose(result.points["P"][k], path, atol=1e-12)
+        np.testing.assert_allclose(result.angles["lever"][k], one.body("lever").theta, atol=1e-12)
+
+
 def test_a_mechanism_that_does_not_fall_apart_is_refused() -> None:
-    m = Mechanism("rod")
-    crank, rocker = m.bar("crank", 0.1), m.bar("rocker", 0.3)
-    m.revolute("A", m.ground.at(0, 0), crank.start)
-    m.revolute("D", m.ground.at(0.4, 0), rocker.start)
-    m.distance("rod", crank.end, rocker.end, 0.38)
-    m.drive_angle("motor", crank, constant_rate(6.0))
-    m.start_near(crank=0, rocker=90)
+    m = four_bar()
+    m.drivers.clear()
+    m.drive_relative_angle("motor", m.bodies["crank"], m.bodies["coupler"], constant_rate(0.5, 1.0))
+    m.start_near(crank=0, coupler=57, rocker=90)
     with pytest.raises(ModelError, match="one by one"):
-        m.batch(lengths={"crank": [0.1]})
+        m.batch(lengths={"crank": [0.1]}, duration=0.5)

@@ -1,17 +1,18 @@
 """Positions alone, over many designs: numbers change from one to the next, the plan and the drivers' angles stay.
 
-The formulas are those of solve.py without rates. Directions are kept as cosine and sine, so nothing but a square root
-or two is left for a step; the angles of drivers are tabulated once for all designs. What is drawn as a root (the height
-of C over PQ, or the way along a slide) must go on smoothly from its last two values; where its other sign is as near,
-the design is given up as doubted.
+The formulas are those of solve.py and slides.py without rates. Directions are kept as cosine and sine, so nothing but a
+square root or two is left for a step; the angles of drivers are tabulated once for all designs. What is drawn as a root
+(the height of C over PQ, or the way along a slide) must go on smoothly from its last two values; where its other sign
+is as near, the design is given up as doubted.
 """
 
 from __future__ import annotations
 
 import math
 
-from mbsd.assur.groups import DRIVEN, RPR, RRP, RRR, WELDED
-from mbsd.assur.solve import DOUBTED, FLAT, NEAR, OPEN, SOLVED
+from mbsd.assur.groups import DRIVEN, PRP, ROD, RPR, RRP, RRR, SLIDE, WELDED
+from mbsd.assur.points import DOUBTED, FLAT, NEAR, OPEN, SOLVED
+from mbsd.assur.slides import PARALLEL
 from mbsd.jit import inlined, threaded
 
 
@@ -48,7 +49,8 @@ def _follow(place, b, leader, turn):
 def place_designs(groups, numbers, start, driven, fixed, place, point, roots, body, arm, turned, out, angle, status):
     """Fill out (n, points, T, 2), angle (n, bodies, T) and status (n,) of n designs with numbers (n, g, 14).
 
-    driven (T, g, 2) cosine and sine of DRIVEN groups' angles, fixed (g, 2) of the constant angles of the others.
+    driven (T, g, 2) cosine and sine of DRIVEN groups' angles, values of the other laws; fixed (g, 2, 2) cosine and sine
+    of the constant angles of A and B of the other groups.
     Points: body (points,) and arm (n, points, 2) from centres of mass; turned (bodies,) whose angles are wanted, going
     on from start (3 nb,). Scratch: place (nb, 4) with (0, 0, 1, 0) for ground, point (2, 2), roots (g, 2).
     """
@@ -72,33 +74,66 @@ def place_designs(groups, numbers, start, driven, fixed, place, point, roots, bo
                     _hang(place, a, p[0], p[1], n[2], n[3])
                     continue
                 if kind == WELDED:
-                    _follow(place, a, k1, fixed[e])
+                    _follow(place, a, k1, fixed[e, 0])
                     _hang(place, a, p[0], p[1], n[2], n[3])
                     continue
-                if kind == RRR:
+                if kind == SLIDE:
+                    way = driven[k, e, 0]
+                    _turned(place, k1, n[0] + way * n[2], n[1] + way * n[3], p)
+                    _follow(place, a, k1, fixed[e, 0])
+                    _hang(place, a, p[0], p[1], n[5], n[6])
+                    continue
+                if kind == PRP:
+                    _turned(place, k2, n[7], n[8], r)
+                    ex = place[k1, 2] * n[2] - place[k1, 3] * n[3]
+                    ey = place[k1, 3] * n[2] + place[k1, 2] * n[3]
+                    ux = place[k2, 2] * n[9] - place[k2, 3] * n[10]
+                    uy = place[k2, 3] * n[9] + place[k2, 2] * n[10]
+                    root = ux * ey - uy * ex
+                    if not abs(root) > PARALLEL:
+                        state = DOUBTED
+                        break
+                    if k > 0 and roots[e, 0] * root < 0.0:
+                        state = DOUBTED
+                        break
+                    roots[e, 0] = root
+                    slide = (ux * (r[1] - p[1]) - uy * (r[0] - p[0])) / root
+                    _follow(place, a, k1, fixed[e, 0])
+                    _hang(place, a, p[0] + slide * ex, p[1] + slide * ey, n[5], n[6])
+                    if b >= 0:
+                        _follow(place, b, k2, fixed[e, 1])
+                        _hang(place, b, p[0] + slide * ex, p[1] + slide * ey, n[12], n[13])
+                    continue
+                if kind in (RRR, ROD):
                     _turned(place, k2, n[6], n[7], r)
                     lx = n[4] - n[2]
                     ly = n[5] - n[3]
                     mx = n[10] - n[8]
                     my = n[11] - n[9]
+                    second = mx * mx + my * my
+                    branch = n[12]
+                    if kind == ROD:
+                        second = (n[8] + driven[k, e, 0]) ** 2
+                        branch = n[9]
                     first = lx * lx + ly * ly
                     dx = r[0] - p[0]
                     dy = r[1] - p[1]
                     square = dx * dx + dy * dy
                     inverse = 1.0 / square
-                    along = 0.5 * (square + first - mx * mx - my * my) * inverse
+                    along = 0.5 * (square + first - second) * inverse
                     left = first * inverse - along * along
                     state = OPEN if left < -FLAT else (SOLVED if left > FLAT else DOUBTED)
                     if state != SOLVED:
                         break
                     root = math.sqrt(left)
-                    height = n[12] * root
+                    height = branch * root
                     ux = along * dx - height * dy
                     uy = along * dy + height * dx
                     _aim(place, a, ux, uy, lx, ly)
-                    _aim(place, b, ux - dx, uy - dy, mx, my)
                     _hang(place, a, p[0], p[1], n[2], n[3])
-                    _hang(place, b, r[0], r[1], n[8], n[9])
+                    if b >= 0:
+                        _aim(place, b, ux - dx, uy - dy, mx, my)
+                        _hang(place, b, r[0], r[1], n[8], n[9])
                 elif kind == RRP:
                     _turned(place, k2, n[6], n[7], r)
                     lx = n[4] - n[2]
@@ -120,7 +155,7 @@ def place_designs(groups, numbers, start, driven, fixed, place, point, roots, bo
                     _aim(place, a, ux, uy, lx, ly)
                     _hang(place, a, p[0], p[1], n[2], n[3])
                     if b >= 0:
-                        _follow(place, b, k2, fixed[e])
+                        _follow(place, b, k2, fixed[e, 1])
                         _hang(place, b, p[0] + ux, p[1] + uy, n[11], n[12])
                 elif kind == RPR:
                     _turned(place, k2, n[7], n[8], r)
@@ -136,7 +171,7 @@ def place_designs(groups, numbers, start, driven, fixed, place, point, roots, bo
                     _aim(place, a, dx, dy, way * n[4] - n[6] * n[5], way * n[5] + n[6] * n[4])
                     _hang(place, a, p[0], p[1], n[2], n[3])
                     if b >= 0:
-                        _follow(place, b, a, fixed[e])
+                        _follow(place, b, a, fixed[e, 1])
                         _hang(place, b, r[0], r[1], n[10], n[11])
                 else:
                     _turned(place, k2, n[6], n[7], r)
@@ -145,7 +180,7 @@ def place_designs(groups, numbers, start, driven, fixed, place, point, roots, bo
                     nx = place[k1, 2] * n[4] - place[k1, 3] * n[5]
                     ny = place[k1, 3] * n[4] + place[k1, 2] * n[5]
                     slide = (nx * (r[0] - p[0]) + ny * (r[1] - p[1])) / (nx * ex + ny * ey)
-                    _follow(place, a, k1, fixed[e])
+                    _follow(place, a, k1, fixed[e, 0])
                     _hang(place, a, p[0] + slide * ex, p[1] + slide * ey, n[9], n[10])
                     continue
                 if k > 1 and not abs(root - (2.0 * roots[e, 0] - roots[e, 1])) < 2.0 * NEAR * root:

@@ -13,6 +13,12 @@
     YOKE     A slides on K1, point Q of K2 runs in a slot of A
         slot point on K1 where the slide is at 0, slide axis on K1, slot normal on K1, Q on K2, angle of A against K1,
         slot point on A
+    PRP   A slides on K1 and is pinned at C to B, which slides on K2; or C of A runs in a slot of K2 (B: -1)
+        C on K1 where the slide is at 0, axis on K1, angle of A against K1, C on A, and the same five of K2 and B
+    ROD   A pinned to K1 at P, a rod or actuator holds the distance from C of A to Q of K2
+        P on K1, P on A, C on A, Q on K2, length (beside the law's), branch
+    SLIDE A slides on K1 as far as a driver says
+        point on K1 where the law is at 0, its way on K1 for each unit of the law, angle of A against K1, point on A
 
 Source: Assur 1914; Norton, Design of Machinery, ch. 4, 6, 7 (loop closure of dyads).
 """
@@ -21,10 +27,10 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-DRIVEN, WELDED, RRR, RRP, RPR, YOKE = 0, 1, 2, 3, 4, 5
-NAMES = ("driven", "welded", "RRR", "RRP", "RPR", "yoke")
+DRIVEN, WELDED, RRR, RRP, RPR, YOKE, PRP, ROD, SLIDE = range(9)
+NAMES = ("driven", "welded", "RRR", "RRP", "RPR", "yoke", "PRP", "rod", "driven slide")
 NUMBERS = 14
-BRANCH = {RRR: 12, RRP: 13, RPR: 12}
+BRANCH = {RRR: 12, RRP: 13, RPR: 12, ROD: 9}
 """Where the sign of the assembly stands."""
 
 
@@ -36,6 +42,6 @@ class Groups(NamedTuple):
     body: Any
     """(g, 4) A, B or -1, K1, K2."""
     motion: Any
-    """(g,) law of DRIVEN groups, else 0."""
+    """(g,) law of DRIVEN and SLIDE groups and of actuators, else 0."""
     number: Any
     """(g, 14) as listed above."""

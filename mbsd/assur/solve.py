@@ -1,6 +1,6 @@
 """The compiled closed forms: positions, velocities and accelerations of all groups at all times.
 
-Points carried by a body: p = r + s, p' = r' + omega s_perp, p'' = r'' + alpha s_perp - omega^2 s; s_perp = (-s_y, s_x)
+PRP, ROD and SLIDE are in slides.py, points carried by a body in points.py.
 
     RRR   C where the circles about P and Q meet;  with u = C - P, w = C - Q:
           omega_A u_perp - omega_B w_perp = q' - p'
@@ -14,93 +14,17 @@ Points carried by a body: p = r + s, p' = r' + omega s_perp, p'' = r'' + alpha s
           s' n.e = n . (q' - k'),   s'' n.e = n . (q'' - k'' - 2 omega_K (q' - k')_perp)
 
 The branch is that of the start. A step is doubted, and all is left to Newton-Raphson, where the other branch lies
-nearly as close to the extrapolated motion, or the discriminant vanishes.
+nearly as close to the extrapolated motion, where the discriminant vanishes, or where a law jumps.
 """
 
 from __future__ import annotations
 
 import math
 
-from mbsd.assur.groups import DRIVEN, RPR, RRP, RRR, WELDED, YOKE
-from mbsd.jit import inlined, kernel
-
-SOLVED, DOUBTED, OPEN = 0, 1, 2
-NEAR = 0.25
-"""Part of the angle to the other branch by which the extrapolated motion may be missed."""
-FLAT = 1e-10
-"""Discriminant over squared lengths at which branches meet."""
-
-
-@inlined
-def _carried(q, v, a, turn, b, x, y, out):
-    """Point with arm (x, y) of body b into out (8,): place, velocity, acceleration, arm in world axes."""
-    c = turn[b, 0]
-    s = turn[b, 1]
-    sx = c * x - s * y
-    sy = s * x + c * y
-    at = 3 * b
-    omega = v[at + 2]
-    alpha = a[at + 2]
-    square = omega * omega
-    out[0] = q[at] + sx
-    out[1] = q[at + 1] + sy
-    out[2] = v[at] - omega * sy
-    out[3] = v[at + 1] + omega * sx
-    out[4] = a[at] - alpha * sy - square * sx
-    out[5] = a[at + 1] + alpha * sx - square * sy
-    out[6] = sx
-    out[7] = sy
-
-
-@inlined
-def _hang(q, v, a, turn, b, p, x, y):
-    """Place body b, whose turn, omega and alpha are known, so that its point with arm (x, y) is p (8,)."""
-    c = turn[b, 0]
-    s = turn[b, 1]
-    sx = c * x - s * y
-    sy = s * x + c * y
-    at = 3 * b
-    omega = v[at + 2]
-    alpha = a[at + 2]
-    square = omega * omega
-    q[at] = p[0] - sx
-    q[at + 1] = p[1] - sy
-    v[at] = p[2] + omega * sy
-    v[at + 1] = p[3] - omega * sx
-    a[at] = p[4] + alpha * sy + square * sx
-    a[at + 1] = p[5] - alpha * sx + square * sy
-
-
-@inlined
-def _aim(turn, q, before, b, x, y, lx, ly):
-    """Turn body b so that its direction (lx, ly) points along (x, y); the angle goes on from ``before``."""
-    scale = 1.0 / math.sqrt((x * x + y * y) * (lx * lx + ly * ly))
-    c = (x * lx + y * ly) * scale
-    s = (y * lx - x * ly) * scale
-    turn[b, 0] = c
-    turn[b, 1] = s
-    angle = math.atan2(s, c)
-    q[3 * b + 2] = angle + 2.0 * math.pi * math.floor((before - angle) / (2.0 * math.pi) + 0.5)
-
-
-@inlined
-def _follow(q, v, a, turn, b, leader, angle):
-    """Body b turns with its leader, at a fixed angle to it."""
-    q[3 * b + 2] = q[3 * leader + 2] + angle
-    v[3 * b + 2] = v[3 * leader + 2]
-    a[3 * b + 2] = a[3 * leader + 2]
-    turn[b, 0] = math.cos(q[3 * b + 2])
-    turn[b, 1] = math.sin(q[3 * b + 2])
-
-
-@inlined
-def _doubtful(q, v, a, k, h, c, square):
-    """Whether angle c of step k strays from the motion before as if it were on the way to the other branch.
-
-    ``square``: squared sine of half the angle between the branches.
-    """
-    miss = q[k, c] - (q[k - 1, c] + h * (v[k - 1, c] + 0.5 * h * a[k - 1, c]))
-    return not miss * miss < NEAR * NEAR * square
+from mbsd.assur.groups import DRIVEN, PRP, ROD, RPR, RRP, RRR, WELDED, YOKE
+from mbsd.assur.points import DOUBTED, FLAT, OPEN, SOLVED, aim, carried, doubtful, follow, hang, jumps
+from mbsd.assur.slides import solve_prp, solve_rod, solve_slide
+from mbsd.jit import kernel
 
 
 @kernel
@@ -116,7 +40,8 @@ def solve_groups(groups, start, times, drives, q, v, a, turn, point):
         qk = q[k]
         vk = v[k]
         ak = a[k]
-        last = start if k == 0 else q[k - 1]
+        before = max(k - 1, 0)
+        last = start if k == 0 else q[before]
         h = times[k] - times[k - 1] if k > 0 else 0.0
         for e in range(groups.kind.shape[0]):
             kind = groups.kind[e]
@@ -129,6 +54,8 @@ def solve_groups(groups, start, times, drives, q, v, a, turn, point):
             if kind <= WELDED:
                 if kind == DRIVEN:
                     d = drives[k, groups.motion[e]]
+                    if k > 0 and jumps(d, drives[k - 1, groups.motion[e]], h):
+                        return DOUBTED, k
                     angle = qk[3 * k2 + 2] + n[5] * (n[4] + d[0])
                     vk[at + 2] = vk[3 * k2 + 2] + n[5] * d[1]
                     ak[at + 2] = ak[3 * k2 + 2] + n[5] * d[2]
@@ -139,11 +66,11 @@ def solve_groups(groups, start, times, drives, q, v, a, turn, point):
                 qk[at + 2] = angle
                 turn[body, 0] = math.cos(angle)
                 turn[body, 1] = math.sin(angle)
-                _carried(qk, vk, ak, turn, k1, n[0], n[1], p)
-                _hang(qk, vk, ak, turn, body, p, n[2], n[3])
+                carried(qk, vk, ak, turn, k1, n[0], n[1], p)
+                hang(qk, vk, ak, turn, body, p, n[2], n[3])
             elif kind == RRR:
-                _carried(qk, vk, ak, turn, k1, n[0], n[1], p)
-                _carried(qk, vk, ak, turn, k2, n[6], n[7], r)
+                carried(qk, vk, ak, turn, k1, n[0], n[1], p)
+                carried(qk, vk, ak, turn, k2, n[6], n[7], r)
                 lx = n[4] - n[2]
                 ly = n[5] - n[3]
                 mx = n[10] - n[8]
@@ -165,9 +92,11 @@ def solve_groups(groups, start, times, drives, q, v, a, turn, point):
                 uy = along * dy + height * dx
                 wx = ux - dx
                 wy = uy - dy
-                _aim(turn, qk, last[at + 2], body, ux, uy, lx, ly)
-                _aim(turn, qk, last[3 * other + 2], other, wx, wy, mx, my)
-                if k > 0 and _doubtful(q, v, a, k, h, at + 2, height * height / (along * along + height * height)):
+                aim(turn, qk, last[at + 2], body, ux, uy, lx, ly)
+                aim(turn, qk, last[3 * other + 2], other, wx, wy, mx, my)
+                if k > 0 and doubtful(
+                    qk, last, v[k - 1], a[k - 1], h, at + 2, height * height / (along * along + height * height)
+                ):
                     return DOUBTED, k
                 det = 1.0 / (uy * wx - ux * wy)
                 fx = r[2] - p[2]
@@ -180,11 +109,11 @@ def solve_groups(groups, start, times, drives, q, v, a, turn, point):
                 ak[at + 2] = -(fx * wx + fy * wy) * det
                 vk[3 * other + 2] = -turning
                 ak[3 * other + 2] = -(fx * ux + fy * uy) * det
-                _hang(qk, vk, ak, turn, body, p, n[2], n[3])
-                _hang(qk, vk, ak, turn, other, r, n[8], n[9])
+                hang(qk, vk, ak, turn, body, p, n[2], n[3])
+                hang(qk, vk, ak, turn, other, r, n[8], n[9])
             elif kind == RRP:
-                _carried(qk, vk, ak, turn, k1, n[0], n[1], p)
-                _carried(qk, vk, ak, turn, k2, n[6], n[7], r)
+                carried(qk, vk, ak, turn, k1, n[0], n[1], p)
+                carried(qk, vk, ak, turn, k2, n[6], n[7], r)
                 lx = n[4] - n[2]
                 ly = n[5] - n[3]
                 square = lx * lx + ly * ly
@@ -203,8 +132,8 @@ def solve_groups(groups, start, times, drives, q, v, a, turn, point):
                 sy = slide * ey
                 ux = dx + sx
                 uy = dy + sy
-                _aim(turn, qk, last[at + 2], body, ux, uy, lx, ly)
-                if k > 0 and _doubtful(q, v, a, k, h, at + 2, left / square):
+                aim(turn, qk, last[at + 2], body, ux, uy, lx, ly)
+                if k > 0 and doubtful(qk, last, v[k - 1], a[k - 1], h, at + 2, left / square):
                     return DOUBTED, k
                 spin = vk[3 * k2 + 2]
                 turning = ak[3 * k2 + 2]
@@ -228,13 +157,13 @@ def solve_groups(groups, start, times, drives, q, v, a, turn, point):
                 rate = -(ux * fx + uy * fy) * inverse
                 g[4] = carried_x + rate * ex
                 g[5] = carried_y + rate * ey
-                _hang(qk, vk, ak, turn, body, p, n[2], n[3])
+                hang(qk, vk, ak, turn, body, p, n[2], n[3])
                 if other >= 0:
-                    _follow(qk, vk, ak, turn, other, k2, n[10])
-                    _hang(qk, vk, ak, turn, other, g, n[11], n[12])
+                    follow(qk, vk, ak, turn, other, k2, n[10])
+                    hang(qk, vk, ak, turn, other, g, n[11], n[12])
             elif kind == RPR:
-                _carried(qk, vk, ak, turn, k1, n[0], n[1], p)
-                _carried(qk, vk, ak, turn, k2, n[7], n[8], r)
+                carried(qk, vk, ak, turn, k1, n[0], n[1], p)
+                carried(qk, vk, ak, turn, k2, n[7], n[8], r)
                 dx = r[0] - p[0]
                 dy = r[1] - p[1]
                 square = dx * dx + dy * dy
@@ -242,8 +171,8 @@ def solve_groups(groups, start, times, drives, q, v, a, turn, point):
                 if not left > FLAT * square:
                     return (OPEN if left < -FLAT * square else DOUBTED), k
                 root = n[12] * math.sqrt(left)
-                _aim(turn, qk, last[at + 2], body, dx, dy, root * n[4] - n[6] * n[5], root * n[5] + n[6] * n[4])
-                if k > 0 and _doubtful(q, v, a, k, h, at + 2, left / square):
+                aim(turn, qk, last[at + 2], body, dx, dy, root * n[4] - n[6] * n[5], root * n[5] + n[6] * n[4])
+                if k > 0 and doubtful(qk, last, v[k - 1], a[k - 1], h, at + 2, left / square):
                     return DOUBTED, k
                 ex = turn[body, 0] * n[4] - turn[body, 1] * n[5]
                 ey = turn[body, 1] * n[4] + turn[body, 0] * n[5]
@@ -256,13 +185,13 @@ def solve_groups(groups, start, times, drives, q, v, a, turn, point):
                 fy = r[5] - p[5] + omega * omega * dy - 2.0 * omega * rate * ex
                 vk[at + 2] = omega
                 ak[at + 2] = (ex * fy - ey * fx) * inverse
-                _hang(qk, vk, ak, turn, body, p, n[2], n[3])
+                hang(qk, vk, ak, turn, body, p, n[2], n[3])
                 if other >= 0:
-                    _follow(qk, vk, ak, turn, other, body, n[9])
-                    _hang(qk, vk, ak, turn, other, r, n[10], n[11])
+                    follow(qk, vk, ak, turn, other, body, n[9])
+                    hang(qk, vk, ak, turn, other, r, n[10], n[11])
             elif kind == YOKE:
-                _carried(qk, vk, ak, turn, k1, n[0], n[1], p)
-                _carried(qk, vk, ak, turn, k2, n[6], n[7], r)
+                carried(qk, vk, ak, turn, k1, n[0], n[1], p)
+                carried(qk, vk, ak, turn, k2, n[6], n[7], r)
                 ex = turn[k1, 0] * n[2] - turn[k1, 1] * n[3]
                 ey = turn[k1, 1] * n[2] + turn[k1, 0] * n[3]
                 nx = turn[k1, 0] * n[4] - turn[k1, 1] * n[5]
@@ -287,6 +216,19 @@ def solve_groups(groups, start, times, drives, q, v, a, turn, point):
                 g[3] = p[3] + spin * sx + rate * ey
                 g[4] = p[4] - turning * sy - spin * spin * sx - 2.0 * spin * rate * ey + along * ex
                 g[5] = p[5] + turning * sx - spin * spin * sy + 2.0 * spin * rate * ex + along * ey
-                _follow(qk, vk, ak, turn, body, k1, n[8])
-                _hang(qk, vk, ak, turn, body, g, n[9], n[10])
+                follow(qk, vk, ak, turn, body, k1, n[8])
+                hang(qk, vk, ak, turn, body, g, n[9], n[10])
+            else:
+                bodies = groups.body[e]
+                law = drives[k, groups.motion[e]]
+                if k > 0 and groups.motion[e] > 0 and jumps(law, drives[k - 1, groups.motion[e]], h):
+                    return DOUBTED, k
+                if kind == PRP:
+                    state = solve_prp(bodies, n, qk, vk, ak, last, v[before], a[before], h, turn, point)
+                elif kind == ROD:
+                    state = solve_rod(bodies, n, law, qk, vk, ak, last, v[before], a[before], h, turn, point)
+                else:
+                    state = solve_slide(bodies, n, law, qk, vk, ak, turn, point)
+                if state != SOLVED:
+                    return state, k
     return SOLVED, times.shape[0]

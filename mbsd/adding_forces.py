@@ -20,7 +20,6 @@ from mbsd.forces.kind import ForceKind
 from mbsd.forces.spring import SPRING
 from mbsd.forces.torque import TORQUE
 from mbsd.forces.torsion_spring import TORSION_SPRING
-from mbsd.forces.user_force import USER_FORCE
 from mbsd.mechanism_base import MechanismBase
 from mbsd.motions import Motion
 from mbsd.motions.function import Function
@@ -149,22 +148,6 @@ class AddingForces(MechanismBase):
             )
         return self._add_force(GAS, name, cylinder, piston, params)
 
-    def user_force(self, name: str, function: Callable[..., Any], *bodies: Body) -> Force:
-        """Forces on bodies by a function of the user, ``function(t, q, v)``, Python or compiled with numba.njit.
-
-        q and v hold x, y, theta and their rates of the bodies' frames, three numbers a body in the order given; the
-        function returns fx, fy (N, at the frame's origin) and torque (N m) of each body in that order.
-        """
-        what = f"force '{name}'"
-        if not callable(function):
-            raise ModelError(f"{self.name}: {what} needs a function of t, q and v, got {function!r}")
-        for body in bodies:
-            self._own_body(body, what)
-        if not bodies or len(set(map(id, bodies))) < len(bodies):
-            raise ModelError(f"{self.name}: {what} needs the bodies it acts on, each once")
-        params = {"function": function, "bodies": [body.name for body in bodies]}
-        return self._add_force(USER_FORCE, name, self.ground.origin, bodies[0].origin, params, same_body=True)
-
     # -- checks -------------------------------------------------------------------------------------------------
 
     def _add_force(
@@ -204,7 +187,13 @@ class AddingForces(MechanismBase):
                 raise ModelError(f"{self.name}: force '{name}': {what} is {value:g}; it cannot be negative")
         return out
 
-    def _amount(self, name: str, what: str, value: Amount) -> tuple[dict[str, float], dict[str, Motion]]:
+    def _above_zero(self, name: str, what: str, value: float) -> float:
+        value = self._number(f"force '{name}': {what}", value)
+        if value <= 0:
+            raise ModelError(f"{self.name}: force '{name}': {what} is {value:g}; it must be positive")
+        return value
+
+    def _amount(self, name: str, what: str, value: Amount) -> tuple[dict[str, Any], dict[str, Motion]]:
         if isinstance(value, Motion):
             return {}, {what: value}
         if callable(value):

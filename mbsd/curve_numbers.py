@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from mbsd.curves import Curve
 from mbsd.errors import ModelError
 
 LEAST_PIECES, LEAST_PARTS = 128, 4
@@ -60,6 +61,20 @@ def curve_numbers(
     rows = np.column_stack([breaks[:-1], coefficients.reshape(len(h), 12), arc[:-1], turning[:-1]])
     head = [distance, radius, float(closed), breaks[-1] - breaks[0], len(h)]
     return np.concatenate([head, rows.ravel(), [arc[-1], turning[-1] - turning[0]]])
+
+
+def graph_numbers(profile: Curve) -> np.ndarray:
+    """The own numbers of a curve y(x), traversed as x rises."""
+    poly = profile.pieces
+    breaks = np.unique(poly.x)
+    parts = max(LEAST_PARTS, math.ceil(LEAST_PIECES / (len(breaks) - 1)))
+    shares = np.arange(parts) / parts
+    breaks = np.append((breaks[:-1, None] + np.diff(breaks)[:, None] * shares).ravel(), breaks[-1])
+    coefficients = np.zeros((len(breaks) - 1, 2, 6))
+    coefficients[:, 0, 0], coefficients[:, 0, 1] = breaks[:-1], 1.0
+    for power in range(len(poly.c)):
+        coefficients[:, 1, power] = poly(breaks[:-1], power) / math.factorial(power)
+    return curve_numbers(breaks, coefficients, False, 0.0, 0.0)
 
 
 def curvature(breaks: np.ndarray, coefficients: np.ndarray) -> np.ndarray:

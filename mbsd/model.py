@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.adding_forces import AddingForces
+from mbsd.adding_interactions import AddingInteractions
 from mbsd.adding_machine_joints import AddingMachineJoints
 from mbsd.body import Body, Marker
 from mbsd.errors import ModelError
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 __all__ = ["STANDARD_GRAVITY", "Body", "Force", "Joint", "Marker", "Mechanism", "Start"]
 
 
-class Mechanism(AddingMachineJoints, AddingForces):
+class Mechanism(AddingMachineJoints, AddingInteractions):
     """Bodies, joints, drivers and traced points, by name. ``gravity`` in m/s^2; None turns it off."""
 
     def trace(self, name: str, marker: Marker) -> Marker:

@@ -1,0 +1,121 @@
+"""The methods of a Mechanism that add contact, tyre, air, a turning frame, and functions of the user.
+
+Forces in N, torques in N m, counter-clockwise positive.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from mbsd.adding_forces import AddingForces, Amount
+from mbsd.body import Body, Marker, number_pair
+from mbsd.curves import Curve
+from mbsd.errors import ModelError
+from mbsd.force import Force
+from mbsd.forces.contact import CONTACT
+from mbsd.forces.drag import DRAG
+from mbsd.forces.rotating_frame import ROTATING_FRAME
+from mbsd.forces.tyre import TYRE
+from mbsd.forces.user_force import USER_FORCE
+
+
+class AddingInteractions(AddingForces):
+    """All return the Force."""
+
+    def contact(
+        self,
+        name: str,
+        surface: Marker,
+        body: Marker,
+        stiffness: float,
+        exponent: float = 1.5,
+        damping: float = 0.0,
+        friction: float = 0.0,
+        radius: float = 0.0,
+        profile: Curve | None = None,
+        slip_speed: float = 1e-3,
+    ) -> Force:
+        """Contact of a disc of ``radius`` (m; 0: a point) about a marker with a surface, never pulling.
+
+        The surface is the x axis of marker ``surface`` with matter below it (turn the marker for a wall), or a
+        ``profile`` y(x) in its axes. Normal force stiffness * depth^exponent * (1 + damping * rate of depth); the
+        friction coefficient is reached at some ``slip_speed`` (m/s).
+        """
+        params = self._positive(
+            name, stiffness=stiffness, exponent=exponent, damping=damping, friction=friction, radius=radius
+        )
+        if params["exponent"] < 1.0:
+            raise ModelError(f"{self.name}: force '{name}': exponent is {exponent:g}; it must be 1 or more")
+        params["slip_speed"] = self._above_zero(name, "slip_speed", slip_speed)
+        laws = {} if profile is None else self._curves(name, profile=profile)
+        return self._add_force(CONTACT, name, surface, body, params, laws)
+
+    def tyre(
+        self,
+        name: str,
+        road: Marker,
+        hub: Marker,
+        radius: float,
+        stiffness: float,
+        damping: float = 0.0,
+        grip: float = 1.0,
+        slope: float = 10.0,
+        shape: float = 1.65,
+        curvature: float = 0.97,
+        standstill: float = 0.1,
+        profile: Curve | None = None,
+    ) -> Force:
+        """Wheel of ``radius`` (m) about marker ``hub`` on a road: the x axis of a marker, or a profile y(x) there.
+
+        ``stiffness`` (N/m) and ``damping`` (N s/m) carry; ``grip`` D, ``slope`` B, ``shape`` C and ``curvature`` E of
+        the magic formula pull by longitudinal slip, which is kept finite below ``standstill`` (m/s).
+        """
+        params = self._positive(name, stiffness=stiffness, damping=damping, grip=grip, slope=slope, shape=shape)
+        params["radius"] = self._above_zero(name, "radius", radius)
+        params["standstill"] = self._above_zero(name, "standstill", standstill)
+        params["curvature"] = self._number(f"force '{name}': curvature", curvature)
+        laws = {} if profile is None else self._curves(name, profile=profile)
+        return self._add_force(TYRE, name, road, hub, params, laws)
+
+    def drag(
+        self,
+        name: str,
+        at: Marker,
+        coefficient: float,
+        turning: float = 0.0,
+        wind: Sequence[float] = (0.0, 0.0),
+        gust: Amount = 1.0,
+    ) -> Force:
+        """Quadratic drag at a marker: coefficient (N s^2/m^2) times the square of its speed against the air.
+
+        ``turning`` (N m s^2) brakes the body's turning likewise; ``body.at(*body.com)`` is its centre of mass. The air
+        moves with ``wind`` (m/s, world axes) times ``gust``, a constant or a law of time.
+        """
+        params, laws = self._amount(name, "gust", gust)
+        params |= self._positive(name, coefficient=coefficient, turning=turning)
+        params["wind"] = number_pair(f"{self.name}: force '{name}': wind", wind)
+        return self._add_force(DRAG, name, self.ground.origin, at, params, laws, same_body=True)
+
+    def rotating_frame(self, name: str, rate: Amount, centre: Sequence[float] = (0.0, 0.0)) -> Force:
+        """Ground turns about ``centre`` (m) at ``rate`` (rad/s, a constant or a law of time); all bodies feel it."""
+        params, laws = self._amount(name, "rate", rate)
+        params["centre"] = number_pair(f"{self.name}: force '{name}': centre", centre)
+        middle = self.ground.at(*params["centre"])
+        return self._add_force(ROTATING_FRAME, name, middle, self.ground.origin, params, laws, same_body=True)
+
+    def user_force(self, name: str, function: Callable[..., Any], *bodies: Body) -> Force:
+        """Forces on bodies by a function of the user, ``function(t, q, v)``, Python or compiled with numba.njit.
+
+        q and v hold x, y, theta and their rates of the bodies' frames, three numbers a body in the order given; the
+        function returns fx, fy (N, at the frame's origin) and torque (N m) of each body in that order.
+        """
+        what = f"force '{name}'"
+        if not callable(function):
+            raise ModelError(f"{self.name}: {what} needs a function of t, q and v, got {function!r}")
+        for body in bodies:
+            self._own_body(body, what)
+        if not bodies or len(set(map(id, bodies))) < len(bodies):
+            raise ModelError(f"{self.name}: {what} needs the bodies it acts on, each once")
+        params = {"function": function, "bodies": [body.name for body in bodies]}
+        return self._add_force(USER_FORCE, name, self.ground.origin, bodies[0].origin, params, same_body=True)

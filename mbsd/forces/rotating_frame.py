@@ -1,0 +1,39 @@
+"""Forces of a turning frame: ground turns about a point at a rate W(t), and every body feels it.
+
+    F = m (W^2 d - 2 W k x v - W' k x d)       at the centre of mass: centrifugal, Coriolis, Euler
+    T = -I W'                                  d: centre of mass from the centre of turning, v its velocity on ground
+
+Places, velocities and joints of ground are all those on the turning frame. Gravity keeps its direction there; turn it
+off or write it as a law where the plane is upright. Source: Goldstein, Classical Mechanics, ch. 4.10.
+"""
+
+from __future__ import annotations
+
+from mbsd.body import Body, Marker
+from mbsd.forces.kind import ForceKind, Interaction, register
+from mbsd.motions.harmonic import harmonic
+
+
+def _interactions(force, packed):
+    system, law = packed.system, "rate" if "rate" in force.laws else None
+    return [
+        Interaction(
+            "rotating_frame",
+            force.i,
+            Marker(Body(name), *packed.com[b]),
+            (system.mass[b], system.inertia[b], force.params.get("rate", 0.0)),
+            law,
+        )
+        for b, name in enumerate(packed.body_names)
+        if b > 0
+    ]
+
+
+ROTATING_FRAME = register(
+    ForceKind(
+        "rotating_frame",
+        interactions=_interactions,
+        outside=True,
+        example=lambda m, i, j: m.rotating_frame("example", harmonic(2.0, 3.0), (0.3, -0.4)),
+    )
+)

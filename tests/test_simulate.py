@@ -124,6 +124,19 @@ def test_massless_body_that_nothing_holds_is_refused() -> None:
     assert np.abs(sol.body("ghost").x).max() == 0.0, "no load, so it rests"
 
 
+def test_massless_driven_links_without_load_just_move() -> None:
+    m = Mechanism("bare", gravity=None)
+    crank, coupler, rocker = m.bar("crank", 0.1), m.bar("coupler", 0.3), m.bar("rocker", 0.25)
+    m.revolute("A", m.ground.at(0, 0), crank.start)
+    m.revolute("B", crank.end, coupler.start)
+    m.revolute("C", coupler.end, rocker.end)
+    m.revolute("D", m.ground.at(0.3, 0), rocker.start)
+    m.drive_angle("motor", crank, constant_rate(3.0))
+    m.start_near(crank=0, coupler=50, rocker=100)
+    sol, swept = m.simulate(1.0, steps=30), m.sweep(1.0, steps=30)
+    np.testing.assert_allclose(sol.body("rocker").theta, swept.body("rocker").theta, atol=1e-9)
+
+
 def test_driver_work_goes_into_the_energy() -> None:
     m = four_bar(0.5)
     m.drive_angle("motor", m.bodies["crank"], harmonic(0.8, 3.0, 0.1, math.radians(50)))

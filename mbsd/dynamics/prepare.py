@@ -27,6 +27,8 @@ REFINEMENTS = 4
 """Passes that solve the equations of motion where inertia was lifted."""
 BALANCED = 1e-8
 """Part of the largest load that may stay unbalanced at the start; more means a massless body that nothing holds."""
+SLIGHT = 1e-6
+"""Accelerations below this (sizes per s^2) are no load."""
 STEPS_AT_ONCE = 2000
 """Between two looks at the clock and the keyboard."""
 OUTPUTS_LONGEST = 25
@@ -174,7 +176,8 @@ def _refuse_unheld(ready: PreparedDynamics) -> None:
     derivative(dynamics, scratch, ready.start, state, out, lam)
     packed.specials.check()
     left = np.abs(scratch.force - dynamics.inertia * out[1])[3:]
-    largest = max(float(np.abs(dynamics.weight[3:]).max()), float(np.abs(dynamics.inertia * out[1]).max()), 1e-300)
+    faint = SLIGHT * (float(packed.system.mass.max()) or 1.0) * packed.size
+    largest = max(float(np.abs(dynamics.weight[3:]).max()), float(np.abs(dynamics.inertia * out[1]).max()), faint)
     if not np.isfinite(out).all() or (left > BALANCED * largest * packed.size).any():
         worst = int(np.nanargmax(np.where(np.isfinite(left), left, np.inf)))
         raise MobilityError(

@@ -9,6 +9,7 @@ from mbsd.curves import Curve, curve
 from mbsd.errors import (
     AssemblyError,
     BranchError,
+    EquilibriumError,
     InitialConditionWarning,
     LimitError,
     MechanismError,
@@ -29,6 +30,7 @@ __all__ = [
     "Body",
     "BranchError",
     "Curve",
+    "EquilibriumError",
     "InitialConditionWarning",
     "Joint",
     "LimitError",

@@ -10,6 +10,7 @@ from mbsd.body import Body, Marker
 from mbsd.curves import Curve
 from mbsd.errors import ModelError
 from mbsd.force import Force
+from mbsd.forces.actuator import ACTUATOR
 from mbsd.forces.bushing import BUSHING
 from mbsd.forces.curve_of_angle import CURVE_OF_ANGLE
 from mbsd.forces.curve_of_length import CURVE_OF_LENGTH
@@ -93,6 +94,11 @@ class AddingForces(MechanismBase):
         base = self.ground if frame is None else frame
         self._own_body(base, f"force '{name}'")
         return self._add_force(FORCE, name, base.at(0.0, 0.0, angle), at, params, laws, same_body=True)
+
+    def actuator(self, name: str, i: Marker, j: Marker, force: Amount, along_axis: bool = False) -> Force:
+        """Force (N) between two points, a constant or a law of time: apart, or on j along the x axis of marker i."""
+        params, laws = self._amount(name, "force", force)
+        return self._add_force(ACTUATOR, name, i, j, {**params, "along_axis": bool(along_axis)}, laws)
 
     def curve_of_length(
         self, name: str, i: Marker, j: Marker, of_length: Curve | None = None, of_rate: Curve | None = None

@@ -41,3 +41,7 @@ class SingularPoseError(MechanismError):
 
 class ModelWarning(UserWarning):
     """A number of the model looks as if a unit was mixed up; see :meth:`mbsd.model.Mechanism.check`."""
+
+
+class EquilibriumError(MechanismError):
+    """No pose was found where everything balances."""

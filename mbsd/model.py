@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.adding_forces import Amount
 from mbsd.adding_interactions import AddingInteractions
 from mbsd.adding_machine_joints import AddingMachineJoints
 from mbsd.body import Body, Marker
@@ -27,10 +28,14 @@ from mbsd.mechanism_base import STANDARD_GRAVITY, Start, StartVelocity
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from mbsd.actuation import ActuatedMotion
     from mbsd.batch import Batch
     from mbsd.check import Finding
     from mbsd.drawing.picture import Picture, Svg
+    from mbsd.equilibrium import Equilibrium
+    from mbsd.linearisation import Linearisation
     from mbsd.mobility import Mobility
+    from mbsd.modes import Mode
     from mbsd.solution import Solution
 
 __all__ = ["STANDARD_GRAVITY", "Body", "Force", "Joint", "Marker", "Mechanism", "Start"]
@@ -153,6 +158,68 @@ class Mechanism(AddingMachineJoints, AddingInteractions):
 
         tell(self, stacklevel=2)
         return simulate(self, duration, steps, times, method, tolerance, step, progress)
+
+    def equilibrium(self, time: float = 0.0, nearest: bool = False) -> Equilibrium:
+        """Static equilibrium: pose, reactions, efforts of the drivers, stiffness and stability.
+
+        Found from ``start_near``, downhill to a stable pose; ``nearest`` takes the nearest pose that balances, stable
+        or not. Drivers hold where they are at ``time`` (s), laws of forces have the value of then.
+
+        Raises AssemblyError where the links do not close, EquilibriumError where nothing balances, SingularPoseError
+        where the pose that balances is a toggle or change point.
+        """
+        from mbsd.check import tell
+        from mbsd.equilibrium import equilibrium
+
+        tell(self, stacklevel=2)
+        return equilibrium(self, time, nearest)
+
+    def linearise(
+        self,
+        at: Equilibrium | Solution | str = "equilibrium",
+        t: float | None = None,
+        inputs: Sequence[str] = (),
+    ) -> Linearisation:
+        """A, B, eigenvalues and modes of the motion near a state: dx' = A dx + B du.
+
+        ``at``: ``"equilibrium"`` (the stable one, found from start_near), ``"start"`` (start_near and start_moving),
+        an equilibrium, or a solution and its output nearest to ``t`` (s). ``inputs`` are efforts: names of drivers,
+        which let go and keep their effort, or of torques, forces and actuators.
+
+        Raises MobilityError if nothing can move, SingularPoseError at a toggle or change point.
+        """
+        from mbsd.check import tell
+        from mbsd.linear_state import linearise
+
+        tell(self, stacklevel=2)
+        return linearise(self, at, t, inputs)
+
+    def modes(self) -> tuple[Mode, ...]:
+        """Natural frequencies, damping and shapes about the stable equilibrium, by rising frequency."""
+        return self.linearise().modes
+
+    # -- efforts and motions ------------------------------------------------------------------------------------
+
+    def inverse_dynamics(self, motion: Solution, actuators: Sequence[str]) -> ActuatedMotion:
+        """Efforts of ``actuators`` that make a known motion, and the reactions under them.
+
+        ``motion`` comes from sweep() or simulate(). ``actuators`` are names of drivers, torques, forces or actuators;
+        the other drivers only gave the motion its shape and carry nothing. With more actuators than degrees of
+        freedom the efforts share with the least norm. Raises MobilityError where the actuators cannot make the motion.
+        """
+        from mbsd.actuation import inverse_dynamics
+
+        return inverse_dynamics(self, motion, actuators)
+
+    def with_efforts(self, **efforts: Amount | None) -> Mechanism:
+        """A copy moved by efforts: each named driver lets go and gives this effort instead of imposing its law.
+
+        An effort is a number, a law of time (``table(sol.t, sol.driver("motor").effort)``) or a function, in N or
+        N m; None leaves the driver or force out. Torques, forces and actuators are given another law alike.
+        """
+        from mbsd.actuation import with_efforts
+
+        return with_efforts(self, efforts)
 
     # -- pictures -----------------------------------------------------------------------------------------------
 

@@ -76,7 +76,7 @@ class JointView:
     @property
     def reaction(self) -> np.ndarray:
         """(T, 2) force on the second body, world axes (N)."""
-        return np.stack([self.fx, self.fy], axis=1)
+        return np.stack([self.fx, self.fy], axis=-1)
 
     @property
     def magnitude(self) -> np.ndarray:

@@ -1,0 +1,60 @@
+"""The state about which a mechanism is linearised, as the start of a copy of it; drivers that are inputs let go."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mbsd.actuation import with_efforts
+from mbsd.equilibrium import Equilibrium, equilibrium
+from mbsd.errors import ModelError
+from mbsd.linearisation import Linearisation
+from mbsd.linearisation import linearise as linearise_start
+from mbsd.model import Mechanism
+from mbsd.solution import Solution
+from mbsd.variants import copied, started_at
+
+
+def linearise(m: Mechanism, at: Equilibrium | Solution | str, t: float | None, inputs: Sequence[str]) -> Linearisation:
+    """See :meth:`mbsd.model.Mechanism.linearise`."""
+    inputs = [inputs] if isinstance(inputs, str) else list(inputs)
+    for name in inputs:
+        if name not in m.drivers and name not in m.forces:
+            known = ", ".join([*m.drivers, *m.forces]) or "none"
+            raise ModelError(f"{m.name}: there is no driver or force '{name}' to be an input; there is: {known}")
+    if at == "equilibrium":
+        at = equilibrium(m, 0.0 if t is None else float(t), nearest=False)
+        t = None
+    elif at == "start":
+        model, time = copied(m), 0.0 if t is None else float(t)
+        return linearise_start(with_efforts(model, dict.fromkeys(_drivers(m, inputs), 0.0)), time, inputs)
+    if isinstance(at, Equilibrium):
+        _own(m, at.solution)
+        if t is not None:
+            raise ModelError(f"{m.name}: an equilibrium has no time; leave t out")
+        efforts = {name: float(at.driver(name).effort) for name in _drivers(m, inputs)}
+        return linearise_start(with_efforts(at.model, efforts), float(at.solution.t[0]), inputs)
+    if not isinstance(at, Solution):
+        raise ModelError(
+            f"{m.name}: linearise at {at!r}; say 'equilibrium', 'start', or give an equilibrium or solution"
+        )
+    _own(m, at)
+    if t is None:
+        raise ModelError(f"{m.name}: say at which time of the solution: linearise(sol, t=...)")
+    slack = 1e-9 * float(np.ptp(at.t))
+    if not at.t[0] - slack <= t <= at.t[-1] + slack:
+        raise ModelError(f"{m.name}: t = {t} s is outside of the solution, {at.t[0]:g} .. {at.t[-1]:g} s")
+    k = int(np.argmin(np.abs(at.t - t)))
+    efforts = {name: float(at.driver(name).effort[k]) for name in _drivers(m, inputs)}
+    model = started_at(m, at.packed, at.q[k].ravel(), at.v[k].ravel())
+    return linearise_start(with_efforts(model, efforts), float(at.t[k]), inputs)
+
+
+def _drivers(m: Mechanism, inputs: Sequence[str]) -> list[str]:
+    return [name for name in inputs if name in m.drivers]
+
+
+def _own(m: Mechanism, solution: Solution) -> None:
+    if solution.mechanism is not m:
+        raise ModelError(f"{m.name}: the state is one of '{solution.mechanism.name}', not of this mechanism")

@@ -1,0 +1,46 @@
+"""Copies of a mechanism that differ in their start, their drivers or their forces; bodies and joints are shared."""
+
+from __future__ import annotations
+
+import copy
+import math
+
+import numpy as np
+
+from mbsd.mechanism_base import Start, StartVelocity
+from mbsd.model import Mechanism
+from mbsd.motions import polynomial
+from mbsd.packing import Packed
+
+
+def copied(m: Mechanism) -> Mechanism:
+    """A mechanism of its own with the same bodies: what is added to the copy is not in the original."""
+    out = copy.copy(m)
+    for name in ("bodies", "joints", "drivers", "forces", "traces", "starts", "velocities"):
+        setattr(out, name, dict(getattr(m, name)))
+    return out
+
+
+def held(m: Mechanism, time: float) -> Mechanism:
+    """The same mechanism with its drivers holding still where their laws are at ``time`` (s)."""
+    out = copied(m)
+    for name, driver in m.drivers.items():
+        assert driver.motion is not None
+        value = float(driver.motion.over(time, time)(np.array([time]))[0, 0])
+        out.drivers[name] = type(driver)(driver.kind, name, driver.i, driver.j, driver.params, polynomial(value))
+    return out
+
+
+def started_at(m: Mechanism, packed: Packed, q: np.ndarray, v: np.ndarray) -> Mechanism:
+    """The same mechanism that starts exactly at q, v (3 nb,)."""
+    out = copied(m)
+    out.starts, out.velocities = {}, {}
+    for b, name in enumerate(packed.body_names[1:], start=1):
+        x, y, theta = q[3 * b : 3 * b + 3]
+        vx, vy, omega = v[3 * b : 3 * b + 3]
+        c, s = math.cos(theta), math.sin(theta)
+        arm_x = c * packed.com[b, 0] - s * packed.com[b, 1]
+        arm_y = s * packed.com[b, 0] + c * packed.com[b, 1]
+        out.starts[name] = Start(float(theta), (float(x - arm_x), float(y - arm_y)))
+        out.velocities[name] = StartVelocity(float(omega), (float(vx + omega * arm_y), float(vy - omega * arm_x)))
+    return out

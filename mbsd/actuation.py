@@ -40,13 +40,14 @@ def unit_direction(packed: Packed, force: Force, q: np.ndarray, time: float) -> 
 def _directions(packed: Packed, force: Force, q: np.ndarray, times: np.ndarray) -> np.ndarray:
     """(T, 3 nb)"""
     k = packed.forces.index(force)
-    if len(force.kind.elements(force)) != 1:
+    alone = replace(packed, forces=[force], force_markers=packed.force_markers[k : k + 1])
+    loads = pack_loads(alone)
+    if len(loads.element) != 1 or loads.count != 1:
         raise ModelError(
             f"{packed.name}: force '{force.name}' ({force.kind.name}) has no single direction; an actuator or input is "
             "a driver, a torque, a force or an actuator"
         )
-    alone = replace(packed, forces=[force], force_markers=packed.force_markers[k : k + 1])
-    loads = pack_loads(alone)._replace(
+    loads = loads._replace(
         first_term=np.array([0, 1]), term=np.array([[CONSTANT, 0]]), number=np.array([[1.0, 0.0, 0.0]])
     )
     laws = compiled_laws(replace(alone, forces=[]), float(times[0]), float(times[-1]))

@@ -42,7 +42,7 @@ def _directions(packed: Packed, force: Force, q: np.ndarray, times: np.ndarray) 
     k = packed.forces.index(force)
     alone = replace(packed, forces=[force], force_markers=packed.force_markers[k : k + 1])
     loads = pack_loads(alone)
-    if len(loads.element) != 1 or loads.count != 1:
+    if len(loads.element) != 1 or loads.total != 1:
         raise ModelError(
             f"{packed.name}: force '{force.name}' ({force.kind.name}) has no single direction; an actuator or input is "
             "a driver, a torque, a force or an actuator"

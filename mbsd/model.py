@@ -143,13 +143,15 @@ class Mechanism(AddingMachineJoints, AddingInteractions):
         tolerance: float = 1e-7,
         step: float | None = None,
         progress: Callable[[float], None] | None = None,
+        **options: float,
     ) -> Solution:
         """Forward dynamics from ``start_near`` and ``start_moving``: M a + J^T lam = Q, J a = gamma.
 
         ``steps`` equal output steps over ``duration`` seconds, both ends included; ``times`` (s), rising, replaces
         both. ``method`` names an integrator (mbsd/integrators). Methods with an error estimate keep to ``tolerance``
         (relative to the mechanism's size, to 1 rad, and to speeds); those with a fixed step take ``step`` (s), by
-        default the time between outputs. ``progress`` is called with the part done (0 .. 1).
+        default the time between outputs. ``progress`` is called with the part done (0 .. 1). Other numbers are ``options``
+        of the method: ``rho`` of "generalized_alpha", ``alpha`` and ``beta`` of "baumgarte" (docs/integrators.md).
 
         Raises AssemblyError where the links do not close, SimulationError where the integration cannot go on.
         """
@@ -157,7 +159,7 @@ class Mechanism(AddingMachineJoints, AddingInteractions):
         from mbsd.dynamics.simulate import simulate
 
         tell(self, stacklevel=2)
-        return simulate(self, duration, steps, times, method, tolerance, step, progress)
+        return simulate(self, duration, steps, times, method, tolerance, step, progress, options)
 
     def equilibrium(self, time: float = 0.0, nearest: bool = False) -> Equilibrium:
         """Static equilibrium: pose, reactions, efforts of the drivers, stiffness and stability.

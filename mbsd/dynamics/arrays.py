@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mbsd.dynamics.full_matrix import FullMatrices, full_matrices
 from mbsd.dynamics.schur import SchurFactors, schur_factors
 
 
@@ -61,12 +62,14 @@ class Scratch(NamedTuple):
     """(8, 2, 3 nb) coefficients of a dense output."""
     dense_work: Any
     """(7,) the same for the work (J)."""
+    full: FullMatrices
+    """Of implicit methods."""
     report: Any
     """(4,) margin of the last factors; first and last change of the last projection (sizes, rad)."""
 
 
-def scratch_for(dynamics: Dynamics, workspace: Any, drivers: int, stages: int) -> Scratch:
-    """Scratch for one run with an integrator of so many stages."""
+def scratch_for(dynamics: Dynamics, workspace: Any, drivers: int, stages: int, matrices: tuple[int, int] = (0, 0)) -> Scratch:
+    """Scratch for one run with an integrator of so many stages and full matrices (and their rows by coordinate)."""
     n3 = len(dynamics.inertia)
     return Scratch(
         ws=workspace,
@@ -79,5 +82,6 @@ def scratch_for(dynamics: Dynamics, workspace: Any, drivers: int, stages: int) -
         power=np.zeros(stages),
         dense=np.zeros((8, 2, n3)),
         dense_work=np.zeros(7),
+        full=full_matrices(matrices[0], matrices[1] * (n3 - 3)),
         report=np.zeros(4),
     )

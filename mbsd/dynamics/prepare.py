@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,6 +53,7 @@ class PreparedDynamics:
         tolerance: float,
         step: float,
         progress: Callable[[float], None] | None = None,
+        options: Mapping[str, float] | None = None,
     ) -> tuple[run_state.State, run_state.Output]:
         """Integrate to the last of ``times`` (s), which begin with the start. Raises SimulationError."""
         packed = self.packed
@@ -60,7 +61,7 @@ class PreparedDynamics:
         state = run_state.start_state(np.stack([self.initial.q, self.initial.v]), rows, float(times[0]))
         out = run_state.output_for(times, len(self.initial.q), rows)
         scratch = self.scratch(method)
-        settings = self.settings(tolerance, step, float(times[-1] - times[0]))
+        settings = self.settings(method, tolerance, step, float(times[-1] - times[0]), options or {})
         end = float(times[-1])
         while True:
             status = method.advance(self.dynamics, scratch, state, out, settings, end, STEPS_AT_ONCE)
@@ -73,13 +74,19 @@ class PreparedDynamics:
                 raise self._cannot_go_on(status, method, state, tolerance)
 
     def scratch(self, method: Integrator) -> Scratch:
-        """Scratch for one run."""
-        return scratch_for(self.dynamics, self.packed.ws, len(self.packed.motions), method.stages)
+        """Scratch for one run. Raises ModelError where the method cannot simulate this mechanism."""
+        refusal = method.refusal(self.dynamics)
+        if refusal is not None:
+            raise ModelError(f"{self.packed.name}: {refusal}")
+        return scratch_for(self.dynamics, self.packed.ws, len(self.packed.motions), method.stages, method.matrices)
 
-    def settings(self, tolerance: float, step: float, duration: float) -> run_state.Settings:
-        """Tolerances in the mechanism's own sizes."""
+    def settings(
+        self, method: Integrator, tolerance: float, step: float, duration: float, options: Mapping[str, float]
+    ) -> run_state.Settings:
+        """Tolerances in the mechanism's own sizes. Raises ModelError for options that the method does not have."""
         one = np.concatenate([np.ones(3), self.packed.column_scale()]) * tolerance
-        return run_state.Settings(np.stack([one, one]), tolerance, duration / OUTPUTS_LONGEST, step)
+        numbers = method.numbers(self.packed.name, options)
+        return run_state.Settings(np.stack([one, one]), tolerance, duration / OUTPUTS_LONGEST, step, numbers)
 
     def _cannot_go_on(
         self, status: int, method: Integrator, state: run_state.State, tolerance: float

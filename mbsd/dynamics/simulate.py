@@ -6,7 +6,7 @@ import importlib
 import math
 import pkgutil
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -34,9 +34,11 @@ def simulate(
     tolerance: float,
     step: float | None,
     progress: Callable[[float], None] | None,
+    options: Mapping[str, float],
 ) -> Solution:
     """See :meth:`mbsd.model.Mechanism.simulate`."""
     integrator = integrator_named(m.name, method)
+    integrator.numbers(m.name, options)
     grid = output_times(m.name, duration, steps, times)
     for what, value in (("tolerance", tolerance), ("step", step)):
         if value is not None and not (math.isfinite(value) and value > 0):
@@ -48,7 +50,7 @@ def simulate(
             InitialConditionWarning,
             stacklevel=3,
         )
-    state, out = ready.run(integrator, grid, tolerance, step or float(np.diff(grid).max()), progress)
+    state, out = ready.run(integrator, grid, tolerance, step or float(np.diff(grid).max()), progress, options)
     refuse_passed(ready.packed, out.t, np.ascontiguousarray(out.y[:, 0]))
     return solution(m, ready, state, out)
 

@@ -2,8 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.errors import ModelError
+
+if TYPE_CHECKING:
+    from mbsd.dynamics.arrays import Dynamics
+
+
+@dataclass(frozen=True)
+class Option:
+    """A number that a method takes beside step and tolerance."""
+
+    default: float
+    low: float
+    high: float
+    """Both are allowed."""
 
 
 @dataclass(frozen=True)
@@ -11,7 +30,7 @@ class Integrator:
     """A method by name.
 
     ``advance(dyn, scratch, state, out, settings, end, max_steps)`` goes on from a State to the time ``end`` (s),
-    writes the outputs it passes and returns a status (see state.py).
+    writes the outputs it passes and returns a status (see state.py). It is a kernel, or a Python function.
     """
 
     name: str
@@ -22,6 +41,28 @@ class Integrator:
     """Of the global error for smooth problems; the registry test measures it."""
     fixed_step: bool
     """Steps are given by the user, not by an error estimate."""
+    options: Mapping[str, Option] = field(default_factory=dict)
+    """Numbers that ``simulate`` takes by name for this method; in this order they stand in Settings.options."""
+    matrices: tuple[int, int] = (0, 0)
+    """Full matrices it needs, and their rows for each coordinate (see mbsd/dynamics/full_matrix.py)."""
+    refusal: Callable[[Dynamics], str | None] = lambda dynamics: None
+    """Why this method cannot simulate a mechanism, or None."""
+
+    def numbers(self, model: str, given: Mapping[str, float]) -> np.ndarray:
+        """(options,) what was given, else the defaults. Raises ModelError for unknown names and impossible values."""
+        for name, value in given.items():
+            if name not in self.options:
+                known = ", ".join(self.options) or "none"
+                raise ModelError(f"{model}: method '{self.name}' has no option '{name}'; there is: {known}")
+            option = self.options[name]
+            if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not math.isfinite(value):
+                raise ModelError(f"{model}: option '{name}' of '{self.name}' is {value!r}; it must be a finite number")
+            if not option.low <= value <= option.high:
+                raise ModelError(
+                    f"{model}: option '{name}' of '{self.name}' is {value:g}; "
+                    f"it must be within {option.low:g} .. {option.high:g}"
+                )
+        return np.array([float(given.get(name, option.default)) for name, option in self.options.items()])
 
 
 INTEGRATORS: dict[str, Integrator] = {}

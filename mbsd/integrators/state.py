@@ -28,6 +28,8 @@ class State(NamedTuple):
     """(2, 3 nb) their derivative; valid once STARTED."""
     lam: Any
     """(m,)"""
+    memory: Any
+    """(2, 3 nb) what a method itself remembers from step to step; a restart makes it anew."""
     clock: Any
     """(8,) time (s), next step (s), work of loads and drivers so far (J), their power (W), last error."""
     count: Any
@@ -62,11 +64,13 @@ class Settings(NamedTuple):
     """s"""
     step: float
     """Of methods with a fixed step (s)."""
+    options: Any
+    """(options,) of the method itself, see Integrator.options."""
 
 
 def start_state(y: np.ndarray, rows: int, time: float) -> State:
     """A run that begins at a consistent y (2, 3 nb)."""
-    state = State(y.copy(), np.zeros_like(y), np.zeros(rows), np.zeros(8), np.zeros(8, np.int64))
+    state = State(y.copy(), np.zeros_like(y), np.zeros(rows), np.zeros_like(y), np.zeros(8), np.zeros(8, np.int64))
     state.clock[TIME] = time
     return state
 

@@ -150,8 +150,8 @@ class Mechanism(AddingMachineJoints, AddingInteractions):
         ``steps`` equal output steps over ``duration`` seconds, both ends included; ``times`` (s), rising, replaces
         both. ``method`` names an integrator (mbsd/integrators). Methods with an error estimate keep to ``tolerance``
         (relative to the mechanism's size, to 1 rad, and to speeds); those with a fixed step take ``step`` (s), by
-        default the time between outputs. ``progress`` is called with the part done (0 .. 1). Other numbers are ``options``
-        of the method: ``rho`` of "generalized_alpha", ``alpha`` and ``beta`` of "baumgarte" (docs/integrators.md).
+        default the time between outputs. ``progress`` is called with the part done (0 .. 1). ``options`` are numbers of
+        the method itself, such as ``rho`` of "generalized_alpha".
 
         Raises AssemblyError where the links do not close, SimulationError where the integration cannot go on.
         """

@@ -68,7 +68,9 @@ class Scratch(NamedTuple):
     """(4,) margin of the last factors; first and last change of the last projection (sizes, rad)."""
 
 
-def scratch_for(dynamics: Dynamics, workspace: Any, drivers: int, stages: int, matrices: tuple[int, int] = (0, 0)) -> Scratch:
+def scratch_for(
+    dynamics: Dynamics, workspace: Any, drivers: int, stages: int, matrices: tuple[int, int] = (0, 0)
+) -> Scratch:
     """Scratch for one run with an integrator of so many stages and full matrices (and their rows by coordinate)."""
     n3 = len(dynamics.inertia)
     return Scratch(

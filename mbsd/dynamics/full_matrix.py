@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mbsd.jit import kernel
+from mbsd.jit import internal
 
 
 class FullMatrices(NamedTuple):
@@ -30,7 +30,7 @@ def full_matrices(count: int, size: int) -> FullMatrices:
     return FullMatrices(np.zeros((count, size, size)), np.zeros((count, size), np.int64), np.zeros((count, size)))
 
 
-@kernel
+@internal
 def factor_full(full, k, size):
     """Factor the first ``size`` rows and columns of matrix k; a singular one leaves numbers that are not finite."""
     value = full.value[k]
@@ -56,7 +56,7 @@ def factor_full(full, k, size):
                     value[i, c] -= part * value[j, c]
 
 
-@kernel
+@internal
 def solve_full(full, k, size):
     """side[k] becomes the solution with factored matrix k."""
     value = full.value[k]

@@ -34,7 +34,7 @@ from mbsd.integrators.state import (
     fixed_step,
     record_here,
 )
-from mbsd.jit import inlined, kernel
+from mbsd.jit import inlined, internal, kernel
 from mbsd.laws import evaluate_laws
 from mbsd.loads import apply_loads
 from mbsd.markers import move
@@ -48,19 +48,19 @@ ROUNDING = 1e-10
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 
 
-@kernel
+@internal
 def _loads(dyn, scratch, t, y):
     """Q at (t, y) into scratch.stages[1, 0], after _factor at the same pose; returns its power (W)."""
     load = scratch.stages[1, 0]
     for c in range(load.shape[0]):
         load[c] = dyn.weight[c]
-    if dyn.loads.element.shape[0] == 0:
+    if dyn.loads.total == 0:
         return 0.0
     move(dyn.system, y[1], scratch.ws)
     return apply_loads(dyn.system, dyn.loads, dyn.laws, t, y[0], y[1], scratch.ws, load)
 
 
-@kernel
+@internal
 def _factor(dyn, scratch, t, q):
     """Laws and factors of S at (t, q)."""
     evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
@@ -75,7 +75,7 @@ def _stand(dyn, scratch, t, y):
     return _loads(dyn, scratch, t, y)
 
 
-@kernel
+@internal
 def _correct(dyn, scratch, v, lam):
     """Change v (3 nb,) and lam (m,) by what removes the error of J v in ``side`` and the unbalanced impulse.
 
@@ -119,7 +119,7 @@ def _driver_work(dyn, scratch, lam):
     return work
 
 
-@kernel
+@internal
 def rattle_step(dyn, scratch, t, h, y, power):
     """One step of y (2, 3 nb) from t to t + h (s), h of either sign; _stand was called at its start, and is at its end.
 
@@ -194,7 +194,7 @@ def rattle_step(dyn, scratch, t, h, y, power):
             size = abs(h * (y[1, c] - start[c])) * dyn.per_size[c]
             if not size <= moved:
                 moved = size
-        if dyn.loads.element.shape[0] == 0 or moved <= CLOSED:
+        if dyn.loads.total == 0 or moved <= CLOSED:
             found = moved < 1e300
             break
     work += 0.5 * h * power + _driver_work(dyn, scratch, lam)
@@ -203,7 +203,7 @@ def rattle_step(dyn, scratch, t, h, y, power):
     return found
 
 
-@kernel
+@internal
 def march(dyn, scratch, state, out, settings, end, max_steps, parts):
     """``advance`` by RATTLE (1 part) or by its composition of order 4 (5 parts)."""
     y = state.y

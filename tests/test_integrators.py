@@ -1,0 +1,202 @@
+"""Every integrator, found by itself: order, constraints at outputs, restart, energy; and what each is made for."""
+
+from __future__ import annotations
+
+import importlib
+import math
+import pkgutil
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.special import ellipj, ellipk
+
+import mbsd.integrators
+from mbsd import Mechanism, ModelError, SimulationError
+from mbsd.dynamics.prepare import prepare_dynamics
+from mbsd.integrators.kind import INTEGRATORS, Integrator, register
+from mbsd.integrators.state import NEXT, PAUSED, REACHED, TIME, output_for, start_state
+
+for _module in pkgutil.iter_modules(mbsd.integrators.__path__):
+    importlib.import_module(f"mbsd.integrators.{_module.name}")
+
+G = 9.81
+AMPLITUDE = math.radians(100)
+ROUNDING = 1e-11
+"""Errors below this tell nothing about an order."""
+PROJECTED = sorted(set(INTEGRATORS) - {"baumgarte"})
+"""Methods that promise closed constraints at outputs."""
+
+
+def pendulum() -> Mechanism:
+    m = Mechanism("pendulum", gravity=(0.0, -G))
+    rod = m.bar("rod", 1.5, mass=1.0)
+    m.revolute("A", m.ground.at(0, 0), rod.start)
+    m.start_near(rod=math.degrees(AMPLITUDE) - 90.0)
+    return m
+
+
+def four_bar() -> Mechanism:
+    m = Mechanism("four-bar", gravity=(0.0, -G))
+    crank, coupler, rocker = m.bar("crank", 0.3, 1.0), m.bar("coupler", 0.9, 0.5), m.bar("rocker", 0.7, 2.0)
+    m.revolute("A", m.ground.at(0, 0), crank.start)
+    m.revolute("B", crank.end, coupler.start)
+    m.revolute("C", coupler.end, rocker.end)
+    m.revolute("D", m.ground.at(0.8, 0), rocker.start)
+    m.start_near(crank=50, coupler=20, rocker=80)
+    return m
+
+
+def exact_pendulum(t: float) -> float:
+    """Angle of the rod from the x axis: sin(phi/2) = k sn(K - w t), w^2 = g over the equivalent length l = 1 m."""
+    k = math.sin(AMPLITUDE / 2)
+    sn = ellipj(ellipk(k * k) - math.sqrt(G) * t, k * k)[0]
+    return 2 * math.asin(k * sn) - math.pi / 2
+
+
+@cache
+def fine_four_bar(t: float) -> float:
+    return float(four_bar().simulate(t, steps=1, method="rk4", step=1e-4).body("rocker").theta[-1])
+
+
+def runs(method: Integrator, make, body: str, exact: float) -> tuple[np.ndarray, np.ndarray]:
+    """Steps and errors of finer and finer runs, those that rounding hides left out."""
+    steps, errors = [], []
+    for k in range(5):
+        if method.fixed_step:
+            sol = make().simulate(1.0, steps=1, method=method.name, step=0.02 / 2**k)
+        else:
+            sol = make().simulate(10.0, steps=1, method=method.name, tolerance=10.0 ** (-4 - k))
+        error = abs(sol.body(body).theta[-1] - exact)
+        if error > ROUNDING:
+            steps.append(sol.stats.steps)
+            errors.append(error)
+    return np.array(steps, float), np.array(errors)
+
+
+def order_of(steps: np.ndarray, errors: np.ndarray) -> float:
+    """From the slope of log error over log steps, the coarsest run left out."""
+    return -np.polyfit(np.log(steps[1:]), np.log(errors[1:]), 1)[0]
+
+
+@pytest.mark.parametrize("name", sorted(INTEGRATORS))
+@pytest.mark.parametrize("case", ["pendulum", "four-bar"])
+def test_measured_order(name: str, case: str) -> None:
+    """Fixed steps over one second; tolerances over ten, so that steps are not bound by the duration."""
+    method = INTEGRATORS[name]
+    duration = 1.0 if method.fixed_step else 10.0
+    if case == "pendulum":
+        steps, errors = runs(method, pendulum, "rod", exact_pendulum(duration))
+    else:
+        steps, errors = runs(method, four_bar, "rocker", fine_four_bar(duration))
+    if method.fixed_step:
+        assert order_of(steps, errors) > method.order - 0.25
+        assert (errors[1:] < 0.7 * errors[:-1]).all()
+    else:
+        assert errors[-1] < 1e-6
+        assert errors[-1] < 1e-2 * errors[0]
+
+
+@pytest.mark.parametrize("name", PROJECTED)
+def test_constraints_hold_at_every_output(name: str) -> None:
+    """Outputs fall on and between steps."""
+    sol = four_bar().simulate(times=[0.0, 0.1, 0.1234, 0.35, 0.5], method=name, step=2e-3)
+    assert sol.stats.position_residual < 1e-12
+    assert sol.stats.velocity_residual < 1e-9
+    assert sol.stats.acceleration_residual < 1e-7
+    assert sol.stats.power_residual < 1e-7
+    assert np.ptp(sol.energy.total) < 1e-2
+
+
+@pytest.mark.parametrize("name", sorted(INTEGRATORS))
+def test_a_run_in_two_parts_is_the_run_in_one(name: str) -> None:
+    """Stopped after three steps, then at half time, and gone on from there."""
+    method = INTEGRATORS[name]
+    ready = prepare_dynamics(four_bar(), 0.0, 1.0)
+    times = np.linspace(0.0, 1.0, 9)
+    whole, out = ready.run(method, times, 1e-7, 2e-3)
+    state = start_state(np.stack([ready.initial.q, ready.initial.v]), len(ready.packed.ws.phi), 0.0)
+    parts = output_for(times, len(ready.initial.q), len(ready.packed.ws.phi))
+    scratch, settings = ready.scratch(method), ready.settings(method, 1e-7, 2e-3, 1.0, {})
+    assert method.advance(ready.dynamics, scratch, state, parts, settings, 0.5, 3) == PAUSED
+    assert 0.0 < state.clock[TIME] < 0.5
+    for end in (0.5, 1.0):
+        assert method.advance(ready.dynamics, ready.scratch(method), state, parts, settings, end, 10**6) == REACHED
+        assert state.clock[TIME] == end
+    assert state.count[NEXT] == len(times)
+    np.testing.assert_allclose(state.y, whole.y, atol=1e-5)
+    np.testing.assert_allclose(parts.y, out.y, atol=1e-5)
+    np.testing.assert_allclose(parts.lam, out.lam, atol=1e-3)
+
+
+@pytest.mark.parametrize("name", sorted(INTEGRATORS))
+def test_work_of_a_driver_goes_into_the_energy(name: str) -> None:
+    from mbsd import harmonic
+
+    m = four_bar()
+    m.drive_angle("motor", m.bodies["crank"], harmonic(0.8, 3.0, 0.1, math.radians(50)))
+    sol = m.simulate(1.0, steps=10, method=name, step=2e-3)
+    assert sol.work is not None
+    assert np.ptp(sol.energy.total) > 0.1
+    np.testing.assert_allclose(sol.energy.total - sol.work, sol.energy.total[0], atol=1e-4)
+
+
+# -- symplectic ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("name", "bound"), [("rattle", 5e-2), ("symplectic", 1e-4)])
+def test_energy_stays_bounded(name: str, bound: float) -> None:
+    """The error of the last fifth of 100 s is that of the first: it swings and does not grow."""
+    sol = four_bar().simulate(100.0, steps=5000, method=name, step=0.01)
+    error = np.abs(sol.energy.total - sol.energy.total[0])
+    assert error.max() < bound
+    assert error[-1000:].max() < 1.05 * error[:1000].max()
+
+
+@pytest.mark.parametrize("name", ["rattle", "symplectic"])
+def test_time_runs_backward_along_the_same_path(name: str) -> None:
+    """From the end with velocities turned round, the run returns to its start: to rounding, however long the steps."""
+    method = INTEGRATORS[name]
+    ready = prepare_dynamics(four_bar(), 0.0, 2.0)
+    there, _ = ready.run(method, np.array([0.0, 2.0]), 1e-7, 0.01)
+    ready.initial.q[:], ready.initial.v[:] = there.y[0], -there.y[1]
+    back, _ = ready.run(method, np.array([0.0, 2.0]), 1e-7, 0.01)
+    start = prepare_dynamics(four_bar(), 0.0, 2.0).initial
+    np.testing.assert_allclose(back.y[0], start.q, atol=1e-10)
+    np.testing.assert_allclose(back.y[1], -start.v, atol=1e-9)
+
+
+def test_rattle_needs_no_mass() -> None:
+    """A coupler without mass, and a point mass without inertia, keep the order."""
+    m = Mechanism("bob", gravity=(0.0, -G))
+    bob = m.body("bob", 1.0)
+    m.revolute("A", m.ground.at(0, 0), bob.at(0, 1.0))
+    m.start_near(bob=math.degrees(AMPLITUDE))
+    sol = m.simulate(1.0, steps=1, method="symplectic", step=2e-3)
+    assert sol.body("bob").theta[-1] - math.pi / 2 == pytest.approx(exact_pendulum(1.0), abs=1e-9)
+
+
+# -- use ----------------------------------------------------------------------------------------------------------
+
+
+def test_options_are_named_and_checked() -> None:
+    with pytest.raises(ModelError, match="'rk4' has no option 'rho'; there is: none"):
+        pendulum().simulate(1.0, method="rk4", rho=0.5)
+    with pytest.raises(ModelError, match="no option 'tolerence'"):
+        pendulum().simulate(1.0, tolerence=1e-3)
+
+
+def test_a_name_is_taken_once() -> None:
+    with pytest.raises(ValueError, match="registered twice"):
+        register(INTEGRATORS["rk4"])
+
+
+def test_a_step_without_solution_is_told() -> None:
+    """A point on a string of 1 m cannot go 5 m to the side."""
+    m = Mechanism("string")
+    bob = m.body("bob", 1.0, inertia=1.0)
+    m.distance("string", m.ground.at(0, 0), bob.at(0, 0), 1.0)
+    m.start_near(bob=(0.0, -1.0, 0.0))
+    m.start_moving(bob=(10.0, 0.0, 0.0))
+    with pytest.raises(SimulationError, match="smaller step"):
+        m.simulate(1.0, steps=2, method="rattle")

@@ -1,4 +1,4 @@
-"""The methods of a Mechanism that add contact, tyre, air, a turning frame, and functions of the user.
+"""The methods of a Mechanism that add contact, tyre, air, a turning frame, friction, functions of the user.
 
 Forces in N, torques in N m, counter-clockwise positive.
 """
@@ -15,9 +15,11 @@ from mbsd.errors import ModelError
 from mbsd.force import Force
 from mbsd.forces.contact import CONTACT
 from mbsd.forces.drag import DRAG
+from mbsd.forces.friction import FRICTION, JOINTS
 from mbsd.forces.rotating_frame import ROTATING_FRAME
 from mbsd.forces.tyre import TYRE
 from mbsd.forces.user_force import USER_FORCE
+from mbsd.joint import Joint
 
 
 class AddingInteractions(AddingForces):
@@ -103,6 +105,47 @@ class AddingInteractions(AddingForces):
         params["centre"] = number_pair(f"{self.name}: force '{name}': centre", centre)
         middle = self.ground.at(*params["centre"])
         return self._add_force(ROTATING_FRAME, name, middle, self.ground.origin, params, laws, same_body=True)
+
+    def friction(
+        self,
+        name: str,
+        joint: Joint | str,
+        coefficient: float,
+        static: float | None = None,
+        stribeck: float = 0.01,
+        viscous: float = 0.0,
+        radius: float = 0.0,
+        length: float = 0.0,
+        preload: float = 0.0,
+        slip_speed: float = 1e-3,
+    ) -> Force:
+        """Friction of a revolute, prismatic or pin-in-slot joint from its actual reaction.
+
+        ``coefficient`` while sliding and ``static`` (the same by default) near rest, between them the speed
+        ``stribeck`` (m/s); ``viscous`` N s/m or N m s; ``radius`` of a pin (m); ``length`` over which a slider is
+        guided (m), 0 where tilting presses nothing; ``preload`` (N) is added to the normal force; ``slip_speed``
+        (m/s) is where it comes near its full size, below it the joint creeps.
+        """
+        what = f"{self.name}: force '{name}'"
+        known = self.joints.get(joint if isinstance(joint, str) else getattr(joint, "name", ""))
+        if known is None or (known is not joint and known.name != joint):
+            raise ModelError(f"{what}: there is no joint {joint!r}; there is: {', '.join(self.joints) or 'none'}")
+        if known.kind.name not in JOINTS:
+            raise ModelError(
+                f"{what}: '{known.name}' is a {known.kind.name}; friction needs one of {', '.join(JOINTS)}"
+            )
+        params = self._positive(
+            name, coefficient=coefficient, viscous=viscous, radius=radius, length=length, preload=preload
+        )
+        params["static"] = params["coefficient"] if static is None else self._positive(name, static=static)["static"]
+        for key, value in (("stribeck", stribeck), ("slip_speed", slip_speed)):
+            params[key] = self._above_zero(name, key, value)
+        if (params["radius"] > 0) != (known.kind.name == "revolute"):
+            raise ModelError(f"{what}: a revolute joint needs the radius of its pin (m), and no other has one")
+        if params["length"] > 0 and known.kind.name != "prismatic":
+            raise ModelError(f"{what}: a length of guide (m) is of prismatic joints alone")
+        params["joint"] = known.name
+        return self._add_force(FRICTION, name, known.i, known.j, params)
 
     def user_force(self, name: str, function: Callable[..., Any], *bodies: Body) -> Force:
         """Forces on bodies by a function of the user, ``function(t, q, v)``, Python or compiled with numba.njit.

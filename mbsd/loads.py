@@ -15,6 +15,7 @@ from mbsd.forces.kind import AXIS, CONSTANT, DAMPING, DRY, LAW_RATE, LAW_TIME, L
 from mbsd.interaction_loads import apply_interactions, pack_interactions
 from mbsd.interactions.law import STATE
 from mbsd.jit import kernel
+from mbsd.joint_friction import pack_friction
 from mbsd.laws import Laws, evaluate_law, pack_laws
 from mbsd.markers import move, place
 from mbsd.motions import Motion
@@ -51,8 +52,16 @@ class Loads(NamedTuple):
     """(b, 2) centres of mass in the author's frames."""
     exchange: Any
     """(2, 6 k) inputs and outputs of a user's force on k bodies, or of an interaction."""
+    rub: Any
+    """(f, 6) joints with friction; columns in joint_friction.py."""
+    rub_number: Any
+    """(f, 7)"""
+    normal: Any
+    """(4, f) their normal forces now, and scratch of the iteration."""
+    rubbing: Any
+    """(2,) weight of the iteration's steps, and whether it failed."""
     total: int
-    """Of all elements, interactions and forces of the user."""
+    """Of all elements, interactions and forces of the user; friction is not among them."""
 
 
 def pack_loads(packed: Packed) -> Loads:
@@ -70,6 +79,7 @@ def pack_loads(packed: Packed) -> Loads:
             first_term.append(len(term))
     interaction, given = pack_interactions(packed)
     user, user_body, user_com = pack_user_forces(packed)
+    friction, friction_number = pack_friction(packed)
     return Loads(
         np.array(element, np.int64).reshape(-1, 4),
         np.array(first_term, np.int64),
@@ -83,6 +93,10 @@ def pack_loads(packed: Packed) -> Loads:
         user_body,
         user_com,
         np.zeros((2, 6 * max(1, int(user[:, 2].max(initial=1))))),
+        friction,
+        friction_number,
+        np.zeros((4, len(friction))),
+        np.zeros(2),
         len(element) + len(interaction) + len(user),
     )
 
@@ -127,8 +141,9 @@ def _magnitude(loads, laws, e, t, x, rate):
 
 @kernel
 def apply_loads(system, loads, laws, t, q, v, ws, load):
-    """Add the generalised forces of all loads to load (3 nb,), after place and move; returns their power (W).
+    """Add the generalised forces of all loads but friction to load (3 nb,), after place and move.
 
+    Returns their power (W).
     What falls on ground is added too and means nothing.
     """
     power = 0.0
@@ -199,7 +214,7 @@ def tabulate_loads(system, loads, laws, times, q, v, ws, out, power):
 
 
 def loads_along(packed: Packed, loads: Loads, laws: Laws, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """(T, 3 nb) generalised forces of all loads along a motion q, v (T, 3 nb); zero for ground.
+    """(T, 3 nb) generalised forces of all loads but friction along a motion q, v (T, 3 nb); zero for ground.
 
     Raises ModelError where a function of the user fails.
     """

@@ -11,7 +11,9 @@ import pytest
 
 import mbsd.forces
 from mbsd import Mechanism, ModelError, curve, harmonic
+from mbsd.assembly import tabulate
 from mbsd.forces.kind import FORCE_KINDS, POTENTIAL_TERMS, PUSH, ForceKind
+from mbsd.joint_friction import normals_along, tabulate_friction
 from mbsd.loads import compiled_laws, loads_along, pack_loads, tabulate_loads
 from mbsd.packing import Packed, pack
 from mbsd.potential import potential_of
@@ -46,6 +48,21 @@ def motion(packed: Packed, seed: int, count: int = 40) -> tuple[np.ndarray, np.n
     return t, q, v
 
 
+def evaluate(packed: Packed, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(T, 3 nb) loads and (T,) their power; friction under the reactions of multipliers of 1, 2 ..."""
+    loads, laws = pack_loads(packed), compiled_laws(packed, 0.0, 1.0)
+    force, power = np.zeros_like(q), np.zeros(len(t))
+    tabulate_loads(packed.system, loads, laws, t, q, v, packed.ws, force, power)
+    if len(loads.rub):
+        rows = len(packed.ws.phi)
+        phi, gamma, compact = *np.zeros((2, len(t), rows)), np.zeros((len(t), rows, 6))
+        tabulate(packed.system, packed.drives(t), q, v, packed.ws, phi, compact, gamma)
+        normal = normals_along(packed, loads, q, compact, np.tile(1.0 + np.arange(rows), (len(t), 1)))
+        tabulate_friction(packed.system, loads, q, v, normal, packed.ws, force, power)
+    force[:, :3] = 0.0
+    return force, power
+
+
 KINDS = all_kinds()
 
 
@@ -66,9 +83,7 @@ def test_only_loads_from_outside_push(kind: ForceKind) -> None:
 def test_power_is_force_times_velocity(kind: ForceKind, seed: int) -> None:
     _m, packed = example(kind, seed)
     t, q, v = motion(packed, seed)
-    loads, laws = pack_loads(packed), compiled_laws(packed, 0.0, 1.0)
-    force, power = np.zeros_like(q), np.zeros(len(t))
-    tabulate_loads(packed.system, loads, laws, t, q, v, packed.ws, force, power)
+    force, power = evaluate(packed, t, q, v)
     assert np.abs(force[:, 3:]).max() > 0.0, "an example that does nothing proves nothing"
     np.testing.assert_allclose(power, (force * v)[:, 3:].sum(axis=1), rtol=1e-10, atol=1e-9 * np.abs(power).max())
 
@@ -79,7 +94,7 @@ def test_pairs_act_and_react(kind: ForceKind, seed: int) -> None:
     m, packed = example(kind, seed)
     [force] = m.forces.values()
     t, q, v = motion(packed, seed)
-    load = loads_along(packed, pack_loads(packed), compiled_laws(packed, 0.0, 1.0), t, q, v).reshape(len(t), -1, 3)
+    load = evaluate(packed, t, q, v)[0].reshape(len(t), -1, 3)
     if kind.outside:  # nothing feels the opposite
         acted = {force.j.body.name} | {one.j.body.name for one in kind.interactions(force, packed)}
         others = [b for b, name in enumerate(packed.body_names) if name not in acted]

@@ -21,7 +21,7 @@ from mbsd import Mechanism, ModelError, constant_rate, curve, function, harmonic
 from mbsd.body import Body
 from mbsd.forces.kind import FORCE_KINDS, ForceKind
 from mbsd.joints.kind import KINDS, JointKind
-from mbsd.loads import compiled_laws, loads_along, pack_loads
+from mbsd.loads import pack_loads
 from mbsd.motions import Motion
 from mbsd.motions.examples import EXAMPLES
 from mbsd.motions.function import Function
@@ -31,6 +31,7 @@ from mbsd.saving.schema import content, schema
 from shared.paths import ROOT
 from tests import four_bars
 from tests.test_forces import all_kinds as force_kinds
+from tests.test_forces import evaluate
 from tests.test_forces import example as force_example
 from tests.test_forces import motion as force_motion
 from tests.test_joints import all_kinds
@@ -81,9 +82,7 @@ def test_every_kind_of_force_comes_back(kind: ForceKind, to_ground: bool, tmp_pa
     t, q, v = force_motion(here, 1)
     for a, b in zip(pack_loads(here), pack_loads(there), strict=True):
         np.testing.assert_array_equal(a, b)
-    loads = [
-        loads_along(packed, pack_loads(packed), compiled_laws(packed, 0.0, 1.0), t, q, v) for packed in (here, there)
-    ]
+    loads = [evaluate(packed, t, q, v)[0] for packed in (here, there)]
     np.testing.assert_array_equal(*loads)
     assert np.abs(loads[0]).max() > 0
 

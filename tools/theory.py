@@ -8,6 +8,14 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "theory.md"
+FORCES = (
+    "mbsd/forces/kind.py",
+    "mbsd/forces",
+    "mbsd/interaction_loads.py",
+    "mbsd/joint_friction.py",
+    "mbsd/curves.py",
+    "mbsd/potential.py",
+)
 SECTIONS = (
     ("Coordinates", "", ("mbsd/markers.py",)),
     ("Constraints", "Every joint and driver is made of these; each gives rows of Phi and J.", ("mbsd/constraints",)),
@@ -18,7 +26,7 @@ SECTIONS = (
     ("Positions, velocities, accelerations", "", ("mbsd/kinematics.py", "mbsd/elimination.py", "mbsd/assur")),
     ("Mobility", "", ("mbsd/mobility.py",)),
     ("Inverse dynamics", "", ("mbsd/inverse_dynamics.py",)),
-    ("Forces", "", ("mbsd/forces/kind.py", "mbsd/forces", "mbsd/curves.py", "mbsd/potential.py")),
+    ("Forces", "", FORCES),
     ("Forward dynamics", "", ("mbsd/dynamics",)),
     ("Integrators", "", ("mbsd/integrators",)),
     ("Analyses", "", ("mbsd/analyses",)),

@@ -8,14 +8,19 @@ what the last one left of both equations, and shrinks the error by the lift over
 
     Baumgarte   J a = gamma - 2 alpha (J v - nu) - beta^2 Phi
 
+Friction of joints depends on lam: it is added to Q and solved for again until both agree (joint_friction.py).
+
 Source: Haug 1989, ch. 6; Baumgarte 1972, Comp. Meth. Appl. Mech. Eng. 1.
 """
 
 from __future__ import annotations
 
+import math
+
 from mbsd.assembly import evaluate_gamma, evaluate_position
 from mbsd.dynamics.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
 from mbsd.jit import inlined, kernel
+from mbsd.joint_friction import CHANGE, FAILED, MOST_PASSES, begin_rubbing, rub, settle
 from mbsd.laws import evaluate_laws
 from mbsd.loads import apply_loads
 
@@ -49,6 +54,9 @@ def accelerate(dyn, scratch, t, state, a, lam):
         lam[r] = 0.0
     if dyn.loads.total > 0:
         power = apply_loads(system, dyn.loads, dyn.laws, t, q, v, ws, force)
+    rubbing = dyn.loads.rub.shape[0] > 0
+    if rubbing:
+        power += begin_rubbing(system, dyn.loads, v, ws, force)
     alpha = dyn.baumgarte[0]
     beta = dyn.baumgarte[1]
     if alpha > 0.0:
@@ -59,7 +67,7 @@ def accelerate(dyn, scratch, t, state, a, lam):
                     gamma[r] -= 2.0 * alpha * times_jacobian(factors, schur, k, s, v) + beta * beta * ws.phi[r]
         for k in range(system.driven.shape[0]):
             gamma[system.driven[k, 0]] += 2.0 * alpha * drive[system.driven[k, 1], 1]
-    for _ in range(dyn.passes):
+    for done in range(dyn.passes + MOST_PASSES):
         for c in range(3, n3):
             ws.pose[c] = a[c] + dyn.inverse[c] * (force[c] - dyn.inertia[c] * a[c])
         for k in range(schur.rows.shape[0]):
@@ -75,6 +83,17 @@ def accelerate(dyn, scratch, t, state, a, lam):
                 r = schur.rows[k, s]
                 if r >= 0:
                     lam[r] += y[k, s, 0]
+        if done + 1 >= dyn.passes:
+            if not rubbing:
+                break
+            if settle(dyn.loads, ws, lam):
+                break
+            if done + 1 == dyn.passes + MOST_PASSES:
+                dyn.loads.rubbing[FAILED] = 1.0
+                for c in range(3, n3):
+                    a[c] = math.nan
+                break
+            power += rub(system, dyn.loads, v, ws, dyn.loads.normal[CHANGE], 0.0, force)
     for k in range(system.driven.shape[0]):
         power -= lam[system.driven[k, 0]] * drive[system.driven[k, 1], 1]
     return power

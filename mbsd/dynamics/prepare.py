@@ -15,6 +15,7 @@ from mbsd.dynamics.schur import plan_schur
 from mbsd.errors import MobilityError, ModelError, SimulationError
 from mbsd.integrators import state as run_state
 from mbsd.integrators.kind import Integrator
+from mbsd.joint_friction import FAILED
 from mbsd.loads import compiled_laws, pack_loads
 from mbsd.mobility import Mobility, independent_rows, joint_mobility, scaled_jacobian
 from mbsd.model import Mechanism
@@ -98,6 +99,11 @@ class PreparedDynamics:
             return SimulationError(
                 f"{where}: the equations of a step have no solution near the last one. Take a smaller step, "
                 "or look for a force or law that jumps."
+            )
+        if self.dynamics.loads.rubbing[FAILED]:
+            return SimulationError(
+                f"{where}: friction and reactions of the joints do not agree there; joints jam. Lower the friction, "
+                "guide sliders over a longer length, or raise slip_speed."
             )
         if method.fixed_step:
             return SimulationError(

@@ -18,6 +18,7 @@ from mbsd.errors import InitialConditionWarning, ModelError
 from mbsd.integrators.kind import INTEGRATORS, Integrator
 from mbsd.integrators.state import ACCEPTED, Output, State
 from mbsd.inverse_dynamics import JACOBIAN_NUMBERS
+from mbsd.joint_friction import friction_along
 from mbsd.limits import refuse_passed
 from mbsd.loads import loads_along
 from mbsd.model import Mechanism
@@ -101,6 +102,7 @@ def solution(m: Mechanism, ready: PreparedDynamics, state: State, out: Output) -
         nu = np.zeros_like(phi)
         nu[:, packed.driver_rows :] = drives[at, 1:, 1]
         loads = loads_along(packed, ready.dynamics.loads, ready.dynamics.laws, out.t[at], q[at], v[at])
+        loads += friction_along(packed, ready.dynamics.loads, q[at], v[at], compact, out.lam[at])
         loads += ready.dynamics.weight - ready.dynamics.inertia * out.a[at] - generalised(packed, compact, lam[at])
         loads[:, :3] = 0.0
         errors = (

@@ -89,6 +89,8 @@ class ForceKind:
     """Beside its elements."""
     outside: bool = False
     """Whether it is a load from outside, to which nothing in the mechanism feels the opposite."""
+    of_reactions: bool = False
+    """Whether it is friction, which comes from the reaction of a joint; see mbsd/joint_friction.py."""
     saved: bool = True
     """Whether a file can hold its params; a Python function cannot be saved."""
 

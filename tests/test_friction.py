@@ -74,17 +74,17 @@ def test_a_block_on_a_gentle_incline_all_but_rests() -> None:
 
 def test_a_pendulum_loses_as_much_each_swing_to_the_friction_of_its_pin() -> None:
     """Small swings of a slow pendulum: the pin carries the weight, and the amplitude falls by 4 mu r m g / (m g l)."""
-    length, mu, radius = 1.0, 0.05, 0.02
+    length, mu, radius = 1.0, 0.05, 0.005
     m = Mechanism("pendulum")
     bob = m.body("bob", 3.0, inertia=1e-9)
     m.revolute("pin", m.ground.at(0, 0), bob.at(0.0, length))
     m.friction("rub", "pin", mu, radius=radius, slip_speed=1e-7)
-    m.start_near(bob=math.degrees(0.03))
+    m.start_near(bob=math.degrees(0.01))
     half = math.pi * math.sqrt(length / G)
     view = m.simulate(times=half * np.arange(5), tolerance=1e-9).body("bob")
     step = 2 * mu * radius / length
-    expected = (0.03 - step * np.arange(5)) * (-1.0) ** np.arange(5)
-    np.testing.assert_allclose(view.theta, expected, atol=3e-6)
+    expected = (0.01 - step * np.arange(5)) * (-1.0) ** np.arange(5)
+    np.testing.assert_allclose(view.theta, expected, atol=5e-7)
 
 
 def test_stribeck_and_viscous_slow_a_wheel_pressed_by_a_preload() -> None:

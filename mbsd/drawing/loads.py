@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from mbsd.curves import Curve
 from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.look import LOAD
 from mbsd.drawing.pose import Pose
@@ -44,13 +45,36 @@ def draw_force(canvas: Canvas, force: Force, pose: Pose) -> None:
         canvas.label(force.name, j, 1.2, LOAD)
 
 
+def force_reach(force: Force, pose: Pose) -> np.ndarray:
+    """(k, 2) of what a force's sign needs beside its bodies."""
+    place = pose.place(force.j)
+    size = force.params["radius"] if "stiffness" in force.params and "radius" in force.params else 0.0
+    return place + size * np.array([[-1.0, -1.0], [1.0, 1.0]])
+
+
 def draw_special(canvas: Canvas, force: Force, pose: Pose) -> None:
-    """A ring where the force acts, on each of its bodies."""
+    """A ring where the force acts, on each of its bodies; with the surface and the disc if it is a contact."""
+    if "stiffness" in force.params:
+        _surface(canvas, force, pose)
     bodies = force.params.get("bodies", ())
     places = [pose.of(name, 0.0, 0.0) for name in bodies] or [pose.place(force.j)]
     for place in places:
         canvas.circle(place, 0.9, edge=LOAD, order=3.2, width=1.2, alpha=0.3)
     canvas.label(force.name, places[0], 1.2, LOAD)
+
+
+def _surface(canvas: Canvas, force: Force, pose: Pose) -> None:
+    """The profile, or a piece of the line near the body, and the disc that touches it."""
+    origin, centre, along = pose.place(force.i), pose.place(force.j), pose.axis(force.i)
+    profile, radius = force.laws.get("profile"), force.params["radius"]
+    if isinstance(profile, Curve):
+        x = np.linspace(profile.x[0], profile.x[-1], 121)
+        y = profile(x)[:, 0]
+    else:
+        x = float((centre - origin) @ along) + max(radius, 3.0 * canvas.unit) * np.array([-1.0, 1.0])
+        y = np.zeros(2)
+    canvas.line(origin + np.outer(x, along) + np.outer(y, [-along[1], along[0]]), LOAD, 1.6, order=1.5)
+    canvas.circle(centre, radius / canvas.unit, edge=LOAD, order=1.6, width=1.2, alpha=0.1)
 
 
 def _coil(canvas: Canvas, i: np.ndarray, j: np.ndarray, damped: bool) -> None:

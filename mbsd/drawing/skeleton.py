@@ -9,7 +9,7 @@ import numpy as np
 
 from mbsd.body import Marker
 from mbsd.drawing.canvas import Canvas
-from mbsd.drawing.loads import draw_force
+from mbsd.drawing.loads import draw_force, force_reach
 from mbsd.drawing.look import AXIS_X, AXIS_Y, FAINT, INK, QUIET, colour
 from mbsd.drawing.names import place_names
 from mbsd.drawing.outline import rounded
@@ -42,7 +42,7 @@ def draw(m: Mechanism, pose: Pose, ax: Axes | None, frames: bool, names: bool) -
         raise ModelError("drawing needs matplotlib: install mbsd[draw]") from error
     points = {name: _points(m, pose, name) for name in m.bodies}
     wheels = [reach(joint, pose) for joint in m.joints.values()]
-    loads = [pose.place(force.j).reshape(1, 2) for force in m.forces.values()]
+    loads = [force_reach(force, pose) for force in m.forces.values()]
     everything = np.concatenate([*points.values(), *pose.paths.values(), *wheels, *loads])
     if not len(everything):
         everything = np.zeros((1, 2))

@@ -20,6 +20,7 @@ from mbsd.force import Force
 from mbsd.forces.actuator import ACTUATOR
 from mbsd.forces.kind import CONSTANT, ForceKind
 from mbsd.forces.torque import TORQUE
+from mbsd.friction_along import with_friction
 from mbsd.joint import Joint
 from mbsd.loads import compiled_laws, loads_along, pack_loads
 from mbsd.model import Mechanism
@@ -126,12 +127,21 @@ def inverse_dynamics(m: Mechanism, motion: Solution, actuators: Sequence[str]) -
     weight = np.zeros((len(system.mass), 3))
     weight[:, :2] = system.mass[:, None] * system.gravity
     laws = compiled_laws(packed, float(motion.t[0]), float(motion.t[-1]))
-    applied = loads_along(packed, pack_loads(packed), laws, motion.t, q, v)
+    loads = pack_loads(packed)
+    applied = loads_along(packed, loads, laws, motion.t, q, v)
     right = (weight.ravel() + applied - inertia * a)[:, 3:]
     push = np.stack([_directions(packed, bare.forces[name], q, motion.t)[:, 3:] for name in actuators], axis=1)
     phi, gamma, compact = np.zeros((count, rows)), np.zeros((count, rows)), np.zeros((count, rows, 6))
     tabulate(system, packed.drives(motion.t), q, v, packed.ws, phi, compact, gamma)
-    lam, effort, left = _solved(packed, packed.spread(compact), push, right)
+    jacobian = packed.spread(compact)
+    (lam, effort, left), friction = with_friction(
+        packed,
+        loads,
+        (motion.t, q, v),
+        compact,
+        lambda friction: _solved(packed, jacobian, push, right + friction[:, 3:]),
+    )
+    applied += friction
     columns = packed.column_scale()
     terms = (weight.ravel()[3:], applied[:, 3:], inertia[3:] * a[:, 3:])
     largest = max(float(np.abs(term * columns).max(initial=0.0)) for term in terms)

@@ -16,9 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.assembly import tabulate
-from mbsd.errors import SimulationError
-from mbsd.joint_friction import MOST_PASSES, SETTLED, friction_under, normals_along
-from mbsd.loads import Loads, compiled_laws, loads_along, pack_loads
+from mbsd.friction_along import with_friction
+from mbsd.loads import compiled_laws, loads_along, pack_loads
 from mbsd.prepared import Prepared
 from mbsd.reactions import wrenches
 
@@ -69,9 +68,15 @@ def inverse_dynamics(
         singular = np.linalg.svd(scaled, compute_uv=False)
         out.margin[at] = singular[:, -1] / singular[:, 0]
         lam = out.lam[at]
-        lam[:] = _multipliers(ready, jac, loads[at])
-        if rubbing is not None and len(rubbing.rub):
-            lam[:] = _with_friction(ready, rubbing, times[at], (q[at], v[at]), compact, jac, loads[at])
+        if rubbing is None:
+            lam[:] = _multipliers(ready, jac, loads[at])
+        else:
+            applied, motion = loads[at].copy(), (times[at], q[at], v[at])
+            [found], friction = with_friction(
+                packed, rubbing, motion, compact, lambda f, j=jac, q=applied: (_multipliers(ready, j, q + f),)
+            )
+            lam[:] = found
+            loads[at] += friction
         out.wrench[at] = wrenches(packed, compact, q[at], lam)
         rate = np.einsum("trc,tc->tr", jac, v[at, 3:]) - nu[at]
         bend = np.einsum("trc,tc->tr", jac, a[at, 3:]) - gamma
@@ -86,40 +91,3 @@ def _multipliers(ready: Prepared, jac: np.ndarray, loads: np.ndarray) -> np.ndar
     if ready.mobility.redundant_rows:
         return np.array([np.linalg.lstsq(one.T, load[3:], rcond=1e-9)[0] for one, load in zip(jac, loads, strict=True)])
     return np.linalg.solve(jac.transpose(0, 2, 1), loads[:, 3:, None])[..., 0]
-
-
-def _with_friction(
-    ready: Prepared,
-    rubbing: Loads,
-    times: np.ndarray,
-    motion: tuple[np.ndarray, np.ndarray],
-    compact: np.ndarray,
-    jac: np.ndarray,
-    loads: np.ndarray,
-) -> np.ndarray:
-    """(T, m) multipliers where the friction of joints belongs to them; it is added to ``loads`` (T, 3 nb).
-
-    The iteration is that of joint_friction.py. Raises SimulationError where joints jam.
-    """
-    packed, (q, v) = ready.packed, motion
-    x = np.zeros((len(q), len(rubbing.rub)))
-    last, weight = np.zeros_like(x), np.ones(len(x))
-    for passes in range(MOST_PASSES):
-        friction = friction_under(packed, rubbing, q, v, x)
-        lam = _multipliers(ready, jac, loads + friction)
-        found = normals_along(packed, rubbing, q, compact, lam)
-        gap = found - x
-        open_ = ~(np.abs(gap).max(axis=1) <= SETTLED * found.max(axis=1))
-        if not open_.any():
-            loads += friction
-            return lam
-        bend = gap - last
-        square = (bend**2).sum(axis=1)
-        step = -weight * (last * bend).sum(axis=1) / np.where(square > 0, square, 1.0)
-        weight = np.where((square > 0) & (passes > 0), np.clip(step, -10.0, 10.0), 1.0)
-        last = gap
-        x = np.where(open_[:, None], np.maximum(x + weight[:, None] * gap, 0.0), x)
-    raise SimulationError(
-        f"{packed.name}: friction and reactions of the joints do not agree at t = {times[np.argmax(open_)]:.6g} s; "
-        "joints jam. Lower the friction, or guide sliders over a longer length."
-    )

@@ -24,7 +24,6 @@ from mbsd.jit import internal, kernel
 from mbsd.markers import move, place
 
 if TYPE_CHECKING:
-    from mbsd.loads import Loads
     from mbsd.packing import Packed
 
 PIN, GUIDE = 0, 1
@@ -197,28 +196,3 @@ def tabulate_friction(system, loads, q, v, normal, ws, out, power):
         place(system, q[k], ws)
         move(system, v[k], ws)
         power[k] += rub(system, loads, v[k], ws, normal[k], 1.0, out[k])
-
-
-def friction_along(
-    packed: Packed, loads: Loads, q: np.ndarray, v: np.ndarray, compact: np.ndarray, lam: np.ndarray
-) -> np.ndarray:
-    """(T, 3 nb) friction of joints along a motion q, v (T, 3 nb) with multipliers lam (T, m); zero for ground."""
-    normal = normals_along(packed, loads, q, compact, lam)
-    return friction_under(packed, loads, q, v, normal)
-
-
-def normals_along(packed: Packed, loads: Loads, q: np.ndarray, compact: np.ndarray, lam: np.ndarray) -> np.ndarray:
-    """(T, f) normal forces of the joints with friction (N)."""
-    out = np.zeros((len(q), len(loads.rub)))
-    if len(loads.rub):
-        tabulate_normals(packed.system, loads, q, np.ascontiguousarray(compact), lam, packed.ws, out)
-    return out
-
-
-def friction_under(packed: Packed, loads: Loads, q: np.ndarray, v: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """(T, 3 nb) friction of joints under normal forces (T, f); zero for ground."""
-    out = np.zeros_like(q)
-    if len(loads.rub):
-        tabulate_friction(packed.system, loads, q, v, normal, packed.ws, out, np.zeros(len(q)))
-        out[:, :3] = 0.0
-    return out

@@ -13,7 +13,8 @@ import mbsd.forces
 from mbsd import Mechanism, ModelError, curve, harmonic
 from mbsd.assembly import tabulate
 from mbsd.forces.kind import FORCE_KINDS, POTENTIAL_TERMS, PUSH, ForceKind
-from mbsd.joint_friction import normals_along, tabulate_friction
+from mbsd.friction_along import normals_along
+from mbsd.joint_friction import tabulate_friction
 from mbsd.loads import compiled_laws, loads_along, pack_loads, tabulate_loads
 from mbsd.packing import Packed, pack
 from mbsd.potential import potential_of

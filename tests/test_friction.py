@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelError, SimulationError, constant_rate, polynomial, table
-from mbsd.joint_friction import normals_along, tabulate_friction
+from mbsd.friction_along import normals_along
+from mbsd.joint_friction import tabulate_friction
 from mbsd.loads import pack_loads
 from mbsd.packing import pack
 from tests.test_forces import motion
@@ -209,6 +210,22 @@ def test_the_efforts_of_a_sweep_give_its_motion_back() -> None:
     m.start_moving(crank=15.0)
     run = m.simulate(0.1, steps=10, tolerance=1e-9)
     np.testing.assert_allclose(run.body("crank").theta, swept.body("crank").theta[::20], atol=1e-5)
+
+
+def test_another_actuator_carries_the_friction_too() -> None:
+    """The crank's torque or a push on the slider make one motion; the push has other reactions and other friction."""
+    m = _slider_crank()
+    m.drive_angle("motor", m.bodies["crank"], constant_rate(20.0, math.radians(30)))
+    m.force("pull", m.bodies["slider"].origin, 0.0)
+    motion = m.sweep(0.05, steps=41)  # away from the dead points, where no push gets through
+    same = m.inverse_dynamics(motion, ["motor"])
+    np.testing.assert_allclose(same.efforts["motor"], motion.driver("motor").torque, atol=1e-8)
+    other = m.inverse_dynamics(motion, ["pull"])
+    reaction = other.solution.joint("rail")
+    pressed = np.maximum(abs(reaction.fy), 2 * abs(reaction.torque) / 0.08) + 2.0
+    slider, pin = motion.body("slider"), other.solution.joint("B")
+    rub = 0.2 * pressed * np.tanh(slider.vx / 1e-3)
+    np.testing.assert_allclose(1.5 * slider.ax, other.efforts["pull"] + pin.fx - rub, atol=1e-7)
 
 
 def test_normal_forces_are_those_of_the_reactions() -> None:

@@ -15,10 +15,10 @@ from mbsd.assembly import tabulate
 from mbsd.dynamics.large import MANY_COORDINATES
 from mbsd.dynamics.prepare import PreparedDynamics, prepare_dynamics
 from mbsd.errors import InitialConditionWarning, ModelError
+from mbsd.friction_along import friction_along
 from mbsd.integrators.kind import INTEGRATORS, Integrator
 from mbsd.integrators.state import ACCEPTED, Output, State
 from mbsd.inverse_dynamics import JACOBIAN_NUMBERS
-from mbsd.joint_friction import friction_along
 from mbsd.limits import refuse_passed
 from mbsd.loads import loads_along
 from mbsd.model import Mechanism

@@ -19,6 +19,7 @@ from mbsd.errors import (
     SimulationError,
     SingularPoseError,
 )
+from mbsd.event import angle_reaches, distance_reaches, speed_reaches
 from mbsd.model import STANDARD_GRAVITY, Body, Joint, Marker, Mechanism
 from mbsd.motions import Motion, constant_rate, cycloidal, function, harmonic, polynomial, recorded, table
 
@@ -43,12 +44,15 @@ __all__ = [
     "Motion",
     "SimulationError",
     "SingularPoseError",
+    "angle_reaches",
     "constant_rate",
     "curve",
     "cycloidal",
+    "distance_reaches",
     "function",
     "harmonic",
     "polynomial",
     "recorded",
+    "speed_reaches",
     "table",
 ]

@@ -1,4 +1,6 @@
-"""Limits and stops: how far a joint may go. A motion that passes one is refused with the time and the number.
+"""Limits and stops: how far a joint may go. A driven motion that passes one is refused with the time and the number.
+
+In a simulation they are stops without rebound; ``m.stop`` makes stops with one.
 
     revolute               angle of marker j against marker i (rad), whole turns counted
     prismatic, pin_in_slot place of marker j along the x axis of marker i (m)

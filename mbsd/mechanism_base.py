@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from mbsd.body import Body, Marker, finite_number, number_pair
 from mbsd.errors import ModelError
+from mbsd.event import Event
 from mbsd.force import Force
 from mbsd.joint import Joint
 
@@ -40,6 +41,8 @@ class MechanismBase:
     joints: dict[str, Joint] = field(default_factory=dict)
     drivers: dict[str, Joint] = field(default_factory=dict)
     forces: dict[str, Force] = field(default_factory=dict)
+    contacts: dict[str, Joint] = field(default_factory=dict)
+    events: dict[str, Event] = field(default_factory=dict)
     traces: dict[str, Marker] = field(default_factory=dict)
     starts: dict[str, Start] = field(default_factory=dict)
     velocities: dict[str, StartVelocity] = field(default_factory=dict)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.adding_contacts import AddingContacts
 from mbsd.adding_forces import Amount
 from mbsd.adding_interactions import AddingInteractions
 from mbsd.adding_machine_joints import AddingMachineJoints
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
 __all__ = ["STANDARD_GRAVITY", "Body", "Force", "Joint", "Marker", "Mechanism", "Start"]
 
 
-class Mechanism(AddingMachineJoints, AddingInteractions):
+class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
     """Bodies, joints, drivers and traced points, by name. ``gravity`` in m/s^2; None turns it off."""
 
     def trace(self, name: str, marker: Marker) -> Marker:
@@ -143,6 +144,7 @@ class Mechanism(AddingMachineJoints, AddingInteractions):
         tolerance: float = 1e-7,
         step: float | None = None,
         progress: Callable[[float], None] | None = None,
+        event_rows: bool = False,
         **options: float,
     ) -> Solution:
         """Forward dynamics from ``start_near`` and ``start_moving``: M a + J^T lam = Q, J a = gamma.
@@ -150,8 +152,9 @@ class Mechanism(AddingMachineJoints, AddingInteractions):
         ``steps`` equal output steps over ``duration`` seconds, both ends included; ``times`` (s), rising, replaces
         both. ``method`` names an integrator (mbsd/integrators). Methods with an error estimate keep to ``tolerance``
         (relative to the mechanism's size, to 1 rad, and to speeds); those with a fixed step take ``step`` (s), by
-        default the time between outputs. ``progress`` is called with the part done (0 .. 1). ``options`` are numbers of
-        the method itself, such as ``rho`` of "generalized_alpha".
+        default the time between outputs. ``progress`` is called with the part done (0 .. 1).
+        ``event_rows`` adds two rows at every event, right before and after it (contacts, stops: docs/events.md).
+        ``options`` are numbers of the method itself, such as ``rho`` of "generalized_alpha".
 
         Raises AssemblyError where the links do not close, SimulationError where the integration cannot go on.
         """
@@ -159,7 +162,7 @@ class Mechanism(AddingMachineJoints, AddingInteractions):
         from mbsd.dynamics.simulate import simulate
 
         tell(self, stacklevel=2)
-        return simulate(self, duration, steps, times, method, tolerance, step, progress, options)
+        return simulate(self, duration, steps, times, method, tolerance, step, progress, options, event_rows)
 
     def equilibrium(self, time: float = 0.0, nearest: bool = False) -> Equilibrium:
         """Static equilibrium: pose, reactions, efforts of the drivers, stiffness and stability.

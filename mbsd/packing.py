@@ -5,6 +5,7 @@ Authors place a body's frame where it is convenient; here alone it is shifted to
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,7 +31,7 @@ class Packed:
     system: System
     ws: Workspace
     joints: list[Joint]
-    """Joints, then drivers."""
+    """Joints, then drivers, then contacts if they were packed."""
     first_row: np.ndarray
     """(joints + 1,) of each joint in J."""
     markers: np.ndarray
@@ -40,6 +41,8 @@ class Packed:
     """(forces, 2) marker numbers i, j."""
     motions: list[Motion]
     """Of the drivers, in order; motion k of the tables is ``motions[k - 1]``."""
+    contacts: int
+    """How many of the joints are contacts."""
     specials: Specials
     """Constraints of relative pose by name, and the user's functions among them."""
     size: float
@@ -53,7 +56,12 @@ class Packed:
     @property
     def driver_rows(self) -> int:
         """The first row that belongs to a driver."""
-        return int(self.first_row[len(self.joints) - len(self.motions)])
+        return int(self.first_row[len(self.joints) - self.contacts - len(self.motions)])
+
+    @property
+    def contact_rows(self) -> int:
+        """The first row that belongs to a contact: all before hold always."""
+        return int(self.first_row[len(self.joints) - self.contacts])
 
     def joint_of_row(self, row: int) -> Joint:
         """The joint that owns a row of J."""
@@ -95,12 +103,12 @@ class Packed:
         return out[..., 3:]
 
 
-def pack(m: Mechanism) -> Packed:
-    """Build the arrays of a mechanism."""
+def pack(m: Mechanism, contacts: Sequence[Joint] = ()) -> Packed:
+    """Build the arrays of a mechanism, with rows for ``contacts`` after all others."""
     bodies = list(m.bodies.values())
     number = {body.name: k for k, body in enumerate(bodies)}
     com = np.array([body.com for body in bodies], float)
-    joints = [*m.joints.values(), *m.drivers.values()]
+    joints = [*m.joints.values(), *m.drivers.values(), *contacts]
     motions: list[Motion] = []
     tables: dict[str, list[tuple[int, int, int, int]]] = {name: [] for name in ROWS if name not in SPECIALS}
     specials = Specials(m.name)
@@ -171,6 +179,7 @@ def pack(m: Mechanism) -> Packed:
         forces=forces,
         force_markers=force_markers,
         motions=motions,
+        contacts=len(contacts),
         specials=specials,
         size=size,
     )

@@ -12,13 +12,16 @@ from __future__ import annotations
 
 import html
 import math
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.contact_view import ContactView, contact_view
 from mbsd.errors import ModelError
+from mbsd.event import Happening
 from mbsd.potential import potential_of
 
 if TYPE_CHECKING:
@@ -152,6 +155,34 @@ class Solution:
 
     changes: tuple[str, ...] = ()
     """What was changed of the given start of a simulation to make it consistent."""
+    events: tuple[Happening, ...] = ()
+    """What contacts, stops and events did during a simulation."""
+    between: Callable[[np.ndarray], Solution] | None = field(default=None, repr=False)
+    """Of a simulation: the motion at other times; see :meth:`at`."""
+
+    def at(self, times: float | Sequence[float] | np.ndarray) -> Solution:
+        """A simulation at any rising times (s) it covers, as exact as at its outputs: integrated from the last one.
+
+        At the time of an event it is the motion after it. Raises ModelError for a sweep and for times outside.
+        """
+        wanted = np.atleast_1d(np.asarray(times, float))
+        if self.between is None:
+            raise ModelError(f"{self.mechanism.name}: only a simulation goes on to other times; sweep(times=...)")
+        if wanted.ndim != 1 or not len(wanted) or not (np.diff(wanted) > 0).all():
+            raise ModelError(f"{self.mechanism.name}: times must be rising numbers, got {times!r}")
+        if not (self.t[0] <= wanted[0] and wanted[-1] <= self.t[-1]):
+            raise ModelError(
+                f"{self.mechanism.name}: the simulation covers {self.t[0]:g} .. {self.t[-1]:g} s, "
+                f"not {wanted[0]:g} .. {wanted[-1]:g} s; simulate longer"
+            )
+        return self.between(wanted)
+
+    def contact(self, name: str) -> ContactView:
+        """Gap and forces of a contact, stop or rope of a simulation."""
+        first = len(self.packed.joints) - self.packed.contacts
+        names = [joint.name for joint in self.packed.joints[first:]]
+        row = int(self.packed.first_row[first + self._index(name, names, "contact of a simulation")])
+        return contact_view(self.packed, row, self.q, self.v, self.lam)
 
     def body(self, name: str) -> FrameView:
         """Motion of a body's frame."""

@@ -19,6 +19,7 @@ import math
 
 from mbsd.assembly import evaluate_gamma, evaluate_position
 from mbsd.dynamics.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
+from mbsd.dynamics.sliding import slide
 from mbsd.jit import inlined, kernel
 from mbsd.joint_friction import CHANGE, FAILED, MOST_PASSES, begin_rubbing, rub, settle
 from mbsd.laws import evaluate_laws
@@ -94,6 +95,8 @@ def accelerate(dyn, scratch, t, state, a, lam):
                     a[c] = math.nan
                 break
             power += rub(system, dyn.loads, v, ws, dyn.loads.normal[CHANGE], 0.0, force)
+    if dyn.sliding.rows.shape[0] > 0:
+        power += slide(dyn, scratch, v, a, lam)
     for k in range(system.driven.shape[0]):
         power -= lam[system.driven[k, 0]] * drive[system.driven[k, 1], 1]
     return power

@@ -11,6 +11,7 @@ import numpy as np
 
 from mbsd.dynamics.full_matrix import FullMatrices, full_matrices
 from mbsd.dynamics.schur import SchurFactors, schur_factors
+from mbsd.dynamics.sliding import Sliding
 
 
 class Dynamics(NamedTuple):
@@ -24,6 +25,8 @@ class Dynamics(NamedTuple):
     """mbsd.loads.Loads"""
     schur: Any
     """mbsd.dynamics.schur.Schur"""
+    sliding: Sliding
+    """Contacts with friction."""
     inertia: Any
     """(3 nb,) diagonal of M: kg, kg, kg m^2."""
     inverse: Any

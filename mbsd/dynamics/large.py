@@ -22,6 +22,7 @@ from mbsd.dynamics.arrays import Dynamics, scratch_for
 from mbsd.dynamics.initial import Initial, given_coordinates, given_velocities, nearest_turn, tell_coordinates
 from mbsd.dynamics.projection import project
 from mbsd.dynamics.schur import factor_schur, plan_schur
+from mbsd.dynamics.sliding import sliding_for
 from mbsd.errors import AssemblyError
 from mbsd.jit import kernel
 from mbsd.laws import pack_laws
@@ -98,7 +99,18 @@ def _projector(packed: Packed, time: float, inverse: np.ndarray) -> Dynamics:
     size = np.concatenate([np.ones(3), packed.column_scale()])
     nothing = np.zeros_like(inverse)
     return Dynamics(
-        packed.system, laws, pack_loads(packed), schur, nothing, inverse, inverse, nothing, 1, np.zeros(2), 1.0 / size
+        system=packed.system,
+        laws=laws,
+        loads=pack_loads(packed),
+        schur=schur,
+        sliding=sliding_for(np.zeros((0, 2)), len(inverse), len(packed.ws.phi)),
+        inertia=nothing,
+        inverse=inverse,
+        metric=inverse,
+        weight=nothing,
+        passes=1,
+        baumgarte=np.zeros(2),
+        per_size=1.0 / size,
     )
 
 

@@ -11,11 +11,13 @@ from mbsd.dynamics.acceleration import derivative
 from mbsd.dynamics.arrays import Dynamics, Scratch, scratch_for
 from mbsd.dynamics.initial import Initial, consistent
 from mbsd.dynamics.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
+from mbsd.dynamics.run import Run
 from mbsd.dynamics.schur import plan_schur
-from mbsd.errors import MobilityError, ModelError, SimulationError
+from mbsd.dynamics.sliding import sliding_for
+from mbsd.dynamics.switches import Switches, all_contacts, with_contacts
+from mbsd.errors import MobilityError, ModelError
 from mbsd.integrators import state as run_state
 from mbsd.integrators.kind import Integrator
-from mbsd.joint_friction import FAILED
 from mbsd.loads import compiled_laws, pack_loads
 from mbsd.mobility import Mobility, independent_rows, joint_mobility, scaled_jacobian
 from mbsd.model import Mechanism
@@ -30,8 +32,6 @@ BALANCED = 1e-8
 """Part of the largest load that may stay unbalanced at the start; more means a massless body that nothing holds."""
 SLIGHT = 1e-6
 """Accelerations below this (sizes per s^2) are no load."""
-STEPS_AT_ONCE = 2000
-"""Between two looks at the clock and the keyboard."""
 OUTPUTS_LONGEST = 25
 """A step covers this part of the duration at most, so that short loads are not stepped over."""
 
@@ -46,6 +46,8 @@ class PreparedDynamics:
     start: float
     end: float
     mobility: Mobility
+    switches: Switches
+    """Contacts and joints whose rows are let go and taken up."""
 
     def run(
         self,
@@ -56,23 +58,17 @@ class PreparedDynamics:
         progress: Callable[[float], None] | None = None,
         options: Mapping[str, float] | None = None,
     ) -> tuple[run_state.State, run_state.Output]:
-        """Integrate to the last of ``times`` (s), which begin with the start. Raises SimulationError."""
-        packed = self.packed
-        rows = len(packed.ws.phi)
+        """Integrate to the last of ``times`` (s), which begin with the start; no events. Raises SimulationError."""
+        state, out = self.begun(times)
+        run = Run(self, method, tolerance, step, float(times[-1] - times[0]), options or {})
+        run.to_end(state, out, progress)
+        return state, out
+
+    def begun(self, times: np.ndarray) -> tuple[run_state.State, run_state.Output]:
+        """A run at its consistent start, and room for its outputs."""
+        rows = len(self.packed.ws.phi)
         state = run_state.start_state(np.stack([self.initial.q, self.initial.v]), rows, float(times[0]))
-        out = run_state.output_for(times, len(self.initial.q), rows)
-        scratch = self.scratch(method)
-        settings = self.settings(method, tolerance, step, float(times[-1] - times[0]), options or {})
-        end = float(times[-1])
-        while True:
-            status = method.advance(self.dynamics, scratch, state, out, settings, end, STEPS_AT_ONCE)
-            packed.specials.check()
-            if progress is not None:
-                progress((state.clock[run_state.TIME] - times[0]) / (end - times[0]))
-            if status == run_state.REACHED:
-                return state, out
-            if status != run_state.PAUSED:
-                raise self._cannot_go_on(status, method, state, tolerance)
+        return state, run_state.output_for(times, len(self.initial.q), rows)
 
     def scratch(self, method: Integrator) -> Scratch:
         """Scratch for one run. Raises ModelError where the method cannot simulate this mechanism."""
@@ -89,36 +85,12 @@ class PreparedDynamics:
         numbers = method.numbers(self.packed.name, options)
         return run_state.Settings(np.stack([one, one]), tolerance, duration / OUTPUTS_LONGEST, step, numbers)
 
-    def _cannot_go_on(
-        self, status: int, method: Integrator, state: run_state.State, tolerance: float
-    ) -> SimulationError:
-        time, speeds = state.clock[run_state.TIME], np.abs(state.y[1].reshape(-1, 3)[1:])
-        fastest = self.packed.body_names[1 + int(np.argmax((speeds / [self.packed.size, self.packed.size, 1]).max(1)))]
-        where = f"{self.packed.name}: {method.name} stops at t = {time:.6g} s, where '{fastest}' is fastest"
-        if status == run_state.NO_CONVERGENCE:
-            return SimulationError(
-                f"{where}: the equations of a step have no solution near the last one. Take a smaller step, "
-                "or look for a force or law that jumps."
-            )
-        if self.dynamics.loads.rubbing[FAILED]:
-            return SimulationError(
-                f"{where}: friction and reactions of the joints do not agree there; joints jam. Lower the friction, "
-                "guide sliders over a longer length, or raise slip_speed."
-            )
-        if method.fixed_step:
-            return SimulationError(
-                f"{where}: numbers are no longer finite after a step of {state.clock[run_state.STEP] or 0:.3g} s. "
-                "Take a smaller step, or method='dop853'; a stiff damper asks for an implicit method."
-            )
-        return SimulationError(
-            f"{where}: steps below {state.clock[run_state.STEP]:.1e} s do not meet the tolerance {tolerance:g}. "
-            "The pose is singular here, or a force jumps or grows without bound; change the lengths, smooth the force, "
-            "or loosen the tolerance."
-        )
 
+def prepare_dynamics(m: Mechanism, start: float, end: float, contacts: bool = False) -> PreparedDynamics:
+    """Check the model and find consistent initial conditions for a simulation from ``start`` to ``end`` (s).
 
-def prepare_dynamics(m: Mechanism, start: float, end: float) -> PreparedDynamics:
-    """Check the model and find consistent initial conditions for a simulation from ``start`` to ``end`` (s)."""
+    Without ``contacts``, contacts and limits are left out.
+    """
     if len(m.bodies) < 2:
         raise ModelError(f"{m.name}: there is no body beside ground; add one with m.bar(...) or m.body(...)")
     packed = pack(m)
@@ -129,12 +101,18 @@ def prepare_dynamics(m: Mechanism, start: float, end: float) -> PreparedDynamics
     initial = (consistent_large if large else consistent)(m, packed, start, _inverse(metric))
     kept, mobility = independent_large(packed, start, initial.q) if large else _rows(packed, initial.q)
     _refuse_superfluous_drivers(packed, mobility)
-    schur, _ = plan_schur(packed.system.row_body, blocks_of(packed, set(kept)))
+    touching = all_contacts(m, packed, initial.q) if contacts else []
+    if touching:
+        packed = with_contacts(m, packed, touching)
+    always = packed.contact_rows
+    schur, _ = plan_schur(packed.system.row_body, blocks_of(packed, {*kept, *range(always, len(packed.ws.phi))}))
+    switches = Switches(packed, schur)
     dynamics = Dynamics(
         system=packed.system,
         laws=compiled_laws(packed, start, end),
         loads=pack_loads(packed),
         schur=schur,
+        sliding=sliding_for(switches.friction_rows, len(inertia), len(packed.ws.phi)),
         inertia=inertia,
         inverse=_inverse(lifted),
         metric=_inverse(metric),
@@ -143,7 +121,7 @@ def prepare_dynamics(m: Mechanism, start: float, end: float) -> PreparedDynamics
         baumgarte=np.zeros(2),
         per_size=1.0 / np.concatenate([np.ones(3), packed.column_scale()]),
     )
-    ready = PreparedDynamics(packed, dynamics, initial, start, end, mobility)
+    ready = PreparedDynamics(packed, dynamics, initial, start, end, mobility, switches)
     _refuse_unheld(ready)
     return ready
 

@@ -14,10 +14,11 @@ import mbsd.integrators
 from mbsd.assembly import tabulate
 from mbsd.dynamics.large import MANY_COORDINATES
 from mbsd.dynamics.prepare import PreparedDynamics, prepare_dynamics
+from mbsd.dynamics.run import Run
+from mbsd.dynamics.trail import Trail, follow, resumed
 from mbsd.errors import InitialConditionWarning, ModelError
 from mbsd.friction_along import friction_along
 from mbsd.integrators.kind import INTEGRATORS, Integrator
-from mbsd.integrators.state import ACCEPTED, Output, State
 from mbsd.inverse_dynamics import JACOBIAN_NUMBERS
 from mbsd.limits import refuse_passed
 from mbsd.loads import loads_along
@@ -36,6 +37,7 @@ def simulate(
     step: float | None,
     progress: Callable[[float], None] | None,
     options: Mapping[str, float],
+    event_rows: bool = False,
 ) -> Solution:
     """See :meth:`mbsd.model.Mechanism.simulate`."""
     integrator = integrator_named(m.name, method)
@@ -44,16 +46,22 @@ def simulate(
     for what, value in (("tolerance", tolerance), ("step", step)):
         if value is not None and not (math.isfinite(value) and value > 0):
             raise ModelError(f"{m.name}: {what} is {value}; it must be positive")
-    ready = prepare_dynamics(m, float(grid[0]), float(grid[-1]))
+    ready = prepare_dynamics(m, float(grid[0]), float(grid[-1]), contacts=True)
     if ready.initial.velocities:
         warnings.warn(
             f"{m.name}: the start was made consistent: " + "; ".join(ready.initial.velocities),
             InitialConditionWarning,
             stacklevel=3,
         )
-    state, out = ready.run(integrator, grid, tolerance, step or float(np.diff(grid).max()), progress, options)
-    refuse_passed(ready.packed, out.t, np.ascontiguousarray(out.y[:, 0]))
-    return solution(m, ready, state, out)
+    run = Run(ready, integrator, tolerance, step or float(np.diff(grid).max()), float(grid[-1] - grid[0]), options)
+    events = list(m.events.values())
+    trail = follow(ready, run, grid, events, event_rows, progress)
+
+    def between(times: np.ndarray) -> Solution:
+        return solution(m, ready, resumed(ready, run, trail, times, events))
+
+    refuse_passed(ready.packed, trail.out.t, np.ascontiguousarray(trail.out.y[:, 0]))
+    return solution(m, ready, trail, between)
 
 
 def integrator_named(model: str, method: str) -> Integrator:
@@ -84,9 +92,11 @@ def output_times(
     return np.linspace(0.0, duration, int(steps) + 1)
 
 
-def solution(m: Mechanism, ready: PreparedDynamics, state: State, out: Output) -> Solution:
-    """The results by name, with reactions and residuals."""
-    packed = ready.packed
+def solution(
+    m: Mechanism, ready: PreparedDynamics, trail: Trail, between: Callable[[np.ndarray], Solution] | None = None
+) -> Solution:
+    """The results by name, with reactions and residuals; ``between`` gives those at other times."""
+    packed, out = ready.packed, trail.out
     count, rows = len(out.t), len(packed.ws.phi)
     drives = packed.drives(out.t)
     q, v = np.ascontiguousarray(out.y[:, 0]), np.ascontiguousarray(out.y[:, 1])
@@ -97,18 +107,19 @@ def solution(m: Mechanism, ready: PreparedDynamics, state: State, out: Output) -
         phi, gamma = np.zeros((2, at.stop - start, rows))
         compact = np.zeros((at.stop - start, rows, 6))
         tabulate(packed.system, drives[at], q[at], v[at], packed.ws, phi, compact, gamma)
-        lam[at] = _least_norm(ready, compact, out.lam[at])
+        held = trail.held[at]
+        lam[at] = _least_norm(ready, compact, out.lam[at], held)
         wrench[at] = wrenches(packed, compact, q[at], lam[at])
         nu = np.zeros_like(phi)
-        nu[:, packed.driver_rows :] = drives[at, 1:, 1]
+        nu[:, packed.driver_rows : packed.contact_rows] = drives[at, 1:, 1]
         loads = loads_along(packed, ready.dynamics.loads, ready.dynamics.laws, out.t[at], q[at], v[at])
         loads += friction_along(packed, ready.dynamics.loads, q[at], v[at], compact, out.lam[at])
         loads += ready.dynamics.weight - ready.dynamics.inertia * out.a[at] - generalised(packed, compact, lam[at])
         loads[:, :3] = 0.0
         errors = (
-            phi,
-            times_compact(packed, compact, v[at]) - nu,
-            times_compact(packed, compact, out.a[at]) - gamma,
+            phi * held,
+            (times_compact(packed, compact, v[at]) - nu) * held,
+            (times_compact(packed, compact, out.a[at]) - gamma) * held,
             (loads * v[at]).sum(axis=1),
         )
         residuals = np.maximum(residuals, [np.abs(error).max(initial=0.0) for error in errors])
@@ -124,21 +135,24 @@ def solution(m: Mechanism, ready: PreparedDynamics, state: State, out: Output) -
         lam=lam,
         drives=drives,
         singularity_margin=np.sqrt(np.clip(out.margin, 0.0, None)),
-        stats=Stats(*(float(r) for r in residuals), steps=int(state.count[ACCEPTED]), inserted_steps=0),
+        stats=Stats(*(float(r) for r in residuals), steps=trail.steps, inserted_steps=0),
         mobility=ready.mobility,
         work=out.work,
         changes=ready.initial.poses + ready.initial.velocities,
+        events=tuple(trail.happenings),
+        between=between,
     )
 
 
-def _least_norm(ready: PreparedDynamics, compact: np.ndarray, lam: np.ndarray) -> np.ndarray:
+def _least_norm(ready: PreparedDynamics, compact: np.ndarray, lam: np.ndarray, held: np.ndarray) -> np.ndarray:
     """Where joints are redundant the loads share in many ways; the multipliers of least norm are taken.
 
     In large mechanisms one set of joints carries all instead: the others' multipliers are zero.
     """
     if not ready.mobility.redundant_rows or ready.packed.coordinates > MANY_COORDINATES:
         return lam
-    packed = ready.packed
-    return np.array(
-        [np.linalg.lstsq(j.T, j.T @ one, rcond=1e-9)[0] for j, one in zip(packed.spread(compact), lam, strict=True)]
-    )
+    packed, out = ready.packed, lam.copy()
+    joints = slice(0, packed.contact_rows)
+    for k, j in enumerate(packed.spread(compact * held[..., None])[:, joints]):
+        out[k, joints] = np.linalg.lstsq(j.T, j.T @ lam[k, joints], rcond=1e-9)[0]
+    return out

@@ -65,6 +65,13 @@ class Integrator:
         return np.array([float(given.get(name, option.default)) for name, option in self.options.items()])
 
 
+def without_sliding(dynamics: Dynamics) -> str | None:
+    """The refusal of methods that do not step along the derivative, which alone knows friction of rigid contacts."""
+    if not len(dynamics.sliding.rows):
+        return None
+    return "this method does not know the friction of rigid contacts; take 'dop853', or contacts without friction"
+
+
 INTEGRATORS: dict[str, Integrator] = {}
 
 

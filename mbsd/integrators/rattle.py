@@ -19,7 +19,7 @@ from mbsd.assembly import evaluate_nu, residual_and_jacobian
 from mbsd.dynamics.acceleration import derivative
 from mbsd.dynamics.projection import LIFT
 from mbsd.dynamics.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
-from mbsd.integrators.kind import Integrator, register
+from mbsd.integrators.kind import Integrator, register, without_sliding
 from mbsd.integrators.state import (
     ACCEPTED,
     EVALUATIONS,
@@ -254,4 +254,4 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
     return march(dyn, scratch, state, out, settings, end, max_steps, 1)
 
 
-RATTLE = register(Integrator("rattle", advance, STAGES, order=2, fixed_step=True))
+RATTLE = register(Integrator("rattle", advance, STAGES, order=2, fixed_step=True, refusal=without_sliding))

@@ -9,7 +9,7 @@ Source: Suzuki 1990, Phys. Lett. A 146; Hairer, Lubich, Wanner, Geometric Numeri
 
 from __future__ import annotations
 
-from mbsd.integrators.kind import Integrator, register
+from mbsd.integrators.kind import Integrator, register, without_sliding
 from mbsd.integrators.rattle import STAGES, march
 from mbsd.jit import kernel
 
@@ -20,4 +20,4 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
     return march(dyn, scratch, state, out, settings, end, max_steps, 5)
 
 
-SYMPLECTIC = register(Integrator("symplectic", advance, STAGES, order=4, fixed_step=True))
+SYMPLECTIC = register(Integrator("symplectic", advance, STAGES, order=4, fixed_step=True, refusal=without_sliding))

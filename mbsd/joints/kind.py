@@ -36,6 +36,9 @@ SPECIALS: dict[str, Special] = {
     "support": Special("support", "m"),
     "geneva": Special("geneva", "rad"),
     "user": Special("user", "m"),
+    "linear": Special("linear", "m"),
+    "turn": Special("linear", "rad"),
+    "radial": Special("radial", "m"),
 }
 ROWS = {"point": 2, "angle": 1, "slot": 1, "along": 1, "distance": 1} | dict.fromkeys(SPECIALS, 1)
 """Rows that each constraint takes in J."""

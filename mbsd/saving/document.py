@@ -3,7 +3,7 @@
     {"schema": "mbsd.model", "schema_version": 1, "name": ..., "gravity": [gx, gy],
      "bodies": {"crank": {"mass", "com", "inertia", "length"}},
      "joints": {"A": {"kind", "i": {"body", "x", "y", "angle"}, "j": ..., "params"}},
-     "drivers": the same with "law", "forces": the same with "laws", "traces": {"P": marker},
+     "contacts": the same, "drivers": the same with "law", "forces": the same with "laws", "traces": {"P": marker},
      "starts": {"crank": {"angle", "place"}}, "velocities": {"crank": {"omega", "place"}}}
 
 Kinds and laws are those of the registries: a joint or force is rebuilt by the method of its kind's name, from its
@@ -19,6 +19,7 @@ from dataclasses import asdict, fields
 from typing import Any
 
 from mbsd.body import Body, Marker
+from mbsd.contacts.kind import CONTACT_KINDS
 from mbsd.errors import ModelError
 from mbsd.force import Force
 from mbsd.forces.kind import FORCE_KINDS
@@ -52,6 +53,8 @@ def build(written: Mapping[str, Any], where: str = "model") -> Mechanism:
             _read_joint(m, part, name, entry)
     for name, entry in top.entries("forces"):
         _read_force(m, name, entry)
+    for name, entry in top.entries("contacts"):
+        _read_contact(m, name, entry)
     for name, entry in top.entries("traces"):
         entry.within(lambda name=name, entry=entry: m.trace(name, _read_marker(m, entry)))
     for name, entry in top.entries("starts"):
@@ -73,6 +76,7 @@ def _write(m: Mechanism) -> dict[str, Any]:
         "joints": {name: _joint(m, joint) for name, joint in m.joints.items()},
         "drivers": {name: _joint(m, driver) for name, driver in m.drivers.items()},
         "forces": {name: _force(m, force) for name, force in m.forces.items()},
+        "contacts": {name: _joint(m, contact, "contact") for name, contact in m.contacts.items()},
         "traces": {name: plain(marker, name) for name, marker in m.traces.items()},
         "starts": {name: _state(start) for name, start in m.starts.items()},
         "velocities": {name: _state(velocity) for name, velocity in m.velocities.items()},
@@ -87,8 +91,8 @@ def _body(body: Body) -> dict[str, Any]:
     return {"mass": body.mass, "com": list(body.com), "inertia": body.inertia, "length": body.length}
 
 
-def _joint(m: Mechanism, joint: Joint) -> dict[str, Any]:
-    what = f"{m.name}: {'driver' if joint.kind.driven else 'joint'} '{joint.name}'"
+def _joint(m: Mechanism, joint: Joint, part: str = "joint") -> dict[str, Any]:
+    what = f"{m.name}: {'driver' if joint.kind.driven else part} '{joint.name}'"
     out = {"kind": joint.kind.name, "i": plain(joint.i, what), "j": plain(joint.j, what)}
     out["params"] = {key: plain(value, f"{what}: {key}") for key, value in joint.params.items()}
     if joint.motion is not None:
@@ -158,6 +162,12 @@ def _read_force(m: Mechanism, name: str, entry: Entry) -> None:
     entry.refuse_others("kind", "i", "j", "params", "laws")
     laws = {key: law_from(law.data, law.where) for key, law in entry.entries("laws")}
     _add(m, getattr(m, kind.name), name, entry, _params(m, entry) | laws)
+
+
+def _read_contact(m: Mechanism, name: str, entry: Entry) -> None:
+    kind = _kind(entry, "contact", CONTACT_KINDS)
+    entry.refuse_others("kind", "i", "j", "params")
+    _add(m, getattr(m, kind.name), name, entry, _params(m, entry))
 
 
 def _kind[K](entry: Entry, what: str, kinds: Mapping[str, K]) -> K:

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from mbsd.contacts.kind import CONTACT_KINDS
 from mbsd.forces.kind import FORCE_KINDS
 from mbsd.joints.kind import KINDS
 from mbsd.model import Mechanism
@@ -55,6 +56,7 @@ def schema() -> dict[str, Any]:
         "joints": _table("joint"),
         "drivers": _table("driver"),
         "forces": _table("force"),
+        "contacts": _table("contact"),
         "traces": _table("marker"),
         "starts": _table("start"),
         "velocities": _table("velocity"),
@@ -63,11 +65,12 @@ def schema() -> dict[str, Any]:
     definitions["joint"] = {"oneOf": [_kind(name) for name, kind in KINDS.items() if kind.saved and not kind.driven]}
     definitions["driver"] = {"oneOf": [_kind(name) for name, kind in KINDS.items() if kind.driven]}
     definitions["force"] = {"oneOf": [_force(name) for name, kind in FORCE_KINDS.items() if kind.saved]}
+    definitions["contact"] = {"oneOf": [_contact(name) for name in CONTACT_KINDS]}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Model",
         "description": "A mechanism: SI units, radians, counter-clockwise. Body 'ground' is always there.",
-        **_object(top),
+        **_object(top, {"events": ({"type": "object", "maxProperties": 0}, False)}),
         "$defs": definitions,
     }
 
@@ -84,6 +87,12 @@ def _kind(name: str) -> dict[str, Any]:
     if KINDS[name].driven:
         fixed["law"] = {"$ref": "#/$defs/law"}
     return _object(fixed)
+
+
+def _contact(name: str) -> dict[str, Any]:
+    reference = {"$ref": "#/$defs/marker"}
+    params = _object({}, _parameters(getattr(Mechanism, name)))
+    return _object({"kind": {"const": name}, "i": reference, "j": reference, "params": params})
 
 
 def _force(name: str) -> dict[str, Any]:

@@ -1,0 +1,168 @@
+"""Rows of J that are let go and taken up during a run: those of contacts, and of joints that an action lets go.
+
+The elimination sequence is planned with all of them; a row that is let go is -1 in its block.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.contacts.stops import ANGLE_STOP, COORDINATE_STOP
+from mbsd.dynamics.schur import Schur
+from mbsd.joint import Joint
+from mbsd.limits import coordinate, limits_of
+from mbsd.model import Mechanism
+from mbsd.packing import Packed, pack
+from mbsd.specials import AT, ROW
+
+OPEN, SLIDES, STICKS = "open", "slides", "sticks"
+"""States of a contact; one without friction slides."""
+
+
+@dataclass
+class Touch:
+    """A contact of a run."""
+
+    contact: Joint
+    gap: int
+    """Row."""
+    way: int | None
+    """Row of the sliding way, if there is friction."""
+    sliding: int
+    """Its place among the contacts with friction; -1 without."""
+    always_closed: bool
+    settle: float
+    """A rebound slower than this (m/s or rad/s) is none."""
+    state: str = OPEN
+
+    @property
+    def name(self) -> str:
+        """Of the contact."""
+        return self.contact.name
+
+    @property
+    def friction(self) -> float:
+        """Coulomb's coefficient."""
+        return self.contact.params.get("friction", 0.0)
+
+    @property
+    def static_friction(self) -> float:
+        """The same for what sticks."""
+        return self.contact.params.get("static_friction", 0.0)
+
+    @property
+    def restitution(self) -> float:
+        """Speed after over speed before."""
+        return self.contact.params.get("restitution", 0.0)
+
+
+SETTLE = 1e-4
+"""Rebounds below this part of sqrt(size g), the speed gained in falling by half the size, end the bouncing."""
+
+
+class Switches:
+    """What holds now. Made before anything is let go; then all contacts are open."""
+
+    def __init__(self, packed: Packed, schur: Schur) -> None:
+        self.packed = packed
+        self.schur = schur
+        self.place = {int(row): (k, s) for k, rows in enumerate(schur.rows) for s, row in enumerate(rows) if row >= 0}
+        self.released: set[int] = set()
+        """Rows of joints that an action let go."""
+        self.touches: list[Touch] = []
+        special = packed.system.special
+        self._number_of = {int(special[k, ROW]): int(special[k, AT]) for k in range(len(special))}
+        first = len(packed.joints) - packed.contacts
+        slow = SETTLE * float(np.sqrt(np.hypot(*packed.system.gravity) / packed.size or 1.0))
+        friction = 0
+        for k, contact in enumerate(packed.joints[first:], first):
+            row = int(packed.first_row[k])
+            slippery = contact.params.get("friction", 0.0) == 0.0
+            self.touches.append(
+                Touch(
+                    contact,
+                    row,
+                    None if slippery else row + 1,
+                    -1 if slippery else friction,
+                    getattr(contact.kind, "always_closed", False),
+                    slow / packed.row_scale()[row],
+                )
+            )
+            friction += not slippery
+        for row in range(packed.contact_rows, len(packed.ws.phi)):
+            self.let_go(row)
+
+    @property
+    def friction_rows(self) -> np.ndarray:
+        """(c, 2) rows of gap and way of the contacts with friction."""
+        rows = [(touch.gap, touch.way) for touch in self.touches if touch.way is not None]
+        return np.array(rows, np.int64).reshape(-1, 2)
+
+    def let_go(self, row: int) -> None:
+        """Row ``row`` of J holds no more."""
+        k, s = self.place[row]
+        self.schur.rows[k, s] = -1
+
+    def take_up(self, row: int) -> None:
+        """Row ``row`` of J holds."""
+        k, s = self.place[row]
+        self.schur.rows[k, s] = row
+
+    def release(self, joint: int) -> None:
+        """Let joint number ``joint`` of the packed mechanism go for good."""
+        for row in range(int(self.packed.first_row[joint]), int(self.packed.first_row[joint + 1])):
+            self.released.add(row)
+            if row in self.place:
+                self.let_go(row)
+
+    def move_zero(self, row: int, residual: float) -> None:
+        """Count the way of a contact's row from here, where its residual is ``residual``."""
+        from mbsd.constraints.equation import PHASE
+
+        self.packed.system.numbers[self._number_of[row] + PHASE] += residual
+
+    def held(self) -> np.ndarray:
+        """(m,) which rows hold; joints' redundant rows do too."""
+        rows = self.schur.rows[self.schur.rows >= 0]
+        out = np.arange(len(self.packed.ws.phi)) < self.packed.contact_rows
+        out[sorted(self.released)] = False
+        out[rows] = True
+        return out
+
+    def bilateral(self) -> np.ndarray:
+        """Independent rows of joints and drivers that hold."""
+        rows = self.schur.rows[self.schur.rows >= 0]
+        return np.sort(rows[rows < self.packed.contact_rows])
+
+
+def all_contacts(m: Mechanism, packed: Packed, q: np.ndarray) -> list[Joint]:
+    """The contacts of a mechanism, and stops without rebound at the limits of its joints; q (3 nb,) at the start.
+
+    Angles are counted from the whole turn that is nearest to the limits at the start.
+    """
+    out = list(m.contacts.values())
+    for limit in limits_of(packed):
+        joint = m.joints[limit.name]
+        turns = 0.0
+        if limit.angular:
+            i, j = packed.system.marker_body[[limit.marker_i, limit.marker_j]]
+            turns = q[3 * j + 2] - q[3 * i + 2] + limit.offset - coordinate(packed, limit, q[None])[0]
+        kind = ANGLE_STOP if limit.angular else COORDINATE_STOP
+        for end, at in (("lower", limit.lower), ("upper", limit.upper)):
+            if np.isfinite(at):
+                params = {"at": at + turns, "upper": end == "upper"}
+                out.append(Joint(kind, f"{joint.name} {end}", joint.i, joint.j, params))
+    return out
+
+
+def with_contacts(m: Mechanism, packed: Packed, contacts: list[Joint]) -> Packed:
+    """The same mechanism with rows for contacts after all others, and the phases that its start decided."""
+    out = pack(m, contacts)
+    out.motions = packed.motions
+    count, numbers = len(packed.system.special), len(packed.system.numbers)
+    out.system.special[:count] = packed.system.special
+    out.system.numbers[:numbers] = packed.system.numbers
+    out.specials.callbacks += packed.specials.callbacks  # some of these numbers are their addresses
+    return out

@@ -1,0 +1,126 @@
+"""What is watched along a step: scalars that are not negative now, and mean an event where they fall through zero.
+
+open contact       its gap                      open clutch        its rate
+closed contact     its normal force N           sticking contact   mu N - |T|
+sliding contact    its speed, sign kept         event of the user  its value, sign kept
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.assembly import tabulate
+from mbsd.dynamics.acceleration import derivative
+from mbsd.dynamics.arrays import Dynamics, Scratch
+from mbsd.dynamics.moment import Moment
+from mbsd.dynamics.switches import OPEN, SLIDES, STICKS, Touch
+from mbsd.errors import ModelError
+from mbsd.event import Event
+from mbsd.packing import Packed
+from mbsd.reactions import times_compact
+
+CLOSES, LOCKS, OPENS, SLIPS, HALTS, USER = "closes", "locks", "opens", "slips", "halts", "event"
+
+
+class Samples:
+    """Times (S,) with coordinates and velocities (S, 3 nb), and all that watches read there, computed when asked."""
+
+    def __init__(
+        self, packed: Packed, dynamics: Dynamics, scratch: Scratch, t: np.ndarray, q: np.ndarray, v: np.ndarray
+    ) -> None:
+        self.packed, self.dynamics, self.scratch = packed, dynamics, scratch
+        self.t, self.q, self.v = t, np.ascontiguousarray(q), np.ascontiguousarray(v)
+        self._rows: tuple[np.ndarray, np.ndarray] | None = None
+        self._lam: np.ndarray | None = None
+
+    def residuals(self) -> np.ndarray:
+        """(S, m)"""
+        return self._tabulated()[0]
+
+    def rates(self) -> np.ndarray:
+        """(S, m) J v"""
+        return self._tabulated()[1]
+
+    def multipliers(self) -> np.ndarray:
+        """(S, m)"""
+        if self._lam is None:
+            self._lam = np.zeros((len(self.t), len(self.packed.ws.phi)))
+            out = np.zeros((2, self.q.shape[1]))
+            for k, t in enumerate(self.t):
+                derivative(self.dynamics, self.scratch, t, np.stack([self.q[k], self.v[k]]), out, self._lam[k])
+        return self._lam
+
+    def _tabulated(self) -> tuple[np.ndarray, np.ndarray]:
+        if self._rows is None:
+            rows = len(self.packed.ws.phi)
+            phi, gamma = np.zeros((2, len(self.t), rows))
+            compact = np.zeros((len(self.t), rows, 6))
+            drives = self.packed.drives(self.t)
+            tabulate(self.packed.system, drives, self.q, self.v, self.packed.ws, phi, compact, gamma)
+            self._rows = phi, times_compact(self.packed, compact, self.v)
+        return self._rows
+
+
+@dataclass
+class Watch:
+    """One scalar."""
+
+    name: str
+    what: str
+    value: Callable[[Samples], np.ndarray]
+    """(S,)"""
+    still: float
+    """Values above minus this are rounding."""
+    touch: Touch | None = None
+    event: Event | None = None
+    stops: bool = True
+    """False for an event of the user that passes zero the other way: it is only noted."""
+
+
+def touch_watches(touch: Touch, sign: float, near: np.ndarray, still: np.ndarray, load: float) -> list[Watch]:
+    """Of a contact in its present state; ``sign`` of its sliding. ``near``, ``still`` (m,): rounding."""
+    gap, way, name = touch.gap, touch.way or 0, touch.name
+    if touch.state == OPEN:
+        if touch.always_closed:
+            return [Watch(name, LOCKS, lambda s: s.rates()[:, gap], still[gap], touch)]
+        return [Watch(name, CLOSES, lambda s: s.residuals()[:, gap], near[gap], touch)]
+    out = [Watch(name, OPENS, lambda s: -s.multipliers()[:, gap], 1e-10 * load, touch)]
+    if touch.way is None:
+        return out
+    mu = touch.static_friction
+    if touch.state == STICKS:
+
+        def reserve(s: Samples) -> np.ndarray:
+            return -mu * s.multipliers()[:, gap] - np.abs(s.multipliers()[:, way])
+
+        out.append(Watch(name, SLIPS, reserve, 1e-10 * load, touch))
+    elif touch.state == SLIDES:
+        out.append(Watch(name, HALTS, lambda s: sign * s.rates()[:, way], still[way], touch))
+    return out
+
+
+def event_watch(packed: Packed, event: Event, side: float) -> Watch:
+    """Of an event of the user whose value now has the sign ``side``."""
+
+    def value(s: Samples) -> np.ndarray:
+        return np.array(
+            [
+                side * checked(packed, event, Moment(packed, float(t), q, v))
+                for t, q, v in zip(s.t, s.q, s.v, strict=True)
+            ]
+        )
+
+    return Watch(event.name, USER, value, 0.0, event=event, stops=event.direction in (0, -int(side)))
+
+
+def checked(packed: Packed, event: Event, moment: Moment) -> float:
+    """The value of an event; raises ModelError where it is no finite number."""
+    value = event.value(moment.t, moment)
+    if isinstance(value, bool) or not isinstance(value, int | float | np.floating) or not np.isfinite(value):
+        raise ModelError(
+            f"{packed.name}: event '{event.name}' is {value!r} at t = {moment.t:.6g} s; it must be a finite number"
+        )
+    return float(value)

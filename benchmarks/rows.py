@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 
+from shared.errors import UserError
 from shared.files import write_bytes
 from shared.paths import out_root
 
@@ -20,12 +21,41 @@ class Row:
     settings: str
     seconds: float
     error: float
+    errors: dict[str, float] = field(default_factory=dict)
+    """All errors by name, where the problem has limits for them."""
+    within_limits: bool = True
 
 
-def write(rows: Sequence[Row]) -> None:
-    """out/bench.json, whole."""
-    text = json.dumps([asdict(row) for row in rows], indent=1) + "\n"
-    write_bytes(out_root() / "bench.json", text.encode())
+@dataclass(frozen=True)
+class Bar:
+    """What a problem asks for: at least ``wanted`` (at most, if ``most``), and what was reached against which peer."""
+
+    problem: str
+    wanted: float
+    reached: float
+    peer: str
+    settings: str
+    met: bool
+    most: bool = False
+
+    def __str__(self) -> str:
+        return f"{self.problem}: {self.reached:.2f}x {self.peer}, wanted {'at most ' * self.most}{self.wanted:g}x"
+
+
+def write(rows: Sequence[Row], bars: Sequence[Bar]) -> None:
+    """out/bench.json and out/bars.json, whole."""
+    for name, found in (("bench.json", rows), ("bars.json", bars)):
+        text = json.dumps([asdict(one) for one in found], indent=1) + "\n"
+        write_bytes(out_root() / name, text.encode())
+
+
+def read() -> tuple[list[Row], list[Bar]]:
+    """Of the last run."""
+    try:
+        found = [json.loads((out_root() / name).read_text()) for name in ("bench.json", "bars.json")]
+    except FileNotFoundError:
+        raise UserError("bench: there is no run to make a table of; make bench") from None
+    return [Row(**row) for row in found[0]], [Bar(**bar) for bar in found[1]]
 
 
 def show(rows: Sequence[Row], steps: int) -> None:
@@ -47,4 +77,5 @@ def show_all(rows: Sequence[Row]) -> None:
         print(f"\n{problem}")
         for row in own:
             numbers = f"{1000 * row.seconds:>11.3f} ms{row.seconds / base:>9.2f}x{row.error:>10.1e}"
-            print(f"  {row.code:<18}{row.version:<10}{numbers}  {row.settings}")
+            beyond = "" if row.within_limits else "beyond the limits; "
+            print(f"  {row.code:<18}{row.version:<10}{numbers}  {beyond}{row.settings}")

@@ -1,10 +1,10 @@
-"""The table of docs/benchmarks.md, written between its two markers from the rows of the last run."""
+"""The tables of docs/benchmarks.md, written between its two markers from the rows of the last run."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from benchmarks.rows import Row
+from benchmarks.rows import Bar, Row
 from shared.files import write_bytes
 from shared.paths import ROOT
 
@@ -12,24 +12,34 @@ PAGE = ROOT / "docs" / "benchmarks.md"
 BEGIN, END = "<!-- rows of make bench -->", "<!-- end of rows -->"
 
 
-def write(rows: Sequence[Row]) -> None:
-    """Replace the table in the page."""
+def write(rows: Sequence[Row], bars: Sequence[Bar]) -> None:
+    """Replace the tables in the page."""
     page = PAGE.read_text()
     before, _, rest = page.partition(BEGIN)
     _, _, after = rest.partition(END)
-    write_bytes(PAGE, f"{before}{BEGIN}\n{text(rows)}\n{END}{after}".encode())
+    write_bytes(PAGE, f"{before}{BEGIN}\n{text(rows, bars)}\n{END}{after}".encode())
 
 
-def text(rows: Sequence[Row]) -> str:
-    """The rows as a table; films are left to their own section."""
-    lines = ["| problem | code | version | time | times mbsd | error | settings |", "|---|---|---|---|---|---|---|"]
+def text(rows: Sequence[Row], bars: Sequence[Bar]) -> str:
+    """What was asked for, then all rows; films are left to their own section."""
+    lines = ["| problem | asked for | reached | against | its settings | met |", "|---|---|---|---|---|---|"]
+    for bar in bars:
+        wanted = f"at most {bar.wanted:g}" if bar.most else f"{bar.wanted:g}x"
+        times = "" if bar.most else "x"
+        met = "yes" if bar.met else "**no**"
+        lines.append(f"| {bar.problem} | {wanted} | {bar.reached:.3g}{times} | {bar.peer} | {bar.settings} | {met} |")
+    lines += [
+        "",
+        "| problem | code | version | time | times mbsd | errors | settings |",
+        "|---|---|---|---|---|---|---|",
+    ]
     own = {row.problem: row.seconds for row in rows if row.code == "mbsd"}
     for row in rows:
         if row.problem.startswith("film"):
             continue
         ratio = f"{row.seconds / own[row.problem]:.3g}" if row.problem in own else ""
+        errors = ", ".join(f"{name} {value:.1e}" for name, value in row.errors.items()) or f"{row.error:.1e}"
+        errors += "" if row.within_limits else "; **beyond the limits**"
         time = f"{row.seconds * 1000:.3g} ms"
-        lines.append(
-            f"| {row.problem} | {row.code} | {row.version} | {time} | {ratio} | {row.error:.1e} | {row.settings} |"
-        )
+        lines.append(f"| {row.problem} | {row.code} | {row.version} | {time} | {ratio} | {errors} | {row.settings} |")
     return "\n".join(lines)

@@ -1,121 +1,202 @@
-"""Exudyn: rigid bodies in the plane, generalised-alpha or the index-2 trapezoidal rule, fixed steps."""
+"""Exudyn: rigid bodies with pin constraints and implicit integrators; for the pendulum also its two shorter ways.
+
+The pendulum as a point mass on a distance constraint, which is Exudyn's own example of A01, or as a kinematic tree of
+one hinge, which has no constraint and so allows the explicit integrators.
+"""
 
 from __future__ import annotations
 
-import itertools
+import contextlib
 import sys
-import time
+from collections.abc import Callable, Iterator
+from importlib import metadata
+from typing import Any
 
 import numpy as np
 
+from benchmarks.dynamics.cases import Case
+from benchmarks.dynamics.pins import GROUND, Record
+from benchmarks.dynamics.stepping import steps_of
+
 sys.exudynFast = True  # type: ignore[attr-defined]  # the build without range checks
-import exudyn  # noqa: E402
-from exudyn import itemInterface as items  # noqa: E402
+import exudyn as exu  # noqa: E402
+from exudyn import utilities as u  # noqa: E402
 
-from benchmarks.dynamics.problems import Plain, Problem  # noqa: E402
+exu.config.printToConsole = False
 
-VERSION = exudyn.__version__
-
-
-def _candidates(steps: tuple[float, ...], ways: tuple[str, ...] = ("trapezoidal", "alpha")) -> list[dict]:
-    return [
-        {"method": way, "step": step, "radius": 0.95, "modified_newton": modified}
-        for step, way, modified in itertools.product(steps, ways, (True, False))
-    ]
+VERSION = metadata.version("exudyn")
+SAMPLES = 1000
 
 
-CANDIDATES = {
-    "A01": _candidates((5e-3, 2e-3, 1e-3, 8e-4, 5e-4)),
-    "A02 N=1": _candidates((0.02, 0.01, 0.005, 0.002, 0.001), ("alpha",)),
-    "A02 N=10": _candidates((0.01, 0.005, 0.002, 0.001, 0.0005), ("alpha",)),
-    "A02 N=40": _candidates((0.005, 0.002, 0.001, 0.0005), ("alpha",)),
-    "A03": _candidates((5e-5, 2e-5, 1e-5, 5e-6, 2e-6)),
-}
+def ladders(case: Case) -> Iterator[list[dict[str, Any]]]:
+    """Settings to try, each ladder from cheap to exact."""
+    if case.name.startswith("A01"):
+        for solver, first in (("RK67", 20), ("RK44", 100), ("VelocityVerlet", 500)):
+            yield [{"model": "tree", "solver": solver, "steps": n} for n in steps_of(first, 20000)]
+        for solver in ("GeneralizedAlpha", "TrapezoidalIndex2"):
+            yield [
+                {"model": "distance", "solver": solver, "steps": n, "rho": 1.0 if solver[0] == "T" else 0.95}
+                for n in steps_of(2000, 40000)
+            ]
+        return
+    swings = case.name.startswith("A02")
+    linear = "EXUdense" if len(case.model.solids) < 8 else "EigenSparse"
+    for newton in ("each step", "full"):
+        for solver, index2, rho in (
+            ("GeneralizedAlpha", False, 0.95), ("GeneralizedAlpha", False, 0.8), ("GeneralizedAlpha", False, 0.6),
+            ("GeneralizedAlpha", True, 0.95), ("TrapezoidalIndex2", True, 1.0),
+        ):  # fmt: skip
+            for tolerance in (1e-8, 1e-5) if swings else (1e-8, 1e-10):
+                yield [
+                    {"model": "pins", "solver": solver, "index2": index2, "rho": rho, "newton": newton,
+                     "linear": linear, "tolerance": tolerance, "steps": n}
+                    for n in (steps_of(1000, 30_000) if swings else steps_of(1000, 20_000))
+                ]  # fmt: skip
 
 
-def _build(plain: Plain, sensors: bool):
-    container = exudyn.SystemContainer()
-    system = container.AddSystem()
-    ground = system.AddObject(items.ObjectGround())
-    bodies, results = [], []
-    for mass, inertia, q, v in zip(plain.mass, plain.inertia, plain.q, plain.v, strict=True):
-        if len(plain.mass) == 1:  # the point mass on a rod, as in Exudyn's own example
-            node = system.AddNode(items.NodePoint2D(referenceCoordinates=list(q[:2]), initialVelocities=list(v[:2])))
-            body = system.AddObject(items.MassPoint2D(physicsMass=mass, nodeNumber=node))
-            at = system.AddMarker(items.MarkerNodePosition(nodeNumber=node))
-            system.AddLoad(items.Force(markerNumber=at, loadVector=[0, -plain.gravity * mass, 0]))
-        else:
-            node = system.AddNode(items.NodeRigidBody2D(referenceCoordinates=list(q), initialVelocities=list(v)))
-            body = system.AddObject(items.ObjectRigidBody2D(nodeNumber=node, physicsMass=mass, physicsInertia=inertia))
-            if plain.gravity:
-                at = system.AddMarker(items.MarkerBodyMass(bodyNumber=body))
-                system.AddLoad(items.LoadMassProportional(markerNumber=at, loadVector=[0, -plain.gravity, 0]))
-        bodies.append(body)
-        if sensors:
-            for variable in (exudyn.OutputVariableType.Coordinates, exudyn.OutputVariableType.Coordinates_t):
-                results.append(
-                    system.AddSensor(items.SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=variable))
-                )
+def prepare(case: Case, settings: dict[str, Any]) -> tuple[Callable[[], Callable[[], Any]], Callable[[], Record]]:
+    """``fresh`` gives a run that starts anew, whose making is not timed; ``record`` what it computes."""
+    kind = getattr(exu.DynamicSolverType, settings["solver"])
+    build = {"pins": _pins, "distance": _distance, "tree": _tree}[settings["model"]]
 
-    def marker(body: int, x: float, y: float):
-        number = ground if body < 0 else bodies[body]
-        return system.AddMarker(items.MarkerBodyPosition(bodyNumber=number, localPosition=[x, y, 0]))
+    def fresh(period: float = 1e9) -> Callable[[], Any]:
+        system = build(case, False)[0]
+        chosen = _settings(case, settings, period)
+        return lambda: system.SolveDynamic(chosen, solverType=kind)
 
-    for i, xi, yi, j, xj, yj in plain.pins:
-        if len(bodies) == 1:
-            mass = system.AddMarker(items.MarkerBodyPosition(bodyNumber=bodies[0]))
-            system.AddObject(
-                items.DistanceConstraint(markerNumbers=[marker(-1, 0.0, 0.0), mass], distance=float(np.hypot(xj, yj)))
-            )
-        else:
-            system.AddObject(items.RevoluteJoint2D(markerNumbers=[marker(i, xi, yi), marker(j, xj, yj)]))
-    if plain.torque:
-        at = system.AddMarker(items.MarkerBodyRigid(bodyNumber=bodies[plain.torque[0]]))
-        system.AddLoad(items.Torque(markerNumber=at, loadVector=[0, 0, plain.torque[1]]))
-    if plain.spring:
-        i, xi, yi, j, xj, yj, stiffness, length = plain.spring
-        system.AddObject(
-            items.ObjectConnectorSpringDamper(
-                markerNumbers=[marker(i, xi, yi), marker(j, xj, yj)], stiffness=stiffness, referenceLength=length
+    def record() -> Record:
+        system, read = build(case, True)
+        chosen = _settings(case, settings, case.duration / min(SAMPLES, settings["steps"]))
+        with contextlib.suppress(exu.SolverError):  # where it gives up, the record ends before the time does
+            system.SolveDynamic(chosen, solverType=kind)
+        return read()
+
+    return fresh, record
+
+
+def _settings(case: Case, settings: dict[str, Any], period: float) -> Any:
+    s = exu.SimulationSettings()
+    s.solution.file.write = False
+    s.solution.sensors.writePeriod = period
+    s.parallel.numberOfThreads = 1
+    s.timeIntegration.numberOfSteps = settings["steps"]
+    s.timeIntegration.endTime = case.duration
+    s.timeIntegration.adaptiveStep = False
+    s.timeIntegration.automaticStepSize = False
+    s.timeIntegration.verboseMode = 0
+    s.timeIntegration.generalizedAlpha.spectralRadius = settings.get("rho", 0.9)
+    s.timeIntegration.generalizedAlpha.useIndex2Constraints = settings.get("index2", False)
+    newton = settings.get("newton", "each step")
+    s.timeIntegration.newton.useModifiedNewton = newton != "full"
+    s.timeIntegration.newton.modifiedNewtonJacUpdatePerStep = newton == "each step"
+    tolerance = settings.get("tolerance", 1e-8)
+    s.timeIntegration.newton.relativeTolerance = tolerance
+    s.timeIntegration.newton.absoluteTolerance = tolerance * 1e-2
+    s.linearSolver.solverType = getattr(exu.LinearSolverType, settings.get("linear", "EXUdense"))
+    s.linearSolver.reuseAnalyzedPattern = True
+    return s
+
+
+Built = tuple[Any, Callable[[], Record]]
+
+
+def _pins(case: Case, recorded: bool) -> Built:
+    system = exu.SystemContainer().AddSystem()
+    model = case.model
+    nodes, bodies = [], []
+    for solid in model.solids:
+        nodes.append(
+            system.AddNode(
+                u.NodeRigidBody2D(referenceCoordinates=list(solid.pose), initialVelocities=list(solid.velocity))
             )
         )
+        bodies.append(system.AddObject(u.RigidBody2D(nodeNumber=nodes[-1], mass=solid.mass, inertia=solid.inertia)))
+        if model.gravity:
+            mass = system.AddMarker(u.MarkerBodyMass(bodyNumber=bodies[-1]))
+            system.AddLoad(u.LoadMassProportional(markerNumber=mass, loadVector=[0, -model.gravity, 0]))
+    ground = system.AddObject(u.ObjectGround())
+
+    def marker(body: int, point: tuple[float, float]) -> Any:
+        number = ground if body == GROUND else bodies[body]
+        return system.AddMarker(u.MarkerBodyPosition(bodyNumber=number, localPosition=[*point, 0]))
+
+    for p in model.pins:
+        system.AddObject(u.RevoluteJoint2D(markerNumbers=[marker(p.i, p.a), marker(p.j, p.b)]))
+    for body, torque in model.torques:
+        turned = system.AddMarker(u.MarkerBodyRigid(bodyNumber=bodies[body]))
+        system.AddLoad(u.Torque(markerNumber=turned, loadVector=[0, 0, torque]))
+    for s in model.springs:
+        ends = [marker(s.i, s.a), marker(s.j, s.b)]
+        system.AddObject(u.SpringDamper(markerNumbers=ends, stiffness=s.stiffness, referenceLength=s.length))
+    places, speeds = (_sensors(system, nodes, kind) if recorded else [] for kind in ("Coordinates", "Coordinates_t"))
     system.Assemble()
-    return container, system, results
+
+    def read() -> Record:
+        """The sensors give the change against the pose at the start."""
+        change, velocities = (
+            np.stack([np.array(system.GetSensorStoredData(k)) for k in of], axis=1) for of in (places, speeds)
+        )
+        return Record(change[:, 0, 0], change[:, :, 1:4] + model.start[0], velocities[:, :, 1:4])
+
+    return system, read
 
 
-def run(problem: Problem, settings: dict, samples: int) -> tuple[float, np.ndarray, np.ndarray, np.ndarray]:
-    """See the package."""
-    plain, record = problem.plain, samples > 2
-    _container, system, results = _build(plain, True)
-    s = exudyn.SimulationSettings()
-    s.timeIntegration.numberOfSteps = round(problem.duration / settings["step"])
-    s.timeIntegration.endTime = problem.duration
-    s.solution.file.write = False
-    s.solution.sensors.writePeriod = problem.duration / (samples - 1) if record else problem.duration
-    s.timeIntegration.verboseMode = 0
-    s.timeIntegration.newton.useModifiedNewton = settings["modified_newton"]
-    s.timeIntegration.newton.modifiedNewtonJacUpdatePerStep = True
-    if problem.name == "A03":
-        s.timeIntegration.newton.relativeTolerance, s.timeIntegration.newton.absoluteTolerance = 1e-9, 1e-11
-    s.timeIntegration.generalizedAlpha.spectralRadius = settings["radius"]
-    s.timeIntegration.generalizedAlpha.computeInitialAccelerations = True
-    s.linearSolver.reuseAnalyzedPattern = True
-    if len(plain.mass) > 8:
-        s.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
-    kinds = exudyn.DynamicSolverType
-    kind = kinds.TrapezoidalIndex2 if settings["method"] == "trapezoidal" else kinds.GeneralizedAlpha
-    started = time.perf_counter()
-    done = system.SolveDynamic(s, solverType=kind)
-    seconds = time.perf_counter() - started
-    data = np.stack([np.array(system.GetSensorStoredData(number)) for number in results])
-    if not done or data[0, -1, 0] < problem.duration * (1 - 1e-6):
-        raise ArithmeticError(f"stopped at t = {data[0, -1, 0]:g} s")
-    count = len(plain.mass)
-    q, v = np.zeros((2, data.shape[1], count, 3))
-    width = data.shape[2] - 1
-    q[..., :width] = data[0::2, :, 1:].transpose(1, 0, 2)
-    v[..., :width] = data[1::2, :, 1:].transpose(1, 0, 2)
-    q += plain.q if np.abs(q[0] - plain.q).max() > 1e-6 else 0.0  # sensors give displacements
-    if width == 2:
-        q[..., 2] = 0.0
-    return seconds, data[0, :, 0], q, v
+def _sensors(system: Any, nodes: list[Any], kind: str) -> list[Any]:
+    output = getattr(exu.OutputVariableType, kind)
+    return [system.AddSensor(u.SensorNode(nodeNumber=n, storeInternal=True, outputVariableType=output)) for n in nodes]
+
+
+def _distance(case: Case, recorded: bool) -> Built:
+    system = exu.SystemContainer().AddSystem()
+    (solid,) = case.model.solids
+    node = system.AddNode(u.NodePoint2D(referenceCoordinates=list(solid.pose[:2])))
+    system.AddObject(u.MassPoint2D(mass=solid.mass, nodeNumber=node))
+    place = system.AddMarker(u.MarkerNodePosition(nodeNumber=node))
+    pivot = system.AddMarker(u.MarkerBodyPosition(bodyNumber=system.AddObject(u.ObjectGround())))
+    length = -case.model.pins[0].b[0]
+    system.AddObject(u.DistanceConstraint(markerNumbers=[pivot, place], distance=length))
+    system.AddLoad(u.Force(markerNumber=place, loadVector=[0, -solid.mass * case.model.gravity, 0]))
+    kinds = ("Coordinates", "Coordinates_t") if recorded else ()
+    sensors = [_sensors(system, [node], kind)[0] for kind in kinds]
+    system.Assemble()
+
+    def read() -> Record:
+        change, velocity = (np.array(system.GetSensorStoredData(k)) for k in sensors)
+        poses, velocities = np.zeros((2, len(change), 1, 3))
+        poses[:, 0, :2] = change[:, 1:3] + solid.pose[:2]
+        velocities[:, 0, :2] = velocity[:, 1:3]
+        return Record(change[:, 0], poses, velocities)
+
+    return system, read
+
+
+def _tree(case: Case, recorded: bool) -> Built:
+    system = exu.SystemContainer().AddSystem()
+    (solid,) = case.model.solids
+    length = -case.model.pins[0].b[0]
+    node = system.AddNode(
+        u.NodeGenericODE2(
+            referenceCoordinates=[0.0], initialCoordinates=[solid.pose[2]], initialCoordinates_t=[0.0],
+            numberOfODE2Coordinates=1,
+        )
+    )  # fmt: skip
+    system.AddObject(
+        u.ObjectKinematicTree(
+            nodeNumber=node, jointTypes=[exu.JointType.RevoluteZ], linkParents=[-1],
+            jointTransformations=exu.Matrix3DList([np.eye(3)]), jointOffsets=exu.Vector3DList([[0, 0, 0]]),
+            linkInertiasCOM=exu.Matrix3DList([np.zeros((3, 3))]), linkCOMs=exu.Vector3DList([[length, 0, 0]]),
+            linkMasses=[solid.mass], gravity=[0, -case.model.gravity, 0],
+        )
+    )  # fmt: skip
+    kinds = ("Coordinates", "Coordinates_t") if recorded else ()
+    sensors = [_sensors(system, [node], kind)[0] for kind in kinds]
+    system.Assemble()
+
+    def read() -> Record:
+        angle, speed = (np.array(system.GetSensorStoredData(k)) for k in sensors)
+        theta, omega = angle[:, 1], speed[:, 1]
+        c, s = length * np.cos(theta), length * np.sin(theta)
+        poses, velocities = np.stack([c, s, theta], axis=1), np.stack([-s * omega, c * omega, omega], axis=1)
+        return Record(angle[:, 0], poses[:, None], velocities[:, None])
+
+    return system, read

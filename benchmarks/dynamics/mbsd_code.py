@@ -1,26 +1,66 @@
-"""mbsd: DOP853 with projection, tolerance as found by the search."""
+"""mbsd: the same plain data as a Mechanism, integrated by DOP853 with projection."""
 
 from __future__ import annotations
 
-import time
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 
 import mbsd
-from benchmarks.dynamics.problems import Problem
+from benchmarks.dynamics.cases import Case
+from benchmarks.dynamics.pins import GROUND, Pinned, Record
+from benchmarks.dynamics.stepping import tolerances
+from mbsd.dynamics.prepare import PreparedDynamics, prepare_dynamics
 from mbsd.dynamics.simulate import integrator_named
 
 VERSION = mbsd.__version__
-TOLERANCES = [{"tolerance": tolerance} for tolerance in (1e-4, 3e-5, 1e-5, 5e-6, 3e-6, 1e-6, 3e-7, 1e-7)]
-CANDIDATES = dict.fromkeys(("A01", "A02 N=1", "A02 N=10", "A02 N=40", "A03"), TOLERANCES)
+SAMPLES = 1000
 
 
-def run(problem: Problem, settings: dict, samples: int) -> tuple[float, np.ndarray, np.ndarray, np.ndarray]:
-    """See the package."""
-    ready, method = problem.ready, integrator_named(problem.name, "dop853")
-    grid = np.linspace(0.0, problem.duration, samples)
-    started = time.perf_counter()
-    _, out = ready.run(method, grid, settings["tolerance"], problem.duration)
-    seconds = time.perf_counter() - started
-    states = out.y.reshape(samples, 2, -1, 3)[:, :, 1:]
-    return seconds, out.t, states[:, 0], states[:, 1]
+def ladders(case: Case) -> Iterator[list[dict[str, Any]]]:
+    """Settings to try, each ladder from cheap to exact."""
+    del case
+    yield [{"method": "dop853", "tolerance": tol} for tol in tolerances(1e-2, 1e-9, 4)]
+
+
+def mechanism(model: Pinned, name: str) -> mbsd.Mechanism:
+    """As a user would write it, body frames at the centres of mass."""
+    m = mbsd.Mechanism(name, gravity=(0.0, -model.gravity))
+    bodies = {GROUND: m.ground}
+    for k, solid in enumerate(model.solids):
+        bodies[k] = m.body(f"body{k}", solid.mass, inertia=solid.inertia)
+        x, y, angle = solid.pose
+        m.start_near(**{f"body{k}": (x, y, math.degrees(angle))})
+        if any(solid.velocity):
+            m.start_moving(**{f"body{k}": solid.velocity})
+    for k, pin in enumerate(model.pins):
+        m.revolute(f"pin{k}", bodies[pin.i].at(*pin.a), bodies[pin.j].at(*pin.b))
+    for k, (body, torque) in enumerate(model.torques):
+        m.torque(f"torque{k}", bodies[body], torque)
+    for k, s in enumerate(model.springs):
+        m.spring(f"spring{k}", bodies[s.i].at(*s.a), bodies[s.j].at(*s.b), s.stiffness, free_length=s.length)
+    return m
+
+
+def ready(case: Case) -> PreparedDynamics:
+    """Packed, assembled and factorised, ready to integrate."""
+    return prepare_dynamics(mechanism(case.model, case.name.replace(" ", "_")), 0.0, case.duration)
+
+
+def prepare(case: Case, settings: dict[str, Any]) -> tuple[Callable[[], Callable[[], Any]], Callable[[], Record]]:
+    """``fresh`` gives a run that starts anew, whose making is not timed; ``record`` what it computes."""
+    prepared, method = ready(case), integrator_named(case.name, settings["method"])
+    ends = np.array([0.0, case.duration])
+
+    def fresh() -> Callable[[], Any]:
+        return lambda: prepared.run(method, ends, settings["tolerance"], case.duration)
+
+    def record() -> Record:
+        times = np.linspace(0.0, case.duration, SAMPLES + 1)
+        _, out = prepared.run(method, times, settings["tolerance"], case.duration)
+        states = out.y.reshape(len(times), 2, -1, 3)[:, :, 1:]  # without the ground
+        return Record(out.t, states[:, 0], states[:, 1])
+
+    return fresh, record

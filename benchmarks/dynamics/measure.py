@@ -1,51 +1,60 @@
-"""Rows of the dynamics problems: every code at its stored settings, in rounds, one process a run."""
+"""Rows of the dynamics problems: every code at its stored settings, in turn, one process a run, several rounds."""
 
 from __future__ import annotations
 
-import json
+import subprocess
+import sys
 
-from benchmarks.dynamics import BARS, CODES
-from benchmarks.dynamics.problems import problem
-from benchmarks.dynamics.search import SETTINGS, run_apart
-from benchmarks.rows import Row
+from benchmarks.dynamics import CODES
+from benchmarks.dynamics.cases import BESIDE_PEERS, case
+from benchmarks.dynamics.settings import found_in, load, words
+from benchmarks.rows import Bar, Row
 from shared.console import say
+from shared.errors import UserError
+from shared.paths import ROOT
 
 ROUNDS = 3
 
 
-def measured() -> tuple[list[Row], list[str]]:
-    """Rows of all codes on all problems, the best of the rounds, and the bars missed."""
-    chosen = json.loads(SETTINGS.read_text())
+def measured() -> tuple[list[Row], list[Bar]]:
+    """Rows of all codes on all problems, the best of the rounds, and the bars."""
     rows: list[Row] = []
-    missed: list[str] = []
-    for name in BARS:
+    bars: list[Bar] = []
+    chosen = load()
+    for name in BESIDE_PEERS:
         best: dict[str, Row] = {}
         for _ in range(ROUNDS):
             for code in CODES:
-                settings = chosen.get(code, {}).get(name)
-                if settings is None:
-                    continue
-                found = run_apart(code, name, settings)
-                if "unfit" in found:
-                    say("bench", f"{code} on {name}: {found['unfit']}")
-                    continue
-                task = problem(name)
-                error = found["drift"] if name == "A01" else found["error"]
-                words = ", ".join(f"{key} {value}" for key, value in settings.items())
-                if task.loops:
-                    words += f"; energy within {found['drift']:.1e} J"
-                row = Row(name, code, found["version"], words, found["seconds"], error)
-                best[code] = min(best.get(code, row), row, key=lambda r: r.seconds)
+                if code in chosen.get(name, {}):
+                    row = _once(code, name, words(chosen[name][code]["settings"]))
+                    best[code] = min(best.get(code, row), row, key=lambda r: r.seconds)
         rows += best.values()
-        missed += _missed(name, best)
+        if "mbsd" in best:
+            bars.append(_bar(name, best))
         say("bench", f"{name} done")
-    return rows, missed
+    return rows, bars
 
 
-def _missed(name: str, best: dict[str, Row]) -> list[str]:
-    peers = [row for code, row in best.items() if code != "mbsd"]
-    if "mbsd" not in best or not peers:
-        return [f"{name}: no valid result"]
-    fastest = min(peers, key=lambda row: row.seconds)
-    ratio = fastest.seconds / best["mbsd"].seconds
-    return [] if ratio >= BARS[name] else [f"{name}: {fastest.code} {ratio:.1f}x, wanted {BARS[name]:g}x"]
+def _once(code: str, name: str, settings: str) -> Row:
+    run = subprocess.run(
+        [sys.executable, "-m", "benchmarks.dynamics.once", code, name],
+        cwd=ROOT, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    if run.returncode:
+        raise UserError(f"bench: {code} on {name} failed: {(run.stderr.strip().splitlines() or ['no message'])[-1]}")
+    found = found_in(run.stdout)
+    main = list(case(name).limits)[-1]
+    return Row(
+        name, code, found["version"], settings, found["seconds"], found["errors"][main], found["errors"], found["met"]
+    )
+
+
+def _bar(name: str, best: dict[str, Row]) -> Bar:
+    """Against the quickest peer that keeps the limits."""
+    ours, wanted = best["mbsd"], case(name).bar
+    peers = [row for code, row in best.items() if code != "mbsd" and row.within_limits]
+    if not peers:
+        return Bar(name, wanted, float("inf"), "no peer keeps the limits", "", ours.within_limits)
+    peer = min(peers, key=lambda row: row.seconds)
+    ratio = peer.seconds / ours.seconds
+    return Bar(name, wanted, ratio, peer.code, peer.settings, ours.within_limits and ratio >= wanted)

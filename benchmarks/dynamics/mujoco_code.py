@@ -1,128 +1,153 @@
-"""MuJoCo: trees of hinges; loops are closed by its soft "connect" constraints, as stiff as the step allows."""
+"""MuJoCo: hinges along a tree of bodies, its "connect" equality where a loop closes (a soft constraint by design).
+
+A loop is held by a reference acceleration with time constant ``softness`` steps and critical damping, its impedance at
+the most that MuJoCo allows (0.9999). Below 2 steps MuJoCo must be told not to soften it (refsafe off).
+"""
 
 from __future__ import annotations
 
-import itertools
-import time
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import mujoco
 import numpy as np
 
-from benchmarks.dynamics.problems import Plain, Problem
+from benchmarks.dynamics.cases import Case
+from benchmarks.dynamics.pins import GROUND, Pin, Record
+from benchmarks.dynamics.spanning_tree import spanning_tree
+from benchmarks.dynamics.stepping import steps_of
 
 VERSION = mujoco.__version__
+SAMPLES = 1000
+LEAST_INERTIA = 1e-9
+"""kg m^2: MuJoCo has no body without inertia."""
 
 
-def _candidates(steps: tuple[float, ...], softness: tuple[float, ...]) -> list[dict]:
-    return [
-        {"integrator": way, "step": step, "time_constant": soft * step}
-        for step, way, soft in itertools.product(steps, ("RK4", "implicitfast"), softness)
-    ]
+def ladders(case: Case) -> Iterator[list[dict[str, Any]]]:
+    """Settings to try, each ladder from cheap to exact."""
+    if case.name.startswith("A01"):
+        for integrator, first in (("RK4", 100), ("implicitfast", 1000), ("Euler", 1000)):
+            yield [{"integrator": integrator, "steps": n} for n in steps_of(first, 30_000)]
+        return
+    swings = case.name.startswith("A02")
+    jacobian = "dense" if len(case.model.solids) < 8 else "sparse"
+    for integrator in ("RK4", "implicitfast"):
+        for solver in ("Newton", "CG"):
+            for softness in (2.0, 1.75, 1.5, 1.0, 2.5):
+                for tolerance in (1e-8, 1e-12):
+                    yield [
+                        {"integrator": integrator, "solver": solver, "jacobian": jacobian, "softness": softness,
+                         "tolerance": tolerance, "steps": n}
+                        for n in (steps_of(800, 40_000) if swings else steps_of(200, 20_000))
+                    ]  # fmt: skip
 
 
-_LOOPS = _candidates((0.01, 0.005, 0.002, 0.001, 0.0005), (2.0, 4.0))
-CANDIDATES = {
-    "A01": _candidates((0.04, 0.02, 0.01, 0.005, 0.002), (2.0,)),
-    "A02 N=1": _LOOPS,
-    "A02 N=10": _LOOPS,
-    "A02 N=40": _candidates((0.005, 0.002, 0.001), (2.0,)),
-    "A03": [],
-}
-"""A03's closed loops with masses of grams are beyond the soft constraints at the error asked for: not run."""
+def _xml(case: Case, settings: dict[str, Any]) -> str:
+    parents, loops = spanning_tree(case.model)
+    step = case.duration / settings["steps"]
+    option = f'<option timestep="{step!r}" integrator="{settings["integrator"]}" gravity="0 {-case.model.gravity} 0"'
+    for what in ("solver", "jacobian", "tolerance"):
+        option += f' {what}="{settings[what]}"' if what in settings else ""
+    solref = f"{settings.get('softness', 2.0) * step!r} 1"
 
+    def children(parent: int) -> str:
+        return "".join(element(child, pin) for child, (of, pin) in parents.items() if of == parent)
 
-def _text(plain: Plain, settings: dict) -> tuple[str, list[int]]:
-    """The model as MuJoCo's XML, and the body (or -1) that each body hangs on, by its first pin."""
-    parent: dict[int, tuple] = {}
-    loops = []
-    seen = {-1}
-    open_pins = list(plain.pins)
-    while open_pins:
-        for pin in open_pins:
-            i, xi, yi, j, xj, yj = pin
-            if (i in seen) != (j in seen):
-                child = (i, (j, xj, yj), (xi, yi)) if j in seen else (j, (i, xi, yi), (xj, yj))
-                parent[child[0]] = child[1:]
-                seen.add(child[0])
-                open_pins.remove(pin)
-                break
-        else:
-            loops, open_pins = open_pins, []
-
-    def body(number: int) -> str:
-        (base, bx, by), (x, y) = parent[number]
-        # the body's frame sits in its pin, axes as at the start; the parent's frame likewise
-        if base < 0:
-            px, py = bx, by
-            turn = plain.q[number, 2]
-        else:
-            ox, oy = parent[base][1]
-            px, py = bx - ox, by - oy
-            turn = plain.q[number, 2] - plain.q[base, 2]
-        inside = "".join(body(k) for k, (end, _) in parent.items() if end[0] == number)
-        tiny = max(float(plain.inertia[number]), 1e-6)
+    def element(body: int, pin: Pin) -> str:
+        """A body frame at the start pose, seen from the parent's; the hinge at the pin."""
+        solid, parent = case.model.solids[body], parents[body][0]
+        base = (0.0, 0.0, 0.0) if parent == GROUND else case.model.solids[parent].pose
+        dx, dy, turn = (a - b for a, b in zip(solid.pose, base, strict=True))
+        c, s = math.cos(base[2]), math.sin(base[2])
+        x, y = pin.b if body == pin.j else pin.a
+        inertia = max(solid.inertia, LEAST_INERTIA)
+        hooks = "".join(
+            f'<site name="s{k}{end}" pos="{point[0]!r} {point[1]!r} 0"/>'
+            for k, spring in enumerate(case.model.springs)
+            for end, owner, point in (("i", spring.i, spring.a), ("j", spring.j, spring.b))
+            if owner == body
+        )
         return (
-            f'<body name="b{number}" pos="{px} {py} 0" euler="0 0 {turn}"><joint name="j{number}" type="hinge" '
-            f'axis="0 0 1"/><inertial pos="{-x} {-y} 0" mass="{plain.mass[number]}" '
-            f'diaginertia="{tiny} {tiny} {tiny}"/>{inside}</body>'
+            f'<body name="b{body}" pos="{c * dx + s * dy!r} {c * dy - s * dx!r} 0" euler="0 0 {turn!r}">'
+            f'<joint name="j{body}" type="hinge" axis="0 0 1" pos="{x!r} {y!r} 0"/>'
+            f'<inertial pos="0 0 0" mass="{solid.mass!r}" diaginertia="{inertia!r} {inertia!r} {inertia!r}"/>'
+            f"{hooks}{children(body)}</body>"
         )
 
-    trees = "".join(body(k) for k, (end, _) in parent.items() if end[0] < 0)
-    ties = ""
-    for i, xi, yi, j, _, _ in loops:
-        ox, oy = parent[i][1] if i >= 0 else (0.0, 0.0)
-        name = f"b{j}" if j >= 0 else "world"
-        ties += (
-            f'<connect body1="b{i}" body2="{name}" anchor="{xi - ox} {yi - oy} 0" '
-            f'solref="{settings["time_constant"]} 1" solimp="0.9999 0.9999 0.001 0.5 2"/>'
-        )
-    jacobian = "dense" if len(plain.mass) < 20 else "sparse"
-    text = (
-        f'<mujoco><compiler angle="radian"/><option timestep="{settings["step"]}" '
-        f'integrator="{settings["integrator"]}" '
-        f'gravity="0 {-plain.gravity} 0" iterations="50" tolerance="1e-12" jacobian="{jacobian}">'
-        f'<flag contact="disable"/></option><size memory="200M"/><worldbody>{trees}</worldbody>'
-        f"<equality>{ties}</equality></mujoco>"
+    def name(body: int) -> str:
+        return "world" if body == GROUND else f"b{body}"
+
+    ground_hooks = "".join(
+        f'<site name="s{k}i" pos="{s.a[0]!r} {s.a[1]!r} 0"/>'
+        for k, s in enumerate(case.model.springs) if s.i == GROUND
+    )  # fmt: skip
+    connects = "".join(
+        f'<connect body1="{name(p.j)}" body2="{name(p.i)}" anchor="{p.b[0]!r} {p.b[1]!r} 0" solref="{solref}" '
+        f'solimp="0.9999 0.9999 0.001 0.5 2"/>'
+        for p in loops
     )
-    return text, [parent[k][0][0] for k in range(len(plain.mass))]
+    tendons = "".join(
+        f'<spatial stiffness="{s.stiffness!r}" springlength="{s.length!r}"><site site="s{k}i"/><site site="s{k}j"/>'
+        "</spatial>"
+        for k, s in enumerate(case.model.springs)
+    )
+    return (
+        '<mujoco><compiler angle="radian" autolimits="false"/>'
+        f'{option}><flag contact="disable" refsafe="disable"/></option><size memory="200M"/>'
+        f"<worldbody>{ground_hooks}{children(GROUND)}</worldbody>"
+        f"<equality>{connects}</equality><tendon>{tendons}</tendon></mujoco>"
+    )
 
 
-def run(problem: Problem, settings: dict, samples: int) -> tuple[float, np.ndarray, np.ndarray, np.ndarray]:
-    """See the package."""
-    plain = problem.plain
-    text, base = _text(plain, settings)
-    model = mujoco.MjModel.from_xml_string(text)
+def prepare(case: Case, settings: dict[str, Any]) -> tuple[Callable[[], Callable[[], Any]], Callable[[], Record]]:
+    """``fresh`` gives a run that starts anew, whose making is not timed; ``record`` what it computes."""
+    model = mujoco.MjModel.from_xml_string(_xml(case, settings))
     data = mujoco.MjData(model)
-    bodies = [model.body(f"b{k}").id for k in range(len(base))]
-    places = [int(model.joint(f"j{k}").qposadr[0]) for k in range(len(base))]
-    for k, parent in enumerate(base):
-        data.qvel[model.joint(f"j{k}").dofadr[0]] = plain.v[k, 2] - (plain.v[parent, 2] if parent >= 0 else 0.0)
-    steps = round(problem.duration / settings["step"])
-    chunk = steps if samples <= 2 else max(1, steps // (samples - 1))
-    times, poses, velocities = [], [], []
+    count = len(case.model.solids)
+    bodies = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, f"b{k}") for k in range(count)]
+    dofs = [model.joint(f"j{k}").dofadr[0] for k in range(count)]
+    parents, _ = spanning_tree(case.model)
+    steps = settings["steps"]
 
-    def keep() -> None:
+    def reset() -> None:
+        mujoco.mj_resetData(model, data)
+        for body, (parent, _) in parents.items():
+            base = 0.0 if parent == GROUND else case.model.solids[parent].velocity[2]
+            data.qvel[dofs[body]] = case.model.solids[body].velocity[2] - base
+        for body, torque in case.model.torques:
+            data.xfrc_applied[bodies[body], 5] = torque
         mujoco.mj_forward(model, data)
-        angle = np.zeros(len(base))
-        velocity = np.zeros((len(base), 6))
-        for k, parent in enumerate(base):  # parents come before children
-            angle[k] = data.qpos[places[k]] + plain.q[k, 2]
-            if parent >= 0:
-                angle[k] += angle[parent] - plain.q[parent, 2]
-            mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_BODY, bodies[k], velocity[k], 0)
-        times.append(data.time)
-        poses.append(np.column_stack([data.xipos[bodies, :2], angle]))
-        velocities.append(velocity[:, [3, 4, 2]])
 
-    keep()
-    seconds, done = 0.0, 0
-    while done < steps:
-        many = min(chunk, steps - done)
-        started = time.perf_counter()
-        mujoco.mj_step(model, data, many)
-        seconds += time.perf_counter() - started
-        done += many
-        keep()
-    if not np.isfinite(poses[-1]).all():
-        raise ArithmeticError("numbers are no longer finite")
-    return seconds, np.array(times), np.array(poses), np.array(velocities)
+    def fresh() -> Callable[[], Any]:
+        reset()
+        return lambda: mujoco.mj_step(model, data, steps)
+
+    def state() -> tuple[np.ndarray, np.ndarray]:
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_comVel(model, data)
+        poses, velocities, spatial = np.zeros((count, 3)), np.zeros((count, 3)), np.zeros(6)
+        for body, (parent, _) in parents.items():  # parents first, so angles add up with all their turns
+            before = (0.0, 0.0) if parent == GROUND else (poses[parent, 2], case.model.solids[parent].pose[2])
+            turn = data.qpos[dofs[body]] + case.model.solids[body].pose[2] + before[0] - before[1]
+            poses[body] = *data.xipos[bodies[body]][:2], turn
+            mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_BODY, bodies[body], spatial, 0)
+            velocities[body] = spatial[3], spatial[4], spatial[2]
+        return poses, velocities
+
+    def record() -> Record:
+        reset()
+        found = [(0.0, *state())]
+        done = 0
+        for k in range(1, min(SAMPLES, steps) + 1):
+            wanted = round(k * steps / min(SAMPLES, steps))
+            mujoco.mj_step(model, data, wanted - done)
+            done = wanted
+            found.append((done * case.duration / steps, *state()))
+        if data.warning.number.sum():  # an unstable run was put back to its start
+            found[-1] = (0.0, *found[-1][1:])
+        times, poses, velocities = (np.array(part) for part in zip(*found, strict=True))
+        return Record(times, poses, velocities)
+
+    return fresh, record

@@ -1,0 +1,117 @@
+"""The dynamics benchmarks pose their sources' problems to every code, and the stored settings keep the limits."""
+
+from __future__ import annotations
+
+import importlib
+
+import numpy as np
+import pytest
+
+from benchmarks import table
+from benchmarks.dynamics import CODES, n_four_bar, pins, squeezer
+from benchmarks.dynamics.cases import BESIDE_PEERS, case
+from benchmarks.dynamics.equations import Chain, Equations
+from benchmarks.dynamics.settings import load
+from benchmarks.rows import Bar, Row
+
+PACKAGES = {"exudyn": "exudyn", "mujoco": "mujoco", "sundials": "sksundae"}
+QUICK = ("A01 pendulum", "A02 N=1", "A03 squeezer")
+MARGIN = 3.0
+"""Other machines round otherwise, and the cheapest settings lie close to the limits."""
+
+
+@pytest.mark.parametrize("name", BESIDE_PEERS)
+def test_the_start_is_consistent(name: str) -> None:
+    model = case(name).model
+    assert pins.closure(model) < 1e-14
+    if not all(solid.inertia for solid in model.solids):
+        assert not model.start[1].any()  # the pendulum, at rest, which nobody solves in these coordinates
+        return
+    written = Equations(model)
+    q, v = (part.ravel() for part in model.start)
+    arms = written.arms(q)
+    assert np.abs(written.residual(q, arms)).max() < 1e-14
+    assert np.abs(written.jacobian(arms) @ v).max() < 1e-14
+
+
+def test_the_squeezer_starts_with_the_published_accelerations() -> None:
+    model = squeezer.model()
+    q, v = (part.ravel() for part in model.start)
+    found = Equations(model).acceleration(q, v)[2::3]
+    # beta'' and Theta'' at rest, of the Test Set for IVP Solvers.
+    assert found[0] == pytest.approx(14222.4439199541138705911625887, rel=1e-9)
+    assert found[1] - found[0] == pytest.approx(-10666.8329399655854029433719415, rel=1e-9)
+
+
+def test_the_four_bars_turn_as_published() -> None:
+    """Place of the first rod's top at 10 s for N = 2: IFToMM's library, Exudyn's converged values."""
+    angle = n_four_bar.exact_angle(2)
+    assert (np.cos(angle), np.sin(angle)) == pytest.approx((0.3284581, 0.9445185), abs=1e-6)
+
+
+def test_the_band_form_says_the_same_as_the_dense() -> None:
+    model = case("A02 N=10").model
+    dense, band = Equations(model), Chain(model)
+    y = np.concatenate([part.ravel() for part in model.start])
+    y = y + 0.01 * np.random.default_rng(3).normal(size=y.shape)
+    assert band.projected_rates(0.0, y) == pytest.approx(dense.projected_rates(0.0, y), abs=1e-9)
+    assert band.rates(0.0, y) == pytest.approx(dense.rates(0.0, y), abs=1e-9)
+    assert band.project(y) == pytest.approx(dense.project(y), abs=1e-11)
+
+
+@pytest.mark.parametrize("index", [1, 2])
+def test_the_matrix_written_for_ida_is_the_derivative(index: int) -> None:
+    from benchmarks.dynamics.dae import Dae
+
+    dae = Dae(squeezer.model(), index, feedback=7.0)
+    y, slope = dae.start()
+    rng = np.random.default_rng(1)
+    y, slope = (part + 0.01 * rng.normal(size=part.shape) for part in (y, slope))
+    y[2 * dae.n + dae.m :] = 0.0
+    rate, step = 3.0, 1e-6
+    written, ahead, behind = np.zeros((dae.length, dae.length)), np.zeros(dae.length), np.zeros(dae.length)
+    dae.fill_dense(0.0, y, slope, None, rate, written)
+    for k in range(dae.length):
+        moved = np.zeros(dae.length)
+        moved[k] = step
+        dae.residual(0.0, y + moved, slope + rate * moved, ahead)
+        dae.residual(0.0, y - moved, slope - rate * moved, behind)
+        assert written[:, k] == pytest.approx((ahead - behind) / (2 * step), abs=1e-8 * np.abs(written).max())
+
+
+def test_every_code_has_settings_for_every_problem() -> None:
+    assert {name: set(codes) for name, codes in load().items()} == {key: set(CODES) for key in BESIDE_PEERS}
+
+
+@pytest.mark.parametrize("code", CODES)
+@pytest.mark.parametrize("name", QUICK)
+def test_the_stored_settings_keep_the_limits(code: str, name: str) -> None:
+    if code in PACKAGES:
+        pytest.importorskip(PACKAGES[code])
+    stored, problem = load()[name][code], case(name)
+    if not stored["met"]:
+        assert problem.excess(stored["errors"]) > 1
+        return
+    module = importlib.import_module(f"benchmarks.dynamics.{code}_code")
+    fresh, record = module.prepare(problem, stored["settings"])
+    fresh()()
+    assert problem.excess(problem.errors(record())) < MARGIN
+
+
+def test_a_result_that_stops_early_or_leaves_its_branch_keeps_no_limit() -> None:
+    problem = case("A02 N=1")
+    poses, velocities = (part[None] for part in problem.model.start)
+    short = pins.Record(np.array([0.0]), poses, velocities)
+    assert problem.errors(short) == {"energy drift (J)": 0.0, "angle (rad)": float("inf")}
+    turned = pins.Record(np.array([10.0]), poses, velocities)
+    assert problem.excess(problem.errors(turned)) > 1
+
+
+def test_the_table_says_what_was_missed() -> None:
+    rows = [
+        Row("A03", "mbsd", "1", "tolerance 1", 0.001, 1e-6, {"angle (rad)": 1e-6}),
+        Row("A03", "peer", "2", "step 1", 0.002, 1.0, {"angle (rad)": 1.0}, within_limits=False),
+    ]
+    text = table.text(rows, [Bar("A03", 50.0, 2.0, "peer", "step 1", met=False)])
+    assert "| A03 | 50x | 2x | peer | step 1 | **no** |" in text
+    assert "| A03 | peer | 2 | 2 ms | 2 | angle (rad) 1.0e+00; **beyond the limits** | step 1 |" in text

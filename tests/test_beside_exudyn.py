@@ -1,0 +1,83 @@
+"""Random open and closed chains with springs move as Exudyn moves them. Needs the extra ``bench``."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from benchmarks.dynamics import mbsd_code
+from benchmarks.dynamics.cases import Case
+from benchmarks.dynamics.pins import GROUND, Pin, Pinned, Solid, Spring, closure
+
+DURATION = 0.4
+STEPS = 2000
+"""Of Exudyn's coarser run; the finer one has twice as many, and both give the limit of the second-order rule."""
+
+
+def chain(seed: int, links: int, closed: bool) -> Pinned:
+    """Links of 0.2 to 0.5 m with centres of mass off the line, each with a spring or a torque now and then.
+
+    An open chain starts moving; a closed one starts at rest with its last end pinned to the ground where it is.
+    """
+    rng = np.random.default_rng(seed)
+    solids: list[Solid] = []
+    pins: list[Pin] = []
+    springs: list[Spring] = []
+    joint, velocity, before, end = np.zeros(2), np.zeros(2), GROUND, (0.0, 0.0)
+    for k in range(links):
+        length, angle = rng.uniform(0.2, 0.5), rng.uniform(-math.pi, math.pi)
+        omega = 0.0 if closed else rng.uniform(-4, 4)
+        centre = np.array([rng.uniform(0.3, 0.7) * length, rng.uniform(-0.1, 0.1) * length])
+        turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+        arm = turn @ centre
+        place, speed = joint + arm, velocity + omega * np.array([-arm[1], arm[0]])
+        mass = rng.uniform(0.3, 2.0)
+        inertia = mass * length**2 * rng.uniform(0.05, 0.2)
+        solids.append(
+            Solid(mass, inertia, (float(place[0]), float(place[1]), angle), (float(speed[0]), float(speed[1]), omega))
+        )
+        pins.append(Pin(before, end, k, (float(-centre[0]), float(-centre[1]))))
+        hook = (float(rng.uniform(-0.1, 0.1)), float(rng.uniform(-0.1, 0.1)))
+        anchor = (float(rng.uniform(-1, 1)), float(rng.uniform(0.5, 1.5)))
+        springs.append(Spring(GROUND, anchor, k, hook, float(rng.uniform(5, 60)), float(rng.uniform(0.2, 0.8))))
+        reach = turn @ np.array([length, 0.0])
+        joint, velocity = joint + reach, velocity + omega * np.array([-reach[1], reach[0]])
+        before, end = k, (float(length - centre[0]), float(-centre[1]))
+    if links > 2:
+        springs.append(Spring(0, (0.1, 0.05), links - 1, (0.0, 0.1), float(rng.uniform(5, 60)), 0.3))
+    if closed:
+        pins.append(Pin(GROUND, (float(joint[0]), float(joint[1])), before, end))
+    return Pinned(tuple(solids), tuple(pins), 9.81, ((0, float(rng.uniform(-1, 1))),), tuple(springs))
+
+
+def ends(model: Pinned) -> tuple[np.ndarray, np.ndarray]:
+    """Poses and velocities at the end by mbsd and by Exudyn, each (2, bodies, 3)."""
+    exudyn = pytest.importorskip("benchmarks.dynamics.exudyn_code", reason="needs the extra bench")
+    problem = Case("chain", model, DURATION, {}, 0.0, lambda record: {})
+    record = mbsd_code.prepare(problem, {"method": "dop853", "tolerance": 1e-9})[1]()
+    ours = np.stack([record.poses[-1], record.velocities[-1]])
+    found = []
+    for steps in (STEPS, 2 * STEPS):
+        rule = {"model": "pins", "solver": "TrapezoidalIndex2", "index2": True, "rho": 1.0, "newton": "full"}
+        record = exudyn.prepare(problem, rule | {"linear": "EXUdense", "tolerance": 1e-10, "steps": steps})[1]()
+        assert record.times[-1] == pytest.approx(DURATION)
+        found.append(np.stack([record.poses[-1], record.velocities[-1]]))
+    coarse, fine = found
+    return ours, fine + (fine - coarse) / 3
+
+
+@pytest.mark.parametrize("closed", [False, True], ids=["open", "closed"])
+@given(seed=st.integers(0, 10**6), links=st.integers(3, 5))
+@settings(max_examples=10)
+def test_chains_with_springs(closed: bool, seed: int, links: int) -> None:
+    model = chain(seed, links, closed)
+    assert closure(model) < 1e-12
+    ours, theirs = ends(model)
+    assert np.abs(ours - model.start).max() > 0.05  # it moves
+    scale = max(1.0, float(np.abs(theirs[1]).max()))
+    assert np.abs(ours[0] - theirs[0]).max() < 5e-6
+    assert np.abs(ours[1] - theirs[1]).max() < 5e-6 * scale

@@ -62,7 +62,7 @@ def ends(model: Pinned) -> tuple[np.ndarray, np.ndarray]:
     ours = np.stack([record.poses[-1], record.velocities[-1]])
     found = []
     for steps in (STEPS, 2 * STEPS):
-        rule = {"model": "pins", "solver": "TrapezoidalIndex2", "index2": True, "rho": 1.0, "newton": "full"}
+        rule = {"model": "pins", "solver": "TrapezoidalIndex2", "rho": 1.0, "newton": "full"}
         record = exudyn.prepare(problem, rule | {"linear": "EXUdense", "tolerance": 1e-10, "steps": steps})[1]()
         assert record.times[-1] == pytest.approx(DURATION)
         found.append(np.stack([record.poses[-1], record.velocities[-1]]))

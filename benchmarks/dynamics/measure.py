@@ -54,7 +54,7 @@ def _bar(name: str, best: dict[str, Row]) -> Bar:
     ours, wanted = best["mbsd"], case(name).bar
     peers = [row for code, row in best.items() if code != "mbsd" and row.within_limits]
     if not peers:
-        return Bar(name, wanted, float("inf"), "no peer keeps the limits", "", ours.within_limits)
+        return Bar(name, wanted, 0.0, "no peer was swept yet, or none keeps the limits", "", met=False)
     peer = min(peers, key=lambda row: row.seconds)
     ratio = peer.seconds / ours.seconds
     return Bar(name, wanted, ratio, peer.code, peer.settings, ours.within_limits and ratio >= wanted)

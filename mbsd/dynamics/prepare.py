@@ -9,6 +9,7 @@ import numpy as np
 
 from mbsd.dynamics.acceleration import derivative
 from mbsd.dynamics.arrays import Dynamics, Scratch, scratch_for
+from mbsd.dynamics.dependent import refuse_singular_start
 from mbsd.dynamics.initial import Initial, consistent
 from mbsd.dynamics.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
 from mbsd.dynamics.run import Run
@@ -48,6 +49,8 @@ class PreparedDynamics:
     mobility: Mobility
     switches: Switches
     """Contacts and joints whose rows are let go and taken up."""
+    dropped: tuple[int, ...] = ()
+    """Rows left out because they repeat others."""
 
     def run(
         self,
@@ -122,6 +125,7 @@ def prepare_dynamics(m: Mechanism, start: float, end: float, contacts: bool = Fa
         per_size=1.0 / np.concatenate([np.ones(3), packed.column_scale()]),
     )
     ready = PreparedDynamics(packed, dynamics, initial, start, end, mobility, switches)
+    refuse_singular_start(ready, list(kept), always)
     _refuse_unheld(ready)
     return ready
 

@@ -12,6 +12,7 @@ import numpy as np
 
 import mbsd.integrators
 from mbsd.assembly import tabulate
+from mbsd.dynamics.dependent import refuse_opened
 from mbsd.dynamics.large import MANY_COORDINATES
 from mbsd.dynamics.prepare import PreparedDynamics, prepare_dynamics
 from mbsd.dynamics.run import Run
@@ -108,6 +109,7 @@ def solution(
         compact = np.zeros((at.stop - start, rows, 6))
         tabulate(packed.system, drives[at], q[at], v[at], packed.ws, phi, compact, gamma)
         held = trail.held[at]
+        refuse_opened(ready, out.t[at], phi * held)
         lam[at] = _least_norm(ready, compact, out.lam[at], held)
         wrench[at] = wrenches(packed, compact, q[at], lam[at])
         nu = np.zeros_like(phi)

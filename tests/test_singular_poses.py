@@ -1,0 +1,128 @@
+"""Redundant joints, change points, toggles and stretched chains in forward dynamics: solved, or refused by name."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from mbsd import AssemblyError, Mechanism, SimulationError, SingularPoseError, constant_rate
+
+G = 9.81
+
+
+def parallelogram(start: float, middle: float | None = None) -> Mechanism:
+    """Equal cranks, and a third one of length ``middle`` that repeats them; a change point where all lie flat."""
+    m = Mechanism("parallelogram", gravity=(0.0, -G))
+    left, deck, right = m.bar("left", 1.0, mass=1.0), m.bar("deck", 2.0, mass=1.0), m.bar("right", 1.0, mass=1.0)
+    m.revolute("A", m.ground.at(0, 0), left.start)
+    m.revolute("B", left.end, deck.start)
+    m.revolute("C", deck.end, right.end)
+    m.revolute("D", m.ground.at(2, 0), right.start)
+    m.start_near(left=start, deck=0, right=start)
+    if middle is not None:
+        third = m.bar("middle", middle, mass=1.0)
+        m.revolute("E", m.ground.at(1, 0), third.start)
+        m.revolute("F", third.end, deck.at(1, 0))
+        m.start_near(middle=start)
+    return m
+
+
+@pytest.mark.parametrize("middle", [None, 1.0], ids=["plain", "redundant"])
+def test_a_parallelogram_swings_through_its_change_point(middle: float | None) -> None:
+    """All cranks are one pendulum: T = (3 m_c / 3 + m_d) theta'^2 / 2 with cranks 1 / 3 each, through flat poses."""
+    m = parallelogram(50.0, middle)
+    sol = m.simulate(3.0)
+    left, right = sol.body("left"), sol.body("right")
+    cranks = 3 if middle else 2
+    inertia, pull = cranks / 3 + 1.0, (cranks / 2 + 1.0) * G
+    energy = 0.5 * inertia * left.omega**2 + pull * np.sin(left.theta)
+    np.testing.assert_allclose(energy, energy[0], atol=1e-3)
+    np.testing.assert_allclose(left.theta, right.theta, atol=1e-6)
+    assert left.theta.min() < -math.pi, "it has passed both flat poses"
+    assert sol.stats.position_residual < 1e-9
+    if middle:
+        assert sol.mobility.redundant_rows == 1
+
+
+@pytest.mark.parametrize("middle", [None, 1.0], ids=["plain", "redundant"])
+def test_a_start_at_the_change_point_is_refused(middle: float | None) -> None:
+    with pytest.raises(SingularPoseError, match=r"parallelogram: the start pose at t = 0 s is singular .* start_near"):
+        parallelogram(0.0, middle).simulate(1.0)
+    assert parallelogram(1.0, middle).simulate(0.5).stats.position_residual < 1e-9, "a little beside it goes on"
+
+
+def test_redundant_joints_that_disagree_are_refused() -> None:
+    with pytest.raises(AssemblyError, match=r"parallelogram: the links do not close at t = 0 s: joint"):
+        parallelogram(50.0, 1.001).simulate(1.0)
+
+
+def test_a_stretched_chain_is_refused() -> None:
+    m = Mechanism("stretched")
+    a, b = m.bar("a", 1.0, mass=1.0), m.bar("b", 1.0, mass=1.0)
+    m.revolute("A", m.ground.at(0, 0), a.start)
+    m.revolute("B", a.end, b.start)
+    m.revolute("C", b.end, m.ground.at(2, 0))
+    m.start_near(a=0, b=0)
+    with pytest.raises(SingularPoseError, match=r"stretched: .* only there 'C' repeats what others hold"):
+        m.simulate(1.0)
+
+
+def test_a_locked_structure_stands() -> None:
+    m = Mechanism("truss", gravity=(0.0, -G))
+    a, b = m.bar("a", 1.0, mass=1.0), m.bar("b", 1.0, mass=1.0)
+    m.revolute("A", m.ground.at(0, 0), a.start)
+    m.revolute("B", a.end, b.start)
+    m.revolute("C", b.end, m.ground.at(1.2, 0))
+    m.start_near(a=50, b=-50)
+    sol = m.simulate(1.0)
+    assert sol.mobility.dof == 0
+    assert np.abs(np.diff(sol.q, axis=0)).max() == 0.0
+    np.testing.assert_allclose(sol.joint("A").fy - sol.joint("C").fy, 0.0, atol=3.0 * G)
+    beam = Mechanism("beam", gravity=(0.0, -G))
+    bar = beam.bar("bar", 1.0, mass=3.0)
+    beam.weld("wall", beam.ground.origin, bar.start)
+    beam.revolute("prop", beam.ground.at(1, 0), bar.end)
+    held = beam.simulate(1.0)
+    assert held.mobility.nominal == -2
+    total = held.joint("wall").reaction + held.joint("prop").reaction
+    np.testing.assert_allclose(total, np.tile([0.0, 3.0 * G], (len(held.t), 1)), atol=1e-9)
+
+
+def slider_crank(start: float) -> Mechanism:
+    """Crank as long as its rod: a change point where the slider stands over the crank's pin."""
+    m = Mechanism("slider-crank", gravity=(0.0, -G))
+    crank, rod = m.bar("crank", 0.3, mass=1.0), m.bar("rod", 0.3, mass=1.0)
+    slider = m.body("slider", 1.0, inertia=0.1)
+    m.revolute("A", m.ground.origin, crank.start)
+    m.revolute("B", crank.end, rod.start)
+    m.revolute("C", rod.end, slider.origin)
+    m.prismatic("G", m.ground.origin, slider.origin)
+    m.start_near(crank=start, rod=-start, slider=(0.6 * math.cos(math.radians(start)), 0, 0))
+    return m
+
+
+def test_dead_centre_and_change_point_are_told_apart() -> None:
+    assert slider_crank(0.0).simulate(0.5).stats.position_residual < 1e-9, "a dead centre is no matter without a driver"
+    with pytest.raises(SingularPoseError, match="slider-crank: the start pose"):
+        slider_crank(90.0).simulate(0.5)
+    m = slider_crank(0.0)
+    m.drive_coordinate("push", m.ground.origin, m.bodies["slider"].origin, constant_rate(-0.1, 0.6))
+    with pytest.raises(SingularPoseError, match="only there 'push' repeats"):
+        m.simulate(0.5)
+
+
+def test_a_toggle_stops_with_its_time() -> None:
+    m = Mechanism("toggle", gravity=(0.0, -G))
+    crank, coupler, rocker = m.bar("crank", 0.5, 1.0), m.bar("coupler", 0.4, 1.0), m.bar("rocker", 0.5, 1.0)
+    m.revolute("A", m.ground.at(0, 0), crank.start)
+    m.revolute("B", crank.end, coupler.start)
+    m.revolute("C", coupler.end, rocker.end)
+    m.revolute("D", m.ground.at(1.0, 0), rocker.start)
+    m.drive_angle("motor", crank, constant_rate(1.0, math.radians(40)))
+    m.start_near(crank=40, coupler=0, rocker=100)
+    reach = math.acos((0.5**2 + 1.0 - 0.9**2) / (2 * 0.5 * 1.0))
+    with pytest.raises(SimulationError, match=r"toggle: dop853 stops at t = 0.41706.* The pose is singular here"):
+        m.simulate(2.0)
+    assert reach - math.radians(40) == pytest.approx(0.41706, abs=1e-4)

@@ -53,6 +53,19 @@ def test_a_start_at_the_change_point_is_refused(middle: float | None) -> None:
     assert parallelogram(1.0, middle).simulate(0.5).stats.position_residual < 1e-9, "a little beside it goes on"
 
 
+def test_a_redundant_joint_may_be_let_go_but_not_the_one_it_repeats() -> None:
+    for name, is_redundant in (("F", True), ("C", False)):
+        m = parallelogram(50.0, 1.0)
+        m.event("let go", lambda t, _: t - 0.1, action=lambda moment, name=name: moment.release(name))
+        if is_redundant:
+            sol = m.simulate(0.5)
+            assert [event.time for event in sol.events] == pytest.approx([0.1])
+            assert sol.stats.position_residual < 1e-9
+        else:
+            with pytest.raises(SingularPoseError, match=r"joint 'F', left out as redundant, is open .* let go"):
+                m.simulate(0.5)
+
+
 def test_redundant_joints_that_disagree_are_refused() -> None:
     with pytest.raises(AssemblyError, match=r"parallelogram: the links do not close at t = 0 s: joint"):
         parallelogram(50.0, 1.001).simulate(1.0)

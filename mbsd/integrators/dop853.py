@@ -36,6 +36,7 @@ from mbsd.integrators.state import (
     record,
     record_here,
 )
+from mbsd.integrators.step_size import allowed, first_step
 from mbsd.jit import inlined, kernel
 
 STAGES = 16
@@ -46,48 +47,6 @@ CONTRACTION = 0.1
 """The second projection must change the pose by less than this part of the first."""
 ROUNDING = 1e-9
 """Changes below this (sizes, rad) are rounding in an ill-conditioned pose, and accepted."""
-
-
-@inlined
-def _scale(settings, before, after, part, c):
-    """Tolerance of one entry of the state."""
-    tolerance = settings.absolute[part, c]
-    if part == 1 or c % 3 != 2:  # angles of many turns are no less exact
-        tolerance += settings.relative * max(abs(before[part, c]), abs(after[part, c]))
-    return tolerance
-
-
-@kernel
-def _first_step(dyn, scratch, state, settings):
-    """Step (s) that suits the first two derivatives (Hairer, Norsett, Wanner, II.4)."""
-    y = state.y
-    trial = scratch.state
-    n3 = y.shape[1]
-    size = 0.0
-    speed = 0.0
-    for part in range(2):
-        for c in range(3, n3):
-            scale = _scale(settings, y, y, part, c)
-            size += (y[part, c] / scale) ** 2
-            speed += (state.dy[part, c] / scale) ** 2
-    count = max(2 * (n3 - 3), 1)
-    size = math.sqrt(size / count)
-    speed = math.sqrt(speed / count)
-    h = 1e-4 * settings.longest
-    if size > 1e-5 and speed > 1e-5:
-        h = min(0.01 * size / speed, settings.longest)
-    for part in range(2):
-        for c in range(3, n3):
-            trial[part, c] = y[part, c] + h * state.dy[part, c]
-    derivative(dyn, scratch, state.clock[TIME] + h, trial, scratch.stages[0], scratch.ws.right[1])
-    state.count[EVALUATIONS] += 1
-    bend = 0.0
-    for part in range(2):
-        for c in range(3, n3):
-            bend += ((scratch.stages[0, part, c] - state.dy[part, c]) / _scale(settings, y, y, part, c)) ** 2
-    steepest = max(speed, math.sqrt(bend / count) / h)
-    step = (0.01 / steepest) ** 0.125 if steepest > 1e-15 else 100.0 * h
-    return min(step if step == step else h, 100.0 * h, settings.longest)
 
 
 @kernel
@@ -155,7 +114,7 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
     count = max(2 * (n3 - 3), 1)
     begin(dyn, scratch, state)
     if state.clock[STEP] == 0.0:
-        state.clock[STEP] = _first_step(dyn, scratch, state, settings)
+        state.clock[STEP] = first_step(dyn, scratch, state, settings, 0.125)
     while state.count[NEXT] < out.t.shape[0] and out.t[state.count[NEXT]] <= state.clock[TIME]:
         record_here(scratch, state, out)
     for c in range(3, n3):
@@ -203,7 +162,7 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
                     e5 += E5[s] * k[s, part, c]
                     e3 += E3[s] * k[s, part, c]
                 trial[part, c] = y[part, c] + h * change
-                scale = _scale(settings, y, trial, part, c)
+                scale = allowed(settings, y, trial, part, c)
                 fifth += (e5 / scale) ** 2
                 third += (e3 / scale) ** 2
         error = 0.0

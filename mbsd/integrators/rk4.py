@@ -27,14 +27,14 @@ from mbsd.integrators.state import (
     fixed_step,
     record_here,
 )
-from mbsd.jit import kernel
+from mbsd.jit import internal, kernel
 
 STAGES = 4
 
 
-@kernel
-def advance(dyn, scratch, state, out, settings, end, max_steps):
-    """Go on to ``end`` (s), ``max_steps`` steps at most, writing the outputs passed. Returns a status."""
+@internal
+def march(dyn, scratch, state, out, settings, end, max_steps, projections):
+    """``advance`` with so many projections after each step."""
     y = state.y
     k = scratch.stages
     trial = scratch.state
@@ -67,14 +67,24 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
         state.clock[WORK] += (
             h / 6.0 * (scratch.power[0] + 2.0 * (scratch.power[1] + scratch.power[2]) + scratch.power[3])
         )
-        project(dyn, scratch, reached, y, 2)
+        if projections > 0:
+            project(dyn, scratch, reached, y, projections)
         state.clock[POWER] = derivative(dyn, scratch, reached, y, state.dy, state.lam)
         state.clock[TIME] = reached
         state.count[EVALUATIONS] += 4
         state.count[ACCEPTED] += 1
         accepted += 1
-        if not math.isfinite(state.clock[POWER] + scratch.report[1]):
+        largest = 0.0
+        for c in range(3, n3):
+            largest = max(largest, abs(state.dy[1, c])) if largest == largest else largest
+        if not math.isfinite(largest):
             return NOT_FINITE
+
+
+@kernel
+def advance(dyn, scratch, state, out, settings, end, max_steps):
+    """Go on to ``end`` (s), ``max_steps`` steps at most, writing the outputs passed. Returns a status."""
+    return march(dyn, scratch, state, out, settings, end, max_steps, 2)
 
 
 RK4 = register(Integrator("rk4", advance, STAGES, order=4, fixed_step=True))

@@ -1,10 +1,11 @@
-"""Potential energy of the forces that have one: springs, elastic curves, gas, attraction.
+"""Potential energy of the forces that have one: springs, elastic curves, gas, attraction, contacts, a turning frame.
 
     LINEAR      a (x - b)^2 / 2
     POWER       -a (x + b)^(c + 1) / (c + 1);   for c = -1  -a log(x + b)
     LAW_VALUE   -a int law dx
 
 x: what the element measures (see forces/kind.py). Constants and laws of time and of rates do work instead.
+Interactions bring their own.
 """
 
 from __future__ import annotations
@@ -27,6 +28,8 @@ def potential_of(packed: Packed, force: Force, q: np.ndarray) -> np.ndarray:
         if terms:
             x = measured(packed, element, i, j, q)
             out += sum(_term(force, term, x) for term in terms)
+    if force.kind.potential is not None:
+        out += force.kind.potential(force, packed, q)
     return out
 
 
@@ -45,6 +48,13 @@ def measured(packed: Packed, element: Element, i: int, j: int, q: np.ndarray) ->
     if element.turned:
         x, y = -y, x
     return x * gap[:, 0] + y * gap[:, 1]
+
+
+def relative_place(packed: Packed, force: Force, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """x and y (T,) of marker j in the axes of marker i (m) along poses q (T, 3 nb)."""
+    i, j = packed.force_markers[packed.forces.index(force)]
+    x, y = (measured(packed, Element(AXIS, (), turned), i, j, q) for turned in (False, True))
+    return x, y
 
 
 def _term(force: Force, term: Term, x: np.ndarray) -> np.ndarray:

@@ -34,6 +34,18 @@ def test_an_impact_returns_with_the_speed_of_hunt_and_crossley(exponent: float, 
     assert np.ptp(sol.audit) < 1e-8
 
 
+def test_an_elastic_impact_stores_the_speed_and_gives_it_back() -> None:
+    m = Mechanism("bounce")
+    ball = m.body("ball", 0.5, inertia=1.0)
+    m.contact("ground", m.ground.at(0, 0), ball.origin, 1e5, radius=0.1)
+    m.start_near(ball=(0.0, 0.15, 0.0))
+    sol = m.simulate(0.4, steps=2000, tolerance=1e-10)
+    weight = 0.5 * 9.80665
+    deepest = brentq(lambda d: 1e5 * d**2.5 / 2.5 - weight * (0.05 + d), 1e-4, 0.1)
+    assert 0.1 - sol.body("ball").y.min() == pytest.approx(deepest, rel=1e-4)
+    np.testing.assert_allclose(sol.energy.total, 0.5 * 9.80665 * 0.15, atol=1e-8)
+
+
 def test_a_wall_on_a_moving_body_takes_the_opposite() -> None:
     m = Mechanism("two", gravity=None)
     wall, ball = m.body("wall", 3.0, inertia=2.0), m.body("ball", 0.5, inertia=0.01)
@@ -176,6 +188,10 @@ def test_a_free_body_goes_straight_for_those_who_do_not_turn(rate) -> None:
     np.testing.assert_allclose(q[:, 0] - 0.5, c * inertial[:, 0] + s * inertial[:, 1], atol=1e-8)
     np.testing.assert_allclose(q[:, 1] + 0.3, -s * inertial[:, 0] + c * inertial[:, 1], atol=1e-8)
     np.testing.assert_allclose(q[:, 2], 3.0 * sol.t - turned, atol=1e-9)
+    if not bend:  # Jacobi's integral
+        np.testing.assert_allclose(sol.energy.total, sol.energy.total[0], atol=1e-8)
+    assert sol.audit is not None
+    assert np.ptp(sol.audit) < 1e-8
 
 
 # -- what cannot be ---------------------------------------------------------------------------------------------

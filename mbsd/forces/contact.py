@@ -9,7 +9,8 @@ outer normal at the foot of marker j, and body i takes the opposite. Deepest and
 
     k d_max^(n+1) / ((n+1) m) = w(v_0) = w(-v_1),   w(v) = v / c - ln(1 + c v) / c^2,   so v_1 / v_0 ~ 1 - 2 c v_0 / 3
 
-A disc touches at one point, the nearest of the profile. T is smooth: within s_0 bodies creep instead of sticking.
+The elastic part has the potential energy k d^(n+1) / (n+1). A disc touches at one point, the nearest of the profile.
+T is smooth: within s_0 bodies creep instead of sticking.
 
 Source: Hunt, Crossley 1975, J. Appl. Mech. 42, 440.
 """
@@ -22,7 +23,10 @@ from mbsd.curves import Curve, curve
 from mbsd.forces.kind import ForceKind, Interaction, register
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from mbsd.force import Force
+    from mbsd.packing import Packed
 
 OWN = ("radius", "stiffness", "exponent", "damping", "friction", "slip_speed")
 
@@ -42,10 +46,30 @@ def _interactions(force, packed):
     return (Interaction("contact", force.i, force.j, numbers),)
 
 
+def depths(force: Force, packed: Packed, q: np.ndarray) -> np.ndarray:
+    """(T,) depth (m) of the disc in the surface, 0 where they do not touch, along poses q (T, 3 nb)."""
+    import numpy as np
+
+    from mbsd.interactions.law import OWN as BEFORE
+    from mbsd.interactions.law import STATE
+    from mbsd.interactions.surface import tabulate_distance
+    from mbsd.potential import relative_place
+
+    numbers, distance = np.array([0.0] * BEFORE + surface(force)), np.zeros(len(q))
+    tabulate_distance(numbers, *relative_place(packed, force, q), np.zeros(STATE), distance)
+    return np.clip(force.params["radius"] - distance, 0.0, None)
+
+
+def _potential(force, packed, q):
+    power = force.params["exponent"] + 1.0
+    return force.params["stiffness"] * depths(force, packed, q) ** power / power
+
+
 CONTACT = register(
     ForceKind(
         "contact",
         interactions=_interactions,
+        potential=_potential,
         example=lambda m, i, j: m.contact(
             "example",
             i,

@@ -26,6 +26,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from mbsd.body import Marker
     from mbsd.force import Force
     from mbsd.model import Mechanism
@@ -87,6 +89,8 @@ class ForceKind:
     """Adds one of this kind between two markers of different bodies; must be given."""
     interactions: Callable[[Force, Packed], Sequence[Interaction]] = _no_interactions
     """Beside its elements."""
+    potential: Callable[[Force, Packed, np.ndarray], np.ndarray] | None = None
+    """(T,) potential energy (J) of its interactions along poses (T, 3 nb), if they have one at rest."""
     outside: bool = False
     """Whether it is a load from outside, to which nothing in the mechanism feels the opposite."""
     of_reactions: bool = False

@@ -13,7 +13,7 @@ Source: Pacejka, Bakker 1993, Vehicle System Dynamics 21, suppl. 1 (longitudinal
 
 from __future__ import annotations
 
-from mbsd.forces.contact import surface
+from mbsd.forces.contact import depths, surface
 from mbsd.forces.kind import ForceKind, Interaction, register
 
 OWN = ("radius", "stiffness", "damping", "grip", "slope", "shape", "curvature", "standstill")
@@ -24,10 +24,15 @@ def _interactions(force, packed):
     return (Interaction("tyre", force.i, force.j, numbers),)
 
 
+def _potential(force, packed, q):
+    return 0.5 * force.params["stiffness"] * depths(force, packed, q) ** 2
+
+
 TYRE = register(
     ForceKind(
         "tyre",
         interactions=_interactions,
+        potential=_potential,
         example=lambda m, i, j: m.tyre("example", i, j, 4.0, 300.0, damping=3.0, grip=0.9, standstill=0.3),
     )
 )

@@ -12,7 +12,7 @@ import math
 
 from mbsd.constraints.curve_pieces import COUNT, CX, CY, DX, DY, TABLE, WIDTH, find_foot
 from mbsd.constraints.equation import X, Y
-from mbsd.jit import internal
+from mbsd.jit import internal, kernel
 
 DISTANCE, TX, TY = 20, 21, 22
 """Of the state: filled by :func:`stand`."""
@@ -39,3 +39,13 @@ def stand(numbers, state):
     state[DISTANCE] = tx * (state[Y] - state[CY]) - ty * (state[X] - state[CX])
     state[TX] = tx
     state[TY] = ty
+
+
+@kernel
+def tabulate_distance(numbers, x, y, state, out):
+    """Distances out (T,) of points x, y (T,), for callers outside the compiled loops."""
+    for k in range(x.shape[0]):
+        state[X] = x[k]
+        state[Y] = y[k]
+        stand(numbers, state)
+        out[k] = state[DISTANCE]

@@ -9,7 +9,7 @@ Reactions hold the pull of the stabilisation too.
 
 Options: alpha, beta (1/s), both 10 if not given; alpha = 0 shows the bare drift.
 
-Source: Baumgarte 1972, Comp. Meth. Appl. Mech. Eng. 1; Flores et al. 2011, J. Comput. Nonlinear Dyn. 6 (choice of alpha).
+Source: Baumgarte 1972, Comp. Meth. Appl. Mech. Eng. 1; Flores et al. 2011, J. Comput. Nonlinear Dyn. 6 (alpha).
 """
 
 from __future__ import annotations

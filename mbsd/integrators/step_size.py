@@ -23,7 +23,7 @@ def allowed(settings, before, after, part, c):
 
 @internal
 def first_step(dyn, scratch, state, settings, exponent):
-    """Step (s) that suits the first two derivatives; ``exponent`` is one by the order of the error estimate plus one."""
+    """Step (s) that suits the first two derivatives; ``exponent`` is one by the order of the estimate plus one."""
     y = state.y
     trial = scratch.state
     n3 = y.shape[1]

@@ -8,7 +8,8 @@
 a(t, q, v) is the acceleration with the multipliers eliminated, x an average of it that the method remembers. r (option
 ``rho``, 0.8 if not given) is what one step leaves of an infinitely fast oscillation: 1 keeps all energy, 0 removes it
 at once; slow motion is hardly damped. x1 is found by Newton's method with the matrix
-(1 - m) 1 - (1 - f) (h^2 b A + h g B) by differences, kept while it converges; each step is then projected twice onto the constraints.
+(1 - m) 1 - (1 - f) (h^2 b A + h g B) by differences, kept while it converges; each step is then projected twice onto
+the constraints.
 
 Source: Chung, Hulbert 1993, J. Appl. Mech. 60; Arnold, Bruels 2007, Multibody Syst. Dyn. 18 (constrained systems;
 there the multipliers are unknowns of the step, here they are eliminated).

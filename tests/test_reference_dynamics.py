@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.special import ellipj, ellipk
 
 from mbsd import Mechanism
 from mbsd.solution import Solution
@@ -61,12 +62,14 @@ def test_a01_pendulum_of_a_point_mass() -> None:
     bob = m.body("bob", 1.0)
     m.distance("rod", m.ground.at(0, 0), bob.origin, 1.0)
     m.start_near(bob=(-1.0, 0.0, 0.0))
-    view = simulate_at(m, expected[:, 0]).body("bob")
+    sol = simulate_at(m, expected[:, 0])
+    view = sol.body("bob")
     computed = np.stack([view.x, view.y, view.vx, view.vy], axis=1)
     np.testing.assert_allclose(computed, expected[:, 1:], atol=data["expected"][0]["tol_abs"])
+    assert np.ptp(sol.energy.total) < 5e-5  # J, what the benchmark accepts
 
 
-@pytest.mark.parametrize("degrees", [5, 30, 90, 150, 179])
+@pytest.mark.parametrize("degrees", [5, 10, 30, 45, 60, 90, 120, 150, 170, 175, 179])
 def test_pendulum_periods(degrees: int) -> None:
     ratio = case("analytic_pendulum_period")["expected"]["ratio_T_over_T0_by_amplitude_deg"][str(degrees)]
     period = ratio * 2 * math.pi * math.sqrt(1.0 / 9.81)
@@ -76,6 +79,38 @@ def test_pendulum_periods(degrees: int) -> None:
     m.start_near(bob=degrees)
     angle = simulate_at(m, np.array([0.0, period / 4, period]), tolerance=1e-11).body("bob").theta
     np.testing.assert_allclose(angle, np.radians([degrees, 0.0, degrees]), atol=2e-6)
+
+
+def test_a_swinging_pendulum_by_jacobis_elliptic_functions() -> None:
+    """From hanging, sin(theta / 2) = k sn(w t | k^2): the velocity at the bottom is 2 k w and it turns back at 2 asin k."""
+    k, w = 0.9, math.sqrt(9.81)
+    m = Mechanism("swinging", gravity=(0.0, -9.81))
+    bob = m.body("bob", 1.0)
+    m.revolute("A", m.ground.at(0, 0), bob.at(0, 1.0))
+    m.start_near(bob=0)
+    m.start_moving(bob=2 * k * w)
+    sol = simulate_at(m, np.linspace(0.0, 5.0, 101), tolerance=1e-11)
+    sn, cn, dn, _ = ellipj(w * sol.t, k**2)
+    view = sol.body("bob")
+    np.testing.assert_allclose(view.theta, 2 * np.arcsin(k * sn), atol=1e-8)
+    np.testing.assert_allclose(view.omega, 2 * k * w * cn, atol=1e-8)
+    np.testing.assert_allclose(view.alpha, -2 * k * w**2 * sn * dn, atol=1e-7)
+
+
+def test_a_pendulum_over_the_top_by_jacobis_elliptic_functions() -> None:
+    """Faster than 2 w at the bottom it goes round: theta = 2 am(w t / k | k^2), one turn in 2 k K(k^2) / w."""
+    k, w = 0.8, math.sqrt(9.81)
+    m = Mechanism("going round", gravity=(0.0, -9.81))
+    bob = m.body("bob", 1.0)
+    m.revolute("A", m.ground.at(0, 0), bob.at(0, 1.0))
+    m.start_near(bob=0)
+    m.start_moving(bob=2 * w / k)
+    turn = 2 * k * float(ellipk(k**2)) / w
+    sol = simulate_at(m, np.linspace(0.0, 3 * turn, 61), tolerance=1e-11)
+    amplitude, dn = ellipj(w * sol.t / k, k**2)[3], ellipj(w * sol.t / k, k**2)[2]
+    np.testing.assert_allclose(sol.body("bob").theta, 2 * amplitude, atol=1e-8)
+    np.testing.assert_allclose(sol.body("bob").omega, 2 * w / k * dn, atol=1e-8)
+    assert sol.body("bob").theta[-1] == pytest.approx(6 * math.pi, abs=1e-8)
 
 
 def test_adams_pendulum() -> None:

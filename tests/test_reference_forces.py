@@ -31,6 +31,7 @@ def squeezer() -> Mechanism:
     m.revolute("O", m.ground.at(0, 0), k1.at(-p["ra"], 0))
     m.revolute("F", k1.at(p["rr"] - p["ra"], 0), k2.at(p["da"], 0))
     e = k2.at(p["da"] - p["d"], 0)
+    m.trace("F", k1.at(p["rr"] - p["ra"], 0))
     m.revolute("E3", e, k3.at(-p["sb"], p["sa"] - p["ss"]))
     m.revolute("B", b, k3.at(-p["sb"], p["sa"]))
     m.revolute("E4", e, k4.at(0, -p["ea"]))
@@ -70,6 +71,8 @@ def test_andrews_squeezer_on_its_way_and_its_energy() -> None:
     sol = simulate_at(squeezer(), rows[:, 0], tolerance=1e-10)
     np.testing.assert_allclose(sol.body("K1").theta, rows[:, 1], atol=1e-6)
     np.testing.assert_allclose(sol.body("K3").theta, rows[:, 3], atol=1e-6)
+    point = np.array(case("iftomm_a03_andrews")["expected"][2]["rows"])
+    np.testing.assert_allclose(np.stack([sol.point("F").x, sol.point("F").y], axis=1), point[:, 1:], atol=1e-8)
     assert sol.audit is not None
     assert np.ptp(sol.audit) < 1e-6
     motor = 0.033 * (sol.body("K1").theta - sol.body("K1").theta[0])
@@ -217,6 +220,9 @@ def test_car_axis() -> None:
         [getattr(v, f)[-1] for fields in (("x", "y"), ("vx", "vy")) for v in (one, two) for f in fields]
     )
     np.testing.assert_allclose(computed, expected[:8], atol=1e-6)
+    # multipliers of (xb xl + yb yl = 0) and (|l - r|^2 = L^2), whose gradients at the ends are 1 and 2 long
+    assert np.hypot(sol.joint("arm").fx, sol.joint("arm").fy)[-1] == pytest.approx(abs(expected[8]), abs=1e-8)
+    assert np.hypot(sol.joint("axle").fx, sol.joint("axle").fy)[-1] == pytest.approx(2 * abs(expected[9]), abs=1e-8)
 
 
 @pytest.mark.parametrize("name", ["nikravesh_mp_b_macpherson", "nikravesh_mp_c_macpherson"])

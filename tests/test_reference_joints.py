@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mbsd import AssemblyError, Mechanism, constant_rate
+from mbsd import AssemblyError, Mechanism, constant_rate, curve
+from mbsd.solution import Solution
 
 FOLDER = Path(__file__).parent / "reference"
 
@@ -85,29 +86,53 @@ def test_a_geneva_goes_on_turn_after_turn_and_needs_its_radius() -> None:
 # -- rolling ----------------------------------------------------------------------------------------------------
 
 
-def test_rolling_cart_of_nikravesh() -> None:
-    """Two wheels hold the cart's height and tilt; one freedom is left. (The note in the case counts one row more.)"""
-    case = _case("nikravesh_cart_a_rolling")
-    rows = np.array(case["expected"][0]["rows"])
+def _cart() -> Mechanism:
+    """Two wheels hold the cart's height and tilt; one freedom is left."""
     m = Mechanism("cart", gravity=(0.0, -9.81))
     cart = m.body("cart", 20, (0, 0), 5)
     for name, x in (("driven", -0.3), ("free", 0.3)):
         wheel = m.body(name, 2, (0, 0), 0.5)
         m.revolute(f"{name} axle", cart.at(x, -0.1), wheel.origin)
         m.rolling_disc(f"{name} road", m.ground.origin, wheel.origin, 0.1)
-    m.drive_relative_angle("motor", cart, m.bodies["driven"], constant_rate(-2 * math.pi))
     m.start_near(cart=(0.5, 0.2, 0), driven=(0.2, 0.1, 0), free=(0.8, 0.1, 0))
-    assert (m.mobility().dof, m.mobility().redundant_rows) == (1, 0)
-    sol = m.sweep(times=rows[:, 0])
+    return m
+
+
+def _assert_cart(sol: Solution, rows: np.ndarray, position: float, velocity: float) -> None:
     for b, name in enumerate(("cart", "driven", "free")):
         view = sol.body(name)
         got = np.stack([view.x, view.y, view.theta], axis=1)
-        np.testing.assert_allclose(got, rows[:, 1 + 3 * b : 4 + 3 * b], atol=1e-11)
+        np.testing.assert_allclose(got, rows[:, 1 + 3 * b : 4 + 3 * b], atol=position)
         got = np.stack([view.vx, view.vy, view.omega], axis=1)
-        np.testing.assert_allclose(got, rows[:, 10 + 3 * b : 13 + 3 * b], atol=1e-11)
+        np.testing.assert_allclose(got, rows[:, 10 + 3 * b : 13 + 3 * b], atol=velocity)
+
+
+def test_rolling_cart_of_nikravesh() -> None:
+    rows = np.array(_case("nikravesh_cart_a_rolling")["expected"][0]["rows"])
+    m = _cart()
+    m.drive_relative_angle("motor", m.bodies["cart"], m.bodies["driven"], constant_rate(-2 * math.pi))
+    assert (m.mobility().dof, m.mobility().redundant_rows) == (1, 0)
+    sol = m.sweep(times=rows[:, 0])
+    _assert_cart(sol, rows, 1e-11, 1e-11)
     weight = 9.81 * 24
     carried = sol.joint("driven road").fy + sol.joint("free road").fy
     np.testing.assert_allclose(carried, weight, rtol=1e-9)
+
+
+def test_rolling_cart_of_nikravesh_on_its_motor() -> None:
+    """The torque falls straight with the speed, so the cart nears its top speed as 1 - exp(-t / T)."""
+    case = _case("nikravesh_cart_c_rolling")
+    rows, limits = np.array(case["expected"][0]["rows"]), case["expected"][0]
+    m = _cart()
+    line = curve([-4 * math.pi, 0.0], [0.0, -20.0], "linear")
+    m.motor("motor", m.bodies["cart"], m.bodies["driven"], line)
+    sol = m.simulate(times=rows[:, 0], tolerance=1e-10)
+    _assert_cart(sol, rows, limits["tol_abs_pos"], limits["tol_abs_vel"])
+    top = 0.1 * 4 * math.pi
+    constant = (24 + 2 * 0.5 / 0.1**2) * top / (20 / 0.1)  # inertia seen by the cart over torque / radius
+    speed = top * (1 - np.exp(-sol.t / constant))
+    np.testing.assert_allclose(sol.body("cart").vx, speed, atol=1e-8)
+    np.testing.assert_allclose(sol.body("cart").x, 0.5 + top * sol.t - constant * speed, atol=1e-8)
 
 
 # -- V-engine ---------------------------------------------------------------------------------------------------

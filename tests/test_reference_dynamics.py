@@ -82,7 +82,7 @@ def test_pendulum_periods(degrees: int) -> None:
 
 
 def test_a_swinging_pendulum_by_jacobis_elliptic_functions() -> None:
-    """From hanging, sin(theta / 2) = k sn(w t | k^2): the velocity at the bottom is 2 k w and it turns back at 2 asin k."""
+    """From hanging, sin(theta / 2) = k sn(w t | k^2): 2 k w fast at the bottom, turning back at 2 asin k."""
     k, w = 0.9, math.sqrt(9.81)
     m = Mechanism("swinging", gravity=(0.0, -9.81))
     bob = m.body("bob", 1.0)

@@ -123,8 +123,9 @@ schema: install ## write docs/schema/ from shared/contract.py, shared/shot.py an
 	@$(PYTHON) -m shared.schema
 	@$(PYTHON) -m mbsd.saving.schema docs/schema/model.schema.json
 
-docs: install ## write docs/theory.md from the docstrings of the solver
+docs: install ## write docs/theory.md from the docstrings of the solver, and draw the pictures of docs/
 	@$(PYTHON) tools/theory.py
+	@$(PYTHON) -m tools.figures
 
 lock: ## choose versions anew within pyproject.toml: requirements.lock, requirements-bench.lock
 	@sh tools/lock.sh

@@ -16,7 +16,7 @@ from mbsd.packing import Packed
 def copied(m: Mechanism) -> Mechanism:
     """A mechanism of its own with the same bodies: what is added to the copy is not in the original."""
     out = copy.copy(m)
-    for name in ("bodies", "joints", "drivers", "forces", "traces", "starts", "velocities"):
+    for name in ("bodies", "joints", "drivers", "forces", "contacts", "events", "traces", "starts", "velocities"):
         setattr(out, name, dict(getattr(m, name)))
     return out
 

@@ -1,0 +1,14 @@
+"""A four-bar as a skeleton, and a parallelogram as a diagram of bodies and joints."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+from mbsd import Mechanism
+from mbsd.drawing.picture import Picture, Svg
+
+
+def pictures(page: SimpleNamespace) -> dict[str, Picture | Svg]:
+    """See tools/figures/__main__.py."""
+    four_bar = Mechanism.load(page.folder / "four_bar.json")  # as it was before the page took its motor away
+    return {"model_drawing.svg": four_bar.draw(), "model_topology.svg": page.wide.topology()}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import math
 import pkgutil
+import sys
 from functools import cache
 
 import numpy as np
@@ -22,9 +23,11 @@ for _module in pkgutil.iter_modules(mbsd.integrators.__path__):
 
 G = 9.81
 AMPLITUDE = math.radians(100)
+OUTPUTS = 10
 ROUNDING = 1e-11
 """Errors below this tell nothing about an order."""
-PROJECTED = sorted(set(INTEGRATORS) - {"baumgarte"})
+METHODS = sorted(name for name in INTEGRATORS if INTEGRATORS[name].installed)
+PROJECTED = [name for name in METHODS if name != "baumgarte"]
 """Methods that promise closed constraints at outputs."""
 
 
@@ -47,27 +50,32 @@ def four_bar() -> Mechanism:
     return m
 
 
-def exact_pendulum(t: float) -> float:
+def exact_pendulum(t: np.ndarray | float) -> np.ndarray:
     """Angle of the rod from the x axis: sin(phi/2) = k sn(K - w t), w^2 = g over the equivalent length l = 1 m."""
     k = math.sin(AMPLITUDE / 2)
-    sn = ellipj(ellipk(k * k) - math.sqrt(G) * t, k * k)[0]
-    return 2 * math.asin(k * sn) - math.pi / 2
+    sn = ellipj(ellipk(k * k) - math.sqrt(G) * np.asarray(t), k * k)[0]
+    return 2 * np.arcsin(k * sn) - math.pi / 2
 
 
 @cache
-def fine_four_bar(t: float) -> float:
-    return float(four_bar().simulate(t, steps=1, method="rk4", step=1e-4).body("rocker").theta[-1])
+def fine_four_bar(duration: float) -> np.ndarray:
+    sol = four_bar().simulate(duration, steps=OUTPUTS, method="rk4", step=1e-4 * duration**0.5)
+    return sol.body("rocker").theta
 
 
-def runs(method: Integrator, make, body: str, exact: float) -> tuple[np.ndarray, np.ndarray]:
-    """Steps and errors of finer and finer runs, those that rounding hides left out."""
+def runs(method: Integrator, case: str) -> tuple[np.ndarray, np.ndarray]:
+    """Steps and errors (rms of the outputs) of finer and finer runs, those that rounding hides left out.
+
+    Fixed steps over one second; tolerances over ten, so that steps are not bound by the duration.
+    """
+    duration = 1.0 if method.fixed_step else 10.0
+    make, body = (pendulum, "rod") if case == "pendulum" else (four_bar, "rocker")
+    exact = exact_pendulum(np.linspace(0, duration, OUTPUTS + 1)) if make is pendulum else fine_four_bar(duration)
     steps, errors = [], []
     for k in range(5):
-        if method.fixed_step:
-            sol = make().simulate(1.0, steps=1, method=method.name, step=0.02 / 2**k)
-        else:
-            sol = make().simulate(10.0, steps=1, method=method.name, tolerance=10.0 ** (-4 - k))
-        error = abs(sol.body(body).theta[-1] - exact)
+        setting = {"step": 0.02 / 2**k} if method.fixed_step else {"tolerance": 10.0 ** (-4 - k)}
+        sol = make().simulate(duration, steps=OUTPUTS, method=method.name, **setting)
+        error = float(np.sqrt(np.mean((sol.body(body).theta - exact) ** 2)))
         if error > ROUNDING:
             steps.append(sol.stats.steps)
             errors.append(error)
@@ -79,22 +87,23 @@ def order_of(steps: np.ndarray, errors: np.ndarray) -> float:
     return -np.polyfit(np.log(steps[1:]), np.log(errors[1:]), 1)[0]
 
 
-@pytest.mark.parametrize("name", sorted(INTEGRATORS))
+@pytest.mark.parametrize("name", METHODS)
 @pytest.mark.parametrize("case", ["pendulum", "four-bar"])
 def test_measured_order(name: str, case: str) -> None:
-    """Fixed steps over one second; tolerances over ten, so that steps are not bound by the duration."""
+    """Of an open and a closed chain, by halved steps or by tolerances divided by ten."""
     method = INTEGRATORS[name]
-    duration = 1.0 if method.fixed_step else 10.0
-    if case == "pendulum":
-        steps, errors = runs(method, pendulum, "rod", exact_pendulum(duration))
-    else:
-        steps, errors = runs(method, four_bar, "rocker", fine_four_bar(duration))
+    steps, errors = runs(method, case)
     if method.fixed_step:
         assert order_of(steps, errors) > method.order - 0.25
         assert (errors[1:] < 0.7 * errors[:-1]).all()
-    else:
-        assert errors[-1] < 1e-6
-        assert errors[-1] < 1e-2 * errors[0]
+        return
+    assert errors[-1] < (1e-6 if method.order else 1e-4)
+    assert errors[-1] < 1e-3 * errors[0]
+    assert (steps[1:] > steps[:-1]).all()
+    if method.order:
+        assert order_of(steps, errors) > method.order - 1.0, (
+            "steps are not equal: the slope is not the order to a digit"
+        )
 
 
 @pytest.mark.parametrize("name", PROJECTED)
@@ -108,7 +117,7 @@ def test_constraints_hold_at_every_output(name: str) -> None:
     assert np.ptp(sol.energy.total) < 1e-2
 
 
-@pytest.mark.parametrize("name", sorted(INTEGRATORS))
+@pytest.mark.parametrize("name", METHODS)
 def test_a_run_in_two_parts_is_the_run_in_one(name: str) -> None:
     """Stopped after three steps, then at half time, and gone on from there."""
     method = INTEGRATORS[name]
@@ -124,12 +133,13 @@ def test_a_run_in_two_parts_is_the_run_in_one(name: str) -> None:
         assert method.advance(ready.dynamics, ready.scratch(method), state, parts, settings, end, 10**6) == REACHED
         assert state.clock[TIME] == end
     assert state.count[NEXT] == len(times)
-    np.testing.assert_allclose(state.y, whole.y, atol=1e-5)
-    np.testing.assert_allclose(parts.y, out.y, atol=1e-5)
-    np.testing.assert_allclose(parts.lam, out.lam, atol=1e-3)
+    near = 1e-5 if method.order else 2e-4  # from half time on, methods that choose their order take other steps
+    np.testing.assert_allclose(state.y, whole.y, atol=near)
+    np.testing.assert_allclose(parts.y, out.y, atol=near)
+    np.testing.assert_allclose(parts.lam, out.lam, atol=10 * near + 1e-3)
 
 
-@pytest.mark.parametrize("name", sorted(INTEGRATORS))
+@pytest.mark.parametrize("name", METHODS)
 def test_work_of_a_driver_goes_into_the_energy(name: str) -> None:
     from mbsd import harmonic
 
@@ -184,6 +194,36 @@ def test_options_are_named_and_checked() -> None:
         pendulum().simulate(1.0, method="rk4", rho=0.5)
     with pytest.raises(ModelError, match="no option 'tolerence'"):
         pendulum().simulate(1.0, tolerence=1e-3)
+
+
+def test_a_method_of_a_missing_package_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "sksundae", None)
+    with pytest.raises(ModelError, match=r"need scikit-sundae: install mbsd\[bench\]"):
+        pendulum().simulate(1.0, method="sundials-bdf")
+
+
+@pytest.mark.parametrize("name", [name for name in METHODS if "-" in name])
+def test_other_libraries_find_the_same_motion(name: str) -> None:
+    """Reactions, work and all, with forces that depend on velocity, a driver and outputs between the steps."""
+    m = four_bar()
+    m.spring("damper", m.ground.at(0.2, 0.6), m.bodies["coupler"].end, 40.0, 2.0, 0.5)
+    own = m.simulate(1.0, steps=50, tolerance=1e-10)
+    sol = m.simulate(1.0, steps=50, method=name, tolerance=1e-9)
+    np.testing.assert_allclose(sol.q, own.q, atol=2e-6)
+    np.testing.assert_allclose(sol.joint("C").reaction, own.joint("C").reaction, atol=1e-3)
+    assert own.work is not None
+    assert sol.work is not None
+    np.testing.assert_allclose(sol.work, own.work, atol=1e-5)
+    assert np.abs(own.work).max() > 0.1
+
+
+@pytest.mark.parametrize("name", [name for name in METHODS if "-" in name])
+def test_rates_that_are_no_numbers_stop_other_libraries(name: str) -> None:
+    """They would go on for ever, or tell nothing."""
+    m = pendulum()
+    m.user_force("push", lambda t, q, v: [0.0, 0.0, math.log(0.5 - t)], m.bodies["rod"])
+    with pytest.raises((ModelError, SimulationError), match="push"):
+        m.simulate(1.0, method=name)
 
 
 def test_a_name_is_taken_once() -> None:

@@ -18,8 +18,10 @@ import pytest
 from shared.paths import ROOT
 
 CORE = {"numpy", "scipy", "numba"}
-OPTIONAL = {"pandas": "pandas", "matplotlib": "draw"}
+OPTIONAL = {"pandas": "pandas", "matplotlib": "draw", "sksundae": "bench"}
 """What single methods ask for, and the extra that brings it."""
+PACKAGE = {"sksundae": "scikit-sundae"}
+"""Of what is imported under another name."""
 BLOCKER = """
 import sys
 ALLOWED = set(sys.stdlib_module_names) | {"numpy", "scipy", "numba", "llvmlite", "mbsd"}
@@ -53,7 +55,9 @@ with tempfile.TemporaryDirectory() as folder:
     m.save(os.path.join(folder, "model.json"))
     assert Mechanism.load(os.path.join(folder, "model.json")).mobility().dof == 1
 assert m.topology()._repr_svg_().startswith("<svg")
-for extra, ask in (("pandas", sol.to_frame), ("draw", m.draw), ("draw", sol.draw)):
+def outside():
+    m.simulate(0.01, method="sundials-bdf")
+for extra, ask in (("pandas", sol.to_frame), ("draw", m.draw), ("draw", sol.draw), ("bench", outside)):
     try:
         ask()
     except ModelError as error:
@@ -134,4 +138,4 @@ def _for_types(tree: ast.Module, node: ast.AST) -> bool:
 def test_each_optional_import_has_its_extra() -> None:
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
     for package, extra in OPTIONAL.items():
-        assert any(need.startswith(package) for need in extras[extra])
+        assert any(need.startswith(PACKAGE.get(package, package)) for need in extras[extra])

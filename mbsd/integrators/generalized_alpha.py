@@ -89,12 +89,12 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
     n3 = y.shape[1]
     rho = settings.options[0]
     m, f, g, b = _weights(rho)
-    anew = state.count[STARTED] == 0
+    if state.count[STARTED] == 0:
+        state.clock[STEP] = 0.0
     begin(dyn, scratch, state)
-    if anew:
+    if state.clock[STEP] == 0.0:  # a start, or a restart after an event
         for c in range(3, n3):
             x[c] = state.dy[1, c]
-        state.clock[STEP] = 0.0
     factored = 0.0  # the step that the matrix was made for
     accepted = 0
     while True:

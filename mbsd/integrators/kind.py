@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -38,7 +39,7 @@ class Integrator:
     stages: int
     """Rows of Scratch.stages it needs."""
     order: int
-    """Of the global error for smooth problems; the registry test measures it."""
+    """Of the global error for smooth problems; the registry test measures it. 0: the method chooses it step by step."""
     fixed_step: bool
     """Steps are given by the user, not by an error estimate."""
     options: Mapping[str, Option] = field(default_factory=dict)
@@ -47,6 +48,19 @@ class Integrator:
     """Full matrices it needs, and their rows for each coordinate (see mbsd/dynamics/full_matrix.py)."""
     refusal: Callable[[Dynamics], str | None] = lambda dynamics: None
     """Why this method cannot simulate a mechanism, or None."""
+    package: str = ""
+    """Another library's, by the name it is imported by; needed for this method alone."""
+
+    @property
+    def installed(self) -> bool:
+        """Whether this method can run here."""
+        if not self.package:
+            return True
+        try:
+            importlib.import_module(self.package)
+        except ImportError:
+            return False
+        return True
 
     def numbers(self, model: str, given: Mapping[str, float]) -> np.ndarray:
         """(options,) what was given, else the defaults. Raises ModelError for unknown names and impossible values."""

@@ -14,7 +14,7 @@ from benchmarks.dynamics.cases import Case
 from benchmarks.dynamics.pins import GROUND, Pin, Pinned, Solid, Spring, closure
 
 pytest.importorskip("exudyn", reason="needs exudyn, which the extra bench installs")
-from benchmarks.dynamics import exudyn_code  # noqa: E402
+from benchmarks.dynamics import exudyn_code
 
 DURATION = 0.4
 STEPS = 2000

@@ -125,7 +125,7 @@ class AddingContacts(MechanismBase):
         ``moment`` shows the motion now (mbsd/dynamics/moment.py). ``terminal`` ends the simulation there; ``action``
         is called with the moment and may change velocities, forces and gravity, and let joints go.
         """
-        self._new_name(name, self.events, "event")
+        self._new_name(name, "event", self.events)
         for what, function in (("value", value), ("action", action)):
             if not callable(function) and not (what == "action" and function is None):
                 raise ModelError(f"{self.name}: event '{name}': {what} is {function!r}; it must be a function")
@@ -161,7 +161,7 @@ class AddingContacts(MechanismBase):
     def _touch(
         self, kind: ContactKind, name: str, i: Marker, j: Marker, restitution: float | None, params: dict[str, Any]
     ) -> Joint:
-        self._new_name(name, self.joints | self.drivers | self.forces | self.contacts, "contact")
+        self._new_name(name, "contact", *self._connections)
         for marker in (i, j):
             if not isinstance(marker, Marker):
                 raise ModelError(

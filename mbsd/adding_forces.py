@@ -166,7 +166,7 @@ class AddingForces(MechanismBase):
         laws: Mapping[str, Motion | Curve] | None = None,
         same_body: bool = False,
     ) -> Force:
-        self._new_name(name, self.joints | self.drivers | self.forces, "force")
+        self._new_name(name, "force", *self._connections)
         for marker in (i, j):
             if not isinstance(marker, Marker):
                 raise ModelError(

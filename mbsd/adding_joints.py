@@ -92,7 +92,7 @@ class AddingJoints(MechanismBase):
 
     def _join(self, kind: JointKind, name: str, i: Marker, j: Marker, law: Law | None = None, **params: Any) -> Joint:
         what = "driver" if kind.driven else "joint"
-        self._new_name(name, self.joints | self.drivers, what)
+        self._new_name(name, what, *self._connections)
         for marker in (i, j):
             if not isinstance(marker, Marker):
                 raise ModelError(

@@ -24,15 +24,36 @@ class Marker:
 class Body:
     """A rigid body with the frame its author chose. Ground is body 0 and never moves.
 
-    mass (kg), com (m, body frame), inertia about the centre of mass (kg m^2).
+    mass (kg), com (m, body frame), inertia about the centre of mass (kg m^2). They may be set at any time: the next
+    solution has them. ``owner`` is the mechanism's name, for errors.
     """
 
     name: str
+    owner: str = ""
     mass: float = 0.0
     com: tuple[float, float] = (0.0, 0.0)
     inertia: float = 0.0
     length: float | None = None
     """Of a bar (m); None for other bodies."""
+
+    def __setattr__(self, name: str, value: object) -> None:
+        super().__setattr__(name, self._checked(name, value))
+
+    def _checked(self, name: str, value: object) -> object:
+        """What may be set. Raises ModelError for what no body has."""
+        what = f"{self.owner}: {name} of body '{self.name}'" if name in ("mass", "inertia", "com") else name
+        if name == "com":
+            return number_pair(f"{what} (m)", value)
+        if name in ("mass", "inertia"):
+            number, unit = finite_number(what, value), "kg" if name == "mass" else "kg m^2"
+            if number < 0:
+                raise ModelError(
+                    f"{self.owner}: body '{self.name}' has {name} {number:g} {unit}; it cannot be negative"
+                )
+            return number
+        if name in ("name", "owner", "length") and self.__dict__.get(name) not in (None, value):
+            raise ModelError(f"{self.owner}: {name} of body '{self.name}' is fixed; add another body")
+        return value
 
     def at(self, x: float, y: float, angle: float = 0.0) -> Marker:
         """The marker at (x, y) in this body's frame (m), its x axis turned by ``angle`` (rad)."""

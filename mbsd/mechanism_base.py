@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from mbsd.body import Body, Marker, finite_number, number_pair
@@ -51,10 +51,13 @@ class MechanismBase:
     """Whether suspicious units were told; see mbsd/check.py."""
 
     def __post_init__(self) -> None:
-        self._new_name(self.name, {}, "mechanism")
-        gravity = self.gravity if self.gravity is not None else (0.0, 0.0)
-        self.gravity = number_pair(f"{self.name}: gravity (m/s^2)", gravity)
-        self.bodies["ground"] = Body("ground")
+        self._new_name(self.name, "mechanism")
+        self.bodies["ground"] = Body("ground", self.name)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if name == "gravity":
+            value = number_pair(f"{self.name}: gravity (m/s^2)", (0.0, 0.0) if value is None else value)
+        super().__setattr__(name, value)
 
     # -- bodies -------------------------------------------------------------------------------------------------
 
@@ -65,13 +68,8 @@ class MechanismBase:
 
     def body(self, name: str, mass: float = 0.0, com: Sequence[float] = (0.0, 0.0), inertia: float = 0.0) -> Body:
         """Add a body. Raises ModelError on a name already used or an impossible mass."""
-        self._new_name(name, self.bodies, "body")
-        body = self.bodies[name] = Body(name)
-        try:
-            self.set_mass(name, mass, com, inertia)
-        except ModelError:
-            del self.bodies[name]
-            raise
+        self._new_name(name, "body", self.bodies)
+        body = self.bodies[name] = Body(name, self.name, mass, com, inertia)  # pyright: ignore[reportArgumentType]
         return body
 
     def bar(
@@ -99,13 +97,8 @@ class MechanismBase:
     def set_mass(self, name: str, mass: float, com: Sequence[float], inertia: float) -> None:
         """Set mass (kg), centre of mass (m, body frame) and inertia about it (kg m^2), as from CAD."""
         body = self.known_body(name)
-        centre = number_pair(f"{self.name}: com of body '{name}' (m)", com)
-        values = [self._number(f"mass of body '{name}'", mass), self._number(f"inertia of body '{name}'", inertia)]
-        for what, value, unit in zip(("mass", "inertia"), values, ("kg", "kg m^2"), strict=True):
-            if value < 0:
-                raise ModelError(f"{self.name}: body '{name}' has {what} {value:g} {unit}; it cannot be negative")
-        body.mass, body.inertia = values
-        body.com = centre
+        wanted = Body(name, self.name, mass, com, inertia)  # pyright: ignore[reportArgumentType]
+        body.mass, body.com, body.inertia = wanted.mass, wanted.com, wanted.inertia
 
     def known_body(self, name: str) -> Body:
         """The body of this name; raises ModelError with the known names."""
@@ -121,10 +114,15 @@ class MechanismBase:
         if self.bodies.get(body.name) is not body:
             raise ModelError(f"{self.name}: {what} uses body '{body.name}' of another mechanism")
 
-    def _new_name(self, name: str, taken: dict, what: str) -> None:
+    @property
+    def _connections(self) -> tuple[Mapping[str, object], ...]:
+        """What shares one set of names: whatever connects two bodies."""
+        return self.joints, self.drivers, self.forces, self.contacts
+
+    def _new_name(self, name: str, what: str, *taken: Mapping[str, object]) -> None:
         if not isinstance(name, str) or not name or name != name.strip() or not name.isprintable():
             raise ModelError(f"{self.name}: a {what} needs a name without spaces around it, got {name!r}")
-        if name in taken:
+        if any(name in names for names in taken):
             raise ModelError(f"{self.name}: there are two of the name '{name}'; the {what} needs another")
 
     def _number(self, what: str, value: object) -> float:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -47,7 +47,7 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
 
     def trace(self, name: str, marker: Marker) -> Marker:
         """Follow a point: its path, velocity and acceleration are in the solution."""
-        self._new_name(name, self.traces, "trace")
+        self._new_name(name, "trace", self.traces)
         if not isinstance(marker, Marker):
             raise ModelError(f"{self.name}: trace '{name}' needs a marker, got {marker!r}; write body.at(x, y)")
         self._own_body(marker.body, f"trace '{name}'")
@@ -85,6 +85,21 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
                 raise ModelError(f"{self.name}: {what} is {velocity!r}; give rad/s, or (vx, vy, omega)")
             vx, vy, omega = (self._number(what, value) for value in velocity)
             self.velocities[name] = StartVelocity(omega, (vx, vy))
+
+    def change(self, name: str, **values: Any) -> None:
+        """Change numbers or laws of a body, joint, driver, force or contact; the next solution has them.
+
+            m.change("spring", stiffness=250.0)
+            m.change("crank", mass=1.2)
+            m.change("motor", law=constant_rate(20.0))
+
+        ``values`` are the arguments of the method that added it, but for its markers and bodies; of a body its mass
+        (kg), com (m) and inertia (kg m^2). Nothing is compiled anew. Raises ModelError, and changes nothing, for what
+        that method refuses.
+        """
+        from mbsd.changing import change
+
+        change(self, name, values)
 
     def check(self) -> list[Finding]:
         """Numbers that look like a mixed-up unit, with remedies; the first solution warns of them (ModelWarning)."""

@@ -255,24 +255,32 @@ class Solution:
         return pandas.DataFrame(self.columns(), index=pandas.Index(self.t, name="t [s]"))
 
     def columns(self) -> dict[str, np.ndarray]:
-        """All results as (T,) arrays, named ``coupler.theta [rad]``."""
+        """All results as (T,) arrays, named ``coupler.theta [rad]``.
+
+        Where a trace, joint or driver has the name of something else, its columns say what it is: ``joint A.fx [N]``.
+        """
+        m, bodies = self.mechanism, set(self.packed.body_names)
+        joined = set(m.joints) | set(m.drivers)
+        traces = {name: f"trace {name}" if name in bodies | joined else name for name in m.traces}
+        joints = {name: f"joint {name}" if name in bodies | set(m.traces) else name for name in m.joints}
+        drivers = {name: f"driver {name}" if name in bodies | set(m.traces) else name for name in m.drivers}
         frame_units = dict(zip(FrameView.__dataclass_fields__, _FRAME_UNITS, strict=True))
         out: dict[str, np.ndarray] = {}
         for name in self.packed.body_names[1:]:
             view = self.body(name)
             out |= {f"{name}.{key} [{unit}]": getattr(view, key) for key, unit in frame_units.items()}
-        for name in self.mechanism.traces:
+        for name, title in traces.items():
             view = self.point(name)
             linear = {key: unit for key, unit in frame_units.items() if "rad" not in unit}
-            out |= {f"{name}.{key} [{unit}]": getattr(view, key) for key, unit in linear.items()}
-        for name in self.mechanism.joints:
+            out |= {f"{title}.{key} [{unit}]": getattr(view, key) for key, unit in linear.items()}
+        for name, title in joints.items():
             joint = self.joint(name)
-            out |= {f"{name}.{key} [{unit}]": getattr(joint, key) for key, unit in _JOINT_UNITS.items()}
-        for name, driver in self.mechanism.drivers.items():
+            out |= {f"{title}.{key} [{unit}]": getattr(joint, key) for key, unit in _JOINT_UNITS.items()}
+        for name, title in drivers.items():
             view = self.driver(name)
-            effort, value = driver.kind.units
-            out |= {f"{name}.value [{value}]": view.value, f"{name}.effort [{effort}]": view.effort}
-            out[f"{name}.power [W]"] = view.power
+            effort, value = m.drivers[name].kind.units
+            out |= {f"{title}.value [{value}]": view.value, f"{title}.effort [{effort}]": view.effort}
+            out[f"{title}.power [W]"] = view.power
         return out | {"kinetic [J]": self.energy.kinetic, "potential [J]": self.energy.potential}
 
     def draw(

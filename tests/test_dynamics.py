@@ -164,3 +164,24 @@ def test_a_cranked_motor_reports_its_power() -> None:
     sol = m.sweep(steps=8)
     np.testing.assert_allclose(sol.driver("motor").power, 0.0, atol=1e-12)
     np.testing.assert_allclose(sol.energy.kinetic, 0.45)
+
+
+def test_columns_of_things_with_one_name_stay_apart() -> None:
+    m = Mechanism("namesakes")
+    slider = m.body("slider", 2.0)
+    m.prismatic("slider", m.ground.origin, slider.at(0.0, 0.3))
+    m.trace("slider", slider.at(0.1, 0.2))
+    m.trace("way", slider.origin)
+    m.drive_coordinate("way", m.ground.origin, slider.origin, harmonic(0.1, 2.0))
+    columns = m.sweep(1.0, steps=4).columns()
+    assert {
+        "slider.x [m]",
+        "trace slider.x [m]",
+        "joint slider.x [m]",
+        "trace way.x [m]",
+        "driver way.effort [N]",
+    } <= set(columns)
+    places = [columns[f"{what}slider.y [m]"] for what in ("", "trace ", "joint ")]
+    np.testing.assert_allclose(np.ptp(places, axis=1), 0.0, atol=1e-15)
+    assert len({round(float(place[0]), 9) for place in places}) == 3
+    assert len(columns) == 9 + 2 * 6 + 5 + 3 + 2

@@ -141,7 +141,7 @@ def test_a_loaded_model_moves_as_the_first(tmp_path: Path) -> None:
 
 def test_all_that_a_model_holds_is_in_its_file() -> None:
     assert {field.name for field in fields(Mechanism)} <= set(schema()["properties"])
-    assert {field.name for field in fields(Body)} == {"name", *schema()["$defs"]["body"]["properties"]}
+    assert {field.name for field in fields(Body)} == {"name", "owner", *schema()["$defs"]["body"]["properties"]}
 
 
 def test_the_published_schema_is_current() -> None:

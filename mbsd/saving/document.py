@@ -13,12 +13,12 @@ is saved.
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, fields
 from typing import Any
 
 from mbsd.body import Body, Marker
+from mbsd.changing import law_name, with_markers
 from mbsd.contacts.kind import CONTACT_KINDS
 from mbsd.errors import ModelError
 from mbsd.force import Force
@@ -152,8 +152,7 @@ def _read_joint(m: Mechanism, part: str, name: str, entry: Entry) -> None:
     method = getattr(m, kind.name)
     named = _params(m, entry)
     if kind.driven:
-        [law] = [p.name for p in inspect.signature(method).parameters.values() if str(p.annotation) == "Law"]
-        named[law] = law_from(entry.entry("law").data, entry.where)
+        named[law_name(method)] = law_from(entry.entry("law").data, entry.where)
     _add(m, method, name, entry, named)
 
 
@@ -195,16 +194,6 @@ def _value(m: Mechanism, value: Any, entry: Entry) -> Any:
 
 
 def _add(m: Mechanism, method: Callable[..., Any], name: str, entry: Entry, named: dict[str, Any]) -> None:
-    """Call a method of Mechanism that adds a joint, driver or force.
-
-    Its parameters that must be markers or bodies take the last of markers i and j in order, a body that may be given
-    (``against``, ``frame``) takes what is left; all others are ``named``.
-    """
+    """Call a method of Mechanism that adds a joint, driver, force or contact."""
     markers = [_read_marker(m, entry.entry(key)) for key in ("i", "j")]
-    slots = [p for p in inspect.signature(method).parameters.values() if p.name not in named]
-    needed = [p for p in slots if str(p.annotation) in ("Marker", "Body")]
-    given = [p for p in slots if str(p.annotation) == "Body | None"]
-    left = markers[: len(markers) - len(needed)]
-    for slot, marker in [*zip(needed, markers[len(left) :], strict=False), *zip(given, left, strict=False)]:
-        named[slot.name] = marker if str(slot.annotation) == "Marker" else marker.body
-    called(method, entry.where, [name], named)
+    called(method, entry.where, [name], with_markers(method, markers, named))

@@ -1,0 +1,96 @@
+"""Numbers and laws of a mechanism changed where it stands, so that it is solved again without being built again.
+
+A joint, driver, force or contact is made anew by the method of its kind's name, from its own markers, numbers and laws
+and the new ones, so what the method refuses stays refused. Its place among the others stays too, and compiled code is
+used as it is.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from mbsd.body import Marker
+from mbsd.errors import ModelError
+from mbsd.force import Force
+from mbsd.joint import Joint
+
+if TYPE_CHECKING:
+    from mbsd.model import Mechanism
+
+BODY = ("mass", "com", "inertia")
+
+
+def with_markers(method: Callable[..., Any], markers: list[Marker], named: Mapping[str, Any]) -> dict[str, Any]:
+    """Arguments of a method that adds a joint, driver, force or contact: those ``named``, and its markers or bodies.
+
+    Parameters that must be markers or bodies take the last of ``markers`` (i and j) in order, a body that may be given
+    (``against``, ``frame``) takes what is left.
+    """
+    out = dict(named)
+    slots = [p for p in inspect.signature(method).parameters.values() if p.name not in named]
+    needed = [p for p in slots if str(p.annotation) in ("Marker", "Body")]
+    given = [p for p in slots if str(p.annotation) == "Body | None"]
+    left = markers[: len(markers) - len(needed)]
+    for slot, marker in [*zip(needed, markers[len(left) :], strict=False), *zip(given, left, strict=False)]:
+        out[slot.name] = marker if str(slot.annotation) == "Marker" else marker.body
+    return out
+
+
+def law_name(method: Callable[..., Any]) -> str:
+    """The argument of a driver's method that is its law."""
+    [law] = [p.name for p in inspect.signature(method).parameters.values() if str(p.annotation) == "Law"]
+    return law
+
+
+def change(m: Mechanism, name: str, values: Mapping[str, Any]) -> None:
+    """See :meth:`mbsd.model.Mechanism.change`."""
+    for table in m._connections:
+        if name in table:
+            return _change(m, table, name, values)  # pyright: ignore[reportArgumentType]
+    if name not in m.bodies or name == "ground":
+        known = [*m._connections, {body: None for body in m.bodies if body != "ground"}]
+        raise ModelError(
+            f"{m.name}: there is nothing called '{name}' to change; there is: "
+            f"{', '.join(key for table in known for key in table) or 'nothing'}"
+        )
+    body = m.bodies[name]
+    _refuse_others(m, f"body '{name}'", values, BODY)
+    m.set_mass(name, **({key: getattr(body, key) for key in BODY} | dict(values)))
+    return None
+
+
+def _change(m: Mechanism, table: dict[str, Any], name: str, values: Mapping[str, Any]) -> None:
+    old: Joint | Force = table[name]
+    method = getattr(m, old.kind.name)
+    parameters = list(inspect.signature(method).parameters.values())[1:]
+    own = [p.name for p in parameters if str(p.annotation) not in ("Marker", "Body", "Body | None")]
+    if any(p.kind is p.VAR_POSITIONAL for p in parameters):
+        own = []
+    what = f"{old.kind.name} '{name}'"
+    _refuse_others(m, what, values, own)
+    if not values:
+        return
+    named = dict(old.params)
+    if isinstance(old, Force):
+        named |= old.laws
+    elif old.motion is not None:
+        named[law_name(method)] = old.motion
+    before = dict(table)
+    del table[name]
+    try:
+        method(name, **with_markers(method, [old.i, old.j], named | dict(values)))
+    except BaseException:
+        table.clear()
+        table.update(before)
+        raise
+    new = table[name]
+    table.clear()
+    table.update({key: new if key == name else value for key, value in before.items()})
+
+
+def _refuse_others(m: Mechanism, what: str, values: Mapping[str, Any], known: tuple[str, ...] | list[str]) -> None:
+    others = [key for key in values if key not in known]
+    if others:
+        raise ModelError(f"{m.name}: {what} has no '{others[0]}' to change; there is: {', '.join(known) or 'nothing'}")

@@ -15,8 +15,9 @@ from mbsd.drawing.names import place_names
 from mbsd.drawing.outline import rounded
 from mbsd.drawing.picture import Picture
 from mbsd.drawing.pose import Pose
+from mbsd.drawing.reach import reach
 from mbsd.drawing.symbols import Place, draw_joint, free_side
-from mbsd.drawing.wheels import name_place, reach
+from mbsd.drawing.wheels import name_place
 from mbsd.errors import ModelError
 from mbsd.model import Mechanism
 
@@ -41,9 +42,9 @@ def draw(m: Mechanism, pose: Pose, ax: Axes | None, frames: bool, names: bool) -
     except ImportError as error:
         raise ModelError("drawing needs matplotlib: install mbsd[draw]") from error
     points = {name: _points(m, pose, name) for name in m.bodies}
-    wheels = [reach(joint, pose) for joint in m.joints.values()]
+    wide = [reach(joint, pose) for joint in m.joints.values()]
     loads = [force_reach(force, pose) for force in m.forces.values()]
-    everything = np.concatenate([*points.values(), *pose.paths.values(), *wheels, *loads])
+    everything = np.concatenate([*points.values(), *pose.paths.values(), *wide, *loads])
     if not len(everything):
         everything = np.zeros((1, 2))
     low, high = everything.min(axis=0), everything.max(axis=0)

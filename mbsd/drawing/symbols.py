@@ -1,5 +1,7 @@
 """The standard symbols of joints and drivers: pin circle, slider block on its guide, slot, weld, rod, arrows.
 
+Those of machines are in wheels.py, rolling.py, cam.py and geneva.py.
+
 A kind that has no symbol of its own here gets a dashed line between its markers, so nothing is left out.
 """
 
@@ -11,9 +13,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mbsd.drawing.cam import draw_cam
 from mbsd.drawing.canvas import Canvas
+from mbsd.drawing.geneva import draw_geneva
 from mbsd.drawing.look import INK, MOVED, PAPER, QUIET, WRONG
 from mbsd.drawing.pose import Pose
+from mbsd.drawing.rolling import draw_point_on_curve, draw_rack, draw_rolling_disc, draw_rolling_on_curve
 from mbsd.drawing.wheels import draw_belt, draw_gear_pair
 from mbsd.joint import Joint
 
@@ -213,6 +218,13 @@ SYMBOLS: dict[str, Callable[[Canvas, Place], None]] = {
     "distance": _distance,
     "gear_pair": lambda canvas, place: draw_gear_pair(canvas, place.joint, place.pose, place.colours),
     "belt": lambda canvas, place: draw_belt(canvas, place.joint, place.pose, place.colours),
+    "rack_and_pinion": draw_rack,
+    "rolling_disc": draw_rolling_disc,
+    "rolling_on_curve": draw_rolling_on_curve,
+    "point_on_curve": draw_point_on_curve,
+    "cam_roller": draw_cam,
+    "cam_flat": draw_cam,
+    "geneva": draw_geneva,
     "drive_angle": _drive_angle,
     "drive_relative_angle": _drive_angle,
     "drive_coordinate": _drive_coordinate,

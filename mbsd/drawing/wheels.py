@@ -19,16 +19,6 @@ RIM = 1.5
 """Of a ring beyond its teeth, in units."""
 
 
-def reach(joint: Joint, pose: Pose) -> np.ndarray:
-    """(k, 2) corners of the boxes around the wheels of a joint (m); none for other joints."""
-    out = []
-    for marker, key in ((joint.i, "radius_i"), (joint.j, "radius_j")):
-        radius = joint.params.get(key)
-        if isinstance(radius, float):
-            out += [pose.place(marker) + radius * np.array(way) for way in ((1, 1), (-1, -1))]
-    return np.array(out).reshape(-1, 2)
-
-
 def draw_gear_pair(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
     """Both gears. A gear that is new on the canvas is turned so that its teeth mesh with those of the other."""
     internal = bool(joint.params.get("internal"))
@@ -50,9 +40,9 @@ def draw_gear_pair(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, 
         teeth = max(3, round(wheels[key_j][0] * r_i / r_j))
         wheels[key_i] = teeth, teeth * line - math.pi + (-here if internal else here)
     if new_i:
-        _gear(canvas, i, r_i, *wheels[key_i], colours.get(key_i[0], QUIET), internal)
+        draw_gear(canvas, i, r_i, *wheels[key_i], colours.get(key_i[0], QUIET), internal)
     if new_j:
-        _gear(canvas, j, r_j, *wheels[key_j], colours.get(key_j[0], QUIET), False)
+        draw_gear(canvas, j, r_j, *wheels[key_j], colours.get(key_j[0], QUIET), False)
     canvas.label(joint.name, i + r_i * np.array([math.cos(line), math.sin(line)]), 0.5)
 
 
@@ -65,10 +55,21 @@ def name_place(m: MechanismBase, pose: Pose, name: str, unit: float) -> np.ndarr
     return None
 
 
-def _gear(canvas: Canvas, centre: np.ndarray, r: float, teeth: int, phase: float, colour: str, ring: bool) -> None:
+def tooth(phase: np.ndarray) -> np.ndarray:
+    """The profile of teeth, -1 .. 1, a tooth at phase 0 (rad, 2 pi a tooth)."""
+    return np.clip(1.8 * np.cos(phase), -1.0, 1.0)
+
+
+def tooth_depth(canvas: Canvas, r: float, teeth: int) -> float:
+    """Half the height of the teeth of a gear (m)."""
+    return 0.3 * min(2 * math.pi * r / teeth, PITCH * canvas.unit)
+
+
+def draw_gear(canvas: Canvas, centre: np.ndarray, r: float, teeth: int, phase: float, colour: str, ring: bool) -> None:
+    """A toothed outline at pitch radius r (m), a tooth where ``teeth`` times angle is ``phase``; ``ring``: inside."""
     turn = np.linspace(0.0, 2 * math.pi, 8 * teeth + 1)
-    depth = 0.3 * min(2 * math.pi * r / teeth, PITCH * canvas.unit)
-    profile = np.clip(1.8 * np.cos(teeth * turn - phase), -1.0, 1.0) * (-1.0 if ring else 1.0)
+    depth = tooth_depth(canvas, r, teeth)
+    profile = tooth(teeth * turn - phase) * (-1.0 if ring else 1.0)
     outline = centre + (r + depth * profile)[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=1)
     if ring:
         rim = centre + (r + RIM * canvas.unit) * np.stack([np.cos(turn), np.sin(turn)], axis=1)
@@ -79,18 +80,21 @@ def _gear(canvas: Canvas, centre: np.ndarray, r: float, teeth: int, phase: float
     canvas.line(pitch_circle, colour, 0.7, order=1.9, linestyle=(0, (8, 2, 2, 2)))
 
 
+def draw_disc(canvas: Canvas, centre: np.ndarray, radius: float, angle: float, colour: str) -> None:
+    """A disc with a spoke that shows how it is turned (rad)."""
+    turn = np.linspace(0.0, 2 * math.pi, 73)[:-1]
+    ring = centre + radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    canvas.shape(ring, edge=colour, fill=colour, width=1.3, order=1.8, alpha=0.12)
+    tip = centre + radius * np.array([math.cos(angle), math.sin(angle)])
+    canvas.line([centre, tip], colour, 1.0, order=1.9)
+
+
 def draw_belt(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
     """Two pulleys and the strands."""
     ends = []
     for marker, key in ((joint.i, "radius_i"), (joint.j, "radius_j")):
         centre, radius = pose.place(marker), joint.params[key]
-        turn = np.linspace(0.0, 2 * math.pi, 73)[:-1]
-        ring = centre + radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
-        colour = colours.get(marker.body.name, QUIET)
-        canvas.shape(ring, edge=colour, fill=colour, width=1.3, order=1.8, alpha=0.12)
-        spoke = pose.frames[marker.body.name][2]
-        tip = centre + radius * np.array([math.cos(spoke), math.sin(spoke)])
-        canvas.line([centre, tip], colour, 1.0, order=1.9)
+        draw_disc(canvas, centre, radius, pose.frames[marker.body.name][2], colours.get(marker.body.name, QUIET))
         ends.append((centre, radius))
     (i, r_i), (j, r_j) = ends
     gap = j - i

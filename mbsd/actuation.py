@@ -15,6 +15,7 @@ import numpy as np
 
 from mbsd.adding_forces import Amount
 from mbsd.assembly import tabulate
+from mbsd.closed_contacts import refuse_pushing
 from mbsd.errors import MobilityError, ModelError
 from mbsd.force import Force
 from mbsd.forces.actuator import ACTUATOR
@@ -116,6 +117,7 @@ def inverse_dynamics(m: Mechanism, motion: Solution, actuators: Sequence[str]) -
         raise ModelError(f"{m.name}: inverse_dynamics needs the names of actuators, each once, got {actuators!r}")
     if motion.mechanism is not m:
         raise ModelError(f"{m.name}: the motion is one of '{motion.mechanism.name}', not of this mechanism")
+    refuse_pushing(m, motion)
     others: dict[str, Amount | None] = {name: None for name in m.drivers if name not in actuators}
     bare = with_efforts(m, others | dict.fromkeys(actuators, 0.0))
     packed = _as_in(motion, pack(bare))

@@ -15,6 +15,7 @@ import numpy as np
 
 from mbsd.assembly import tabulate
 from mbsd.balance import FLAT, descend, look, newton
+from mbsd.closed_contacts import refuse_resting
 from mbsd.errors import ModelError, SingularPoseError
 from mbsd.mobility import joint_mobility
 from mbsd.model import Mechanism
@@ -103,8 +104,9 @@ def equilibrium(m: Mechanism, time: float, nearest: bool) -> Equilibrium:
     packed = pack(resting)
     refuse_bad_laws(packed, time, time)
     ready = statics(packed, time)
-    q = assemble(resting, packed, time)
-    q, steps = (newton if nearest else descend)(ready, q)
+    start = assemble(resting, packed, time)
+    q, steps = (newton if nearest else descend)(ready, start)
+    refuse_resting(resting, packed, start, q)
     return _result(m, resting, ready, q, steps)
 
 

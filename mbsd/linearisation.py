@@ -19,6 +19,7 @@ from functools import cached_property
 import numpy as np
 
 from mbsd.actuation import unit_direction
+from mbsd.closed_contacts import refuse_closed
 from mbsd.dynamics.acceleration import derivative
 from mbsd.dynamics.arrays import scratch_for
 from mbsd.dynamics.prepare import PreparedDynamics, prepare_dynamics
@@ -115,6 +116,7 @@ def linearise(m: Mechanism, time: float, inputs: Sequence[str]) -> Linearisation
     ``inputs`` are forces of ``m``. Raises MobilityError if nothing can move, SingularPoseError at a singular pose.
     """
     ready = prepare_dynamics(m, time, time)
+    refuse_closed(m, ready.packed, ready.initial.q)
     flow = _Flow(ready, time)
     f = len(flow.independent.names)
     if not f:

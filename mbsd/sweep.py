@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from mbsd.closed_contacts import refuse_passed_contacts
 from mbsd.errors import ModelError
 from mbsd.inverse_dynamics import inverse_dynamics
 from mbsd.limits import refuse_passed
@@ -23,6 +24,7 @@ def sweep(m: Mechanism, duration: float | None, steps: int, times: Sequence[floa
     packed = ready.packed
     drives = packed.drives(grid)
     refuse_passed(packed, grid, q)
+    refuse_passed_contacts(m, packed, grid, q)
     loads = inverse_dynamics(ready, grid, drives, q, v, a)
     shape = (len(grid), -1, 3)
     return Solution(

@@ -48,7 +48,7 @@ def gaps(m: Mechanism, packed: Packed, q: np.ndarray, limits: bool) -> list[Gap]
     found = []
     for contact, row in zip(contacts, wide.first_row[first:-1], strict=True):
         value = np.zeros(count) if getattr(contact.kind, "always_closed", False) else phi[:, row]
-        found.append(Gap(contact.name, value, INSIDE / scale[row], "rad" if row in angular else "m"))
+        found.append(Gap(contact.name, value, float(INSIDE / scale[row]), "rad" if row in angular else "m"))
     return found
 
 

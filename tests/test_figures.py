@@ -15,7 +15,17 @@ LARGEST = 300_000
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e-?\d+)?")
 NAME = re.compile(r"\b[a-z][0-9a-f]{10}\b")
 """Names that matplotlib makes from the numbers of what they name."""
-ANALYSES = ("kinematics", "inverse_dynamics", "forward_dynamics", "events", "statics", "linearisation", "batch")
+ANALYSES = (
+    "kinematics",
+    "inverse_dynamics",
+    "forward_dynamics",
+    "events",
+    "statics",
+    "linearisation",
+    "batch",
+    "joints",
+    "cams",
+)
 
 
 def parts(svg: str) -> tuple[str, np.ndarray]:

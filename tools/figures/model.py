@@ -10,5 +10,6 @@ from mbsd.drawing.picture import Picture, Svg
 
 def pictures(page: SimpleNamespace) -> dict[str, Picture | Svg]:
     """See tools/figures/__main__.py."""
-    four_bar = Mechanism.load(page.folder / "four_bar.json")  # as it was before the page took its motor away
+    four_bar = Mechanism.load(page.folder / "four_bar.json")  # before the page took its motor away
+    four_bar.forces.clear()  # the spring that the page adds later
     return {"model_drawing.svg": four_bar.draw(), "model_topology.svg": page.wide.topology()}

@@ -25,6 +25,7 @@ ANALYSES = (
     "batch",
     "joints",
     "cams",
+    "forces",
 )
 
 

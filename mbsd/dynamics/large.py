@@ -66,10 +66,10 @@ def consistent_large(m: Mechanism, packed: Packed, time: float, inverse: np.ndar
     light[:3] = 0.0
     let_phases_go(packed)
     weights = _weighed(light, [c for c, _ in given])
-    q = _close(m, packed, time, rough, weights)
+    q = _close(m, packed, time, rough, weights, light)
     refuse_impossible(packed, q)
     if take_phases(packed, q, drive):
-        q = _close(m, packed, time, q, weights)
+        q = _close(m, packed, time, q, weights, light)
     told = tell_coordinates(packed, q, [(c, nearest_turn(q, c, value)) for c, value in given])
     rows, values, names = given_velocities(m, packed, q)
     v = _velocities(packed, time, q, inverse, rows, values)
@@ -114,7 +114,22 @@ def _projector(packed: Packed, time: float, inverse: np.ndarray) -> Dynamics:
     )
 
 
-def _close(m: Mechanism, packed: Packed, time: float, rough: np.ndarray, inverse: np.ndarray) -> np.ndarray:
+def _close(
+    m: Mechanism, packed: Packed, time: float, rough: np.ndarray, weights: np.ndarray, light: np.ndarray
+) -> np.ndarray:
+    """A closed pose near ``rough``, by ``weights``; given values that contradict each other stall it, and ``light``,
+    which weighs all alike, takes over."""
+    q = rough
+    for metric in (weights, light):
+        found, worst = _nearer(packed, time, q, metric)
+        if worst <= CLOSED:
+            return found
+        q = found if np.isfinite(found).all() else q
+    raise AssemblyError(why_open(m, packed, q, packed.drives(np.array([time]))[0], time))
+
+
+def _nearer(packed: Packed, time: float, rough: np.ndarray, inverse: np.ndarray) -> tuple[np.ndarray, float]:
+    """The last pose of the search, and its largest residual (dimensionless)."""
     projector = _projector(packed, time, inverse)
     scratch = scratch_for(projector, packed.ws, len(packed.motions), 1)
     state = np.stack([rough, np.zeros_like(rough)])
@@ -128,15 +143,16 @@ def _close(m: Mechanism, packed: Packed, time: float, rough: np.ndarray, inverse
             break
         longest = float(scratch.report[2])
         state[0] += (moved[0] - state[0]) * min(1.0, LONGEST_STEP / longest if longest > 0 else 1.0)
-    if not worst <= CLOSED:
-        raise AssemblyError(why_open(m, packed, state[0], packed.drives(np.array([time]))[0], time))
-    return state[0]
+    return state[0], worst
 
 
 def _velocities(
     packed: Packed, time: float, q: np.ndarray, inverse: np.ndarray, rows: list[dict[int, float]], values: np.ndarray
 ) -> np.ndarray:
-    """Projected velocities; the gaps to the given values are added again until they vanish or no longer shrink."""
+    """Projected velocities; the gaps to the given values are added again until they vanish or no longer shrink.
+
+    At last all weigh alike: what given values that contradict each other left over goes.
+    """
     projector = _projector(packed, time, _weighed(inverse, sorted({c for row in rows for c in row})))
     scratch = scratch_for(projector, packed.ws, len(packed.motions), 1)
     wish = np.zeros_like(q)
@@ -153,6 +169,8 @@ def _velocities(
             break
         last = gap
         wish = state[1].copy()
+    projector = _projector(packed, time, inverse)
+    project(projector, scratch_for(projector, packed.ws, len(packed.motions), 1), time, state, 2)
     return state[1]
 
 

@@ -21,6 +21,9 @@ from mbsd.specials import let_phases_go, refuse_impossible, take_phases
 CLOSED = 1e-10
 """Largest residual of a closed pose, in sizes (m) and rad."""
 ATTEMPTS = 24
+MANY_ROWS = 100
+"""From here on the shortest step is found without singular values where rows are well apart."""
+WELL_CONDITIONED = 1e-4
 LONGEST_STEP = 0.5
 """Of one Gauss-Newton step, in sizes and rad."""
 
@@ -69,7 +72,7 @@ def close(packed: Packed, q: np.ndarray, drive: np.ndarray, rows: int | None = N
         jac = packed.jacobian()[:rows] * row_scale[:, None] * column_scale
         if not (np.isfinite(jac).all() and np.isfinite(phi).all()):
             return q, math.inf
-        step = np.linalg.lstsq(jac, -phi, rcond=1e-9)[0]
+        step = _least(jac, -phi)
         longest = float(np.abs(step).max(initial=0.0))
         step *= min(1.0, LONGEST_STEP / longest) if longest > 0 else 1.0
         before, old = float(np.linalg.norm(phi)), q.copy()
@@ -82,6 +85,20 @@ def close(packed: Packed, q: np.ndarray, drive: np.ndarray, rows: int | None = N
         if longest < 1e-13 or not np.linalg.norm(phi) < before:
             break
     return q, float(np.abs(phi).max())
+
+
+def _least(jac: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """The shortest x with J x nearest to ``right``; singular values below 1e-9 of the largest count as zero."""
+    if len(jac) >= MANY_ROWS:
+        square = jac @ jac.T
+        try:
+            pivots = np.diag(np.linalg.cholesky(square))
+        except np.linalg.LinAlgError:  # rows that repeat others
+            pivots = np.zeros(1)
+        if pivots.min() > WELL_CONDITIONED * pivots.max():
+            step = jac.T @ np.linalg.solve(square, right)
+            return step + jac.T @ np.linalg.solve(square, right - jac @ step)
+    return np.linalg.lstsq(jac, right, rcond=1e-9)[0]
 
 
 def rough_pose(m: Mechanism, packed: Packed, drive: np.ndarray, attempt: int) -> np.ndarray:

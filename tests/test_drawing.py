@@ -32,6 +32,7 @@ from tests.test_forces import all_kinds as force_kinds
 from tests.test_forces import example as force_example
 from tests.test_joints import all_kinds
 from tests.test_mobility import four_bar, parallelogram
+from tests.test_simulate import n_four_bar
 
 
 def slider_crank() -> Mechanism:
@@ -290,3 +291,12 @@ def _marks(svg: str) -> list[str]:
     """What a diagram says and how many shapes it has; places may differ in the last digit from machine to machine."""
     elements = list(ET.fromstring(svg).iter())
     return sorted(e.text for e in elements if e.tag.endswith("text") and e.text) + [e.tag for e in elements]
+
+
+def test_a_diagram_of_sixty_loops_has_no_boxes_on_each_other() -> None:
+    drawn = n_four_bar(60).topology().text
+    assert drawn == n_four_bar(60).topology().text
+    found = np.array(boxes(drawn))
+    assert len(found) == 122
+    apart = (found[:, None, 2:] < found[None, :, :2]).any(axis=2)
+    assert (apart | apart.T | np.eye(len(found), dtype=bool)).all()

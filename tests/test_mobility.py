@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mbsd import AssemblyError, Mechanism, MobilityError, ModelError, SingularPoseError, constant_rate
+from tests.test_simulate import n_four_bar
 
 
 def four_bar(
@@ -160,3 +161,10 @@ def test_a_change_point_that_an_output_falls_on_is_refused_with_the_reason() -> 
     m.drive_angle("motor", m.bodies["left"], constant_rate(1.0, math.radians(60)))
     with pytest.raises(SingularPoseError, match=r"motor at 180 degrees\) is a change point"):
         m.sweep(steps=360)
+
+
+def test_sixty_loops_have_one_freedom_and_a_repeated_pin_is_named() -> None:
+    m = n_four_bar(60)
+    assert str(m.mobility()) == "1 degree of freedom (1 nominal)"
+    m.revolute("again", m.bodies["coupler 3"].end, m.bodies["rod 3"].end)
+    assert m.mobility().redundant == ("again",)

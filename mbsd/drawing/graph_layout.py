@@ -113,7 +113,9 @@ def _turned(places: np.ndarray) -> np.ndarray:
 
 
 def _apart(places: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    """Boxes that overlap move apart along the shorter way out, half each."""
+    """Boxes that overlap move apart along the shorter way out, half each; in large graphs all at once."""
+    if len(places) > SMALL:
+        return _apart_at_once(places, sizes)
     places = places.copy()
     for _ in range(PUSHES):
         moved = False
@@ -130,4 +132,25 @@ def _apart(places: np.ndarray, sizes: np.ndarray) -> np.ndarray:
                 moved = True
         if not moved:
             break
+    return places
+
+
+def _apart_at_once(places: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+    """Where very many overlap the whole grows, then all that do are pushed in each round; what circles grows again."""
+    places, need = places.copy(), (sizes[:, None] + sizes[None]) / 2
+    need[np.arange(len(places)), np.arange(len(places))] = -1.0
+    for turn in range(PUSHES):
+        gap = places[None] - places[:, None]
+        over = need - np.abs(gap)
+        a, b = np.nonzero((over[..., 0] > 1e-6) & (over[..., 1] > 1e-6))
+        if not len(a):
+            break
+        if len(a) > 4 * len(places):
+            places *= 1.1
+            continue
+        places *= 1.0 if turn < PUSHES // 2 else 1.01
+        axis = over[a, b].argmin(axis=1)
+        push = np.zeros_like(places)
+        np.add.at(push, (b, axis), np.copysign(0.5 * over[a, b, axis] + 0.5, gap[a, b, axis]))
+        places += push
     return places

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import signal
@@ -40,7 +41,8 @@ def pixels(path: Path) -> np.ndarray:
 
 
 def stamps(store: FrameStore) -> dict[str, int]:
-    return {path.name: path.stat().st_mtime_ns for path in store.folder.glob("*.png")}
+    """Pictures that are there, and when they were written; half-written ones have a dot before their names."""
+    return {path.name: path.stat().st_mtime_ns for path in store.folder.glob("[!.]*.png")}
 
 
 def test_three_turns_cost_one_and_a_changed_colour_costs_all(out_root: Path, capsys: pytest.CaptureFixture[str]):
@@ -115,11 +117,14 @@ def test_a_film_goes_on_where_it_was_stopped(out_root: Path, how: signal.Signals
     out = film_fixture.write(Shot(turns=1, seconds_per_turn=1.0))
     store = FrameStore(out.frames("tiny"))
     process = start("Preset('tiny', 96, 54, 2)")
-    wait_for(lambda: len(list(store.folder.glob("*.png"))) >= 3)
+    wait_for(lambda: len(children(process.pid)) == 1)
     workers = children(process.pid)
-    assert len(workers) == 1
+    wait_for(lambda: bool(stamps(store)))
+    os.kill(workers[0], signal.SIGSTOP)  # no picture more, however late the other signal comes on a busy machine
     process.send_signal(how)
     process.wait(timeout=20)
+    with contextlib.suppress(ProcessLookupError):
+        os.kill(workers[0], signal.SIGCONT)
 
     def gone() -> bool:
         try:
@@ -131,7 +136,7 @@ def test_a_film_goes_on_where_it_was_stopped(out_root: Path, how: signal.Signals
 
     wait_for(gone, 20)
     finished = stamps(store)
-    assert 3 <= len(finished) < 30
+    assert 1 <= len(finished) < 30
     assert all(is_whole(store.folder / name, 96, 54) for name in finished)
     if how is not signal.SIGKILL:
         assert not list(store.folder.glob(".*.part.png"))

@@ -238,6 +238,8 @@ class EventRun:
         event.action(moment)
         for joint in moment.released:
             self.switches.release(joint)
+        if moment.released:
+            self.switches.stand_in(self.state.y[0])
         for row in range(self.packed.contact_rows, len(self.packed.ws.phi)):
             self.switches.let_go(row)  # contacts push back by impacts, not by this projection
         self.state.y[1] = moment.v

@@ -108,8 +108,10 @@ def prepare_dynamics(m: Mechanism, start: float, end: float, contacts: bool = Fa
     if touching:
         packed = with_contacts(m, packed, touching)
     always = packed.contact_rows
-    schur, _ = plan_schur(packed.system.row_body, blocks_of(packed, {*kept, *range(always, len(packed.ws.phi))}))
-    switches = Switches(packed, schur)
+    spare = set(range(always)) - set(kept) if contacts and m.events and not large else set()
+    planned = {*kept, *spare, *range(always, len(packed.ws.phi))}
+    schur, _ = plan_schur(packed.system.row_body, blocks_of(packed, planned))
+    switches = Switches(packed, schur, spare)
     dynamics = Dynamics(
         system=packed.system,
         laws=compiled_laws(packed, start, end),

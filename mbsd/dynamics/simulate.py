@@ -156,5 +156,5 @@ def _least_norm(ready: PreparedDynamics, compact: np.ndarray, lam: np.ndarray, h
     packed, out = ready.packed, lam.copy()
     joints = slice(0, packed.contact_rows)
     for k, j in enumerate(packed.spread(compact * held[..., None])[:, joints]):
-        out[k, joints] = np.linalg.lstsq(j.T, j.T @ lam[k, joints], rcond=1e-9)[0]
+        out[k, joints] = np.linalg.lstsq(j.T, j.T @ lam[k, joints], rcond=1e-9)[0] * held[k, joints]
     return out

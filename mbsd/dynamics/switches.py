@@ -5,6 +5,7 @@ The elimination sequence is planned with all of them; a row that is let go is -1
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,7 @@ from mbsd.contacts.stops import ANGLE_STOP, COORDINATE_STOP
 from mbsd.dynamics.schur import Schur
 from mbsd.joint import Joint
 from mbsd.limits import coordinate, limits_of
+from mbsd.mobility import independent_rows, scaled_jacobian
 from mbsd.model import Mechanism
 from mbsd.packing import Packed, pack
 from mbsd.specials import AT, ROW
@@ -65,12 +67,14 @@ SETTLE = 1e-4
 class Switches:
     """What holds now. Made before anything is let go; then all contacts are open."""
 
-    def __init__(self, packed: Packed, schur: Schur) -> None:
+    def __init__(self, packed: Packed, schur: Schur, spare: Collection[int] = ()) -> None:
         self.packed = packed
         self.schur = schur
         self.place = {int(row): (k, s) for k, rows in enumerate(schur.rows) for s, row in enumerate(rows) if row >= 0}
         self.released: set[int] = set()
         """Rows of joints that an action let go."""
+        self.spare = sorted(spare)
+        """Rows of joints that repeat others: each holds by itself once those are let go."""
         self.touches: list[Touch] = []
         special = packed.system.special
         self._number_of = {int(special[k, ROW]): int(special[k, AT]) for k in range(len(special))}
@@ -91,7 +95,7 @@ class Switches:
                 )
             )
             friction += not slippery
-        for row in range(packed.contact_rows, len(packed.ws.phi)):
+        for row in (*self.spare, *range(packed.contact_rows, len(packed.ws.phi))):
             self.let_go(row)
 
     @property
@@ -116,6 +120,16 @@ class Switches:
             self.released.add(row)
             if row in self.place:
                 self.let_go(row)
+
+    def stand_in(self, q: np.ndarray) -> None:
+        """Take up the spare rows that no others repeat any more in pose q (3 nb,)."""
+        left = [row for row in self.spare if row not in self.released]
+        if left:
+            held = [int(row) for row in self.bilateral() if row not in left]
+            rows = [*held, *left]
+            for k in independent_rows(scaled_jacobian(self.packed, q)[rows]):
+                if k >= len(held):
+                    self.take_up(rows[k])
 
     def move_zero(self, row: int, residual: float) -> None:
         """Count the way of a contact's row from here, where its residual is ``residual``."""

@@ -112,3 +112,13 @@ def test_wrong_arguments_are_refused() -> None:
         m.inverse_dynamics(sol, [])
     with pytest.raises(ModelError, match="not of this mechanism"):
         slider_crank().inverse_dynamics(sol, ["motor"])
+
+
+def test_a_copy_has_contacts_and_events_of_its_own() -> None:
+    m = slider_crank()
+    copy = m.with_efforts(motor=1.0)
+    copy.rigid_contact("floor", copy.ground.at(0.0, -1.0), copy.bodies["crank"].end)
+    copy.event("late", lambda t, _: t - 1.0)
+    assert not m.contacts
+    assert not m.events
+    assert copy.with_efforts(motor=None).contacts.keys() == {"floor"}

@@ -13,6 +13,7 @@ from tools.figures.__main__ import PAGES, drawn
 
 LARGEST = 300_000
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e-?\d+)?")
+PATH = re.compile(r'(?<= d=")[^"]*(?=")')
 NAME = re.compile(r"\b[a-z][0-9a-f]{10}\b")
 """Names that matplotlib makes from the numbers of what they name."""
 ANALYSES = (
@@ -29,20 +30,23 @@ ANALYSES = (
 )
 
 
-def parts(svg: str) -> tuple[str, np.ndarray]:
-    """An SVG without its numbers, and these."""
-    text = NAME.sub("name", svg)
-    return NUMBER.sub("#", text), np.array(NUMBER.findall(text), float)
+def parts(svg: str) -> tuple[str, np.ndarray, np.ndarray]:
+    """An SVG without its numbers; those beside its paths; and the box of each path, which may have other points."""
+    paths = [np.array(NUMBER.findall(path), float).reshape(-1, 2) for path in PATH.findall(svg)]
+    boxes = np.array([[*path.min(axis=0), *path.max(axis=0)] for path in paths])
+    text = NAME.sub("name", PATH.sub("path", svg))
+    return NUMBER.sub("#", text), np.array(NUMBER.findall(text), float), boxes
 
 
 @pytest.mark.parametrize("page", PAGES)
 def test_pictures_are_what_their_pages_compute(page: str) -> None:
     """Up to the last digits of other machines, a tenth of a point."""
     for name, content in drawn(page).items():
-        words, numbers = parts(content.decode())
-        kept_words, kept = parts((ROOT / "docs" / name).read_text())
+        words, numbers, boxes = parts(content.decode())
+        kept_words, kept_numbers, kept_boxes = parts((ROOT / "docs" / name).read_text())
         assert words == kept_words, f"docs/{name} shows something else: make docs"
-        np.testing.assert_allclose(numbers, kept, atol=0.1, err_msg=f"docs/{name} has moved: make docs")
+        np.testing.assert_allclose(numbers, kept_numbers, atol=0.1, err_msg=f"docs/{name} has moved: make docs")
+        np.testing.assert_allclose(boxes, kept_boxes, atol=0.1, err_msg=f"docs/{name} has moved: make docs")
 
 
 def test_a_picture_has_the_same_bytes_each_time() -> None:

@@ -1,10 +1,8 @@
-"""What the pictures of docs/ have in common: style, colours, plain axes, and paths thinned for small files."""
+"""What the pictures of docs/ have in common: style, colours, plain axes, words with a line to their place."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from mbsd.drawing.look import FAINT, INK, MOVED, PALETTE, QUIET, WRONG
 
@@ -56,8 +54,3 @@ def note(ax: Axes, text: str, xy: tuple[float, float], at: tuple[float, float], 
         va="center",
         arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.8, "shrinkA": 2, "shrinkB": 3},
     )
-
-
-def thinned(values: np.ndarray, count: int) -> np.ndarray:
-    """About ``count`` of the values, first and last included."""
-    return values[np.unique(np.linspace(0, len(values) - 1, count).round().astype(int))]

@@ -19,7 +19,7 @@ name = $(subst -,_,$*)
 export PYRIGHT_PYTHON_IGNORE_WARNINGS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install check list run-all all new test lint format bench schema docs lock clean clean-all always
+.PHONY: help install check list run-all all new test lint format bench schema docs integrators lock clean clean-all always
 
 # A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
 define upto_motion
@@ -126,6 +126,10 @@ schema: install ## write docs/schema/ from shared/contract.py, shared/shot.py an
 docs: install ## write docs/theory.md from the docstrings of the solver, and draw the pictures of docs/
 	@$(PYTHON) tools/theory.py
 	@$(PYTHON) -m tools.figures
+
+integrators: install ## measure the integrators again, for docs/integrators.md: order, cost, 10 000 periods (5 minutes)
+	@$(PYTHON) -m tools.integrators
+	@$(PYTHON) -m tools.figures integrators
 
 lock: ## choose versions anew within pyproject.toml: requirements.lock, requirements-bench.lock
 	@sh tools/lock.sh

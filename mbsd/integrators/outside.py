@@ -56,7 +56,7 @@ PULL = {"pull": Option(10.0, 0.0, 1e6)}
 
 
 class RatesNotFiniteError(Exception):
-    """Libraries go on with numbers that are not finite, some for ever."""
+    """Multistep methods go on with numbers that are not finite, some for ever; methods of one step shorten the step."""
 
 
 class Stepper(Protocol):
@@ -97,7 +97,7 @@ class Rates:
         out = np.append(self.slope[:, 3:], power)
         if self.pull is not None:
             out[:-1] += self.pull * (self.trial[:, 3:].ravel() - y[:-1])
-        if not np.isfinite(out).all():
+        if self.pull is not None and not np.isfinite(out).all():
             raise RatesNotFiniteError
         return out
 

@@ -30,15 +30,16 @@ class _Scipy:
         relative, absolute = tolerances(settings)
         self._rates, self._one_step = rates, solver != "LSODA"
         rates.pull = None if self._one_step else float(settings.options[0])
-        self._solver = getattr(integrate, solver)(
-            rates, t, y, end, rtol=relative, atol=absolute, max_step=settings.longest
-        )
+        limits = {"rtol": relative, "atol": absolute, "max_step": settings.longest}
+        with np.errstate(all="ignore"):
+            self._solver = getattr(integrate, solver)(rates, t, y, end, **limits)
         self._dense: Callable[[float], np.ndarray] | None = None
         self.t, self.y = t, y
 
     def step(self) -> bool:
         """See Stepper."""
-        self._solver.step()
+        with np.errstate(all="ignore"):  # a trial step may overflow, and is taken again
+            self._solver.step()
         self._dense = None
         if self._solver.status == "failed":
             return False

@@ -33,19 +33,24 @@ class AddingForces(MechanismBase):
     """Forces take two markers, torques two bodies, loads from outside one; all return the Force."""
 
     def spring(
-        self, name: str, i: Marker, j: Marker, stiffness: float, damping: float = 0.0, free_length: float = 0.0
+        self, name: str, i: Marker, j: Marker, stiffness: Amount, damping: Amount = 0.0, free_length: Amount = 0.0
     ) -> Force:
-        """Spring (N/m) and damper (N s/m) between the points of two markers; ``free_length`` in m."""
-        params = self._positive(name, stiffness=stiffness, damping=damping, free_length=free_length)
-        return self._add_force(SPRING, name, i, j, params)
+        """Spring (N/m) and damper (N s/m) between the points of two markers; ``free_length`` in m.
+
+        Each is a constant or a law of time.
+        """
+        params, laws = self._spring_amounts(name, stiffness=stiffness, damping=damping, free_length=free_length)
+        return self._add_force(SPRING, name, i, j, params, laws)
 
     def torsion_spring(
-        self, name: str, first: Body, second: Body, stiffness: float, damping: float = 0.0, free_angle: float = 0.0
+        self, name: str, first: Body, second: Body, stiffness: Amount, damping: Amount = 0.0, free_angle: Amount = 0.0
     ) -> Force:
-        """Torsion spring (N m/rad) and damper (N m s/rad); no torque where second - first is ``free_angle`` (rad)."""
-        params = self._positive(name, stiffness=stiffness, damping=damping)
-        params["free_angle"] = self._number(f"force '{name}': free_angle", free_angle)
-        return self._add_force(TORSION_SPRING, name, *self._origins(name, first, second), params)
+        """Torsion spring (N m/rad) and damper (N m s/rad); no torque where second - first is ``free_angle`` (rad).
+
+        Each is a constant or a law of time.
+        """
+        params, laws = self._spring_amounts(name, stiffness=stiffness, damping=damping, free_angle=free_angle)
+        return self._add_force(TORSION_SPRING, name, *self._origins(name, first, second), params, laws)
 
     def bushing(
         self,
@@ -205,6 +210,21 @@ class AddingForces(MechanismBase):
         if callable(value):
             return {}, {what: Function(value)}
         return {what: self._number(f"force '{name}': {what}", value)}, {}
+
+    def _spring_amounts(self, name: str, **values: Amount) -> tuple[dict[str, Any], dict[str, Motion]]:
+        """Numbers that may not be negative, but for a free angle, and laws of time."""
+        params, laws = {}, {}
+        for what, value in values.items():
+            own, law = self._amount(name, what, value)
+            params |= own if what == "free_angle" else self._positive(name, **own)
+            laws |= law
+        free = list(values)[-1]
+        if "stiffness" in laws and free in laws:
+            raise ModelError(
+                f"{self.name}: force '{name}': stiffness and {free} are both laws of time; give one of them as a "
+                "number, or write m.user_force(...)"
+            )
+        return params, laws
 
     def _curves(self, name: str, **curves: Curve | None) -> dict[str, Curve]:
         out = {}

@@ -186,6 +186,60 @@ def test_rattle_needs_no_mass() -> None:
     assert sol.body("bob").theta[-1] - math.pi / 2 == pytest.approx(exact_pendulum(1.0), abs=1e-9)
 
 
+# -- stiff --------------------------------------------------------------------------------------------------------
+
+
+def stiff_four_bar() -> Mechanism:
+    """With a stiff bush for the pin C."""
+    m = Mechanism("stiff", gravity=(0.0, -G))
+    crank, coupler, rocker = m.bar("crank", 0.3, 1.0), m.bar("coupler", 0.9, 0.5), m.bar("rocker", 0.7, 2.0)
+    m.revolute("A", m.ground.at(0, 0), crank.start)
+    m.revolute("B", crank.end, coupler.start)
+    m.revolute("D", m.ground.at(0.8, 0), rocker.start)
+    start = four_bar().simulate(1e-3, steps=1)
+    m.start_near(**{name: math.degrees(float(start.body(name).theta[0])) for name in ("crank", "coupler", "rocker")})
+    m.bushing("C", coupler.end, rocker.end, (1e7, 1e7, 0.0), (1e5, 1e5, 0.0))
+    return m
+
+
+def test_implicit_methods_pass_what_makes_explicit_ones_creep() -> None:
+    explicit = stiff_four_bar().simulate(0.1, steps=10)
+    implicit = stiff_four_bar().simulate(0.1, steps=10, method="radau")
+    fixed = stiff_four_bar().simulate(0.1, steps=10, method="generalized_alpha", step=1e-3)
+    assert implicit.stats.steps < 0.05 * explicit.stats.steps
+    assert fixed.stats.steps == 100
+    np.testing.assert_allclose(implicit.body("rocker").theta, explicit.body("rocker").theta, atol=1e-6)
+    np.testing.assert_allclose(fixed.body("rocker").theta, explicit.body("rocker").theta, atol=1e-4)
+
+
+@pytest.mark.parametrize("name", ["rk4", "baumgarte"])
+def test_an_explicit_run_that_blows_up_is_refused(name: str) -> None:
+    with pytest.raises(SimulationError, match=r"no longer finite after a step of 0\.001 s.*radau"):
+        stiff_four_bar().simulate(0.1, steps=10, method=name, step=1e-3)
+
+
+@pytest.mark.parametrize("name", ["rattle", "symplectic"])
+def test_symplectic_methods_refuse_stiff_dampers(name: str) -> None:
+    with pytest.raises(SimulationError, match="smaller step"):
+        stiff_four_bar().simulate(0.1, steps=10, method=name, step=1e-3)
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.5, 0.8, 1.0])
+def test_generalised_alpha_leaves_rho_of_what_is_infinitely_fast(rho: float) -> None:
+    """A mass on a spring, 10 000 rad a step: x_n = (a + b n + c n^2) (+-rho)^n, a threefold eigenvalue."""
+    m = Mechanism("oscillator", gravity=None)
+    mass = m.body("mass", 1.0, inertia=1.0)
+    m.prismatic("rail", m.ground.origin, mass.origin)
+    m.bushing("spring", m.ground.origin, mass.origin, (1e12, 0.0, 0.0))
+    m.start_near(mass=(1e-3, 0.0, 0.0))
+    x = m.simulate(0.2, steps=20, method="generalized_alpha", step=0.01, rho=rho).body("mass").x
+    if rho == 0.0:
+        assert np.abs(x[9:]).max() < 1e-12 * x[0]
+        return
+    scaled = x / (math.copysign(rho, x[20] * x[19]) ** np.arange(21))
+    np.testing.assert_allclose(np.diff(scaled, 3), 0.0, atol=1e-6 * np.abs(scaled).max())
+
+
 # -- use ----------------------------------------------------------------------------------------------------------
 
 

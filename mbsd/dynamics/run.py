@@ -81,8 +81,8 @@ class Run:
             )
         if method.fixed_step:
             return SimulationError(
-                f"{where}: numbers are no longer finite after a step of {state.clock[run_state.STEP] or 0:.3g} s. "
-                "Take a smaller step, or method='dop853'; a stiff damper asks for an implicit method."
+                f"{where}: numbers are no longer finite after a step of {self.settings.step:.3g} s. "
+                "Take a smaller step, or method='dop853'; stiff springs and dampers ask for method='radau'."
             )
         return SimulationError(
             f"{where}: steps below {state.clock[run_state.STEP]:.1e} s do not meet the tolerance {self.tolerance:g}. "

@@ -74,10 +74,10 @@ def march(dyn, scratch, state, out, settings, end, max_steps, projections):
         state.count[EVALUATIONS] += 4
         state.count[ACCEPTED] += 1
         accepted += 1
-        largest = 0.0
+        total = 0.0
         for c in range(3, n3):
-            largest = max(largest, abs(state.dy[1, c])) if largest == largest else largest
-        if not math.isfinite(largest):
+            total += abs(state.dy[1, c])
+        if not math.isfinite(total):
             return NOT_FINITE
 
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from mbsd.force import Force
 from mbsd.forces.kind import DAMPING, LINE, LINEAR, Element, ForceKind, Interaction, Term, register
-from mbsd.interactions import spring_in_time as law
 
 
 def constant_terms(force: Force, free: str) -> tuple[Term, Term]:
@@ -22,6 +21,8 @@ def constant_terms(force: Force, free: str) -> tuple[Term, Term]:
 
 def terms_in_time(force: Force, free: str, turning: bool) -> tuple[Interaction, ...]:
     """One interaction for each number that is a law."""
+    from mbsd.interactions import spring_in_time as law  # it loads numba
+
     p = force.params
     own = {
         "stiffness": (law.STIFFNESS, p.get(free, 0.0)),

@@ -35,6 +35,8 @@ SPEED_STEP = 1e-5
 """Of differences of the velocities, in sizes/s and rad/s: small against the speeds where dry friction turns."""
 ROUNDING = 1e-10
 """Entries of A below this part of the largest of their block are rounding."""
+MASSLESS = 1e-10
+"""Least eigenvalue of the mass matrix, each coordinate scaled to one, that counts as a mass."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,6 +112,22 @@ class Linearisation:
         return "\n".join([repr(self), *(f"  {mode}" for mode in self.modes)])
 
 
+def _refuse_massless(model: str, names: tuple[str, ...], mass: np.ndarray) -> None:
+    """Raise MobilityError for a motion (f, f) that moves no mass: it has no equation of motion."""
+    size = np.sqrt(np.maximum(np.diag(mass), 0.0))
+    if not (size > 0).all():
+        loose = [name for name, one in zip(names, size, strict=True) if not one > 0]
+        raise MobilityError(
+            f"{model}: nothing that has a mass moves with {', '.join(loose)}; give bodies mass and inertia"
+        )
+    value, vector = np.linalg.eigh(mass / np.outer(size, size))
+    if value[0] < MASSLESS:
+        loose = [name for name, share in zip(names, np.abs(vector[:, 0]), strict=True) if share > 0.1]
+        raise MobilityError(
+            f"{model}: {', '.join(loose)} can move so that nothing with a mass does; give bodies mass and inertia"
+        )
+
+
 def linearise(m: Mechanism, time: float, inputs: Sequence[str]) -> Linearisation:
     """About the start of ``m``, its ``start_near`` and ``start_moving``, at ``time`` (s).
 
@@ -126,14 +144,15 @@ def linearise(m: Mechanism, time: float, inputs: Sequence[str]) -> Linearisation
             f"{m.name}: the pose at t = {time:.6g} s is singular (a toggle or change point): the links can go on in "
             "more ways than one, and no linear motion describes them. Linearise a little before or after it."
         )
+    basis = flow.independent.basis
+    mass = basis.T @ (ready.dynamics.inertia[3:, None] * basis)
+    _refuse_massless(ready.packed.name, flow.independent.names, mass)
     state = np.zeros((2 * f, 2 * f))
     state[:f, f:] = np.eye(f)
     state[f:, :f], state[f:, f:] = flow.slopes(0), flow.slopes(1)
     pull = float(np.abs(state[f:, :f]).max())
     for block, usual in ((state[f:, :f], pull), (state[f:, f:], math.sqrt(pull))):
         block[np.abs(block) < ROUNDING * max(usual, float(np.abs(block).max()))] = 0.0
-    basis = flow.independent.basis
-    mass = basis.T @ (ready.dynamics.inertia[3:, None] * basis)
     push = np.array([basis.T @ _direction(ready, name, time) for name in inputs]).reshape(len(inputs), f)
     b = np.zeros((2 * f, len(inputs)))
     b[f:] = np.linalg.solve(mass, push.T)

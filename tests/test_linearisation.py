@@ -280,3 +280,18 @@ def test_a_linearisation_prints_its_modes() -> None:
     assert "four-bar: 1 coordinates (crank.theta), stable" in text
     assert "Hz" in text
     assert "damping ratio" in text
+
+
+def test_motions_without_mass_are_refused() -> None:
+    m = Mechanism("light")
+    rod = m.bar("rod", 1.0)
+    m.revolute("A", m.ground.origin, rod.start)
+    with pytest.raises(MobilityError, match=r"light: nothing that has a mass moves with rod\.theta; give bodies mass"):
+        m.linearise("start")
+    second = m.bar("second", 1.0)
+    m.revolute("B", rod.end, second.start)
+    bob = m.body("bob", 1.0)
+    m.revolute("C", second.end, bob.origin)
+    m.start_near(rod=-90, second=-90)
+    with pytest.raises(MobilityError, match=r"light: .* give bodies mass and inertia"):
+        m.linearise("start")

@@ -9,6 +9,7 @@ from hypothesis import assume, given, reject, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, SingularPoseError, harmonic, table
+from mbsd.dynamics.prepare import prepare_dynamics
 from mbsd.model import Marker
 from mbsd.solution import Solution
 from tests.random_linkages import Carried, Linkage, linkage
@@ -18,11 +19,12 @@ LOOPS = st.integers(1, 5)
 
 
 def moving(seed: int, loops: int, damping: bool = False, carried: Carried | None = None) -> Linkage:
-    """A linkage whose cranks start with speeds of their own; other bodies follow."""
+    """A linkage that starts with one of its motions, the fastest body at 5 m/s or rad/s."""
     made, rng = linkage(seed, loops, damping, carried), np.random.default_rng(seed + 1)
-    made.m.start_moving(
-        **{crank.name: float(rng.uniform(-4, 4)) for host, crank in made.cranks if host.name == "ground"}
-    )
+    speeds = {crank.name: float(rng.uniform(-4, 4)) for host, crank in made.cranks if host.name == "ground"}
+    made.m.start_moving(**speeds)
+    fastest = float(np.abs(prepare_dynamics(made.m, 0.0, 1.0).initial.v).max())  # enormous near a toggle of the crank
+    made.m.start_moving(**{name: speed * 5.0 / fastest for name, speed in speeds.items()})
     return made
 
 

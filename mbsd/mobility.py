@@ -51,7 +51,11 @@ class Mobility:
 
 def mobility(m: Mechanism) -> Mobility:
     """Mobility of the joints of ``m`` at its start; raises AssemblyError if it does not close."""
+    from mbsd.dynamics.large import MANY_COORDINATES, mobility_large
+
     packed = pack(m)
+    if packed.coordinates > MANY_COORDINATES:
+        return mobility_large(m, packed)
     q = assemble(m, packed, 0.0)
     return joint_mobility(packed, q)
 
@@ -60,12 +64,16 @@ def joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
     """Mobility of the joints alone at the closed pose q (3 nb,)."""
     rows = packed.driver_rows
     here = scaled_jacobian(packed, q)[:rows]
-    best = here
-    for near in _nearby(packed, q):
-        jac = scaled_jacobian(packed, near)[:rows]
-        if len(independent_rows(jac)) > len(independent_rows(best)):
-            best = jac
+    best, start = here, len(independent_rows(here))
     kept = independent_rows(best)
+    for tries, seed in ((3, 1), (9, 2)):
+        if seed > 1 and not start < len(kept) < rows:
+            break  # more are tried where branches of other rank meet at the start
+        for near in _nearby(packed, q, tries, seed):
+            jac = scaled_jacobian(packed, near)[:rows]
+            rank = independent_rows(jac)
+            if len(rank) > len(kept):
+                best, kept = jac, rank
     dropped = [row for row in range(rows) if row not in set(kept)]
     free = packed.coordinates - len(kept)
     return Mobility(
@@ -73,7 +81,7 @@ def joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
         dof=free,
         redundant_rows=len(dropped),
         redundant=tuple(dict.fromkeys(packed.joint_of_row(row).name for row in dropped)),
-        singular=len(independent_rows(here)) < len(kept),
+        singular=start < len(kept),
         free_bodies=_moving(packed, best),
     )
 
@@ -158,13 +166,13 @@ def independent_rows(jac: np.ndarray) -> list[int]:
     return kept
 
 
-def _nearby(packed: Packed, q: np.ndarray) -> list[np.ndarray]:
+def _nearby(packed: Packed, q: np.ndarray, tries: int = 3, seed: int = 1) -> list[np.ndarray]:
     """Closed poses near q; the drivers are let go."""
-    random = np.random.default_rng(1)
+    random = np.random.default_rng(seed)
     scale = packed.column_scale()
     none = np.zeros((len(packed.motions) + 1, 3))
     poses = []
-    for _ in range(3):
+    for _ in range(tries):
         moved = q.copy()
         moved[3:] += 0.1 * scale * random.standard_normal(packed.coordinates)
         moved, worst = close(packed, moved, none, packed.driver_rows)

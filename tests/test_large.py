@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from mbsd import InitialConditionWarning, Mechanism
-from mbsd.dynamics import prepare
+from mbsd.dynamics import large, prepare
 from mbsd.solution import Solution
+from tests.test_simulate import n_four_bar
 
 
 def train(pairs: int, belts: bool = False) -> Mechanism:
@@ -94,11 +95,11 @@ def both(build: Callable[[], Mechanism], monkeypatch: pytest.MonkeyPatch) -> tup
     ids=["gears", "belts", "curves", "redundant"],
 )
 def test_both_routes_move_alike(build: Callable[[], Mechanism], monkeypatch: pytest.MonkeyPatch) -> None:
-    small, large = both(build, monkeypatch)
-    assert (small.mobility.dof, small.mobility.redundant_rows) == (large.mobility.dof, large.mobility.redundant_rows)
-    np.testing.assert_allclose(large.q, small.q, atol=1e-8)
-    np.testing.assert_allclose(large.v, small.v, atol=1e-7)
-    assert [(one.name, one.what) for one in small.events] == [(one.name, one.what) for one in large.events]
+    one, other = both(build, monkeypatch)
+    assert (one.mobility.dof, one.mobility.redundant_rows) == (other.mobility.dof, other.mobility.redundant_rows)
+    np.testing.assert_allclose(other.q, one.q, atol=1e-8)
+    np.testing.assert_allclose(other.v, one.v, atol=1e-7)
+    assert [(e.name, e.what) for e in one.events] == [(e.name, e.what) for e in other.events]
 
 
 def test_seven_hundred_coordinates_on_gears() -> None:
@@ -134,3 +135,28 @@ def test_starts_that_contradict_themselves_share_the_change() -> None:
     legs = [sol.body(name).omega[0] for name in ("leg0a", "leg0b", "leg0c")]
     np.testing.assert_allclose(legs, legs[0], atol=1e-11)
     assert np.ptp(sol.energy.total) < 1e-8 * sol.energy.kinetic.max()
+
+
+def test_mobility_of_large_mechanisms_is_that_of_small_ones(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where the start pose is singular: bars on one line."""
+
+    def in_line() -> Mechanism:
+        m = n_four_bar(3)
+        m.start_near(**{name: 0.0 for name in m.bodies if name.startswith("rod")})
+        return m
+
+    models = [train(4), storeys(3), n_four_bar(5), in_line(), beads(3)]
+    small = [m.mobility() for m in models]
+    monkeypatch.setattr(large, "MANY_COORDINATES", 0)
+    for m, expected in zip(models, small, strict=True):
+        found = m.mobility()
+        assert (found.dof, found.nominal, found.redundant_rows, found.singular) == (
+            expected.dof,
+            expected.nominal,
+            expected.redundant_rows,
+            expected.singular,
+        )
+
+
+def test_mobility_of_six_hundred_bodies() -> None:
+    assert str(n_four_bar(300).mobility()) == "1 degree of freedom (1 nominal)"

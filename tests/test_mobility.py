@@ -168,3 +168,11 @@ def test_forty_loops_have_one_freedom_and_a_repeated_pin_is_named() -> None:
     assert str(m.mobility()) == "1 degree of freedom (1 nominal)"
     m.revolute("again", m.bodies["coupler 3"].end, m.bodies["rod 3"].end)
     assert m.mobility().redundant == ("again",)
+
+
+def test_three_loops_on_one_line_have_the_freedom_they_have_elsewhere() -> None:
+    """From there each loop may go on alone while the others stay singular; most poses near it show less rank."""
+    m = n_four_bar(3)
+    m.start_near(**{name: 0.0 for name in m.bodies if name.startswith("rod")})
+    found = m.mobility()
+    assert (found.dof, found.redundant_rows, found.singular) == (1, 0, True)

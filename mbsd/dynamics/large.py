@@ -15,6 +15,7 @@ than the square root of DEPENDENT of it is new.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -30,9 +31,10 @@ from mbsd.loads import pack_loads
 from mbsd.mobility import Mobility
 from mbsd.model import Mechanism
 from mbsd.open_loops import why_open
-from mbsd.packing import Packed
+from mbsd.packing import Packed, pack
 from mbsd.specials import active_rows, let_phases_go, refuse_impossible, take_phases
 from mbsd.start import CLOSED, LONGEST_STEP, rough_pose, unwind_angles
+from mbsd.variants import copied
 
 MANY_COORDINATES = 600
 """From here on a mechanism counts as large."""
@@ -41,6 +43,8 @@ HEAVY = 1e8
 DEPENDENT = 1e-13
 """Least part of a squared row that must be new."""
 MOST_STEPS = 60
+NEARBY = 0.02
+"""How far poses near the start are moved before they are closed (sizes, rad)."""
 
 
 def blocks_of(packed: Packed, kept: set[int]) -> np.ndarray:
@@ -203,3 +207,27 @@ def independent_large(packed: Packed, time: float, q: np.ndarray) -> tuple[list[
     names = tuple(dict.fromkeys(packed.joint_of_row(row).name for row in sorted(lost)))
     moving = tuple(packed.body_names[1:]) if nominal + len(lost) > 0 else ()
     return kept, Mobility(nominal, nominal + len(lost), len(lost), names, False, moving)
+
+
+def mobility_large(m: Mechanism, packed: Packed) -> Mobility:
+    """As mbsd.mobility.mobility: at the start, and at closed poses near it with the drivers let go."""
+    light = np.concatenate([np.zeros(3), packed.column_scale() ** 2])
+    q = consistent_large(m, packed, 0.0, light).q
+    free = copied(m)
+    free.drivers = {}
+    joints = pack(free)
+    joints.system.special[:] = packed.system.special[: len(joints.system.special)]
+    joints.system.numbers[:] = packed.system.numbers[: len(joints.system.numbers)]
+    found = independent_large(joints, 0.0, q)[1]
+    random = np.random.default_rng(1)
+    for k in range(12):
+        if k > 1 and not (found.singular and found.redundant_rows):
+            break  # more are tried where branches of other rank meet at the start
+        moved = q.copy()
+        moved[3:] += NEARBY * packed.column_scale() * random.standard_normal(packed.coordinates)
+        moved, worst = _nearer(joints, 0.0, moved, light)
+        if worst <= CLOSED:
+            there = independent_large(joints, 0.0, moved)[1]
+            if there.dof < found.dof:
+                found = replace(there, singular=True)
+    return found

@@ -30,6 +30,10 @@ def main() -> int:
     m.trace("P", crank.end)
     m.batch(lengths={"crank": [1.0]}, steps=4)
     m.simulate(0.1, steps=4)
+    free = Mechanism("free")
+    rod = free.bar("rod", 1.0, mass=1.0)
+    free.revolute("A", free.ground.at(0, 0), rod.start)
+    free.simulate(0.1, steps=4)  # independent coordinates
     print(f"mbsd: kernels ready in {time.perf_counter() - started:.1f} s")
     return 0
 

@@ -49,9 +49,9 @@ def _directions(packed: Packed, force: Force, q: np.ndarray, times: np.ndarray) 
             f"{packed.name}: force '{force.name}' ({force.kind.name}) has no single direction; an actuator or input is "
             "a driver, a torque, a force or an actuator"
         )
-    loads = loads._replace(
-        first_term=np.array([0, 1]), term=np.array([[CONSTANT, 0]]), number=np.array([[1.0, 0.0, 0.0]])
-    )
+    element = loads.element.copy()
+    element[0, 3:] = 0, 1
+    loads = loads._replace(element=element, term=np.array([[CONSTANT, 0]]), number=np.array([[1.0, 0.0, 0.0]]))
     laws = compiled_laws(replace(alone, forces=[]), float(times[0]), float(times[-1]))
     return loads_along(alone, loads, laws, times, q, np.zeros_like(q))
 

@@ -43,8 +43,11 @@ def pack_interactions(packed: Packed) -> tuple[np.ndarray, np.ndarray]:
 
 
 @internal
-def apply_interactions(loads, laws, t, q, v, ws, load):
-    """Add the generalised forces of all interactions to load (3 nb,), after place; returns their power (W)."""
+def apply_interactions(loads, laws, t, q, v, cos_sin, load):
+    """Add the generalised forces of all interactions to load (3 nb,); cos_sin (nb, 2) turns the bodies.
+
+    Returns their power (W).
+    """
     state = loads.state
     out = loads.exchange[1]
     power = 0.0
@@ -54,14 +57,14 @@ def apply_interactions(loads, laws, t, q, v, ws, load):
         at = loads.interaction[k, 3]
         i = 3 * first
         j = 3 * second
-        c = ws.cos_sin[first, 0]
-        s = ws.cos_sin[first, 1]
+        c = cos_sin[first, 0]
+        s = cos_sin[first, 1]
         arm_ix = c * loads.given[at] - s * loads.given[at + 1]
         arm_iy = s * loads.given[at] + c * loads.given[at + 1]
         ux = c * loads.given[at + 2] - s * loads.given[at + 3]
         uy = s * loads.given[at + 2] + c * loads.given[at + 3]
-        c = ws.cos_sin[second, 0]
-        s = ws.cos_sin[second, 1]
+        c = cos_sin[second, 0]
+        s = cos_sin[second, 1]
         arm_jx = c * loads.given[at + 4] - s * loads.given[at + 5]
         arm_jy = s * loads.given[at + 4] + c * loads.given[at + 5]
         dx = q[j] + arm_jx - q[i] - arm_ix

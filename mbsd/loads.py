@@ -14,10 +14,10 @@ import numpy as np
 from mbsd.forces.kind import AXIS, CONSTANT, DAMPING, DRY, LAW_RATE, LAW_TIME, LINE, LINEAR, POWER, PUSH, TURN
 from mbsd.interaction_loads import apply_interactions, pack_interactions
 from mbsd.interactions.law import STATE
-from mbsd.jit import kernel
+from mbsd.jit import inlined, kernel
 from mbsd.joint_friction import pack_friction
 from mbsd.laws import Laws, evaluate_law, pack_laws
-from mbsd.markers import move, place
+from mbsd.markers import place
 from mbsd.motions import Motion
 from mbsd.user_loads import apply_user_forces, pack_user_forces
 
@@ -29,9 +29,9 @@ class Loads(NamedTuple):
     """All forces; ``number`` may be changed between runs."""
 
     element: Any
-    """(e, 4) kind, marker i, marker j, 1 where the axis is turned by a right angle."""
-    first_term: Any
-    """(e + 1,)"""
+    """(e, 5) kind, body i, body j, first term, end of the terms."""
+    place: Any
+    """(e, 6) arm of i, axis of i, arm of j, in body axes from the centres of mass."""
     term: Any
     """(k, 2) kind, law."""
     number: Any
@@ -66,23 +66,27 @@ class Loads(NamedTuple):
 
 def pack_loads(packed: Packed) -> Loads:
     """The loads of a packed mechanism; laws of forces are numbered after those of the drivers."""
-    element, term, number, first_term = [], [], [], [0]
+    element, where, term, number = [], [], [], []
+    system = packed.system
     law = len(packed.motions)
     for force, (i, j) in zip(packed.forces, packed.force_markers, strict=True):
         numbered = {name: law + 1 + k for k, name in enumerate(force.laws)}
         law += len(force.laws)
         for part in force.kind.elements(force):
-            element.append((part.kind, i, j, int(part.turned)))
+            bodies = system.marker_body[i], system.marker_body[j]
+            element.append((part.kind, *bodies, len(term), len(term) + len(part.terms)))
+            ux, uy = system.marker_axis[i]
+            axis = (-uy, ux) if part.turned else (ux, uy)
+            where.append((*system.marker_arm[i], *axis, *system.marker_arm[j]))
             for one in part.terms:
                 term.append((one.kind, numbered[one.law] if one.law else 0))
                 number.append((one.a, one.b, one.c))
-            first_term.append(len(term))
     interaction, given = pack_interactions(packed)
     user, user_body, user_com = pack_user_forces(packed)
     friction, friction_number = pack_friction(packed)
     return Loads(
-        np.array(element, np.int64).reshape(-1, 4),
-        np.array(first_term, np.int64),
+        np.array(element, np.int64).reshape(-1, 5),
+        np.array(where, float).reshape(-1, 6),
         np.array(term, np.int64).reshape(-1, 2),
         np.array(number, float).reshape(-1, 3),
         np.zeros(3),
@@ -111,94 +115,110 @@ def compiled_laws(packed: Packed, start: float, end: float) -> Laws:
     return pack_laws(laws)
 
 
-@kernel
-def _magnitude(loads, laws, e, t, x, rate):
-    total = 0.0
-    for k in range(loads.first_term[e], loads.first_term[e + 1]):
-        kind = loads.term[k, 0]
-        a = loads.number[k, 0]
-        b = loads.number[k, 1]
-        if kind == CONSTANT:
-            total += a
-        elif kind == LINEAR:
-            total -= a * (x - b)
-        elif kind == DAMPING:
-            total -= a * rate
-        elif kind == POWER:
-            total += a * (x + b) ** loads.number[k, 2]
-        elif kind == DRY:
-            total -= a * math.tanh(rate / b)
-        else:
-            at = x
-            if kind == LAW_RATE:
-                at = rate
-            elif kind == LAW_TIME:
-                at = t
-            evaluate_law(laws, loads.term[k, 1], at, loads.law)
-            total += a * loads.law[0]
-    return total
-
-
-@kernel
-def apply_loads(system, loads, laws, t, q, v, ws, load):
-    """Add the generalised forces of all loads but friction to load (3 nb,), after place and move.
+@inlined
+def apply_elements(element, place, term, number, laws, law, t, q, v, cos_sin, load):
+    """Add the generalised forces of all elements to load (3 nb,); cos_sin (nb, 2) turns the bodies.
 
     Returns their power (W).
-    What falls on ground is added too and means nothing.
     """
     power = 0.0
-    for e in range(loads.element.shape[0]):
-        kind = loads.element[e, 0]
-        i = loads.element[e, 1]
-        j = loads.element[e, 2]
-        bi = 3 * system.marker_body[i]
-        bj = 3 * system.marker_body[j]
+    for e in range(element.shape[0]):
+        kind = element[e, 0]
+        i = element[e, 1]
+        j = element[e, 2]
+        bi = 3 * i
+        bj = 3 * j
+        ux = uy = dx = dy = 0.0
+        arm_ix = arm_iy = arm_jx = arm_jy = 0.0
         if kind == TURN:
+            x = q[bj + 2] - q[bi + 2]
             rate = v[bj + 2] - v[bi + 2]
-            force = _magnitude(loads, laws, e, t, q[bj + 2] - q[bi + 2], rate)
-            load[bj + 2] += force
-            load[bi + 2] -= force
-            power += force * rate
-            continue
-        dx = ws.position[j, 0] - ws.position[i, 0]
-        dy = ws.position[j, 1] - ws.position[i, 1]
-        vx = ws.velocity[j, 0] - ws.velocity[i, 0]
-        vy = ws.velocity[j, 1] - ws.velocity[i, 1]
-        if kind == LINE:
-            x = math.sqrt(dx * dx + dy * dy)
-            ux = dx / x if x > 0.0 else 0.0
-            uy = dy / x if x > 0.0 else 0.0
-            rate = ux * vx + uy * vy
         else:
-            ux = ws.axis[i, 0]
-            uy = ws.axis[i, 1]
-            if loads.element[e, 3] == 1:
-                turned = ux
-                ux = -uy
-                uy = turned
-            x = ux * dx + uy * dy
-            rate = ux * vx + uy * vy + v[bi + 2] * (-uy * dx + ux * dy)
+            c = cos_sin[i, 0]
+            s = cos_sin[i, 1]
+            arm_ix = c * place[e, 0] - s * place[e, 1]
+            arm_iy = s * place[e, 0] + c * place[e, 1]
+            ux = c * place[e, 2] - s * place[e, 3]
+            uy = s * place[e, 2] + c * place[e, 3]
+            c = cos_sin[j, 0]
+            s = cos_sin[j, 1]
+            arm_jx = c * place[e, 4] - s * place[e, 5]
+            arm_jy = s * place[e, 4] + c * place[e, 5]
+            dx = q[bj] + arm_jx - q[bi] - arm_ix
+            dy = q[bj + 1] + arm_jy - q[bi + 1] - arm_iy
+            vx = v[bj] - v[bj + 2] * arm_jy
+            vy = v[bj + 1] + v[bj + 2] * arm_jx
             if kind == PUSH:
                 x = t
-                rate = ux * ws.velocity[j, 0] + uy * ws.velocity[j, 1]
-        force = _magnitude(loads, laws, e, t, x, rate)
+                rate = ux * vx + uy * vy
+            else:
+                vx -= v[bi] - v[bi + 2] * arm_iy
+                vy -= v[bi + 1] + v[bi + 2] * arm_ix
+                if kind == LINE:
+                    x = math.sqrt(dx * dx + dy * dy)
+                    ux = dx / x if x > 0.0 else 0.0
+                    uy = dy / x if x > 0.0 else 0.0
+                    rate = ux * vx + uy * vy
+                else:
+                    x = ux * dx + uy * dy
+                    rate = ux * vx + uy * vy + v[bi + 2] * (-uy * dx + ux * dy)
+        force = 0.0
+        for k in range(element[e, 3], element[e, 4]):
+            what = term[k, 0]
+            a = number[k, 0]
+            b = number[k, 1]
+            if what == CONSTANT:
+                force += a
+            elif what == LINEAR:
+                force -= a * (x - b)
+            elif what == DAMPING:
+                force -= a * rate
+            elif what == POWER:
+                force += a * (x + b) ** number[k, 2]
+            elif what == DRY:
+                force -= a * math.tanh(rate / b)
+            else:
+                at = x
+                if what == LAW_RATE:
+                    at = rate
+                elif what == LAW_TIME:
+                    at = t
+                evaluate_law(laws, term[k, 1], at, law)
+                force += a * law[0]
         power += force * rate
+        if kind == TURN:
+            load[bj + 2] += force
+            load[bi + 2] -= force
+            continue
         fx = force * ux
         fy = force * uy
         load[bj] += fx
         load[bj + 1] += fy
-        load[bj + 2] += fy * ws.arm[j, 0] - fx * ws.arm[j, 1]
+        load[bj + 2] += fy * arm_jx - fx * arm_jy
         if kind == PUSH:
             continue
         load[bi] -= fx
         load[bi + 1] -= fy
-        load[bi + 2] -= fy * ws.arm[i, 0] - fx * ws.arm[i, 1]
+        load[bi + 2] -= fy * arm_ix - fx * arm_iy
         if kind == AXIS:
             load[bi + 2] += force * (-uy * dx + ux * dy)
+    return power
+
+
+@inlined
+def apply_loads(loads, laws, t, q, v, cos_sin, load):
+    """Add the generalised forces of all loads but friction to load (3 nb,); cos_sin (nb, 2) turns the bodies.
+
+    Returns their power (W).
+    What falls on ground is added too and means nothing.
+    """
+    power = apply_elements(
+        loads.element, loads.place, loads.term, loads.number, laws, loads.law, t, q, v, cos_sin, load
+    )
     if loads.interaction.shape[0] > 0:
-        power += apply_interactions(loads, laws, t, q, v, ws, load)
+        power += apply_interactions(loads, laws, t, q, v, cos_sin, load)
     if loads.user.shape[0] > 0:
-        power += apply_user_forces(loads, t, q, v, ws, load)
+        power += apply_user_forces(loads, t, q, v, cos_sin, load)
     return power
 
 
@@ -207,10 +227,9 @@ def tabulate_loads(system, loads, laws, times, q, v, ws, out, power):
     """out (T, 3 nb) and power (T,) of all forces along a motion q, v (T, 3 nb); ground's entries mean nothing."""
     for k in range(q.shape[0]):
         place(system, q[k], ws)
-        move(system, v[k], ws)
         for c in range(q.shape[1]):
             out[k, c] = 0.0
-        power[k] = apply_loads(system, loads, laws, times[k], q[k], v[k], ws, out[k])
+        power[k] = apply_loads(loads, laws, times[k], q[k], v[k], ws.cos_sin, out[k])
 
 
 def loads_along(packed: Packed, loads: Loads, laws: Laws, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:

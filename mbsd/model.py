@@ -160,6 +160,7 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
         step: float | None = None,
         progress: Callable[[float], None] | None = None,
         event_rows: bool = False,
+        formulation: str = "auto",
         **options: float,
     ) -> Solution:
         """Forward dynamics from ``start_near`` and ``start_moving``: M a + J^T lam = Q, J a = gamma.
@@ -169,6 +170,9 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
         (relative to the mechanism's size, to 1 rad, and to speeds); those with a fixed step take ``step`` (s), by
         default the time between outputs. ``progress`` is called with the part done (0 .. 1).
         ``event_rows`` adds two rows at every event, right before and after it (contacts, stops: docs/events.md).
+        ``formulation``: "reference" integrates all coordinates and projects them onto the joints; "independent" only
+        as many as there are degrees of freedom, where the mechanism falls apart into driven bodies and Assur groups:
+        many times faster. "auto" takes the latter where it can (``solution.stats.independent``).
         ``options`` are numbers of the method itself, such as ``rho`` of "generalized_alpha".
 
         Raises AssemblyError where the links do not close, SimulationError where the integration cannot go on.
@@ -177,7 +181,9 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
         from mbsd.dynamics.simulate import simulate
 
         tell(self, stacklevel=2)
-        return simulate(self, duration, steps, times, method, tolerance, step, progress, options, event_rows)
+        return simulate(
+            self, duration, steps, times, method, tolerance, step, progress, options, event_rows, formulation
+        )
 
     def equilibrium(self, time: float = 0.0, nearest: bool = False) -> Equilibrium:
         """Static equilibrium: pose, reactions, efforts of the drivers, stiffness and stability.

@@ -49,6 +49,8 @@ class Stats:
     steps: int
     inserted_steps: int
     """Steps added between outputs to stay on the branch."""
+    independent: bool = False
+    """Whether a simulation was integrated in independent coordinates (mbsd/embedding)."""
 
 
 @dataclass(frozen=True)

@@ -47,8 +47,11 @@ def _flat(function: Any) -> Any:
 
 
 @internal
-def apply_user_forces(loads, t, q, v, ws, load):
-    """Add the generalised forces of all functions to load (3 nb,), after place; returns their power (W)."""
+def apply_user_forces(loads, t, q, v, cos_sin, load):
+    """Add the generalised forces of all functions to load (3 nb,); cos_sin (nb, 2) turns the bodies.
+
+    Returns their power (W).
+    """
     given = loads.exchange[0]
     out = loads.exchange[1]
     power = 0.0
@@ -57,8 +60,8 @@ def apply_user_forces(loads, t, q, v, ws, load):
         count = loads.user[k, 2]
         for n in range(count):
             b = loads.user_body[first + n]
-            c = ws.cos_sin[b, 0]
-            s = ws.cos_sin[b, 1]
+            c = cos_sin[b, 0]
+            s = cos_sin[b, 1]
             x = c * loads.user_com[first + n, 0] - s * loads.user_com[first + n, 1]
             y = s * loads.user_com[first + n, 0] + c * loads.user_com[first + n, 1]
             rate = 3 * (count + n)

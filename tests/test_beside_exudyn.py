@@ -60,7 +60,7 @@ def chain(seed: int, links: int, closed: bool) -> Pinned:
 def ends(model: Pinned) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Poses and velocities at the end by mbsd and by Exudyn, and how far Exudyn's steps move them; (2, bodies, 3)."""
     problem = Case("chain", model, DURATION, {}, 0.0, lambda record: {})
-    record = mbsd_code.prepare(problem, {"method": "dop853", "tolerance": 1e-9})[1]()
+    record = mbsd_code.prepare(problem, {"method": "dop853", "tolerance": 1e-11})[1]()
     ours = np.stack([record.poses[-1], record.velocities[-1]])
     found = []
     for steps in (STEPS, 2 * STEPS):

@@ -16,6 +16,15 @@ FORCES = (
     "mbsd/curves.py",
     "mbsd/potential.py",
 )
+ANALYSES = (
+    "mbsd/statics.py",
+    "mbsd/balance.py",
+    "mbsd/tangent.py",
+    "mbsd/linear_state.py",
+    "mbsd/linearisation.py",
+    "mbsd/modes.py",
+    "mbsd/actuation.py",
+)
 SECTIONS = (
     ("Coordinates", "", ("mbsd/markers.py",)),
     ("Constraints", "Every joint and driver is made of these; each gives rows of Phi and J.", ("mbsd/constraints",)),
@@ -28,8 +37,13 @@ SECTIONS = (
     ("Inverse dynamics", "", ("mbsd/inverse_dynamics.py",)),
     ("Forces", "", FORCES),
     ("Forward dynamics", "", ("mbsd/dynamics",)),
+    (
+        "Independent coordinates",
+        "What forward dynamics does where a mechanism falls apart into driven bodies and Assur groups.",
+        ("mbsd/embedding",),
+    ),
     ("Integrators", "", ("mbsd/integrators",)),
-    ("Analyses", "", ("mbsd/analyses",)),
+    ("Analyses", "", ANALYSES),
 )
 FEWEST_LINES = 2
 """A docstring of one line has no equations to show."""

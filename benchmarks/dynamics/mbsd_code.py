@@ -1,4 +1,4 @@
-"""mbsd: the same plain data as a Mechanism, integrated by DOP853 with projection."""
+"""mbsd: the same plain data as a Mechanism, integrated by DOP853 in the coordinates that the program chooses."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from benchmarks.dynamics.cases import Case
 from benchmarks.dynamics.pins import GROUND, Pinned, Record
 from benchmarks.dynamics.stepping import tolerances
 from mbsd.dynamics.prepare import PreparedDynamics, prepare_dynamics
+from mbsd.dynamics.run import Run
 from mbsd.dynamics.simulate import integrator_named
 
 VERSION = mbsd.__version__
@@ -55,7 +56,10 @@ def prepare(case: Case, settings: dict[str, Any]) -> tuple[Callable[[], Callable
     ends = np.array([0.0, case.duration])
 
     def fresh() -> Callable[[], Any]:
-        return lambda: prepared.run(method, ends, settings["tolerance"], case.duration)
+        state, out = prepared.begun(ends)
+        run = Run(prepared, method, settings["tolerance"], case.duration, case.duration, {})
+        begun = run.embedded(state) or run
+        return lambda: begun.in_one_go(state, out)
 
     def record() -> Record:
         times = np.linspace(0.0, case.duration, SAMPLES + 1)

@@ -6,6 +6,9 @@ such plan and is solved by Newton-Raphson as a whole.
 
 from __future__ import annotations
 
+import copy
+import heapq
+
 import numpy as np
 
 from mbsd.assur.groups import NAMES, NUMBERS, Groups
@@ -29,21 +32,12 @@ def plan_groups(packed: Packed, q0: np.ndarray, redundant_rows: int) -> Groups |
     """The groups of a mechanism at its closed pose q0 (3 nb,), or None where it has no such plan."""
     if redundant_rows:
         return None
-    links = _links(packed)
+    links = links_of(packed)
     if links is None:
         return None
-    plan = _Plan(packed, q0.reshape(-1, 3), links)
-    while len(plan.known) < len(packed.body_names):
-        if not (plan.add_single() or plan.add_pair()):
-            return None
-    if len(plan.used) != len(packed.joints):
-        return None
-    return Groups(
-        np.array([kind for kind, _, _, _ in plan.groups], np.int64),
-        np.array([bodies for _, bodies, _, _ in plan.groups], np.int64).reshape(-1, 4),
-        np.array([motion for _, _, motion, _ in plan.groups], np.int64),
-        np.array([numbers + [0.0] * (NUMBERS - len(numbers)) for _, _, _, numbers in plan.groups], float),
-    )
+    plan = Plan(packed, q0.reshape(-1, 3), links)
+    plan.grow()
+    return plan.groups() if plan.complete else None
 
 
 def describe(groups: Groups, names: list[str]) -> str:
@@ -54,7 +48,7 @@ def describe(groups: Groups, names: list[str]) -> str:
     return "; ".join(parts)
 
 
-def _links(packed: Packed) -> list[list[Link]] | None:
+def links_of(packed: Packed) -> list[list[Link]] | None:
     """(nb,) links of each body; None if a joint is of a kind that no group covers."""
     system = packed.system
     links: list[list[Link]] = [[] for _ in packed.body_names]
@@ -77,17 +71,55 @@ def _links(packed: Packed) -> list[list[Link]] | None:
     return links
 
 
-class _Plan:
-    """The plan as it grows."""
+class Plan:
+    """The plan as it grows: ``known`` bodies have their place in ``taken`` groups, ``used`` joints hold them.
+
+    Only bodies near to which something has become known are looked at again.
+    """
 
     def __init__(self, packed: Packed, pose: np.ndarray, links: list[list[Link]]) -> None:
         self.packed, self.links, self.numbers = packed, links, Numbers(packed.system, pose)
         self.known, self.used = {0}, set[int]()
-        self.groups: list[tuple[int, tuple[int, int, int, int], int, list[float]]] = []
+        self.taken: list[tuple[int, tuple[int, int, int, int], int, list[float]]] = []
+        self.singles = list(range(1, len(links)))
+        self.pairs = list(self.singles)
+
+    def copy(self) -> Plan:
+        """A plan of its own to go on with."""
+        out = copy.copy(self)
+        out.links = list(self.links)
+        out.known, out.used, out.taken = set(self.known), set(self.used), list(self.taken)
+        out.singles, out.pairs = list(self.singles), list(self.pairs)
+        return out
+
+    @property
+    def complete(self) -> bool:
+        """Whether all bodies are known and all joints used."""
+        return len(self.known) == len(self.links) and self.used.issuperset(range(len(self.packed.joints)))
+
+    def grow(self) -> None:
+        """Add groups until there is none to add."""
+        while len(self.known) < len(self.links) and (self.add_single() or self.add_pair()):
+            pass
+
+    def hold(self, body: int, links: list[Link]) -> None:
+        """Add links of an unknown body, e.g. one that drives it."""
+        self.links[body] = [*self.links[body], *links]
+        heapq.heappush(self.singles, body)
+
+    def groups(self) -> Groups:
+        """As tables."""
+        return Groups(
+            np.array([kind for kind, _, _, _ in self.taken], np.int64),
+            np.array([bodies for _, bodies, _, _ in self.taken], np.int64).reshape(-1, 4),
+            np.array([motion for _, _, motion, _ in self.taken], np.int64),
+            np.array([numbers + [0.0] * (NUMBERS - len(numbers)) for _, _, _, numbers in self.taken], float),
+        )
 
     def add_single(self) -> bool:
         """Add a group of one body, if there is one."""
-        for body in range(1, len(self.links)):
+        while self.singles:
+            body = heapq.heappop(self.singles)
             if body in self.known:
                 continue
             links = [link for link in self.links[body] if link.other in self.known]
@@ -120,7 +152,8 @@ class _Plan:
 
     def add_pair(self) -> bool:
         """Add a group of two bodies, if there is one."""
-        for a in range(1, len(self.links)):
+        while self.pairs:
+            a = heapq.heappop(self.pairs)
             if a in self.known:
                 continue
             outer_a = [link for link in self.links[a] if link.other in self.known]
@@ -150,6 +183,12 @@ class _Plan:
         return False
 
     def _take(self, made: tuple, bodies: tuple[int, ...], links: list[Link]) -> None:
-        self.groups.append(made)
+        self.taken.append(made)
         self.known.update(bodies)
         self.used.update(link.joint for link in links)
+        near = {link.other for body in bodies for link in self.links[body]} - self.known
+        for body in near:
+            heapq.heappush(self.singles, body)
+        beside = {link.other for body in near for link in self.links[body]} - self.known
+        for body in near | beside:
+            heapq.heappush(self.pairs, body)

@@ -54,7 +54,7 @@ def accelerate(dyn, scratch, t, state, a, lam):
     for r in range(lam.shape[0]):
         lam[r] = 0.0
     if dyn.loads.total > 0:
-        power = apply_loads(system, dyn.loads, dyn.laws, t, q, v, ws, force)
+        power = apply_loads(dyn.loads, dyn.laws, t, q, v, ws.cos_sin, force)
     rubbing = dyn.loads.rub.shape[0] > 0
     if rubbing:
         power += begin_rubbing(system, dyn.loads, v, ws, force)

@@ -53,6 +53,8 @@ class Scratch(NamedTuple):
     """(drivers + 1, 3) value, rate and acceleration of the laws now."""
     force: Any
     """(3 nb,) what is left of Q."""
+    multipliers: Any
+    """(m,) that nobody keeps."""
     change: Any
     """(2, 3 nb) of a projection."""
     state: Any
@@ -81,6 +83,7 @@ def scratch_for(
         factors=schur_factors(dynamics.schur),
         drive=np.zeros((drivers + 1, 3)),
         force=np.zeros(n3),
+        multipliers=np.zeros(len(workspace.phi)),
         change=np.zeros((2, n3)),
         state=np.zeros((2, n3)),
         stages=np.zeros((stages, 2, n3)),

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,7 +14,7 @@ from mbsd.dynamics.arrays import Dynamics, Scratch, scratch_for
 from mbsd.dynamics.dependent import refuse_singular_start
 from mbsd.dynamics.initial import Initial, consistent
 from mbsd.dynamics.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
-from mbsd.dynamics.run import Run
+from mbsd.dynamics.run import AUTO, Run
 from mbsd.dynamics.schur import plan_schur
 from mbsd.dynamics.sliding import sliding_for
 from mbsd.dynamics.switches import Switches, all_contacts, with_contacts
@@ -25,6 +27,9 @@ from mbsd.model import Mechanism
 from mbsd.packing import Packed, pack
 from mbsd.prepared import refuse_bad_laws
 
+if TYPE_CHECKING:
+    from mbsd.embedding.embed import Embedded
+
 LIFT = 1e-7
 """Inertia given to coordinates without any, as part of a usual one, and refined away."""
 REFINEMENTS = 4
@@ -33,6 +38,8 @@ BALANCED = 1e-8
 """Part of the largest load that may stay unbalanced at the start; more means a massless body that nothing holds."""
 SLIGHT = 1e-6
 """Accelerations below this (sizes per s^2) are no load."""
+SMALLEST_STEP = 1e-13
+"""Part of the longest step at which a run gives up."""
 OUTPUTS_LONGEST = 25
 """A step covers this part of the duration at most, so that short loads are not stepped over."""
 
@@ -60,12 +67,20 @@ class PreparedDynamics:
         step: float,
         progress: Callable[[float], None] | None = None,
         options: Mapping[str, float] | None = None,
+        formulation: str = AUTO,
     ) -> tuple[run_state.State, run_state.Output]:
         """Integrate to the last of ``times`` (s), which begin with the start; no events. Raises SimulationError."""
         state, out = self.begun(times)
-        run = Run(self, method, tolerance, step, float(times[-1] - times[0]), options or {})
+        run = Run(self, method, tolerance, step, float(times[-1] - times[0]), options or {}, formulation)
         run.to_end(state, out, progress)
         return state, out
+
+    @cached_property
+    def embedded(self) -> Embedded | None:
+        """The mechanism in independent coordinates that suit its start, or None where there are none."""
+        from mbsd.embedding.embed import can_embed, embed
+
+        return None if can_embed(self) else embed(self, self.initial.q, self.initial.v, self.start)
 
     def begun(self, times: np.ndarray) -> tuple[run_state.State, run_state.Output]:
         """A run at its consistent start, and room for its outputs."""
@@ -86,7 +101,11 @@ class PreparedDynamics:
         """Tolerances in the mechanism's own sizes. Raises ModelError for options that the method does not have."""
         one = np.concatenate([np.ones(3), self.packed.column_scale()]) * tolerance
         numbers = method.numbers(self.packed.name, options)
-        return run_state.Settings(np.stack([one, one]), tolerance, duration / OUTPUTS_LONGEST, step, numbers)
+        longest = duration / OUTPUTS_LONGEST
+        growing = np.stack([np.where(np.arange(len(one)) % 3 == 2, 0.0, tolerance), np.full(len(one), tolerance)])
+        return run_state.Settings(
+            np.stack([one, one]), tolerance, growing, longest, SMALLEST_STEP * longest, step, numbers
+        )
 
 
 def prepare_dynamics(m: Mechanism, start: float, end: float, contacts: bool = False) -> PreparedDynamics:

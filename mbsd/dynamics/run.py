@@ -8,17 +8,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.errors import SimulationError
+from mbsd.dynamics.multipliers import fill_multipliers
+from mbsd.errors import ModelError, SimulationError
 from mbsd.integrators import state as run_state
 from mbsd.integrators.kind import Integrator
 from mbsd.joint_friction import FAILED
 
 if TYPE_CHECKING:
     from mbsd.dynamics.prepare import PreparedDynamics
+    from mbsd.embedding.embed import Embedded
+    from mbsd.embedding.run import EmbeddedRun
 
 STEPS_AT_ONCE = 2000
 """Between two looks at the clock and the keyboard."""
 NO_LIMIT = 10**12
+AUTO, REFERENCE, INDEPENDENT = FORMULATIONS = "auto", "reference", "independent"
+"""Which coordinates are integrated; "auto" takes independent ones where it can."""
 
 
 class Run:
@@ -32,8 +37,10 @@ class Run:
         step: float,
         duration: float,
         options: Mapping[str, float],
+        formulation: str = AUTO,
     ) -> None:
         self.ready = ready
+        self.formulation = formulation
         self.method = method
         self.tolerance = tolerance
         self.scratch = ready.scratch(method)
@@ -54,8 +61,49 @@ class Run:
 
     def to_end(
         self, state: run_state.State, out: run_state.Output, progress: Callable[[float], None] | None = None
+    ) -> bool:
+        """Go on to the last output time, from a start or restart; returns whether in independent coordinates."""
+        embedded = self.embedded(state)
+        if embedded is None:
+            self.in_one_go(state, out, progress)
+            return False
+        embedded.in_one_go(state, out, progress)
+        fill_multipliers(self.ready.dynamics, self.scratch, out)
+        self.ready.packed.specials.check()
+        return True
+
+    def embedded(self, state: run_state.State) -> EmbeddedRun | None:
+        """The same run in independent coordinates from this state on, or None if it stays in reference coordinates.
+
+        Raises ModelError if independent coordinates were asked for in vain.
+        """
+        if self.formulation == REFERENCE:
+            return None
+        why, made = self._choice(state)
+        if made is not None:
+            from mbsd.embedding.run import EmbeddedRun
+
+            return EmbeddedRun(self, made, state.y[0], state.y[1], float(state.clock[run_state.TIME]))
+        if self.formulation == INDEPENDENT:
+            raise ModelError(f"{self.ready.packed.name}: formulation='independent' is not possible here: {why}")
+        return None
+
+    def _choice(self, state: run_state.State) -> tuple[str | None, Embedded | None]:
+        from mbsd.embedding.embed import NO_PLAN, can_embed, embed
+
+        if not self.method.embeds:
+            return f"method '{self.method.name}' works in reference coordinates", None
+        why = can_embed(self.ready)
+        if why is not None:
+            return why, None
+        if np.array_equal(state.y[0], self.ready.initial.q) and np.array_equal(state.y[1], self.ready.initial.v):
+            return NO_PLAN, self.ready.embedded
+        return NO_PLAN, embed(self.ready, state.y[0], state.y[1], float(state.clock[run_state.TIME]))
+
+    def in_one_go(
+        self, state: run_state.State, out: run_state.Output, progress: Callable[[float], None] | None = None
     ) -> None:
-        """Go on to the last output time."""
+        """``to_end`` in reference coordinates."""
         start, end = float(state.clock[run_state.TIME]), float(out.t[-1])
         while True:
             status = self.advance(state, out, end, STEPS_AT_ONCE)

@@ -15,7 +15,7 @@ from mbsd.assembly import tabulate
 from mbsd.dynamics.dependent import refuse_opened
 from mbsd.dynamics.large import MANY_COORDINATES
 from mbsd.dynamics.prepare import PreparedDynamics, prepare_dynamics
-from mbsd.dynamics.run import Run
+from mbsd.dynamics.run import AUTO, FORMULATIONS, INDEPENDENT, Run
 from mbsd.dynamics.trail import Trail, follow, resumed
 from mbsd.errors import InitialConditionWarning, ModelError
 from mbsd.friction_along import friction_along
@@ -39,6 +39,7 @@ def simulate(
     progress: Callable[[float], None] | None,
     options: Mapping[str, float],
     event_rows: bool = False,
+    formulation: str = AUTO,
 ) -> Solution:
     """See :meth:`mbsd.model.Mechanism.simulate`."""
     integrator = integrator_named(m.name, method)
@@ -47,6 +48,8 @@ def simulate(
     for what, value in (("tolerance", tolerance), ("step", step)):
         if value is not None and not (math.isfinite(value) and value > 0):
             raise ModelError(f"{m.name}: {what} is {value}; it must be positive")
+    if formulation not in FORMULATIONS:
+        raise ModelError(f"{m.name}: there is no formulation '{formulation}'; there is: {', '.join(FORMULATIONS)}")
     ready = prepare_dynamics(m, float(grid[0]), float(grid[-1]), contacts=True)
     if ready.initial.velocities:
         warnings.warn(
@@ -54,8 +57,11 @@ def simulate(
             InitialConditionWarning,
             stacklevel=3,
         )
-    run = Run(ready, integrator, tolerance, step or float(np.diff(grid).max()), float(grid[-1] - grid[0]), options)
+    longest = step or float(np.diff(grid).max())
+    run = Run(ready, integrator, tolerance, longest, float(grid[-1] - grid[0]), options, formulation)
     events = list(m.events.values())
+    if formulation == INDEPENDENT and (events or ready.switches.touches):
+        raise ModelError(f"{m.name}: formulation='independent' does not know events, contacts and limits")
     trail = follow(ready, run, grid, events, event_rows, progress)
 
     def between(times: np.ndarray) -> Solution:
@@ -137,7 +143,7 @@ def solution(
         lam=lam,
         drives=drives,
         singularity_margin=np.sqrt(np.clip(out.margin, 0.0, None)),
-        stats=Stats(*(float(r) for r in residuals), steps=trail.steps, inserted_steps=0),
+        stats=Stats(*(float(r) for r in residuals), steps=trail.steps, inserted_steps=0, independent=trail.independent),
         mobility=ready.mobility,
         work=out.work,
         changes=ready.initial.poses + ready.initial.velocities,

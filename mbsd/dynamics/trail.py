@@ -52,6 +52,8 @@ class Trail:
     steps: int
     happenings: list[Happening] = field(default_factory=list)
     snapshots: list[Snapshot] = field(default_factory=list)
+    independent: bool = False
+    """Integrated in independent coordinates."""
 
 
 def follow(
@@ -64,8 +66,9 @@ def follow(
     met = EventRun(ready, run, state, out, events)
     if not events and not ready.switches.touches:
         met.snapshots.append(met.snapshot())
-        run.to_end(state, out, progress)
-        return Trail(out, met.held | ready.switches.held(), int(state.count[ACCEPTED]), [], met.snapshots)
+        independent = run.to_end(state, out, progress)
+        steps, held = int(state.count[ACCEPTED]), met.held | ready.switches.held()
+        return Trail(out, held, steps, [], met.snapshots, independent)
     met.begin()
     met.to(float(times[-1]), progress)
     return trail_of(met, event_rows)

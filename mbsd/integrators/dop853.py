@@ -3,7 +3,7 @@
     k_s = f(t + c_s h, y + h sum A_sj k_j)        s = 1 .. 12
     y1  = y + h sum B_s k_s,   then q and v are projected
     err = h |e5|^2 / sqrt((|e5|^2 + 0.01 |e3|^2) n),   e5 = sum E5_s k_s,  e3 = sum E3_s k_s
-    h  *= 0.9 err^(-1/8), within 0.2 .. 10
+    h  *= 0.7 err^(-0.117) err_0^0.04, within 0.2 .. 10;    err_0 of the step before
 
 Outputs come from the method's own interpolant of order 7 (three evaluations more, in steps that hold an output), and
 are projected too. A step whose projection does not contract is taken again with half the length.
@@ -15,12 +15,23 @@ from __future__ import annotations
 
 import math
 
-from mbsd.dynamics.acceleration import accelerate, derivative
-from mbsd.dynamics.projection import project
 from mbsd.integrators.dop853_tableau import E3, E5, A, B, C, D
+from mbsd.integrators.formulation import (
+    accelerate,
+    begin,
+    derivative,
+    join_rows,
+    keep_row,
+    project,
+    record,
+    record_here,
+    settle,
+)
 from mbsd.integrators.kind import Integrator, register
 from mbsd.integrators.state import (
     ACCEPTED,
+    CHOOSE,
+    ERROR,
     EVALUATIONS,
     NEXT,
     NOT_FINITE,
@@ -31,18 +42,24 @@ from mbsd.integrators.state import (
     STEP,
     STEP_TOO_SMALL,
     TIME,
+    UNCLEAR,
     WORK,
-    begin,
-    record,
-    record_here,
 )
 from mbsd.integrators.step_size import allowed, first_step
-from mbsd.jit import inlined, kernel
+from mbsd.jit import internal, kernel
 
 STAGES = 16
-SMALLEST_STEP = 1e-13
-"""Part of the longest step at which a run gives up."""
-
+EXPONENT = 0.125
+SAFETY, BETA = 0.7, 0.04
+"""Of the step-size control. Cautious: a rejected step costs eleven evaluations, more than longer steps save."""
+SMALL = -9.0
+"""Logarithm of the least error that steers the next steps."""
+FEW = 9
+"""Columns of a state below which it is summed entry by entry."""
+UNCLEAR_STEP = 0.7
+"""How a step is shortened within which independent coordinates have no clear pose."""
+BESIDE = 1e-3
+"""Part of a step by which poses beside an unclear one are looked for, doubled until both are clear."""
 CONTRACTION = 0.1
 """The second projection must change the pose by less than this part of the first."""
 ROUNDING = 1e-9
@@ -70,7 +87,7 @@ def _interpolant(dyn, scratch, state, h, work):
                 for j in range(s):
                     change += A[s, j] * k[j, part, c]
                 dense[7, part, c] = state.y[part, c] + h * change
-        power[s] = derivative(dyn, scratch, t + C[s] * h, dense[7], k[s], scratch.ws.right[1])
+        power[s] = derivative(dyn, scratch, t + C[s] * h, dense[7], k[s], scratch.multipliers)
     for row in range(4):
         for part in range(2):
             for c in range(3, n3):
@@ -87,21 +104,43 @@ def _interpolant(dyn, scratch, state, h, work):
     scratch.dense_work[2] = 2.0 * work - h * (power[12] + power[0])
 
 
-@inlined
-def _interpolate(scratch, state, x):
-    """scratch.state at the part x of the step whose coefficients stand in scratch.dense; returns the work so far."""
-    dense = scratch.dense
+@internal
+def _interpolate(dense, dense_work, y, x, out):
+    """out (2, n) at the part x of the step that began at y; returns the work so far (J).
+
+    Not inlined: numba 0.68 mixes up its copies where it is called more than once.
+    """
     for part in range(2):
-        for c in range(3, state.y.shape[1]):
+        for c in range(3, y.shape[1]):
             value = 0.0
             for row in range(6, -1, -1):
-                value += dense[row, part, c]
-                value *= x if row % 2 == 0 else 1.0 - x
-            scratch.state[part, c] = state.y[part, c] + value
+                value = (value + dense[row, part, c]) * (x if row % 2 == 0 else 1.0 - x)
+            out[part, c] = y[part, c] + value
     work = 0.0
     for row in range(6, -1, -1):
-        work = (work + scratch.dense_work[row]) * (x if row % 2 == 0 else 1.0 - x)
+        work = (work + dense_work[row]) * (x if row % 2 == 0 else 1.0 - x)
     return work
+
+
+@kernel
+def _output(dyn, scratch, state, out, k, x, h):
+    """Write output k at the part x of the step; returns whether its pose, or poses beside it, are clear."""
+    t = state.clock[TIME]
+    so_far = state.clock[WORK] + _interpolate(scratch.dense, scratch.dense_work, state.y, x, scratch.state)
+    if record(dyn, scratch, out, k, t + x * h, so_far):
+        return True
+    beside = BESIDE
+    while beside < 1.0:
+        _interpolate(scratch.dense, scratch.dense_work, state.y, x - beside, scratch.state)
+        before = record(dyn, scratch, out, k, t + (x - beside) * h, so_far)
+        keep_row(dyn, scratch, out, k)
+        _interpolate(scratch.dense, scratch.dense_work, state.y, x + beside, scratch.state)
+        after = record(dyn, scratch, out, k, t + (x + beside) * h, so_far)
+        if before and after:
+            join_rows(dyn, scratch, out, k, 2.0 * beside * h)
+            return True
+        beside *= 2.0
+    return False
 
 
 @kernel
@@ -116,7 +155,7 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
     if state.clock[STEP] == 0.0:
         state.clock[STEP] = first_step(dyn, scratch, state, settings, 0.125)
     while state.count[NEXT] < out.t.shape[0] and out.t[state.count[NEXT]] <= state.clock[TIME]:
-        record_here(scratch, state, out)
+        record_here(dyn, scratch, state, out)
     for c in range(3, n3):
         k[0, 0, c] = state.dy[0, c]
         k[0, 1, c] = state.dy[1, c]
@@ -131,77 +170,101 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
         last = t + h >= end
         if last:
             h = end - t
-        elif h < SMALLEST_STEP * settings.longest:
+        elif h < settings.smallest:
             return STEP_TOO_SMALL
-        for s in range(1, 12):
-            for part in range(2):
-                for c in range(3, n3):
-                    trial[part, c] = A[s, 0] * k[0, part, c]
-                for j in range(1, s):
-                    factor = A[s, j]
-                    if factor != 0.0:
+        reached = end if last else t + h
+        work = 0.0
+        error = 0.0
+        shorter = 1.0
+        for s in range(1, 13):
+            if s < 12:
+                if n3 < FEW:  # sums stay in registers
+                    for c in range(3, n3):
+                        rise = 0.0
+                        gain = 0.0
+                        for j in range(s):
+                            rise += A[s, j] * k[j, 0, c]
+                            gain += A[s, j] * k[j, 1, c]
+                        trial[0, c] = y[0, c] + h * rise
+                        trial[1, c] = y[1, c] + h * gain
+                else:
+                    for part in range(2):
                         for c in range(3, n3):
-                            trial[part, c] += factor * k[j, part, c]
-                for c in range(3, n3):
-                    trial[part, c] = y[part, c] + h * trial[part, c]
+                            trial[part, c] = A[s, 0] * k[0, part, c]
+                        for j in range(1, s):
+                            factor = A[s, j]
+                            if factor != 0.0:
+                                for c in range(3, n3):
+                                    trial[part, c] += factor * k[j, part, c]
+                        for c in range(3, n3):
+                            trial[part, c] = y[part, c] + h * trial[part, c]
+            else:
+                for j in range(12):
+                    work += h * B[j] * scratch.power[j]
+                fifth = 0.0
+                third = 0.0
+                for part in range(2):
+                    for c in range(3, n3):
+                        change = 0.0
+                        e5 = 0.0
+                        e3 = 0.0
+                        for j in range(12):
+                            change += B[j] * k[j, part, c]
+                            e5 += E5[j] * k[j, part, c]
+                            e3 += E3[j] * k[j, part, c]
+                        trial[part, c] = y[part, c] + h * change
+                        scale = allowed(settings, y, trial, part, c)
+                        fifth += (e5 / scale) ** 2
+                        third += (e3 / scale) ** 2
+                if fifth > 0.0 or third > 0.0:
+                    error = h * fifth / math.sqrt((fifth + 0.01 * third) * count)
+                if not error < 1.0:
+                    shorter = max(0.2, SAFETY * error**-EXPONENT) if math.isfinite(error) else 0.2
+                    break
+                project(dyn, scratch, reached, trial, 2)
+                if not scratch.report[2] <= max(CONTRACTION * scratch.report[1], ROUNDING):
+                    shorter = 0.5
+                    break
             for c in range(3, n3):
                 k[s, 0, c] = trial[1, c]
-            scratch.power[s] = accelerate(dyn, scratch, t + C[s] * h, trial, k[s, 1], scratch.ws.right[1])
-        work = 0.0
-        for s in range(12):
-            work += h * B[s] * scratch.power[s]
-        fifth = 0.0
-        third = 0.0
-        for part in range(2):
-            for c in range(3, n3):
-                change = 0.0
-                e5 = 0.0
-                e3 = 0.0
-                for s in range(12):
-                    change += B[s] * k[s, part, c]
-                    e5 += E5[s] * k[s, part, c]
-                    e3 += E3[s] * k[s, part, c]
-                trial[part, c] = y[part, c] + h * change
-                scale = allowed(settings, y, trial, part, c)
-                fifth += (e5 / scale) ** 2
-                third += (e3 / scale) ** 2
-        error = 0.0
-        if fifth > 0.0 or third > 0.0:
-            error = h * fifth / math.sqrt((fifth + 0.01 * third) * count)
-        state.count[EVALUATIONS] += 11
-        if not error < 1.0:
-            if h < SMALLEST_STEP * settings.longest:
+            state.count[EVALUATIONS] += 1
+            at = t + C[s] * h if s < 12 else reached
+            scratch.power[s] = accelerate(dyn, scratch, at, trial, k[s, 1], scratch.multipliers)
+            if scratch.power[s] != scratch.power[s]:
+                shorter = UNCLEAR_STEP
+                break
+        if shorter < 1.0:
+            if h < settings.smallest:
                 return NOT_FINITE
-            state.clock[STEP] = h * (max(0.2, 0.9 * error**-0.125) if math.isfinite(error) else 0.2)
+            state.clock[STEP] = h * shorter
             state.count[REJECTED] += 1
             rejected = True
             continue
-        project(dyn, scratch, t + h, trial, 2)
-        if not scratch.report[2] <= max(CONTRACTION * scratch.report[1], ROUNDING):
-            if h < SMALLEST_STEP * settings.longest:
-                return NOT_FINITE
-            state.clock[STEP] = 0.5 * h
-            state.count[REJECTED] += 1
-            rejected = True
-            continue
-        reached = end if last else t + h
-        scratch.power[12] = derivative(dyn, scratch, reached, trial, k[12], state.lam)
-        state.count[EVALUATIONS] += 1
         margin = scratch.report[0]
         for c in range(3, n3):
             state.dy[0, c] = k[12, 0, c]
             state.dy[1, c] = k[12, 1, c]
+        for r in range(state.lam.shape[0]):
+            state.lam[r] = scratch.multipliers[r]
         following = state.count[NEXT]
+        fresh = True
         if following < out.t.shape[0] and out.t[following] < reached:
+            fresh = False
             _interpolant(dyn, scratch, state, h, work)
             state.count[EVALUATIONS] += 3
+            if scratch.dense_work[3] != scratch.dense_work[3]:
+                if h < settings.smallest:
+                    return NOT_FINITE
+                state.clock[STEP] = UNCLEAR_STEP * h
+                state.count[REJECTED] += 1
+                rejected = True
+                continue
             for part in range(2):  # record and the interpolant use trial: the end of the step waits in dense[7]
                 for c in range(3, n3):
                     scratch.dense[7, part, c] = y[part, c] + scratch.dense[0, part, c]
             while following < out.t.shape[0] and out.t[following] < reached:
-                x = (out.t[following] - t) / h
-                so_far = _interpolate(scratch, state, x)
-                record(dyn, scratch, out, following, state.clock[WORK] + so_far)
+                if not _output(dyn, scratch, state, out, following, (out.t[following] - t) / h, h):
+                    return UNCLEAR
                 following += 1
                 state.count[NEXT] = following
             for part in range(2):
@@ -217,8 +280,15 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
         scratch.power[0] = scratch.power[12]
         scratch.report[0] = margin
         if following < out.t.shape[0] and out.t[following] <= reached:
-            record_here(scratch, state, out)
-        growth = min(10.0, 0.9 * error**-0.125) if error > 0.0 else 10.0
+            record_here(dyn, scratch, state, out)
+            fresh = False
+        other = settle(dyn, scratch, reached, trial, fresh)
+        growth = 10.0
+        if error > 0.0:
+            growth = math.log(error)
+            before = state.clock[ERROR] if state.clock[ERROR] < 0.0 else growth
+            state.clock[ERROR] = max(growth, SMALL)
+            growth = min(10.0, SAFETY * math.exp(BETA * before - (EXPONENT - 0.2 * BETA) * growth))
         if rejected:
             growth = min(growth, 1.0)
         if not last or growth < 1.0:
@@ -226,7 +296,9 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
         rejected = False
         accepted += 1
         state.count[ACCEPTED] += 1
+        if other:
+            return CHOOSE
     return REACHED
 
 
-DOP853 = register(Integrator("dop853", advance, STAGES, order=8, fixed_step=False))
+DOP853 = register(Integrator("dop853", advance, STAGES, order=8, fixed_step=False, embeds=True))

@@ -46,6 +46,8 @@ class Integrator:
     """Numbers that ``simulate`` takes by name for this method; in this order they stand in Settings.options."""
     matrices: tuple[int, int] = (0, 0)
     """Full matrices it needs, and their rows for each coordinate (see mbsd/dynamics/full_matrix.py)."""
+    embeds: bool = False
+    """``advance`` takes an Embedding as well as a Dynamics."""
     refusal: Callable[[Dynamics], str | None] = lambda dynamics: None
     """Why this method cannot simulate a mechanism, or None."""
     package: str = ""

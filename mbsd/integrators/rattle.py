@@ -37,7 +37,6 @@ from mbsd.integrators.state import (
 from mbsd.jit import inlined, internal, kernel
 from mbsd.laws import evaluate_laws
 from mbsd.loads import apply_loads
-from mbsd.markers import move
 
 STAGES = 2
 PASSES = 60
@@ -56,8 +55,7 @@ def _loads(dyn, scratch, t, y):
         load[c] = dyn.weight[c]
     if dyn.loads.total == 0:
         return 0.0
-    move(dyn.system, y[1], scratch.ws)
-    return apply_loads(dyn.system, dyn.loads, dyn.laws, t, y[0], y[1], scratch.ws, load)
+    return apply_loads(dyn.loads, dyn.laws, t, y[0], y[1], scratch.ws.cos_sin, load)
 
 
 @internal

@@ -11,8 +11,11 @@ from mbsd.dynamics.acceleration import derivative
 from mbsd.dynamics.projection import project
 from mbsd.jit import inlined, kernel
 
-REACHED, PAUSED, STEP_TOO_SMALL, NOT_FINITE, NO_CONVERGENCE = 0, 1, 2, 3, 4
-"""What ``advance`` returns: the end was reached, the allowed steps were used, or why it cannot go on."""
+REACHED, PAUSED, STEP_TOO_SMALL, NOT_FINITE, NO_CONVERGENCE, CHOOSE, UNCLEAR = 0, 1, 2, 3, 4, 5, 6
+"""What ``advance`` returns: the end was reached, the allowed steps were used, or why it cannot go on.
+
+Of independent coordinates: other ones may be better, or an output falls on a pose that they do not tell clearly.
+"""
 TIME, STEP, WORK, POWER, ERROR = 0, 1, 2, 3, 4
 """Entries of State.clock."""
 NEXT, ACCEPTED, REJECTED, EVALUATIONS, STARTED = 0, 1, 2, 3, 4
@@ -60,8 +63,12 @@ class Settings(NamedTuple):
     """(2, 3 nb) absolute tolerance of coordinates and velocities."""
     relative: float
     """Relative tolerance of velocities and of x and y."""
+    growing: Any
+    """(2, 3 nb) the same for each entry; 0 for angles, which are no less exact after many turns."""
     longest: float
     """s"""
+    smallest: float
+    """Step (s) at which a method with an error estimate gives up."""
     step: float
     """Of methods with a fixed step (s)."""
     options: Any

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.dynamics.acceleration import derivative
+from mbsd.integrators.formulation import derivative
 from mbsd.integrators.state import EVALUATIONS, TIME
 from mbsd.jit import inlined, internal
 
@@ -15,10 +15,7 @@ from mbsd.jit import inlined, internal
 @inlined
 def allowed(settings, before, after, part, c):
     """Tolerance of one entry of the state."""
-    tolerance = settings.absolute[part, c]
-    if part == 1 or c % 3 != 2:  # angles of many turns are no less exact
-        tolerance += settings.relative * max(abs(before[part, c]), abs(after[part, c]))
-    return tolerance
+    return settings.absolute[part, c] + settings.growing[part, c] * max(abs(before[part, c]), abs(after[part, c]))
 
 
 @internal
@@ -43,7 +40,7 @@ def first_step(dyn, scratch, state, settings, exponent):
     for part in range(2):
         for c in range(3, n3):
             trial[part, c] = y[part, c] + h * state.dy[part, c]
-    derivative(dyn, scratch, state.clock[TIME] + h, trial, scratch.stages[0], scratch.ws.right[1])
+    derivative(dyn, scratch, state.clock[TIME] + h, trial, scratch.stages[0], scratch.multipliers)
     state.count[EVALUATIONS] += 1
     bend = 0.0
     for part in range(2):

@@ -23,7 +23,7 @@ SAMPLES = 1000
 def ladders(case: Case) -> Iterator[list[dict[str, Any]]]:
     """Settings to try, each ladder from cheap to exact."""
     del case
-    yield [{"method": "dop853", "tolerance": tol} for tol in tolerances(1e-2, 1e-9, 4)]
+    yield [{"method": "dop853", "tolerance": tol} for tol in tolerances(1e-2, 1e-9, 24)]
 
 
 def mechanism(model: Pinned, name: str) -> mbsd.Mechanism:

@@ -83,7 +83,7 @@ class Run:
         if made is not None:
             from mbsd.embedding.run import EmbeddedRun
 
-            return EmbeddedRun(self, made, state.y[0], state.y[1], float(state.clock[run_state.TIME]))
+            return EmbeddedRun(self, made, state)
         if self.formulation == INDEPENDENT:
             raise ModelError(f"{self.ready.packed.name}: formulation='independent' is not possible here: {why}")
         return None

@@ -9,7 +9,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.assur.plan import Plan
-from mbsd.embedding.arrays import BASE, COS, INERTIA, LIMIT, MASS, NEAR, SENSITIVITY, TURNS, Embedding, EmbeddingScratch
+from mbsd.embedding.arrays import (
+    BASE,
+    COS,
+    INERTIA,
+    LIMIT,
+    MASS,
+    NEAR,
+    SENSITIVITY,
+    SPEED,
+    THETA,
+    TURNS,
+    Embedding,
+    EmbeddingScratch,
+)
 from mbsd.embedding.coordinates import MOST, Coordinate, choices, coordinates_of
 from mbsd.embedding.equations import derivative, settle
 from mbsd.embedding.numbers import group_numbers, group_table
@@ -99,7 +112,7 @@ def scratch_for(ready: PreparedDynamics, made: Embedded, stages: int, q: np.ndar
     body[0, COS] = 1.0
     body[:, MASS], body[:, INERTIA] = ready.packed.system.mass, ready.packed.system.inertia
     base = np.zeros((bodies, TURNS + columns))
-    base[:, 0] = q[2::3]
+    base[:, THETA] = q[2::3]
     return EmbeddingScratch(
         cos_sin=np.repeat([[1.0, 0.0]], bodies, axis=0),
         body=body,
@@ -128,7 +141,7 @@ def begin_at(arrays: Embedding, scratch: EmbeddingScratch, state: np.ndarray, ti
     """Let predictions begin at a state (2, 3 + f) and time (s)."""
     arrays.number[:, NEAR] = 1.0
     count = state.shape[1] - 3
-    scratch.coordinate[:, 1] = 1.0
+    scratch.coordinate[:, SPEED] = 1.0
     scratch.coordinate[:count, BASE] = state[0, 3:]
     scratch.coordinate[count:, BASE] = time
     scratch.watch[LIMIT] = limit

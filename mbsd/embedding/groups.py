@@ -33,7 +33,9 @@ from mbsd.embedding.arrays import (
     Y,
 )
 from mbsd.embedding.branch import AVOIDED, DOUBTED, SOLVED, doubted, predicted
-from mbsd.embedding.slides import solve_prp, solve_rod, solve_rpr, solve_rrp, solve_slide, solve_yoke
+from mbsd.embedding.lengths import solve_rod, solve_slide
+from mbsd.embedding.one_slide import solve_rpr, solve_rrp
+from mbsd.embedding.two_slides import solve_prp, solve_yoke
 from mbsd.jit import inlined
 
 

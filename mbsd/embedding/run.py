@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from mbsd.dynamics.run import STEPS_AT_ONCE
 from mbsd.embedding.arrays import LIMIT, SENSITIVITY
 from mbsd.embedding.embed import DOUBLED, GOOD, POOR, Embedded, begin_at, embed, scratch_for
 from mbsd.embedding.equations import write
@@ -15,8 +16,6 @@ from mbsd.integrators.state import NEXT, STARTED, STEP, TIME, WORK
 if TYPE_CHECKING:
     from mbsd.dynamics.run import Run
 
-STEPS_AT_ONCE = 2000
-"""Between two looks at the clock and the keyboard."""
 PASSING = 6
 """Steps in reference coordinates before independent ones are tried again."""
 BEYOND = 0.05

@@ -117,14 +117,16 @@ class AddingInteractions(AddingForces):
         radius: float = 0.0,
         length: float = 0.0,
         preload: float = 0.0,
-        slip_speed: float = 1e-3,
+        slip_speed: float | None = None,
+        sticks: bool = False,
     ) -> Force:
         """Friction of a revolute, prismatic or pin-in-slot joint from its actual reaction.
 
         ``coefficient`` while sliding and ``static`` (the same by default) near rest, between them the speed
         ``stribeck`` (m/s); ``viscous`` N s/m or N m s; ``radius`` of a pin (m); ``length`` over which a slider is
         guided (m), 0 where tilting presses nothing; ``preload`` (N) is added to the normal force; ``slip_speed``
-        (m/s) is where it comes near its full size, below it the joint creeps.
+        (m/s, 1 mm/s if not given) is where it comes near its full size, below it the joint creeps. With ``sticks`` it
+        does not: a simulation finds when the joint sticks and slides, and holds it meanwhile.
         """
         what = f"{self.name}: force '{name}'"
         known = self.joints.get(joint if isinstance(joint, str) else getattr(joint, "name", ""))
@@ -138,8 +140,12 @@ class AddingInteractions(AddingForces):
             name, coefficient=coefficient, viscous=viscous, radius=radius, length=length, preload=preload
         )
         params["static"] = params["coefficient"] if static is None else self._positive(name, static=static)["static"]
-        for key, value in (("stribeck", stribeck), ("slip_speed", slip_speed)):
-            params[key] = self._above_zero(name, key, value)
+        params["stribeck"] = self._above_zero(name, "stribeck", stribeck)
+        params["sticks"] = bool(sticks)
+        if not sticks:
+            params["slip_speed"] = self._above_zero(name, "slip_speed", 1e-3 if slip_speed is None else slip_speed)
+        elif slip_speed is not None:
+            raise ModelError(f"{what}: a joint that sticks does not creep; give slip_speed or sticks=True, not both")
         if (params["radius"] > 0) != (known.kind.name == "revolute"):
             raise ModelError(f"{what}: a revolute joint needs the radius of its pin (m), and no other has one")
         if params["length"] > 0 and known.kind.name != "prismatic":

@@ -86,11 +86,10 @@ def refuse_closed(m: Mechanism, packed: Packed, q: np.ndarray) -> None:
 
 def refuse_pushing(m: Mechanism, motion: Solution) -> None:
     """Raise ModelError for a motion during which a contact pushes: its forces would be put on the actuators."""
-    first = len(motion.packed.joints) - motion.packed.contacts
-    for joint in motion.packed.joints[first:]:
-        closed = motion.contact(joint.name).closed
+    for name in motion.packed.contact_gaps():
+        closed = motion.contact(name).closed
         if closed.any():
             raise ModelError(
-                f"{m.name}: contact '{joint.name}' pushes at t = {motion.t[int(np.argmax(closed))]:.6g} s of this "
+                f"{m.name}: contact '{name}' pushes at t = {motion.t[int(np.argmax(closed))]:.6g} s of this "
                 "motion. Efforts are found for motions without contact alone; cut the motion there."
             )

@@ -10,7 +10,9 @@ import hashlib
 import os
 import shutil
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 _PACKAGE = Path(__file__).parent
 
@@ -41,6 +43,7 @@ os.environ.setdefault("NUMBA_CACHE_DIR", str(_cache_folder()))
 os.environ.setdefault("NUMBA_CPU_NAME", "generic")  # one code for all machines, and faster on loops this short
 
 import numba  # noqa: E402  (the folder must be set first)
+from numba.core.dispatcher import Dispatcher  # noqa: E402
 
 numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]  # in case numba was imported before us
 
@@ -59,3 +62,26 @@ inlined = numba.njit(**_OPTIONS, inline="always")
 
 threaded = numba.njit(**_OPTIONS, nogil=True)
 """The same for kernels that run in several threads at once, each with scratch of its own."""
+
+
+OFTEN = 50
+"""Calls after which it pays to look up types once and for all."""
+
+
+class Often:
+    """A kernel called over and over with arguments of the same types.
+
+    numba looks at the types of all arguments in each call, 8 us for the arrays of a run: as long as 120 evaluations of
+    a pendulum. After some calls this hands out the machine code itself. Arguments must then have the types, memory
+    layouts included, of the call before; nothing checks it.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self._function, self._calls = function, 0
+
+    def __call__(self, *arguments: Any) -> Any:
+        """As the kernel does."""
+        self._calls += 1
+        if self._calls == OFTEN and isinstance(self._function, Dispatcher):
+            self._function = self._function.compile(tuple(map(self._function.typeof_pyval, arguments)))
+        return self._function(*arguments)

@@ -28,10 +28,16 @@ if TYPE_CHECKING:
 
 PIN, GUIDE = 0, 1
 """Places in JOINTS; the third is a pin in a slot."""
-SHAPE, MARKER_I, MARKER_J, FIRST, END, SECOND = range(6)
-"""Of a row: shape, markers, rows of the joint, 1 where body j moves (else the reaction on body i is read)."""
-COEFFICIENT, STATIC, STRIBECK, VISCOUS, SLIP_SPEED, PRELOAD, SIZE = range(7)
-"""Of its numbers; SIZE: radius of a pin, length of a guide."""
+SHAPE, MARKER_I, MARKER_J, FIRST, END, SECOND, WAY = range(7)
+"""Of a row: shape, markers, rows of the joint, 1 where body j moves (else the reaction on body i is read), the row that
+holds the joint while it sticks, -1 where there is none."""
+COEFFICIENT, STATIC, STRIBECK, VISCOUS, SLIP_SPEED, PRELOAD, SIZE, SENSE = range(8)
+"""Of its numbers; SIZE: radius of a pin, length of a guide; SENSE: see BY_RATE."""
+BY_RATE, NONE = 2.0, 0.0
+"""Senses beside 1 and -1, the sign of a sliding that an event ends: friction by the rate alone; none (it sticks, or its
+joint is let go)."""
+SHARP = 1e-9
+"""Slip speed, in sizes/s, of joints that stick, where no simulation looks for the events."""
 X, LAST, FOUND, CHANGE = range(4)
 """Of ``normal``: used now, last residual, what the multipliers give, change to be applied."""
 WEIGHT, FAILED = 0, 1
@@ -42,18 +48,21 @@ MOST_PASSES = 100
 
 
 def pack_friction(packed: Packed) -> tuple[np.ndarray, np.ndarray]:
-    """The table (f, 6) and the numbers (f, 7), for Loads."""
+    """The table (f, 7) and the numbers (f, 8), for Loads."""
     rows, numbers = [], []
     names = [joint.name for joint in packed.joints]
+    sharp = SHARP * packed.size
     for force, (i, j) in zip(packed.forces, packed.force_markers, strict=True):
         if force.kind.name == "friction":
             p, k = force.params, names.index(force.params["joint"])
             shape = JOINTS.index(packed.joints[k].kind.name)
             second = int(packed.system.marker_body[j] > 0)
-            rows.append((shape, i, j, packed.first_row[k], packed.first_row[k + 1], second))
-            own = (p["coefficient"], p["static"], p["stribeck"], p["viscous"], p["slip_speed"], p["preload"])
-            numbers.append((*own, p["radius"] if shape == PIN else p["length"]))
-    return np.array(rows, np.int64).reshape(-1, 6), np.array(numbers, float).reshape(-1, 7)
+            way = packed.first_row[names.index(force.name)] if force.name in names else -1
+            rows.append((shape, i, j, packed.first_row[k], packed.first_row[k + 1], second, way))
+            slip_speed = sharp if p["sticks"] else p["slip_speed"]
+            own = (p["coefficient"], p["static"], p["stribeck"], p["viscous"], slip_speed, p["preload"])
+            numbers.append((*own, p["radius"] if shape == PIN else p["length"], BY_RATE))
+    return np.array(rows, np.int64).reshape(-1, 7), np.array(numbers, float).reshape(-1, 8)
 
 
 @internal
@@ -86,6 +95,40 @@ def normal_forces(loads, ws, jac, lam, out):
 
 
 @internal
+def rate_of(system, loads, v, ws, k):
+    """Rate (rad/s or m/s) at which joint k with friction turns or slides, after place and move."""
+    i = loads.rub[k, MARKER_I]
+    j = loads.rub[k, MARKER_J]
+    bi = 3 * system.marker_body[i]
+    bj = 3 * system.marker_body[j]
+    if loads.rub[k, SHAPE] == PIN:
+        return v[bj + 2] - v[bi + 2]
+    dx = ws.position[j, 0] - ws.position[i, 0]
+    dy = ws.position[j, 1] - ws.position[i, 1]
+    vx = ws.velocity[j, 0] - ws.velocity[i, 0]
+    vy = ws.velocity[j, 1] - ws.velocity[i, 1]
+    ux = ws.axis[i, 0]
+    uy = ws.axis[i, 1]
+    return ux * vx + uy * vy + v[bi + 2] * (ux * dy - uy * dx)
+
+
+@internal
+def friction_of(loads, k, rate, normal, whole):
+    """Friction (N m of a pin, else N) on body j of joint k; see rub."""
+    number = loads.rub_number[k]
+    sense = number[SENSE]
+    if sense == NONE:
+        return 0.0
+    lever = number[SIZE] if loads.rub[k, SHAPE] == PIN else 1.0
+    slip = lever * rate
+    if sense == BY_RATE:
+        sense = math.tanh(slip / number[SLIP_SPEED])
+    over = slip / number[STRIBECK]
+    coefficient = number[COEFFICIENT] + (number[STATIC] - number[COEFFICIENT]) * math.exp(-over * over)
+    return -coefficient * sense * (normal + whole * number[PRELOAD]) * lever - whole * number[VISCOUS] * rate
+
+
+@internal
 def rub(system, loads, v, ws, normal, whole, load):
     """Add the friction under normal forces (f,) to load (3 nb,), after place and move; returns its power (W).
 
@@ -93,43 +136,37 @@ def rub(system, loads, v, ws, normal, whole, load):
     """
     power = 0.0
     for k in range(loads.rub.shape[0]):
+        rate = rate_of(system, loads, v, ws, k)
+        force = friction_of(loads, k, rate, normal[k], whole)
+        power += force * rate
         i = loads.rub[k, MARKER_I]
         j = loads.rub[k, MARKER_J]
         bi = 3 * system.marker_body[i]
         bj = 3 * system.marker_body[j]
-        number = loads.rub_number[k]
-        pin = loads.rub[k, SHAPE] == PIN
-        dx = ws.position[j, 0] - ws.position[i, 0]
-        dy = ws.position[j, 1] - ws.position[i, 1]
-        ux = ws.axis[i, 0]
-        uy = ws.axis[i, 1]
-        lever = 1.0
-        if pin:
-            lever = number[SIZE]
-            rate = v[bj + 2] - v[bi + 2]
-        else:
-            vx = ws.velocity[j, 0] - ws.velocity[i, 0]
-            vy = ws.velocity[j, 1] - ws.velocity[i, 1]
-            rate = ux * vx + uy * vy + v[bi + 2] * (ux * dy - uy * dx)
-        slip = lever * rate
-        over = slip / number[STRIBECK]
-        coefficient = number[COEFFICIENT] + (number[STATIC] - number[COEFFICIENT]) * math.exp(-over * over)
-        force = -coefficient * math.tanh(slip / number[SLIP_SPEED]) * (normal[k] + whole * number[PRELOAD]) * lever
-        force -= whole * number[VISCOUS] * rate
-        power += force * rate
-        if pin:
+        if loads.rub[k, SHAPE] == PIN:
             load[bj + 2] += force
             load[bi + 2] -= force
             continue
-        fx = force * ux
-        fy = force * uy
+        fx = force * ws.axis[i, 0]
+        fy = force * ws.axis[i, 1]
         load[bj] += fx
         load[bj + 1] += fy
         load[bj + 2] += ws.arm[j, 0] * fy - ws.arm[j, 1] * fx
         load[bi] -= fx
         load[bi + 1] -= fy
-        load[bi + 2] -= (ws.arm[i, 0] + dx) * fy - (ws.arm[i, 1] + dy) * fx
+        x = ws.arm[i, 0] + ws.position[j, 0] - ws.position[i, 0]
+        y = ws.arm[i, 1] + ws.position[j, 1] - ws.position[i, 1]
+        load[bi + 2] -= x * fy - y * fx
     return power
+
+
+@internal
+def note_friction(system, loads, v, ws, lam):
+    """Set lam of the ways of sliding joints that may stick: J^T lam holds their friction, as it does in sticking."""
+    for k in range(loads.rub.shape[0]):
+        way = loads.rub[k, WAY]
+        if way >= 0 and loads.rub_number[k, SENSE] != NONE:
+            lam[way] = -friction_of(loads, k, rate_of(system, loads, v, ws, k), loads.normal[X, k], 1.0)
 
 
 @internal
@@ -156,6 +193,8 @@ def settle(loads, ws, lam):
     product = 0.0
     square = 0.0
     for k in range(x.shape[0]):
+        if loads.rub_number[k, SENSE] == NONE:
+            x[k] = found[k]
         gap = found[k] - x[k]
         if not math.isfinite(gap):
             return True
@@ -196,3 +235,13 @@ def tabulate_friction(system, loads, q, v, normal, ws, out, power):
         place(system, q[k], ws)
         move(system, v[k], ws)
         power[k] += rub(system, loads, v[k], ws, normal[k], 1.0, out[k])
+
+
+@kernel
+def tabulate_rates(system, loads, k, q, v, normal, ws, rate, force):
+    """Rate (T,) of joint k with friction along a motion, and the friction (T,) under its normal forces (T,)."""
+    for i in range(q.shape[0]):
+        place(system, q[i], ws)
+        move(system, v[i], ws)
+        rate[i] = rate_of(system, loads, v[i], ws, k)
+        force[i] = friction_of(loads, k, rate[i], normal[i], 1.0)

@@ -24,6 +24,8 @@ from mbsd.dynamics.acceleration import derivative
 from mbsd.dynamics.arrays import scratch_for
 from mbsd.dynamics.prepare import PreparedDynamics, prepare_dynamics
 from mbsd.errors import MobilityError, ModelError, SingularPoseError
+from mbsd.friction_view import friction_view
+from mbsd.joint_friction import SHARP
 from mbsd.model import Mechanism
 from mbsd.modes import Mode, modes_of
 from mbsd.statics import DIFFERENCES, OFFSETS
@@ -135,6 +137,7 @@ def linearise(m: Mechanism, time: float, inputs: Sequence[str]) -> Linearisation
     """
     ready = prepare_dynamics(m, time, time)
     refuse_closed(m, ready.packed, ready.initial.q)
+    _refuse_sticking(ready)
     flow = _Flow(ready, time)
     f = len(flow.independent.names)
     if not f:
@@ -169,6 +172,21 @@ def linearise(m: Mechanism, time: float, inputs: Sequence[str]) -> Linearisation
         com=ready.packed.com,
         size=ready.packed.size,
     )
+
+
+def _refuse_sticking(ready: PreparedDynamics) -> None:
+    """Friction of a joint at rest jumps with the sign of its rate: there is no linear motion about it."""
+    packed = ready.packed
+    at = ready.initial.q.reshape(1, -1, 3), ready.initial.v.reshape(1, -1, 3)
+    for force in packed.forces:
+        if force.params.get("sticks"):
+            rate = float(friction_view(packed, force.name, *at, np.zeros((1, len(packed.ws.phi)))).rate[0])
+            if abs(rate) <= SHARP * packed.size:
+                raise ModelError(
+                    f"{packed.name}: joint '{force.params['joint']}' is at rest in this state, where '{force.name}' "
+                    "lets it stick: there is no linear motion about it. Give the friction a slip_speed in place of "
+                    "sticks, or start it moving."
+                )
 
 
 def _direction(ready: PreparedDynamics, name: str, time: float) -> np.ndarray:

@@ -53,9 +53,9 @@ class Loads(NamedTuple):
     exchange: Any
     """(2, 6 k) inputs and outputs of a user's force on k bodies, or of an interaction."""
     rub: Any
-    """(f, 6) joints with friction; columns in joint_friction.py."""
+    """(f, 7) joints with friction; columns in joint_friction.py."""
     rub_number: Any
-    """(f, 7)"""
+    """(f, 8)"""
     normal: Any
     """(4, f) their normal forces now, and scratch of the iteration."""
     rubbing: Any

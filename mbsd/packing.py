@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mbsd.contacts.kind import ContactKind
 from mbsd.joints.kind import ROWS, SPECIALS
 from mbsd.model import Force, Joint, Mechanism
 from mbsd.motions import Motion
@@ -62,6 +63,13 @@ class Packed:
     def contact_rows(self) -> int:
         """The first row that belongs to a contact: all before hold always."""
         return int(self.first_row[len(self.joints) - self.contacts])
+
+    def contact_gaps(self) -> dict[str, int]:
+        """Contacts by name, and the rows of their gaps; rows that hold joints at rest are none."""
+        places = range(len(self.joints) - self.contacts, len(self.joints))
+        return {
+            self.joints[k].name: int(self.first_row[k]) for k in places if isinstance(self.joints[k].kind, ContactKind)
+        }
 
     def joint_of_row(self, row: int) -> Joint:
         """The joint that owns a row of J."""

@@ -4,6 +4,7 @@ sol.t                              (T,) s
 sol.body("coupler").theta          also x, y, vx, vy, omega, ax, ay, alpha
 sol.joint("B").reaction            (T, 2) force on the joint's second body; fx, fy, torque, x, y, magnitude
 sol.driver("motor").torque         also effort, force, value, rate, power
+sol.friction("rub").force          of joints, with normal and rate; sol.contact("floor").normal and more
 sol.point("P").x                   of traced points
 sol.energy.kinetic, .potential
 """
@@ -22,6 +23,7 @@ import numpy as np
 from mbsd.contact_view import ContactView, contact_view
 from mbsd.errors import ModelError
 from mbsd.event import Happening
+from mbsd.friction_view import FrictionView, friction_view
 from mbsd.potential import potential_of
 
 if TYPE_CHECKING:
@@ -181,10 +183,15 @@ class Solution:
 
     def contact(self, name: str) -> ContactView:
         """Gap and forces of a contact, stop or rope of a simulation."""
-        first = len(self.packed.joints) - self.packed.contacts
-        names = [joint.name for joint in self.packed.joints[first:]]
-        row = int(self.packed.first_row[first + self._index(name, names, "contact of a simulation")])
-        return contact_view(self.packed, row, self.q, self.v, self.lam)
+        rows = self.packed.contact_gaps()
+        self._index(name, list(rows), "contact of a simulation")
+        return contact_view(self.packed, rows[name], self.q, self.v, self.lam)
+
+    def friction(self, name: str) -> FrictionView:
+        """Friction of a joint, by the name that ``m.friction`` gave it."""
+        names = [force.name for force in self.packed.forces if force.kind.of_reactions]
+        self._index(name, names, "friction of a joint")
+        return friction_view(self.packed, name, self.q, self.v, self.lam)
 
     def body(self, name: str) -> FrameView:
         """Motion of a body's frame."""

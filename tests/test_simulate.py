@@ -8,11 +8,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numba.core.dispatcher import Dispatcher
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
 from mbsd import AssemblyError, InitialConditionWarning, Mechanism, MobilityError, ModelError, constant_rate, harmonic
 from mbsd.dynamics import prepare
+from mbsd.dynamics.simulate import integrator_named
+from mbsd.jit import OFTEN
 
 A02 = json.loads((Path(__file__).parent / "reference" / "iftomm_a02_n_four_bar_n2.json").read_text())["expected"][0]
 G = 9.81
@@ -261,3 +264,20 @@ def test_links_of_a_large_mechanism_that_do_not_close_are_named(monkeypatch: pyt
     m.distance("tie", m.ground.at(5.0, 0.0), m.bodies["coupler"].end, 0.5)
     with pytest.raises(AssemblyError, match="stays open"):
         m.simulate(1.0)
+
+
+def test_the_same_run_over_and_over_gives_the_same_bytes() -> None:
+    """After some calls the machine code is called without a look at types (mbsd/jit.py)."""
+    m = Mechanism("pendulum")
+    rod = m.bar("rod", 0.5, 1.2)
+    m.revolute("pin", m.ground.origin, rod.start)
+    m.start_near(rod=20)
+    method, times = integrator_named("pendulum", "dop853"), np.linspace(0.0, 1.0, 5)
+    for formulation in ("reference", "independent"):
+        ready = prepare.prepare_dynamics(m, 0.0, 1.0)
+        runs = [ready.run(method, times, 1e-8, 1.0, formulation=formulation)[1] for _ in range(OFTEN + 5)]
+        for out in runs[1:]:
+            for one, first in zip(out, runs[0], strict=True):
+                np.testing.assert_array_equal(one, first)
+        [loop] = ready.advancing.values()
+        assert not isinstance(loop._function, Dispatcher)

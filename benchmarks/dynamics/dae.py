@@ -32,7 +32,8 @@ class Dae:
         self.cells, self.where = np.unique(columns * self.length + rows, return_inverse=True)
         self.columns, self.rows = np.divmod(self.cells, self.length)
         ones = np.ones(len(self.cells))
-        self.sparsity = sparse.csc_array((ones, (self.rows, self.columns)), shape=(self.length, self.length))
+        cells = self.rows.astype(np.int32), self.columns.astype(np.int32)  # what IDA counts in
+        self.sparsity = sparse.csc_array((ones, cells), shape=(self.length, self.length))
 
     def start(self) -> tuple[np.ndarray, np.ndarray]:
         """Consistent y and y'."""

@@ -8,7 +8,8 @@ what the last one left of both equations, and shrinks the error by the lift over
 
     Baumgarte   J a = gamma - 2 alpha (J v - nu) - beta^2 Phi
 
-Friction of joints depends on lam: it is added to Q and solved for again until both agree (joint_friction.py).
+Friction of joints depends on lam: it is added to Q and solved for again until both agree (joint_friction.py). That of
+sliding contacts is in each of these solutions (sliding.py).
 
 Source: Haug 1989, ch. 6; Baumgarte 1972, Comp. Meth. Appl. Mech. Eng. 1.
 """
@@ -19,9 +20,9 @@ import math
 
 from mbsd.assembly import evaluate_gamma, evaluate_position
 from mbsd.dynamics.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
-from mbsd.dynamics.sliding import slide
+from mbsd.dynamics.sliding import begin_sliding, slide
 from mbsd.jit import inlined, kernel
-from mbsd.joint_friction import CHANGE, FAILED, MOST_PASSES, begin_rubbing, rub, settle
+from mbsd.joint_friction import CHANGE, FAILED, MOST_PASSES, begin_rubbing, note_friction, rub, settle
 from mbsd.laws import evaluate_laws
 from mbsd.loads import apply_loads
 
@@ -56,6 +57,7 @@ def accelerate(dyn, scratch, t, state, a, lam):
     if dyn.loads.total > 0:
         power = apply_loads(dyn.loads, dyn.laws, t, q, v, ws.cos_sin, force)
     rubbing = dyn.loads.rub.shape[0] > 0
+    sliding = dyn.sliding.rows.shape[0] > 0
     if rubbing:
         power += begin_rubbing(system, dyn.loads, v, ws, force)
     alpha = dyn.baumgarte[0]
@@ -85,6 +87,10 @@ def accelerate(dyn, scratch, t, state, a, lam):
                 if r >= 0:
                     lam[r] += y[k, s, 0]
         if done + 1 >= dyn.passes:
+            if sliding:
+                if done + 1 == dyn.passes:
+                    begin_sliding(dyn, scratch)
+                power += slide(dyn, scratch, v, a, lam)
             if not rubbing:
                 break
             if settle(dyn.loads, ws, lam):
@@ -95,8 +101,8 @@ def accelerate(dyn, scratch, t, state, a, lam):
                     a[c] = math.nan
                 break
             power += rub(system, dyn.loads, v, ws, dyn.loads.normal[CHANGE], 0.0, force)
-    if dyn.sliding.rows.shape[0] > 0:
-        power += slide(dyn, scratch, v, a, lam)
+    if rubbing:
+        note_friction(system, dyn.loads, v, ws, lam)
     for k in range(system.driven.shape[0]):
         power -= lam[system.driven[k, 0]] * drive[system.driven[k, 1], 1]
     return power

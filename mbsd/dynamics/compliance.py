@@ -65,21 +65,35 @@ class Compliance:
     def _width(self) -> int:
         return len(self.q)
 
-    def rates(self, rows: Sequence[int], v: np.ndarray) -> np.ndarray:
+    def rates(self, rows: Sequence[int] | np.ndarray, v: np.ndarray) -> np.ndarray:
         """(k,) J v of the rows."""
         return times_compact(self.packed, self.compact[None], v[None])[0][list(rows)]
 
     def answer(self, impulses: np.ndarray) -> np.ndarray:
         """(n, k) change of velocities by impulses (n, k)."""
-        right = np.vstack([impulses, np.zeros((len(self.rows), impulses.shape[1]))])
-        return self._solve(right)[: self._count] if impulses.shape[1] else impulses
+        return self.answers(impulses)[0]
 
-    def accelerations(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-        """Without contacts: a (n,), gamma (m,) of all rows, and the largest load (N or N m)."""
-        gamma = self._tabulate(v)
-        loads = loads_along(
-            self.packed, self.dynamics.loads, self.dynamics.laws, np.array([self.time]), self.q[None], v[None]
-        )[0]
-        loads = (loads + self.dynamics.weight)[3:]
-        a = self._solve(np.concatenate([loads, gamma[self.rows]]))[: self._count]
-        return a, gamma, float(np.abs(loads).max(initial=0.0))
+    def answers(self, impulses: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(n, k) change of velocities by impulses (n, k), and (m, k) the multipliers of joints and drivers."""
+        lam = np.zeros((len(self.compact), impulses.shape[1]))
+        if not impulses.shape[1]:
+            return impulses, lam
+        found = self._solve(np.vstack([impulses, np.zeros((len(self.rows), impulses.shape[1]))]))
+        lam[self.rows] = found[self._count :]
+        return found[: self._count], lam
+
+    def loads(self, v: np.ndarray) -> np.ndarray:
+        """(3 nb,) weight and all loads but friction of joints."""
+        time = np.array([self.time])
+        loads = loads_along(self.packed, self.dynamics.loads, self.dynamics.laws, time, self.q[None], v[None])
+        return loads[0] + self.dynamics.weight
+
+    def gamma(self, v: np.ndarray) -> np.ndarray:
+        """(m,) of all rows."""
+        return self._tabulate(v)
+
+    def accelerations(self, loads: np.ndarray, gamma: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Without contacts, under loads (3 nb,): a (n,), and the multipliers (m,) of joints and drivers."""
+        found, lam = self._solve(np.concatenate([loads[3:], gamma[self.rows]])), np.zeros(len(gamma))
+        lam[self.rows] = found[self._count :]
+        return found[: self._count], lam

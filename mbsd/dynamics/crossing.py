@@ -45,9 +45,12 @@ def _root(
 ) -> tuple[float, float]:
     from scipy.optimize import brentq
 
-    def value(x: float) -> float:
-        return float(watch.value(samples(np.array([x])))[0])
+    level = min(0.0, max(at_left, -watch.still))  # within rounding it counts as zero
 
+    def value(x: float) -> float:
+        return float(watch.value(samples(np.array([x])))[0]) - level
+
+    negative = right
     if at_left <= watch.still:
         start, positive = left, None
         for _ in range(HALVINGS):
@@ -57,6 +60,6 @@ def _root(
                 break
             right = middle
         if positive is None:
-            return start, right
+            return start, negative
         left = positive
-    return float(brentq(value, left, right, xtol=1e-14)), right  # pyright: ignore[reportArgumentType]
+    return float(brentq(value, left, right, xtol=1e-14)), negative  # pyright: ignore[reportArgumentType]

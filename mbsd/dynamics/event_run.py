@@ -2,7 +2,7 @@
 
     step     one step of the integrator; do watched scalars fall through zero within it?
     root     from the state before the step, integrate to shorter and shorter ends, until the scalar is zero
-    jump     action of the user; impacts; which contacts are open, slide or stick from now on
+    jump     action of the user; impacts; which contacts are open, slide or stick from now on, and which joints stick
     restart  from the new state
 
 The integrator itself steps to the event, so that it is met as exactly as the motion is known.
@@ -19,13 +19,26 @@ from mbsd.dynamics.acceleration import derivative
 from mbsd.dynamics.compliance import Compliance
 from mbsd.dynamics.crossing import first_crossing
 from mbsd.dynamics.dense import Quintic
-from mbsd.dynamics.impact import Decision, decide, impacts
+from mbsd.dynamics.impact import impacts
 from mbsd.dynamics.independent import independent
+from mbsd.dynamics.joint_sticks import let_go
 from mbsd.dynamics.moment import Moment
 from mbsd.dynamics.projection import project
-from mbsd.dynamics.switches import OPEN, SLIDES, STICKS, Touch
+from mbsd.dynamics.resting import carried
+from mbsd.dynamics.stick_slip import Case, Verdict, decide
+from mbsd.dynamics.switches import OPEN, RELEASED, SLIDES, STICKS, Touch
 from mbsd.dynamics.trail import Snapshot
-from mbsd.dynamics.watches import HALTS, OPENS, SLIPS, Samples, Watch, checked, event_watch, touch_watches
+from mbsd.dynamics.watches import (
+    HALTS,
+    OPENS,
+    SLIPS,
+    Samples,
+    Watch,
+    checked,
+    event_watch,
+    stick_watches,
+    touch_watches,
+)
 from mbsd.errors import SimulationError
 from mbsd.event import Event, Happening
 from mbsd.integrators.state import (
@@ -41,6 +54,7 @@ from mbsd.integrators.state import (
     State,
     copied,
 )
+from mbsd.joint_friction import SENSE
 
 if TYPE_CHECKING:
     from mbsd.dynamics.prepare import PreparedDynamics
@@ -60,6 +74,7 @@ class EventRun:
 
     def __init__(self, ready: PreparedDynamics, run: Run, state: State, out: Output, events: list[Event]) -> None:
         self.ready, self.packed, self.dynamics, self.switches = ready, ready.packed, ready.dynamics, ready.switches
+        self.sticks = ready.sticks
         self.run, self.state, self.out, self.events = run, state, out, events
         scale = 1.0 / self.packed.row_scale()
         self.near, self.still = NEAR * scale, STILL * scale
@@ -91,7 +106,10 @@ class EventRun:
         """Go on from where another run was, with its contacts as they were."""
         self.dynamics.schur.rows[:] = snapshot.rows
         self.dynamics.sliding.table[:, 0] = snapshot.factor
+        self.dynamics.loads.rub_number[:, SENSE] = snapshot.senses
         self.packed.system.numbers[:] = snapshot.numbers
+        for stick, (state, sign) in zip(self.sticks, snapshot.joints, strict=True):
+            stick.state, stick.sign = state, sign
         for touch, status in zip(self.switches.touches, snapshot.states, strict=True):
             touch.state = status
         self.signs, self.sides = list(snapshot.signs), dict(snapshot.sides)
@@ -143,7 +161,28 @@ class EventRun:
         following = int(self.state.count[NEXT])
         if following > self._told:
             self.held[self._told : following] = self.switches.held()
+            if self._sharing:
+                for k in range(self._told, following):
+                    self.out.lam[k] = self._carried(self.out.t[k], self.out.y[k, 0], self.out.lam[k])[0]
             self._told = following
+
+    # -- joints at rest that share their friction ---------------------------------------------------------------
+
+    @property
+    def _sharing(self) -> bool:
+        held = self.switches.held() if self.sticks else None
+        return held is not None and any(one.state == STICKS and not held[one.way] for one in self.sticks)
+
+    def _carried(self, time: float, q: np.ndarray, lam: np.ndarray) -> tuple[np.ndarray, float]:
+        return carried(self._compliance(time, q), self.sticks, lam)
+
+    def _spare(self, samples: Samples) -> np.ndarray:
+        """(S,) 1 - s"""
+        along = zip(samples.t, samples.q, samples.multipliers(), strict=True)
+        return np.array([1.0 - self._carried(*one)[1] for one in along])
+
+    def _compliance(self, time: float, q: np.ndarray) -> Compliance:
+        return Compliance(self.packed, self.dynamics, self.switches, float(time), q.copy())
 
     # -- finding ------------------------------------------------------------------------------------------------
 
@@ -238,10 +277,11 @@ class EventRun:
         event.action(moment)
         for joint in moment.released:
             self.switches.release(joint)
+            let_go(self.dynamics.loads, self.sticks, int(self.packed.first_row[joint]))
         if moment.released:
             self.switches.stand_in(self.state.y[0])
         for row in range(self.packed.contact_rows, len(self.packed.ws.phi)):
-            self.switches.let_go(row)  # contacts push back by impacts, not by this projection
+            self.switches.let_go(row)  # contacts push back by impacts, not by this projection; friction is no impact
         self.state.y[1] = moment.v
         self.state.y[1, :3] = 0.0
         project(self.dynamics, self.run.scratch, moment.t, self.state.y, 2)
@@ -249,10 +289,8 @@ class EventRun:
     def _resolve(self, watch: Watch | None) -> None:
         """Impacts, and what every contact does from now on."""
         touches = self.switches.touches
-        if touches:
-            at = Compliance(
-                self.packed, self.dynamics, self.switches, float(self.state.clock[TIME]), self.state.y[0].copy()
-            )
+        if touches or self.sticks:
+            at = self._compliance(self.state.clock[TIME], self.state.y[0])
             fired = watch.touch if watch is not None else None
             closed = [
                 touch
@@ -262,7 +300,7 @@ class EventRun:
             self._strike(at, closed)
             v = self.state.y[1]
             rates = at.rates([touch.gap for touch in closed], v)
-            staying = [t for t, rate in zip(closed, rates, strict=True) if rate <= self.still[t.gap]]
+            staying = [t for t, rate in zip(closed, rates, strict=True) if rate <= max(t.settle, self.still[t.gap])]
             forced: dict[str, float] = {}
             if watch is not None and fired is not None:
                 if watch.what == OPENS and fired in staying:
@@ -271,8 +309,16 @@ class EventRun:
                     forced[fired.name] = float(np.sign(self.state.lam[fired.way or 0]))
                 if watch.what == HALTS:
                     forced[fired.name] = 0.0
-            self._set(at, decide(at, staying, v, self.still, forced))
+            before = [stick.state for stick in self.sticks]
+            self._set(at, decide(at, self._case(watch, staying, forced)), before)
         self._restart()
+
+    def _case(self, watch: Watch | None, staying: list[Touch], forced: dict[str, float]) -> Case:
+        case = Case(staying, self.sticks, self.state.y[1], self.still, forced)
+        if watch is not None and watch.stick is not None:
+            case.slipping = watch.what == SLIPS
+            case.halted = watch.stick.name if watch.what == HALTS else None
+        return case
 
     def _close(self, touch: Touch) -> float:
         return 1e2 * self.near[touch.gap]
@@ -289,9 +335,9 @@ class EventRun:
             self._tell(impulse.touch.name, "impact", impulse.normal, change)
             change = 0.0
 
-    def _set(self, at: Compliance, decisions: list[Decision]) -> None:
+    def _set(self, at: Compliance, verdict: Verdict, before: list[str]) -> None:
         sliding, sticking = self.dynamics.sliding.table[:, 0], []
-        by_name = {decision.touch.name: decision for decision in decisions if decision.normal > 0.0}
+        by_name = {decision.touch.name: decision for decision in verdict.contacts if decision.normal > 0.0}
         sliding[:] = 0.0
         rows: list[int] = []
         for k, touch in enumerate(self.switches.touches):
@@ -316,8 +362,25 @@ class EventRun:
                 elif touch.way is not None:
                     sliding[touch.sliding] = touch.friction * decision.sliding
             self._tell_change(touch, old)
-        for row in independent(at, rows + sticking):
+        for row in independent(at, rows + sticking + self._set_joints(at, verdict.joints, before)):
             self.switches.take_up(row)
+
+    def _set_joints(self, at: Compliance, signs: dict[str, float], before: list[str]) -> list[int]:
+        """The rows of the joints that stick from now on; their states ``before``."""
+        rows: list[int] = []
+        for stick, old in zip(self.sticks, before, strict=True):
+            self.switches.let_go(stick.way)
+            if stick.state == RELEASED:
+                continue
+            sign = signs[stick.name]
+            stick.set(SLIDES if sign else STICKS, sign)
+            if stick.state == STICKS:
+                rows.append(stick.way)
+                if old != STICKS:
+                    self.switches.move_zero(stick.way, at.phi[stick.way])
+            if old != stick.state:
+                self._tell(stick.name, stick.state)
+        return rows
 
     def _tell_change(self, touch: Touch, old: str) -> None:
         new = touch.state
@@ -337,6 +400,8 @@ class EventRun:
         self.watches = []
         for touch, sign in zip(self.switches.touches, self.signs, strict=True):
             self.watches += touch_watches(touch, sign, self.near, self.still, load)
+        together = self._spare if self._sharing else None
+        self.watches += stick_watches(self.sticks, together, self.still, load)
         for event in self.events:
             if self.sides[event.name] == 0.0:
                 self.sides[event.name] = float(np.sign(self._value(event)))
@@ -356,6 +421,8 @@ class EventRun:
             list(self.signs),
             dict(self.sides),
             set(self.switches.released),
+            [(stick.state, stick.sign) for stick in self.sticks],
+            self.dynamics.loads.rub_number[:, SENSE].copy(),
         )
 
     def _row(self) -> tuple:
@@ -364,7 +431,7 @@ class EventRun:
             float(state.clock[TIME]),
             state.y.copy(),
             state.dy[1].copy(),
-            state.lam.copy(),
+            self._carried(state.clock[TIME], state.y[0], state.lam)[0] if self._sharing else state.lam.copy(),
             float(state.clock[WORK]),
             float(self.run.scratch.report[0]),
             self.switches.held(),

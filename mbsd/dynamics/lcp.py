@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+GONE = 1e-13
+"""Part of the largest number below which the artificial variable is zero; it may stay where forces share a load."""
 SMALL = 1e-11
 """Pivots below this are none; M and q are of order 1."""
 
@@ -25,7 +27,7 @@ def lemke(matrix: np.ndarray, q: np.ndarray) -> np.ndarray | None:
         others = np.arange(n) != row
         tableau[others] -= np.outer(tableau[others, entering], tableau[row])
         leaving, basis[row] = basis[row], entering
-        if leaving == 2 * n:
+        if leaving == 2 * n or tableau[basis.index(2 * n), -1] <= GONE * float(np.abs(tableau[:, -1]).max()):
             out = np.zeros(2 * n + 1)
             out[basis] = tableau[:, -1]
             return np.maximum(out[n : 2 * n], 0.0)

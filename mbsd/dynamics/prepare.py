@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from mbsd.dynamics.acceleration import derivative
 from mbsd.dynamics.arrays import Dynamics, Scratch, scratch_for
 from mbsd.dynamics.dependent import refuse_singular_start
 from mbsd.dynamics.initial import Initial, consistent
+from mbsd.dynamics.joint_sticks import JointStick, joint_sticks, stuck_rows
 from mbsd.dynamics.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
 from mbsd.dynamics.run import AUTO, Run
 from mbsd.dynamics.schur import plan_schur
@@ -21,6 +22,7 @@ from mbsd.dynamics.switches import Switches, all_contacts, with_contacts
 from mbsd.errors import MobilityError, ModelError
 from mbsd.integrators import state as run_state
 from mbsd.integrators.kind import Integrator
+from mbsd.jit import Often
 from mbsd.loads import compiled_laws, pack_loads
 from mbsd.mobility import Mobility, independent_rows, joint_mobility, scaled_jacobian
 from mbsd.model import Mechanism
@@ -56,6 +58,10 @@ class PreparedDynamics:
     mobility: Mobility
     switches: Switches
     """Contacts and joints whose rows are let go and taken up."""
+    sticks: list[JointStick]
+    """Joints that stick by events."""
+    advancing: dict[tuple[str, type], Often] = field(default_factory=dict)
+    """The loops of integrators by name and formulation."""
     dropped: tuple[int, ...] = ()
     """Rows left out because they repeat others."""
 
@@ -74,6 +80,13 @@ class PreparedDynamics:
         run = Run(self, method, tolerance, step, float(times[-1] - times[0]), options or {}, formulation)
         run.to_end(state, out, progress)
         return state, out
+
+    def advance(self, method: Integrator, arrays: Any, *rest: Any) -> int:
+        """``method.advance`` in reference coordinates (arrays: Dynamics) or in independent ones (Embedding)."""
+        key = method.name, type(arrays)
+        if key not in self.advancing:
+            self.advancing[key] = Often(method.advance)
+        return self.advancing[key](arrays, *rest)
 
     @cached_property
     def embedded(self) -> Embedded | None:
@@ -101,10 +114,10 @@ class PreparedDynamics:
         """Tolerances in the mechanism's own sizes. Raises ModelError for options that the method does not have."""
         one = np.concatenate([np.ones(3), self.packed.column_scale()]) * tolerance
         numbers = method.numbers(self.packed.name, options)
-        longest = duration / OUTPUTS_LONGEST
+        longest = float(duration) / OUTPUTS_LONGEST
         growing = np.stack([np.where(np.arange(len(one)) % 3 == 2, 0.0, tolerance), np.full(len(one), tolerance)])
         return run_state.Settings(
-            np.stack([one, one]), tolerance, growing, longest, SMALLEST_STEP * longest, step, numbers
+            np.stack([one, one]), float(tolerance), growing, longest, SMALLEST_STEP * longest, float(step), numbers
         )
 
 
@@ -123,18 +136,19 @@ def prepare_dynamics(m: Mechanism, start: float, end: float, contacts: bool = Fa
     initial = (consistent_large if large else consistent)(m, packed, start, _inverse(metric))
     kept, mobility = independent_large(packed, start, initial.q) if large else _rows(packed, initial.q)
     _refuse_superfluous_drivers(packed, mobility)
-    touching = all_contacts(m, packed, initial.q) if contacts else []
-    if touching:
-        packed = with_contacts(m, packed, touching)
+    switched = [*all_contacts(m, packed, initial.q), *stuck_rows(packed)] if contacts else []
+    if switched:
+        packed = with_contacts(m, packed, switched)
     always = packed.contact_rows
     spare = set(range(always)) - set(kept) if contacts and m.events and not large else set()
     planned = {*kept, *spare, *range(always, len(packed.ws.phi))}
     schur, _ = plan_schur(packed.system.row_body, blocks_of(packed, planned))
     switches = Switches(packed, schur, spare)
+    loads = pack_loads(packed)
     dynamics = Dynamics(
         system=packed.system,
         laws=compiled_laws(packed, start, end),
-        loads=pack_loads(packed),
+        loads=loads,
         schur=schur,
         sliding=sliding_for(switches.friction_rows, len(inertia), len(packed.ws.phi)),
         inertia=inertia,
@@ -145,7 +159,7 @@ def prepare_dynamics(m: Mechanism, start: float, end: float, contacts: bool = Fa
         baumgarte=np.zeros(2),
         per_size=1.0 / np.concatenate([np.ones(3), packed.column_scale()]),
     )
-    ready = PreparedDynamics(packed, dynamics, initial, start, end, mobility, switches)
+    ready = PreparedDynamics(packed, dynamics, initial, start, end, mobility, switches, joint_sticks(packed, loads))
     refuse_singular_start(ready, list(kept), always)
     _refuse_unheld(ready)
     return ready

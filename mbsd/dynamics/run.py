@@ -48,7 +48,8 @@ class Run:
 
     def advance(self, state: run_state.State, out: run_state.Output, end: float, steps: int = NO_LIMIT) -> int:
         """Go on to ``end`` (s), ``steps`` steps at most; returns REACHED or PAUSED, raises SimulationError."""
-        status = self.method.advance(self.ready.dynamics, self.scratch, state, out, self.settings, end, steps)
+        ready = self.ready
+        status = ready.advance(self.method, ready.dynamics, self.scratch, state, out, self.settings, end, steps)
         self.ready.packed.specials.check()
         if status not in (run_state.REACHED, run_state.PAUSED):
             raise self._failure(status, state)

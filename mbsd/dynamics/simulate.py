@@ -13,6 +13,7 @@ import numpy as np
 import mbsd.integrators
 from mbsd.assembly import tabulate
 from mbsd.dynamics.dependent import refuse_opened
+from mbsd.dynamics.joint_sticks import standing
 from mbsd.dynamics.large import MANY_COORDINATES
 from mbsd.dynamics.prepare import PreparedDynamics, prepare_dynamics
 from mbsd.dynamics.run import AUTO, FORMULATIONS, INDEPENDENT, Run
@@ -60,8 +61,10 @@ def simulate(
     longest = step or float(np.diff(grid).max())
     run = Run(ready, integrator, tolerance, longest, float(grid[-1] - grid[0]), options, formulation)
     events = list(m.events.values())
-    if formulation == INDEPENDENT and (events or ready.switches.touches):
-        raise ModelError(f"{m.name}: formulation='independent' does not know events, contacts and limits")
+    if formulation == INDEPENDENT and (events or ready.switches.touches or ready.sticks):
+        raise ModelError(
+            f"{m.name}: formulation='independent' does not know events, contacts, limits and joints that stick"
+        )
     trail = follow(ready, run, grid, events, event_rows, progress)
 
     def between(times: np.ndarray) -> Solution:
@@ -121,7 +124,7 @@ def solution(
         nu = np.zeros_like(phi)
         nu[:, packed.driver_rows : packed.contact_rows] = drives[at, 1:, 1]
         loads = loads_along(packed, ready.dynamics.loads, ready.dynamics.laws, out.t[at], q[at], v[at])
-        loads += friction_along(packed, ready.dynamics.loads, q[at], v[at], compact, out.lam[at])
+        loads += _friction(ready, q[at], v[at], compact, out.lam[at], held)
         loads += ready.dynamics.weight - ready.dynamics.inertia * out.a[at] - generalised(packed, compact, lam[at])
         loads[:, :3] = 0.0
         errors = (
@@ -152,6 +155,16 @@ def solution(
     )
 
 
+def _friction(
+    ready: PreparedDynamics, q: np.ndarray, v: np.ndarray, compact: np.ndarray, lam: np.ndarray, held: np.ndarray
+) -> np.ndarray:
+    """(T, 3 nb) of the joints whose friction no multipliers hold, while they are not let go."""
+    out = np.zeros_like(q)
+    for loads, at in standing(ready.dynamics.loads, held):
+        out[at] = friction_along(ready.packed, loads, q[at], v[at], compact[at], lam[at])
+    return out
+
+
 def _least_norm(ready: PreparedDynamics, compact: np.ndarray, lam: np.ndarray, held: np.ndarray) -> np.ndarray:
     """Where joints are redundant the loads share in many ways; the multipliers of least norm are taken.
 
@@ -159,6 +172,8 @@ def _least_norm(ready: PreparedDynamics, compact: np.ndarray, lam: np.ndarray, h
     """
     if not ready.mobility.redundant_rows or ready.packed.coordinates > MANY_COORDINATES:
         return lam
+    if len(ready.dynamics.loads.rub):
+        return lam  # friction came from these
     packed, out = ready.packed, lam.copy()
     joints = slice(0, packed.contact_rows)
     for k, j in enumerate(packed.spread(compact * held[..., None])[:, joints]):

@@ -1,4 +1,4 @@
-"""Rows of J that are let go and taken up during a run: those of contacts, and of joints that an action lets go.
+"""Rows of J that are let go and taken up during a run: of contacts, joints that stick, and joints that actions let go.
 
 The elimination sequence is planned with all of them; a row that is let go is -1 in its block.
 """
@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mbsd.contacts.kind import ContactKind
 from mbsd.contacts.stops import ANGLE_STOP, COORDINATE_STOP
 from mbsd.dynamics.schur import Schur
 from mbsd.joint import Joint
@@ -19,8 +20,8 @@ from mbsd.model import Mechanism
 from mbsd.packing import Packed, pack
 from mbsd.specials import AT, ROW
 
-OPEN, SLIDES, STICKS = "open", "slides", "sticks"
-"""States of a contact; one without friction slides."""
+OPEN, SLIDES, STICKS, RELEASED = "open", "slides", "sticks", "released"
+"""States of a contact, one without friction slides, and of a joint with friction."""
 
 
 @dataclass
@@ -82,6 +83,8 @@ class Switches:
         slow = SETTLE * float(np.sqrt(np.hypot(*packed.system.gravity) / packed.size or 1.0))
         friction = 0
         for k, contact in enumerate(packed.joints[first:], first):
+            if not isinstance(contact.kind, ContactKind):
+                continue  # the row of a joint that sticks
             row = int(packed.first_row[k])
             slippery = contact.params.get("friction", 0.0) == 0.0
             self.touches.append(
@@ -90,7 +93,7 @@ class Switches:
                     row,
                     None if slippery else row + 1,
                     -1 if slippery else friction,
-                    getattr(contact.kind, "always_closed", False),
+                    contact.kind.always_closed,
                     slow / packed.row_scale()[row],
                 )
             )
@@ -132,7 +135,7 @@ class Switches:
                     self.take_up(rows[k])
 
     def move_zero(self, row: int, residual: float) -> None:
-        """Count the way of a contact's row from here, where its residual is ``residual``."""
+        """Count the way of a contact or of a joint that sticks from here, where its residual is ``residual``."""
         from mbsd.constraints.equation import PHASE
 
         self.packed.system.numbers[self._number_of[row] + PHASE] += residual

@@ -40,6 +40,10 @@ class Snapshot:
     sides: dict[str, float]
     """Signs of the values of the user's events."""
     released: set[int]
+    joints: list[tuple[str, float]]
+    """State and sign of sliding of the joints that stick by events."""
+    senses: np.ndarray
+    """Of Loads.rub_number."""
 
 
 @dataclass
@@ -64,7 +68,7 @@ def follow(
 
     state, out = ready.begun(times)
     met = EventRun(ready, run, state, out, events)
-    if not events and not ready.switches.touches:
+    if not events and not ready.switches.touches and not ready.sticks:
         met.snapshots.append(met.snapshot())
         independent = run.to_end(state, out, progress)
         steps, held = int(state.count[ACCEPTED]), met.held | ready.switches.held()

@@ -1,13 +1,14 @@
 """What is watched along a step: scalars that are not negative now, and mean an event where they fall through zero.
 
 open contact       its gap                      open clutch        its rate
-closed contact     its normal force N           sticking contact   mu N - |T|
+closed contact     its normal force N           sticking contact   mu N - |T|; of a joint its limit less |T|
 sliding contact    its speed, sign kept         event of the user  its value, sign kept
+joints at rest that share their friction        1 - s, the part of their limits that they need (sharing.py)
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,13 +16,17 @@ import numpy as np
 from mbsd.assembly import tabulate
 from mbsd.dynamics.acceleration import derivative
 from mbsd.dynamics.arrays import Dynamics, Scratch
+from mbsd.dynamics.joint_sticks import JointStick
 from mbsd.dynamics.moment import Moment
 from mbsd.dynamics.switches import OPEN, SLIDES, STICKS, Touch
 from mbsd.errors import ModelError
 from mbsd.event import Event
+from mbsd.friction_along import normals_along
 from mbsd.packing import Packed
 from mbsd.reactions import times_compact
 
+ROUNDING = 1e-10
+"""Of forces, as part of the largest."""
 CLOSES, LOCKS, OPENS, SLIPS, HALTS, USER = "closes", "locks", "opens", "slips", "halts", "event"
 
 
@@ -33,7 +38,7 @@ class Samples:
     ) -> None:
         self.packed, self.dynamics, self.scratch = packed, dynamics, scratch
         self.t, self.q, self.v = t, np.ascontiguousarray(q), np.ascontiguousarray(v)
-        self._rows: tuple[np.ndarray, np.ndarray] | None = None
+        self._rows: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
         self._lam: np.ndarray | None = None
 
     def residuals(self) -> np.ndarray:
@@ -53,14 +58,18 @@ class Samples:
                 derivative(self.dynamics, self.scratch, t, np.stack([self.q[k], self.v[k]]), out, self._lam[k])
         return self._lam
 
-    def _tabulated(self) -> tuple[np.ndarray, np.ndarray]:
+    def normals(self) -> np.ndarray:
+        """(S, f) normal forces of the joints with friction."""
+        return normals_along(self.packed, self.dynamics.loads, self.q, self._tabulated()[2], self.multipliers())
+
+    def _tabulated(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         if self._rows is None:
             rows = len(self.packed.ws.phi)
             phi, gamma = np.zeros((2, len(self.t), rows))
             compact = np.zeros((len(self.t), rows, 6))
             drives = self.packed.drives(self.t)
             tabulate(self.packed.system, drives, self.q, self.v, self.packed.ws, phi, compact, gamma)
-            self._rows = phi, times_compact(self.packed, compact, self.v)
+            self._rows = phi, times_compact(self.packed, compact, self.v), compact
         return self._rows
 
 
@@ -75,6 +84,7 @@ class Watch:
     still: float
     """Values above minus this are rounding."""
     touch: Touch | None = None
+    stick: JointStick | None = None
     event: Event | None = None
     stops: bool = True
     """False for an event of the user that passes zero the other way: it is only noted."""
@@ -87,7 +97,7 @@ def touch_watches(touch: Touch, sign: float, near: np.ndarray, still: np.ndarray
         if touch.always_closed:
             return [Watch(name, LOCKS, lambda s: s.rates()[:, gap], still[gap], touch)]
         return [Watch(name, CLOSES, lambda s: s.residuals()[:, gap], near[gap], touch)]
-    out = [Watch(name, OPENS, lambda s: -s.multipliers()[:, gap], 1e-10 * load, touch)]
+    out = [Watch(name, OPENS, lambda s: -s.multipliers()[:, gap], ROUNDING * load, touch)]
     if touch.way is None:
         return out
     mu = touch.static_friction
@@ -96,10 +106,33 @@ def touch_watches(touch: Touch, sign: float, near: np.ndarray, still: np.ndarray
         def reserve(s: Samples) -> np.ndarray:
             return -mu * s.multipliers()[:, gap] - np.abs(s.multipliers()[:, way])
 
-        out.append(Watch(name, SLIPS, reserve, 1e-10 * load, touch))
+        out.append(Watch(name, SLIPS, reserve, ROUNDING * load, touch))
     elif touch.state == SLIDES:
         out.append(Watch(name, HALTS, lambda s: sign * s.rates()[:, way], still[way], touch))
     return out
+
+
+def stick_watches(
+    sticks: Sequence[JointStick], together: Callable[[Samples], np.ndarray] | None, still: np.ndarray, load: float
+) -> list[Watch]:
+    """Of joints that stick by events; ``together`` (S,): 1 - s of those at rest, if they share their friction."""
+    out, resting = [], []
+    for stick in sticks:
+        if stick.state == SLIDES:
+            out.append(Watch(stick.name, HALTS, _speed(stick), still[stick.way], stick=stick))
+        elif stick.state == STICKS:
+            resting.append(stick)
+    if together is not None:
+        return [*out, Watch(resting[0].name, SLIPS, together, ROUNDING, stick=resting[0])]
+    return out + [Watch(stick.name, SLIPS, _reserve(stick), ROUNDING * load, stick=stick) for stick in resting]
+
+
+def _speed(stick: JointStick) -> Callable[[Samples], np.ndarray]:
+    return lambda s: stick.sign * s.rates()[:, stick.way]
+
+
+def _reserve(stick: JointStick) -> Callable[[Samples], np.ndarray]:
+    return lambda s: stick.limit(s.normals()) - np.abs(s.multipliers()[:, stick.way])
 
 
 def event_watch(packed: Packed, event: Event, side: float) -> Watch:

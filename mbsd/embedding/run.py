@@ -36,9 +36,10 @@ class EmbeddedRun:
     ) -> None:
         """Go on to the last output time; ``state`` is the one with which this run began."""
         start, end = float(state.clock[TIME]), float(out.t[-1])
-        advance, target = self.run.method.advance, end
+        method, target = self.run.method, end
         while True:
-            status = advance(self.arrays, self.scratch, self.own, out, self.settings, target, STEPS_AT_ONCE)
+            arrays = self.arrays, self.scratch, self.own, out, self.settings
+            status = self.ready.advance(method, *arrays, target, STEPS_AT_ONCE)
             self.ready.packed.specials.check()
             if progress is not None:
                 progress((state.clock[TIME] - start) / (end - start))

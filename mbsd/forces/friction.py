@@ -7,9 +7,14 @@
                                          two edges L apart carry R and M, and N is the sum of what they carry
     slot:   N = |reaction|
 
-The smooth form: below s_0 joints creep instead of sticking. The reactions come from the multipliers, found together
-with the friction (joint_friction.py). Redundant joints share loads as the program happens to find them, and so does
-their friction. Sources: Armstrong-Helouvry, Dupont, Canudas de Wit 1994, Automatica 30 (Stribeck); Haug 1989, ch. 8.
+The smooth form: below s_0 joints creep instead of sticking. The form by events has sign(s) in place of tanh: a
+simulation finds the time when s = 0, where the joint sticks as long as |F| <= mu_s (N + N_0), of a pin times r, holds
+it with a row of J, and finds the time when it slides (dynamics/joint_sticks.py, stick_slip.py). A known motion, as in
+a sweep, tells no friction at rest: it is counted as zero in both forms.
+
+The reactions come from the multipliers, found together with the friction (joint_friction.py). Redundant joints share
+loads as the program happens to find them, and so does their friction. Sources: Armstrong-Helouvry, Dupont, Canudas de
+Wit 1994, Automatica 30 (Stribeck); Haug 1989, ch. 8; Pfeiffer, Glocker 1996, ch. 5 (events).
 """
 
 from __future__ import annotations

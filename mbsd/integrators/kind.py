@@ -82,10 +82,12 @@ class Integrator:
 
 
 def without_sliding(dynamics: Dynamics) -> str | None:
-    """The refusal of methods that do not step along the derivative, which alone knows friction of rigid contacts."""
-    if not len(dynamics.sliding.rows):
-        return None
-    return "this method does not know the friction of rigid contacts; take 'dop853', or contacts without friction"
+    """The refusal of methods that do not step along the derivative, which alone knows friction from reactions."""
+    if len(dynamics.loads.rub):
+        return "this method does not know the friction of joints; take 'dop853', or joints without friction"
+    if len(dynamics.sliding.rows):
+        return "this method does not know the friction of rigid contacts; take 'dop853', or contacts without friction"
+    return None
 
 
 INTEGRATORS: dict[str, Integrator] = {}

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 from matplotlib.figure import Figure
 
-from tools.figures.look import BLUE, GREEN, INK, MOVED, plain
+from tools.figures.look import BLUE, FAINT, GREEN, INK, MOVED, QUIET, plain
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
@@ -28,7 +28,26 @@ def pictures(page: SimpleNamespace) -> dict[str, Figure]:
     plain(axes[1, 1], title="friction of a guide", xlabel="speed, m/s", ylabel="force, N")
     _curve(axes[1, 2], 100 * page.slip, page.pull / 1000, GREEN)
     plain(axes[1, 2], title="tyre", xlabel="slip, %", ylabel="pull, kN")
-    return {"forces.svg": figure}
+    return {"forces.svg": figure, "friction.svg": _friction(page)}
+
+
+def _friction(page: SimpleNamespace) -> Figure:
+    """The gate: angle of both forms, and the torque of the friction of the one that sticks."""
+    figure = Figure(figsize=(9.6, 4.2), layout="constrained")
+    angle, torque = figure.subplots(1, 2)
+    held, creeps, stop = page.held, page.creeps, page.stop.time
+    for ax in (angle, torque):
+        ax.axvspan(stop, held.t[-1], color=FAINT, linewidth=0)
+        ax.axhline(0.0, color=INK, linewidth=0.6)
+    for sol, colour, name in ((creeps, QUIET, "slip_speed: it creeps"), (held, BLUE, "sticks")):
+        angle.plot(sol.t, np.degrees(sol.body("arm").theta) + 90, color=colour, label=name)
+    angle.legend(frameon=False)
+    plain(angle, title="grey: the pin sticks", xlabel="time, s", ylabel="angle from the lowest point, deg", xlim=(0, 8))
+    for sign in (1, -1):
+        torque.plot(held.t, sign * page.limit, color=QUIET, linewidth=0.8, linestyle=(0, (4, 3)))
+    torque.plot(held.t, held.friction("rub").force, color=MOVED)
+    plain(torque, title="dashed: its limit", xlabel="time, s", ylabel="friction of the pin, N m", xlim=(0, 8))
+    return figure
 
 
 def _curve(ax, x: np.ndarray, y: np.ndarray, colour: str) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from mbsd.body import Body, Marker
@@ -12,6 +12,7 @@ from mbsd.contacts.line import LINE
 from mbsd.contacts.one_way import ONE_WAY
 from mbsd.contacts.rope import ROPE
 from mbsd.contacts.stops import ANGLE_STOP, COORDINATE_STOP
+from mbsd.contacts.terrain import TERRAIN
 from mbsd.errors import ModelError
 from mbsd.event import Event
 from mbsd.joint import Joint
@@ -60,6 +61,32 @@ class AddingContacts(MechanismBase):
                 "centres; " + ("the ring i must be larger than the disc j" if inside else "one must be positive")
             )
         return self._touch(DISCS, name, i, j, restitution, params)
+
+    def rigid_terrain(
+        self,
+        name: str,
+        terrain: Marker,
+        point: Marker,
+        points: Sequence[Sequence[float]],
+        radius: float = 0.0,
+        closed: bool = False,
+        restitution: float = 0.0,
+        friction: float = 0.0,
+        static_friction: float | None = None,
+    ) -> Joint:
+        """A point, or a disc of ``radius`` (m) around it, stays on the left of a smooth curve.
+
+        It goes through ``points`` (k, 2) in the axes of marker ``terrain`` (m), for a ground from left to right; beyond
+        its ends an open curve goes on straight.
+        """
+        from mbsd.curve_numbers import checked_points, refuse_tight
+
+        what = f"{self.name}: contact '{name}'"
+        params = self._amounts(name, radius=radius) | self._frictions(name, friction, static_friction)
+        plain = checked_points(what, points, closed)
+        refuse_tight(what, plain, closed, params["radius"])
+        params |= {"points": plain, "closed": bool(closed)}
+        return self._touch(TERRAIN, name, terrain, point, restitution, params)
 
     def rope(self, name: str, i: Marker, j: Marker, length: float, restitution: float = 0.0) -> Joint:
         """The points of two markers stay no more than ``length`` (m) apart."""

@@ -94,18 +94,11 @@ class AddingMachineJoints(AddingJoints):
 
         The points are in the axes of marker ``curve`` (m); beyond its ends an open curve goes on straight.
         """
-        import numpy as np
-
-        from mbsd.curve_numbers import checked_points, curvature, curve_pieces
+        from mbsd.curve_numbers import checked_points, refuse_tight
 
         what = f"{self.name}: joint '{name}'"
         radii, plain = self._radii(name, radius=radius), checked_points(what, points, closed)
-        tightest = float(curvature(*curve_pieces(np.array(plain), closed)).max())
-        if tightest * radius >= 1.0:
-            raise ModelError(
-                f"{what}: the curve is bent to a radius of {1 / tightest:.4g} m, where a disc of {radius:.4g} m "
-                "touches twice; use a smaller disc or a smoother curve"
-            )
+        refuse_tight(what, plain, closed, radii["radius"])
         return self._join(ROLLING_ON_CURVE, name, curve, disc, None, points=plain, closed=bool(closed), **radii)
 
     # -- curves and functions -----------------------------------------------------------------------------------

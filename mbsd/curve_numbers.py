@@ -101,3 +101,13 @@ def checked_points(what: str, points: object, closed: bool) -> list[list[float]]
     if not math.isfinite(float(steps.sum())):
         raise ModelError(f"{what}: the points are too far apart")
     return array.tolist()
+
+
+def refuse_tight(what: str, points: list[list[float]], closed: bool, radius: float) -> None:
+    """Raise ModelError where a curve bends to the left so tightly that a disc of ``radius`` (m) touches twice."""
+    tightest = float(curvature(*curve_pieces(np.array(points), closed)).max())
+    if tightest * radius >= 1.0:
+        raise ModelError(
+            f"{what}: the curve is bent to a radius of {1 / tightest:.4g} m, where a disc of {radius:.4g} m "
+            "touches twice; use a smaller disc or a smoother curve"
+        )

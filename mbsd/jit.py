@@ -45,6 +45,9 @@ os.environ.setdefault("NUMBA_CPU_NAME", "generic")  # one code for all machines,
 import numba  # noqa: E402  (the folder must be set first)
 from numba.core.dispatcher import Dispatcher  # noqa: E402
 
+from mbsd.compile_notice import give_notice  # noqa: E402
+
+give_notice()
 numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]  # in case numba was imported before us
 
 _OPTIONS = {"cache": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True, "no_rewrites": True}

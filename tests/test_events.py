@@ -498,7 +498,14 @@ def test_every_kind_of_contact_has_the_gradient_and_curvature_of_its_gap() -> No
     rates = packed.spread(compact[1]) @ v[3:]
     np.testing.assert_allclose((phi[2] - phi[0]) / (2 * h), rates, atol=1e-8)
     np.testing.assert_allclose((phi[2] - 2 * phi[1] + phi[0]) / h**2, -gamma[1], atol=1e-4)
-    assert {name for joint in packed.joints for name in joint.kind.constraints} == {"linear", "turn", "radial", "gear"}
+    assert {name for joint in packed.joints for name in joint.kind.constraints} == {
+        "linear",
+        "turn",
+        "radial",
+        "gear",
+        "curve",
+        "curve_rolling",
+    }
 
 
 def test_every_kind_of_contact_is_saved(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ several joints at rest can share is shared (sharing.py).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -77,6 +77,8 @@ def decide(at: Compliance, case: Case) -> Verdict:
 
 
 class _Moment:
+    """One event: gaps (c,) and ways at rest (k,), those of contacts first."""
+
     def __init__(self, at: Compliance, case: Case, sticks: Sequence[JointStick]) -> None:
         self.at, self.case = at, case
         closed, v, still = case.closed, case.v, case.still
@@ -108,6 +110,8 @@ class _Moment:
         self.directions = directions
         dv, self.lam_of = at.answers(pushed)
         self.compliance = directions.T @ dv
+        self.free = np.zeros(len(self.compliance))
+        """(c + k,) accelerations of gaps and ways without N and T."""
 
     def _rates(self, sticks: Sequence[JointStick]) -> dict[int, float]:
         """Of all ways by row, those at rest taken to be so exactly: others may be at rest with them."""
@@ -166,8 +170,7 @@ class _Moment:
             if k in rough and one.sliding != 0.0 and one.touch.static_friction > one.touch.friction
         }
         if breaking:
-            again = Case(**{**self.case.__dict__, "forced": {**self.case.forced, **breaking}})
-            return decide(self.at, again)
+            return decide(self.at, replace(self.case, forced={**self.case.forced, **breaking}))
         for w, stick in enumerate(self.resting, len(rough)):
             self.signs[stick.name] = float(np.sign(left[w]))
         return Verdict(contacts, self.signs)

@@ -40,7 +40,7 @@ class CompileNotice(Listener):
             self._timer = None
 
     def _tell(self) -> None:
-        LOG.warning("mbsd: compiling for this machine, which is done once and takes a minute or two")
+        LOG.warning("mbsd: compiling for this machine, which is done once and takes a minute or more")
 
 
 def _ours(event: Event) -> bool:

@@ -67,7 +67,7 @@ threaded = numba.njit(**_OPTIONS, nogil=True)
 """The same for kernels that run in several threads at once, each with scratch of its own."""
 
 
-OFTEN = 50
+OFTEN = 20
 """Calls after which it pays to look up types once and for all."""
 
 

@@ -19,7 +19,7 @@ from benchmarks.dynamics.settings import load  # noqa: E402
 
 LONGEST = 1.0
 """s: no new run is begun after this."""
-MOST_RUNS = 40
+MOST_RUNS = 400
 
 
 def main(code: str, name: str) -> None:

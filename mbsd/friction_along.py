@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.errors import SimulationError
-from mbsd.joint_friction import MOST_PASSES, SETTLED, tabulate_friction, tabulate_normals
+from mbsd.joint_friction import FAINT, MOST_PASSES, SETTLED, tabulate_friction, tabulate_normals
 
 if TYPE_CHECKING:
     from mbsd.loads import Loads
@@ -67,7 +67,7 @@ def with_friction(
         solved = solve(friction)
         found = normals_along(packed, loads, q, compact, solved[0])
         gap = found - x
-        open_ = ~(np.abs(gap).max(axis=1) <= SETTLED * found.max(axis=1))
+        open_ = ~(np.abs(gap).max(axis=1) <= SETTLED * np.maximum(found.max(axis=1), FAINT * found.max()))
         if not open_.any():
             return solved, friction
         bend = gap - last

@@ -295,6 +295,22 @@ def test_a_joint_that_is_let_go_has_no_friction_any_more(sticks: bool) -> None:
     assert sol.stats.power_residual < 1e-9
 
 
+@pytest.mark.parametrize("sticks", [True, False])
+def test_joints_that_carry_nothing_are_no_jam(sticks: bool) -> None:
+    """A cart in free flight: its axles carry no more than rounding."""
+    m = Mechanism("flight")
+    cart = m.body("cart", 2.0, inertia=0.05)
+    for k, x in enumerate((-0.3, 0.3)):
+        wheel = m.body(f"wheel {k}", 0.3, inertia=0.0015)
+        m.revolute(f"axle {k}", cart.at(x, -0.1), wheel.origin)
+        m.friction(f"rub {k}", f"axle {k}", 0.3, radius=0.02, sticks=sticks)
+    m.start_near(cart=(0, 1, 0))
+    m.start_moving(cart=(1.0, 2.0, 0.0), **{"wheel 0": 30.0, "wheel 1": -10.0})
+    sol = m.simulate(1.0, steps=20, tolerance=1e-9)
+    np.testing.assert_allclose(sol.body("wheel 0").omega, 30.0, rtol=1e-12)
+    np.testing.assert_allclose(sol.body("cart").y, 1 + 2 * sol.t - G * sol.t**2 / 2, atol=1e-9)
+
+
 def test_an_impact_frees_a_joint_at_rest() -> None:
     """A ball falls on a lever that its pin holds: the pin is no part of the impact, and slides after it."""
     m = Mechanism("lever")

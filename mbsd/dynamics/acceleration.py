@@ -93,7 +93,7 @@ def accelerate(dyn, scratch, t, state, a, lam):
                 power += slide(dyn, scratch, v, a, lam)
             if not rubbing:
                 break
-            if settle(dyn.loads, ws, lam):
+            if settle(dyn, ws, a, lam):
                 break
             if done + 1 == dyn.passes + MOST_PASSES:
                 dyn.loads.rubbing[FAILED] = 1.0

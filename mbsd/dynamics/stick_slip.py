@@ -23,14 +23,14 @@ from mbsd.dynamics.sharing import share
 from mbsd.dynamics.switches import RELEASED, SLIDES, Touch
 from mbsd.errors import SimulationError
 from mbsd.friction_along import friction_under, normals_along
-from mbsd.joint_friction import MOST_PASSES, X
+from mbsd.joint_friction import FAINT, MOST_PASSES, SETTLED, X
 
 AT_LIMIT = 1e-10
 """Part of the limit of friction: closer to it a contact slides."""
 HAIR = 1e-9
 """Part of their limits that joints at rest lack when one of them has just come to its limit."""
-SETTLED, ROUNDING, PATIENCE = 1e-12, 1e-9, 20
-"""Part of the largest normal force of a joint that may be left, at first and after so many passes."""
+ROUNDING, PATIENCE = 1e-9, 20
+"""Part of the largest normal force of a joint that may be left after so many passes."""
 
 
 @dataclass
@@ -200,8 +200,10 @@ class _Moment:
             forces = self._shared(forces, limits)
             found = normals_along(packed, loads, at.q[None], at.compact[None], (lam + self.lam_of @ forces)[None])[0]
             gap = found - x
-            if not len(x) or np.abs(gap).max() <= (SETTLED if passes < PATIENCE else ROUNDING) * found.max():
-                return forces, limits, float(np.abs(load[3:]).max(initial=0.0))
+            largest = float(np.abs(load[3:]).max(initial=0.0))
+            part = SETTLED if passes < PATIENCE else ROUNDING
+            if not len(x) or np.abs(gap).max() <= part * max(found.max(), FAINT * largest):
+                return forces, limits, largest
             bend = gap - last
             square = float(bend @ bend)
             weight = float(np.clip(-weight * (last @ bend) / square, -10.0, 10.0)) if passes and square else 1.0

@@ -2,7 +2,7 @@
 
     step     one step of the integrator; do watched scalars fall through zero within it?
     root     from the state before the step, integrate to shorter and shorter ends, until the scalar is zero
-    jump     action of the user; impacts; which contacts are open, slide or stick from now on, and which joints stick
+    jump     what changes there: jumps.py
     restart  from the new state
 
 The integrator itself steps to the event, so that it is met as exactly as the motion is known.
@@ -16,22 +16,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.dynamics.acceleration import derivative
-from mbsd.dynamics.compliance import Compliance
 from mbsd.dynamics.crossing import first_crossing
 from mbsd.dynamics.dense import Quintic
-from mbsd.dynamics.impact import impacts
-from mbsd.dynamics.independent import independent
-from mbsd.dynamics.joint_sticks import let_go
+from mbsd.dynamics.jumps import Jumps
 from mbsd.dynamics.moment import Moment
-from mbsd.dynamics.projection import project
 from mbsd.dynamics.resting import carried
-from mbsd.dynamics.stick_slip import Case, Verdict, decide
-from mbsd.dynamics.switches import OPEN, RELEASED, SLIDES, STICKS, Touch
+from mbsd.dynamics.switches import STICKS
 from mbsd.dynamics.trail import Snapshot
 from mbsd.dynamics.watches import (
-    HALTS,
-    OPENS,
-    SLIPS,
     Samples,
     Watch,
     checked,
@@ -40,7 +32,7 @@ from mbsd.dynamics.watches import (
     touch_watches,
 )
 from mbsd.errors import SimulationError
-from mbsd.event import Event, Happening
+from mbsd.event import Event
 from mbsd.integrators.state import (
     EVALUATIONS,
     NEXT,
@@ -78,12 +70,11 @@ class EventRun:
         self.run, self.state, self.out, self.events = run, state, out, events
         scale = 1.0 / self.packed.row_scale()
         self.near, self.still = NEAR * scale, STILL * scale
-        self.signs = [0.0] * len(self.switches.touches)
-        """Of sliding, by contact."""
+        self.jumps = Jumps(ready, run.scratch, state, self.near, self.still)
         self.sides: dict[str, float] = {}
         """Sign of the value of each event of the user."""
         self.watches: list[Watch] = []
-        self.happenings: list[Happening] = []
+        self.happenings = self.jumps.happenings
         self.snapshots: list[Snapshot] = []
         self.held = np.zeros((len(out.t), len(self.packed.ws.phi)), bool)
         """(T, m) rows that held at each output."""
@@ -100,7 +91,8 @@ class EventRun:
         self._refuse_inside()
         for event in self.events:
             self.sides[event.name] = float(np.sign(self._value(event)))
-        self._resolve(None)
+        self.jumps.resolve(None)
+        self._restart()
 
     def resume(self, snapshot: Snapshot, work: float) -> None:
         """Go on from where another run was, with its contacts as they were."""
@@ -112,7 +104,7 @@ class EventRun:
             stick.state, stick.sign = state, sign
         for touch, status in zip(self.switches.touches, snapshot.states, strict=True):
             touch.state = status
-        self.signs, self.sides = list(snapshot.signs), dict(snapshot.sides)
+        self.jumps.signs, self.sides = list(snapshot.signs), dict(snapshot.sides)
         self.switches.released = set(snapshot.released)
         self.state.clock[WORK] = work
         self._restart()
@@ -174,15 +166,12 @@ class EventRun:
         return held is not None and any(one.state == STICKS and not held[one.way] for one in self.sticks)
 
     def _carried(self, time: float, q: np.ndarray, lam: np.ndarray) -> tuple[np.ndarray, float]:
-        return carried(self._compliance(time, q), self.sticks, lam)
+        return carried(self.jumps.compliance(time, q), self.sticks, lam)
 
     def _spare(self, samples: Samples) -> np.ndarray:
         """(S,) 1 - s"""
         along = zip(samples.t, samples.q, samples.multipliers(), strict=True)
         return np.array([1.0 - self._carried(*one)[1] for one in along])
-
-    def _compliance(self, time: float, q: np.ndarray) -> Compliance:
-        return Compliance(self.packed, self.dynamics, self.switches, float(time), q.copy())
 
     # -- finding ------------------------------------------------------------------------------------------------
 
@@ -263,132 +252,14 @@ class EventRun:
             )
         if watch.event is not None:
             self._turn_side(watch)
-            self._tell(watch.name, "end" if watch.event.terminal else "event")
+            self.jumps.tell(watch.name, "end" if watch.event.terminal else "event")
             if watch.event.terminal:
                 self.ended = True
                 return
             if watch.event.action is not None:
-                self._act(watch.event)
-        self._resolve(watch)
-
-    def _act(self, event: Event) -> None:
-        moment = Moment(self.packed, float(self.state.clock[TIME]), self.state.y[0].copy(), self.state.y[1].copy())
-        assert event.action is not None
-        event.action(moment)
-        for joint in moment.released:
-            self.switches.release(joint)
-            let_go(self.dynamics.loads, self.sticks, int(self.packed.first_row[joint]))
-        if moment.released:
-            self.switches.stand_in(self.state.y[0])
-        for row in range(self.packed.contact_rows, len(self.packed.ws.phi)):
-            self.switches.let_go(row)  # contacts push back by impacts, not by this projection; friction is no impact
-        self.state.y[1] = moment.v
-        self.state.y[1, :3] = 0.0
-        project(self.dynamics, self.run.scratch, moment.t, self.state.y, 2)
-
-    def _resolve(self, watch: Watch | None) -> None:
-        """Impacts, and what every contact does from now on."""
-        touches = self.switches.touches
-        if touches or self.sticks:
-            at = self._compliance(self.state.clock[TIME], self.state.y[0])
-            fired = watch.touch if watch is not None else None
-            closed = [
-                touch
-                for touch in touches
-                if touch.always_closed or touch is fired or at.phi[touch.gap] <= self._close(touch)
-            ]
-            self._strike(at, closed)
-            v = self.state.y[1]
-            rates = at.rates([touch.gap for touch in closed], v)
-            staying = [t for t, rate in zip(closed, rates, strict=True) if rate <= max(t.settle, self.still[t.gap])]
-            forced: dict[str, float] = {}
-            if watch is not None and fired is not None:
-                if watch.what == OPENS and fired in staying:
-                    staying.remove(fired)
-                if watch.what == SLIPS:
-                    forced[fired.name] = float(np.sign(self.state.lam[fired.way or 0]))
-                if watch.what == HALTS:
-                    forced[fired.name] = 0.0
-            before = [stick.state for stick in self.sticks]
-            self._set(at, decide(at, self._case(watch, staying, forced)), before)
+                self.jumps.act(watch.event)
+        self.jumps.resolve(watch)
         self._restart()
-
-    def _case(self, watch: Watch | None, staying: list[Touch], forced: dict[str, float]) -> Case:
-        case = Case(staying, self.sticks, self.state.y[1], self.still, forced)
-        if watch is not None and watch.stick is not None:
-            case.slipping = watch.what == SLIPS
-            case.halted = watch.stick.name if watch.what == HALTS else None
-        return case
-
-    def _close(self, touch: Touch) -> float:
-        return 1e2 * self.near[touch.gap]
-
-    def _strike(self, at: Compliance, closed: list[Touch]) -> None:
-        inertia = self.dynamics.inertia
-        before = 0.5 * float(inertia @ self.state.y[1] ** 2)
-        after, given = impacts(at, closed, self.state.y[1], self.still)
-        if not given:
-            return
-        self.state.y[1] = after
-        change = 0.5 * float(inertia @ after**2) - before
-        for impulse in given:
-            self._tell(impulse.touch.name, "impact", impulse.normal, change)
-            change = 0.0
-
-    def _set(self, at: Compliance, verdict: Verdict, before: list[str]) -> None:
-        sliding, sticking = self.dynamics.sliding.table[:, 0], []
-        by_name = {decision.touch.name: decision for decision in verdict.contacts if decision.normal > 0.0}
-        sliding[:] = 0.0
-        rows: list[int] = []
-        for k, touch in enumerate(self.switches.touches):
-            old = touch.state
-            self.switches.let_go(touch.gap)
-            if touch.way is not None:
-                self.switches.let_go(touch.way)
-            decision = by_name.get(touch.name)
-            self.signs[k] = 0.0
-            if decision is None:
-                touch.state = OPEN
-            else:
-                rows.append(touch.gap)
-                if touch.always_closed:
-                    self.switches.move_zero(touch.gap, at.phi[touch.gap])
-                touch.state, self.signs[k] = SLIDES, decision.sliding
-                if touch.way is not None and decision.sliding == 0.0:
-                    touch.state = STICKS
-                    if old != STICKS:
-                        self.switches.move_zero(touch.way, at.phi[touch.way])
-                    sticking.append(touch.way)
-                elif touch.way is not None:
-                    sliding[touch.sliding] = touch.friction * decision.sliding
-            self._tell_change(touch, old)
-        for row in independent(at, rows + sticking + self._set_joints(at, verdict.joints, before)):
-            self.switches.take_up(row)
-
-    def _set_joints(self, at: Compliance, signs: dict[str, float], before: list[str]) -> list[int]:
-        """The rows of the joints that stick from now on; their states ``before``."""
-        rows: list[int] = []
-        for stick, old in zip(self.sticks, before, strict=True):
-            self.switches.let_go(stick.way)
-            if stick.state == RELEASED:
-                continue
-            sign = signs[stick.name]
-            stick.set(SLIDES if sign else STICKS, sign)
-            if stick.state == STICKS:
-                rows.append(stick.way)
-                if old != STICKS:
-                    self.switches.move_zero(stick.way, at.phi[stick.way])
-            if old != stick.state:
-                self._tell(stick.name, stick.state)
-        return rows
-
-    def _tell_change(self, touch: Touch, old: str) -> None:
-        new = touch.state
-        if old != new:
-            self._tell(touch.name, "opens" if new == OPEN else "closes" if old == OPEN else new)
-
-    def _tell(self, name: str, what: str, impulse: float = 0.0, energy: float = 0.0) -> None:
-        self.happenings.append(Happening(float(self.state.clock[TIME]), name, what, impulse, energy))
 
     def _restart(self) -> None:
         """Forget the derivative and what was watched: both belong to the motion before."""
@@ -398,7 +269,7 @@ class EventRun:
         self._make_valid()
         load = max(float(np.abs(self.dynamics.weight[3:]).max()), float(np.abs(state.lam).max(initial=0.0)), 1e-300)
         self.watches = []
-        for touch, sign in zip(self.switches.touches, self.signs, strict=True):
+        for touch, sign in zip(self.switches.touches, self.jumps.signs, strict=True):
             self.watches += touch_watches(touch, sign, self.near, self.still, load)
         together = self._spare if self._sharing else None
         self.watches += stick_watches(self.sticks, together, self.still, load)
@@ -418,7 +289,7 @@ class EventRun:
             self.dynamics.sliding.table[:, 0].copy(),
             self.packed.system.numbers.copy(),
             [touch.state for touch in self.switches.touches],
-            list(self.signs),
+            list(self.jumps.signs),
             dict(self.sides),
             set(self.switches.released),
             [(stick.state, stick.sign) for stick in self.sticks],

@@ -6,6 +6,8 @@ Source of the spline: de Boor, A Practical Guide to Splines; the parameter is th
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -61,6 +63,13 @@ def curve_numbers(
     rows = np.column_stack([breaks[:-1], coefficients.reshape(len(h), 12), arc[:-1], turning[:-1]])
     head = [distance, radius, float(closed), breaks[-1] - breaks[0], len(h)]
     return np.concatenate([head, rows.ravel(), [arc[-1], turning[-1] - turning[0]]])
+
+
+def disc_numbers(params: Mapping[str, Any]) -> list[np.ndarray]:
+    """Those of the constraints `curve` and `curve_rolling` of a disc on a curve: ``points``, ``closed``, ``radius``."""
+    closed, radius = params["closed"], params["radius"]
+    numbers = curve_numbers(*curve_pieces(np.array(params["points"], float), closed), closed, radius, radius)
+    return [numbers, numbers]
 
 
 def graph_numbers(profile: Curve) -> np.ndarray:

@@ -15,7 +15,7 @@ from mbsd.dynamics.prepare import prepare_dynamics
 from mbsd.embedding import run as embedded_run
 from mbsd.embedding.embed import embed
 from mbsd.solution import Solution
-from tests.test_assur import MODELS
+from tests.assur_models import MODELS
 
 PAIRS = ("q", "v", "a")
 

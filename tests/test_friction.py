@@ -12,6 +12,7 @@ from mbsd.friction_along import normals_along
 from mbsd.joint_friction import tabulate_friction
 from mbsd.loads import pack_loads
 from mbsd.packing import pack
+from tests.slider_cranks import slider_crank
 from tests.test_forces import motion
 
 G = 9.80665
@@ -173,16 +174,10 @@ def test_friction_that_presses_its_own_joint_is_found_at_once(lever: float) -> N
 
 
 def _slider_crank() -> Mechanism:
-    m = Mechanism("slider-crank")
-    crank, rod, slider = m.bar("crank", 0.1, 1.0), m.bar("rod", 0.3, 0.8), m.body("slider", 1.5, inertia=0.01)
-    m.revolute("O", m.ground.origin, crank.start)
-    m.revolute("A", crank.end, rod.start)
-    m.revolute("B", rod.end, slider.origin)
-    m.prismatic("rail", m.ground.origin, slider.origin)
+    m = slider_crank()
     for pin in "OAB":
         m.friction(f"rub {pin}", pin, 0.15, static=0.2, radius=0.02, viscous=1e-3)
     m.friction("rub", m.joints["rail"], 0.2, length=0.08, preload=2.0)
-    m.start_near(crank=30, rod=-10, slider=(0.37, 0, 0))
     return m
 
 

@@ -20,13 +20,9 @@ if TYPE_CHECKING:
 
 
 def _numbers(params: Mapping[str, Any]) -> list[np.ndarray]:
-    import numpy as np
+    from mbsd.curve_numbers import disc_numbers
 
-    from mbsd.curve_numbers import curve_numbers, curve_pieces
-
-    closed, radius = params["closed"], params["radius"]
-    numbers = curve_numbers(*curve_pieces(np.array(params["points"], float), closed), closed, radius, radius)
-    return [numbers, numbers]
+    return disc_numbers(params)
 
 
 ROLLING_ON_CURVE = register(

@@ -24,8 +24,8 @@ MASS_GAP = 1e5
 """Between neighbours in the sorted list of masses."""
 WIDEST_GYRATION = 20.0
 """Radius of gyration over size. There is no lower bound: a point mass has none, and tiny inertias stand for zero."""
-FARTHEST_COM = 30.0
-"""Centre of mass from the body's joints, over the larger of the body's and the mechanism's size."""
+FARTHEST = 30.0
+"""Centre of mass or traced point from the body's joints, over the larger of the body's and the mechanism's size."""
 LARGE, THIN = 10.0, 0.05
 """A body larger than this (m) and lighter than this (kg/m) is a wire, or millimetres."""
 TURNS = 2.0
@@ -52,6 +52,7 @@ def check(m: MechanismBase) -> list[Finding]:
         *_sizes(m, sizes),
         *_masses(m),
         *_mass_properties(m, sizes),
+        *_trace_places(m, sizes),
         *_marker_angles(m),
         *_law_angles(m),
         *_start_angles(m),
@@ -136,8 +137,8 @@ def _mass_properties(m: MechanismBase, sizes: dict[str, float]) -> Iterator[Find
         size = max(sizes[name], whole)
         if body.mass == 0 or size == 0:
             continue
-        away = _com_distance(m, body)
-        if away > FARTHEST_COM * size:
+        away = _joint_distance(m, body, body.com)
+        if away > FARTHEST * size:
             yield Finding(
                 name,
                 f"its centre of mass is {_metres(away)} from its joints, {away / size:.3g} times its size",
@@ -156,10 +157,25 @@ def _mass_properties(m: MechanismBase, sizes: dict[str, float]) -> Iterator[Find
             )
 
 
-def _com_distance(m: MechanismBase, body: Body) -> float:
-    """From the centre of mass to the nearest joint of the body (m), 0 without joints."""
+def _joint_distance(m: MechanismBase, body: Body, place: tuple[float, float]) -> float:
+    """From a place (m, body frame) to the nearest joint of the body (m), 0 without joints."""
     markers = [marker for j in m.joints.values() for marker in (j.i, j.j) if marker.body is body]
-    return min((math.hypot(k.x - body.com[0], k.y - body.com[1]) for k in markers), default=0.0)
+    return min((math.hypot(k.x - place[0], k.y - place[1]) for k in markers), default=0.0)
+
+
+def _trace_places(m: MechanismBase, sizes: dict[str, float]) -> Iterator[Finding]:
+    """Traced points as far from their body's joints as only another unit explains."""
+    whole = float(np.median([size for size in sizes.values() if size > 0] or [0.0]))
+    for name, marker in m.traces.items():
+        size = max(sizes[marker.body.name], whole)
+        away = _joint_distance(m, marker.body, (marker.x, marker.y))
+        if size > 0 and away > FARTHEST * size:
+            yield Finding(
+                f"trace {name}",
+                f"its point ({marker.x:g}, {marker.y:g}) on {marker.body.name} is {_metres(away)} from the joints of a "
+                f"body of {_metres(size)}",
+                "Places are in metres: divide millimetres by 1000",
+            )
 
 
 def _marker_angles(m: MechanismBase) -> Iterator[Finding]:

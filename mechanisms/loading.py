@@ -61,10 +61,10 @@ def params(name: str) -> Any:
 
 @contextmanager
 def author_code(name: str) -> Iterator[None]:
-    """Turn what the author's code raises in this block into a UserError that names file and line.
+    """Turn what the author's code raises in this block into a UserError that names file, line and the line's text.
 
     A UserError passes as it is. An exception that comes from elsewhere without touching the mechanism's folder
-    is a fault of ours and passes too.
+    is a fault of ours and passes too; ``MBSD_TRACEBACK=1`` shows the traceback of either (shared/console.py).
     """
     folder = MECHANISMS / canonical_name(name)
     try:
@@ -76,12 +76,13 @@ def author_code(name: str) -> Iterator[None]:
             raise
         shown = f"{_shown(Path(error.filename))}:{error.lineno}"
         raise UserError(f"{shown}: {error.msg}: {(error.text or '').strip()}") from error
-    except Exception as error:
+    except (Exception, SystemExit) as error:
+        from mechanisms.author_errors import worded
+
         lines = [frame for frame in traceback.extract_tb(error.__traceback__) if _is_below(frame.filename, folder)]
         if not lines:
             raise
-        shown = f"{_shown(Path(lines[-1].filename))}:{lines[-1].lineno}"
-        raise UserError(f"{shown}: {type(error).__name__}: {error}") from error
+        raise UserError(worded(error, lines, _shown)) from error
 
 
 class _SourceOnly(SourceFileLoader):

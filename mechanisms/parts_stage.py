@@ -21,6 +21,7 @@ from shared.materials import MATERIALS
 from shared.paths import ROOT, Out, mechanism_folder
 from shared.shapes.units import metres
 from shared.stages import Stage, key_of, versions
+from shared.suggestions import did_you_mean
 
 SOURCES = [
     ROOT / "shared" / "shapes",
@@ -89,6 +90,7 @@ def _build(name: str, given: Any) -> tuple[dict[str, list[Any]], list[str]]:
             if solid.material not in MATERIALS:
                 raise UserError(
                     f"{name}: {body}: {solid.name} is of '{solid.material}'; there is {', '.join(MATERIALS)}"
+                    f"{did_you_mean(solid.material, MATERIALS)}"
                 )
             known[solid.name] = body
     return bodies, sorted(seen)
@@ -104,14 +106,28 @@ def _body(name: str, body: str, solids: list[Any], files: dict[str, bytes]) -> B
 
 def _piece(name: str, body: str, solid: Any, files: dict[str, bytes]) -> Piece:
     """Check one solid, add its files to ``files``, and describe it."""
+    from mechanisms.author_errors import is_of_kernel
     from mechanisms.mass_properties import mass_of
     from mechanisms.mesh_check import check_mesh, only_solid
     from mechanisms.parts_files import read_mesh, step_bytes, stl_bytes
 
     where = f"{name}: {body}: {solid.name}"
-    shape = only_solid(solid.shape, where)
-    step = step_bytes(shape, solid.name)  # before the mesh, which the shape would carry along
-    stl = stl_bytes(shape)
+    if not callable(getattr(solid.shape, "solids", None)):
+        raise UserError(
+            f"{where}: its shape is of type {type(solid.shape).__name__}; Solid takes a cadquery.Workplane "
+            "(cq.Workplane(obj=shape) makes one of a shape)"
+        )
+    try:
+        shape = only_solid(solid.shape, where)
+        step = step_bytes(shape, solid.name)  # before the mesh, which the shape would carry along
+        stl = stl_bytes(shape)
+    except Exception as error:
+        if not is_of_kernel(error):
+            raise
+        raise UserError(
+            f"{where}: the CAD kernel cannot mesh or write this solid ({type(error).__name__}: {error}); look at its "
+            "last fillet, chamfer or cut: make it smaller, or apply it earlier"
+        ) from error
     mesh = read_mesh(stl)
     check_mesh(mesh, shape.Volume(), solid.through_holes, where)
     files[f"{solid.name}.stl"] = stl

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from mechanisms import loading
@@ -10,6 +13,7 @@ from shared.errors import UserError
 from shared.files import sources_hash
 from shared.paths import MECHANISMS, ROOT, Out
 from shared.stages import Stage, key_of, versions
+from shared.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
@@ -44,18 +48,73 @@ def solve(name: str, parts: contract.Parts) -> Solution:
     driver is. Raises UserError.
     """
     from mbsd import MechanismError
+    from mbsd.solution import Solution
 
     module = loading.load(name, "mechanism")
     p = loading.params(name)
     try:
-        with loading.author_code(name):
-            m = module.build(p)
+        m = build(name, module, p)
         apply_masses(m, parts)
-        with loading.author_code(name):
+        with loading.author_code(name), _model_warnings_said(name):
             motion: Any = getattr(module, "motion", None)
-            return motion(m, p) if motion else m.sweep()
+            solution = motion(m, p) if motion else m.sweep()
     except MechanismError as error:
         raise UserError(str(error)) from error
+    if not isinstance(solution, Solution):
+        raise UserError(
+            f"mechanisms/{name}/mechanism.py: motion() returned {_kind(solution)}; it must return a Solution, "
+            "as m.sweep() and m.simulate() do"
+        )
+    _refuse_other(name, m, solution.mechanism)
+    return solution
+
+
+def build(name: str, module: Any, p: Any) -> Mechanism:
+    """The model of ``build(p)`` in ``module``. Raises UserError unless it is a Mechanism called as its folder."""
+    from mbsd import Mechanism
+
+    with loading.author_code(name):
+        m = module.build(p)
+    file = f"mechanisms/{name}/mechanism.py"
+    if not isinstance(m, Mechanism):
+        raise UserError(f"{file}: build() returned {_kind(m)}, not a Mechanism; does it end with 'return m'?")
+    if m.name != name:
+        raise UserError(
+            f"{file}: build() calls its mechanism '{m.name}', but the folder is {name}, and files are found by the "
+            f'folder\'s name; write Mechanism("{name}")'
+        )
+    return m
+
+
+def _refuse_other(name: str, m: Mechanism, solved: Mechanism) -> None:
+    """What motion() solved may be a variant of the model, with the same name and bodies."""
+    if solved is not m and (solved.name != name or set(solved.bodies) != set(m.bodies)):
+        raise UserError(
+            f"mechanisms/{name}/mechanism.py: motion() solved '{solved.name}' with the bodies "
+            f"{', '.join(solved.bodies)}; solve the mechanism it is given, '{name}', or a variant with the same bodies"
+        )
+
+
+@contextmanager
+def _model_warnings_said(name: str) -> Iterator[None]:
+    """Say what the solver warns of in a line each, without the place in this file where it was called."""
+    from mbsd import ModelWarning
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", ModelWarning)
+        try:
+            yield
+        finally:
+            for warning in caught:
+                if issubclass(warning.category, ModelWarning):
+                    console.warn("solve", str(warning.message))
+    for warning in caught:
+        if not issubclass(warning.category, ModelWarning):
+            warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
+
+
+def _kind(value: object) -> str:
+    return "None" if value is None else f"a {type(value).__name__}"
 
 
 def apply_masses(m: Mechanism, parts: contract.Parts) -> None:
@@ -65,8 +124,8 @@ def apply_masses(m: Mechanism, parts: contract.Parts) -> None:
     for missing, where, there in ((bodies - solids, "parts.py", solids), (solids - bodies, "mechanism.py", bodies)):
         if missing:
             raise UserError(
-                f"{m.name}: {where} has no body '{min(missing)}'; it has: {', '.join(sorted(there)) or 'none'}. "
-                "mechanism.py and parts.py must name the same bodies"
+                f"{m.name}: {where} has no body '{min(missing)}'; it has: {', '.join(sorted(there)) or 'none'}"
+                f"{did_you_mean(min(missing), there) or '.'} mechanism.py and parts.py must name the same bodies"
             )
     for name in bodies:
         mass = parts.bodies[name].mass

@@ -18,7 +18,7 @@ from shared.contract import Motion, Parts, Piece
 from shared.errors import UserError
 from shared.files import file_hash
 from shared.materials import MATERIALS
-from shared.shot import Shot, Surface, Trail, refuse_unknown
+from shared.shot import Names, Shot, Surface, Trail, refuse_unknown
 
 Array = NDArray[np.float64]
 TRAIL_RINGS = 160
@@ -35,7 +35,7 @@ class Film:
         """``folder`` holds the STL files. Raises UserError if names, bodies or files do not fit together."""
         self.motion, self.parts, self.shot, self.folder = motion, parts, shot, folder
         self.poses = Poses(motion)
-        refuse_unknown(shot, motion, parts)
+        refuse_unknown(shot, Names.of(motion, parts))
         self._refuse_mismatch()
         paths = {trail.point: self._trail_z(trail) for trail in self.trails}
         self.space = SweptSpace(self.poses, parts, folder, paths)

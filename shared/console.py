@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import time
+import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import IO, NoReturn, Protocol
@@ -77,11 +78,16 @@ def duration(seconds: float) -> str:
 
 
 def run_cli(main: Callable[[], int | None]) -> NoReturn:
-    """Run ``main`` and exit: 0 or its return value, 1 on a UserError (one sentence), 130 on Ctrl-C."""
+    """Run ``main`` and exit: 0 or its return value, 1 on a UserError (one sentence), 130 on Ctrl-C.
+
+    With ``MBSD_TRACEBACK=1`` in the environment a UserError also prints its traceback, and that of its cause.
+    """
     try:
         code = main() or 0
         sys.stdout.flush()
     except UserError as error:
+        if os.environ.get("MBSD_TRACEBACK", "0") not in ("", "0"):
+            traceback.print_exc()
         fail(str(error))
         code = 1
     except KeyboardInterrupt:

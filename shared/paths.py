@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 from shared.errors import UserError
+from shared.suggestions import did_you_mean
 
 ROOT = Path(__file__).resolve().parent.parent
 MECHANISMS = ROOT / "mechanisms"
@@ -30,8 +31,11 @@ def mechanism_folder(name: str) -> Path:
     """The folder of a mechanism; raises UserError with the known names if there is none."""
     folder = MECHANISMS / canonical_name(name)
     if not (folder / "mechanism.py").is_file():
-        known = ", ".join(mechanism_names()) or "none"
-        raise UserError(f"there is no mechanism '{canonical_name(name)}' in mechanisms/; there is: {known}")
+        known = mechanism_names()
+        raise UserError(
+            f"there is no mechanism '{canonical_name(name)}' in mechanisms/; there is: {', '.join(known) or 'none'}"
+            f"{did_you_mean(canonical_name(name), known)}"
+        )
     return folder
 
 

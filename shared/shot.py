@@ -6,6 +6,8 @@ Metres and seconds; angles in degrees, because this is written by hand; colours 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -15,6 +17,7 @@ from shared import jsonfile
 from shared.contract import Motion, Parts
 from shared.errors import UserError
 from shared.materials import MATERIALS
+from shared.suggestions import did_you_mean
 
 Unit = Annotated[float, msgspec.Meta(ge=0, le=1)]
 Positive = Annotated[float, msgspec.Meta(gt=0)]
@@ -115,23 +118,38 @@ def write_shot(path: Path, shot: Shot) -> None:
     jsonfile.write(path, jsonfile.decode(jsonfile.encode(shot), Shot, path))
 
 
-def refuse_unknown(shot: Shot, motion: Motion, parts: Parts) -> None:
-    """Raise UserError for every name in the shot that the motion or the parts do not have, with the names they have."""
+@dataclass(frozen=True)
+class Names:
+    """What a shot may name: joints, traced points, and the pieces of each body."""
+
+    mechanism: str
+    joints: tuple[str, ...]
+    points: tuple[str, ...]
+    pieces: dict[str, tuple[str, ...]]
+
+    @classmethod
+    def of(cls, motion: Motion, parts: Parts) -> Names:
+        """The names in a motion and its parts."""
+        pieces = {body: tuple(solids.pieces) for body, solids in parts.bodies.items()}
+        return cls(motion.mechanism, tuple(motion.joints), tuple(motion.points), pieces)
+
+    def listed(self) -> tuple[object, ...]:
+        """All of them, for the key of a stage."""
+        return self.mechanism, self.joints, self.points, tuple(self.pieces.items())
+
+
+def refuse_unknown(shot: Shot, names: Names) -> None:
+    """Raise UserError for the first name in the shot that motion and parts do not have, with the names they have."""
+    known = partial(_known, names.mechanism)
     for index, trail in enumerate(shot.trails or ()):
-        _known(motion.mechanism, f"trails[{index}].point", trail.point, motion.points)
+        known(f"trails[{index}].point", trail.point, names.points)
     for index, label in enumerate(shot.labels):
-        _known(
-            motion.mechanism,
-            f"labels[{index}].at",
-            label.at,
-            [*motion.joints, *motion.points],
-        )
-    bodies = list(parts.bodies)
-    pieces = [f"{body}/{piece}" for body, solids in parts.bodies.items() for piece in solids.pieces]
+        known(f"labels[{index}].at", label.at, (*names.joints, *names.points))
+    pieces = [f"{body}/{piece}" for body, solids in names.pieces.items() for piece in solids]
     for name, surface in shot.materials.items():
-        _known(motion.mechanism, "materials", name, [*bodies, *pieces])
+        known("materials", name, [*names.pieces, *pieces])
         if isinstance(surface, str):
-            _known(motion.mechanism, f"materials['{name}']", surface, MATERIALS)
+            known(f"materials['{name}']", surface, MATERIALS)
 
 
 def _known(mechanism: str, field: str, name: str, names: Iterable[str]) -> None:
@@ -139,4 +157,5 @@ def _known(mechanism: str, field: str, name: str, names: Iterable[str]) -> None:
     if name not in known:
         raise UserError(
             f"{mechanism}: shot.{field} names '{name}', which is not there; known: {', '.join(known) or 'none'}"
+            f"{did_you_mean(name, known)}"
         )

@@ -8,12 +8,13 @@ import sys
 import time
 from pathlib import Path
 
+import msgspec
 import pytest
 
 import mechanisms
 from mechanisms import loading, shot_stage
 from shared import paths
-from shared.contract import write_motion
+from shared.contract import Parts, Provenance, write_motion, write_parts
 from shared.errors import UserError
 from shared.paths import ROOT, Out
 from shared.shot import read_shot
@@ -89,6 +90,8 @@ BROKEN = {
     "import": ("import math\nimport no_such_module\n", r"mechanism\.py:2: ModuleNotFoundError: .*no_such_module"),
     "name": ("x = 1\n\ny = length\n", r"mechanism\.py:3: NameError: name 'length' is not defined"),
     "other mechanism": ("from mechanisms.nowhere.mechanism import Params\n", r"mechanism\.py:1: ModuleNotFoundError"),
+    "leaves": ("import sys\nsys.exit(0)\n", r"mechanism\.py:2: SystemExit: the file ends the program with exit\(0\)"),
+    "the line": ("x = 1 / 0  # here\n", r"mechanism\.py:1: ZeroDivisionError: .*, at: x = 1 / 0  # here"),
     "exit": ("raise ValueError('too short')\n", r"mechanism\.py:1: ValueError: too short"),
     "no Params": ("def build(p): ...\n", r"mechanism\.py does not define 'Params'; write a frozen dataclass"),
     "no build": ("class Params: ...\n", r"mechanism\.py does not define 'build'; write def build\(p: Params\)"),
@@ -166,6 +169,51 @@ def test_a_wrong_shot_is_told(folder: Path, out_root: Path, text: str, words: st
     with pytest.raises(UserError, match=words):
         shot_stage.run(folder.name)
     assert not Out(folder.name).shot.exists()
+
+
+def test_a_fillet_too_large_is_told_with_its_line_and_a_remedy(folder: Path) -> None:
+    (folder / "parts.py").write_text(
+        "import cadquery as cq\n\ndef plate(radius):\n    box = cq.Workplane().box(10, 10, 3)\n"
+        "    return box.edges().fillet(radius)\n\ndef parts(p):\n    return {'crank': [plate(8.0)]}\n"
+    )
+    with pytest.raises(UserError) as told, loading.author_code(folder.name):
+        loading.load(folder.name, "parts").parts(None)
+    for words in (
+        "parts.py:5: StdFail_NotDone",
+        "in plate(): return box.edges().fillet(radius)",
+        "(from line 8: return {'crank': [plate(8.0)]})",
+        "fillet(radius=8): a fillet must be smaller than half",
+    ):
+        assert words in str(told.value)
+
+
+def test_a_name_that_motion_and_parts_lack_is_told_by_the_shot_stage(
+    folder: Path, out_root: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = Out(folder.name)
+    write_motion(out.motion, msgspec.structs.replace(four_bar_motion(steps=4), mechanism=folder.name))
+    write_parts(out.parts, Parts(mechanism=folder.name, provenance=Provenance(inputs="", versions={}), bodies={}))
+    text = "from shared.shot import Label, Shot, Trail\nshot = Shot(trails=(Trail(point='{}'),))\n"
+    (folder / "shot.py").write_text(text.format("p"))
+    with pytest.raises(UserError, match=r"shot\.trails\[0\]\.point names 'p', .*known: P; did you mean 'P'\?"):
+        shot_stage.run(folder.name)
+    assert not out.shot.exists()
+    del sys.modules[f"mechanisms.{folder.name}.shot"]
+    (folder / "shot.py").write_text(text.format("P"))
+    shot_stage.run(folder.name)
+    motion = four_bar_motion(steps=4)
+    del sys.modules[f"mechanisms.{folder.name}.shot"]
+    write_motion(out.motion, msgspec.structs.replace(motion, mechanism=folder.name, points={"Q": motion.points["P"]}))
+    with pytest.raises(UserError, match="known: Q"):
+        shot_stage.run(folder.name)
+
+
+def test_the_traceback_can_be_asked_for() -> None:
+    quiet, whole = cli("solve", "nope"), cli("solve", "nope", MBSD_TRACEBACK="1")
+    assert "Traceback" not in quiet.stderr
+    assert "Traceback" in whole.stderr
+    assert whole.stderr.splitlines()[-1] == quiet.stderr.strip()
+    assert whole.returncode == 1
 
 
 def test_the_listing_tells_what_is_made(out_root: Path) -> None:

@@ -13,7 +13,7 @@ import pytest
 from mechanisms import loading
 from shared import contract
 from shared.paths import ROOT, Out, mechanism_names
-from shared.shot import read_shot, refuse_unknown
+from shared.shot import Names, read_shot, refuse_unknown
 
 
 def _stage(name: str, stage: str, root: Path) -> subprocess.CompletedProcess[str]:
@@ -84,7 +84,7 @@ def test_solids_and_bodies_have_the_same_names_and_masses(out: Out) -> None:
 
 
 def test_the_shot_names_what_there_is(out: Out) -> None:
-    refuse_unknown(read_shot(out.shot), contract.read_motion(out.motion), contract.read_parts(out.parts))
+    refuse_unknown(read_shot(out.shot), Names.of(contract.read_motion(out.motion), contract.read_parts(out.parts)))
 
 
 def test_a_second_run_has_nothing_to_do(made: tuple[str, Path]) -> None:

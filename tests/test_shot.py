@@ -10,7 +10,7 @@ import pytest
 from mechanisms.four_bar.shot import shot as four_bar_shot
 from shared.contract import read_motion, read_parts
 from shared.errors import UserError
-from shared.shot import Camera, Label, Shot, Surface, Trail, read_shot, refuse_unknown, write_shot
+from shared.shot import Camera, Label, Names, Shot, Surface, Trail, read_shot, refuse_unknown, write_shot
 from tests import film_fixture
 
 
@@ -62,12 +62,14 @@ def test_an_unknown_field_is_refused(tmp_path: Path):
         (Shot(labels=(Label(at="E", text="E"),)), ["labels[0].at", "'E'", "A, B, C, D, P"]),
         (Shot(materials={"arm": "brass"}), ["materials", "'arm'", "crank/crank"]),
         (Shot(materials={"crank": "unobtainium"}), ["materials['crank']", "'unobtainium'", "brass"]),
+        (Shot(materials={"crank": "aluminum"}), ["'aluminum'", "did you mean 'aluminium'?"]),
+        (Shot(materials={"Rocker": "brass"}), ["'Rocker'", "did you mean 'rocker'?"]),
     ],
 )
 def test_names_the_mechanism_lacks_are_refused_with_those_it_has(out_root: Path, shot: Shot, words: list[str]):
     out = film_fixture.write()
     with pytest.raises(UserError) as refusal:
-        refuse_unknown(shot, read_motion(out.motion), read_parts(out.parts))
+        refuse_unknown(shot, Names.of(read_motion(out.motion), read_parts(out.parts)))
     for word in ["four_bar", *words]:
         assert word in str(refusal.value)
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 from mbsd import Mechanism, constant_rate
-from mechanisms.solve_stage import apply_masses, to_motion
+from mechanisms import loading
+from mechanisms.solve_stage import apply_masses, solve, to_motion
 from shared import contract
 from shared.errors import UserError
 
@@ -45,7 +48,62 @@ def test_masses_of_the_parts_reach_model_and_file() -> None:
     assert max(motion.drivers["motor"].effort) > 0.2
 
 
+class _Author:
+    """A mechanism.py of the test's own."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, build: Any, motion: Any = None) -> None:
+        self.build = build
+        if motion is not None:
+            self.motion = motion
+        monkeypatch.setattr(loading, "load", lambda *_: self)
+        monkeypatch.setattr(loading, "params", lambda _: None)
+
+
+def _called(name: str) -> Mechanism:
+    m = _mechanism()
+    m.name = name
+    return m
+
+
+@pytest.mark.parametrize(
+    ("build", "motion", "words"),
+    [
+        (lambda p: None, None, r"mechanism\.py: build\(\) returned None, .*; does it end with 'return m'\?"),
+        (lambda p: 3.0, None, r"build\(\) returned a float"),
+        (lambda p: _called("crank"), None, r"arm/mechanism\.py: build\(\) calls its mechanism 'crank', but the folder"),
+        (lambda p: _mechanism(), lambda m, p: None, r"motion\(\) returned None; it must return a Solution"),
+        (
+            lambda p: _mechanism(),
+            lambda m, p: _called("leg").sweep(steps=4),
+            r"motion\(\) solved 'leg' with the bodies",
+        ),
+    ],
+)
+def test_what_is_no_model_or_solution_is_told(
+    monkeypatch: pytest.MonkeyPatch, build: Any, motion: Any, words: str
+) -> None:
+    _Author(monkeypatch, build, motion)
+    with pytest.raises(UserError, match=words):
+        solve("arm", _parts("ground", "arm"))
+
+
+def test_a_point_in_millimetres_is_told_in_a_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def build(p: None) -> Mechanism:
+        m = _mechanism()
+        m.trace("P", m.bodies["arm"].at(60, 30))
+        return m
+
+    _Author(monkeypatch, build, lambda m, p: m.sweep(steps=4))
+    solve("arm", _parts("ground", "arm"))
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("solve: warning: arm: trace P: its point (60, 30) on arm is")
+
+
 def test_names_that_differ_are_told() -> None:
+    with pytest.raises(UserError, match=r"it has: army; did you mean 'army'\? mechanism\.py and parts\.py must name"):
+        apply_masses(_mechanism(), _parts("ground", "army"))
     with pytest.raises(UserError, match=r"arm: parts\.py has no body 'arm'; it has: lever"):
         apply_masses(_mechanism(), _parts("ground", "lever"))
     with pytest.raises(UserError, match=r"arm: mechanism\.py has no body 'lever'"):

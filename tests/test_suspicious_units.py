@@ -50,6 +50,12 @@ def _turned_marker(angle: float) -> Mechanism:
     return m
 
 
+def _traced(x: float, y: float) -> Mechanism:
+    m = _four_bar()
+    m.trace("P", m.bodies["coupler"].at(x, y))
+    return m
+
+
 def _started(**poses: float) -> Mechanism:
     m = _four_bar()
     m.start_near(**poses)
@@ -66,6 +72,11 @@ def _started(**poses: float) -> Mechanism:
         (_with_slider(mass=1e-9), ["slider"], "1e-09 kg beside 0.05 kg"),
         (_with_slider(inertia=25.0), ["slider"], "make a radius of gyration of 15.81 m on a body of 105 mm"),
         (_with_slider(com=(20.0, 0.0)), ["slider"], "centre of mass is 20 m from its joints, 190 times its size"),
+        (
+            _traced(60.0, 30.0),
+            ["trace P"],
+            r"point \(60, 30\) on coupler is 66.97 m from the joints .* divide millimetres",
+        ),
         (_turned_marker(90), ["guide"], r"marker on ground is turned by 90 rad. .* write math.radians\(90\)"),
         (_turned_marker(-45), ["guide"], r"write math.radians\(-45\)"),
         (_driven(constant_rate(1.0, 90)), ["motor"], r"start of its law is 90 rad, 14.3 turns. .*math.radians\(90\)"),
@@ -96,6 +107,8 @@ def test_gravity_in_millimetres_is_told(value: float, unit: str) -> None:
         lambda: _with_slider(mass=0.0),
         lambda: _with_slider(mass=50.0, inertia=2.0),  # a flywheel
         lambda: _with_slider(inertia=1e-12),
+        lambda: _traced(0.06, 0.03),
+        lambda: _traced(1.0, -2.0),  # a long pointer
         lambda: _turned_marker(-math.pi),
         lambda: _turned_marker(2.0),
         lambda: _driven(constant_rate(-300.0, 7.5)),

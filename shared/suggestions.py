@@ -1,0 +1,16 @@
+"""A known name that an unknown one was probably meant to be."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+ALIKE = 0.6
+"""Least similarity (0..1, difflib) of a name that is suggested."""
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """``; did you mean 'crank'?`` to put behind an error, or nothing if no known name is alike; case is ignored."""
+    by_lower = {other.lower(): other for other in known}
+    found = get_close_matches(name.lower(), by_lower, n=1, cutoff=ALIKE)
+    return f"; did you mean '{by_lower[found[0]]}'?" if found else ""

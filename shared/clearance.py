@@ -8,8 +8,10 @@ from typing import Literal
 import msgspec
 
 from shared import jsonfile
+from shared.consistency import refuse_other_words
 from shared.contract import UNITS, Provenance
 
+CLEARANCE_UNITS = {"length": UNITS["length"], "time": UNITS["time"]}
 Proof = Literal["layers", "turn", "motion"]
 """``layers``: the pieces lie at different heights, whatever moves. ``turn``: holds at every angle of the joint between
 the two bodies. ``motion``: holds over the motion in data.json."""
@@ -37,9 +39,7 @@ class Clearance(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     schema: Literal["mbsd.clearance"] = "mbsd.clearance"
     schema_version: Literal[1] = 1
     mechanism: str
-    units: dict[str, str] = msgspec.field(
-        default_factory=lambda: {key: UNITS[key] for key in ("length",)} | {"time": "s"}
-    )
+    units: dict[str, str] = msgspec.field(default_factory=lambda: dict(CLEARANCE_UNITS))
     provenance: Provenance
     limit: float
     """Smaller gaps are refused (m)."""
@@ -53,7 +53,9 @@ class Clearance(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
 
 def read_clearance(path: Path) -> Clearance:
     """Read clearance.json; raises UserError on anything that does not hold together."""
-    return jsonfile.read(path, Clearance)
+    clearance = jsonfile.read(path, Clearance)
+    refuse_other_words("units", clearance.units, CLEARANCE_UNITS, path)
+    return clearance
 
 
 def write_clearance(path: Path, clearance: Clearance) -> None:

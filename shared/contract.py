@@ -7,11 +7,11 @@ A body's x, y, theta place the frame its author drew it in, not its centre of ma
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import msgspec
 
-from shared import jsonfile
+from shared import consistency, jsonfile
 from shared.errors import UserError
 
 UNITS = {
@@ -25,6 +25,7 @@ UNITS = {
     "power": "W",
     "energy": "J",
 }
+PARTS_UNITS = UNITS | {"stl, step": "mm"}
 CONVENTIONS = {
     "axes": "x right, y up, angles counter-clockwise and never wrapped",
     "body_frame": "x, y, theta and their rates place the frame the author drew the body in",
@@ -184,7 +185,7 @@ class Parts(_Strict, kw_only=True):
     schema: Literal["mbsd.parts"] = "mbsd.parts"
     schema_version: Literal[1] = 1
     mechanism: str
-    units: dict[str, str] = msgspec.field(default_factory=lambda: dict(UNITS) | {"stl, step": "mm"})
+    units: dict[str, str] = msgspec.field(default_factory=lambda: dict(PARTS_UNITS))
     provenance: Provenance
     bodies: dict[str, BodyParts]
 
@@ -192,19 +193,20 @@ class Parts(_Strict, kw_only=True):
 def read_motion(path: Path) -> Motion:
     """Read data.json; raises UserError on anything that does not hold together."""
     motion = jsonfile.read(path, Motion)
-    _refuse_ragged(motion, path)
+    _refuse_inconsistent(motion, path)
     return motion
 
 
 def write_motion(path: Path, motion: Motion) -> None:
     """Check and write data.json, whole."""
-    _refuse_ragged(motion, path)
+    _refuse_inconsistent(motion, path)
     jsonfile.write(path, motion)
 
 
 def read_parts(path: Path) -> Parts:
     """Read parts.json and see that its STL files stand beside it; raises UserError if not."""
     parts = jsonfile.read(path, Parts)
+    _refuse_inconsistent(parts, path)
     for body, solids in parts.bodies.items():
         for name, piece in solids.pieces.items():
             if not (path.parent / piece.stl).is_file():
@@ -217,28 +219,16 @@ def read_parts(path: Path) -> Parts:
 
 def write_parts(path: Path, parts: Parts) -> None:
     """Check and write parts.json, whole."""
+    _refuse_inconsistent(parts, path)
     jsonfile.write(path, parts)
 
 
-def _refuse_ragged(motion: Motion, path: Path | str) -> None:
-    """Every series is as long as ``time``, which has two values or more and grows."""
-    count = len(motion.time)
-    if count < 2:
-        raise UserError(f"{path}: time has {count} values; a motion needs two or more")
-    for index in range(1, count):
-        if not motion.time[index] > motion.time[index - 1]:
-            raise UserError(f"{path}: time[{index}] = {motion.time[index]} does not come after the value before it")
-    for field, series in _series(motion, ""):
-        if len(series) != count:
-            raise UserError(f"{path}: {field} has {len(series)} values, time has {count}")
-
-
-def _series(value: Any, field: str) -> Any:
-    if isinstance(value, msgspec.Struct):
-        for name in value.__struct_fields__:
-            yield from _series(getattr(value, name), f"{field}.{name}" if field else name)
-    elif isinstance(value, dict):
-        for name, item in value.items():
-            yield from _series(item, f"{field}.{name}")
-    elif isinstance(value, list) and field != "diagnostics.redundant":
-        yield field, value
+def _refuse_inconsistent(document: Motion | Parts, path: Path) -> None:
+    """Raise UserError for what the types cannot say."""
+    if isinstance(document, Motion):
+        consistency.refuse_other_words("units", document.units, UNITS, path)
+        consistency.refuse_other_words("conventions", document.conventions, CONVENTIONS, path)
+        consistency.refuse_inconsistent_motion(document, path)
+    else:
+        consistency.refuse_other_words("units", document.units, PARTS_UNITS, path)
+        consistency.refuse_inconsistent_parts(document, path)

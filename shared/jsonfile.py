@@ -62,7 +62,11 @@ def decode[T: msgspec.Struct](content: bytes, kind: type[T], path: Path | str) -
         document = msgspec.json.decode(content, type=kind)
     except msgspec.DecodeError as error:
         raise UserError(f"{path}: {_reason(content, kind, error)}") from error
+    except RecursionError as error:
+        raise UserError(f"{path}: it is nested too deep for this kind of file; make it again") from error
     refuse_non_finite(document, path)
+    if encode(document) != content:  # never so for a file that this program wrote
+        _refuse_doubled(content, path)
     return document
 
 
@@ -71,6 +75,19 @@ def refuse_non_finite(document: Any, path: Path | str) -> None:
     for field, value in _floats(document, ""):
         if not math.isfinite(value):
             raise UserError(f"{path}: {field} is {value}; every number must be finite")
+
+
+def _refuse_doubled(content: bytes, path: Path | str) -> None:
+    """Raise UserError naming the first field that an object has twice; a decoder would take the last in silence."""
+
+    def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        found = dict(pairs)
+        if len(found) < len(pairs):
+            doubled = next(name for name in found if sum(name == other for other, _ in pairs) > 1)
+            raise UserError(f"{path}: it has the field '{doubled}' more than once in one object; keep one of them")
+        return found
+
+    json.loads(content, object_pairs_hook=unique)
 
 
 def _refuse_other_version(header: _Header, kind: type[msgspec.Struct], path: Path | str) -> None:
@@ -87,7 +104,7 @@ def _reason(content: bytes, kind: type[msgspec.Struct], error: msgspec.DecodeErr
     """Why the typed decoder refused ``content``, with the field it means; slow, but a refusal is rare."""
     try:
         raw = json.loads(content)  # takes NaN and Infinity, so that they can be named
-    except ValueError:
+    except (ValueError, RecursionError):
         return f"not a whole JSON file ({error}){_last_field(content)}; make it again"
     if not isinstance(raw, dict):
         return f"expected an object at the top, found {type(raw).__name__}"

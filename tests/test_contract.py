@@ -14,8 +14,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from shared import contract, jsonfile
+from shared.clearance import Clearance, read_clearance, write_clearance
 from shared.contract import BodyMotion, BodyParts, Mass, Motion, Parts, Piece, Provenance
 from shared.errors import UserError
+from shared.shot import Shot, read_shot, write_shot
 from tests.motions import four_bar_motion
 
 MOTION = four_bar_motion(steps=12)
@@ -113,6 +115,27 @@ REFUSED: dict[str, tuple[Edit, str]] = {
     "ragged margin": (lambda d: d["diagnostics"]["singularity_margin"].pop(), r"singularity_margin has 12 values"),
     "time stands": (lambda d: d["time"].__setitem__(5, d["time"][4]), r"time\[5\] = .* does not come after"),
     "one time": (lambda d: d.update(time=[0.0]), "time has 1 values"),
+    "other units": (lambda d: d["units"].update(length="mm"), r"units\.length is 'mm', this program reads 'm'"),
+    "a unit less": (lambda d: d["units"].pop("time"), r"units\.time is missing, this program reads 's'"),
+    "a unit more": (lambda d: d["units"].update(volume="l"), r"units\.volume is 'l', this program reads nothing"),
+    "other axes": (lambda d: d["conventions"].update(axes="y down"), r"conventions\.axes is 'y down', this program"),
+    "long period": (lambda d: d.update(period=2.0), r"period is 2 s, time spans 1 s; a period is the time spanned"),
+    "short period": (lambda d: d.update(period=0.5), r"period is 0\.5 s, time spans 1 s"),
+    "no return": (
+        lambda d: d["bodies"]["rocker"]["theta"].__setitem__(-1, 0.3),
+        r"bodies\.rocker\.theta begins at .* and ends at 0\.3, though period",
+    ),
+    "unknown body of a joint": (
+        lambda d: d["joints"]["B"].update(bodies=["crank", "rod"]),
+        r"joints\.B\.bodies names 'rod', which is no body; there is: coupler, crank, ground, rocker",
+    ),
+    "unknown body of a point": (lambda d: d["points"]["P"].update(body="rod"), r"points\.P\.body names 'rod'"),
+    "ground moves": (lambda d: d["bodies"].update(ground=d["bodies"]["crank"]), "bodies has 'ground'"),
+    "a name with a slash": (
+        lambda d: d["points"].update({"../../P": d["points"]["P"]}),
+        r"points has the name '../../P'; files are named after it",
+    ),
+    "a name of nothing": (lambda d: d["bodies"].update({"": d["bodies"]["crank"]}), "bodies has the name ''"),
 }  # fmt: skip
 
 
@@ -126,6 +149,35 @@ def test_what_does_not_hold_together_is_refused_with_file_and_field(path: Path, 
     assert str(refusal.value).startswith(f"{path}: ")
     assert "$" not in str(refusal.value)
     assert "..." not in str(refusal.value)
+
+
+DOUBLED = {
+    "at the top": (b'"mechanism": "four_bar"', "mechanism"),
+    "a unit": (b'"length": "m"', "length"),
+    "deep": (b'"omega": [', "omega"),
+}
+
+
+@pytest.mark.parametrize(("entry", "field"), DOUBLED.values(), ids=DOUBLED.keys())
+def test_a_field_that_is_there_twice_is_refused(path: Path, entry: bytes, field: str) -> None:
+    """Decoders take the last of them in silence."""
+    assert entry in CONTENT
+    first = {b"{": b"{}", b"[": b"[]"}.get(entry[-1:], b"")
+    path.write_bytes(CONTENT.replace(entry, entry.rstrip(b"{[") + first + b", " + entry, 1))
+    with pytest.raises(UserError, match=f"has the field '{field}' more than once"):
+        contract.read_motion(path)
+
+
+def test_a_file_in_another_layout_is_read(path: Path) -> None:
+    path.write_text(json.dumps(json.loads(CONTENT), sort_keys=True))
+    assert contract.read_motion(path) == MOTION
+
+
+@pytest.mark.parametrize("content", [b"[" * 200_000, b'{"a":' * 200_000, b'{"time":' + b"[" * 200_000])
+def test_a_deeply_nested_file_is_refused_with_a_sentence(path: Path, content: bytes) -> None:
+    path.write_bytes(content)
+    with pytest.raises(UserError, match=r"data\.json: "):
+        contract.read_motion(path)
 
 
 @pytest.mark.parametrize("content", ["[]", "3", '"text"', "null"])
@@ -191,6 +243,52 @@ def test_parts_round_trip_and_need_their_stl(tmp_path: Path) -> None:
         contract.read_parts(path)
     (tmp_path / "crank.stl").write_bytes(b"solid")
     assert contract.read_parts(path) == parts_document()
+
+
+PARTS_REFUSED: dict[str, tuple[Edit, str]] = {
+    "inches": (lambda d: d["units"].update(length="in"), r"units\.length is 'in'"),
+    "steps in metres": (lambda d: d["units"].update({"stl, step": "m"}), r"units\.stl, step is 'm', .* reads 'mm'"),
+    "a file elsewhere": (
+        lambda d: d["bodies"]["crank"]["pieces"]["link"].update(stl="../../other.stl"),
+        r"bodies\.crank\.pieces\.link\.stl is '../../other\.stl'; it must name a file beside parts\.json",
+    ),
+    "one file for two": (
+        lambda d: d["bodies"]["crank"]["pieces"].update(pin=d["bodies"]["crank"]["pieces"]["link"]),
+        r"pieces\.pin\.stl names crank\.stl, as bodies\.crank\.pieces\.link\.stl does",
+    ),
+    "upside down": (
+        lambda d: d["bodies"]["crank"]["pieces"]["link"].update(z_range=[0.006, 0.0]),
+        r"link\.z_range is \[0\.006, 0\.0\]; the lowest point comes first",
+    ),
+    "a body of no name": (lambda d: d["bodies"].update({"..": d["bodies"]["crank"]}), r"bodies has the name '\.\.'"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("edit", "words"), PARTS_REFUSED.values(), ids=PARTS_REFUSED.keys())
+def test_parts_that_do_not_hold_together_are_refused(tmp_path: Path, edit: Edit, words: str) -> None:
+    path = tmp_path / "parts.json"
+    (tmp_path / "crank.stl").write_bytes(b"solid")
+    document = json.loads(jsonfile.encode(parts_document()))
+    edit(document)
+    path.write_text(json.dumps(document))
+    with pytest.raises(UserError, match=words):
+        contract.read_parts(path)
+
+
+def test_a_clearance_or_shot_that_does_not_hold_together_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "clearance.json"
+    provenance = Provenance(inputs="0" * 64, versions={})
+    good = Clearance(mechanism="x", provenance=provenance, limit=5e-5, interpolation_error=0.0, pairs=[], apart=1)
+    write_clearance(path, good)
+    assert read_clearance(path) == good
+    path.write_bytes(path.read_bytes().replace(b'"length": "m"', b'"length": "mm"'))
+    with pytest.raises(UserError, match=r"units\.length is 'mm', this program reads 'm'"):
+        read_clearance(path)
+    shot = tmp_path / "shot.json"
+    write_shot(shot, Shot(turns=2))
+    shot.write_bytes(shot.read_bytes().replace(b'"turns": 2', b'"turns": 2, "turns": 900'))
+    with pytest.raises(UserError, match=r"shot\.json: it has the field 'turns' more than once"):
+        read_shot(shot)
 
 
 def test_units_and_conventions_are_written() -> None:

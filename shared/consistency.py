@@ -1,0 +1,132 @@
+"""What the types of a file cannot say: its units, lengths, times, names and files fit together.
+
+Each function raises UserError naming the file and the field. ``path`` is the file's, for the message.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from shared.errors import UserError
+
+if TYPE_CHECKING:
+    from shared.contract import Motion, Parts
+
+SPAN_TOLERANCE = 1e-9
+"""Largest difference between the period and the time spanned, relative."""
+RETURN_TOLERANCE = 1e-5
+"""Largest difference between the poses at both ends of a period (m or rad, relative above 1)."""
+_UNFIT = re.compile(r"[/\\\x00-\x1f\x7f]")
+"""What the name of a body, joint, driver or point cannot hold, because files are named after it."""
+
+
+def refuse_other_words(field: str, found: Mapping[str, str], expected: Mapping[str, str], path: Path | str) -> None:
+    """Refuse units (or conventions) unlike those that this program reads."""
+    for key in sorted(expected.keys() | found.keys()):
+        if found.get(key) != expected.get(key):
+            said = repr(found[key]) if key in found else "missing"
+            reads = repr(expected[key]) if key in expected else "nothing of that name"
+            raise UserError(f"{path}: {field}.{key} is {said}, this program reads {reads}; make the file again")
+
+
+def refuse_inconsistent_motion(motion: Motion, path: Path | str) -> None:
+    """Refuse ragged series, times that do not rise, a period that the times do not span, and unknown bodies."""
+    _refuse_ragged(motion, path)
+    _refuse_unfit_names(
+        {
+            "bodies": motion.bodies,
+            "joints": motion.joints,
+            "drivers": motion.drivers,
+            "points": motion.points,
+        },
+        path,
+    )
+    known = {"ground", *motion.bodies}
+    if "ground" in motion.bodies:
+        raise UserError(f"{path}: bodies has 'ground', which does not move; leave it out")
+    used = [(f"joints.{name}.bodies", body) for name, joint in motion.joints.items() for body in joint.bodies]
+    used += [(f"points.{name}.body", point.body) for name, point in motion.points.items()]
+    for field, body in used:
+        if body not in known:
+            raise UserError(f"{path}: {field} names '{body}', which is no body; there is: {', '.join(sorted(known))}")
+    _refuse_wrong_period(motion, path)
+
+
+def refuse_inconsistent_parts(parts: Parts, path: Path | str) -> None:
+    """Refuse unfit names, files that are not beside parts.json by their names, and heights that are upside down."""
+    _refuse_unfit_names({"bodies": parts.bodies}, path)
+    seen: dict[str, str] = {}
+    for body, solids in parts.bodies.items():
+        for name, piece in solids.pieces.items():
+            field = f"bodies.{body}.pieces.{name}"
+            _refuse_unfit_names({f"bodies.{body}.pieces": [name]}, path)
+            for kind, file in (("stl", piece.stl), ("step", piece.step)):
+                if not file or _UNFIT.search(file) or file in (".", ".."):
+                    raise UserError(f"{path}: {field}.{kind} is {file!r}; it must name a file beside parts.json")
+                if file in seen:
+                    raise UserError(f"{path}: {field}.{kind} names {file}, as {seen[file]} does")
+                seen[file] = f"{field}.{kind}"
+            if piece.z_range[0] > piece.z_range[1]:
+                raise UserError(f"{path}: {field}.z_range is {list(piece.z_range)}; the lowest point comes first")
+
+
+def _refuse_unfit_names(names: Mapping[str, Iterable[str]], path: Path | str) -> None:
+    for field, given in names.items():
+        for name in given:
+            if not name or _UNFIT.search(name) or name.startswith("."):
+                raise UserError(
+                    f"{path}: {field} has the name {name!r}; files are named after it, so it must not be empty, begin "
+                    "with a dot, or hold slashes, backslashes or control characters"
+                )
+
+
+def _refuse_ragged(motion: Motion, path: Path | str) -> None:
+    """Every series is as long as ``time``, which has two values or more and grows."""
+    count = len(motion.time)
+    if count < 2:
+        raise UserError(f"{path}: time has {count} values; a motion needs two or more")
+    for index in range(1, count):
+        if not motion.time[index] > motion.time[index - 1]:
+            raise UserError(f"{path}: time[{index}] = {motion.time[index]} does not come after the value before it")
+    for field, series in _series(motion, ""):
+        if len(series) != count:
+            raise UserError(f"{path}: {field} has {len(series)} values, time has {count}")
+
+
+def _refuse_wrong_period(motion: Motion, path: Path | str) -> None:
+    """A period is exactly the time spanned, and every pose returns after it (angles but for whole turns)."""
+    if motion.period is None:
+        return
+    span = motion.time[-1] - motion.time[0]
+    if abs(motion.period - span) > SPAN_TOLERANCE * span:
+        raise UserError(
+            f"{path}: period is {motion.period:.9g} s, time spans {span:.9g} s; a period is the time spanned, "
+            "or null for a motion that does not repeat"
+        )
+    for name, body in motion.bodies.items():
+        for field, series in (("x", body.x), ("y", body.y), ("theta", body.theta)):
+            gap = series[-1] - series[0]
+            if field == "theta":
+                gap = math.remainder(gap, math.tau)
+            if abs(gap) > RETURN_TOLERANCE * max(1.0, abs(series[0])):
+                raise UserError(
+                    f"{path}: bodies.{name}.{field} begins at {series[0]:.6g} and ends at {series[-1]:.6g}, though "
+                    f"period is {motion.period:.6g} s; make it null for a motion that does not repeat"
+                )
+
+
+def _series(value: Any, field: str) -> Iterator[tuple[str, list[float]]]:
+    if isinstance(value, msgspec.Struct):
+        for name in value.__struct_fields__:
+            yield from _series(getattr(value, name), f"{field}.{name}" if field else name)
+    elif isinstance(value, dict):
+        for name, item in value.items():
+            yield from _series(item, f"{field}.{name}")
+    elif isinstance(value, list) and field != "diagnostics.redundant":
+        yield field, value

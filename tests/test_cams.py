@@ -29,6 +29,7 @@ from mbsd.errors import ModelWarning
 TABLE = json.loads((Path(__file__).parent / "reference" / "analytic_cams.json").read_text())["expected"]["table"]
 NAMES = {"simple harmonic": "harmonic", "3-4-5 polynomial": "3-4-5", "4-5-6-7 polynomial": "4-5-6-7"}
 SPEED = 3.0
+TURN = 2 * math.pi
 
 
 def _name(row: dict[str, Any]) -> str:
@@ -198,6 +199,47 @@ def test_a_translating_follower_follows_its_lift(kind: str, rise: str) -> None:
     if kind == "roller":
         pressure = np.interp(np.mod(SPEED * sol.t, 2 * math.pi), cam.angle, cam.pressure_angle)[:-1]
         np.testing.assert_allclose(np.abs(contact.fx / contact.fy)[:-1], np.abs(np.tan(pressure)), atol=1e-4)
+
+
+def _acceleration(kind: str, cam: CamProfile, steps: int) -> tuple[np.ndarray, np.ndarray]:
+    """Times and the follower's acceleration (or angular one, along the lift) of a sweep at constant speed."""
+    if kind.startswith("oscillating"):
+        sol = _oscillating(cam)[0].sweep(steps=steps)
+        return sol.t, -sol.body("arm").alpha
+    sol = _translating(cam).sweep(steps=steps)
+    return sol.t, sol.body("follower").ay
+
+
+DISCS = {"roller": TRANSLATING["roller"], "flat": TRANSLATING["flat"]}
+DISCS |= {f"oscillating {kind}": make for kind, make in OSCILLATING.items()}
+
+
+@pytest.mark.parametrize("kind", DISCS)
+@pytest.mark.parametrize("rise", RISES)
+def test_between_its_nodes_a_disc_gives_the_exact_acceleration(rise: str, kind: str) -> None:
+    """Within 1e-8 of the peak, for wide and narrow rises, at 1709 times that are no nodes."""
+    height = 0.08 if kind.startswith("oscillating") else 0.006
+    lift = Lift.of(
+        (0.4, 0.0),
+        (math.radians(75), height, rise),
+        (0.3, height),
+        (2.9, 0.0, rise),
+        (TURN - 3.6 - math.radians(75), 0.0),
+    )
+    t, got = _acceleration(kind, DISCS[kind](lift), 1709)
+    exact = SPEED**2 * lift(SPEED * t)[:, 2]
+    inside = np.abs(SPEED * t[:, None] - lift.edges).min(axis=1) > 1e-9  # at the edges of a harmonic rise it jumps
+    assert np.abs(got - exact)[inside].max() < 1e-8 * np.abs(exact).max()
+
+
+@pytest.mark.parametrize("kind", ["roller", "oscillating flat"])
+def test_a_disc_of_a_table_gives_the_acceleration_of_its_spline(kind: str) -> None:
+    angles = TURN * (np.arange(37) + 0.3 * np.sin(np.arange(37))) / 37  # rows that fall on no even division
+    height = 0.08 if kind.startswith("oscillating") else 0.006
+    lift = Lift.table(angles, height * np.sin(angles) ** 2)
+    t, got = _acceleration(kind, DISCS[kind](lift), 1709)
+    exact = SPEED**2 * lift(SPEED * t)[:, 2]
+    assert np.abs(got - exact).max() < 1e-8 * np.abs(exact).max()
 
 
 @pytest.mark.parametrize("kind", OSCILLATING)

@@ -7,6 +7,8 @@
     modified_sine        quarter sines of period 1/2 at the ends, a half sine of period 3/2 between (Neklutin)
     modified_trapezoid   trapezoid of acceleration with its corners rounded by sines
 
+The last two are made of arcs that join with a jump of jerk at INNER.
+
 Source: Norton, Design of Machinery, ch. 8; Neklutin, Mechanisms and Cams for Automatic Machines, 1969.
 """
 
@@ -84,3 +86,9 @@ RISES: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "modified_trapezoid": _mirrored(_modified_trapezoid),
 }
 """By name: u (T,) to f, f', f'', f''' (T, 4)."""
+
+INNER: dict[str, tuple[float, ...]] = {
+    "modified_sine": (1 / 8, 7 / 8),
+    "modified_trapezoid": (1 / 8, 3 / 8, 5 / 8, 7 / 8),
+}
+"""u where the arcs of a rise join; the other rises are one arc."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
-import numpy as np
-
+from mbsd.arguments import finite_number, number_pair
 from mbsd.errors import ModelError
+
+__all__ = ["Body", "Marker", "finite_number", "number_pair"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,9 +57,9 @@ class Body:
 
     def at(self, x: float, y: float, angle: float = 0.0) -> Marker:
         """The marker at (x, y) in this body's frame (m), its x axis turned by ``angle`` (rad)."""
-        for what, value in (("x", x), ("y", y), ("angle", angle)):
-            finite_number(f"{self.name}.at: {what}", value)
-        return Marker(self, float(x), float(y), float(angle))
+        what = f"{self.owner}: {self.name}.at"
+        place = (("x", x), ("y", y), ("angle", angle))
+        return Marker(self, *(finite_number(f"{what}: {name}", value) for name, value in place))
 
     @property
     def origin(self) -> Marker:
@@ -84,21 +84,3 @@ class Body:
 
     def __repr__(self) -> str:
         return f"<Body {self.name}: {self.mass:g} kg>"
-
-
-def number_pair(what: str, value: object) -> tuple[float, float]:
-    """``value`` as two floats; raises ModelError if it is anything else."""
-    try:
-        x, y = value  # pyright: ignore[reportGeneralTypeIssues]
-    except (TypeError, ValueError):
-        raise ModelError(f"{what} is {value!r}; it must be two numbers (x, y)") from None
-    return finite_number(what, x), finite_number(what, y)
-
-
-def finite_number(what: str, value: object) -> float:
-    """``value`` as a float; raises ModelError if it is no finite number."""
-    if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
-        raise ModelError(f"{what} is {value!r}; it must be a number")
-    if not math.isfinite(value):
-        raise ModelError(f"{what} is {value}; it must be finite")
-    return float(value)

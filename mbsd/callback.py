@@ -27,10 +27,30 @@ from numba.core.dispatcher import Dispatcher
 from numba.extending import intrinsic
 
 from mbsd.errors import ModelError
+from mbsd.shown import shown
+from mbsd.users_function import described
 
 SIGNATURE = types.void(types.float64, types.CPointer(types.float64), types.CPointer(types.float64))
 PROTOTYPE = ctypes.CFUNCTYPE(None, ctypes.c_double, ctypes.c_ssize_t, ctypes.c_ssize_t)
 """The same for ctypes, with the addresses as whole numbers."""
+
+
+class WrongValue(Exception):
+    """What a user's function gave is not what is wanted; the text goes on after "the user's function"."""
+
+
+def as_numbers(values: Any, count: int) -> np.ndarray:
+    """What a user's function gave, in a row or in rows, as (count,) numbers. Raises WrongValue for anything else."""
+    wanted = "a number" if count == 1 else f"{count} numbers"
+    try:
+        array = np.atleast_1d(np.asarray(values))
+    except ValueError as error:
+        raise WrongValue(f"gives rows of unequal length, {shown(values)}; {wanted} are wanted") from error
+    if array.dtype.kind not in "fiu":
+        raise WrongValue(f"gives {shown(values)}; it must give {wanted}")
+    if array.size != count:
+        raise WrongValue(f"gives {array.size} numbers; {count} are wanted")
+    return array.ravel()
 
 
 class Callback:
@@ -56,7 +76,7 @@ class Callback:
             self._held = PROTOTYPE(self._run)
             self.address = ctypes.cast(self._held, ctypes.c_void_p).value or 0
         else:
-            raise ModelError(f"{what}: {function!r} is no function; give one of the time and the state")
+            raise ModelError(f"{what}: {shown(function)} is no function; give one of the time and the state")
 
     def check(self) -> None:
         """Raise what the function raised since the last check, as a ModelError; interrupts as they are."""
@@ -75,7 +95,9 @@ class Callback:
                 error = again
             else:
                 raise ModelError(f"{at} gives {values}; it must give finite numbers")
-        raise ModelError(f"{at} fails: {type(error).__name__}: {error}") from error
+        if isinstance(error, WrongValue):
+            raise ModelError(f"{at} {error}") from error.__cause__
+        raise ModelError(f"{at} fails: {described(error)}") from error
 
     def _values(self, t: float, inputs: np.ndarray) -> np.ndarray:
         """What the function gives, checked; called from Python."""
@@ -83,10 +105,7 @@ class Callback:
         for length in self.parts:
             arguments.append(float(inputs[at]) if length == 1 else inputs[at : at + length])
             at += length
-        values = np.atleast_1d(np.asarray(self.function(t, *arguments), float))
-        if values.shape != (self.outputs,):
-            raise ModelError(f"{self.what}: the function gives {values.size} numbers; {self.outputs} are wanted")
-        return values
+        return as_numbers(self.function(t, *arguments), self.outputs)
 
     def _run(self, t: float, inputs: int, outputs: int) -> None:
         copied, out = self._view(inputs, len(self._failure) - 2).copy(), self._view(outputs, self.outputs)

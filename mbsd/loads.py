@@ -20,6 +20,7 @@ from mbsd.laws import Laws, evaluate_law, pack_laws
 from mbsd.markers import place
 from mbsd.motions import Motion
 from mbsd.user_loads import apply_user_forces, pack_user_forces
+from mbsd.users_function import law_of
 
 if TYPE_CHECKING:
     from mbsd.packing import Packed
@@ -107,11 +108,15 @@ def pack_loads(packed: Packed) -> Loads:
 
 def compiled_laws(packed: Packed, start: float, end: float) -> Laws:
     """The laws of drivers, then those of forces, for times ``start`` .. ``end`` (s)."""
-    laws = [law.compiled(start, end) for law in packed.motions]
+    laws = []
+    for name, motion in zip(packed.driver_names, packed.motions, strict=True):
+        with law_of(f"{packed.name}: driver '{name}'"):
+            laws.append(motion.compiled(start, end))
     for force in packed.forces:
-        for law in force.laws.values():
-            ready = law.over(start, end) if isinstance(law, Motion) else law
-            laws.append(ready.compiled(start, end))
+        for what, law in force.laws.items():
+            with law_of(f"{packed.name}: force '{force.name}': {what}"):
+                ready = law.over(start, end) if isinstance(law, Motion) else law
+                laws.append(ready.compiled(start, end))
     return pack_laws(laws)
 
 

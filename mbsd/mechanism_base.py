@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from mbsd.body import Body, Marker, finite_number, number_pair
+from mbsd.arguments import finite_number, number_pair
+from mbsd.body import Body, Marker
 from mbsd.errors import ModelError
 from mbsd.event import Event
 from mbsd.force import Force
 from mbsd.joint import Joint
+from mbsd.names import no_such
+from mbsd.shown import shown
 
 STANDARD_GRAVITY = (0.0, -9.80665)
 """m/s^2, ISO 80000-3."""
@@ -102,17 +105,17 @@ class MechanismBase:
 
     def known_body(self, name: str) -> Body:
         """The body of this name; raises ModelError with the known names."""
-        if name not in self.bodies:
-            raise ModelError(f"{self.name}: there is no body '{name}'; there is: {', '.join(self.bodies)}")
+        if not isinstance(name, str) or name not in self.bodies:
+            raise ModelError(f"{self.name}: {no_such('body', name, self.bodies)}")
         return self.bodies[name]
 
     # -- checks -------------------------------------------------------------------------------------------------
 
     def _own_body(self, body: Body, what: str) -> None:
         if not isinstance(body, Body):
-            raise ModelError(f"{self.name}: {what} needs a body, got {body!r}")
+            raise ModelError(f"{self.name}: {what} needs a body, got {shown(body)}")
         if self.bodies.get(body.name) is not body:
-            raise ModelError(f"{self.name}: {what} uses body '{body.name}' of another mechanism")
+            raise ModelError(f"{self.name}: {what} uses body '{body.name}' of another mechanism; take one of this one")
 
     @property
     def _connections(self) -> tuple[Mapping[str, object], ...]:
@@ -121,7 +124,7 @@ class MechanismBase:
 
     def _new_name(self, name: str, what: str, *taken: Mapping[str, object]) -> None:
         if not isinstance(name, str) or not name or name != name.strip() or not name.isprintable():
-            raise ModelError(f"{self.name}: a {what} needs a name without spaces around it, got {name!r}")
+            raise ModelError(f"{self.name}: a {what} needs a name without spaces around it, got {shown(name)}")
         if any(name in names for names in taken):
             raise ModelError(f"{self.name}: there are two of the name '{name}'; the {what} needs another")
 

@@ -16,6 +16,7 @@ from mbsd.model import Force, Joint, Mechanism
 from mbsd.motions import Motion
 from mbsd.specials import Specials
 from mbsd.system import System, Workspace, workspace
+from mbsd.users_function import law_of
 
 SMALLEST_SIZE = 1e-12
 """Below this (m) all joints sit at the centres of mass, and 1 m serves as size."""
@@ -83,8 +84,21 @@ class Packed:
         """(T, motions + 1, 3) values, rates and accelerations of all laws; index 0 is zero."""
         out = np.zeros((len(times), len(self.motions) + 1, 3))
         for k, motion in enumerate(self.motions):
-            out[:, k + 1] = motion(times)
+            with law_of(f"{self.name}: driver '{self.driver_names[k]}'"):
+                out[:, k + 1] = motion(times)
         return out
+
+    @property
+    def driver_names(self) -> list[str]:
+        """In the order of ``motions``."""
+        end = len(self.joints) - self.contacts
+        return [driver.name for driver in self.joints[end - len(self.motions) : end]]
+
+    def settle_laws(self, start: float, end: float) -> None:
+        """Make the laws of the drivers ready for ``start`` .. ``end`` (s). Raises ModelError naming the driver."""
+        for k, (name, law) in enumerate(zip(self.driver_names, self.motions, strict=True)):
+            with law_of(f"{self.name}: driver '{name}'"):
+                self.motions[k] = law.over(start, end)
 
     def row_scale(self) -> np.ndarray:
         """(m,) what makes residual rows dimensionless: 1 / size for lengths, 1 for angles."""

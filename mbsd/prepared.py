@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd import kinematics
+from mbsd.arguments import number_array
 from mbsd.assembly import residual_and_jacobian
 from mbsd.assur.groups import Groups
 from mbsd.assur.plan import describe, plan_groups
@@ -17,13 +18,17 @@ from mbsd.errors import AssemblyError, BranchError, ModelError, SingularPoseErro
 from mbsd.mobility import Mobility, choose_rows, joint_mobility, refuse_overdriven
 from mbsd.model import Mechanism
 from mbsd.packing import Packed, pack
+from mbsd.shown import shown
 from mbsd.specials import ACTIVE, ROW
 from mbsd.start import assemble
+from mbsd.users_function import law_of
 
 SHORTEST_STEP = 1e-7
 """A step refused at this part of the output step is not cured by halving."""
 RUNAWAY = 30.0
 """Turning this many times faster than usual is the mark of a toggle; at a change point rates stay as they are."""
+LARGEST_ANGLE = 1e12
+"""Of a driver (rad): beyond it neighbouring numbers are more than 1e-4 rad apart."""
 REDUNDANT_GAP = 1e-7
 """Largest gap, in sizes, by which redundant joints may disagree."""
 
@@ -186,7 +191,7 @@ def prepare(m: Mechanism, start: float = 0.0, end: float = 1.0) -> Prepared:
     if len(m.bodies) < 2:
         raise ModelError(f"{m.name}: there is no body beside ground; add one with m.bar(...) or m.body(...)")
     packed = pack(m)
-    packed.motions = [law.over(start, end) for law in packed.motions]
+    packed.settle_laws(start, end)
     refuse_bad_laws(packed, start, end)
     try:
         q0 = assemble(m, packed, start)
@@ -203,10 +208,29 @@ def prepare(m: Mechanism, start: float = 0.0, end: float = 1.0) -> Prepared:
 def refuse_bad_laws(packed: Packed, start: float, end: float) -> None:
     """Raise ModelError for a law that is not finite, or imposes a distance that is not positive."""
     drivers = packed.joints[len(packed.joints) - len(packed.motions) :]
+    times = np.linspace(start, end, 17)
     for driver, law in zip(drivers, packed.motions, strict=True):
-        values = law(np.linspace(start, end, 17))
-        if not np.isfinite(values).all():
-            raise ModelError(f"{packed.name}: driver '{driver.name}': its law gives {values[~np.isfinite(values)][0]}")
+        with law_of(f"{packed.name}: driver '{driver.name}'"):
+            values = number_array("what its law gives", law(times), finite=False)
+        shape = np.shape(values)
+        if shape != (len(times), 3):
+            raise ModelError(
+                f"{packed.name}: driver '{driver.name}': its law gives {shown(values)} of shape {shape} for "
+                f"{len(times)} times; it must give ({len(times)}, 3): f, f', f'' at each time"
+            )
+        good = np.isfinite(values).all(axis=1)
+        if not good.all():
+            bad = int(np.argmin(good))
+            raise ModelError(
+                f"{packed.name}: driver '{driver.name}': its law gives {values[bad][~np.isfinite(values[bad])][0]} at "
+                f"t = {times[bad]:.6g} s; it must be finite"
+            )
+        farthest = float(np.abs(values[:, 0]).max())
+        if driver.kind.angular and farthest > LARGEST_ANGLE:
+            raise ModelError(
+                f"{packed.name}: driver '{driver.name}' turns to {farthest:.4g} rad by t = {end:.6g} s, where numbers "
+                "no longer tell one angle from the next; end the motion earlier, or let the law repeat"
+            )
         if driver.kind.constraints == ("distance",) and values[:, 0].min() <= 0:
             raise ModelError(
                 f"{packed.name}: driver '{driver.name}' imposes a distance of {values[:, 0].min():.4g} m; "

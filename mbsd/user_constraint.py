@@ -17,13 +17,16 @@ import numba
 import numpy as np
 from numba.core.dispatcher import Dispatcher
 
-from mbsd.callback import Callback
+from mbsd.arguments import LARGEST
+from mbsd.callback import Callback, WrongValue
 from mbsd.errors import ModelError
+from mbsd.shown import shown
 
 COMPLEX_STEP = 1e-30
 STEP = 4e-3
 """Of differences, in sizes of the mechanism and rad; the error is about 1e-15 times the seventh derivative."""
 AGREEMENT = 1e-6
+REALS = (int, float, np.floating, np.integer)
 TRIALS = ((0.31, -0.42, 0.53), (-0.27, 0.66, -1.1), (0.81, 0.13, 2.2))
 
 
@@ -33,10 +36,26 @@ def derivatives(function: Callable, what: str, size: float) -> Callback:
     ``size`` (m) is a usual length. Raises ModelError if it is no function, or if numba cannot compile it.
     """
     if not callable(function):
-        raise ModelError(f"{what}: {function!r} is no function; give one of x, y and the angle")
+        raise ModelError(f"{what}: {shown(function)} is no function; give one of x, y and the angle")
     compiled = isinstance(function, Dispatcher)
+    function = function if compiled else _of_numbers(function)
     by_complex = _takes_complex(function, size)
     return Callback(_ten(function, by_complex, numba.njit if compiled else _as_it_is, size), (1, 1, 1), 10, what)
+
+
+def _of_numbers(function: Callable) -> Callable:
+    """The function with a check that it gives a number, real or complex; sums of True and None would hide it."""
+
+    def checked(x: Any, y: Any, a: Any) -> Any:
+        value = function(x, y, a)
+        if isinstance(value, np.ndarray) and value.ndim == 0:
+            value = value[()]
+        real = isinstance(value, REALS) and not isinstance(value, bool) and -LARGEST <= value <= LARGEST
+        if not real and not (isinstance(x, complex) and isinstance(value, complex)) and value == value:
+            raise WrongValue(f"gives {shown(value)}; it must give a number")
+        return value
+
+    return checked
 
 
 def _as_it_is(function: Callable) -> Callable:
@@ -51,9 +70,9 @@ def _takes_complex(function: Callable, size: float) -> bool:
             at = trial[0] * size, trial[1] * size, trial[2]
             plain = _gradient_by_differences(function, _as_it_is, size)(*at)
             stepped = _gradient_by_complex(function, _as_it_is, size)(*at)
+            both = np.array([plain, stepped], float)
         except Exception:
             continue
-        both = np.array([plain, stepped], float)
         if not np.isfinite(both[0]).all():
             continue
         if not np.abs(both[1] - both[0]).max() <= AGREEMENT * max(1.0, float(np.abs(both[0]).max())):

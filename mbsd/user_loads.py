@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -34,16 +34,9 @@ def _callback(packed: Packed, force: Force) -> Callback:
         if made.what == what:
             return made
     count = len(force.params["bodies"])
-    made = Callback(_flat(force.params["function"]), (3 * count, 3 * count), 3 * count, what)
+    made = Callback(force.params["function"], (3 * count, 3 * count), 3 * count, what)
     packed.specials.callbacks.append(made)
     return made
-
-
-def _flat(function: Any) -> Any:
-    """A Python function may give a row for each body; compiled ones give all numbers in a row."""
-    if type(function).__module__.partition(".")[0] == "numba":
-        return function
-    return lambda t, q, v: np.ravel(np.asarray(function(t, q, v), float))
 
 
 @internal

@@ -11,6 +11,7 @@ from mbsd.mechanism_base import Start, StartVelocity
 from mbsd.model import Mechanism
 from mbsd.motions import polynomial
 from mbsd.packing import Packed
+from mbsd.users_function import law_of
 
 
 def copied(m: Mechanism) -> Mechanism:
@@ -26,7 +27,8 @@ def held(m: Mechanism, time: float) -> Mechanism:
     out = copied(m)
     for name, driver in m.drivers.items():
         assert driver.motion is not None
-        value = float(driver.motion.over(time, time)(np.array([time]))[0, 0])
+        with law_of(f"{m.name}: driver '{name}'"):
+            value = float(driver.motion.over(time, time)(np.array([time]))[0, 0])
         out.drivers[name] = type(driver)(driver.kind, name, driver.i, driver.j, driver.params, polynomial(value))
     return out
 

@@ -21,8 +21,10 @@ from mbsd.dynamics.projection import project
 from mbsd.dynamics.stick_slip import Case, Verdict, decide
 from mbsd.dynamics.switches import OPEN, RELEASED, SLIDES, STICKS, Touch
 from mbsd.dynamics.watches import HALTS, OPENS, SLIPS, Watch
+from mbsd.errors import ModelError
 from mbsd.event import Event, Happening
 from mbsd.integrators.state import TIME, State
+from mbsd.users_function import described
 
 if TYPE_CHECKING:
     from mbsd.dynamics.prepare import PreparedDynamics
@@ -49,7 +51,13 @@ class Jumps:
         """Let the action of an event of the user change velocities, forces and joints."""
         moment = Moment(self.packed, float(self.state.clock[TIME]), self.state.y[0].copy(), self.state.y[1].copy())
         assert event.action is not None
-        event.action(moment)
+        try:
+            event.action(moment)
+        except Exception as error:
+            raise ModelError(
+                f"{self.packed.name}: event '{event.name}': its action fails at t = {moment.t:.6g} s: "
+                f"{described(error)}"
+            ) from error
         for joint in moment.released:
             self.switches.release(joint)
             let_go(self.dynamics.loads, self.sticks, int(self.packed.first_row[joint]))

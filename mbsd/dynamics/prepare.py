@@ -129,7 +129,7 @@ def prepare_dynamics(m: Mechanism, start: float, end: float, contacts: bool = Fa
     if len(m.bodies) < 2:
         raise ModelError(f"{m.name}: there is no body beside ground; add one with m.bar(...) or m.body(...)")
     packed = pack(m)
-    packed.motions = [law.over(start, end) for law in packed.motions]
+    packed.settle_laws(start, end)
     refuse_bad_laws(packed, start, end)
     inertia, lifted, metric = _inertias(packed)
     large = packed.coordinates > MANY_COORDINATES

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mbsd.arguments import LARGEST
 from mbsd.assembly import tabulate
 from mbsd.dynamics.acceleration import derivative
 from mbsd.dynamics.arrays import Dynamics, Scratch
@@ -24,6 +25,8 @@ from mbsd.event import Event
 from mbsd.friction_along import normals_along
 from mbsd.packing import Packed
 from mbsd.reactions import times_compact
+from mbsd.shown import shown
+from mbsd.users_function import described
 
 ROUNDING = 1e-10
 """Of forces, as part of the largest."""
@@ -150,10 +153,15 @@ def event_watch(packed: Packed, event: Event, side: float) -> Watch:
 
 
 def checked(packed: Packed, event: Event, moment: Moment) -> float:
-    """The value of an event; raises ModelError where it is no finite number."""
-    value = event.value(moment.t, moment)
-    if isinstance(value, bool) or not isinstance(value, int | float | np.floating) or not np.isfinite(value):
-        raise ModelError(
-            f"{packed.name}: event '{event.name}' is {value!r} at t = {moment.t:.6g} s; it must be a finite number"
-        )
+    """The value of an event; raises ModelError where the function fails or gives no finite number."""
+    what = f"{packed.name}: event '{event.name}'"
+    try:
+        value = event.value(moment.t, moment)
+    except Exception as error:
+        raise ModelError(f"{what}: its function fails at t = {moment.t:.6g} s: {described(error)}") from error
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
+    number = not isinstance(value, bool) and isinstance(value, int | float | np.floating | np.integer)
+    if not number or not -LARGEST <= value <= LARGEST:
+        raise ModelError(f"{what} is {shown(value)} at t = {moment.t:.6g} s; it must be a finite number")
     return float(value)

@@ -8,9 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mbsd.arguments import finite_number
 from mbsd.errors import ModelError
 from mbsd.motions.law import Motion, Times
 from mbsd.motions.table import Table
+from mbsd.shown import shown
+from mbsd.users_function import value_at
 
 FIT_INTERVALS = (128, 256, 512, 1024, 2048, 4096)
 FIT_TOLERANCE = 1e-8
@@ -71,11 +74,7 @@ class Function(Motion):
 
 
 def _samples(f: Callable[[float], float], times: Times) -> np.ndarray:
-    values = np.array([float(f(float(t))) for t in times])
-    if not np.isfinite(values).all():
-        bad = int(np.argmin(np.isfinite(values)))
-        raise ModelError(f"function: the law gives {values[bad]} at t = {times[bad]:g} s; it must be finite")
-    return values
+    return np.array([value_at(f, float(t), "function: the law") for t in times])
 
 
 def function(
@@ -85,8 +84,11 @@ def function(
     period: float | None = None,
 ) -> Motion:
     """Any ``f(t)``. Give both derivatives if you can; else they come from a quintic spline fitted to f."""
+    for name, law in (("f", f), ("df", df), ("ddf", ddf)):
+        if not callable(law) and (law is not None or name == "f"):
+            raise ModelError(f"function: {name} is {shown(law)}; it must be a function of the time (s)")
     if (df is None) != (ddf is None):
         raise ModelError("function: give both derivatives df and ddf, or neither")
-    if period is not None and not period > 0:
+    if period is not None and not finite_number("function: period", period) > 0:
         raise ModelError(f"function: period is {period} s; it must be positive")
     return Function(f, df, ddf, period)

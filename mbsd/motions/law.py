@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.errors import ModelError
+from mbsd.arguments import finite_number
 
 if TYPE_CHECKING:
     from mbsd.laws import Compiled
@@ -21,10 +20,9 @@ COMPILED_TOLERANCE = np.array([1e-12, 1e-10, 1e-8])
 
 
 def refuse_non_finite(law: str, **numbers: float) -> None:
-    """Raise ModelError naming the first number that is NaN or infinite."""
+    """Raise ModelError naming the first that is no finite number."""
     for name, value in numbers.items():
-        if not math.isfinite(value):
-            raise ModelError(f"{law}: {name} is {value}; it must be a finite number")
+        finite_number(f"{law}: {name}", value)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,38 @@
+"""Words for a name that is not known: what there is, and the name that was probably meant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+from mbsd.shown import shown
+
+LISTED = 30
+"""Known names that a message lists."""
+ALIKE = 0.6
+"""Least likeness of difflib at which a name is offered."""
+
+
+def no_such(what: str, name: object, known: Iterable[object]) -> str:
+    """``there is no body 'crnk', did you mean 'crank'? There is: ground, crank``.
+
+    ``what`` says what was looked for; ``known`` are the names that there are, of which thirty are listed.
+    """
+    names = [str(one) for one in known]
+    listed = ", ".join(names[:LISTED]) or "none"
+    if len(names) > LISTED:
+        listed += f" and {len(names) - LISTED} more"
+    said = f"there is no {what} {f"'{name}'" if isinstance(name, str) and len(name) < 60 else shown(name)}"
+    meant = _meant(name, names)
+    return f"{said}; there is: {listed}" if meant is None else f"{said}, did you mean '{meant}'? There is: {listed}"
+
+
+def _meant(name: object, names: list[str]) -> str | None:
+    """The known name that is most like ``name``, in whatever case it is written; None if none is."""
+    if not isinstance(name, str) or not 0 < len(name) <= 200:
+        return None
+    small: dict[str, str] = {}
+    for one in names:
+        small.setdefault(one.lower(), one)
+    near = get_close_matches(name.strip().lower(), small, n=1, cutoff=ALIKE)
+    return small[near[0]] if near else None

@@ -5,15 +5,22 @@ FRAME ?= 0
 NAME ?=
 PYTEST ?= -n 2 --dist loadfile
 
+# Words of the user are taken as they are: make expands nothing in them, and commands get them through the environment,
+# where no shell reads them. Python refuses what is no name (shared/paths.py).
+override PRESET := $(value PRESET)
+override FRAME := $(value FRAME)
+override NAME := $(value NAME)
+override MECHANISM = $(subst -,_,$*)
+export PRESET FRAME NAME MECHANISM
+
 PRESETS := draft preview production final
 ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
 $(error PRESET=$(PRESET) is not a preset; choose one of: $(PRESETS))
 endif
 
 PYTHON := .venv/bin/python
-MECHANISMS = $(PYTHON) -m mechanisms
-RENDER = $(PYTHON) -m render
-name = $(subst -,_,$*)
+STAGE = $(PYTHON) -m mechanisms
+PICTURE = $(PYTHON) -m render
 
 # pyright comes whole in its wheel; without this it asks the network whether it is the newest.
 export PYRIGHT_PYTHON_IGNORE_WARNINGS := 1
@@ -23,12 +30,12 @@ export PYRIGHT_PYTHON_IGNORE_WARNINGS := 1
 
 # A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
 define upto_motion
-@$(MECHANISMS) parts $(name)
-@$(MECHANISMS) solve $(name)
+@$(STAGE) parts "$$MECHANISM"
+@$(STAGE) solve "$$MECHANISM"
 endef
 define upto_shot
 $(upto_motion)
-@$(MECHANISMS) shot $(name)
+@$(STAGE) shot "$$MECHANISM"
 endef
 
 help: ## this list
@@ -40,60 +47,60 @@ help: ## this list
 
 run-%: install always ## everything of one mechanism: parts, motion, clearance, plots, poster, film
 	$(upto_motion)
-	@$(MECHANISMS) clearance $(name)
-	@$(MECHANISMS) shot $(name)
-	@$(RENDER) plots $(name)
-	@$(RENDER) poster $(name) --preset $(PRESET)
-	@$(RENDER) film $(name) --preset $(PRESET)
+	@$(STAGE) clearance "$$MECHANISM"
+	@$(STAGE) shot "$$MECHANISM"
+	@$(PICTURE) plots "$$MECHANISM"
+	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET"
+	@$(PICTURE) film "$$MECHANISM" --preset "$$PRESET"
 
 run-all: install ## run-<name> for every mechanism; goes on after a failure, with a summary at the end
-	@sh tools/run_all.sh "$(MAKE)" "$(PRESET)"
+	@sh tools/run_all.sh "$(MAKE)" "$$PRESET"
 
 all: run-all ## the same: what one starts overnight, e.g. make all PRESET=final
 
 parts-%: install always ## the solids: out/<name>/parts/ (STL, STEP, parts.json)
-	@$(MECHANISMS) parts $(name)
+	@$(STAGE) parts "$$MECHANISM"
 
 solve-%: install always ## the motion: out/<name>/data.json
 	$(upto_motion)
 
 clearance-%: install always ## proof that no two parts touch over the whole motion: clearance.json
 	$(upto_motion)
-	@$(MECHANISMS) clearance $(name)
+	@$(STAGE) clearance "$$MECHANISM"
 
 plot-%: install always ## the plots: out/<name>/plots/
 	$(upto_motion)
-	@$(RENDER) plots $(name)
+	@$(PICTURE) plots "$$MECHANISM"
 
 poster-%: install always ## one picture at its best: out/<name>/poster.png
 	$(upto_shot)
-	@$(RENDER) poster $(name) --preset $(PRESET)
+	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET"
 
 still-%: install always ## one frame of the film, FRAME=15 (from 0): out/<name>/stills/
 	$(upto_shot)
-	@$(RENDER) still $(name) --frame $(FRAME) --preset $(PRESET)
+	@$(PICTURE) still "$$MECHANISM" --frame="$$FRAME" --preset "$$PRESET"
 
 frames-%: install always ## the frames of the film: out/<name>/frames/<preset>/
 	$(upto_shot)
-	@$(RENDER) frames $(name) --preset $(PRESET)
+	@$(PICTURE) frames "$$MECHANISM" --preset "$$PRESET"
 
 film-%: install always ## the film: out/films/<name>-<preset>.mp4
 	$(upto_shot)
-	@$(RENDER) film $(name) --preset $(PRESET)
+	@$(PICTURE) film "$$MECHANISM" --preset "$$PRESET"
 
 scene-ui-%: install always ## open the scene in an installed Blender
 	$(upto_shot)
-	@$(RENDER) scene-ui $(name) --preset $(PRESET)
+	@$(PICTURE) scene-ui "$$MECHANISM" --preset "$$PRESET"
 
 scene-%: install always ## save the scene: out/<name>/<name>.blend
 	$(upto_shot)
-	@$(RENDER) scene $(name) --preset $(PRESET)
+	@$(PICTURE) scene "$$MECHANISM" --preset "$$PRESET"
 
 new: install ## a new mechanism that already runs: make new NAME=my_linkage
-	@$(MECHANISMS) new "$(NAME)"
+	@$(STAGE) new -- "$$NAME"
 
 list: install ## the mechanisms and what is made of them
-	@$(MECHANISMS) list
+	@$(STAGE) list
 
 check: install ## versions, system libraries, render device, disk space
 	@$(PYTHON) -m shared.check

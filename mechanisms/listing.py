@@ -6,7 +6,8 @@ import ast
 
 import msgspec
 
-from shared.paths import Out, mechanism_folder, mechanism_names, out_root
+from shared.console import warn
+from shared.paths import NAME_RULE, Out, mechanism_folder, mechanism_names, out_root, unfit_folders
 
 
 class _Diagnostics(msgspec.Struct):
@@ -22,6 +23,8 @@ def run() -> None:
     for name in mechanism_names():
         made = ", ".join(_made(name)) or "nothing yet"
         print(f"{name.replace('_', '-'):<24} {_title(name)}\n{'':<24} {_freedom(name)}made: {made}")
+    for folder in unfit_folders():
+        warn("list", f"mechanisms/{folder!r} is left out, because that cannot name a mechanism: {NAME_RULE}")
 
 
 def _title(name: str) -> str:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import keyword
 import os
-import re
 import tempfile
 from pathlib import Path
 
 from shared.console import say
 from shared.errors import UserError
 from shared.files import write_bytes
-from shared.paths import MECHANISMS, canonical_name, mechanism_names
+from shared.paths import MECHANISMS, NAME, NAME_RULE, canonical_name, mechanism_names
 
 TEMPLATES = Path(__file__).parent / "new_templates"
 PLACEHOLDER = "@NAME@"
@@ -42,11 +41,8 @@ def refuse_unfit(name: str) -> None:
     known = ", ".join(mechanism_names()) or "none"
     if not name:
         raise UserError(f"a new mechanism needs a name: make new NAME=my_linkage; there is already: {known}")
-    if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
-        raise UserError(
-            f"'{name}' cannot name a mechanism: write lower-case letters, digits and underscores, a letter first, "
-            "as in make new NAME=my_linkage"
-        )
+    if not NAME.fullmatch(name):
+        raise UserError(f"{name!r} cannot name a mechanism: {NAME_RULE}, as in make new NAME=my_linkage")
     if keyword.iskeyword(name) or keyword.issoftkeyword(name):
         raise UserError(f"'{name}' is a word of Python and cannot name a mechanism; try {name}_linkage")
     if name in TAKEN:

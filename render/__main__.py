@@ -6,7 +6,7 @@ import argparse
 
 from render.presets import PRESETS, Preset, preset_named
 from shared.console import run_cli
-from shared.paths import canonical_name
+from shared.paths import mechanism_name
 
 COMMANDS = {
     "plots": "plots of the motion, its forces and its energy",
@@ -31,7 +31,7 @@ def main() -> int | None:
         if command == "still":
             sub.add_argument("--frame", type=int, default=0, help="number of the frame, from 0")
     arguments = parser.parse_args()
-    name, command = canonical_name(arguments.name), arguments.command.replace("_", "-")
+    name, command = mechanism_name(arguments.name), arguments.command.replace("_", "-")
     if command == "plots":
         from render import plots
 

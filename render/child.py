@@ -17,7 +17,7 @@ import msgspec
 from render.blender.job import Answer, Job
 from render.signals import terminable
 from shared.errors import UserError
-from shared.paths import ROOT, out_root
+from shared.paths import ROOT, out_root, refuse_links
 
 
 @contextmanager
@@ -28,8 +28,10 @@ def blender(job: Job) -> Iterator[Iterator[Answer]]:
     said last if it failed.
     """
     home = out_root() / ".blender"
-    _sweep(home)
     scratch = home / f"tmp-{os.getpid()}"
+    for folder in (home / "user", home / "cache", scratch):
+        refuse_links(folder)
+    _sweep(home)
     scratch.mkdir(parents=True, exist_ok=True)
     process: subprocess.Popen[bytes] | None = None
     try:

@@ -16,6 +16,7 @@ import msgspec
 
 from shared import jsonfile
 from shared.errors import UserError
+from shared.paths import refuse_links
 
 
 class FrameIndex(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
@@ -76,6 +77,7 @@ class FrameStore:
     @contextmanager
     def locked(self) -> Iterator[None]:
         """Hold the folder for one process; raises UserError if another renders into it. Sweeps up unfinished files."""
+        refuse_links(self.folder)
         self.folder.mkdir(parents=True, exist_ok=True)
         handle = os.open(self.folder / ".lock", os.O_RDWR | os.O_CREAT, 0o644)
         try:

@@ -12,6 +12,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from shared.errors import UserError
+from shared.paths import refuse_links
 
 LEFTOVER_AGE = 3600.0
 """Seconds after which a temporary file counts as left by a killed writer."""
@@ -22,8 +23,10 @@ def whole_file(path: Path) -> Iterator[Path]:
     """Yield a temporary path with the target's suffix; on success it replaces ``path``, else it is removed.
 
     A kill or a full disk therefore never leaves a part of a file under the final name.
-    Raises UserError naming the file when the disk is full or the folder cannot be written.
+    Raises UserError naming the file when the disk is full, the folder cannot be written, or a folder of results is a
+    link.
     """
+    refuse_links(path.parent)
     temporary: Path | None = None
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import re
+import shlex
 from pathlib import Path
 
 from shared.errors import UserError
@@ -10,6 +12,9 @@ from shared.suggestions import did_you_mean
 
 ROOT = Path(__file__).resolve().parent.parent
 MECHANISMS = ROOT / "mechanisms"
+NAME = re.compile(r"[a-z][a-z0-9_]*")
+"""The name of a mechanism: its folder, Python package and make target."""
+NAME_RULE = "write lower-case letters, digits and underscores (or hyphens), a letter first"
 
 
 def out_root() -> Path:
@@ -17,33 +22,73 @@ def out_root() -> Path:
     return Path(os.environ.get("MBSD_OUT") or ROOT / "out")
 
 
+def refuse_links(path: Path) -> None:
+    """Raise UserError naming the link if ``path`` or a folder above it, inside :func:`out_root`, is a symbolic link.
+
+    Stages overwrite and delete what is no longer theirs in these folders, so they must not lead to files of others.
+    :func:`out_root` itself and what is above it may be links: that is how results go to another disk.
+    """
+    root = Path(os.path.abspath(out_root()))
+    path = Path(os.path.abspath(path))
+    if not path.is_relative_to(root):
+        return
+    below = [path, *path.parents][: len(path.parts) - len(root.parts)]
+    for place in reversed(below):
+        if place.is_symlink():
+            raise UserError(
+                f"{place} is a link to {os.readlink(place)}; stages overwrite and delete files in this folder, so it "
+                f"must not be a link: remove it (rm {shlex.quote(str(place))}). For results on another disk, make "
+                f"{root} itself a link or set MBSD_OUT"
+            )
+
+
 def canonical_name(name: str) -> str:
     """``four-bar`` and ``four_bar`` are one mechanism; folders use underscores."""
     return name.strip().strip("/").replace("-", "_")
 
 
+def mechanism_name(name: str) -> str:
+    """The canonical name; raises UserError if it is none, so that no path or command is made of it."""
+    found = canonical_name(name)
+    if not NAME.fullmatch(found):
+        raise UserError(
+            f"{name!r} is not the name of a mechanism: {NAME_RULE}; there is: {', '.join(mechanism_names()) or 'none'}"
+        )
+    return found
+
+
 def mechanism_names() -> list[str]:
-    """Every mechanism: a folder of ``mechanisms/`` that holds a ``mechanism.py``."""
+    """Every mechanism: a folder of ``mechanisms/`` with a fit name that holds a ``mechanism.py``."""
+    return [name for name in _folders() if NAME.fullmatch(name)]
+
+
+def unfit_folders() -> list[str]:
+    """Names of folders that hold a ``mechanism.py`` but cannot be a mechanism's name."""
+    return [name for name in _folders() if not NAME.fullmatch(name)]
+
+
+def _folders() -> list[str]:
     return sorted(p.parent.name for p in MECHANISMS.glob("*/mechanism.py"))
 
 
 def mechanism_folder(name: str) -> Path:
     """The folder of a mechanism; raises UserError with the known names if there is none."""
-    folder = MECHANISMS / canonical_name(name)
+    name = mechanism_name(name)
+    folder = MECHANISMS / name
     if not (folder / "mechanism.py").is_file():
         known = mechanism_names()
         raise UserError(
-            f"there is no mechanism '{canonical_name(name)}' in mechanisms/; there is: {', '.join(known) or 'none'}"
-            f"{did_you_mean(canonical_name(name), known)}"
+            f"there is no mechanism '{name}' in mechanisms/; there is: {', '.join(known) or 'none'}"
+            f"{did_you_mean(name, known)}"
         )
     return folder
 
 
 class Out:
-    """The result files of one mechanism under :func:`out_root`."""
+    """The result files of one mechanism under :func:`out_root`; raises UserError if ``name`` is no name."""
 
     def __init__(self, name: str) -> None:
-        self.name = canonical_name(name)
+        self.name = mechanism_name(name)
         self.folder = out_root() / self.name
         self.motion = self.folder / "data.json"
         self.parts_folder = self.folder / "parts"
@@ -55,10 +100,16 @@ class Out:
         self.stills = self.folder / "stills"
         self.scene = self.folder / f"{self.name}.blend"
         self.stamps = self.folder / ".stamps"
+        self.all_frames = self.folder / "frames"
+
+    def refuse_links(self) -> None:
+        """Raise UserError if a folder of this mechanism's results is a link."""
+        for folder in (self.parts_folder, self.plots, self.stills, self.stamps, self.all_frames):
+            refuse_links(folder)
 
     def frames(self, preset: str) -> Path:
         """The frames of one preset, named by what they show."""
-        return self.folder / "frames" / preset
+        return self.all_frames / preset
 
     def film(self, preset: str) -> Path:
         """The finished film of one preset."""

@@ -20,7 +20,7 @@ import msgspec
 from shared import jsonfile
 from shared.errors import UserError
 from shared.files import file_hash
-from shared.paths import Out
+from shared.paths import Out, refuse_links
 
 
 class OutputStamp(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
@@ -42,7 +42,10 @@ class StageStamp(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
 
 
 class Stage:
-    """One stage of one mechanism: is its result there, whole and made from this key?"""
+    """One stage of one mechanism: is its result there, whole and made from this key?
+
+    Raises UserError if a folder it writes into is a link.
+    """
 
     def __init__(self, out: Out, name: str, key: str, outputs: Sequence[Path]) -> None:
         self.out = out
@@ -50,6 +53,9 @@ class Stage:
         self.key = key
         self.outputs = list(outputs)
         self.stamp = out.stamps / f"{name}.json"
+        out.refuse_links()
+        for path in self.outputs:
+            refuse_links(path.parent)
 
     def is_fresh(self) -> bool:
         """Whether the stamp has this key and every output is there with its recorded size and SHA-256."""

@@ -25,7 +25,7 @@ def run(*command: str, cwd: Path = ROOT, **environment: str) -> subprocess.Compl
 
 def planned(*arguments: str) -> list[str]:
     """The stages that make would run, in order: ``parts four_bar``."""
-    done = run("make", "-o", "install", "-n", *arguments)
+    done = run("make", "-o", "install", "PYTHON=echo", *arguments)
     assert done.returncode == 0, done.stderr
     return re.findall(r"-m (?:mechanisms|render) (.*)", done.stdout)
 
@@ -64,7 +64,7 @@ def test_picture_targets_take_the_preset(target: str) -> None:
 
 
 def test_a_still_takes_its_frame() -> None:
-    assert "--frame 15" in planned("still-four-bar", "FRAME=15")[-1]
+    assert "--frame=15" in planned("still-four-bar", "FRAME=15")[-1]
 
 
 def test_each_target_runs_what_it_stands_on() -> None:
@@ -302,6 +302,11 @@ def test_clean_removes_the_results_and_leaves_a_folder_of_the_users_alone(tmp_pa
     assert not (tmp_path / "out").exists()
     assert mine.exists()
     assert str(mine) in done.stderr
+    (mine / "data.json").touch()
+    (tmp_path / "out").symlink_to(mine)
+    done = run("sh", "tools/clean.sh", cwd=tmp_path)
+    assert (done.returncode, (tmp_path / "out").is_symlink(), (mine / "data.json").exists()) == (0, True, True)
+    assert f"out is a link, so it and the folder it leads to are left to you: {mine}" in done.stderr
 
 
 def test_check_tells_versions_libraries_disk_and_device() -> None:

@@ -7,6 +7,14 @@ for file in mechanisms/*/mechanism.py; do
     [ -f "$file" ] || continue
     folder=${file%/mechanism.py}
     name=${folder#mechanisms/}
+    # Ranges like a-z depend on the language of the shell.
+    case $name in
+    [!abcdefghijklmnopqrstuvwxyz]* | *[!abcdefghijklmnopqrstuvwxyz0123456789_]*)
+        printf "run-all: error: mechanisms/%s is not the name of a mechanism; rename the folder\n" "$name" >&2
+        failed="$failed (an unfit name)"
+        continue
+        ;;
+    esac
     echo "run-all: $name"
     if "$1" --no-print-directory "run-$name" PRESET="$2"; then
         done=$((done + 1))

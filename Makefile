@@ -25,6 +25,11 @@ PICTURE = $(PYTHON) -m render
 # pyright comes whole in its wheel; without this it asks the network whether it is the newest.
 export PYRIGHT_PYTHON_IGNORE_WARNINGS := 1
 
+# The outermost make: a stage ends with it, also when make was killed and could not tell (shared/lineage.py).
+ifndef MBSD_MAKE
+export MBSD_MAKE := $(shell echo $$PPID)
+endif
+
 .DEFAULT_GOAL := help
 .PHONY: help install check list run-all all new test lint format bench schema docs integrators lock clean clean-all always
 

@@ -15,9 +15,9 @@ from pathlib import Path
 import msgspec
 
 from render.blender.job import Answer, Job
-from render.signals import terminable
 from shared.errors import UserError
 from shared.paths import ROOT, out_root, refuse_links
+from shared.signals import terminable
 
 
 @contextmanager

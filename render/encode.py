@@ -6,9 +6,9 @@ import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 
-from render.signals import terminable
 from shared.errors import UserError
 from shared.files import whole_file
+from shared.signals import terminable
 
 SETTINGS = (
     *("-c:v", "libx264", "-preset", "slow", "-crf", "16", "-profile:v", "high"),

@@ -7,10 +7,13 @@ import sys
 import time
 import traceback
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import IO, NoReturn, Protocol
 
 from shared.errors import UserError
+from shared.files import OF_THE_DISK, refusal
+from shared.lineage import end_with_make
+from shared.signals import Stopped, terminable
 
 SHORTEST, LONGEST = 5.0, 60.0
 """Seconds between two lines of progress in a log; the gap grows with the time that has passed."""
@@ -78,23 +81,32 @@ def duration(seconds: float) -> str:
 
 
 def run_cli(main: Callable[[], int | None]) -> NoReturn:
-    """Run ``main`` and exit: 0 or its return value, 1 on a UserError (one sentence), 130 on Ctrl-C.
+    """Run ``main`` and exit: 0 or its return value, 1 on a UserError (one sentence), 128 + number on a signal.
 
+    A disk that is full or read-only, and a folder or file that is not what it should be, are a sentence as well.
     With ``MBSD_TRACEBACK=1`` in the environment a UserError also prints its traceback, and that of its cause.
     """
     try:
-        code = main() or 0
-        sys.stdout.flush()
+        with terminable():
+            end_with_make()
+            code = main() or 0
+            sys.stdout.flush()
     except UserError as error:
         if os.environ.get("MBSD_TRACEBACK", "0") not in ("", "0"):
             traceback.print_exc()
         fail(str(error))
         code = 1
-    except KeyboardInterrupt:
-        fail("stopped; what is finished is kept, the same command goes on from here")
-        code = 130
+    except (KeyboardInterrupt, Stopped) as stop:
+        with suppress(OSError):  # the terminal may be what has gone
+            fail("stopped; what is finished is kept, the same command goes on from here")
+        code = stop.code if isinstance(stop, Stopped) else 130
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        code = 1
+    except OSError as error:
+        if error.errno not in OF_THE_DISK:
+            raise
+        fail(refusal(error.filename or "a file", error, "use"))
         code = 1
     sys.exit(code)
 

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import errno
 import glob
 import hashlib
 import os
+import shutil
 import tempfile
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from shared import locks
 from shared.errors import UserError
 from shared.paths import refuse_links
 
-LEFTOVER_AGE = 3600.0
-"""Seconds after which a temporary file counts as left by a killed writer."""
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+FORBIDDEN = (errno.EACCES, errno.EPERM, errno.EROFS)
+IN_THE_WAY = (errno.EISDIR, errno.ENOTDIR, errno.EEXIST, errno.ENOTEMPTY)
+OF_THE_DISK = (*FULL, *FORBIDDEN, *IN_THE_WAY, errno.EIO, errno.ENODEV, errno.ESTALE, errno.ELOOP, errno.ENAMETOOLONG)
+"""Errors that a user causes and cures, not the program."""
 
 
 @contextmanager
@@ -28,32 +33,63 @@ def whole_file(path: Path) -> Iterator[Path]:
     """
     refuse_links(path.parent)
     temporary: Path | None = None
+    handle = -1
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         _remove_leftovers(path)
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
-        os.close(handle)
-        temporary = Path(name)
+        handle, temporary = _locked_file(path)
         os.chmod(temporary, 0o644)
         yield temporary
         with temporary.open("rb") as written:
             os.fsync(written.fileno())
         os.replace(temporary, path)
     except OSError as error:
-        raise UserError(
-            f"cannot write {path}: {error.strerror or error}; free some disk space or set MBSD_OUT to another folder"
-        ) from error
+        raise UserError(refusal(path, error)) from error
     finally:
         if temporary is not None:
-            temporary.unlink(missing_ok=True)
+            with suppress(OSError):
+                temporary.unlink(missing_ok=True)
+            os.close(handle)
+
+
+def refusal(path: Path | str, error: OSError, doing: str = "write") -> str:
+    """What to tell a user when a file could not be written, or be used at all: the file, the reason, the remedy."""
+    reason = error.strerror or str(error)
+    if error.errno in FULL:
+        remedy = f"free some disk space{_free(Path(path))} or set MBSD_OUT to another folder"
+    elif error.errno in FORBIDDEN:
+        remedy = "make file and folder accessible or set MBSD_OUT to another folder"
+    elif error.errno in IN_THE_WAY:
+        remedy = "remove or rename what is in its place, or set MBSD_OUT to another folder"
+    else:
+        remedy = "check the disk or set MBSD_OUT to another folder"
+    return f"cannot {doing} {path}: {reason}; {remedy}"
+
+
+def _free(path: Path) -> str:
+    """How much room the disk has, in brackets; nothing if it cannot be asked."""
+    try:
+        return f" ({shutil.disk_usage(path.parent).free / 1e6:.1f} MB are free)"
+    except OSError:
+        return ""
+
+
+def _locked_file(path: Path) -> tuple[int, Path]:
+    """A new temporary file beside ``path`` and its handle, which holds a lock for as long as it is open."""
+    while True:
+        handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
+        with suppress(OSError):  # a disk without locks: what a kill leaves there stays
+            locks.take(handle)
+        if os.fstat(handle).st_nlink:
+            return handle, Path(name)
+        os.close(handle)  # another process took it for a leftover before it was locked
 
 
 def _remove_leftovers(path: Path) -> None:
-    """Remove temporary files of ``path`` whose writer was killed so long ago that it cannot be writing any more."""
+    """Remove temporary files of ``path`` whose writer was killed, which the lock tells."""
     for left in path.parent.glob(f".{glob.escape(path.stem)}-*{glob.escape(path.suffix)}"):
-        with suppress(FileNotFoundError):
-            if time.time() - left.stat().st_mtime > LEFTOVER_AGE:
-                left.unlink()
+        if locks.is_abandoned(left):
+            left.unlink(missing_ok=True)
 
 
 def write_bytes(path: Path, content: bytes) -> None:

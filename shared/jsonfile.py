@@ -55,18 +55,23 @@ def read[T: msgspec.Struct](path: Path, kind: type[T]) -> T:
 
 
 def decode[T: msgspec.Struct](content: bytes, kind: type[T], path: Path | str) -> T:
-    """Decode and check bytes that came from ``path``."""
+    """Decode and check bytes that came from ``path``; raises UserError naming the file, the field and the remedy."""
     try:
+        content.decode()  # msgspec looks at the bytes of a text only where it is asked for
         header = msgspec.json.decode(content, type=_Header)
         _refuse_other_version(header, kind, path)
         document = msgspec.json.decode(content, type=kind)
-    except msgspec.DecodeError as error:
-        raise UserError(f"{path}: {_reason(content, kind, error)}") from error
+        refuse_non_finite(document, path)
+        if encode(document) != content:  # never so for a file that this program wrote
+            _refuse_doubled(content, path)
+    except UnicodeDecodeError as error:
+        raise UserError(
+            f"{path}: byte {error.start} is {content[error.start]:#04x}, which is no UTF-8; make it again"
+        ) from error
     except RecursionError as error:
         raise UserError(f"{path}: it is nested too deep for this kind of file; make it again") from error
-    refuse_non_finite(document, path)
-    if encode(document) != content:  # never so for a file that this program wrote
-        _refuse_doubled(content, path)
+    except msgspec.DecodeError as error:
+        raise UserError(f"{path}: {_reason(content, kind, error)}") from error
     return document
 
 

@@ -93,7 +93,10 @@ class Stage:
 
     def _is_whole(self, name: str, recorded: OutputStamp) -> bool:
         path = self.out.folder / name
-        return path.is_file() and path.stat().st_size == recorded.size and file_hash(path) == recorded.sha256
+        try:
+            return path.is_file() and path.stat().st_size == recorded.size and file_hash(path) == recorded.sha256
+        except OSError:
+            return False  # it cannot be read, so it is made again
 
 
 def key_of(*values: Any) -> str:

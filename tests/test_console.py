@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import pty
 import resource
+import signal
 import subprocess
 import sys
 
@@ -14,6 +16,7 @@ import pytest
 from shared import console
 from shared.errors import UserError
 from shared.paths import ROOT
+from shared.signals import Stopped
 
 
 def test_say_and_warn_are_one_plain_line_in_a_log(capsys: pytest.CaptureFixture[str]) -> None:
@@ -110,6 +113,13 @@ def test_a_terminal_gets_colour_and_a_bar() -> None:
     [
         (UserError("four_bar: no"), 1, "error: four_bar: no\n"),
         (KeyboardInterrupt(), 130, "error: stopped; what is finished is kept, the same command goes on from here\n"),
+        (Stopped(15), 143, "error: stopped; what is finished is kept, the same command goes on from here\n"),
+        (
+            OSError(errno.EROFS, "Read-only file system", "/no/such/x"),
+            1,
+            "error: cannot use /no/such/x: Read-only file system; make file and folder accessible or set MBSD_OUT to "
+            "another folder\n",
+        ),
     ],
 )
 def test_run_cli_words_what_a_user_can_cause(
@@ -131,12 +141,27 @@ def test_run_cli_exits_with_the_result(result: int | None, code: int) -> None:
     assert exit_.value.code == code
 
 
-def test_run_cli_does_not_hide_a_fault_of_ours() -> None:
+@pytest.mark.parametrize("fault", [ZeroDivisionError(), OSError(errno.ECHILD, "No child processes")], ids=repr)
+def test_run_cli_does_not_hide_a_fault_of_ours(fault: Exception) -> None:
     def main() -> None:
-        raise ZeroDivisionError
+        raise fault
 
-    with pytest.raises(ZeroDivisionError):
+    with pytest.raises(type(fault)):
         console.run_cli(main)
+
+
+def test_a_second_sigterm_does_not_disturb_the_cleaning_up() -> None:
+    code = (
+        "import os, time, signal; from shared.console import run_cli\n"
+        "def main():\n"
+        "    try:\n"
+        "        os.kill(os.getpid(), signal.SIGTERM); time.sleep(30)\n"
+        "    finally:\n"
+        "        os.kill(os.getpid(), signal.SIGHUP); os.kill(os.getpid(), signal.SIGTERM); print('clean')\n"
+        "run_cli(main)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=20)
+    assert (done.returncode, done.stdout) == (128 + signal.SIGTERM, "clean\n")
 
 
 def test_a_closed_pipe_is_no_traceback() -> None:

@@ -73,13 +73,26 @@ def test_a_killed_writer_keeps_the_old_file(target: Path) -> None:
     assert target.read_bytes() == b"old"
 
 
-def test_what_a_killed_writer_left_is_removed_once_it_is_old(target: Path) -> None:
-    fresh, old = target.with_name(".data-fresh.json"), target.with_name(".data-old.json")
-    for left in (fresh, old):
-        left.write_bytes(b"part")
-    os.utime(old, (0, 0))
-    write_bytes(target, b"new")
-    assert sorted(target.parent.iterdir()) == [fresh, target]
+def test_what_a_killed_writer_left_is_removed_and_what_is_being_written_is_not(target: Path) -> None:
+    elsewhere = target.with_name("elsewhere")
+    elsewhere.write_bytes(b"a file of the user's")
+    target.with_name(".data-killed.json").write_bytes(b"part")
+    target.with_name(".data-link.json").symlink_to(elsewhere)
+    with whole_file(target) as temporary:
+        write_bytes(target, b"by another process")
+        assert temporary.exists()
+        assert not target.with_name(".data-killed.json").exists()
+        temporary.write_bytes(b"new")
+    assert target.read_bytes() == b"new"
+    assert elsewhere.read_bytes() == b"a file of the user's"
+
+
+def test_the_word_for_what_stands_in_the_way(target: Path) -> None:
+    target.unlink()
+    target.mkdir()
+    with pytest.raises(UserError, match=r"cannot write .*data\.json: Is a directory; remove or rename what is in its"):
+        write_bytes(target, b"new")
+    assert only(target)
 
 
 def test_a_real_limit_on_file_size_keeps_the_old_file(target: Path) -> None:
@@ -98,7 +111,7 @@ def test_a_real_limit_on_file_size_keeps_the_old_file(target: Path) -> None:
 
 
 def test_a_full_disk_is_told_with_the_remedy(target: Path) -> None:
-    sentence = r"cannot write .*data\.json: No space left on device; free some disk space or"
+    sentence = r"cannot write .*data\.json: No space left on device; free some disk space \([\d.]+ MB are free\) or"
     with pytest.raises(UserError, match=sentence), whole_file(target) as temporary:
         temporary.write_bytes(b"half")
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))

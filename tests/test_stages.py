@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from shared import stages
 from shared.errors import UserError
 from shared.paths import Out
 from shared.stages import Stage, key_of, versions
@@ -71,6 +72,27 @@ def test_a_damaged_stamp_means_again(out: Out, content: bytes) -> None:
     assert stage.notes() == {}
     stage.done()
     assert stage.is_fresh()
+
+
+def test_a_byte_above_0x7f_anywhere_in_a_stamp_means_again(out: Out) -> None:
+    stage = made(out)
+    content = stage.stamp.read_bytes()
+    for place in range(len(content)):
+        stage.stamp.write_bytes(content[:place] + b"\xff" + content[place + 1 :])
+        assert not stage.is_fresh(), place
+        assert stage.notes() == {}
+
+
+def test_a_stamp_of_brackets_means_again(out: Out) -> None:
+    stage = made(out)
+    stage.stamp.write_bytes(stage.stamp.read_bytes().replace(b"3\n", b"[" * 100_000))
+    assert not stage.is_fresh()
+
+
+def test_an_output_that_cannot_be_read_is_not_whole(out: Out, monkeypatch: pytest.MonkeyPatch) -> None:
+    stage = made(out)
+    monkeypatch.setattr(stages, "file_hash", lambda _: Path("/dev/null/x").read_bytes())
+    assert not stage.is_fresh()
 
 
 def test_notes_are_kept(out: Out) -> None:

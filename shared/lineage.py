@@ -1,0 +1,62 @@
+"""A stage that make has started ends with make, however make ends.
+
+GNU make passes SIGTERM on to the commands it started, but no other signal, and a SIGKILL or a shell in between breaks
+the chain. Without a word from make its stages would go on rendering for hours.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+from pathlib import Path
+
+VARIABLE = "MBSD_MAKE"
+"""Environment variable in which the Makefile names the process of the outermost make."""
+PERIOD = 0.5
+"""Seconds between two looks at make."""
+FATAL = (signal.SIGHUP, signal.SIGINT, signal.SIGQUIT, signal.SIGTERM)
+
+
+def end_with_make() -> None:
+    """Send this process SIGTERM as soon as the make that it belongs to has ended or was told to end.
+
+    Does nothing where no make of this project is above.
+    """
+    make = os.environ.get(VARIABLE, "")
+    if make.isdigit():
+        threading.Thread(target=_watch, args=(int(make), os.getppid()), daemon=True).start()
+
+
+def _watch(make: int, parent: int) -> None:
+    orphaned = parent == 1 != make
+    while not orphaned and os.getppid() == parent and _is_running(make) and not is_ending(make):
+        time.sleep(PERIOD)
+    os.kill(os.getpid(), signal.SIGTERM)
+
+
+def is_ending(make: int) -> bool:
+    """Whether make only waits for its commands after a fatal signal: it blocks that signal and handles it no more.
+
+    Linux alone tells; elsewhere this is False, and the stage goes on until make has ended.
+    """
+    try:
+        lines = Path(f"/proc/{make}/status").read_text().splitlines()
+    except OSError:
+        return False
+    fields = {name: value.strip() for name, _, value in (line.partition(":") for line in lines)}
+    if fields["State"].startswith("Z"):
+        return True
+    blocked, handled, ignored = (int(fields[name], 16) for name in ("SigBlk", "SigCgt", "SigIgn"))
+    return any((blocked & ~handled & ~ignored) >> (number - 1) & 1 for number in FATAL)
+
+
+def _is_running(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        return True
+    return True

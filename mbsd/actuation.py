@@ -159,8 +159,10 @@ def inverse_dynamics(m: Mechanism, motion: Solution, actuators: Sequence[str]) -
     everything[:, :rows] = lam
     reactions = np.zeros_like(motion.wrench)
     reactions[:, : len(packed.joints)] = wrenches(packed, compact, q, lam)
-    solution = replace(motion, lam=everything, wrench=reactions, work=None, route=f"efforts of {', '.join(actuators)}")
-    return ActuatedMotion(solution, dict(zip(actuators, effort.T, strict=True)), float(residual[worst]))
+    efforts = dict(zip(actuators, effort.T, strict=True))
+    route = f"efforts of {', '.join(actuators)}"
+    solution = replace(motion, lam=everything, wrench=reactions, work=None, route=route, efforts=efforts)
+    return ActuatedMotion(solution, efforts, float(residual[worst]))
 
 
 def _solved(

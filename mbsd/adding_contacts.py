@@ -150,7 +150,7 @@ class AddingContacts(MechanismBase):
         """Something to watch: ``value(t, moment)`` passes zero, rising (direction 1), falling (-1) or either (0).
 
         ``moment`` shows the motion now (mbsd/dynamics/moment.py). ``terminal`` ends the simulation there; ``action``
-        is called with the moment and may change velocities, forces and gravity, and let joints go.
+        is called with the moment and may change velocities and let joints go.
         """
         self._new_name(name, "event", self.events)
         for what, function in (("value", value), ("action", action)):

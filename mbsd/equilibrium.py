@@ -17,6 +17,7 @@ from mbsd.assembly import tabulate
 from mbsd.balance import FLAT, descend, look, newton
 from mbsd.closed_contacts import refuse_resting
 from mbsd.errors import ModelError, SingularPoseError
+from mbsd.force_view import ForceView
 from mbsd.mobility import joint_mobility
 from mbsd.model import Mechanism
 from mbsd.packing import pack
@@ -69,6 +70,10 @@ class Equilibrium:
     def driver(self, name: str) -> DriverView:
         """What a driver holds, and the effort it takes."""
         return _single(self.solution.driver(name))
+
+    def force(self, name: str) -> ForceView:
+        """What a force does in this pose, at rest; see :meth:`mbsd.solution.Solution.force`."""
+        return _single(self.solution.force(name))
 
     @property
     def energy(self) -> EnergyView:

@@ -28,11 +28,16 @@ class FrictionView:
         return self.force * self.rate
 
 
-def friction_view(packed: Packed, name: str, q: np.ndarray, v: np.ndarray, lam: np.ndarray) -> FrictionView:
-    """Of the friction ``name``; q, v (T, nb, 3), lam (T, m)."""
+def friction_view(
+    packed: Packed, name: str, q: np.ndarray, v: np.ndarray, lam: np.ndarray, held: np.ndarray | None = None
+) -> FrictionView:
+    """Of the friction ``name``; q, v (T, nb, 3) or (T, 3 nb), lam (T, m); rows of J that ``held`` (T, m), None: all.
+
+    A joint that an action let go has no friction.
+    """
     from mbsd.assembly import tabulate
     from mbsd.friction_along import normals_along
-    from mbsd.joint_friction import WAY, tabulate_rates
+    from mbsd.joint_friction import FIRST, WAY, tabulate_rates
     from mbsd.loads import pack_loads
 
     count, rows = len(lam), len(packed.ws.phi)
@@ -46,4 +51,7 @@ def friction_view(packed: Packed, name: str, q: np.ndarray, v: np.ndarray, lam: 
     rate, force = np.zeros((2, count))
     tabulate_rates(packed.system, loads, k, flat_q, flat_v, normal[:, k], packed.ws, rate, force)
     way = int(loads.rub[k, WAY])
-    return FrictionView(rate, normal[:, k], -lam[:, way] if way >= 0 else force)
+    force = -lam[:, way] if way >= 0 else force
+    if held is not None:
+        force = np.where(held[:, loads.rub[k, FIRST]], force, 0.0)
+    return FrictionView(rate, normal[:, k], force)

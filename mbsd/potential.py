@@ -16,7 +16,7 @@ from mbsd.curves import Curve
 from mbsd.force import Force
 from mbsd.forces.kind import AXIS, LAW_VALUE, LINE, LINEAR, POTENTIAL_TERMS, POWER, TURN, Element, Term
 from mbsd.packing import Packed
-from mbsd.reactions import marker_places
+from mbsd.reactions import marker_axes, marker_places
 
 
 def potential_of(packed: Packed, force: Force, q: np.ndarray) -> np.ndarray:
@@ -42,12 +42,7 @@ def measured(packed: Packed, element: Element, i: int, j: int, q: np.ndarray) ->
     if element.kind == LINE:
         return np.hypot(gap[:, 0], gap[:, 1])
     assert element.kind == AXIS, "a push measures nothing"
-    ux, uy = packed.system.marker_axis[i]
-    c, s = np.cos(q[:, 3 * bi + 2]), np.sin(q[:, 3 * bi + 2])
-    x, y = c * ux - s * uy, s * ux + c * uy
-    if element.turned:
-        x, y = -y, x
-    return x * gap[:, 0] + y * gap[:, 1]
+    return (marker_axes(packed, q, i, element.turned) * gap).sum(axis=1)
 
 
 def relative_place(packed: Packed, force: Force, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -35,6 +35,29 @@ def marker_places(packed: Packed, q: np.ndarray, marker: int) -> np.ndarray:
     return q[:, 3 * body : 3 * body + 2] + np.stack([c * x - s * y, s * x + c * y], axis=1)
 
 
+def marker_axes(packed: Packed, q: np.ndarray, marker: int, turned: bool = False) -> np.ndarray:
+    """(T, 2) unit x axes of a marker, y axes if ``turned``, in the world at poses q (T, 3 nb)."""
+    x, y = packed.system.marker_axis[marker]
+    if turned:
+        x, y = -y, x
+    angle = q[:, 3 * packed.system.marker_body[marker] + 2]
+    c, s = np.cos(angle), np.sin(angle)
+    return np.stack([c * x - s * y, s * x + c * y], axis=1)
+
+
+def relative_velocity(packed: Packed, q: np.ndarray, v: np.ndarray, i: int | None, j: int) -> np.ndarray:
+    """(T, 2) velocity (m/s, world axes) of marker j as the body of marker i sees it; as ground does where i is None."""
+    place = marker_places(packed, q, j)
+    out = _velocity(q, v, packed.system.marker_body[j], place)
+    return out if i is None else out - _velocity(q, v, packed.system.marker_body[i], place)
+
+
+def _velocity(q: np.ndarray, v: np.ndarray, body: int, place: np.ndarray) -> np.ndarray:
+    """(T, 2) of what of a body is at a world place (T, 2)."""
+    arm = place - q[:, 3 * body : 3 * body + 2]
+    return v[:, 3 * body : 3 * body + 2] + v[:, 3 * body + 2, None] * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
+
+
 def times_compact(packed: Packed, compact: np.ndarray, x: np.ndarray) -> np.ndarray:
     """(T, m) J x for compact J (T, m, 6) and x (T, 3 nb)."""
     bodies = x.reshape(len(x), -1, 3)

@@ -4,6 +4,7 @@ sol.t                              (T,) s
 sol.body("coupler").theta          also x, y, vx, vy, omega, ax, ay, alpha
 sol.joint("B").reaction            (T, 2) force on the joint's second body; fx, fy, torque, x, y, magnitude
 sol.driver("motor").torque         also effort, force, value, rate, power
+sol.force("spring").force          (T, 2) on its second body; torque, length, rate, effort, power and more
 sol.friction("rub").force          of joints, with normal and rate; sol.contact("floor").normal and more
 sol.point("P").x                   of traced points
 sol.energy.kinetic, .potential
@@ -13,16 +14,18 @@ from __future__ import annotations
 
 import html
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.columns import columns
 from mbsd.contact_view import ContactView, contact_view
 from mbsd.errors import ModelError
 from mbsd.event import Happening
+from mbsd.force_view import ForceView, Moved, force_view
 from mbsd.friction_view import FrictionView, friction_view
 from mbsd.potential import potential_of
 
@@ -161,6 +164,12 @@ class Solution:
     """What was changed of the given start of a simulation to make it consistent."""
     events: tuple[Happening, ...] = ()
     """What contacts, stops and events did during a simulation."""
+    held: np.ndarray | None = field(default=None, repr=False)
+    """(T, m) which rows of J held, of a simulation; None: all."""
+    span: tuple[float, float] | None = None
+    """Times (s) over which a simulation prepared the laws of its forces; None: those of ``t``."""
+    efforts: Mapping[str, np.ndarray] = field(default_factory=dict, repr=False)
+    """(T,) of forces that act by these instead of by their own laws (inverse dynamics)."""
     between: Callable[[np.ndarray], Solution] | None = field(default=None, repr=False)
     """Of a simulation: the motion at other times; see :meth:`at`."""
 
@@ -191,7 +200,24 @@ class Solution:
         """Friction of a joint, by the name that ``m.friction`` gave it."""
         names = [force.name for force in self.packed.forces if force.kind.of_reactions]
         self._index(name, names, "friction of a joint")
-        return friction_view(self.packed, name, self.q, self.v, self.lam)
+        return friction_view(self.packed, name, self.q, self.v, self.lam, self.held)
+
+    def force(self, name: str) -> ForceView:
+        """What a force did: force, torque and point on each of its bodies, what it measures, its power.
+
+        Of every force of ``m.forces``: springs, contacts by penalty, friction, functions of the user. A contact
+        without give is ``contact(name)``, a joint ``joint(name)``. Raises ModelError where a user's function fails.
+        """
+        self._index(name, [force.name for force in self.packed.forces], "force")
+        flat_q, flat_v = (np.ascontiguousarray(part.reshape(len(self.t), -1)) for part in (self.q, self.v))
+        span = self.span or (float(self.t[0]), float(self.t[-1]))
+        moved = Moved(self.packed, self.t, flat_q, flat_v, self.lam, self.held, span)
+        return force_view(moved, name, self.efforts.get(name))
+
+    @property
+    def forces(self) -> dict[str, ForceView]:
+        """All forces by name, in the order they were added."""
+        return {force.name: self.force(force.name) for force in self.packed.forces}
 
     def body(self, name: str) -> FrameView:
         """Motion of a body's frame."""
@@ -266,31 +292,10 @@ class Solution:
     def columns(self) -> dict[str, np.ndarray]:
         """All results as (T,) arrays, named ``coupler.theta [rad]``.
 
-        Where a trace, joint or driver has the name of something else, its columns say what it is: ``joint A.fx [N]``.
+        Where a trace, joint, driver or force has the name of something else, its columns say what it is:
+        ``joint A.fx [N]``.
         """
-        m, bodies = self.mechanism, set(self.packed.body_names)
-        joined = set(m.joints) | set(m.drivers)
-        traces = {name: f"trace {name}" if name in bodies | joined else name for name in m.traces}
-        joints = {name: f"joint {name}" if name in bodies | set(m.traces) else name for name in m.joints}
-        drivers = {name: f"driver {name}" if name in bodies | set(m.traces) else name for name in m.drivers}
-        frame_units = dict(zip(FrameView.__dataclass_fields__, _FRAME_UNITS, strict=True))
-        out: dict[str, np.ndarray] = {}
-        for name in self.packed.body_names[1:]:
-            view = self.body(name)
-            out |= {f"{name}.{key} [{unit}]": getattr(view, key) for key, unit in frame_units.items()}
-        for name, title in traces.items():
-            view = self.point(name)
-            linear = {key: unit for key, unit in frame_units.items() if "rad" not in unit}
-            out |= {f"{title}.{key} [{unit}]": getattr(view, key) for key, unit in linear.items()}
-        for name, title in joints.items():
-            joint = self.joint(name)
-            out |= {f"{title}.{key} [{unit}]": getattr(joint, key) for key, unit in _JOINT_UNITS.items()}
-        for name, title in drivers.items():
-            view = self.driver(name)
-            effort, value = m.drivers[name].kind.units
-            out |= {f"{title}.value [{value}]": view.value, f"{title}.effort [{effort}]": view.effort}
-            out[f"{title}.power [W]"] = view.power
-        return out | {"kinetic [J]": self.energy.kinetic, "potential [J]": self.energy.potential}
+        return columns(self)
 
     def draw(
         self,
@@ -354,7 +359,3 @@ class Solution:
                 f"{self.mechanism.name}: there is no {what} '{name}'; there is: {', '.join(names) or 'none'}"
             )
         return names.index(name)
-
-
-_FRAME_UNITS = ("m", "m", "rad", "m/s", "m/s", "rad/s", "m/s^2", "m/s^2", "rad/s^2")
-_JOINT_UNITS = {"x": "m", "y": "m", "fx": "N", "fy": "N", "torque": "N m"}

@@ -151,6 +151,8 @@ def solution(
         work=out.work,
         changes=ready.initial.poses + ready.initial.velocities,
         events=tuple(trail.happenings),
+        held=trail.held,
+        span=(ready.start, ready.end),
         between=between,
     )
 

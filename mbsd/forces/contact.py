@@ -20,7 +20,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mbsd.curves import Curve, curve
-from mbsd.forces.kind import ForceKind, Interaction, register
+from mbsd.forces.kind import Foot, ForceKind, Interaction, register
 
 if TYPE_CHECKING:
     import numpy as np
@@ -46,18 +46,28 @@ def _interactions(force, packed):
     return (Interaction("contact", force.i, force.j, numbers),)
 
 
-def depths(force: Force, packed: Packed, q: np.ndarray) -> np.ndarray:
-    """(T,) depth (m) of the disc in the surface, 0 where they do not touch, along poses q (T, 3 nb)."""
+def foot(force: Force, packed: Packed, q: np.ndarray) -> Foot:
+    """Where the disc stands to the surface along poses q (T, 3 nb)."""
     import numpy as np
 
     from mbsd.interactions.law import OWN as BEFORE
     from mbsd.interactions.law import STATE
-    from mbsd.interactions.surface import tabulate_distance
+    from mbsd.interactions.surface import tabulate_stand
     from mbsd.potential import relative_place
+    from mbsd.reactions import marker_axes, marker_places
 
-    numbers, distance = np.array([0.0] * BEFORE + surface(force)), np.zeros(len(q))
-    tabulate_distance(numbers, *relative_place(packed, force, q), np.zeros(STATE), distance)
-    return np.clip(force.params["radius"] - distance, 0.0, None)
+    i, j = packed.force_markers[packed.forces.index(force)]
+    numbers, found = np.array([0.0] * BEFORE + surface(force)), np.zeros((len(q), 3))
+    tabulate_stand(numbers, *relative_place(packed, force, q), np.zeros(STATE), found)
+    distance, tx, ty = found.T[:, :, None]
+    normal = -ty * marker_axes(packed, q, i) + tx * marker_axes(packed, q, i, turned=True)
+    place = marker_places(packed, q, j) - distance * normal
+    return Foot(distance[:, 0] - force.params["radius"], place, normal)
+
+
+def depths(force: Force, packed: Packed, q: np.ndarray) -> np.ndarray:
+    """(T,) depth (m) of the disc in the surface, 0 where they do not touch, along poses q (T, 3 nb)."""
+    return (-foot(force, packed, q).gap).clip(min=0.0)
 
 
 def _potential(force, packed, q):
@@ -70,6 +80,7 @@ CONTACT = register(
         "contact",
         interactions=_interactions,
         potential=_potential,
+        surface=foot,
         example=lambda m, i, j: m.contact(
             "example",
             i,

@@ -70,6 +70,18 @@ class Interaction:
     law: str | None = None
 
 
+@dataclass(frozen=True)
+class Foot:
+    """Where a disc stands to a surface, (T, ...) arrays in the world's axes."""
+
+    gap: np.ndarray
+    """(T,) distance of the surface less the disc's radius (m)."""
+    place: np.ndarray
+    """(T, 2) nearest point of the surface (m)."""
+    normal: np.ndarray
+    """(T, 2) unit, out of the surface."""
+
+
 def _no_elements(force: Force) -> tuple[Element, ...]:
     return ()
 
@@ -91,6 +103,8 @@ class ForceKind:
     """Beside its elements."""
     potential: Callable[[Force, Packed, np.ndarray], np.ndarray] | None = None
     """(T,) potential energy (J) of its interactions along poses (T, 3 nb), if they have one at rest."""
+    surface: Callable[[Force, Packed, np.ndarray], Foot] | None = None
+    """Of a contact of marker j with a surface of marker i: where it touches along poses (T, 3 nb)."""
     outside: bool = False
     """Whether it is a load from outside, to which nothing in the mechanism feels the opposite."""
     of_reactions: bool = False

@@ -13,7 +13,7 @@ Source: Pacejka, Bakker 1993, Vehicle System Dynamics 21, suppl. 1 (longitudinal
 
 from __future__ import annotations
 
-from mbsd.forces.contact import depths, surface
+from mbsd.forces.contact import depths, foot, surface
 from mbsd.forces.kind import ForceKind, Interaction, register
 
 OWN = ("radius", "stiffness", "damping", "grip", "slope", "shape", "curvature", "standstill")
@@ -33,6 +33,7 @@ TYRE = register(
         "tyre",
         interactions=_interactions,
         potential=_potential,
+        surface=foot,
         example=lambda m, i, j: m.tyre("example", i, j, 4.0, 300.0, damping=3.0, grip=0.9, standstill=0.3),
     )
 )

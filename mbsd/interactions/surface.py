@@ -42,10 +42,12 @@ def stand(numbers, state):
 
 
 @kernel
-def tabulate_distance(numbers, x, y, state, out):
-    """Distances out (T,) of points x, y (T,), for callers outside the compiled loops."""
+def tabulate_stand(numbers, x, y, state, out):
+    """Distance and tangent out (T, 3) of points x, y (T,), for callers outside the compiled loops."""
     for k in range(x.shape[0]):
         state[X] = x[k]
         state[Y] = y[k]
         stand(numbers, state)
-        out[k] = state[DISTANCE]
+        out[k, 0] = state[DISTANCE]
+        out[k, 1] = state[TX]
+        out[k, 2] = state[TY]

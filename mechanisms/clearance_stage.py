@@ -6,10 +6,11 @@ Every pair of pieces of two bodies is settled by the first of these that suffice
 2. Layers. The motion is planar, so pieces at different heights stay apart, whatever the motion.
 3. Turn. Bodies with a revolute joint between them turn about one axis: the gap at every angle at once (turn.py).
    This also covers a pin in its hole with 0.1 mm of room.
-4. Motion. The exact gap of the two meshes at poses chosen so that the gap can not close between them (sweep.py).
+4. Motion. The gap of the two meshes over the whole motion, found and proven by branch and bound (search.py).
 
-What is proven: at every moment of the motion, taken as cubic between the samples of data.json, the meshes stay at
-least half the limit apart, and the gap is above the limit at every measured pose. Meshes lie within
+What is proven: at every moment of the motion, which between the samples of data.json is the quintic that the film
+shows, the meshes are apart by the ``proven`` gap of clearance.json. It is at most ``resolution`` below the gap that was
+measured, and less what the true motion may be off between two samples there (path.py). Meshes lie within
 ``parts_files.TOLERANCE`` of the solids. Pieces of one body are not compared with each other.
 """
 
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 
     from mechanisms.clearance.path import BodyPath
     from mechanisms.clearance.pieces import MeshPiece
+    from mechanisms.clearance.search import Least
     from mechanisms.clearance.sweep import Sweep
 
 type Axes = dict[frozenset[str], dict[str, np.ndarray]]
@@ -70,6 +72,7 @@ def check(
 ) -> Clearance:
     """Check every pair of ``pieces`` of different bodies; ``limit`` and ``reach`` in mm. Raises as :func:`run`."""
     from mechanisms.clearance.path import paths
+    from mechanisms.clearance.search import RESOLUTION
     from mechanisms.clearance.sweep import Sweep
 
     name = parts.mechanism
@@ -80,11 +83,10 @@ def check(
             "use the names of mechanism.py in parts()"
         )
     where = paths(motion)
-    error = _interpolation_error(name, where, pieces, limit)
     axes = _axes(motion, where)
     pairs: list[PairClearance] = []
-    refused: list[tuple[Sweep, float, float]] = []
-    apart = 0
+    refused: list[tuple[Sweep, Least]] = []
+    apart, error = 0, 0.0
     for first, second in combinations(pieces, 2):
         if first.body == second.body:
             continue
@@ -93,7 +95,8 @@ def check(
             apart += 1
             continue
         sweep = Sweep(first, second, where[first.body], where[second.body])
-        if sweep.circle_gap() >= reach:
+        error = max(error, float(sweep.error.max(initial=0.0)))
+        if sweep.is_apart(reach):
             apart += 1
             continue
         if height >= limit:
@@ -101,12 +104,12 @@ def check(
             continue
         found = _turn(first, second, axes, sweep, limit, reach)
         if found is None:
-            least = sweep.least(limit, reach)
-            if least.gap < limit or least.proven <= 0:
-                refused.append((sweep, least.gap, least.time))
+            least = sweep.least(reach)
+            if least.gap < limit or least.proven < limit / 2:
+                refused.append((sweep, least))
                 continue
             found = _pair(first, second, least.gap, least.proven, least.time, "motion", least.poses)
-        if found.gap < metres(reach):
+        if min(found.gap, found.proven + metres(RESOLUTION)) < metres(reach):
             pairs.append(found)
         else:
             apart += 1
@@ -116,25 +119,11 @@ def check(
         mechanism=name,
         provenance=Provenance(inputs=key, versions=versions(*PACKAGES)),
         limit=metres(limit),
+        resolution=metres(RESOLUTION),
         interpolation_error=metres(error),
         pairs=sorted(pairs, key=lambda pair: (pair.gap, pair.pieces)),
         apart=apart,
     )
-
-
-def _interpolation_error(name: str, where: dict[str, BodyPath], pieces: list[MeshPiece], limit: float) -> float:
-    import numpy as np
-
-    error = 0.0
-    for piece in pieces:
-        reach = float(np.linalg.norm(piece.centre)) + piece.radius
-        error = max(error, where[piece.body].interpolation_error(reach))
-    if error > limit / 4:
-        raise UserError(
-            f"{name}: between the {len(where['ground'].time)} samples of data.json the parts may be {error:.3g} mm off "
-            f"what is checked, allowed {limit / 4:g} mm; solve with more steps"
-        )
-    return error
 
 
 def _axes(motion: Motion, where: dict[str, BodyPath]) -> Axes:
@@ -190,21 +179,27 @@ def _pair(
     )
 
 
-def _refusal(name: str, refused: list[tuple[Sweep, float, float]], limit: float) -> str:
+def _refusal(name: str, refused: list[tuple[Sweep, Least]], limit: float) -> str:
     """One sentence on the worst pair, a word on the others."""
-    refused = sorted(refused, key=lambda item: (-item[0].depth_at(item[2]), item[1]))
-    sweep, gap, time = refused[0]
-    overlap = sweep.overlap(time)
+    refused = sorted(refused, key=lambda item: (-item[0].depth_at(item[1].time), item[1].gap))
+    sweep, least = refused[0]
     pair = f"{sweep.mover.body}: {sweep.mover.name} and {sweep.still.body}: {sweep.still.name}"
     remedy = "move one to another layer, make it smaller, or cut it out where the other passes (parts.py)"
-    if overlap.depth > 0:
+    if least.gap >= limit:
+        text = (
+            f"{name}: {pair} come as near as {least.gap:.3g} mm, and between two samples of data.json they may be "
+            f"{least.error:.3g} mm from where they are taken to be, so no more than {least.proven:.3g} mm is proven, "
+            f"required {limit / 2:g} mm; solve with more steps, or with event_rows=True if there are impacts"
+        )
+    elif (overlap := sweep.overlap(least.time)).depth > 0:
         text = (
             f"{name}: {pair} collide: deepest at t={overlap.time:.4g} s by {overlap.depth:.3g} mm, "
             f"touching between t={overlap.first:.4g} s and t={overlap.last:.4g} s; {remedy}"
         )
     else:
-        text = f"{name}: {pair} come as near as {gap:.3g} mm at t={time:.4g} s, required {limit:g} mm; {remedy}"
-    others = [f"{s.mover.name} and {s.still.name}" for s, *_ in refused[1:]]
+        near = f"as near as {least.gap:.3g} mm at t={least.time:.4g} s"
+        text = f"{name}: {pair} come {near}, required {limit:g} mm; {remedy}"
+    others = [f"{s.mover.name} and {s.still.name}" for s, _ in refused[1:]]
     if others:
         more = f" and {len(others) - 5} more" if len(others) > 5 else ""
         text += f". Also too near: {', '.join(others[:5])}{more}"

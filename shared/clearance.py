@@ -23,7 +23,7 @@ class PairClearance(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     bodies: tuple[str, str]
     pieces: tuple[str, str]
     gap: float
-    """Least gap that was found (m); for layers, the height between the two."""
+    """Least gap that was found (m), at most the search distance; for layers, the height between the two."""
     proven: float
     """The gap is never below this (m)."""
     time: float | None
@@ -37,14 +37,17 @@ class Clearance(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     """clearance.json: the outcome of a check that found no two parts touching."""
 
     schema: Literal["mbsd.clearance"] = "mbsd.clearance"
-    schema_version: Literal[1] = 1
+    schema_version: Literal[2] = 2
     mechanism: str
     units: dict[str, str] = msgspec.field(default_factory=lambda: dict(CLEARANCE_UNITS))
     provenance: Provenance
     limit: float
     """Smaller gaps are refused (m)."""
+    resolution: float
+    """Over a motion, ``proven`` is at most this below ``gap`` (m), where the motion is exact between its samples."""
     interpolation_error: float
-    """How far the motion between two samples of data.json may be from what was checked (m)."""
+    """How far two parts may be from what was checked between two samples of data.json, at most (m); taken off
+    ``proven`` where it matters."""
     pairs: list[PairClearance]
     """Nearest first."""
     apart: int

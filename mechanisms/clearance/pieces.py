@@ -10,9 +10,13 @@ from typing import Any
 
 import numpy as np
 
+from mechanisms.clearance.tree import FacetTree
 from mechanisms.parts_files import read_triangles
 from shared.contract import Parts
 from shared.errors import UserError
+
+LEVEL = 1e-6
+"""A facet whose corners differ less in height is horizontal (mm)."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +45,32 @@ class MeshPiece:
         return float(np.linalg.norm(self.triangles[:, :, :2].reshape(-1, 2) - self.centre, axis=1).max())
 
     @cached_property
+    def reach(self) -> float:
+        """How far the piece reaches from the origin of its body's frame in the plane."""
+        return float(np.linalg.norm(self.centre)) + self.radius
+
+    @cached_property
+    def level(self) -> np.ndarray:
+        """(n,): which facets are horizontal."""
+        return np.ptp(self.triangles[:, :, 2], axis=1) <= LEVEL
+
+    @cached_property
+    def sides(self) -> FacetTree:
+        """The facets that are not horizontal, by place, relative to ``centre``."""
+        return FacetTree(self.triangles[~self.level], self.centre, self.radius)
+
+    @cached_property
+    def tree(self) -> FacetTree:
+        """All facets by place, relative to ``centre``."""
+        return FacetTree(self.triangles, self.centre, self.radius)
+
+    @cached_property
+    def upward(self) -> np.ndarray:
+        """(n,): the z component of each facet's normal, times twice its area (mm^2); corners run counter-clockwise."""
+        p, q = (self.triangles[:, k, :2] - self.triangles[:, 0, :2] for k in (1, 2))
+        return p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
+
+    @cached_property
     def manifold(self) -> Any:
         """The ``manifold3d.Manifold`` of the mesh."""
         import manifold3d
@@ -50,6 +80,23 @@ class MeshPiece:
         if solid.status() != manifold3d.Error.NoError:
             raise UserError(f"{self.body}: {self.name}: its STL is not a closed surface ({solid.status()})")
         return solid
+
+
+def height_between(first: MeshPiece, second: MeshPiece) -> float:
+    """The least height (mm) between a horizontal face of one piece and what faces it in the other, wherever they are.
+
+    Infinite if nothing does. From a horizontal facet the way to the nearest point of another solid is vertical, unless
+    a facet beside it is on that way too; the other end is a corner of a facet that faces it.
+    """
+    least = np.inf
+    for a, b in ((first, second), (second, first)):
+        for sign in (1.0, -1.0):
+            faces = np.unique(sign * a.triangles[a.level & (sign * a.upward > 0), 0, 2])
+            above = np.unique(sign * b.triangles[sign * b.upward < 0][:, :, 2])
+            at = np.searchsorted(above, faces - LEVEL)
+            found = at < len(above)
+            least = min(least, float((above[at[found]] - faces[found]).min(initial=np.inf)))
+    return max(least, 0.0)
 
 
 def read_pieces(parts: Parts, folder: Path) -> list[MeshPiece]:

@@ -1,37 +1,20 @@
-"""The least gap between two pieces over a motion, with a proof for the time between the measured poses.
-
-The gap cannot shrink faster than the parts travel. Between two poses with gaps g1 and g2, where no point moves more
-than s relative to the other part, it stays above (g1 + g2 - s) / 2; an interval is halved until that is enough.
-The gap at a pose is the exact distance of the two meshes (manifold3d), 0 if they overlap.
-"""
+"""Two pieces over a motion: whether they stay far apart, their least gap with its proof, and where they overlap."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from mechanisms.clearance.path import BodyPath, dense_times, points, relative, travelled
-from mechanisms.clearance.pieces import MeshPiece
+from mechanisms.clearance.path import BodyPath, RelativePath, relative
+from mechanisms.clearance.pieces import MeshPiece, height_between
+from mechanisms.clearance.search import RESOLUTION, Least, Search
+from mechanisms.clearance.spans import Spans
+from mechanisms.clearance.tree import FacetTree
 
-START = 24
-"""Intervals to begin with."""
-TRAVEL_SLACK = 0.002
-"""Covers that speed varies between two points where travel is known (mm)."""
-MOST_POSES = 20_000
-"""A pair that needs more is refused: it slides along within a hair of the limit."""
-
-
-@dataclass(frozen=True)
-class Least:
-    """The least gap (mm) that was found, when, what is proven, and how many poses were measured."""
-
-    gap: float
-    time: float
-    proven: float
-    poses: int
+FIRST = 9
+"""Poses at which the whole pieces are compared before the search."""
 
 
 @dataclass(frozen=True)
@@ -45,56 +28,47 @@ class Overlap:
 
 
 class Sweep:
-    """Two pieces on their paths. One stands still, the other moves relative to it, whichever travels less."""
+    """Two pieces on their paths. One stands still, the other moves relative to it, whichever bends its paths less."""
 
     def __init__(self, first: MeshPiece, second: MeshPiece, path_first: BodyPath, path_second: BodyPath) -> None:
-        self.times = dense_times(path_first.time)
+        ends = [path_first.interpolation_error(first.reach), path_second.interpolation_error(second.reach)]
+        self.error = ends[0] + ends[1]
+        """(m,): how far the two may be from where they are taken to be, in each interval of data.json (mm)."""
         options = []
-        for mover, still, mover_path, still_path in (
+        for mover, still, moved, seen in (
             (first, second, path_first, path_second),
             (second, first, path_second, path_first),
         ):
-            pose = relative(mover_path.at(self.times), still_path.at(self.times))
-            options.append((travelled(pose, mover.centre, mover.radius), pose, mover, still, mover_path, still_path))
-        self.travel, self.pose, self.mover, self.still, self._mover_path, self._still_path = min(
-            options, key=lambda option: option[0][-1]
-        )
-
-    def circle_gap(self) -> float:
-        """A lower bound (mm) of the gap: that of the circles round the two pieces, over the whole motion."""
-        away = np.linalg.norm(points(self.pose, self.mover.centre) - self.still.centre, axis=1)
-        slack = float(np.diff(self.travel).max(initial=0.0))
-        return float(away.min()) - slack - self.mover.radius - self.still.radius
+            path = RelativePath(moved, seen, mover.centre, self.error)
+            options.append((path.bend(mover.radius), path, mover, still))
+        _, self.path, self.mover, self.still = min(options, key=lambda option: option[0])
+        self.times = self.path.mover.time
 
     def gap_at(self, time: float, reach: float) -> float:
         """Exact gap (mm) at a time, 0 if the pieces overlap, ``reach`` if it is larger."""
         return self.still.manifold.min_gap(self._moved(time), reach)
 
-    def least(self, limit: float, reach: float) -> Least:
-        """The least gap; stops early below ``limit``. Proven over all time, not only at the measured poses."""
-        times = [float(t) for t in np.interp(np.linspace(0, 1, START + 1), _share(self.times), self.times)]
-        gaps: dict[float, float] = {}
-        for time in times:
-            gaps[time] = self.gap_at(time, reach)
-            if gaps[time] < limit or self.travel[-1] == 0:
-                return Least(gaps[time], time, gaps[time] if gaps[time] >= limit else 0.0, len(gaps))
+    def is_apart(self, reach: float) -> bool:
+        """Whether the circles round the two pieces stay ``reach`` (mm) apart over the whole motion."""
+        spans = Spans(self.path)
+        away = np.hypot(*(spans.ends[:, 1, :2] - self.still.centre).T) - spans.travel
+        return bool((away - spans.off - self.mover.radius - self.still.radius >= reach).all())
+
+    def least(self, reach: float) -> Least:
+        """The least gap over the motion, ``reach`` (mm) if it is larger; an overlap ends the search."""
+        starts = np.linspace(self.times[0], self.times[-1], FIRST)
+        gaps = {float(time): self.gap_at(float(time), reach) for time in starts}
         best = min(gaps, key=gaps.__getitem__)
-        proven = gaps[best]
-        todo = list(pairwise(times))
-        while todo:
-            if gaps[best] < limit or len(gaps) > MOST_POSES:
-                return Least(gaps[best], best, 0.0, len(gaps))
-            start, end = todo.pop()
-            bound = (gaps[start] + gaps[end] - self._travel(start, end)) / 2
-            if bound >= gaps[best] / 2:
-                proven = min(proven, bound)
-                continue
-            middle = (start + end) / 2
-            gaps[middle] = self.gap_at(middle, reach)
-            best = min(best, middle, key=gaps.__getitem__)
-            todo += [(start, middle), (middle, end)]
-        time, gap = self._polished(best, sorted(gaps), reach)
-        return Least(gap, time, min(proven, gap), len(gaps))
+        if gaps[best] <= 0:
+            return Least(0.0, best, 0.0, len(gaps))
+        found = self._search(self.still.sides, self.mover.sides, gaps[best], best, len(gaps))
+        height = height_between(self.still, self.mover)
+        if height >= found.gap - RESOLUTION:
+            return replace(found, proven=min(found.proven, height))
+        return self._search(self.still.tree, self.mover.tree, found.gap, found.time, found.poses)
+
+    def _search(self, still: FacetTree, mover: FacetTree, gap: float, time: float, poses: int) -> Least:
+        return Search(still, mover, self.path, self.still.centre).run(gap, time, poses)
 
     def overlap(self, around: float, count: int = 120) -> Overlap:
         """Look at ``count`` poses and at ``around`` for the deepest overlap."""
@@ -116,27 +90,6 @@ class Sweep:
 
     def _moved(self, time: float) -> Any:
         moment = np.array([time])
-        x, y, theta = relative(self._mover_path.at(moment), self._still_path.at(moment))[0]
+        x, y, theta = relative(self.path.mover.at(moment), self.path.still.at(moment))[0]
         c, s = np.cos(theta), np.sin(theta)
         return self.mover.manifold.transform(np.array([[c, -s, 0, x], [s, c, 0, y], [0, 0, 1, 0]]))
-
-    def _travel(self, start: float, end: float) -> float:
-        """How far the mover can travel between two times (mm)."""
-        first, last = np.interp([start, end], self.times, self.travel)
-        return float(last - first) + TRAVEL_SLACK
-
-    def _polished(self, best: float, times: list[float], reach: float) -> tuple[float, float]:
-        """Look for the bottom of the valley round the best pose."""
-        from scipy.optimize import minimize_scalar
-
-        at = times.index(best)
-        low, high = times[max(at - 1, 0)], times[min(at + 1, len(times) - 1)]
-        gap = self.gap_at(best, reach)
-        found = minimize_scalar(
-            lambda t: self.gap_at(float(t), reach), bounds=(low, high), method="bounded", options={"maxiter": 16}
-        )
-        return (float(found.x), float(found.fun)) if found.fun < gap else (best, gap)
-
-
-def _share(times: np.ndarray) -> np.ndarray:
-    return (times - times[0]) / (times[-1] - times[0])

@@ -284,7 +284,9 @@ def test_parts_that_do_not_hold_together_are_refused(tmp_path: Path, edit: Edit,
 def test_a_clearance_or_shot_that_does_not_hold_together_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "clearance.json"
     provenance = Provenance(inputs="0" * 64, versions={})
-    good = Clearance(mechanism="x", provenance=provenance, limit=5e-5, interpolation_error=0.0, pairs=[], apart=1)
+    good = Clearance(
+        mechanism="x", provenance=provenance, limit=5e-5, resolution=5e-6, interpolation_error=0.0, pairs=[], apart=1
+    )
     write_clearance(path, good)
     assert read_clearance(path) == good
     path.write_bytes(path.read_bytes().replace(b'"length": "m"', b'"length": "mm"'))

@@ -22,6 +22,7 @@ CLEARANCE = Clearance(
     mechanism="four_bar",
     provenance=Provenance(inputs="0" * 64, versions={}),
     limit=5e-5,
+    resolution=5e-6,
     interpolation_error=1e-9,
     pairs=[PAIR],
     apart=3,

@@ -19,8 +19,10 @@ from mbsd.forces.gas import GAS
 from mbsd.forces.gravitation import GRAVITATION
 from mbsd.forces.kind import ForceKind
 from mbsd.forces.spring import SPRING
+from mbsd.forces.spring_law import SPRING_LAW
 from mbsd.forces.torque import TORQUE
 from mbsd.forces.torsion_spring import TORSION_SPRING
+from mbsd.forces.torsion_spring_law import TORSION_SPRING_LAW
 from mbsd.mechanism_base import MechanismBase
 from mbsd.motions import Motion
 from mbsd.motions.function import Function
@@ -51,6 +53,22 @@ class AddingForces(MechanismBase):
         """
         params, laws = self._spring_amounts(name, stiffness=stiffness, damping=damping, free_angle=free_angle)
         return self._add_force(TORSION_SPRING, name, *self._origins(name, first, second), params, laws)
+
+    def spring_law(self, name: str, i: Marker, j: Marker, law: Callable[[float, float], float]) -> Force:
+        """Spring between the points of two markers by any function ``law(length, rate)`` (m, m/s) that gives N.
+
+        Positive pushes the points apart: ``lambda length, rate: -k * (length - free) - c * rate`` is a linear spring
+        and damper. Python or compiled with numba.njit. What it gives counts as work, not as potential energy.
+        """
+        return self._add_force(SPRING_LAW, name, i, j, self._law(name, law, "the length and its rate"))
+
+    def torsion_spring_law(self, name: str, first: Body, second: Body, law: Callable[[float, float], float]) -> Force:
+        """Torsion spring by any function ``law(angle, rate)`` (rad, rad/s) that gives the torque on ``second`` (N m).
+
+        The angle is that of second against first: ``lambda angle, rate: -k * angle - c * rate`` is a linear one.
+        """
+        params = self._law(name, law, "the angle and its rate")
+        return self._add_force(TORSION_SPRING_LAW, name, *self._origins(name, first, second), params)
 
     def bushing(
         self,
@@ -203,6 +221,11 @@ class AddingForces(MechanismBase):
         if value <= 0:
             raise ModelError(f"{self.name}: force '{name}': {what} is {value:g}; it must be positive")
         return value
+
+    def _law(self, name: str, law: Any, of: str) -> dict[str, Any]:
+        if not callable(law):
+            raise ModelError(f"{self.name}: force '{name}' needs a function of {of}, got {law!r}")
+        return {"law": law}
 
     def _amount(self, name: str, what: str, value: Amount) -> tuple[dict[str, Any], dict[str, Motion]]:
         if isinstance(value, Motion):

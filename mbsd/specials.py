@@ -7,6 +7,7 @@ is the value that F has when all other constraints are closed, unless the joint 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -82,6 +83,14 @@ class Specials:
         nth = sum(1 for other in self.places if other[:2] == place[:2] and other[2] < place[2])
         assert joint.kind.numbers is not None
         return [float(number) for number in joint.kind.numbers(joint.params)[nth]]
+
+    def callback(self, what: str, make: Callable[[str], Callback]) -> Callback:
+        """The function of the user that errors call ``what``: made once, and kept."""
+        for made in self.callbacks:
+            if made.what == what:
+                return made
+        self.callbacks.append(make(what))
+        return self.callbacks[-1]
 
     def check(self) -> None:
         """Raise what a user's function raised since the last check."""

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numba
 import numpy as np
+from numba.core.dispatcher import Dispatcher
 
 from mbsd.callback import Callback, call
 from mbsd.jit import internal
@@ -29,14 +31,24 @@ def pack_user_forces(packed: Packed) -> tuple[np.ndarray, np.ndarray, np.ndarray
 
 def _callback(packed: Packed, force: Force) -> Callback:
     """Made once for each packed mechanism, which keeps it alive."""
-    what = f"{packed.name}: force '{force.name}'"
-    for made in packed.specials.callbacks:
-        if made.what == what:
-            return made
     count = len(force.params["bodies"])
-    made = Callback(force.params["function"], (3 * count, 3 * count), 3 * count, what)
-    packed.specials.callbacks.append(made)
-    return made
+    return packed.specials.callback(
+        f"{packed.name}: force '{force.name}'",
+        lambda what: Callback(force.params["function"], (3 * count, 3 * count), 3 * count, what),
+    )
+
+
+def law_address(packed: Packed, force: Force) -> int:
+    """Where the law of a spring is, a function of its value and rate; see forces/spring_law.py."""
+    law = force.params["law"]
+
+    def timed(t, value, rate):
+        return law(value, rate)
+
+    return packed.specials.callback(
+        f"{packed.name}: force '{force.name}'",
+        lambda what: Callback(numba.njit(timed) if isinstance(law, Dispatcher) else timed, (1, 1), 1, what),
+    ).address
 
 
 @internal

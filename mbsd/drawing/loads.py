@@ -106,7 +106,7 @@ def _coil(canvas: Canvas, i: np.ndarray, j: np.ndarray, damped: bool) -> None:
 
 def _turning(canvas: Canvas, force: Force, centre: np.ndarray) -> None:
     """A spiral spring; an arrow around the centre where it is a torque from outside or a motor."""
-    spring = "stiffness" in (*force.params, *force.laws) or "of_angle" in force.laws
+    spring = "stiffness" in (*force.params, *force.laws) or "of_angle" in force.laws or "law" in force.params
     turn = np.linspace(-0.4, 5 * math.pi if spring else 1.2 * math.pi, 90)
     radius = (0.8 + 1.2 * turn / turn[-1] if spring else np.full(len(turn), 1.7)) * canvas.unit
     path = centre + radius[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=1)

@@ -28,7 +28,16 @@ WIDTH, TALLEST, FLATTEST = 7.0, 7.0, 2.6
 """Of a figure of our own (inches)."""
 UNITS_ACROSS = 34.0
 """Units in the larger side of a drawing."""
-UNPLACED = ("force", "torque", "torsion_spring", "curve_of_angle", "user_force", "drag", "rotating_frame")
+UNPLACED = (
+    "force",
+    "torque",
+    "torsion_spring",
+    "torsion_spring_law",
+    "curve_of_angle",
+    "user_force",
+    "drag",
+    "rotating_frame",
+)
 """Forces whose first marker is a direction or a body, no place."""
 SMALLEST = 1e-12
 """A unit (m) below this is the rounding of one single place."""

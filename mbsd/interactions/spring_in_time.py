@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
-
-from mbsd.interactions.law import FX, FY, LAW, OMEGA, OWN, TORQUE, VX, VY, A, X, Y, interaction
+from mbsd.interactions.law import FX, FY, LAW, OWN, TORQUE, interaction
+from mbsd.interactions.way import measure
 
 STIFFNESS, DAMPING, FREE = 0, 1, 2
 
@@ -13,16 +12,7 @@ STIFFNESS, DAMPING, FREE = 0, 1, 2
 def force(numbers, state, out):
     """Own numbers: which of the three the law is, the free value or the stiffness, and 1 for a torsion spring."""
     turning = numbers[OWN + 2] > 0.0
-    x = state[A]
-    rate = state[OMEGA]
-    ux = 0.0
-    uy = 0.0
-    if not turning:
-        x = math.sqrt(state[X] * state[X] + state[Y] * state[Y])
-        if x > 0.0:
-            ux = state[X] / x
-            uy = state[Y] / x
-        rate = ux * state[VX] + uy * state[VY]
+    x, rate, ux, uy = measure(turning, state)
     if numbers[OWN] == STIFFNESS:
         size = -state[LAW] * (x - numbers[OWN + 1])
     elif numbers[OWN] == DAMPING:

@@ -25,6 +25,7 @@ from mbsd.friction_along import with_friction
 from mbsd.joint import Joint
 from mbsd.loads import compiled_laws, loads_along, pack_loads
 from mbsd.model import Mechanism
+from mbsd.names import no_such
 from mbsd.packing import Packed, pack
 from mbsd.reactions import wrenches
 from mbsd.solution import Solution
@@ -76,8 +77,7 @@ def with_efforts(m: Mechanism, efforts: Mapping[str, Amount | None]) -> Mechanis
                 params = {key: value for key, value in force.params.items() if key not in ("torque", "force")}
                 _put(out, force.kind, name, force.i, force.j, params, effort)
         else:
-            known = ", ".join([*m.drivers, *m.forces]) or "none"
-            raise ModelError(f"{m.name}: there is no driver or force '{name}' to give an effort; there is: {known}")
+            raise ModelError(f"{m.name}: {no_such('driver or force to give an effort', name, [*m.drivers, *m.forces])}")
     return out
 
 

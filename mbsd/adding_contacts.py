@@ -17,6 +17,7 @@ from mbsd.errors import ModelError
 from mbsd.event import Event
 from mbsd.joint import Joint
 from mbsd.mechanism_base import MechanismBase
+from mbsd.shown import shown
 
 
 class AddingContacts(MechanismBase):
@@ -124,14 +125,13 @@ class AddingContacts(MechanismBase):
         if lower is not None and upper is not None and not lower < upper:
             raise ModelError(f"{self.name}: stop '{name}': lower is {lower:g}, upper {upper:g}; lower must be less")
         if not isinstance(joint, Joint) or joint.kind.name not in ("revolute", "prismatic"):
-            raise ModelError(f"{self.name}: stop '{name}' needs a revolute or prismatic joint, got {joint!r}")
+            raise ModelError(f"{self.name}: stop '{name}' needs a revolute or prismatic joint, got {shown(joint)}")
         add = self.angle_stop if joint.kind.name == "revolute" else self.coordinate_stop
         ends = [("lower", lower, False), ("upper", upper, True)]
-        return tuple(
-            add(f"{name} {end}", joint.i, joint.j, at, is_upper, restitution)
-            for end, at, is_upper in ends
-            if at is not None
-        )
+        given = [(f"{name} {end}", at, is_upper) for end, at, is_upper in ends if at is not None]
+        for one, _, _ in given:
+            self._new_name(one, "contact", *self._connections)
+        return tuple(add(one, joint.i, joint.j, at, is_upper, restitution) for one, at, is_upper in given)
 
     def one_way(self, name: str, first: Body, second: Body, clockwise: bool = False) -> Joint:
         """A one-way clutch: ``second`` turns against ``first`` only counter-clockwise, or only clockwise."""
@@ -155,9 +155,9 @@ class AddingContacts(MechanismBase):
         self._new_name(name, "event", self.events)
         for what, function in (("value", value), ("action", action)):
             if not callable(function) and not (what == "action" and function is None):
-                raise ModelError(f"{self.name}: event '{name}': {what} is {function!r}; it must be a function")
+                raise ModelError(f"{self.name}: event '{name}': {what} is {shown(function)}; it must be a function")
         if direction not in (-1, 0, 1):
-            raise ModelError(f"{self.name}: event '{name}': direction is {direction!r}; it must be 1, -1 or 0")
+            raise ModelError(f"{self.name}: event '{name}': direction is {shown(direction)}; it must be 1, -1 or 0")
         event = self.events[name] = Event(name, value, direction, bool(terminal), action)
         return event
 
@@ -192,7 +192,7 @@ class AddingContacts(MechanismBase):
         for marker in (i, j):
             if not isinstance(marker, Marker):
                 raise ModelError(
-                    f"{self.name}: contact '{name}' needs two markers, got {marker!r}; "
+                    f"{self.name}: contact '{name}' needs two markers, got {shown(marker)}; "
                     "write body.at(x, y), bar.start or bar.end"
                 )
             self._own_body(marker.body, f"contact '{name}'")

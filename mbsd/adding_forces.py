@@ -6,6 +6,9 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
+from mbsd.arguments import several_numbers
 from mbsd.body import Body, Marker
 from mbsd.curves import Curve
 from mbsd.errors import ModelError
@@ -26,6 +29,7 @@ from mbsd.forces.torsion_spring_law import TORSION_SPRING_LAW
 from mbsd.mechanism_base import MechanismBase
 from mbsd.motions import Motion
 from mbsd.motions.function import Function
+from mbsd.shown import shown
 
 Amount = float | Motion | Callable[[float], float]
 """A constant, or a law of time."""
@@ -82,15 +86,16 @@ class AddingForces(MechanismBase):
         """Springs and dampers along x and y of marker i and in turning (N/m, N/m, N m/rad), damping alike."""
         params: dict[str, Any] = {"free_angle": self._number(f"force '{name}': free_angle", free_angle)}
         for what, values in (("stiffness", stiffness), ("damping", damping)):
-            if len(values) != 3:
-                raise ModelError(f"{self.name}: force '{name}': {what} is {values!r}; give (x, y, turning)")
+            values = several_numbers(f"{self.name}: force '{name}': {what}", values, 3, "give (x, y, turning)")
             params[what] = tuple(self._positive(name, **{f"{what}[{k}]": v for k, v in enumerate(values)}).values())
         return self._add_force(BUSHING, name, i, j, params)
 
     def torque(self, name: str, body: Body, torque: Amount, against: Body | None = None) -> Force:
         """Torque (N m) on a body, a constant or a law of time; ``against`` (ground by default) takes the opposite."""
         params, laws = self._amount(name, "torque", torque)
-        return self._add_force(TORQUE, name, *self._origins(name, against or self.ground, body), params, laws)
+        return self._add_force(
+            TORQUE, name, *self._origins(name, self.ground if against is None else against, body), params, laws
+        )
 
     def force(
         self,
@@ -105,10 +110,11 @@ class AddingForces(MechanismBase):
         ``direction``: a vector, or an angle (rad), in the axes of body ``frame``: ground by default, so that it is
         fixed in the world; the body itself makes it turn with the body.
         """
-        if isinstance(direction, int | float):
+        if isinstance(direction, int | float | np.number):
             angle = self._number(f"force '{name}': direction", direction)
         else:
-            x, y = (self._number(f"force '{name}': direction", value) for value in direction)
+            what = f"{self.name}: force '{name}': direction"
+            x, y = several_numbers(what, direction, 2, "give an angle (rad) or a vector (x, y)")
             if x == 0.0 and y == 0.0:
                 raise ModelError(f"{self.name}: force '{name}' has no direction; give a vector that is not zero")
             angle = math.atan2(y, x)
@@ -193,7 +199,7 @@ class AddingForces(MechanismBase):
         for marker in (i, j):
             if not isinstance(marker, Marker):
                 raise ModelError(
-                    f"{self.name}: force '{name}' needs two markers, got {marker!r}; "
+                    f"{self.name}: force '{name}' needs two markers, got {shown(marker)}; "
                     "write body.at(x, y), bar.start or bar.end"
                 )
             self._own_body(marker.body, f"force '{name}'")
@@ -255,7 +261,7 @@ class AddingForces(MechanismBase):
             if one is None:
                 continue
             if not isinstance(one, Curve):
-                raise ModelError(f"{self.name}: force '{name}': {what} is {one!r}; it must be a curve(x, y)")
+                raise ModelError(f"{self.name}: force '{name}': {what} is {shown(one)}; it must be a curve(x, y)")
             out[what] = one
         if not out:
             raise ModelError(f"{self.name}: force '{name}' has no curve; give {' or '.join(curves)}")

@@ -9,7 +9,8 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from mbsd.adding_forces import AddingForces, Amount
-from mbsd.body import Body, Marker, number_pair
+from mbsd.arguments import number_pair
+from mbsd.body import Body, Marker
 from mbsd.curves import Curve
 from mbsd.errors import ModelError
 from mbsd.force import Force
@@ -20,6 +21,8 @@ from mbsd.forces.rotating_frame import ROTATING_FRAME
 from mbsd.forces.tyre import TYRE
 from mbsd.forces.user_force import USER_FORCE
 from mbsd.joint import Joint
+from mbsd.names import no_such
+from mbsd.shown import shown
 
 
 class AddingInteractions(AddingForces):
@@ -129,9 +132,10 @@ class AddingInteractions(AddingForces):
         does not: a simulation finds when the joint sticks and slides, and holds it meanwhile.
         """
         what = f"{self.name}: force '{name}'"
-        known = self.joints.get(joint if isinstance(joint, str) else getattr(joint, "name", ""))
-        if known is None or (known is not joint and known.name != joint):
-            raise ModelError(f"{what}: there is no joint {joint!r}; there is: {', '.join(self.joints) or 'none'}")
+        key = joint.name if isinstance(joint, Joint) else joint
+        known = self.joints.get(key) if isinstance(key, str) else None
+        if known is None or (known is not joint and isinstance(joint, Joint)):
+            raise ModelError(f"{what}: {no_such('joint', key, self.joints)}")
         if known.kind.name not in JOINTS:
             raise ModelError(
                 f"{what}: '{known.name}' is a {known.kind.name}; friction needs one of {', '.join(JOINTS)}"
@@ -161,7 +165,7 @@ class AddingInteractions(AddingForces):
         """
         what = f"force '{name}'"
         if not callable(function):
-            raise ModelError(f"{self.name}: {what} needs a function of t, q and v, got {function!r}")
+            raise ModelError(f"{self.name}: {what} needs a function of t, q and v, got {shown(function)}")
         for body in bodies:
             self._own_body(body, what)
         if not bodies or len(set(map(id, bodies))) < len(bodies):

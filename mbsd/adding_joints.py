@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from mbsd.body import Body, Marker, finite_number
+import numpy as np
+
+from mbsd.arguments import finite_number
+from mbsd.body import Body, Marker
 from mbsd.drivers.angle import DRIVE_ANGLE
 from mbsd.drivers.coordinate import DRIVE_COORDINATE
 from mbsd.drivers.distance import DRIVE_DISTANCE
@@ -21,6 +24,7 @@ from mbsd.joints.weld import WELD
 from mbsd.mechanism_base import MechanismBase
 from mbsd.motions import Motion
 from mbsd.motions.function import Function
+from mbsd.shown import shown
 
 Limits = Sequence[float | None] | None
 Law = Motion | Callable[[float], float]
@@ -83,9 +87,11 @@ class AddingJoints(MechanismBase):
         if limits is None:
             return {}
         what = f"{self.name}: joint '{name}': limits"
-        if not isinstance(limits, Sequence) or len(limits) != 2 or limits[0] is limits[1] is None:
-            raise ModelError(f"{what} are {limits!r}; give (lower, upper), None on a free side")
-        lower, upper = (None if end is None else finite_number(what, end) for end in limits)
+        ends = limits.tolist() if isinstance(limits, np.ndarray) else limits
+        ends = ends if isinstance(ends, list | tuple) else ()
+        if len(ends) != 2 or ends[0] is ends[1] is None:
+            raise ModelError(f"{what} are {shown(limits)}; give (lower, upper), None on a free side")
+        lower, upper = (None if end is None else finite_number(what, end) for end in ends)
         if lower is not None and upper is not None and not lower < upper:
             raise ModelError(f"{what} are {lower:g} .. {upper:g}; the lower must be below the upper")
         return {"limits": (lower, upper)}
@@ -96,7 +102,7 @@ class AddingJoints(MechanismBase):
         for marker in (i, j):
             if not isinstance(marker, Marker):
                 raise ModelError(
-                    f"{self.name}: {what} '{name}' needs two markers, got {marker!r}; "
+                    f"{self.name}: {what} '{name}' needs two markers, got {shown(marker)}; "
                     "write body.at(x, y), bar.start or bar.end"
                 )
             self._own_body(marker.body, f"{what} '{name}'")
@@ -108,7 +114,7 @@ class AddingJoints(MechanismBase):
         if kind.driven:
             if not (isinstance(law, Motion) or callable(law)):
                 raise ModelError(
-                    f"{self.name}: driver '{name}' needs a motion law, got {law!r}; "
+                    f"{self.name}: driver '{name}' needs a motion law, got {shown(law)}; "
                     "say constant_rate(...), harmonic(...), or a function of time"
                 )
             motion = law if isinstance(law, Motion) else Function(law)

@@ -7,8 +7,9 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from mbsd.adding_joints import AddingJoints
-from mbsd.body import Marker, number_pair
-from mbsd.errors import ModelError, ModelWarning
+from mbsd.arguments import number_pair
+from mbsd.body import Marker
+from mbsd.errors import PACKAGE, ModelError, ModelWarning
 from mbsd.joint import Joint
 from mbsd.joints.angle_lock import ANGLE_LOCK
 from mbsd.joints.belt import BELT
@@ -21,9 +22,13 @@ from mbsd.joints.point_on_curve import POINT_ON_CURVE
 from mbsd.joints.rack_and_pinion import RACK_AND_PINION
 from mbsd.joints.rolling_disc import ROLLING_DISC
 from mbsd.joints.rolling_on_curve import ROLLING_ON_CURVE
+from mbsd.shown import shown
 
 if TYPE_CHECKING:
     from mbsd.cams import CamProfile
+
+
+MOST_SLOTS = 1000
 
 
 class AddingMachineJoints(AddingJoints):
@@ -144,7 +149,7 @@ class AddingMachineJoints(AddingJoints):
 
         if not isinstance(profile, CamProfile):
             if not isinstance(profile, Mapping):
-                raise ModelError(f"{self.name}: joint '{name}' needs a profile from mbsd.cams, got {profile!r}")
+                raise ModelError(f"{self.name}: joint '{name}' needs a profile from mbsd.cams, got {shown(profile)}")
             profile = cam_from(profile)
         if profile.flat != flat:
             raise ModelError(
@@ -152,7 +157,9 @@ class AddingMachineJoints(AddingJoints):
                 f"follower '{profile.follower}'; use {'cam_roller' if flat else 'cam_flat'}"
             )
         if profile.undercut:
-            warnings.warn(f"{self.name}: joint '{name}': {profile.problems[0]}", ModelWarning, stacklevel=3)
+            warnings.warn(
+                f"{self.name}: joint '{name}': {profile.problems[0]}", ModelWarning, skip_file_prefixes=PACKAGE
+            )
         return profile.data
 
     def geneva(self, name: str, crank: Marker, wheel: Marker, slots: int, radius: float) -> Joint:
@@ -160,9 +167,11 @@ class AddingMachineJoints(AddingJoints):
 
         The x axis of marker ``wheel`` is a slot. The radius must be the distance of the centres times sin(pi / slots).
         """
-        if isinstance(slots, bool) or not isinstance(slots, int) or slots < 3:
-            raise ModelError(f"{self.name}: joint '{name}' has slots = {slots!r}; it must be a whole number from 3 on")
-        return self._join(GENEVA, name, crank, wheel, None, slots=slots, **self._radii(name, radius=radius))
+        if not 3 <= slots <= MOST_SLOTS:
+            raise ModelError(
+                f"{self.name}: joint '{name}' has slots = {shown(slots)}; it must be a whole number, 3 .. {MOST_SLOTS}"
+            )
+        return self._join(GENEVA, name, crank, wheel, None, slots=int(slots), **self._radii(name, radius=radius))
 
     def angle_lock(self, name: str, i: Marker, j: Marker) -> Joint:
         """Marker j keeps the direction of marker i and is free to move."""
@@ -176,9 +185,11 @@ class AddingMachineJoints(AddingJoints):
         Python or numba.njit; its derivatives are found. ``unit`` is that of its value, "m" or "rad".
         """
         if not callable(function):
-            raise ModelError(f"{self.name}: joint '{name}' needs a function of x, y and the angle, got {function!r}")
+            raise ModelError(
+                f"{self.name}: joint '{name}' needs a function of x, y and the angle, got {shown(function)}"
+            )
         if unit not in ("m", "rad"):
-            raise ModelError(f"{self.name}: joint '{name}' has the unit {unit!r}; it must be 'm' or 'rad'")
+            raise ModelError(f"{self.name}: joint '{name}' has the unit {shown(unit)}; it must be 'm' or 'rad'")
         return self._join(CONSTRAINT, name, i, j, None, function=function, unit=unit)
 
     def _radii(self, name: str, **radii: float) -> dict[str, float]:

@@ -37,20 +37,20 @@ def finite_number(what: str, value: object) -> float:
 
 def number_pair(what: str, value: object) -> tuple[float, float]:
     """``value`` as two floats; raises ModelError if it is anything else."""
-    first, second = several_numbers(what, value, 2, "two numbers (x, y)")
+    first, second = several_numbers(what, value, 2, "it must be two numbers (x, y)")
     return first, second
 
 
 def several_numbers(what: str, value: object, count: int, wanted: str) -> tuple[float, ...]:
-    """``value``, a list of ``count`` numbers, as floats; raises ModelError, which asks for what is ``wanted``."""
+    """``value``, a list of ``count`` numbers, as floats; raises ModelError, which ends with what is ``wanted``."""
     try:
         if isinstance(value, str | bytes | dict | set | frozenset):
             raise TypeError
         parts = tuple(value)  # pyright: ignore[reportArgumentType]
     except Exception:
-        raise ModelError(f"{what} is {shown(value)}; it must be {wanted}") from None
+        raise ModelError(f"{what} is {shown(value)}; {wanted}") from None
     if len(parts) != count:
-        raise ModelError(f"{what} is {shown(value)}; it must be {wanted}")
+        raise ModelError(f"{what} is {shown(value)}; {wanted}")
     return tuple(finite_number(what, part) for part in parts)
 
 

@@ -15,6 +15,7 @@ from mbsd.body import Marker
 from mbsd.errors import ModelError
 from mbsd.force import Force
 from mbsd.joint import Joint
+from mbsd.names import no_such
 
 if TYPE_CHECKING:
     from mbsd.model import Mechanism
@@ -47,14 +48,11 @@ def law_name(method: Callable[..., Any]) -> str:
 def change(m: Mechanism, name: str, values: Mapping[str, Any]) -> None:
     """See :meth:`mbsd.model.Mechanism.change`."""
     for table in m._connections:
-        if name in table:
+        if isinstance(name, str) and name in table:
             return _change(m, table, name, values)  # pyright: ignore[reportArgumentType]
-    if name not in m.bodies or name == "ground":
-        known = [*m._connections, {body: None for body in m.bodies if body != "ground"}]
-        raise ModelError(
-            f"{m.name}: there is nothing called '{name}' to change; there is: "
-            f"{', '.join(key for table in known for key in table) or 'nothing'}"
-        )
+    if not isinstance(name, str) or name not in m.bodies or name == "ground":
+        known = [*(key for table in m._connections for key in table), *(body for body in m.bodies if body != "ground")]
+        raise ModelError(f"{m.name}: {no_such('body, joint, driver, force or contact', name, known)}")
     body = m.bodies[name]
     _refuse_others(m, f"body '{name}'", values, BODY)
     m.set_mass(name, **({key: getattr(body, key) for key in BODY} | dict(values)))
@@ -93,4 +91,4 @@ def _change(m: Mechanism, table: dict[str, Any], name: str, values: Mapping[str,
 def _refuse_others(m: Mechanism, what: str, values: Mapping[str, Any], known: tuple[str, ...] | list[str]) -> None:
     others = [key for key in values if key not in known]
     if others:
-        raise ModelError(f"{m.name}: {what} has no '{others[0]}' to change; there is: {', '.join(known) or 'nothing'}")
+        raise ModelError(f"{m.name}: {what}: {no_such('argument', others[0], known)}")

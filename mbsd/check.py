@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.body import Body, Marker
-from mbsd.errors import ModelWarning
+from mbsd.errors import PACKAGE, ModelWarning
 from mbsd.joint import Joint
 from mbsd.mechanism_base import MechanismBase
 
@@ -26,6 +26,8 @@ WIDEST_GYRATION = 20.0
 """Radius of gyration over size. There is no lower bound: a point mass has none, and tiny inertias stand for zero."""
 FARTHEST = 30.0
 """Centre of mass or traced point from the body's joints, over the larger of the body's and the mechanism's size."""
+SAME = 1e-9
+"""Places closer than this part of the largest number are equal but for rounding."""
 LARGE, THIN = 10.0, 0.05
 """A body larger than this (m) and lighter than this (kg/m) is a wire, or millimetres."""
 TURNS = 2.0
@@ -48,8 +50,7 @@ def check(m: MechanismBase) -> list[Finding]:
     """Everything in ``m`` that looks like a mixed-up unit, in the order of the checks above."""
     sizes = body_sizes(m)
     return [
-        *_gravity(m),
-        *_sizes(m, sizes),
+        *_lengths_and_gravity(m, sizes),
         *_masses(m),
         *_mass_properties(m, sizes),
         *_trace_places(m, sizes),
@@ -59,13 +60,13 @@ def check(m: MechanismBase) -> list[Finding]:
     ]
 
 
-def tell(m: MechanismBase, stacklevel: int) -> None:
-    """Warn of every finding, once in the life of a mechanism; the warning points ``stacklevel`` callers up."""
+def tell(m: MechanismBase) -> None:
+    """Warn of every finding, once in the life of a mechanism; the warning points at the user's line."""
     if m.findings_told:
         return
     m.findings_told = True
     for finding in check(m):
-        warnings.warn(f"{m.name}: {finding}", ModelWarning, stacklevel=stacklevel + 1)
+        warnings.warn(f"{m.name}: {finding}", ModelWarning, skip_file_prefixes=PACKAGE)
 
 
 def body_sizes(m: MechanismBase) -> dict[str, float]:
@@ -74,15 +75,62 @@ def body_sizes(m: MechanismBase) -> dict[str, float]:
     for joint in m.joints.values():
         for marker in (joint.i, joint.j):
             places[marker.body.name].append((marker.x, marker.y))
-    return {name: max(_spacing(places[name]), body.length or 0.0) for name, body in m.bodies.items()}
+    numbers = [number for rows in places.values() for row in rows for number in row]
+    numbers += [body.length or 0.0 for body in m.bodies.values()]
+    same = SAME * max(map(abs, numbers), default=0.0)
+    return {name: max(_spacing(places[name], same), body.length or 0.0) for name, body in m.bodies.items()}
 
 
-def _spacing(places: list[tuple[float, float]]) -> float:
-    """Median step from each place to the next: what it is measured in shows, how many there are does not."""
+def _spacing(places: list[tuple[float, float]], same: float) -> float:
+    """Median step from each place to the next: what it is measured in shows, how many there are does not.
+
+    Places within ``same`` (m) are one.
+    """
     if len(places) < 2:
         return 0.0
     steps = np.hypot(*np.diff(np.array(places), axis=0).T)
-    return float(np.median(steps[steps > 0])) if steps.any() else 0.0
+    return float(np.median(steps[steps > same])) if (steps > same).any() else 0.0
+
+
+def _lengths_and_gravity(m: MechanismBase, sizes: dict[str, float]) -> Iterator[Finding]:
+    """One finding where the whole model is in millimetres, or one for each number that stands out."""
+    lengths = sizes | {f"joint {name}": float(j.params.get("length", 0.0)) for name, j in m.joints.items()}
+    odd, usual = _odd_ones_out(lengths, SIZE_GAP)
+    gravity = list(_gravity(m))
+    wires = [
+        name
+        for name, body in m.bodies.items()
+        if name not in odd and sizes[name] > LARGE and 0 < body.mass < THIN * sizes[name]
+    ]
+    others = [size for name, size in sizes.items() if size > 0 and name not in odd]
+    whole = len(others) > 1 and len(wires) > 0 and float(np.median(others)) > LARGE
+    if whole:
+        masses = sorted({f"{m.bodies[name].mass:.3g}" for name in wires}, key=float)
+        yield Finding(
+            "lengths",
+            f"they look like millimetres: bodies are {_metres(float(np.median(others)))} long, and {_some(wires)} of "
+            f"{' .. '.join(dict.fromkeys((masses[0], masses[-1])))} kg would be wires"
+            + (", gravity looks like mm/s^2" if gravity else ""),
+            "Lengths are in metres: divide all of them by 1000" + (", and gravity" if gravity else ""),
+        )
+    else:
+        yield from gravity
+    for name in odd:
+        yield Finding(
+            name,
+            f"{_metres(lengths[name])} long beside {_metres(usual)} of the others",
+            "Lengths are in metres: divide millimetres by 1000",
+        )
+    for name in [] if whole else wires:
+        yield Finding(
+            name,
+            f"{_metres(sizes[name])} long and {m.bodies[name].mass:g} kg heavy, a wire",
+            "Lengths are in metres: divide millimetres by 1000",
+        )
+
+
+def _some(names: list[str]) -> str:
+    return ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
 
 
 def _gravity(m: MechanismBase) -> Iterator[Finding]:
@@ -100,24 +148,6 @@ def _odd_ones_out(values: dict[str, float], gap: float) -> tuple[list[str], floa
             odd, usual = (names[k:], names[:k]) if len(names) - k <= k else (names[:k], names[k:])
             return odd, float(np.median([values[name] for name in usual]))
     return [], 0.0
-
-
-def _sizes(m: MechanismBase, sizes: dict[str, float]) -> Iterator[Finding]:
-    lengths = sizes | {f"joint {name}": float(j.params.get("length", 0.0)) for name, j in m.joints.items()}
-    odd, usual = _odd_ones_out(lengths, SIZE_GAP)
-    for name in odd:
-        yield Finding(
-            name,
-            f"{_metres(lengths[name])} long beside {_metres(usual)} of the others",
-            "Lengths are in metres: divide millimetres by 1000",
-        )
-    for name, body in m.bodies.items():
-        if name not in odd and sizes[name] > LARGE and 0 < body.mass < THIN * sizes[name]:
-            yield Finding(
-                name,
-                f"{_metres(sizes[name])} long and {body.mass:g} kg heavy, a wire",
-                "Lengths are in metres: divide millimetres by 1000",
-            )
 
 
 def _masses(m: MechanismBase) -> Iterator[Finding]:

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.arguments import number_array
 from mbsd.curves import Curve
 from mbsd.errors import ModelError
 
@@ -95,13 +96,11 @@ def curvature(breaks: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
 
 def checked_points(what: str, points: object, closed: bool) -> list[list[float]]:
     """Points (k, 2) as plain data. Raises ModelError for what is no curve."""
-    array = np.asarray(points, float)
+    array = number_array(f"{what}: points", points)
     if array.ndim != 2 or array.shape[1] != 2 or len(array) < (6 if closed else 2):
         raise ModelError(
             f"{what}: points of shape {array.shape} must be {'six' if closed else 'two'} or more rows of x, y (m)"
         )
-    if not np.isfinite(array).all():
-        raise ModelError(f"{what}: point {int(np.argmin(np.isfinite(array).all(axis=1)))} is not finite")
     if closed and np.array_equal(array[0], array[-1]):
         array = array[:-1]
     steps = np.hypot(*np.diff(np.vstack([array, array[:1]]) if closed else array, axis=0).T)

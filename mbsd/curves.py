@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mbsd.arguments import number_array
 from mbsd.errors import ModelError
+from mbsd.names import no_such
 
 if TYPE_CHECKING:
     from mbsd.laws import Compiled
@@ -73,14 +75,12 @@ class Curve:
 
 def curve(x: object, y: object, kind: str = "smooth") -> Curve:
     """A curve through the points (x, y), x rising (m, rad, m/s or rad/s), y a force or torque (N, N m)."""
-    at, value = np.asarray(x, float), np.asarray(y, float)
-    if kind not in KINDS:
-        raise ModelError(f"curve: there is no kind '{kind}'; there is: {', '.join(KINDS)}")
+    at, value = number_array("curve: x", x), number_array("curve: y", y)
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise ModelError(f"curve: {no_such('kind', kind, KINDS)}")
     fewest = 4 if kind == "spline" else 2
     if at.ndim != 1 or at.shape != value.shape or len(at) < fewest:
         raise ModelError(f"curve: x {at.shape} and y {value.shape} must be two lists of {fewest} numbers or more")
-    if not (np.isfinite(at).all() and np.isfinite(value).all()):
-        raise ModelError("curve: x and y must be finite numbers")
     if not (np.diff(at) > 0).all():
         raise ModelError(f"curve: x must rise; x[{int(np.argmin(np.diff(at) > 0)) + 1}] does not")
     return Curve(at, value, kind)

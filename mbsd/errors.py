@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import os
+
+PACKAGE = (os.path.dirname(__file__) + os.sep,)
+"""Files that warnings skip, to point at the line of the user."""
+
 
 class MechanismError(Exception):
     """Base of every error that a model or its data can cause."""

@@ -12,6 +12,7 @@ from mbsd.errors import ModelError
 from mbsd.linearisation import Linearisation
 from mbsd.linearisation import linearise as linearise_start
 from mbsd.model import Mechanism
+from mbsd.names import no_such
 from mbsd.solution import Solution
 from mbsd.variants import copied, started_at
 
@@ -20,9 +21,8 @@ def linearise(m: Mechanism, at: Equilibrium | Solution | str, t: float | None, i
     """See :meth:`mbsd.model.Mechanism.linearise`."""
     inputs = [inputs] if isinstance(inputs, str) else list(inputs)
     for name in inputs:
-        if name not in m.drivers and name not in m.forces:
-            known = ", ".join([*m.drivers, *m.forces]) or "none"
-            raise ModelError(f"{m.name}: there is no driver or force '{name}' to be an input; there is: {known}")
+        if not isinstance(name, str) or (name not in m.drivers and name not in m.forces):
+            raise ModelError(f"{m.name}: {no_such('driver or force to be an input', name, [*m.drivers, *m.forces])}")
     if at == "equilibrium":
         at = equilibrium(m, 0.0 if t is None else float(t), nearest=False)
         t = None

@@ -28,6 +28,7 @@ from mbsd.friction_view import friction_view
 from mbsd.joint_friction import SHARP
 from mbsd.model import Mechanism
 from mbsd.modes import Mode, modes_of
+from mbsd.names import no_such
 from mbsd.statics import DIFFERENCES, OFFSETS
 from mbsd.tangent import Independent, independent_coordinates, tangent
 
@@ -193,7 +194,7 @@ def _direction(ready: PreparedDynamics, name: str, time: float) -> np.ndarray:
     packed, m = ready.packed, ready.packed.name
     names = [force.name for force in packed.forces]
     if name not in names:
-        raise ModelError(f"{m}: there is no driver or force '{name}' to be an input; there is: {', '.join(names)}")
+        raise ModelError(f"{m}: {no_such('driver or force to be an input', name, names)}")
     return unit_direction(packed, packed.forces[names.index(name)], ready.initial.q, time)[3:]
 
 

@@ -20,11 +20,13 @@ from mbsd.adding_contacts import AddingContacts
 from mbsd.adding_forces import Amount
 from mbsd.adding_interactions import AddingInteractions
 from mbsd.adding_machine_joints import AddingMachineJoints
+from mbsd.arguments import checked_methods, several_numbers
 from mbsd.body import Body, Marker
 from mbsd.errors import ModelError
 from mbsd.force import Force
 from mbsd.joint import Joint
 from mbsd.mechanism_base import STANDARD_GRAVITY, Start, StartVelocity
+from mbsd.shown import shown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,6 +44,7 @@ if TYPE_CHECKING:
 __all__ = ["STANDARD_GRAVITY", "Body", "Force", "Joint", "Marker", "Mechanism", "Start"]
 
 
+@checked_methods
 class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
     """Bodies, joints, drivers and traced points, by name. ``gravity`` in m/s^2; None turns it off."""
 
@@ -49,7 +52,7 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
         """Follow a point: its path, velocity and acceleration are in the solution."""
         self._new_name(name, "trace", self.traces)
         if not isinstance(marker, Marker):
-            raise ModelError(f"{self.name}: trace '{name}' needs a marker, got {marker!r}; write body.at(x, y)")
+            raise ModelError(f"{self.name}: trace '{name}' needs a marker, got {shown(marker)}; write body.at(x, y)")
         self._own_body(marker.body, f"trace '{name}'")
         self.traces[name] = marker
         return marker
@@ -64,9 +67,9 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
             if isinstance(pose, int | float | np.number):
                 self.starts[name] = Start(math.radians(self._number(f"start of '{name}'", pose)))
                 continue
-            if not isinstance(pose, Sequence | np.ndarray) or len(pose) != 3:
-                raise ModelError(f"{self.name}: start of '{name}' is {pose!r}; give degrees, or (x, y, degrees)")
-            x, y, degrees = (self._number(f"start of '{name}'", value) for value in pose)
+            x, y, degrees = several_numbers(
+                f"{self.name}: start of '{name}'", pose, 3, "give degrees, or (x, y, degrees)"
+            )
             self.starts[name] = Start(math.radians(degrees), (x, y))
 
     def start_moving(self, **velocities: float | Sequence[float]) -> None:
@@ -81,9 +84,7 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
             if isinstance(velocity, int | float | np.number):
                 self.velocities[name] = StartVelocity(self._number(what, velocity))
                 continue
-            if not isinstance(velocity, Sequence | np.ndarray) or len(velocity) != 3:
-                raise ModelError(f"{self.name}: {what} is {velocity!r}; give rad/s, or (vx, vy, omega)")
-            vx, vy, omega = (self._number(what, value) for value in velocity)
+            vx, vy, omega = several_numbers(f"{self.name}: {what}", velocity, 3, "give rad/s, or (vx, vy, omega)")
             self.velocities[name] = StartVelocity(omega, (vx, vy))
 
     def change(self, name: str, **values: Any) -> None:
@@ -126,7 +127,7 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
         from mbsd.check import tell
         from mbsd.sweep import sweep
 
-        tell(self, stacklevel=2)
+        tell(self)
         return sweep(self, duration, steps, times)
 
     def batch(
@@ -180,7 +181,7 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
         from mbsd.check import tell
         from mbsd.dynamics.simulate import simulate
 
-        tell(self, stacklevel=2)
+        tell(self)
         return simulate(
             self, duration, steps, times, method, tolerance, step, progress, options, event_rows, formulation
         )
@@ -197,7 +198,7 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
         from mbsd.check import tell
         from mbsd.equilibrium import equilibrium
 
-        tell(self, stacklevel=2)
+        tell(self)
         return equilibrium(self, time, nearest)
 
     def linearise(
@@ -217,7 +218,7 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
         from mbsd.check import tell
         from mbsd.linear_state import linearise
 
-        tell(self, stacklevel=2)
+        tell(self)
         return linearise(self, at, t, inputs)
 
     def modes(self) -> tuple[Mode, ...]:

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.errors import ModelError
+from mbsd.names import no_such
 
 if TYPE_CHECKING:
     from mbsd.linearisation import Linearisation
@@ -62,7 +63,7 @@ class Mode:
     def of(self, body: str) -> np.ndarray:
         """(3,) shape of one body. Raises ModelError for a body that is not there."""
         if body not in self.shape:
-            raise ModelError(f"there is no body '{body}' in the mode; there is: {', '.join(self.shape)}")
+            raise ModelError(no_such("body in the mode", body, self.shape))
         return self.shape[body]
 
     def __str__(self) -> str:

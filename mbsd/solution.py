@@ -21,13 +21,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.arguments import number_array
 from mbsd.columns import columns
 from mbsd.contact_view import ContactView, contact_view
 from mbsd.errors import ModelError
 from mbsd.event import Happening
 from mbsd.force_view import ForceView, Moved, force_view
 from mbsd.friction_view import FrictionView, friction_view
+from mbsd.names import no_such
 from mbsd.potential import potential_of
+from mbsd.shown import shown
 
 if TYPE_CHECKING:
     import pandas
@@ -178,11 +181,11 @@ class Solution:
 
         At the time of an event it is the motion after it. Raises ModelError for a sweep and for times outside.
         """
-        wanted = np.atleast_1d(np.asarray(times, float))
+        wanted = np.atleast_1d(number_array(f"{self.mechanism.name}: times", times))
         if self.between is None:
             raise ModelError(f"{self.mechanism.name}: only a simulation goes on to other times; sweep(times=...)")
         if wanted.ndim != 1 or not len(wanted) or not (np.diff(wanted) > 0).all():
-            raise ModelError(f"{self.mechanism.name}: times must be rising numbers, got {times!r}")
+            raise ModelError(f"{self.mechanism.name}: times must be rising numbers, got {shown(times)}")
         if not (self.t[0] <= wanted[0] and wanted[-1] <= self.t[-1]):
             raise ModelError(
                 f"{self.mechanism.name}: the simulation covers {self.t[0]:g} .. {self.t[-1]:g} s, "
@@ -354,8 +357,6 @@ class Solution:
         )
 
     def _index(self, name: str, names: list[str], what: str) -> int:
-        if name not in names:
-            raise ModelError(
-                f"{self.mechanism.name}: there is no {what} '{name}'; there is: {', '.join(names) or 'none'}"
-            )
+        if not isinstance(name, str) or name not in names:
+            raise ModelError(f"{self.mechanism.name}: {no_such(what, name, names)}")
         return names.index(name)

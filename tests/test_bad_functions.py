@@ -110,7 +110,7 @@ def test_an_action_that_raises_is_told_with_its_name_and_the_time() -> None:
     assert isinstance(told.value.__cause__, ZeroDivisionError)
     other = _pendulum()
     other.event("thing", lambda t, moment: t - 0.25, action=lambda moment: moment.release("B"))
-    with pytest.raises(ModelError, match=r"^swing: event 'thing': its action fails .*there is no joint 'B'"):
+    with pytest.raises(ModelError, match=r"^swing: event 'thing': its action fails .*there is no joint to release 'B'"):
         other.simulate(1.0)
 
 

@@ -101,7 +101,7 @@ def test_every_force_is_made_anew_as_it_is(kind: ForceKind) -> None:
     kind.example(m, first.at(0.11, 0.2, 0.3), second.at(-0.4, 0.5, -0.6))
     [(name, old)] = m.forces.items()
     if kind.name == "user_force":
-        with pytest.raises(ModelError, match="has no 'function' to change; there is: nothing"):
+        with pytest.raises(ModelError, match="there is no argument 'function'; there is: none"):
             m.change(name, function=None)
         return
     for key, value in (dict(old.params) | dict(old.laws)).items():
@@ -128,12 +128,20 @@ def test_every_contact_is_made_anew_as_it_is(kind: ContactKind) -> None:
     [
         ("spring", {"stiffness": -1.0}, "oscillator: force 'spring': stiffness is -1; it cannot be negative"),
         ("spring", {"damping": math.nan}, "damping is nan"),
-        ("spring", {"rate": 3.0}, "spring 'spring' has no 'rate' to change; there is: stiffness, damping, free_length"),
+        (
+            "spring",
+            {"rate": 3.0},
+            "spring 'spring': there is no argument 'rate'; there is: stiffness, damping, free_length",
+        ),
         ("block", {"mass": -2.0}, "body 'block' has mass -2 kg; it cannot be negative"),
-        ("block", {"length": 2.0}, "body 'block' has no 'length' to change; there is: mass, com, inertia"),
+        ("block", {"length": 2.0}, "body 'block': there is no argument 'length'; there is: mass, com, inertia"),
         ("rail", {"limits": (2.0, 1.0)}, "joint 'rail': limits are 2 .. 1; the lower must be below the upper"),
-        ("engine", {"mass": 1.0}, "nothing called 'engine' to change; there is: rail, spring, push, block"),
-        ("ground", {"mass": 1.0}, "nothing called 'ground' to change"),
+        (
+            "engine",
+            {"mass": 1.0},
+            "no body, joint, driver, force or contact 'engine'; there is: rail, spring, push, block",
+        ),
+        ("ground", {"mass": 1.0}, "no body, joint, driver, force or contact 'ground'"),
     ],
 )
 def test_what_cannot_be_is_refused_and_nothing_changes(name: str, values: dict, says: str) -> None:

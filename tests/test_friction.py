@@ -274,7 +274,7 @@ def test_a_long_chain_with_friction_settles_too() -> None:
 @pytest.mark.parametrize(
     ("add", "words"),
     [
-        (lambda m: m.friction("f", "pni", 0.1, radius=0.1), "no joint 'pni'; there is: pin"),
+        (lambda m: m.friction("f", "pni", 0.1, radius=0.1), "no joint 'pni', did you mean 'pin'. There is: pin"),
         (lambda m: m.friction("f", "rod", 0.1), "is a distance; friction needs one of revolute"),
         (lambda m: m.friction("f", "pin", 0.1), "needs the radius"),
         (lambda m: m.friction("f", "rail", 0.1, radius=0.1), "no other has one"),

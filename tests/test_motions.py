@@ -16,7 +16,8 @@ from mbsd.motions.examples import EXAMPLES
 
 
 def test_every_law_has_an_example() -> None:
-    assert {type(example) for example in EXAMPLES} == set(Motion.__subclasses__())
+    own = {law for law in Motion.__subclasses__() if law.__module__.startswith("mbsd.")}
+    assert {type(example) for example in EXAMPLES} == own
 
 
 @pytest.mark.parametrize("law", EXAMPLES, ids=lambda law: type(law).__name__)

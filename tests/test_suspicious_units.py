@@ -13,7 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, ModelWarning, constant_rate, cycloidal, harmonic
+from mbsd.saving.document import build, document
 from shared.paths import mechanism_names
+from tests import random_linkages
 
 
 def _four_bar(scale: float = 1.0, **lengths: float) -> Mechanism:
@@ -27,6 +29,27 @@ def _four_bar(scale: float = 1.0, **lengths: float) -> Mechanism:
     m.revolute("C", coupler.end, rocker.end)
     m.revolute("D", m.ground.at(sizes["ground"], 0), rocker.start)
     m.start_near(crank=0, coupler=45, rocker=100)
+    return m
+
+
+def _wire() -> Mechanism:
+    m = Mechanism("pendulum")
+    m.revolute("A", m.ground.origin, m.bar("crank", 40.0, 0.05).start)
+    return m
+
+
+def _rounded(far: float = 0.1 + 0.2) -> Mechanism:
+    """A slider pinned and guided at one place, but for rounding."""
+    m = _four_bar()
+    slider = m.body("slider", 0.1)
+    m.revolute("E", m.bodies["rocker"].end, slider.at(far, 0))
+    m.prismatic("guide", m.ground.at(0, 0), slider.at(0.3, 0))
+    return m
+
+
+def _in_millimetres(gravity: float) -> Mechanism:
+    m = _four_bar(scale=1000.0)
+    m.gravity = (0.0, -gravity)
     return m
 
 
@@ -67,7 +90,12 @@ def _started(**poses: float) -> Mechanism:
     [
         (_four_bar(crank=40.0), ["crank"], "40 m long beside 120 mm of the others. Lengths are in metres: divide"),
         (_four_bar(ground=120.0), ["ground"], "120 m long beside 90 mm"),
-        (_four_bar(scale=1000.0), ["crank", "coupler", "rocker"], "40 m long and 0.05 kg heavy, a wire"),
+        (
+            _four_bar(scale=1000.0),
+            ["lengths"],
+            r"bodies are 105 m long, and crank, coupler, rocker of 0.05 kg .*divide all of them",
+        ),
+        (_wire(), ["crank"], "40 m long and 0.05 kg heavy, a wire"),
         (_with_slider(mass=1e6), ["slider"], "1e[+]06 kg beside 0.05 kg of the others. Masses are in kilograms"),
         (_with_slider(mass=1e-9), ["slider"], "1e-09 kg beside 0.05 kg"),
         (_with_slider(inertia=25.0), ["slider"], "make a radius of gyration of 15.81 m on a body of 105 mm"),
@@ -121,6 +149,34 @@ def test_gravity_in_millimetres_is_told(value: float, unit: str) -> None:
 )
 def test_sound_mechanisms_pass_in_silence(build: Callable[[], Mechanism]) -> None:
     assert build().check() == []
+
+
+def test_places_equal_but_for_rounding_are_one() -> None:
+    assert 0.1 + 0.2 != 0.3
+    assert _rounded().check() == []
+    assert _rounded(0.3 + 1e-12).check() == []
+    assert [finding.name for finding in _rounded(0.3 + 1e-6).check()] == ["slider"]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_model_in_millimetres_is_told_in_one_sentence(seed: int) -> None:
+    written = document(random_linkages.linkage(seed, 1 + seed % 4).m)
+    assert build(written).check() == []
+    for body in written["bodies"].values():
+        body["com"] = [1000 * x for x in body["com"]]
+    for joint in (*written["joints"].values(), *written["forces"].values()):
+        for marker in (joint["i"], joint["j"]):
+            marker["x"], marker["y"] = 1000 * marker["x"], 1000 * marker["y"]
+        if "length" in joint["params"]:
+            joint["params"]["length"] *= 1000
+    (found,) = build(written).check()
+    assert "they look like millimetres" in found.problem
+
+
+def test_gravity_in_millimetres_joins_that_sentence() -> None:
+    (found,) = _in_millimetres(9810.0).check()
+    assert "gravity looks like mm/s^2" in found.problem
+    assert found.remedy == "Lengths are in metres: divide all of them by 1000, and gravity"
 
 
 def test_a_long_chain_is_no_mixture_of_units() -> None:

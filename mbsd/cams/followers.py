@@ -26,6 +26,7 @@ from mbsd.body import finite_number
 from mbsd.cams.lift import Lift
 from mbsd.cams.profile import CamProfile, hermite
 from mbsd.errors import ModelError
+from mbsd.names import no_such
 
 
 def roller_cam(lift: Lift, base_radius: float, roller_radius: float, offset: float = 0.0) -> CamProfile:
@@ -143,9 +144,12 @@ def cam_from(data: Mapping[str, Any]) -> CamProfile:
         "oscillating_flat": oscillating_flat_cam,
     }
     rest = {key: value for key, value in data.items() if key not in ("follower", "lift")}
-    if data.get("follower") not in makers:
-        raise ModelError(f"cam: there is no follower {data.get('follower')!r}; there is: {', '.join(makers)}")
-    return makers[data["follower"]](Lift.from_data(data["lift"]), **rest)
+    follower = data.get("follower")
+    if not isinstance(follower, str) or follower not in makers:
+        raise ModelError(f"cam: {no_such('follower', follower, makers)}")
+    if "lift" not in data:
+        raise ModelError("cam: the lift is missing; keep what CamProfile.data gives as it is")
+    return makers[follower](Lift.from_data(data["lift"]), **rest)
 
 
 def _sizes(what: str, **sizes: float) -> dict[str, float]:

@@ -15,9 +15,11 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.body import finite_number
+from mbsd.arguments import finite_number, number_array
 from mbsd.cams.rises import INNER, RISES
 from mbsd.errors import ModelError
+from mbsd.names import no_such
+from mbsd.shown import shown
 
 TURN = 2 * math.pi
 PIECES = 720
@@ -49,14 +51,14 @@ class Lift:
         start = finite_number("lift: start", start)
         rows, height = [], start
         for k, segment in enumerate(segments):
-            if not isinstance(segment, Sequence) or len(segment) not in (2, 3):
-                raise ModelError(f"lift: segment {k} is {segment!r}; give (width, height at its end, rise)")
+            if not isinstance(segment, list | tuple) or len(segment) not in (2, 3):
+                raise ModelError(f"lift: segment {k} is {shown(segment)}; give (width, height at its end, rise)")
             width, end = (finite_number(f"lift: segment {k}", value) for value in segment[:2])
             rise = segment[2] if len(segment) == 3 else "cycloidal"
             if width <= 0:
                 raise ModelError(f"lift: segment {k} has width {width:g} rad; it must be positive")
-            if rise not in RISES:
-                raise ModelError(f"lift: segment {k} has rise {rise!r}; there is: {', '.join(RISES)}")
+            if not isinstance(rise, str) or rise not in RISES:
+                raise ModelError(f"lift: segment {k}: {no_such('rise', rise, RISES)}")
             if len(segment) == 2 and end != height:
                 raise ModelError(f"lift: segment {k} ends at {end:g}, not at {height:g}; name its rise")
             rows.append((width, end, rise))
@@ -71,13 +73,11 @@ class Lift:
     @staticmethod
     def table(angles: Sequence[float] | np.ndarray, heights: Sequence[float] | np.ndarray) -> Lift:
         """A periodic quintic spline through heights at rising cam angles (rad), eight rows or more within one turn."""
-        theta, s = np.asarray(angles, float), np.asarray(heights, float)
+        theta, s = number_array("lift: angles", angles), number_array("lift: heights", heights)
         if theta.ndim != 1 or theta.shape != s.shape or len(theta) < LEAST_ROWS:
             raise ModelError(
                 f"lift: angles {theta.shape} and heights {s.shape} must be two lists of {LEAST_ROWS} numbers or more"
             )
-        if not (np.isfinite(theta).all() and np.isfinite(s).all()):
-            raise ModelError("lift: angles and heights must be finite numbers")
         if abs(theta[-1] - theta[0] - TURN) < 1e-9:
             if abs(s[-1] - s[0]) > 1e-12 * max(1.0, float(np.abs(s).max())):
                 raise ModelError(f"lift: after a turn the height is {s[-1]:g}, not {s[0]:g} as at its begin")
@@ -96,13 +96,18 @@ class Lift:
     @staticmethod
     def from_data(data: Mapping[str, Any]) -> Lift:
         """The lift of plain data."""
-        if "angles" in data:
+        if isinstance(data, Mapping) and set(data) == {"angles", "heights"}:
             return Lift.table(data["angles"], data["heights"])
-        return Lift.of(*data["segments"], start=data["start"])
+        if not isinstance(data, Mapping) or set(data) != {"segments", "start"}:
+            raise ModelError(f"lift: {shown(data)} is no lift; it must hold angles and heights, or segments and start")
+        segments = data["segments"]
+        if not isinstance(segments, list | tuple):
+            raise ModelError(f"lift: segments are {shown(segments)}; give a list of (width, height at its end, rise)")
+        return Lift.of(*segments, start=data["start"])
 
     def __call__(self, angles: np.ndarray) -> np.ndarray:
         """(T,) cam angles (rad) to (T, 4): lift and three derivatives by the angle."""
-        angles = np.atleast_1d(np.asarray(angles, float))
+        angles = np.atleast_1d(number_array("lift: angles", angles))
         if self.angles:
             first = self.angles[0]
             inside = first + np.mod(angles - first, TURN)

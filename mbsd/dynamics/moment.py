@@ -10,6 +10,7 @@ import numpy as np
 
 from mbsd.body import Marker, finite_number
 from mbsd.errors import ModelError
+from mbsd.names import no_such
 
 if TYPE_CHECKING:
     from mbsd.packing import Packed
@@ -80,16 +81,16 @@ class Moment:
     def release(self, joint: str) -> None:
         """Let a joint or driver go for good, as if it broke."""
         names = [one.name for one in self.packed.joints[: len(self.packed.joints) - self.packed.contacts]]
-        if joint not in names:
-            raise ModelError(f"{self.packed.name}: there is no joint '{joint}' to let go; there is: {', '.join(names)}")
+        if not isinstance(joint, str) or joint not in names:
+            raise ModelError(f"{self.packed.name}: {no_such('joint to release', joint, names)}")
         self.released.append(names.index(joint))
 
     # -----------------------------------------------------------------------------------------------------------
 
     def _number(self, name: str, moving: bool = False) -> int:
         names = self.packed.body_names[1 if moving else 0 :]
-        if name not in names:
-            raise ModelError(f"{self.packed.name}: there is no body '{name}'; there is: {', '.join(names)}")
+        if not isinstance(name, str) or name not in names:
+            raise ModelError(f"{self.packed.name}: {no_such('body', name, names)}")
         return self.packed.body_names.index(name)
 
     def _arm(self, b: int, place: tuple[float, float]) -> tuple[float, float]:

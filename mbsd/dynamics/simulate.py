@@ -18,7 +18,7 @@ from mbsd.dynamics.large import MANY_COORDINATES
 from mbsd.dynamics.prepare import PreparedDynamics, prepare_dynamics
 from mbsd.dynamics.run import AUTO, FORMULATIONS, INDEPENDENT, Run
 from mbsd.dynamics.trail import Trail, follow, resumed
-from mbsd.errors import InitialConditionWarning, ModelError
+from mbsd.errors import PACKAGE, InitialConditionWarning, ModelError
 from mbsd.friction_along import friction_along
 from mbsd.integrators.kind import INTEGRATORS, Integrator
 from mbsd.inverse_dynamics import JACOBIAN_NUMBERS
@@ -56,7 +56,7 @@ def simulate(
         warnings.warn(
             f"{m.name}: the start was made consistent: " + "; ".join(ready.initial.velocities),
             InitialConditionWarning,
-            stacklevel=3,
+            skip_file_prefixes=PACKAGE,
         )
     longest = step or float(np.diff(grid).max())
     run = Run(ready, integrator, tolerance, longest, float(grid[-1] - grid[0]), options, formulation)

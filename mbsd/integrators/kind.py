@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.errors import ModelError
+from mbsd.names import no_such
 
 if TYPE_CHECKING:
     from mbsd.dynamics.arrays import Dynamics
@@ -68,8 +69,7 @@ class Integrator:
         """(options,) what was given, else the defaults. Raises ModelError for unknown names and impossible values."""
         for name, value in given.items():
             if name not in self.options:
-                known = ", ".join(self.options) or "none"
-                raise ModelError(f"{model}: method '{self.name}' has no option '{name}'; there is: {known}")
+                raise ModelError(f"{model}: method '{self.name}': {no_such('option', name, self.options)}")
             option = self.options[name]
             if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not math.isfinite(value):
                 raise ModelError(f"{model}: option '{name}' of '{self.name}' is {value!r}; it must be a finite number")

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mbsd.arguments import finite_number, number_array
 from mbsd.errors import ModelError
 from mbsd.motions.law import Motion, Times
 
@@ -78,7 +79,9 @@ def recorded(times: object, values: object, noise: float | None = None) -> Motio
 
     ``noise``: standard deviation of a value (rad or m), 0 for values without any; None estimates it.
     """
-    t, f = np.asarray(times, float), np.asarray(values, float)
+    t, f = (
+        number_array(f"recorded: {what}", rows, finite=False) for what, rows in (("times", times), ("values", values))
+    )
     if t.ndim != 1 or t.shape != f.shape or len(t) < LEAST_ROWS:
         raise ModelError(
             f"recorded: times {t.shape} and values {f.shape} must be two lists of {LEAST_ROWS} numbers or more"
@@ -87,6 +90,6 @@ def recorded(times: object, values: object, noise: float | None = None) -> Motio
         raise ModelError("recorded: times and values must be finite numbers; leave out rows without a value")
     if not (np.diff(t) > 0).all():
         raise ModelError(f"recorded: times must rise; times[{int(np.argmin(np.diff(t) > 0)) + 1}] does not")
-    if noise is not None and not (np.isfinite(noise) and noise >= 0):
+    if noise is not None and finite_number("recorded: noise", noise) < 0:
         raise ModelError(f"recorded: noise is {noise}; it must be zero or positive, or None to estimate it")
     return Recorded(t, f, None if noise is None else float(noise))

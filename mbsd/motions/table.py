@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.arguments import number_array, switch
 from mbsd.errors import ModelError
 from mbsd.motions.law import Motion, Times
 
@@ -59,11 +60,10 @@ def table(times: object, values: object, periodic: bool = False) -> Motion:
 
     ``periodic``: the last value equals the first and the motion repeats with continuous derivatives.
     """
-    t, f = np.asarray(times, float), np.asarray(values, float)
+    t, f = number_array("table: times", times), number_array("table: values", values)
+    periodic = switch("table: periodic", periodic)
     if t.ndim != 1 or t.shape != f.shape or len(t) < 6:
         raise ModelError(f"table: times {t.shape} and values {f.shape} must be two lists of six numbers or more")
-    if not (np.isfinite(t).all() and np.isfinite(f).all()):
-        raise ModelError("table: times and values must be finite numbers")
     if not (np.diff(t) > 0).all():
         raise ModelError(f"table: times must rise; times[{int(np.argmin(np.diff(t) > 0)) + 1}] does not")
     if periodic and abs(f[-1] - f[0]) > 1e-12 * max(1.0, float(np.abs(f).max())):

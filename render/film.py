@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
 from render.inputs import stage_key
 from render.presets import Preset
 from shared.console import say
+from shared.errors import UserError
 from shared.paths import Out
 from shared.stages import Stage
+
+if TYPE_CHECKING:
+    from render.store import FrameStore
 
 
 def run(name: str, preset: Preset) -> None:
@@ -25,7 +32,19 @@ def run(name: str, preset: Preset) -> None:
     frames.run(name, preset)
     store = FrameStore(out.frames(preset.name))
     index = jsonfile.read(store.index, FrameIndex)
-    encode.encode([store.path(key) for key in index.frames], index.fps, film)
+    encode.encode(_pictures(out.name, store, index.frames), len(index.frames), preset, index.fps, film)
     stage.done()
     seconds = len(index.frames) / index.fps
     say("film", f"{out.name}: {film}: {seconds:.1f} s, {index.fps} frames a second, {film.stat().st_size / 1e6:.1f} MB")
+
+
+def _pictures(mechanism: str, store: FrameStore, names: Sequence[str]) -> Iterator[bytes]:
+    """The pictures in order, each compared with the hash in its name; the bytes compared are the bytes filmed."""
+    for number, name in enumerate(names):
+        content = store.read(name)
+        if content is None:
+            raise UserError(
+                f"{mechanism}: frame {number} ({name}) changed or went while the film was written; the same command "
+                "renders it again"
+            )
+        yield content

@@ -7,6 +7,7 @@ import shutil
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from render.blender.job import Job, Picture
 from render.child import blender
@@ -17,7 +18,7 @@ from render.presets import Preset
 from render.scene import State
 from render.store import FrameIndex, FrameStore, Timing
 from shared import jsonfile
-from shared.console import duration, progress, say
+from shared.console import duration, progress, say, warn
 from shared.errors import UserError
 from shared.paths import Out, out_root
 from shared.stages import Stage
@@ -46,19 +47,30 @@ def run(name: str, preset: Preset) -> None:
             render(pictures, store, frames, f"{film.shot.frames} frames in the film", tally)
         finally:
             tally.write(store, preset, time.perf_counter() - started)
-        keys = [pictures.key(frame) for frame in frames]
+        found = [picture_of(pictures, store, frame) for frame in frames]
         index = FrameIndex(
             mechanism=out.name,
             preset=preset.name,
             width=preset.width,
             height=preset.height,
             fps=film.shot.fps,
-            frames=keys * film.shot.turns,
+            frames=[path.name for path in found] * film.shot.turns,
         )
         jsonfile.write(store.index, index)
-        store.prune(set(keys), spare=len(set(keys)))
-    stage.outputs.extend(store.path(key) for key in sorted(set(keys)))
+        store.prune(set(found), spare=len(set(found)))
+    stage.outputs.extend(sorted(set(found)))
     stage.done()
+
+
+def picture_of(pictures: Pictures, store: FrameStore, frame: int) -> Path:
+    """The file of a rendered frame; raises UserError if something removed or changed it meanwhile."""
+    path = store.find(pictures.key(frame))
+    if path is None:
+        raise UserError(
+            f"{pictures.film.motion.mechanism}: the picture of frame {frame} went from {store.folder} while the others "
+            "were rendered; run the same command again"
+        )
+    return path
 
 
 @dataclass
@@ -83,7 +95,10 @@ class Tally:
             cycles=round(self.cycles, 3),
             overhead=round(wall / max(self.cycles, 1e-9), 4),
         )
-        jsonfile.write(store.timing, timing)
+        try:
+            jsonfile.write(store.timing, timing)
+        except UserError as error:  # the next forecast is all that it costs
+            warn("frames", str(error))
 
 
 @dataclass
@@ -116,7 +131,9 @@ class Pictures:
             around = [self.state(f) for f in (frame - 1, frame, frame + 1)] if self.preset.motion_blur else []
             at = len(states) + (1 if around else 0)
             states += around or [self.state(frame)]
-            pictures.append(Picture(state=at, path=str(store.path(self.key(frame)).resolve())))
+            pictures.append(
+                Picture(state=at, folder=str(store.folder.resolve()), key=self.key(frame), name=f"frame {frame}")
+            )
         return Job(
             scene=self.film.scene,
             states=states,
@@ -136,7 +153,7 @@ def render(pictures: Pictures, store: FrameStore, frames: Sequence[int], what: s
     """
     preset, name = pictures.preset, pictures.film.motion.mechanism
     by_key = {pictures.key(frame): frame for frame in reversed(frames)}
-    missing = sorted(frame for key, frame in by_key.items() if not store.has(key, preset.width, preset.height))
+    missing = sorted(frame for key, frame in by_key.items() if store.find(key) is None)
     say("frames", f"{name}: {preset}: {len(missing)} of {len(by_key)} pictures to render, {what}")
     if not missing:
         return
@@ -145,7 +162,8 @@ def render(pictures: Pictures, store: FrameStore, frames: Sequence[int], what: s
     if known is not None:
         each, source = known
         say("frames", f"{name}: forecast {duration(each * len(missing))} at {duration(each)} a frame, {source}")
-    with blender(pictures.job(missing, store)) as answers, progress(f"{name} {preset.name}", len(missing)) as bar:
+    each = known[0] if known else 0.0
+    with blender(pictures.job(missing, store), each) as answers, progress(f"{name} {preset.name}", len(missing)) as bar:
         for answer in answers:
             if answer.device:
                 tally.device = answer.device

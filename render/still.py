@@ -50,6 +50,6 @@ def _make(out: Out, preset: Preset, frame: int | None, target: Path, stage: Stag
     store = FrameStore(out.frames(preset.name))
     with store.locked():
         frames.render(pictures, store, [frame], f"frame {frame}", frames.Tally())
-        write_bytes(target, store.path(pictures.key(frame)).read_bytes())
+        write_bytes(target, frames.picture_of(pictures, store, frame).read_bytes())
     stage.done()
     say(word, f"{out.name}: {target}")

@@ -1,36 +1,45 @@
 """The folder of one preset's frames: pictures by key, the film's index, and the timing of the last run.
 
-out/<mechanism>/frames/<preset>/<key>.png, frames.json, timing.json
+out/<mechanism>/frames/<preset>/<key>-<hash>.png, frames.json, timing.json. The name of a picture says what it shows and
+which bytes it has, so one that was damaged, or swapped for another, is known without a list beside it.
 """
 
 from __future__ import annotations
 
-import fcntl
 import os
+import time
 from collections.abc import Collection, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 import msgspec
 
-from shared import jsonfile
+from render.picture_file import is_as_named
+from shared import jsonfile, locks
+from shared.console import say
 from shared.errors import UserError
+from shared.files import refusal
 from shared.paths import refuse_links
+
+WAIT = 10.0
+"""Seconds to wait for another process that has the folder: one that was stopped needs a moment to clean up."""
+Count = Annotated[int, msgspec.Meta(ge=1)]
+Seconds = Annotated[float, msgspec.Meta(ge=0, le=1e9)]
 
 
 class FrameIndex(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     """frames.json: which picture each frame of the film shows."""
 
     schema: Literal["mbsd.frames"] = "mbsd.frames"
-    schema_version: Literal[1] = 1
+    schema_version: Literal[2] = 2
     mechanism: str
     preset: str
     width: int
     height: int
     fps: int
     frames: list[str]
-    """Key of every frame in order; the picture is ``<key>.png`` beside this file."""
+    """File name of every frame's picture in order, beside this file."""
 
 
 class Timing(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
@@ -40,15 +49,15 @@ class Timing(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     schema_version: Literal[1] = 1
     preset: str
     device: str
-    work: int
+    work: Count
     """Samples in one picture."""
-    rendered: int
+    rendered: Count
     """Pictures made in that run."""
-    wall: float
+    wall: Seconds
     """The whole stage, from its start to its end."""
-    cycles: float
+    cycles: Seconds
     """Inside Blender's renderer."""
-    overhead: float
+    overhead: Annotated[float, msgspec.Meta(ge=0)]
     """wall / cycles."""
 
 
@@ -60,43 +69,72 @@ class FrameStore:
         self.index = folder / "frames.json"
         self.timing = folder / "timing.json"
 
-    def path(self, key: str) -> Path:
-        """Where the picture with this key is, or will be."""
-        return self.folder / f"{key}.png"
+    def find(self, key: str) -> Path | None:
+        """The picture with this key, if it is there and has the bytes that its name tells; a damaged one is removed."""
+        for path in sorted(self.folder.glob(f"{key}-*.png")):
+            try:
+                if is_as_named(path, path.read_bytes()):
+                    return path
+            except FileNotFoundError:
+                continue
+            except OSError as error:
+                raise UserError(refusal(path, error, "read")) from error
+            say("frames", f"{path.name} is not the picture that was rendered any more; it is rendered again")
+            self._remove(path)
+        return None
 
-    def has(self, key: str, width: int, height: int) -> bool:
-        """Whether the picture is there, whole; a damaged one is removed."""
-        path = self.path(key)
-        if not path.exists():
-            return False
-        if is_whole(path, width, height):
-            return True
-        path.unlink()
-        return False
+    def read(self, name: str) -> bytes | None:
+        """The bytes of the picture with this file name, if they are those that were rendered; else None."""
+        path = self.folder / name
+        with suppress(OSError):
+            content = path.read_bytes()
+            if is_as_named(path, content):
+                return content
+        return None
 
     @contextmanager
     def locked(self) -> Iterator[None]:
-        """Hold the folder for one process; raises UserError if another renders into it. Sweeps up unfinished files."""
+        """Hold the folder for one process, after a short wait for another; sweeps up unfinished files.
+
+        Raises UserError if another process goes on rendering into the folder, or if it cannot be written.
+        """
         refuse_links(self.folder)
-        self.folder.mkdir(parents=True, exist_ok=True)
-        handle = os.open(self.folder / ".lock", os.O_RDWR | os.O_CREAT, 0o644)
+        lock = self.folder / ".lock"
         try:
-            try:
-                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError:
-                raise UserError(f"another process renders into {self.folder}; wait for it or stop it") from None
+            self.folder.mkdir(parents=True, exist_ok=True)
+            if lock.is_dir():
+                lock.rmdir()
+            handle = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
+        except OSError as error:
+            raise UserError(refusal(lock, error)) from error
+        try:
+            self._take(handle)
             self._sweep()
             yield
         finally:
-            self._sweep()
+            with suppress(UserError):
+                self._sweep()
             os.close(handle)
 
-    def prune(self, used: Collection[str], spare: int) -> int:
+    def _take(self, handle: int) -> None:
+        end, told = time.monotonic() + WAIT, False
+        try:
+            while not locks.take(handle):
+                if time.monotonic() >= end:
+                    raise UserError(f"another process renders into {self.folder}; wait for it or stop it")
+                if not told:
+                    say("frames", f"another process has {self.folder}; waiting {WAIT:.0f} s for it")
+                    told = True
+                time.sleep(0.1)
+        except OSError as error:
+            raise UserError(refusal(self.folder / ".lock", error, "lock")) from error
+
+    def prune(self, used: Collection[Path], spare: int) -> int:
         """Remove the oldest pictures the film no longer uses, but keep ``spare`` of them; returns how many went."""
-        unused = [path for path in self.folder.glob("*.png") if path.stem not in used]
+        unused = [path for path in self.folder.glob("*.png") if path not in used]
         unused.sort(key=lambda path: (path.stat().st_mtime, path.name), reverse=True)
         for path in unused[spare:]:
-            path.unlink()
+            self._remove(path)
         return len(unused[spare:])
 
     def read_timing(self) -> Timing | None:
@@ -108,16 +146,10 @@ class FrameStore:
 
     def _sweep(self) -> None:
         for path in self.folder.glob(".*.part.png"):
+            self._remove(path)
+
+    def _remove(self, path: Path) -> None:
+        try:
             path.unlink(missing_ok=True)
-
-
-def is_whole(path: Path, width: int, height: int) -> bool:
-    """Whether a PNG decodes to its last row at this size."""
-    from PIL import Image
-
-    try:
-        with Image.open(path) as picture:
-            picture.load()
-            return picture.size == (width, height)
-    except (OSError, SyntaxError, ValueError):
-        return False
+        except OSError as error:
+            raise UserError(refusal(path, error, "remove")) from error

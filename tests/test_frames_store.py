@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import errno
+import io
+import json
 import os
 import shutil
 import subprocess
@@ -15,8 +18,10 @@ from PIL import Image
 
 from render import blend, encode, frames, still
 from render.blender.worker import _missing_library
-from render.child import _sweep
+from render.film_file import refuse_other_than
+from render.picture_file import fault, name_of
 from render.presets import PRESETS, Preset
+from render.scratch import scratch_folder, sweep
 from render.store import FrameStore, Timing
 from shared import jsonfile
 from shared.errors import UserError
@@ -40,37 +45,120 @@ def command(*arguments: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-@pytest.mark.parametrize("damage", ["truncated", "flipped", "empty", "other size"])
-def test_a_damaged_picture_is_not_kept(tmp_path: Path, damage: str):
+def stored(store: FrameStore, key: str, seed: int = 0) -> Path:
+    """A picture in the store, as the Blender process leaves it."""
+    content = picture(store.folder / "new.png", seed).read_bytes()
+    return (store.folder / "new.png").rename(store.folder / name_of(key, content))
+
+
+@pytest.mark.parametrize("damage", ["truncated", "flipped", "empty", "swapped", "a comment more"])
+def test_a_picture_with_other_bytes_is_not_kept(tmp_path: Path, damage: str, capsys: pytest.CaptureFixture[str]):
     store = FrameStore(tmp_path)
-    path = picture(store.path("a"))
-    assert store.has("a", 32, 18)
+    path, other = stored(store, "a", 0), stored(store, "b", 1)
+    assert store.find("a") == path
     content = path.read_bytes()
-    if damage == "truncated":
-        path.write_bytes(content[:-30])
-    elif damage == "flipped":
-        middle = len(content) // 2
-        path.write_bytes(content[:middle] + bytes([content[middle] ^ 0xFF]) + content[middle + 1 :])
-    elif damage == "empty":
-        path.write_bytes(b"")
-    assert not store.has("a", *((64, 36) if damage == "other size" else (32, 18)))
+    assert store.read(path.name) == content
+    middle = len(content) // 2
+    path.write_bytes(
+        {
+            "truncated": content[:-1],
+            "flipped": content[:middle] + bytes([content[middle] ^ 0xFF]) + content[middle + 1 :],
+            "empty": b"",
+            "swapped": other.read_bytes(),
+            "a comment more": content[:-12] + b"\0\0\0\0tEXt\xd8\xf1\x11\xb4" + content[-12:],
+        }[damage]
+    )
+    assert store.read(path.name) is None
+    assert store.find("a") is None
+    assert f"{path.name} is not the picture that was rendered any more; it is rendered again" in capsys.readouterr().out
     assert not path.exists()
+    assert store.find("b") == other
+
+
+def test_a_picture_under_the_name_of_another_is_not_taken(tmp_path: Path):
+    store = FrameStore(tmp_path)
+    path = stored(store, "a")
+    path.rename(path.with_name("b" + path.name[1:]))
+    assert store.find("b") is None
+
+
+def test_a_picture_is_looked_at_to_its_last_byte(tmp_path: Path):
+    path = picture(tmp_path / "a.png")
+    content = path.read_bytes()
+    assert fault(path, 32, 18) is None
+    assert fault(path, 64, 36) == "is 32x18, not 64x36"
+    for cut in [*range(0, len(content), 17), *range(len(content) - 13, len(content))]:
+        path.write_bytes(content[:cut])
+        assert fault(path, 32, 18), cut
+    for place in [*range(60), *range(60, len(content), 17)]:
+        path.write_bytes(content[:place] + bytes([content[place] ^ 0x55]) + content[place + 1 :])
+        assert fault(path, 32, 18), place
+    path.unlink()
+    assert fault(path, 32, 18) == "is not there"
 
 
 def test_old_pictures_go_oldest_first_and_some_stay(tmp_path: Path):
     store = FrameStore(tmp_path)
-    for age, key in enumerate("abcdef"):
-        os.utime(picture(store.path(key), age), (1e9 + age, 1e9 + age))
-    assert store.prune({"a"}, spare=2) == 3
-    assert sorted(path.stem for path in tmp_path.glob("*.png")) == ["a", "e", "f"]
+    made = [stored(store, key, age) for age, key in enumerate("abcdef")]
+    for age, path in enumerate(made):
+        os.utime(path, (1e9 + age, 1e9 + age))
+    assert store.prune({made[0]}, spare=2) == 3
+    assert sorted(path.name[0] for path in tmp_path.glob("*.png")) == ["a", "e", "f"]
 
 
-def test_two_renders_of_one_film_do_not_meet(tmp_path: Path):
+def test_two_renders_of_one_film_do_not_meet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("render.store.WAIT", 0.2)
     first, second = FrameStore(tmp_path), FrameStore(tmp_path)
     with first.locked(), pytest.raises(UserError, match="another process renders"), second.locked():
         pass
     with FrameStore(tmp_path).locked():
         pass
+
+
+def test_a_run_that_is_being_stopped_is_waited_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    code = "import sys, time, pathlib, render.store as s\nwith s.FrameStore(pathlib.Path(sys.argv[1])).locked():"
+    code += " print(flush=True); time.sleep(1)"
+    other = subprocess.Popen([sys.executable, "-c", code, str(tmp_path)], cwd=ROOT, stdout=subprocess.PIPE)
+    assert other.stdout
+    other.stdout.readline()
+    with FrameStore(tmp_path).locked():
+        assert "another process has" in capsys.readouterr().out
+    other.communicate()
+
+
+def test_a_folder_in_place_of_the_lock(tmp_path: Path):
+    (tmp_path / ".lock").mkdir()
+    with FrameStore(tmp_path).locked():
+        assert (tmp_path / ".lock").is_file()
+    (tmp_path / ".lock").unlink()
+    (tmp_path / ".lock" / "mine").mkdir(parents=True)
+    with pytest.raises(UserError, match=r"cannot write .*\.lock: Directory not empty; remove or rename"):
+        FrameStore(tmp_path).locked().__enter__()
+
+
+def test_a_folder_that_cannot_be_written_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    def refuse(*_: object) -> int:
+        raise OSError(errno.EROFS, "Read-only file system")
+
+    monkeypatch.setattr(os, "open", refuse)
+    with pytest.raises(UserError, match=r"cannot write .*\.lock: Read-only file system; make file and folder acc"):
+        FrameStore(tmp_path).locked().__enter__()
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [("rendered", 0), ("work", 0), ("cycles", -1.0), ("cycles", 1e300), ("device", "\udcff")],
+    ids=str,
+)
+def test_a_timing_that_cannot_be_is_as_good_as_none(tmp_path: Path, field: str, value: object):
+    store = FrameStore(tmp_path)
+    timing = Timing(preset="tiny", device="CPU", work=1, rendered=10, wall=1.1, cycles=1.0, overhead=1.1)
+    jsonfile.write(store.timing, timing)
+    assert frames._forecast(TINY, store)
+    document = json.loads(store.timing.read_bytes()) | {field: value}
+    store.timing.write_bytes(json.dumps(document, ensure_ascii=False).encode(errors="surrogateescape"))
+    assert store.read_timing() is None
+    assert frames._forecast(TINY, store) is None
 
 
 def test_unfinished_files_are_swept(tmp_path: Path):
@@ -80,12 +168,15 @@ def test_unfinished_files_are_swept(tmp_path: Path):
 
 
 def test_scratch_folders_of_dead_processes_are_swept(tmp_path: Path):
-    dead = subprocess.Popen([sys.executable, "-c", ""])
-    dead.wait()
-    for number in (dead.pid, os.getpid()):
-        (tmp_path / f"tmp-{number}").mkdir()
-    _sweep(tmp_path)
-    assert [path.name for path in tmp_path.iterdir()] == [f"tmp-{os.getpid()}"]
+    code = "import sys, os, pathlib; from render.scratch import scratch_folder\n"
+    code += "with scratch_folder(pathlib.Path(sys.argv[1])): os._exit(0)"
+    subprocess.run([sys.executable, "-c", code, str(tmp_path)], cwd=ROOT, check=True)
+    assert len(list(tmp_path.iterdir())) == 1
+    (tmp_path / "tmp-of-the-user").mkdir()  # younger than a minute and without a lock
+    with scratch_folder(tmp_path) as mine:
+        sweep(tmp_path)
+        assert sorted(tmp_path.iterdir()) == sorted([mine, tmp_path / "tmp-of-the-user"])
+    assert [path.name for path in tmp_path.iterdir()] == ["tmp-of-the-user"]
 
 
 def test_a_full_disk_is_refused_before_the_start(out_root: Path, monkeypatch: pytest.MonkeyPatch):
@@ -161,18 +252,62 @@ def test_without_ffmpeg_the_film_says_so(monkeypatch: pytest.MonkeyPatch):
         encode.ffmpeg()
 
 
+def noise(count: int) -> list[bytes]:
+    """PNGs of 32x18."""
+    made = []
+    for seed in range(count):
+        made.append(io.BytesIO())
+        pixels = np.random.default_rng(seed).integers(0, 255, (18, 32, 3), dtype=np.uint8)
+        Image.fromarray(pixels).save(made[-1], format="PNG")
+    return [file.getvalue() for file in made]
+
+
 def test_ffmpeg_failing_leaves_no_film(tmp_path: Path):
-    broken = tmp_path / "a.png"
-    broken.write_bytes(b"not a picture")
-    with pytest.raises(UserError, match=r"film\.mp4: ffmpeg failed"):
-        encode.encode([broken], 30, tmp_path / "film.mp4")
-    assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
+    with pytest.raises(UserError, match=r"film\.mp4: ffmpeg failed: .*MB are free"):
+        encode.encode([b"not a picture"], 1, TINY, 30, tmp_path / "film.mp4")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("wanted", [4, 6])
+def test_a_film_with_a_frame_too_few_or_too_many_is_refused(tmp_path: Path, wanted: int):
+    with pytest.raises(
+        UserError, match=rf"the film has 5 frames of 32x18 in 0\.500 s; {wanted} of 32x18 in 0\.{wanted}"
+    ):
+        encode.encode(noise(5), wanted, TINY, 10, tmp_path / "film.mp4")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_film_of_another_size_is_refused(tmp_path: Path):
+    with pytest.raises(UserError, match=r"the film has 5 frames of 32x18 in .*; 5 of 64x36"):
+        encode.encode(noise(5), 5, Preset("other", 64, 36, 1), 10, tmp_path / "film.mp4")
+
+
+def test_a_film_that_was_cut_does_not_decode(tmp_path: Path):
+    film = tmp_path / "film.mp4"
+    encode.encode(noise(5), 5, TINY, 10, film)
+    content = film.read_bytes()
+    refuse_other_than(film, "film", encode.ffmpeg(), 5, TINY, 10, 60.0)
+    for cut in (0, 100, len(content) // 2, len(content) - 50):
+        film.write_bytes(content[:cut])
+        with pytest.raises(UserError, match=r"film: the film (does not decode|has)"):
+            refuse_other_than(film, "film", encode.ffmpeg(), 5, TINY, 10, 60.0)
+
+
+def test_an_ffmpeg_that_hangs_is_stopped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    fake = tmp_path / "ffmpeg"
+    fake.write_text("#!/bin/sh\nexec sleep 60\n")
+    fake.chmod(0o755)
+    monkeypatch.setattr(encode, "ffmpeg", lambda: str(fake))
+    monkeypatch.setattr(encode, "TICK", 0.05)
+    monkeypatch.setenv("MBSD_PATIENCE", "0.5")
+    with pytest.raises(UserError, match=r"film\.mp4: ffmpeg took no picture for 0\.5 s and was stopped"):
+        encode.encode(noise(1) * 200, 200, TINY, 10, tmp_path / "film.mp4")
+    assert [path.name for path in tmp_path.iterdir()] == ["ffmpeg"]
 
 
 def test_the_film_is_an_mp4_every_player_takes(tmp_path: Path):
-    pictures = [picture(tmp_path / f"{i}.png", i) for i in range(5)]
     film = tmp_path / "film.mp4"
-    encode.encode(pictures * 3, 10, film)
+    encode.encode(noise(5) * 3, 15, TINY, 10, film)
     content = film.read_bytes()
     assert content.index(b"moov") < content.index(b"mdat")
     said = subprocess.run([encode.ffmpeg(), "-i", str(film)], capture_output=True, text=True, check=False).stderr
@@ -180,12 +315,8 @@ def test_the_film_is_an_mp4_every_player_takes(tmp_path: Path):
     assert "yuv420p(tv, bt709" in said
     assert "32x18" in said
     assert "10 fps" in said
-    counted = subprocess.run(
-        [encode.ffmpeg(), "-i", str(film), "-f", "null", "-"], capture_output=True, text=True, check=False
-    ).stderr
-    assert counted.split("frame=")[-1].split()[0] == "15"
     again = tmp_path / "again.mp4"
-    encode.encode(pictures * 3, 10, again)
+    encode.encode(noise(5) * 3, 15, TINY, 10, again)
     assert again.read_bytes() == content
 
 

@@ -8,10 +8,16 @@ from render.scene import Scene, State
 
 
 class Picture(msgspec.Struct, kw_only=True, frozen=True):
-    """One picture to make: the state at an index of ``Job.states``, written whole to ``path``."""
+    """One picture to make: the state at an index of ``Job.states``, written whole into ``folder``.
+
+    Its file is called ``<key>-<hash of key and bytes>.png``.
+    """
 
     state: int
-    path: str
+    folder: str
+    key: str
+    name: str
+    """What messages call it: ``frame 12``."""
 
 
 class Job(msgspec.Struct, kw_only=True, frozen=True):
@@ -31,10 +37,15 @@ class Job(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class Answer(msgspec.Struct, kw_only=True, frozen=True, omit_defaults=True):
-    """One line from the Blender process: the device once, then a line per picture; or an error."""
+    """One line from the Blender process: the device once, what it does, a line per picture; or an error."""
 
     device: str = ""
+    doing: str = ""
+    """What it is about to do, after the word "Blender"."""
     path: str = ""
+    """A file that is whole."""
+    key: str = ""
+    """Of the picture in that file."""
     cycles: float = 0.0
     """Seconds inside Blender's renderer for this picture."""
     error: str = ""

@@ -1,4 +1,4 @@
-"""The Blender process: ``python -m render.blender.worker JOB.json``. Answers one JSON line per picture.
+"""The Blender process: ``python -m render.blender.worker JOB.json``. Answers in JSON lines.
 
 It ends by itself when its standard input closes, so that it never outlives the process that started it.
 """
@@ -7,16 +7,30 @@ It ends by itself when its standard input closes, so that it never outlives the 
 # bpy fills itself in when it is imported, its stubs are empty.
 from __future__ import annotations
 
+import ctypes
 import os
+import signal
 import sys
 import threading
 import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
-from render.blender.job import Answer, Job
+from render.blender.job import Answer, Job, Picture
+from render.blender.saved import save_whole
+from render.picture_file import fault, name_of
+from shared.errors import UserError
+
+PR_SET_PDEATHSIG = 1
+"""Number of the request in Linux's <sys/prctl.h>."""
+ZSTD_SEEKABLE = b"\xb1\xea\x92\x8f"
+"""The last bytes of a seekable file of Zstandard."""
+BLEND = 20_000_000
+"""Bytes that a saved scene may need."""
 
 
 def main() -> int:
@@ -28,27 +42,41 @@ def main() -> int:
         answers.write(msgspec.json.encode(Answer(**fields)).decode() + "\n")
         answers.flush()
 
-    threading.Thread(target=_end_with_parent, daemon=True).start()
+    _die_with_parent()
     job = msgspec.json.decode(Path(sys.argv[1]).read_bytes(), type=Job)
+    answer(doing="loads Blender")
     try:
         import bpy  # noqa: F401  # first, so that a missing system library is told as such
     except ImportError as error:
         answer(error=_missing_library(str(error)))
         return 1
+    try:
+        _work(job, answer)
+    except UserError as error:
+        answer(error=str(error))
+        return 1
+    return 0
+
+
+def _work(job: Job, answer: Callable[..., None]) -> None:
+    """Build the scene and make what the job asks for."""
     from render.blender import device, stage
 
+    answer(doing="builds the scene")
     built = stage.build(job)
     answer(device=device.choose(built.scene))
     if job.blend is not None:
+        answer(doing="saves the scene")
         _save(built, Path(job.blend))
         answer(path=job.blend)
-        return 0
+        return
     _settings(built.scene, job)
     for picture in job.pictures:
         built.show(picture.state)
-        seconds = _render(built.scene, Path(picture.path))
-        answer(path=picture.path, cycles=seconds)
-    return 0
+        with _signs_of_life(lambda doing, name=picture.name: answer(doing=f"renders {name}: {doing}")):
+            seconds = _render(built.scene)
+        answer(doing=f"saves {picture.name}")
+        answer(path=str(_save_picture(built.scene, job, picture)), key=picture.key, cycles=seconds)
 
 
 def _settings(scene: Any, job: Job) -> None:
@@ -80,8 +108,8 @@ def _settings(scene: Any, job: Job) -> None:
     cycles.denoising_input_passes = "RGB_ALBEDO_NORMAL"
 
 
-def _render(scene: Any, path: Path) -> float:
-    """Render to a file beside ``path``, then rename; returns the seconds between Blender's own start and end."""
+def _render(scene: Any) -> float:
+    """Render one picture; returns the seconds between Blender's own start and end."""
     import bpy
 
     span: dict[str, float] = {}
@@ -95,18 +123,50 @@ def _render(scene: Any, path: Path) -> float:
 
     on_start.append(started)
     on_end.append(ended)
-    part = path.with_name(f".{path.stem}.part.png")
     try:
         bpy.ops.render.render()
-        bpy.data.images["Render Result"].save_render(str(part), scene=scene)
-        with part.open("rb") as written:
-            os.fsync(written.fileno())
-        os.replace(part, path)
     finally:
         on_start.remove(started)
         on_end.remove(ended)
-        part.unlink(missing_ok=True)
     return span["end"] - span["start"]
+
+
+@contextmanager
+def _signs_of_life(tell: Callable[[str], None]) -> Iterator[None]:
+    """Tell what Cycles does meanwhile, at most once a second."""
+    import bpy
+
+    last = [""]
+    when = [0.0]
+
+    def stats(text: Any, *_: Any) -> None:
+        doing = str(text).rpartition("Mem:")[2].partition("|")[2].strip()
+        if doing != last[0] and time.monotonic() - when[0] >= 1.0:
+            last[0], when[0] = doing, time.monotonic()
+            tell(doing)
+
+    bpy.app.handlers.render_stats.append(stats)
+    try:
+        yield
+    finally:
+        bpy.app.handlers.render_stats.remove(stats)
+
+
+def _save_picture(scene: Any, job: Job, picture: Picture) -> Path:
+    """The rendered picture as a checked PNG under the name that its key and its bytes give; returns its path."""
+    import bpy
+
+    part = Path(picture.folder) / f".{picture.key}.part.png"
+    save_whole(
+        part,
+        lambda path: bpy.data.images["Render Result"].save_render(str(path), scene=scene),
+        lambda path: fault(path, job.width, job.height),
+        most=3 * job.width * job.height + 4096,
+        name=picture.name,
+    )
+    path = part.with_name(name_of(picture.key, part.read_bytes()))
+    os.replace(part, path)
+    return path
 
 
 def _save(built: Any, path: Path) -> None:
@@ -120,8 +180,28 @@ def _save(built: Any, path: Path) -> None:
     built.scene.frame_set(0)
     part = path.with_name(f".{path.stem}.part.blend")
     bpy.context.preferences.filepaths.save_version = 0
-    bpy.ops.wm.save_as_mainfile(filepath=str(part), compress=True, copy=True)
+    save_whole(
+        part,
+        lambda path: bpy.ops.wm.save_as_mainfile(filepath=str(path), compress=True, copy=True),
+        _blend_fault,
+        most=BLEND,
+        name=path.name,
+    )
     os.replace(part, path)
+
+
+def _blend_fault(path: Path) -> str | None:
+    """Whether a .blend was cut short: it ends with the table of its compressed pieces, and Blender can read it."""
+    import bpy
+
+    content = path.read_bytes() if path.exists() else b""
+    if not content.endswith(ZSTD_SEEKABLE):
+        return f"is cut short after {len(content)} bytes"
+    try:
+        with bpy.data.libraries.load(str(path)):
+            return None
+    except OSError as error:
+        return f"cannot be read ({error})"
 
 
 def _missing_library(message: str) -> str:
@@ -147,7 +227,14 @@ APT = {
 """Debian's package for each library bpy may miss."""
 
 
-def _end_with_parent() -> None:
+def _die_with_parent() -> None:
+    """End when the parent ends, however it does: our standard input closes then, and Linux can tell as well."""
+    threading.Thread(target=_end_with_input, daemon=True).start()
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def _end_with_input() -> None:
     while os.read(0, 4096):
         pass
     os._exit(1)

@@ -230,7 +230,7 @@ class AddingForces(MechanismBase):
 
     def _law(self, name: str, law: Any, of: str) -> dict[str, Any]:
         if not callable(law):
-            raise ModelError(f"{self.name}: force '{name}' needs a function of {of}, got {law!r}")
+            raise ModelError(f"{self.name}: force '{name}' needs a function of {of}, got {shown(law)}")
         return {"law": law}
 
     def _amount(self, name: str, what: str, value: Amount) -> tuple[dict[str, Any], dict[str, Motion]]:

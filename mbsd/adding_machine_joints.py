@@ -6,6 +6,8 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from mbsd.adding_joints import AddingJoints
 from mbsd.arguments import number_pair
 from mbsd.body import Marker
@@ -23,6 +25,7 @@ from mbsd.joints.rack_and_pinion import RACK_AND_PINION
 from mbsd.joints.rolling_disc import ROLLING_DISC
 from mbsd.joints.rolling_on_curve import ROLLING_ON_CURVE
 from mbsd.shown import shown
+from mbsd.teeth import FEWEST, with_radii
 
 if TYPE_CHECKING:
     from mbsd.cams import CamProfile
@@ -41,43 +44,70 @@ class AddingMachineJoints(AddingJoints):
         name: str,
         i: Marker,
         j: Marker,
-        radius_i: float,
-        radius_j: float,
+        radius_i: float | None = None,
+        radius_j: float | None = None,
         internal: bool = False,
         phase: Sequence[float] | None = None,
+        teeth: Sequence[int] | None = None,
+        module: float | None = None,
     ) -> Joint:
-        """Two gears with centres at i and j and the given pitch radii (m); ``internal``: i is the ring around j.
+        """Two gears with centres at i and j, by pitch radii (m), or by ``teeth`` (z_i, z_j) and ``module`` (m).
 
-        They mesh as they stand at the start; ``phase`` gives angles of both bodies (rad) that belong together.
+        ``internal``: i is the ring around j. They mesh as they stand at the start; ``phase`` gives angles of both
+        bodies (rad) that belong together. Gears by teeth must stand module (z_i + z_j) / 2 apart at the start, of a
+        ring and its pinion the difference (AssemblyError).
         """
-        radii = self._radii(name, radius_i=radius_i, radius_j=radius_j)
-        if internal and radius_i <= radius_j:
-            raise ModelError(
-                f"{self.name}: gear_pair '{name}' is internal, so radius_i = {radius_i:g} m is the ring's and must be "
-                f"above radius_j = {radius_j:g} m; give the ring first"
+        wheels = self._wheels(name, {"radius_i": radius_i, "radius_j": radius_j}, teeth, module=module)
+        sized = with_radii(wheels)
+        if internal and sized["radius_i"] <= sized["radius_j"]:
+            first, second = (
+                [f"{count} teeth" for count in wheels["teeth"]]
+                if "teeth" in wheels
+                else [f"{key} = {wheels[key]:g} m" for key in wheels]
             )
-        return self._join(GEAR_PAIR, name, i, j, None, **radii, internal=bool(internal), phase=self._phase(name, phase))
+            raise ModelError(
+                f"{self.name}: gear_pair '{name}' is internal, so {first} is the ring's and must be "
+                f"above {second}; give the ring first"
+            )
+        return self._join(
+            GEAR_PAIR, name, i, j, None, **wheels, internal=bool(internal), phase=self._phase(name, phase)
+        )
 
     def belt(
         self,
         name: str,
         i: Marker,
         j: Marker,
-        radius_i: float,
-        radius_j: float,
+        radius_i: float | None = None,
+        radius_j: float | None = None,
         crossed: bool = False,
         phase: Sequence[float] | None = None,
+        teeth: Sequence[int] | None = None,
+        pitch: float | None = None,
     ) -> Joint:
-        """A belt or chain over pulleys with centres at i and j (m), open or crossed; ``phase`` as in gear_pair."""
-        radii = self._radii(name, radius_i=radius_i, radius_j=radius_j)
-        return self._join(BELT, name, i, j, None, **radii, crossed=bool(crossed), phase=self._phase(name, phase))
+        """A belt or chain over pulleys with centres at i and j, open or crossed; ``phase`` as in gear_pair.
+
+        By pitch radii (m), or by ``teeth`` (z_i, z_j) and the belt's ``pitch`` (m from tooth to tooth).
+        """
+        wheels = self._wheels(name, {"radius_i": radius_i, "radius_j": radius_j}, teeth, pitch=pitch)
+        return self._join(BELT, name, i, j, None, **wheels, crossed=bool(crossed), phase=self._phase(name, phase))
 
     def rack_and_pinion(
-        self, name: str, rack: Marker, pinion: Marker, radius: float, phase: Sequence[float] | None = None
+        self,
+        name: str,
+        rack: Marker,
+        pinion: Marker,
+        radius: float | None = None,
+        phase: Sequence[float] | None = None,
+        teeth: int | None = None,
+        module: float | None = None,
     ) -> Joint:
-        """A pinion of the given pitch radius (m) about marker ``pinion`` on the x axis of marker ``rack``."""
-        radii = self._radii(name, radius=radius)
-        return self._join(RACK_AND_PINION, name, rack, pinion, None, **radii, phase=self._phase(name, phase))
+        """A pinion about marker ``pinion`` on the x axis of marker ``rack``, by its pitch radius (m), or by teeth.
+
+        By ``teeth`` and ``module`` (m) its centre must stand module z / 2 above that axis at the start (AssemblyError).
+        """
+        wheels = self._wheels(name, {"radius": radius}, teeth, module=module)
+        return self._join(RACK_AND_PINION, name, rack, pinion, None, **wheels, phase=self._phase(name, phase))
 
     def rolling_disc(
         self, name: str, line: Marker, disc: Marker, radius: float, phase: Sequence[float] | None = None
@@ -191,6 +221,31 @@ class AddingMachineJoints(AddingJoints):
         if unit not in ("m", "rad"):
             raise ModelError(f"{self.name}: joint '{name}' has the unit {shown(unit)}; it must be 'm' or 'rad'")
         return self._join(CONSTRAINT, name, i, j, None, function=function, unit=unit)
+
+    def _wheels(
+        self, name: str, radii: Mapping[str, float | None], teeth: Sequence[int] | int | None, **size: float | None
+    ) -> dict[str, Any]:
+        """What gives the wheels: their radii, or their teeth with the one ``size`` (module or pitch)."""
+        what, [(unit, value)] = f"{self.name}: joint '{name}'", size.items()
+        given = {key: radius for key, radius in radii.items() if radius is not None}
+        by_radii, by_teeth = " and ".join(f"{key}=" for key in radii), f"teeth= and {unit}="
+        if given and (teeth is not None or value is not None):
+            raise ModelError(f"{what} has {', '.join(given)} and {by_teeth}; give {by_radii} (m), or {by_teeth} (m)")
+        if len(given) == len(radii):
+            return self._radii(name, **given)
+        if teeth is None or value is None:
+            raise ModelError(f"{what} needs {by_radii} (m), or {by_teeth} (m)")
+        single = len(radii) == 1
+        counts = teeth if isinstance(teeth, Sequence | np.ndarray) and not single else [teeth]
+        wanted = "a whole number" if single else "two whole numbers (z_i, z_j)"
+        if isinstance(counts, str) or len(counts) != len(radii):
+            raise ModelError(f"{what} has teeth {shown(teeth)}; give {wanted} from {FEWEST} on")
+        whole: list[int] = []
+        for count in counts:
+            if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < FEWEST:
+                raise ModelError(f"{what} has {shown(count)} teeth; give {wanted} from {FEWEST} on")
+            whole.append(int(count))
+        return {"teeth": whole[0] if single else tuple(whole), **self._radii(name, **{unit: value})}
 
     def _radii(self, name: str, **radii: float) -> dict[str, float]:
         out = {key: self._number(f"joint '{name}': {key}", value) for key, value in radii.items()}

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbsd import Mechanism, MobilityError, ModelError, constant_rate
+from mbsd import AssemblyError, Mechanism, MobilityError, ModelError, constant_rate
 
 PLANETARY = json.loads((Path(__file__).parent / "reference" / "analytic_planetary.json").read_text())
 SUN, PLANET, RING = 0.020, 0.030, 0.080  # radii in the ratio of the teeth
@@ -152,3 +152,112 @@ def test_two_motors_on_geared_shafts_are_refused() -> None:
         MobilityError, match="driver 'two' drives a freedom that the joints and driver 'one' already fix"
     ):
         m.sweep()
+
+
+def _pair(distance: float, **wheels: object) -> Mechanism:
+    m = Mechanism("train", gravity=None)
+    first, second = m.body("first", 1.0, inertia=1e-3), m.body("second", 1.0, inertia=1e-3)
+    m.revolute("A", m.ground.origin, first.origin)
+    m.revolute("B", m.ground.at(distance, 0), second.origin)
+    m.gear_pair("g", first.origin, second.origin, **wheels)  # pyright: ignore[reportArgumentType]
+    m.drive_angle("motor", first, constant_rate(3.0))
+    return m
+
+
+@pytest.mark.parametrize(("internal", "distance"), [(False, 0.060), (True, 0.020)])
+def test_gears_by_teeth_are_those_of_their_radii(internal: bool, distance: float, tmp_path: Path) -> None:
+    teeth = (40, 20)
+    m = _pair(distance, teeth=teeth, module=0.002, internal=internal)
+    other = _pair(distance, radius_i=0.040, radius_j=0.020, internal=internal)
+    here, there = m.sweep(1.0, steps=10), other.sweep(1.0, steps=10)
+    np.testing.assert_array_equal(here.q, there.q)
+    np.testing.assert_allclose(here.body("second").omega, 3.0 * 2 * (1 if internal else -1))
+    assert here.packed.size == there.packed.size
+    assert m.joints["g"].params == {"teeth": teeth, "module": 0.002, "internal": internal, "phase": None}
+    m.save(tmp_path / "train.json")
+    loaded = Mechanism.load(tmp_path / "train.json")
+    assert loaded.joints["g"].params == m.joints["g"].params
+    np.testing.assert_array_equal(loaded.sweep(1.0, steps=10).q, here.q)
+    m.draw().save(tmp_path / "train.svg")
+    m.change("g", teeth=(48, 24) if internal else (36, 24))
+    if internal:
+        m.change("g", module=0.020 * 2 / 24)
+    np.testing.assert_allclose(m.sweep(1.0, steps=10).body("second").omega, 6.0 if internal else -4.5)
+    m.change("g", teeth=None, module=None, radius_i=0.05, radius_j=0.01)
+    np.testing.assert_allclose(m.sweep(1.0, steps=10).body("second").omega, 15.0 if internal else -15.0)
+
+
+@pytest.mark.parametrize("method", ["sweep", "simulate", "equilibrium"])
+def test_a_centre_distance_that_does_not_fit_the_teeth_is_told(method: str) -> None:
+    m = _pair(0.0601, teeth=(20, 40), module=0.002)
+    says = r"train: gear_pair 'g': its centres are 0\.0601 m apart, but .* and 20 \+ 40 teeth want .* = 0\.06 m\."
+    with pytest.raises(AssemblyError, match=says):
+        getattr(m, method)(*([1.0] if method != "equilibrium" else []))
+    with pytest.raises(AssemblyError, match=r"40 - 20 teeth want 0\.002 \* \(40 - 20\) / 2 = 0\.02 m"):
+        _pair(0.06, teeth=(40, 20), module=0.002, internal=True).sweep(1.0)
+    with pytest.raises(AssemblyError, match=r"0\.06 m apart.*= 60 m"):  # a module in millimetres
+        _pair(0.06, teeth=(20, 40), module=2.0).sweep(1.0)
+
+
+@pytest.mark.parametrize(
+    ("wheels", "says"),
+    [
+        ({}, r"needs radius_i= and radius_j= \(m\), or teeth= and module= \(m\)"),
+        ({"radius_i": 0.1}, "needs radius_i= and radius_j="),
+        ({"teeth": (20, 40)}, "needs radius_i= and radius_j="),
+        ({"module": 0.002}, "needs radius_i= and radius_j="),
+        ({"radius_i": 0.1, "radius_j": 0.1, "teeth": (20, 40), "module": 0.002}, "has radius_i, radius_j and teeth"),
+        ({"radius_i": 0.1, "radius_j": 0.1, "module": 0.002}, "has radius_i, radius_j and teeth= and module=; give"),
+        ({"teeth": (20, 40.5), "module": 0.002}, r"has 40\.5 teeth; give two whole numbers .* from 3 on"),
+        ({"teeth": (2, 40), "module": 0.002}, "has 2 teeth"),
+        ({"teeth": (True, 40), "module": 0.002}, "has True teeth"),
+        ({"teeth": 20, "module": 0.002}, "teeth 20; give two whole numbers"),
+        ({"teeth": (20, 30, 40), "module": 0.002}, r"teeth \(20, 30, 40\); give two whole numbers"),
+        ({"teeth": "ab", "module": 0.002}, "teeth 'ab'"),
+        ({"teeth": (20, 40), "module": 0.0}, "module 0 m; it must be positive"),
+        (
+            {"teeth": (20, 40), "module": 0.002, "internal": True},
+            "internal, so 20 teeth is the ring's .*above 40 teeth",
+        ),
+    ],
+)
+def test_teeth_that_cannot_be_are_refused(wheels: dict[str, object], says: str) -> None:
+    with pytest.raises(ModelError, match=f"train: .*'g'.*{says}"):
+        _pair(0.06, **wheels)
+
+
+def test_a_rack_and_a_toothed_belt_by_teeth(tmp_path: Path) -> None:
+    def steering(height: float) -> Mechanism:
+        m = Mechanism("steering")
+        pinion, rack = m.body("pinion"), m.body("rack")
+        m.revolute("axle", m.ground.origin, pinion.origin)
+        m.prismatic("guide", m.ground.at(0, -height), rack.origin)
+        m.rack_and_pinion("teeth", rack.origin, pinion.origin, teeth=20, module=0.003)
+        m.drive_angle("wheel", pinion, constant_rate(1.0))
+        return m
+
+    m = steering(0.030)
+    m.save(tmp_path / "steering.json")
+    m.draw().save(tmp_path / "steering.svg")
+    for one in (m, Mechanism.load(tmp_path / "steering.json")):
+        way = one.sweep(2.0).body("rack").x
+        assert way[-1] - way[0] == pytest.approx(0.030 * 2.0, abs=1e-12)
+    says = (
+        r"steering: rack_and_pinion 'teeth': the pinion's centre is 0\.031 m above .* want 0\.003 \* 20 / 2 = 0\.03 m"
+    )
+    with pytest.raises(AssemblyError, match=says):
+        steering(0.031).sweep(1.0)
+    with pytest.raises(ModelError, match=r"has 2\.5 teeth; give a whole number from 3 on"):
+        m.rack_and_pinion("again", m.bodies["rack"].origin, m.bodies["pinion"].origin, teeth=2.5, module=1.0)  # pyright: ignore[reportArgumentType]
+
+    b = Mechanism("belt")
+    small, large = b.body("small"), b.body("large")
+    b.revolute("A", b.ground.at(0, 0), small.origin)
+    b.revolute("B", b.ground.at(0.2, 0), large.origin)
+    b.belt("strap", small.origin, large.origin, teeth=(18, 60), pitch=0.005)
+    b.drive_angle("motor", small, constant_rate(10.0))
+    sol = b.sweep(1.0)
+    np.testing.assert_allclose(sol.body("large").omega, 3.0)
+    b.change("strap", teeth=None, pitch=None, radius_i=18 * 0.005 / (2 * math.pi), radius_j=60 * 0.005 / (2 * math.pi))
+    np.testing.assert_allclose(b.sweep(1.0).q, sol.q, atol=1e-14)
+    b.draw().save(tmp_path / "belt.svg")

@@ -10,6 +10,7 @@ import numpy as np
 from mbsd.body import Marker
 from mbsd.drawing.pose import Pose
 from mbsd.joint import Joint
+from mbsd.teeth import with_radii
 
 BESIDE = 1.4
 """How far the line of a rack or a rolling disc goes on to both sides, in its radii."""
@@ -18,7 +19,7 @@ ROUND = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)], float)
 
 def reach(joint: Joint, pose: Pose) -> np.ndarray:
     """(k, 2) points that a drawing of this joint must hold (m); none for joints without extent."""
-    params = joint.params
+    params = with_radii(joint.params)
     out = [np.zeros((0, 2))]
     discs = ((joint.i, params.get("radius_i")), (joint.j, params.get("radius_j")), (joint.j, params.get("radius")))
     for marker, radius in discs:

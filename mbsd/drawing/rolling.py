@@ -12,6 +12,7 @@ from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.look import INK, PAPER, QUIET
 from mbsd.drawing.reach import BESIDE, placed
 from mbsd.drawing.wheels import FEWEST, PITCH, draw_disc, draw_gear, tooth, tooth_depth
+from mbsd.teeth import with_radii
 
 if TYPE_CHECKING:
     from mbsd.drawing.symbols import Place
@@ -26,10 +27,11 @@ BACK = 1.3
 
 def draw_rack(canvas: Canvas, place: Place) -> None:
     """A rack along the x axis of marker i, whose teeth mesh with those of the pinion about marker j."""
-    radius, u, axis = place.joint.params["radius"], canvas.unit, place.axis
+    sized, u, axis = with_radii(place.joint.params), canvas.unit, place.axis
+    radius = sized["radius"]
     normal = np.array([-axis[1], axis[0]])
     pinion, name = place.j, place.joint.j.body.name
-    fitting = min(max(FEWEST, round(2 * math.pi * radius / (PITCH * u))), MOST)
+    fitting = sized.get("teeth", min(max(FEWEST, round(2 * math.pi * radius / (PITCH * u))), MOST))
     teeth, phase = canvas.wheels.setdefault((name, radius), (fitting, 0.0))
     down = math.atan2(-normal[1], -normal[0])  # where the pinion touches, as an angle
     depth = tooth_depth(canvas, radius, teeth)

@@ -11,6 +11,7 @@ from mbsd.drawing.look import INK, QUIET
 from mbsd.drawing.pose import Pose
 from mbsd.joint import Joint
 from mbsd.mechanism_base import MechanismBase
+from mbsd.teeth import with_radii
 
 PITCH = 1.25
 """Of the teeth, in units; fewer than FEWEST are not drawn."""
@@ -22,13 +23,16 @@ RIM = 1.5
 def draw_gear_pair(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
     """Both gears. A gear that is new on the canvas is turned so that its teeth mesh with those of the other."""
     internal = bool(joint.params.get("internal"))
-    r_i, r_j = joint.params["radius_i"], joint.params["radius_j"]
+    sized = with_radii(joint.params)
+    r_i, r_j = sized["radius_i"], sized["radius_j"]
     i, j = pose.place(joint.i), pose.place(joint.j)
     line = math.atan2(*(j - i)[::-1])
     at_j = line if internal else line + math.pi  # where gear j is touched
     key_i, key_j = (joint.i.body.name, r_i), (joint.j.body.name, r_j)
     wheels, new_i, new_j = canvas.wheels, key_i not in canvas.wheels, key_j not in canvas.wheels
-    if new_i and new_j:
+    if new_i and new_j and "teeth" in sized:
+        wheels[key_i] = sized["teeth"][0], 0.0
+    elif new_i and new_j:
         teeth = max(FEWEST, round(2 * math.pi * min(r_i, r_j) / (PITCH * canvas.unit)))
         wheels[key_i] = round(teeth * r_i / min(r_i, r_j)), 0.0
     if key_i in wheels:
@@ -50,7 +54,7 @@ def name_place(m: MechanismBase, pose: Pose, name: str, unit: float) -> np.ndarr
     """Where a ring gear's name belongs: at its rim; None for other bodies."""
     for joint in m.joints.values():
         if joint.params.get("internal") and joint.i.body.name == name:
-            away = (joint.params["radius_i"] + RIM * unit) * math.sqrt(0.5)
+            away = (with_radii(joint.params)["radius_i"] + RIM * unit) * math.sqrt(0.5)
             return pose.place(joint.i) + away * np.array([-1.0, 1.0])
     return None
 
@@ -93,7 +97,7 @@ def draw_belt(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str])
     """Two pulleys and the strands."""
     ends = []
     for marker, key in ((joint.i, "radius_i"), (joint.j, "radius_j")):
-        centre, radius = pose.place(marker), joint.params[key]
+        centre, radius = pose.place(marker), with_radii(joint.params)[key]
         draw_disc(canvas, centre, radius, pose.frames[marker.body.name][2], colours.get(marker.body.name, QUIET))
         ends.append((centre, radius))
     (i, r_i), (j, r_j) = ends

@@ -9,6 +9,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from mbsd.teeth import with_radii
+
 if TYPE_CHECKING:
     import numpy as np
 
@@ -66,7 +68,8 @@ class JointKind:
 
     def extents(self, params: Mapping[str, Any]) -> list[float]:
         """Lengths (m) among the params that tell how large the mechanism is."""
-        values = [params[key] for key in self.lengths]
+        sized = with_radii(params)
+        values = [sized[key] for key in self.lengths]
         return [
             value if isinstance(value, float) else max(max(x) - min(x) for x in zip(*value, strict=True))
             for value in values

@@ -10,13 +10,15 @@ reaction on body j is the tooth force along the rack as a force at its centre an
 from __future__ import annotations
 
 from mbsd.joints.kind import JointKind, register
+from mbsd.teeth import rack_problem, with_radii
 
 RACK_AND_PINION = register(
     JointKind(
         "rack_and_pinion",
         ("rack",),
         example=lambda m, i, j: m.rack_and_pinion("example", i, j, radius=0.3),
-        numbers=lambda params: [(1.0, 0.0, params["radius"], 0.0)],
+        numbers=lambda params: [(1.0, 0.0, with_radii(params)["radius"], 0.0)],
+        problem=rack_problem,
         lengths=("radius",),
     )
 )

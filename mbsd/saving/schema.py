@@ -27,6 +27,7 @@ TYPES: dict[str, dict[str, Any]] = {
     "int": {"type": "integer"},
     "bool": {"type": "boolean"},
     "str": {"type": "string"},
+    "Sequence[int]": {"type": "array", "items": {"type": "integer"}},
     "Sequence[float]": {"type": "array", "items": NUMBER},
     "None": {"type": "null"},
 }

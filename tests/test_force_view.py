@@ -143,7 +143,7 @@ def test_a_spring_and_damper_by_hand() -> None:
     assert unbalanced(sol) < 1e-12
     with pytest.raises(ModelError, match="'spring' does not act on 'rail'; it acts on: ground, cart"):
         view.on("rail")
-    with pytest.raises(ModelError, match="cart: there is no force 'sprung'; there is: spring"):
+    with pytest.raises(ModelError, match="cart: there is no force 'sprung', did you mean 'spring'"):
         sol.force("sprung")
 
 

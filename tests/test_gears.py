@@ -247,7 +247,7 @@ def test_a_rack_and_a_toothed_belt_by_teeth(tmp_path: Path) -> None:
     )
     with pytest.raises(AssemblyError, match=says):
         steering(0.031).sweep(1.0)
-    with pytest.raises(ModelError, match=r"has 2\.5 teeth; give a whole number from 3 on"):
+    with pytest.raises(ModelError, match=r"teeth is 2\.5; it must be a whole number"):
         m.rack_and_pinion("again", m.bodies["rack"].origin, m.bodies["pinion"].origin, teeth=2.5, module=1.0)  # pyright: ignore[reportArgumentType]
 
     b = Mechanism("belt")

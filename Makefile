@@ -3,6 +3,8 @@
 PRESET ?= preview
 FRAME ?= 0
 NAME ?=
+N ?= 1000
+SEED ?= 1
 PYTEST ?= -n 2 --dist loadfile
 
 # Words of the user are taken as they are: make expands nothing in them, and commands get them through the environment,
@@ -10,8 +12,10 @@ PYTEST ?= -n 2 --dist loadfile
 override PRESET := $(value PRESET)
 override FRAME := $(value FRAME)
 override NAME := $(value NAME)
+override N := $(value N)
+override SEED := $(value SEED)
 override MECHANISM = $(subst -,_,$*)
-export PRESET FRAME NAME MECHANISM
+export PRESET FRAME NAME MECHANISM N SEED
 
 PRESETS := draft preview production final
 ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
@@ -31,7 +35,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install check list run-all all new test lint format bench schema docs integrators lock clean clean-all always
+.PHONY: help install check list run-all all new test lint format bench hunt schema docs integrators lock clean clean-all always
 
 # A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
 define upto_motion
@@ -130,6 +134,9 @@ format: install ## format the sources and cure what ruff can
 bench: install ## the solver beside its peers: a table, and out/bench.json
 	@sh tools/install.sh bench
 	@$(PYTHON) -m benchmarks
+
+hunt: install ## N random mechanisms (1000), each solved again in other words; SEED=1 says which: out/hunt.json
+	@$(PYTHON) -m tools.hunt --n "$$N" --seed "$$SEED"
 
 schema: install ## write docs/schema/ from shared/contract.py, shared/shot.py and the solver's joints and laws
 	@$(PYTHON) -m shared.schema

@@ -1,0 +1,234 @@
+"""Whether two solutions of one mechanism in different words agree, and within which bounds.
+
+Compared are numbers that do not depend on the description: places, velocities and accelerations of centres of mass and
+angles of bodies, carried back into the first description; forces and moments that joints and drivers give; energies.
+Reactions are left out where joints are redundant, since they are not unique there.
+
+Driven motions. Newton-Raphson ends below 1e-12 of the mechanism's size, closed forms at rounding. Either is a
+residual, which the Jacobian's inverse turns into an error of the pose of about the residual times 1 / margin, margin
+the ratio of its least to its largest singular value. Velocities solve with the same Jacobian at that pose and lose
+1 / margin again, accelerations, reactions and efforts twice. So with e = DRIVEN / margin the bounds are e, e / margin
+and e / margin^2 of the largest value of their kind. Instants where that is above USELESS are not compared.
+
+Free motions. A tolerance bounds the error of a step, and the motion carries it on. How much is measured: the same
+mechanism is simulated with its velocities and its gravity changed by NUDGE = 1e-6, and what comes of it divided by
+NUDGE is the growth of errors. The bound is SLACK tolerance (growth + largest value), for each kind of number by
+itself; the tolerance is the sum of both solutions'. SLACK = 1000 is the sum over a few hundred steps, each of which
+may err by the tolerance. Chaotic motions have a growth that makes the bound useless after some time; instants where it
+is more than USELESS = 1e-2 of the largest value are not compared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from mbsd.solution import Solution
+from tools.hunt.described import BASE, NOWHERE, Pose
+
+DRIVEN = 1e-11
+SLACK = 1000.0
+NUDGE = 1e-6
+USELESS = 1e-2
+
+Numbers = dict[str, np.ndarray]
+
+
+@dataclass
+class Words:
+    """How a description differs from the first: frames of bodies and ground as in ``seen_from``; efforts with the
+    other sign; joints whose bodies are exchanged show by their names."""
+
+    frames: Mapping[str, Pose] = field(default_factory=dict)
+    turned_round: frozenset[str] = frozenset()
+    """Drivers whose value and effort have the other sign."""
+
+
+SAME = Words()
+
+
+def numbers(sol: Solution, first: Solution, words: Words, rows: np.ndarray, first_rows: np.ndarray) -> Numbers:
+    """(T, ...) arrays of a solution at some of its times, in the words of ``first``."""
+    ground = words.frames.get("ground", NOWHERE)
+    turn = ground[2]
+    back_to_first = np.exp(1j * turn)
+    places, rates, bends = [], [], []
+    for name in first.packed.body_names[1:]:
+        b = sol.packed.body_names.index(name)
+        own = words.frames.get(name, NOWHERE)[2] - turn
+        at, velocity, acceleration = (array[rows, b] for array in (sol.q, sol.v, sol.a))
+        far = (at[:, 0] + 1j * at[:, 1]) * back_to_first + complex(ground[0], ground[1])
+        places += [far.real, far.imag, at[:, 2] - own]
+        for array, out in ((velocity, rates), (acceleration, bends)):
+            carried = (array[:, 0] + 1j * array[:, 1]) * back_to_first
+            out += [carried.real, carried.imag, array[:, 2]]
+    out = {"q": np.stack(places, 1), "v": np.stack(rates, 1), "a": np.stack(bends, 1)}
+    if not first.mobility.redundant_rows and not sol.mobility.redundant_rows:
+        forces = []
+        for name, joint in first.mechanism.joints.items():
+            view, other = sol.joint(name), first.joint(name)
+            second = sol.mechanism.joints[name].j.body.name
+            sign = 1.0 if joint.j.body.name in (second, "ground" if second == BASE else second) else -1.0
+            force = sign * (view.fx + 1j * view.fy)[rows] * back_to_first
+            at = (view.x + 1j * view.y)[rows] * back_to_first + complex(ground[0], ground[1])
+            arm = at - (other.x + 1j * other.y)[first_rows]
+            moment = sign * view.torque[rows] + (np.conj(arm) * force).imag
+            forces += [force.real, force.imag, moment]
+        if forces:
+            out["reactions"] = np.stack(forces, 1)
+    efforts = [
+        sol.driver(name).effort[rows] * (-1.0 if name in words.turned_round else 1.0)
+        for name in first.mechanism.drivers
+    ]
+    if efforts:
+        out["efforts"] = np.stack(efforts, 1)
+    energy = sol.energy
+    potential = energy.potential - energy.potential[0]
+    out["energies"] = np.stack([energy.kinetic[rows], potential[rows]], 1)
+    return out
+
+
+def common(first: Solution, other: Solution) -> tuple[np.ndarray, np.ndarray]:
+    """Rows of both at the times they share."""
+    close = 1e-11 * max(1e-300, float(np.ptp(first.t)))
+    k = np.clip(np.searchsorted(first.t, other.t - close), 0, len(first.t) - 1)
+    rows = np.flatnonzero(np.abs(first.t[k] - other.t) <= close)
+    return k[rows], rows
+
+
+def sizes(values: Numbers, size: float) -> dict[str, float]:
+    """Largest value of each kind, at least what rounding of the mechanism's size makes of it."""
+    largest = {key: float(np.abs(array[np.isfinite(array)]).max(initial=0.0)) for key, array in values.items()}
+    out = dict(largest)
+    out["q"] = max(size, 1.0)
+    out["v"] = max(largest["v"], 1e-9)
+    out["a"] = max(largest["a"], 1e-9)
+    force = max(largest.get("reactions", 0.0), largest.get("efforts", 0.0), 1e-9)
+    for key in ("reactions", "efforts"):
+        if key in out:
+            out[key] = force
+    out["energies"] = max(largest["energies"], 1e-9)
+    return out
+
+
+POWERS = {"q": 0, "v": 1, "a": 2, "reactions": 2, "efforts": 2, "energies": 2}
+"""Of 1 / margin in the bounds of driven motions."""
+
+
+@dataclass
+class Verdict:
+    """Of a comparison."""
+
+    compared: int
+    """Instants."""
+    worst: float
+    """Largest difference over its bound."""
+    words: str = ""
+
+    @property
+    def agrees(self) -> bool:
+        """Whether all is within bounds."""
+        return self.worst <= 1.0
+
+
+def judge(first: Solution, there: Numbers, here: Numbers, limits: dict[str, np.ndarray], t: np.ndarray) -> Verdict:
+    """Both in the same words at the same times; limits (T,) of each kind, infinite where not compared."""
+    worst, said, compared = 0.0, "", 0
+    for key, limit in limits.items():
+        gap = np.abs(there[key] - here[key])
+        finite = np.isfinite(limit)
+        compared = max(compared, int(finite.sum()))
+        if not finite.any() or not gap.size:
+            continue
+        share = gap / limit[:, None]
+        share[~finite] = 0.0
+        share[np.isnan(share)] = np.inf
+        k, column = np.unravel_index(int(np.argmax(share)), share.shape)
+        if share[k, column] > worst:
+            worst = float(share[k, column])
+            said = (
+                f"{key} of {_whose(first, key, int(column))} at t = {t[k]:.9g} s is {there[key][k, column]:.12g}, was "
+                f"{here[key][k, column]:.12g}: {gap[k, column]:.3g} apart, bound {limit[k]:.3g}"
+            )
+    return Verdict(compared, worst, said)
+
+
+def _whose(first: Solution, key: str, column: int) -> str:
+    if key in ("q", "v", "a"):
+        return first.packed.body_names[1 + column // 3] + " " + ("x", "y", "theta")[column % 3]
+    if key == "reactions":
+        return list(first.mechanism.joints)[column // 3] + " " + ("fx", "fy", "moment")[column % 3]
+    return list(first.mechanism.drivers)[column] if key == "efforts" else ("kinetic", "potential")[column]
+
+
+def driven_limits(first: Solution, rows: np.ndarray, size: dict[str, float], loosened: float) -> dict[str, np.ndarray]:
+    """Bounds of a driven motion; ``loosened`` is added to DRIVEN, as the tolerance of an integrator."""
+    margin = np.clip(first.singularity_margin[rows], 1e-12, None)
+    e = (DRIVEN + loosened) / margin
+    out = {}
+    for key, largest in size.items():
+        limit = e / margin ** POWERS[key]
+        out[key] = np.where(limit < USELESS, limit * largest + 1e-13, np.inf)
+    return out
+
+
+def compare_driven(first: Solution, other: Solution, words: Words = SAME, loosened: float = 0.0) -> Verdict:
+    """See the top."""
+    first_rows, rows = common(first, other)
+    if not len(rows):
+        return Verdict(0, 0.0)
+    here = numbers(first, first, SAME, first_rows, first_rows)
+    there = numbers(other, first, words, rows, first_rows)
+    shared = {key: here[key] for key in here if key in there}
+    size = sizes(shared, _extent(first, other))
+    return judge(first, there, shared, driven_limits(first, first_rows, size, loosened), first.t[first_rows])
+
+
+def _extent(first: Solution, other: Solution) -> float:
+    """Size with the way the world was moved (m): rounding goes with it."""
+    return max(first.packed.size, *(float(np.abs(sol.q[..., :2]).max()) for sol in (first, other)))
+
+
+@dataclass
+class Growth:
+    """What a nudge of NUDGE comes to, over NUDGE, the largest so far at each output of the first solution."""
+
+    of: dict[str, np.ndarray]
+
+    @staticmethod
+    def between(first: Solution, nudged: Solution) -> Growth:
+        """From the same times."""
+        rows = np.arange(len(first.t))
+        here, there = (numbers(sol, first, SAME, rows, rows) for sol in (first, nudged))
+        return Growth(
+            {
+                key: np.maximum.accumulate(np.abs(there[key] - here[key]).max(axis=1, initial=0.0)) / NUDGE
+                for key in here
+                if key in there
+            }
+        )
+
+    def larger(self, other: Growth) -> Growth:
+        """Of two nudges."""
+        return Growth({key: np.maximum(values, other.of[key]) for key, values in self.of.items()})
+
+
+def compare_free(
+    first: Solution, other: Solution, growth: Growth, tolerance: float, words: Words = SAME, slack: float = SLACK
+) -> Verdict:
+    """See the top; ``tolerance`` is the sum of both solutions'."""
+    first_rows, rows = common(first, other)
+    if not len(rows):
+        return Verdict(0, 0.0)
+    here = numbers(first, first, SAME, first_rows, first_rows)
+    there = numbers(other, first, words, rows, first_rows)
+    shared = {key: here[key] for key in here if key in there and key in growth.of}
+    size = sizes(shared, _extent(first, other))
+    limits = {}
+    for key, largest in size.items():
+        grown = growth.of[key][first_rows]
+        limit = slack * tolerance * (grown + largest) + 1e-12 * largest
+        limits[key] = np.where(limit < USELESS * max(largest, 1e-6), limit, np.inf)
+    return judge(first, there, shared, limits, first.t[first_rows])

@@ -1,0 +1,109 @@
+"""One case: a random mechanism as built, then again in other words. The seed decides all of it."""
+
+from __future__ import annotations
+
+import time
+import warnings
+
+import numpy as np
+
+from mbsd.variants import started_at
+from tools.hunt.agreement import Growth
+from tools.hunt.checks import closed, driven_problems, finite
+from tools.hunt.outcome import AGREED, BASE, REFUSED, WRONG, CaseResult, Outcome, Raw, attempt
+from tools.hunt.simulating import RUNS, Free, nudged
+from tools.hunt.subject import Family, Subject, all_families
+from tools.hunt.sweeping import HEALTHY, SWEEPS, Driven
+
+VARIATIONS = 4
+"""Of each mechanism, drawn at random."""
+EXAMPLES = 0.2
+"""Share of the registries' examples, however many there are."""
+
+
+def drawn(seed: int, name: str | None = None) -> tuple[Family, Subject, np.random.Generator]:
+    """The mechanism of a seed; of one family if ``name`` says so."""
+    rng = np.random.default_rng([seed, 71])
+    families = all_families()
+    if name is None:
+        examples = [one for one in families.values() if one.example]
+        others = [one for one in families.values() if not one.example]
+        if rng.random() < EXAMPLES:
+            name = examples[int(rng.integers(len(examples)))].name
+        else:
+            weights = np.array([one.weight for one in others])
+            name = str(rng.choice([one.name for one in others], p=weights / weights.sum()))
+    return families[name], families[name].build(rng), rng
+
+
+def run(seed: int, name: str | None = None, every: bool = False) -> CaseResult:
+    """Solve the case; ``every``: with all variations instead of a few."""
+    began = time.perf_counter()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        family, subject, rng = drawn(seed, name)
+        result = CaseResult(seed, family.name)
+        try:
+            (_driven if subject.driven else _free)(subject, rng, result, every)
+        except Raw as error:
+            result.outcomes.append(Outcome(BASE, WRONG, "raw traceback", str(error)))
+    result.seconds = time.perf_counter() - began
+    return result
+
+
+def _several(rng: np.random.Generator, table: dict, result: CaseResult, case, every: bool) -> None:
+    names = list(table)
+    for name in names if every else [names[k] for k in rng.choice(len(names), VARIATIONS, replace=False)]:
+        case.rng = np.random.default_rng([result.seed, 5, names.index(name)])
+        try:
+            result.outcomes.append(table[name](case))
+        except Raw as error:
+            result.outcomes.append(Outcome(name, WRONG, "raw traceback", str(error)))
+
+
+def _driven(subject: Subject, rng: np.random.Generator, result: CaseResult, every: bool) -> None:
+    case = Driven(subject, rng)
+    case.first, case.refused = attempt(lambda: subject.m.sweep(times=case.grid))
+    if case.first is not None:
+        problems = driven_problems(case.first, subject)
+        if not problems and subject.possible is False:
+            problems = ["solved, though closed forms say that the links cannot follow"]
+        result.outcomes.append(
+            Outcome(BASE, WRONG, "against its own equations or closed form", "; ".join(problems))
+            if problems
+            else Outcome(BASE, AGREED)
+        )
+        if problems:
+            return
+        subject.m = started_at(subject.m, case.first.packed, case.first.q[0].ravel(), case.first.v[0].ravel())
+    else:
+        error = case.refused
+        kind = type(error).__name__
+        if subject.possible and subject.distance > HEALTHY:
+            result.outcomes.append(Outcome(BASE, WRONG, f"refused ({kind}), though it can move", str(error)))
+        else:
+            why = {True: "near a change point", False: "cannot follow", None: "not known better"}[subject.possible]
+            result.outcomes.append(Outcome(BASE, REFUSED, f"{kind}, {why}", str(error)))
+    _several(rng, SWEEPS, result, case, every)
+
+
+def _free(subject: Subject, rng: np.random.Generator, result: CaseResult, every: bool) -> None:
+    case = Free(subject, rng)
+    case.first, case.refused = case.run(subject.m)
+    if case.first is not None:
+        subject.m = started_at(subject.m, case.first.packed, case.first.q[0].ravel(), case.first.v[0].ravel())
+        case.first, case.refused = case.run(subject.m)
+    if case.first is None:
+        result.outcomes.append(Outcome(BASE, REFUSED, type(case.refused).__name__, str(case.refused)))
+    else:
+        problems = finite(case.first) or closed(case.first)
+        result.outcomes.append(
+            Outcome(BASE, WRONG, "against its own equations", "; ".join(problems))
+            if problems
+            else Outcome(BASE, AGREED)
+        )
+        other, _ = case.run(nudged(subject.m))
+        if problems or other is None:
+            return
+        case.growth = Growth.between(case.first, other)
+    _several(rng, RUNS, result, case, every)

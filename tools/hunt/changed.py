@@ -1,0 +1,34 @@
+"""A number of a mechanism changed and changed back, with a solution between."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from mbsd import Mechanism
+from tools.hunt.outcome import attempt
+
+
+def there_and_back(m: Mechanism, rng: np.random.Generator, solve: Callable[[], Any]) -> bool:
+    """Change a random number by up to a half, solve whatever comes of it, change it back; False if there is none."""
+    found: list[tuple[str, str, float]] = []
+    for name, body in m.bodies.items():
+        if name != "ground" and body.mass > 0:
+            found += [(name, "mass", body.mass), (name, "inertia", body.inertia)]
+    for table in (m.joints, m.drivers, m.forces, m.contacts):
+        for name, one in table.items():
+            found += [
+                (name, key, value)
+                for key, value in one.params.items()
+                if isinstance(value, float) and value > 0 and key != "direction"
+            ]
+    if not found:
+        return False
+    name, key, value = found[int(rng.integers(len(found)))]
+    _, error = attempt(lambda: m.change(name, **{key: value * float(rng.uniform(0.6, 1.4))}))
+    if error is None:
+        attempt(solve)
+        m.change(name, **{key: value})
+    return True

@@ -1,0 +1,110 @@
+"""What any solution must fulfil by itself, judged from its numbers alone."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbsd.assembly import tabulate
+from mbsd.solution import Solution
+from tools.hunt.subject import Subject
+
+RESIDUAL = 1e-7
+"""Largest gap of a joint, in sizes."""
+RESOLVED = 0.02
+"""Singularity margin above which DENSE outputs show every bend of the motion."""
+DENSE = 90
+"""Outputs a turn from which on differences say something."""
+
+
+def finite(sol: Solution) -> list[str]:
+    """Numbers that are none."""
+    arrays = {"q": sol.q, "v": sol.v, "a": sol.a, "reactions": sol.wrench}
+    return [f"{name} is not finite" for name, array in arrays.items() if not np.isfinite(array).all()]
+
+
+def closed(sol: Solution) -> list[str]:
+    """Pins whose two points are apart, measured from the bodies' poses."""
+    out = []
+    for name, joint in sol.mechanism.joints.items():
+        if joint.kind.name not in ("revolute", "weld"):
+            continue
+        ends = []
+        for marker in (joint.i, joint.j):
+            pose = sol.q[:, sol.packed.body_names.index(marker.body.name)]
+            com = marker.body.com if marker.body.name != "ground" else (0.0, 0.0)
+            arm = (marker.x - com[0] + 1j * (marker.y - com[1])) * np.exp(1j * pose[:, 2])
+            ends.append(pose[:, 0] + 1j * pose[:, 1] + arm)
+        gap = np.abs(ends[1] - ends[0])
+        if not gap.max() <= RESIDUAL * sol.packed.size:
+            out.append(f"pin '{name}' is open by {gap.max():.3g} m at t = {sol.t[int(np.argmax(gap))]:.6g} s")
+    return out
+
+
+def smooth(sol: Solution) -> list[str]:
+    """Steps of a dense motion against its velocities and accelerations.
+
+    The corrected trapezium q' - q = h (v + v') / 2 - h^2 (a' - a) / 12 errs by far less than h^2 |a' - a| / 4 where
+    the motion is smooth, and by less than that where the acceleration jumps once; a branch that is left, or an
+    angle that takes a whole turn more, is no such thing.
+    """
+    h = np.diff(sol.t)[:, None, None]
+    q, v, a = sol.q[:, 1:], sol.v[:, 1:], sol.a[:, 1:]
+    bend = np.abs(np.diff(a, axis=0))
+    expected = h * (v[1:] + v[:-1]) / 2 - h**2 * np.diff(a, axis=0) / 12
+    gap = np.abs(np.diff(q, axis=0) - expected)
+    size = np.array([sol.packed.size, sol.packed.size, 1.0])
+    here = np.maximum(bend[:, :, :].max(axis=(1,), keepdims=True), 0.02 * np.abs(a).max(axis=(1,), keepdims=True)[1:])
+    limit = 0.25 * h**2 * here + 1e-9 * size + 1e-8 * h * np.abs(v[1:]).max(axis=1, keepdims=True)
+    share = gap / limit
+    k, b, c = np.unravel_index(int(np.argmax(share)), share.shape)
+    if share[k, b, c] <= 1.0:
+        return []
+    return [
+        f"'{sol.packed.body_names[1 + b]}' {('x', 'y', 'theta')[c]} goes on by "
+        f"{sol.q[k + 1, 1 + b, c] - sol.q[k, 1 + b, c]:.6g} from t = {sol.t[k]:.6g} to {sol.t[k + 1]:.6g} s, its "
+        f"velocity by {expected[k, b, c]:.6g}"
+    ]
+
+
+def one_assembly(sol: Solution, subject: Subject) -> list[str]:
+    """The sign of det J, which only a change point turns round."""
+    rows, packed = len(sol.packed.ws.phi), sol.packed
+    if rows != packed.coordinates or "bifurcates" in subject.traits or sol.mobility.redundant_rows:
+        return []
+    count = len(sol.t)
+    q, v = sol.q.reshape(count, -1), sol.v.reshape(count, -1)
+    phi, gamma, compact = np.zeros((count, rows)), np.zeros((count, rows)), np.zeros((count, rows, 6))
+    tabulate(
+        packed.system, sol.drives, np.ascontiguousarray(q), np.ascontiguousarray(v), packed.ws, phi, compact, gamma
+    )
+    sign = np.linalg.slogdet(packed.spread(compact))[0]
+    turned = np.flatnonzero(sign != sign[0])
+    if not len(turned):
+        return []
+    return [f"det J changes its sign before t = {sol.t[turned[0]]:.9g} s: the other assembly, or a toggle passed"]
+
+
+def balanced(sol: Solution, tolerance: float, growth: float, scale: float) -> list[str]:
+    """Energy less work, of a simulation without impacts."""
+    if sol.audit is None:
+        return []
+    lost = sum(np.where(sol.t > one.time, one.energy, 0.0) for one in sol.events)
+    audit = sol.audit - lost
+    limit = 1e4 * tolerance * (scale + growth)
+    if np.ptp(audit) <= limit:
+        return []
+    return [f"energy less work changes by {np.ptp(audit):.3g} J, bound {limit:.3g} J"]
+
+
+def driven_problems(sol: Solution, subject: Subject) -> list[str]:
+    """Of a sweep."""
+    out = finite(sol) or closed(sol)
+    if out:
+        return out
+    if subject.truth is not None:
+        out += subject.truth(sol)
+    out += one_assembly(sol, subject)
+    per_turn = (len(sol.t) - 1) / subject.turns
+    if per_turn >= DENSE and sol.singularity_margin.min() > RESOLVED < subject.distance:
+        out += smooth(sol)
+    return out

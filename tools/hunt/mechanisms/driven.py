@@ -1,0 +1,181 @@
+"""Driven mechanisms without a closed form of this tool: cams, curves, parallelograms, linkages, every group's model."""
+
+from __future__ import annotations
+
+import math
+import warnings
+
+import numpy as np
+
+from mbsd import Mechanism, constant_rate, harmonic
+from mbsd.cams import RISES, Lift, flat_cam, oscillating_flat_cam, oscillating_roller_cam, roller_cam
+from mbsd.solution import Solution
+from tests.assur_models import MODELS
+from tests.random_linkages import linkage
+from tools.hunt.described import seen_from
+from tools.hunt.laws import swinging, turning
+from tools.hunt.mechanisms.machines import _at_start, driven_crank, solid
+from tools.hunt.subject import Subject, family
+
+
+def _lift(rng: np.random.Generator, height: float) -> Lift:
+    if rng.random() < 0.2:
+        angles = np.linspace(0, 2 * math.pi, 25)[:-1]
+        return Lift.table(angles, height * (0.5 - 0.5 * np.cos(angles) + 0.1 * np.sin(angles) ** 2))
+    widths = rng.dirichlet([3, 1, 3, 2]) * 2 * math.pi
+    widths = np.maximum(widths, 0.25)
+    widths *= 2 * math.pi / widths.sum()
+    up, down = (str(name) for name in rng.choice(list(RISES), 2))
+    first, top, fall = (float(w) for w in widths[:3])
+    return Lift.of((first, height, up), (top, height), (fall, 0.0, down), (2 * math.pi - first - top - fall, 0.0))
+
+
+@family("cam", 1.5)
+def cam(rng: np.random.Generator) -> Subject:
+    """Rollers and flat faces, on slides and on arms, by all lift laws."""
+    m, drive = Mechanism("cam"), turning(rng, float(rng.uniform(-3, 3)))
+    disc = solid(m, "cam", rng)
+    m.revolute("shaft", m.ground.origin, disc.origin)
+    m.drive_angle("motor", disc, drive.law)
+    m.start_near(cam=(0, 0, math.degrees(_at_start(drive))))
+    kind = str(rng.choice(["roller", "flat", "oscillating roller", "oscillating flat"]))
+    base = float(rng.uniform(0.03, 0.3))
+    follower = solid(m, "follower", rng, 0.3 * base)
+    if kind in ("roller", "flat"):
+        lift = _lift(rng, base * float(rng.uniform(0.1, 0.5)))
+        offset = base * float(rng.uniform(-0.3, 0.3))
+        profile = roller_cam(lift, base, 0.3 * base, offset) if kind == "roller" else flat_cam(lift, base)
+        x = offset if kind == "roller" else 0.0
+        m.prismatic("guide", m.ground.at(x, 0, math.pi / 2), follower.at(0, 0, math.pi / 2))
+        m.start_near(follower=(x, 1.35 * base, 0))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # an undercut cam moves as well
+            if kind == "roller":
+                m.cam_roller("contact", disc.origin, follower.origin, profile)
+            else:
+                m.cam_flat("contact", disc.origin, follower.origin, profile)
+    else:
+        lift = _lift(rng, float(rng.uniform(0.05, 0.4)))
+        pivot = 2.5 * base
+        m.revolute("pivot", m.ground.at(pivot, 0), follower.origin)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            if kind == "oscillating roller":
+                profile = oscillating_roller_cam(lift, base, 0.3 * base, arm=2.2 * base, pivot_distance=pivot)
+                m.cam_roller("contact", disc.origin, follower.at(2.2 * base, 0), profile)
+            else:
+                profile = oscillating_flat_cam(lift, base, pivot_distance=pivot)
+                m.cam_flat("contact", disc.origin, follower.at(1.0 * base, 0), profile)
+        m.start_near(follower=(pivot, 0, 150))
+    return Subject(m, drive.duration, True, drive.turn, traits=frozenset({"jumps"}))
+
+
+@family("point on a curve")
+def on_a_curve(rng: np.random.Generator) -> Subject:
+    """A pin on a closed or open curve, pulled round by a slotted crank or pushed along by a slide."""
+    m, radius = Mechanism("curve"), float(rng.uniform(0.1, 1.0))
+    angles = np.linspace(0, 2 * math.pi, 13)[:-1]
+    if rng.random() < 0.6:
+        points = [
+            (float(r * math.cos(a)), float(r * math.sin(a)))
+            for a, r in zip(angles, radius * rng.uniform(0.85, 1.15, 12), strict=True)
+        ]
+        drive = turning(rng, float(rng.uniform(-3, 3)))
+        crank, pin = driven_crank(m, rng, radius, drive), solid(m, "pin", rng)
+        m.prismatic("slot", crank.origin, pin.origin)
+        m.point_on_curve("curve", m.ground.origin, pin.origin, points, closed=True)
+        start = _at_start(drive)
+        m.start_near(pin=(radius * math.cos(start), radius * math.sin(start), math.degrees(start)))
+        return Subject(m, drive.duration, True, drive.turn)
+    x = np.linspace(-3, 3, 13) * radius
+    points = [(float(a), float(b)) for a, b in zip(x, 0.2 * radius * rng.normal(size=13), strict=True)]
+    drive = swinging(rng, 0.0, 2.2 * radius)
+    cart, wheel = solid(m, "cart", rng), solid(m, "wheel", rng)
+    m.prismatic("rail", m.ground.at(0.0, 2 * radius), cart.origin)
+    m.drive_coordinate("push", m.ground.origin, cart.origin, drive.law)
+    m.prismatic("drop", cart.at(0, 0, math.pi / 2), wheel.at(0, 0, math.pi / 2))
+    m.point_on_curve("curve", m.ground.origin, wheel.origin, points)
+    at = _at_start(drive)
+    m.start_near(cart=(at, 2 * radius, 0), wheel=(at, 0, 0))
+    return Subject(m, drive.duration, True, drive.turn)
+
+
+@family("rolling on terrain")
+def on_terrain(rng: np.random.Generator) -> Subject:
+    """A disc pushed over a smooth terrain."""
+    m, size = Mechanism("terrain"), float(rng.uniform(0.3, 2.0))
+    x = np.linspace(-3, 3, 11) * size
+    points = [(float(a), float(b)) for a, b in zip(x, 0.12 * size * rng.normal(size=11), strict=True)]
+    drive = swinging(rng, 0.0, 2.0 * size)
+    disc = solid(m, "disc", rng)
+    m.rolling_on_curve("road", m.ground.origin, disc.origin, points, radius=0.05 * size)
+    m.drive_coordinate("push", m.ground.origin, disc.origin, drive.law)
+    m.start_near(disc=(_at_start(drive), 0.05 * size, 0))
+    return Subject(m, drive.duration, True, drive.turn)
+
+
+@family("parallelogram, redundant")
+def parallelogram(rng: np.random.Generator) -> Subject:
+    """Three parallel cranks under one coupler: the third repeats the others, and carries it past the change points."""
+    m, drive = Mechanism("parallelogram"), turning(rng, float(rng.uniform(0.3, 2.6)))
+    radius, width = (float(x) for x in rng.uniform(0.1, 0.6, 2))
+    third = complex(0.4 * width, float(rng.choice([0.0, 1.0]) * rng.uniform(0.1, 0.4)))
+    crank, coupler = driven_crank(m, rng, radius, drive), solid(m, "coupler", rng, width)
+    start = _at_start(drive)
+    m.revolute("A", crank.end, coupler.origin)
+    for k, at in enumerate((complex(width), third)):
+        bar = m.bar(f"bar{k}", radius, float(rng.uniform(0.2, 2.0)))
+        m.revolute(f"foot{k}", m.ground.at(at.real, at.imag), bar.start)
+        m.revolute(f"head{k}", coupler.at(at.real, at.imag), bar.end)
+        m.start_near(**{bar.name: math.degrees(start)})
+    m.start_near(coupler=(radius * math.cos(start), radius * math.sin(start), 0))
+
+    def judge(sol: Solution) -> list[str]:
+        worst = float(np.abs(sol.body("coupler").theta).max())
+        return [] if worst < 1e-6 else [f"the coupler of a parallelogram turns by {worst:.3g} rad"]
+
+    flat = third.imag == 0.0
+    traits = frozenset({"bifurcates"} if flat else set())
+    return Subject(m, drive.duration, True, drive.turn, judge, None if flat else True, 0.0 if flat else 1.0, traits)
+
+
+@family("linkage, cranks swing", 2.0)
+def swinging_linkage(rng: np.random.Generator) -> Subject:
+    """Loops of bars, sliders, slots and rods on each other; all cranks swing a little."""
+    made = linkage(int(rng.integers(10**9)), int(rng.integers(1, 4)), damping=True)
+    turn = 1.0
+    for k, (host, crank) in enumerate(made.cranks):
+        lies = made.frames[crank.name][2] - made.frames[host.name][2]
+        swing, rate, phase = rng.uniform(0.02, 0.3), float(rng.integers(3, 9)), rng.uniform(-1, 1)
+        made.m.drive_relative_angle(
+            f"motor{k}", host, crank, harmonic(swing, rate, phase, lies - swing * math.sin(phase))
+        )
+        turn = 2 * math.pi / rate
+    return Subject(made.m, turn, True, turn)
+
+
+@family("linkage, cranks turn", 2.0)
+def turning_linkage(rng: np.random.Generator) -> Subject:
+    """The same, with cranks that turn: most come to a toggle somewhere."""
+    made = linkage(int(rng.integers(10**9)), int(rng.integers(1, 4)), damping=True)
+    for k, (host, crank) in enumerate(made.cranks):
+        lies = made.frames[crank.name][2] - made.frames[host.name][2]
+        made.m.drive_relative_angle(f"motor{k}", host, crank, constant_rate(float(rng.choice([-1, 1, 2])), lies))
+    return Subject(made.m, float(rng.choice([0.25, 0.5, 1.0])) * 2 * math.pi, True, 2 * math.pi)
+
+
+@family("model of each group", 1.5)
+def every_group(rng: np.random.Generator) -> Subject:
+    """The models that the tests of the closed forms use, their numbers a little off."""
+    m = MODELS[str(rng.choice(list(MODELS)))]()
+    frames = {name: tuple(float(x) for x in rng.normal(scale=[0.003, 0.003, 0.03])) for name in list(m.bodies)[1:]}
+    words = seen_from(m, frames)  # pyright: ignore[reportArgumentType]
+    for name, joint in words.joints.items():  # half of the markers keep their old numbers: another mechanism
+        if rng.random() < 0.5:
+            old = m.joints[name]
+            i, j = (words.bodies[one.body.name].at(one.x, one.y, one.angle) for one in (old.i, old.j))
+            words.joints[name] = type(joint)(joint.kind, name, i, j, joint.params)
+    period = 2 * math.pi / 6.0
+    if set(m.bodies) >= {"base", "arm"}:
+        period = math.pi
+    return Subject(words, period, True, period)

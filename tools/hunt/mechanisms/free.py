@@ -1,0 +1,212 @@
+"""Simulated mechanisms: chains, loops, friction, redundant joints, drivers beside freedoms; forces of all kinds."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from mbsd import Mechanism, constant_rate, curve, harmonic
+from mbsd.body import Body
+from tests.assur_models import MODELS
+from tests.random_linkages import linkage
+from tools.hunt.mechanisms.machines import solid
+from tools.hunt.subject import Subject, family
+
+
+def chain(m: Mechanism, rng: np.random.Generator, count: int, cart: bool) -> list[Body]:
+    """Bars in a row, from ground or from a cart, some without mass between others."""
+    at, bodies = m.ground.at(0.1, 0.2), []
+    if cart:
+        slope = float(rng.uniform(-0.5, 0.5))
+        first = solid(m, "cart", rng, 0.2)
+        m.prismatic("rail", m.ground.at(0.0, 0.0, slope), first.at(0, 0, float(rng.uniform(-1, 1))))
+        m.start_moving(cart=(0.5 * math.cos(slope), 0.5 * math.sin(slope), 0.0))
+        at = first.at(0.1, -0.1)
+        bodies.append(first)
+    for k in range(count):
+        length, mass = float(rng.uniform(0.15, 1.0)), float(rng.uniform(0.2, 2.0))
+        bar = m.bar(f"bar{k}", length, mass, (0.5 * length, float(rng.normal(scale=0.05))))
+        m.revolute(f"pin{k}", at, bar.start)
+        m.start_near(**{bar.name: float(rng.uniform(-180, 0))})
+        m.start_moving(**{bar.name: float(rng.uniform(-3, 3))})
+        at = bar.end
+        bodies.append(bar)
+    return bodies
+
+
+def some_force(m: Mechanism, rng: np.random.Generator, name: str, bodies: list[Body]) -> None:
+    """A force of a random kind, of a size that fits bodies of 1 kg and 1 m, between two bodies or one and ground."""
+    first, second = (bodies[k] for k in rng.choice(len(bodies), 2, replace=False))
+    i, j = (body.at(*(float(x) for x in rng.normal(scale=0.3, size=2))) for body in (first, second))
+    kind = str(rng.choice(_KINDS))
+    if kind == "spring":
+        m.spring(name, i, j, float(rng.uniform(5, 100)), float(rng.uniform(0, 3)), float(rng.uniform(0.1, 0.6)))
+    elif kind == "spring in time":
+        m.spring(name, i, j, harmonic(10.0, 5.0, 0.0, 40.0), 1.0, 0.3)
+    elif kind == "torsion":
+        m.torsion_spring(name, first, second, float(rng.uniform(0.5, 8)), float(rng.uniform(0, 0.3)), 0.4)
+    elif kind == "bushing":
+        m.bushing(name, i, j, (20.0, 35.0, 1.0), (0.5, 0.4, 0.02), float(rng.uniform(-1, 1)))
+    elif kind == "actuator":
+        m.actuator(name, i, j, harmonic(4.0, 6.0), along_axis=bool(rng.random() < 0.5))
+    elif kind == "curve":
+        m.curve_of_length(name, i, j, curve([0.0, 0.5, 1.0, 2.0], [5.0, 1.0, -2.0, -6.0], "spline"))
+    elif kind == "angle curve":
+        m.curve_of_angle(name, first, second, curve([-3, -1, 1, 3], [3.0, 1.0, -1.0, -3.0], "spline"))
+    elif kind == "torque":
+        m.torque(name, second, harmonic(1.5, 4.0), against=first)
+    elif kind == "force":
+        m.force(name, j, 3.0, float(rng.uniform(-3, 3)), frame=second if rng.random() < 0.5 else None)
+    elif kind == "drag":
+        m.drag(name, j, 0.3, 0.02, (float(rng.normal()), float(rng.normal())))
+    elif kind == "rotating frame":
+        m.rotating_frame(name, float(rng.uniform(-2, 2)), (0.3, -0.2))
+    elif kind == "gravitation":
+        m.gravitation(name, m.ground.at(6.0, 5.0), j, -20.0)
+    elif kind == "user":
+        m.user_force(name, pull_home, second)
+
+
+_KINDS = (
+    "spring",
+    "spring in time",
+    "torsion",
+    "bushing",
+    "actuator",
+    "curve",
+    "angle curve",
+    "torque",
+    "force",
+    "drag",
+    "rotating frame",
+    "gravitation",
+    "user",
+)
+
+
+def pull_home(t: float, q: np.ndarray, v: np.ndarray) -> tuple[float, float, float]:
+    """A soft spring to the world's origin, with a damper: a user's function."""
+    return -3.0 * q[0] - 0.2 * v[0], -3.0 * q[1] - 0.2 * v[1], -0.1 * v[2] + 0.2 * math.sin(3.0 * t)
+
+
+@family("chain with forces", 2.0)
+def chain_with_forces(rng: np.random.Generator) -> Subject:
+    """One to four bars and up to three forces of any kind."""
+    m = Mechanism("chain")
+    bodies = [m.ground, *chain(m, rng, int(rng.integers(1, 5)), bool(rng.random() < 0.3))]
+    for k in range(int(rng.integers(0, 4))):
+        some_force(m, rng, f"force{k}", bodies)
+    return Subject(m, float(rng.uniform(0.2, 0.8)), False)
+
+
+@family("closed linkage, free", 2.0)
+def free_linkage(rng: np.random.Generator) -> Subject:
+    """Loops with springs and dampers, thrown."""
+    made = linkage(int(rng.integers(10**9)), int(rng.integers(1, 4)), damping=bool(rng.random() < 0.5))
+    speeds = {bar.name: float(rng.uniform(-2, 2)) for host, bar in made.cranks if host.name == "ground"}
+    made.m.start_moving(**speeds)
+    return Subject(made.m, float(rng.uniform(0.1, 0.5)), False)
+
+
+@family("model of each group, freed", 1.5)
+def freed_group(rng: np.random.Generator) -> Subject:
+    """Without its driver, or with a pendulum beside it."""
+    m = MODELS[str(rng.choice(list(MODELS)))]()
+    m.gravity = (0.5, -9.81)
+    if rng.random() < 0.5:
+        m.drivers.clear()
+    else:
+        bob = m.bar("bob", 0.2, 0.5)
+        m.revolute("hang", list(m.bodies.values())[-2].at(0.05, 0.02), bob.start)
+        m.start_near(bob=-60)
+    return Subject(m, float(rng.uniform(0.1, 0.5)), False)
+
+
+@family("friction of joints")
+def with_friction(rng: np.random.Generator) -> Subject:
+    """A chain or slider-crank whose joints have friction, smooth or by events."""
+    sticks = bool(rng.random() < 0.4)
+    m = Mechanism("friction")
+    chain(m, rng, int(rng.integers(1, 3)), cart=bool(rng.random() < 0.5))
+    for k, (name, joint) in enumerate(list(m.joints.items())):
+        own = {"radius": 0.02} if joint.kind.name == "revolute" else {}
+        m.friction(
+            f"friction{k}",
+            name,
+            float(rng.uniform(0.05, 0.4)),
+            preload=float(rng.uniform(0, 3)),
+            slip_speed=None if sticks else 0.02,
+            sticks=sticks,
+            **own,
+        )
+    traits = {"sticks", "contacts"} if sticks else {"stiff"}
+    return Subject(m, float(rng.uniform(0.1, 0.4)), False, traits=frozenset(traits))
+
+
+@family("redundant joints, free")
+def redundant(rng: np.random.Generator) -> Subject:
+    """A parallelogram of three cranks let swing, or a slider guided twice."""
+    m = Mechanism("redundant")
+    if rng.random() < 0.5:
+        coupler = solid(m, "coupler", rng, 0.4)
+        start = float(rng.uniform(-2.4, -0.7))
+        for k, x in enumerate((0.0, 0.2, 0.5)):
+            bar = m.bar(f"bar{k}", 0.4, float(rng.uniform(0.2, 1.0)))
+            m.revolute(f"foot{k}", m.ground.at(x, 0.1 * k), bar.start)
+            m.revolute(f"head{k}", coupler.at(x, 0.1 * k), bar.end)
+            m.start_near(**{bar.name: math.degrees(start)})
+        m.start_near(coupler=(0.4 * math.cos(start), 0.4 * math.sin(start), 0))
+        m.start_moving(bar0=float(rng.uniform(-2, 2)))
+    else:
+        block, bar = solid(m, "block", rng), m.bar("bar", 0.5, 1.0)
+        m.prismatic("guide", m.ground.at(0, 0, 0.2), block.origin)
+        m.prismatic("second guide", m.ground.at(0.1, 0.1 * math.tan(0.2), 0.2), block.at(0.3, 0.0))
+        m.revolute("pin", block.origin, bar.start)
+        m.start_near(block=(0, 0, math.degrees(0.2)), bar=float(rng.uniform(-150, -30)))
+        m.start_moving(bar=float(rng.uniform(-3, 3)))
+    m.spring("spring", m.ground.at(1.0, 1.0), list(m.bodies.values())[-1].at(0.1, 0.1), 20.0, 0.5, 0.3)
+    return Subject(m, float(rng.uniform(0.2, 0.6)), False)
+
+
+@family("massless bodies, free")
+def massless(rng: np.random.Generator) -> Subject:
+    """A four-bar whose coupler has no mass, or a chain held by massless rods; a point mass without inertia."""
+    m = Mechanism("massless")
+    if rng.random() < 0.5:
+        crank, coupler, rocker = m.bar("crank", 0.2, 1.0), m.bar("coupler", 0.6), m.bar("rocker", 0.5, 1.5)
+        m.revolute("A", m.ground.origin, crank.start)
+        m.revolute("B", crank.end, coupler.start)
+        m.revolute("C", coupler.end, rocker.end)
+        m.revolute("D", m.ground.at(0.6, 0.0), rocker.start)
+        m.start_near(crank=float(rng.uniform(20, 160)), coupler=20, rocker=80)
+        m.start_moving(crank=float(rng.uniform(-4, 4)))
+    else:
+        bob = m.body("bob", float(rng.uniform(0.3, 2.0)))
+        m.revolute("A", m.ground.origin, bob.at(0.1, float(rng.uniform(0.3, 1.0))))
+        m.start_near(bob=float(rng.uniform(-90, 90)))
+        m.start_moving(bob=float(rng.uniform(-3, 3)))
+    return Subject(m, float(rng.uniform(0.2, 0.6)), False)
+
+
+@family("drivers beside freedoms")
+def partly_driven(rng: np.random.Generator) -> Subject:
+    """A driven carriage or crank with a chain hung on it."""
+    m = Mechanism("partly driven")
+    if rng.random() < 0.5:
+        base = solid(m, "cart", rng, 0.2)
+        m.prismatic("rail", m.ground.origin, base.origin)
+        m.drive_coordinate("push", m.ground.origin, base.origin, harmonic(0.2, float(rng.uniform(2, 8))))
+        m.start_near(cart=(0, 0, 0))
+        hook = base.at(0.05, -0.1)
+    else:
+        base = m.bar("crank", 0.2, 1.0)
+        m.revolute("O", m.ground.origin, base.start)
+        m.drive_angle("motor", base, constant_rate(float(rng.uniform(-6, 6)), 0.3))
+        hook = base.end
+    for k in range(int(rng.integers(1, 3))):
+        bar = m.bar(f"bar{k}", 0.4, 1.0)
+        m.revolute(f"pin{k}", hook, bar.start)
+        m.start_near(**{bar.name: float(rng.uniform(-150, -30))})
+        hook = bar.end
+    return Subject(m, float(rng.uniform(0.2, 0.6)), False)

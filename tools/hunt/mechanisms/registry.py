@@ -1,0 +1,112 @@
+"""The example of every kind in the solver's registries, so that a new kind is hunted without being named here."""
+
+from __future__ import annotations
+
+import importlib
+import math
+import pkgutil
+import warnings
+
+import numpy as np
+
+import mbsd.contacts
+import mbsd.drivers
+import mbsd.forces
+import mbsd.joints
+from mbsd import Mechanism
+from mbsd.contacts.kind import CONTACT_KINDS
+from mbsd.forces.kind import FORCE_KINDS
+from mbsd.joints.kind import KINDS
+from mbsd.motions.examples import EXAMPLES
+from tools.hunt.outcome import attempt
+from tools.hunt.subject import Subject, family
+
+for _package in (mbsd.joints, mbsd.drivers, mbsd.forces, mbsd.contacts):
+    for _module in pkgutil.iter_modules(_package.__path__):
+        importlib.import_module(f"{_package.__name__}.{_module.name}")
+
+
+def two_bodies(name: str, rng: np.random.Generator) -> Mechanism:
+    """Two bodies on soft mounts; what is between them moves them."""
+    m = Mechanism(name, gravity=(float(rng.normal()), -9.81))
+    for k, body in enumerate(("first", "second")):
+        made = m.body(body, float(rng.uniform(0.5, 2)), list(rng.normal(scale=0.2, size=2)), float(rng.uniform(0.2, 1)))
+        x, y = (float(value) for value in rng.normal(scale=0.4, size=2))
+        m.bushing(f"mount {body}", m.ground.at(0.8 * k + x, y), made.origin, (40.0, 60.0, 3.0), (1.0, 1.5, 0.1))
+        m.start_near(**{body: (0.8 * k + x, y, float(rng.uniform(-40, 40)))})
+        m.start_moving(**{body: tuple(float(v) for v in rng.normal(scale=0.5, size=3))})
+    return m
+
+
+def markers(m: Mechanism, rng: np.random.Generator):
+    """One on each body."""
+    return [m.bodies[name].at(*(float(x) for x in rng.normal(scale=0.3, size=3))) for name in ("first", "second")]
+
+
+def _joint_or_driver(name: str):
+    def build(rng: np.random.Generator) -> Subject:
+        m = two_bodies(name, rng)
+        i, j = markers(m, rng)
+        if name == "geneva":  # it asks for its own distance of centres
+            arm = m.bar("arm", 0.3 / math.sin(math.pi / 5), 1.0)
+            m.revolute("held", i, arm.start)
+            m.revolute("holds", arm.end, j)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            KINDS[name].example(m, i, j)
+        if KINDS[name].constraints in (("gear",),) and rng.random() < 0.5:
+            m.distance("arm", i, j, length=0.7)
+        traits = {"jumps"} if name in ("geneva", "cam_roller", "cam_flat") else set()
+        return Subject(m, float(rng.uniform(0.1, 0.4)), False, traits=frozenset(traits))
+
+    return build
+
+
+def _force(name: str):
+    def build(rng: np.random.Generator) -> Subject:
+        m = two_bodies(name, rng)
+        example = FORCE_KINDS[name].example
+        assert example is not None
+        example(m, *markers(m, rng))
+        traits = {"stiff"} if FORCE_KINDS[name].of_reactions else set()
+        return Subject(m, float(rng.uniform(0.1, 0.4)), False, traits=frozenset(traits))
+
+    return build
+
+
+def _contact(name: str):
+    def build(rng: np.random.Generator) -> Subject:
+        m = two_bodies(name, rng)
+        CONTACT_KINDS[name].example(m, *markers(m, rng))
+        if attempt(lambda: m.simulate(1e-6, steps=1))[0] is None:  # it starts inside the other
+            return build(rng)
+        return Subject(m, float(rng.uniform(0.1, 0.4)), False, traits=frozenset({"contacts"}))
+
+    return build
+
+
+def _law(k: int):
+    def build(rng: np.random.Generator) -> Subject:
+        m = Mechanism("law")
+        crank, bob = m.bar("crank", 0.3, 1.0), m.bar("bob", 0.4, 0.5)
+        m.revolute("O", m.ground.origin, crank.start)
+        m.revolute("A", crank.end, bob.start)
+        m.drive_angle("motor", crank, EXAMPLES[k])
+        m.start_near(bob=float(rng.uniform(-150, -30)))
+        if rng.random() < 0.5:
+            return Subject(m, 1.4, False)
+        m.drive_relative_angle("second", crank, bob, EXAMPLES[int(rng.integers(len(EXAMPLES)))])
+        return Subject(m, 1.4, True, 1.4)
+
+    return build
+
+
+for _name, _kind in KINDS.items():
+    if _name not in CONTACT_KINDS:
+        family(f"example of {'driver' if _kind.driven else 'joint'} {_name}", example=True)(_joint_or_driver(_name))
+for _name in FORCE_KINDS:
+    family(f"example of force {_name}", example=True)(_force(_name))
+for _name in CONTACT_KINDS:
+    family(f"example of contact {_name}", example=True)(_contact(_name))
+for _k, _law_example in enumerate(EXAMPLES):
+    family(f"example of law {_k} {type(_law_example).__name__}", example=True)(_law(_k))

@@ -1,0 +1,33 @@
+"""Which refusals are expected of a variation, by what the program promises."""
+
+from __future__ import annotations
+
+from mbsd import Mechanism
+from mbsd.errors import MechanismError
+from mbsd.forces.kind import FORCE_KINDS
+from mbsd.joints.kind import KINDS
+from mbsd.motions.function import Function
+from tools.hunt.raised import Raised
+
+PROMISED = (
+    "is not possible here",
+    "does not know",
+    "does not take",
+    "need scikit-sundae",
+    "in reference coordinates",
+)
+"""Words of refusals that say what a method or formulation is not made for."""
+
+
+def expected_refusal(error: MechanismError) -> bool:
+    """Whether the program says beforehand that it will not."""
+    return any(words in str(error) for words in PROMISED)
+
+
+def cannot_be_saved(m: Mechanism) -> bool:
+    """Whether the model holds a Python function, or events."""
+    laws = [driver.motion for driver in m.drivers.values()]
+    laws += [law for force in m.forces.values() for law in force.laws.values()]
+    kinds = [KINDS[one.kind.name].saved for one in m.joints.values()]
+    kinds += [FORCE_KINDS[one.kind.name].saved for one in m.forces.values()]
+    return bool(m.events) or not all(kinds) or any(isinstance(law, Function | Raised) for law in laws)

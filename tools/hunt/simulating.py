@@ -1,0 +1,332 @@
+"""Variations of a free motion: each takes the case and gives its outcome."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mbsd import Mechanism
+from mbsd.dynamics.simulate import integrator_named
+from mbsd.errors import MechanismError, SimulationError
+from mbsd.integrators.kind import INTEGRATORS
+from mbsd.solution import Solution
+from mbsd.variants import started_at
+from tools.hunt.agreement import NUDGE, SAME, SLACK, Growth, Verdict, Words, compare_free
+from tools.hunt.changed import there_and_back
+from tools.hunt.checks import balanced, closed, finite
+from tools.hunt.described import back, duplicate, exchanged, on_a_base, seen_from, shuffled, turnable
+from tools.hunt.outcome import AGREED, REFUSED, UNCLEAR, WRONG, Outcome, attempt
+from tools.hunt.refusals import cannot_be_saved, expected_refusal
+from tools.hunt.subject import Subject
+from tools.hunt.sweeping import HEALTHY, random_frames, random_pose
+
+TOLERANCE = 1e-9
+OUTPUTS = 60
+STEPS = (1, 2, 3, 5, 12, 30, 360, 1440)
+FIXED_STEPS = 400
+"""Of methods without an error estimate, over the duration; then twice as many."""
+
+
+@dataclass
+class Free:
+    """A case under way."""
+
+    subject: Subject
+    rng: np.random.Generator
+    first: Solution | None = None
+    refused: MechanismError | None = None
+    growth: Growth | None = None
+    told: list[str] = field(default_factory=list)
+
+    @property
+    def m(self) -> Mechanism:
+        """As built, but that it starts at the closed pose and consistent velocities of the first solution."""
+        return self.subject.m
+
+    @property
+    def grid(self) -> np.ndarray:
+        """(T,) outputs."""
+        return np.linspace(0.0, self.subject.duration, OUTPUTS + 1)
+
+    @property
+    def margin(self) -> float:
+        """Least singularity margin seen."""
+        return 0.0 if self.first is None else float(self.first.singularity_margin.min())
+
+    def touches(self) -> bool:
+        """Whether events decide the motion."""
+        return "contacts" in self.subject.traits
+
+    def run(self, m: Mechanism, **options: Any) -> tuple[Solution | None, MechanismError | None]:
+        """Simulate over the case's outputs, with its tolerance, unless said otherwise."""
+        options = {"times": self.grid, "tolerance": TOLERANCE} | options
+        return attempt(lambda: m.simulate(**options))
+
+    def compared(self, name: str, m: Mechanism, words: Words = SAME, **options: Any) -> Outcome:
+        """Simulate ``m`` and compare."""
+        other, error = self.run(m, **options)
+        if error is not None:
+            return self.refusal(name, error)
+        assert other is not None
+        return self.agreement(name, other, words, float(options.get("tolerance", TOLERANCE)))
+
+    def agreement(self, name: str, other: Solution, words: Words, tolerance: float) -> Outcome:
+        """A solution against the first one."""
+        problems = finite(other) or closed(other)
+        if problems:
+            return Outcome(name, WRONG, "against its own equations", "; ".join(problems))
+        if self.first is None or self.growth is None:
+            margin = float(other.singularity_margin.min())
+            if margin < HEALTHY or {"stiff", "contacts"} & self.subject.traits:
+                return Outcome(name, AGREED, "proved what was refused as built")
+            return Outcome(name, WRONG, "solved, but refused as built", f"margin {margin:.3g}; {self.refused}")
+        verdict = self.verdict(other, words, tolerance)
+        if verdict.agrees:
+            return Outcome(name, AGREED) if verdict.compared else Outcome(name, UNCLEAR, "too sensitive")
+        if self.less_sure():
+            verdict = self.verdict(other, words, tolerance)
+            if verdict.agrees:
+                return Outcome(name, AGREED if verdict.compared else UNCLEAR, "sensitive")
+        return Outcome(name, WRONG, "differs", verdict.words)
+
+    def verdict(self, other: Solution, words: Words, tolerance: float, slack: float = SLACK) -> Verdict:
+        """Of a comparison with the first solution."""
+        assert self.first is not None
+        assert self.growth is not None
+        return compare_free(self.first, other, self.growth, TOLERANCE + tolerance, words, slack)
+
+    def less_sure(self) -> bool:
+        """Measure the growth of errors by further nudges; False if there is nothing new to learn."""
+        if self.told or self.first is None or self.growth is None:
+            return False
+        self.told.append("nudged again")
+        for size in (-1.0, 10.0, 0.1):
+            other, _ = self.run(nudged(self.m, size))
+            if other is not None:
+                self.growth = self.growth.larger(Growth.between(self.first, other))
+        return True
+
+    def refusal(self, name: str, error: MechanismError) -> Outcome:
+        """A refusal where the first solution was solved, or was refused too."""
+        kind = type(error).__name__
+        if self.first is None:
+            return Outcome(name, REFUSED, f"{kind}, as built too", str(error))
+        if expected_refusal(error):
+            return Outcome(name, REFUSED, f"{kind}, what a method is not made for", str(error))
+        if self.margin < HEALTHY and isinstance(error, SimulationError):
+            return Outcome(name, REFUSED, f"{kind} near a singular pose, solved as built", str(error))
+        return Outcome(name, WRONG, f"refused ({kind}), solved as built", str(error))
+
+
+def nudged(m: Mechanism, size: float = 1.0) -> Mechanism:
+    """Velocities and gravity changed by ``size`` NUDGE of themselves and of 1 m/s and 10 m/s^2."""
+    from dataclasses import replace
+
+    out, by = duplicate(m), size * NUDGE
+    gx, gy = out.gravity or (0.0, 0.0)
+    out.gravity = gx * (1 + by) + 10 * by, gy * (1 + by) + 7 * by
+    for k, (name, old) in enumerate(out.velocities.items()):
+        turn = by * (1.0 + abs(old.omega)) * (1.0 if k % 2 else -0.7)
+        out.velocities[name] = replace(old, omega=old.omega + turn)
+    return out
+
+
+Variation = Callable[[Free], Outcome]
+RUNS: dict[str, Variation] = {}
+
+
+def variation(name: str) -> Callable[[Variation], Variation]:
+    """Enter one."""
+
+    def enter(run: Variation) -> Variation:
+        RUNS[name] = run
+        return run
+
+    return enter
+
+
+def _size(case: Free) -> float:
+    return 1.0 if case.first is None else case.first.packed.size
+
+
+@variation("world turned and moved")
+def _world(case: Free) -> Outcome:
+    frames = random_frames(case.m, case.rng, _size(case), world=True, bodies=False)
+    return case.compared("world turned and moved", seen_from(case.m, frames), Words(frames))
+
+
+@variation("frames of bodies moved")
+def _frames(case: Free) -> Outcome:
+    frames = random_frames(case.m, case.rng, _size(case), world=False, bodies=True)
+    return case.compared("frames of bodies moved", seen_from(case.m, frames), Words(frames))
+
+
+@variation("on a welded base")
+def _base(case: Free) -> Outcome:
+    if "ground" not in turnable(case.m):
+        return Outcome("on a welded base", UNCLEAR, "a kind measures ground")
+    world = random_pose(case.rng, _size(case))
+    m = on_a_base(case.m, world, float(case.rng.choice([0.0, 1.0])))
+    return case.compared("on a welded base", m, Words({"ground": back(world)}))
+
+
+@variation("another order")
+def _order(case: Free) -> Outcome:
+    return case.compared("another order", shuffled(case.m, case.rng), Words({}))
+
+
+@variation("ends exchanged")
+def _ends(case: Free) -> Outcome:
+    return case.compared("ends exchanged", exchanged(case.m, case.rng), Words({}))
+
+
+def _outputs(count: int) -> Variation:
+    def run(case: Free) -> Outcome:
+        return case.compared(f"{count} outputs", case.m, times=np.linspace(0.0, case.subject.duration, count + 1))
+
+    return run
+
+
+for _count in STEPS:
+    RUNS[f"{_count} outputs"] = _outputs(_count)
+
+
+@variation("irregular outputs")
+def _irregular(case: Free) -> Outcome:
+    keep = case.rng.random(len(case.grid)) < case.rng.uniform(0.05, 0.9)
+    keep[[0, int(case.rng.integers(1, len(keep)))]] = True
+    return case.compared("irregular outputs", case.m, times=case.grid[keep])
+
+
+@variation("another tolerance")
+def _tolerance(case: Free) -> Outcome:
+    tolerance = float(10.0 ** -case.rng.integers(5, 11))
+    return case.compared(f"tolerance {tolerance:.0e}", case.m, tolerance=tolerance)
+
+
+@variation("reference coordinates")
+def _reference(case: Free) -> Outcome:
+    tolerance = float(10 ** case.rng.uniform(-9, -7))
+    return case.compared("reference coordinates", case.m, formulation="reference", tolerance=tolerance)
+
+
+@variation("independent coordinates")
+def _independent(case: Free) -> Outcome:
+    tolerance = float(10 ** case.rng.uniform(-9, -7))
+    return case.compared("independent coordinates", case.m, formulation="independent", tolerance=tolerance)
+
+
+@variation("saved and loaded")
+def _saved(case: Free) -> Outcome:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "model.json"
+        _, error = attempt(lambda: case.m.save(path))
+        if error is not None:
+            state = REFUSED if cannot_be_saved(case.m) else WRONG
+            return Outcome("saved and loaded", state, f"{type(error).__name__}, a function", str(error))
+        return case.compared("saved and loaded", Mechanism.load(path))
+
+
+@variation("changed and changed back")
+def _changed(case: Free) -> Outcome:
+    m = duplicate(case.m)
+    if not there_and_back(m, case.rng, lambda: m.simulate(times=case.grid[:3])):
+        return Outcome("changed and changed back", UNCLEAR, "nothing to change")
+    return case.compared("changed and changed back", m)
+
+
+@variation("from the middle on")
+def _middle(case: Free) -> Outcome:
+    name = "from the middle on"
+    if case.first is None or case.touches():
+        return Outcome(name, UNCLEAR, "refused as built, or contacts remember")
+    k = int(case.rng.integers(1, OUTPUTS - 1))
+    m = started_at(duplicate(case.m), case.first.packed, case.first.q[k].ravel(), case.first.v[k].ravel())
+    other, error = case.run(m, times=case.grid[k:])
+    if error is not None:
+        return case.refusal(name, error)
+    assert other is not None
+    outcome = case.agreement(name, other, Words({}), TOLERANCE)
+    if outcome.detail.startswith("energies"):  # counted from another start
+        return Outcome(name, AGREED)
+    return outcome
+
+
+@variation("asked between outputs")
+def _between(case: Free) -> Outcome:
+    name = "asked between outputs"
+    times = np.linspace(0.0, case.subject.duration, 4)
+    coarse, error = case.run(case.m, times=times)
+    if error is not None:
+        return case.refusal(name, error)
+    assert coarse is not None
+    wanted = case.grid[np.sort(case.rng.choice(np.arange(1, OUTPUTS), 5, replace=False))]
+    other, error = attempt(lambda: coarse.at(wanted))
+    if error is not None:
+        return case.refusal(name, error)
+    assert other is not None
+    outcome = case.agreement(name, other, Words({}), TOLERANCE)
+    if outcome.detail.startswith("energies"):
+        return Outcome(name, AGREED)
+    return outcome
+
+
+@variation("another integrator")
+def _integrator(case: Free) -> Outcome:
+    integrator_named("hunt", "rk4")
+    known = [method for method in INTEGRATORS.values() if method.installed and method.name != "dop853"]
+    method = known[int(case.rng.integers(len(known)))]
+    name = f"integrator {method.name}"
+    if case.first is None:
+        return Outcome(name, UNCLEAR, "refused as built")
+    if not method.fixed_step:
+        tolerance = 1e-8
+        return case.compared(name, case.m, method=method.name, tolerance=tolerance)
+    return _converges(case, name, method.name, method.order)
+
+
+def _converges(case: Free, name: str, method: str, order: int) -> Outcome:
+    """A method of fixed steps comes nearer with half the step; how near depends on the mechanism."""
+    if case.touches() or {"stiff", "jumps"} & case.subject.traits:
+        return Outcome(name, UNCLEAR, "fixed steps over events, jumps or stiff forces")
+    assert case.first is not None
+    shares, last = [], None
+    for count in (FIXED_STEPS, 2 * FIXED_STEPS):
+        other, error = case.run(case.m, method=method, step=case.subject.duration / count)
+        if error is not None:
+            if isinstance(error, SimulationError):
+                return Outcome(name, REFUSED, "SimulationError, asks for smaller steps", str(error))
+            return case.refusal(name, error)
+        assert other is not None
+        problems = finite(other) if method == "baumgarte" else finite(other) or closed(other)
+        if problems:
+            return Outcome(name, WRONG, "against its own equations", "; ".join(problems))
+        last = case.verdict(other, Words({}), 1e-6)
+        shares.append(last.worst)
+    if min(shares) <= 1.0 or shares[1] <= 0.7 ** min(order, 2) * shares[0]:
+        return Outcome(name, AGREED)
+    if case.margin < HEALTHY:
+        return Outcome(name, UNCLEAR, "fixed steps near a singular pose")
+    if case.less_sure():
+        return _converges(case, name, method, order)
+    return Outcome(
+        name, WRONG, "does not converge", f"{shares[0]:.3g} bounds, then {shares[1]:.3g}: {last and last.words}"
+    )
+
+
+@variation("energy")
+def _energy(case: Free) -> Outcome:
+    if case.first is None or case.growth is None:
+        return Outcome("energy", UNCLEAR, "refused as built")
+    first = case.first
+    scale = max(float(first.energy.kinetic.max()), float(np.ptp(first.energy.potential)), 1e-6)
+    if first.work is not None:
+        scale = max(scale, float(np.abs(first.work).max()))
+    grown = float(case.growth.of["energies"].max()) if "energies" in case.growth.of else 0.0
+    problems = balanced(first, TOLERANCE, grown, scale)
+    return Outcome("energy", WRONG, "is not kept", problems[0]) if problems else Outcome("energy", AGREED)

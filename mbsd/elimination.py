@@ -4,13 +4,18 @@ Most entries of J in reference coordinates are constants (+-1 on the coordinates
 vanish, so they are taken first, in Markowitz order; what is left is a small dense block in which rows are pivoted
 at run time. For a four-bar 9 x 9 becomes 2 x 2. Exact LU, nothing is approximated.
 
+J falls apart into irreducible diagonal blocks: a driven body, an Assur group. Pivots are taken within them, so the
+dense block is upper triangular by blocks too, and each of them has a determinant of its own. The sign of each is
+followed from pose to pose: two groups that change sides at once leave the sign of det J as it was.
+
 Rows and columns are renumbered so that pivot k stands at (k, k), and pivot rows are scaled to a pivot of 1. The
 numeric work is then flat loops over index triples:
 
     factor    w[target] -= w[lower] * w[upper]
     solve     y[i] -= L y[k] forward;  dense block;  y[k] -= U y[j] backward
 
-Source: Duff, Erisman, Reid, Direct Methods for Sparse Matrices, ch. 7 (Markowitz) and 9 (a fixed pivot sequence).
+Source: Duff, Erisman, Reid, Direct Methods for Sparse Matrices, ch. 6 (block triangular form), 7 (Markowitz) and 9 (a
+fixed pivot sequence).
 """
 
 from __future__ import annotations
@@ -48,6 +53,8 @@ class Elimination(NamedTuple):
     """(u, 3) value, pivot, position it multiplies."""
     block: Any
     """(k, k) values; 0 is the value that is always zero."""
+    ends: Any
+    """(d,) where each diagonal block of the dense block ends."""
 
 
 class Factors(NamedTuple):
@@ -63,6 +70,8 @@ class Factors(NamedTuple):
     """(k, 2) scratch."""
     side: Any
     """(n, 2) right-hand sides, then the solutions, by position."""
+    determinant: Any
+    """(d,) of each diagonal block of the dense block, up to a constant factor."""
 
 
 def plan(samples: np.ndarray, kept_rows: np.ndarray, row_body: np.ndarray) -> tuple[Elimination, Factors]:
@@ -78,10 +87,16 @@ def plan(samples: np.ndarray, kept_rows: np.ndarray, row_body: np.ndarray) -> tu
     fixed_value, changed = value.copy(), np.zeros((n, n), bool)
     own_constant = constant.copy()
     pattern = own.copy()
+    row_part, column_part = irreducible_parts(own)
+    same_part = row_part[:, None] == column_part
     open_rows, open_columns = np.ones(n, bool), np.ones(n, bool)
     pivots: list[tuple[int, int, float]] = []
     steps: list[tuple[np.ndarray, np.ndarray]] = []
-    while (found := _cheapest_pivot(pattern, constant & (np.abs(value) > 1e-9), open_rows, open_columns)) is not None:
+    while True:
+        usable = constant & same_part & (np.abs(value) > 1e-9)
+        found = _cheapest_pivot(pattern, usable, open_rows, open_columns)
+        if found is None:
+            break
         r, c = found
         open_rows[r], open_columns[c] = False, False
         targets = np.flatnonzero(pattern[:, c] & open_rows)
@@ -94,8 +109,9 @@ def plan(samples: np.ndarray, kept_rows: np.ndarray, row_body: np.ndarray) -> tu
         pivots.append((r, c, value[r, c]))
         steps.append((targets, others))
 
-    row_order = [r for r, _, _ in pivots] + list(np.flatnonzero(open_rows))
-    column_order = [c for _, c, _ in pivots] + list(np.flatnonzero(open_columns))
+    left_rows, left_columns = _by_part(open_rows, row_part), _by_part(open_columns, column_part)
+    row_order = [r for r, _, _ in pivots] + list(left_rows)
+    column_order = [c for _, c, _ in pivots] + list(left_columns)
     scale = np.array([1.0 / pivot for _, _, pivot in pivots] + [1.0] * int(open_rows.sum()))
     scale_of = dict(zip(row_order, scale, strict=True))
     at_row = {int(r): k for k, r in enumerate(row_order)}
@@ -120,8 +136,8 @@ def plan(samples: np.ndarray, kept_rows: np.ndarray, row_body: np.ndarray) -> tu
         update += [(slot[int(i), int(j)], slot[int(i), c], slot[r, int(j)]) for i in targets for j in others]
     size = int(open_rows.sum())
     block = np.zeros((size, size), INDEX)
-    for a, r in enumerate(np.flatnonzero(open_rows)):
-        for b, c in enumerate(np.flatnonzero(open_columns)):
+    for a, r in enumerate(left_rows):
+        for b, c in enumerate(left_columns):
             block[a, b] = slot.get((int(r), int(c)), 0)
     sequence = Elimination(
         rows=np.array(kept_rows, INDEX)[np.array(row_order, INDEX)],
@@ -134,10 +150,48 @@ def plan(samples: np.ndarray, kept_rows: np.ndarray, row_body: np.ndarray) -> tu
         lower=_triples(lower),
         upper=_triples(upper),
         block=block,
+        ends=np.flatnonzero(np.diff(row_part[left_rows], append=-1)) + 1,
     )
     return sequence, Factors(
-        values, np.zeros((size, size)), np.zeros(size, np.int64), np.zeros((size, 2)), np.zeros((n, 2))
+        values,
+        np.zeros((size, size)),
+        np.zeros(size, np.int64),
+        np.zeros((size, 2)),
+        np.zeros((n, 2)),
+        np.zeros(len(sequence.ends)),
     )
+
+
+def irreducible_parts(pattern: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Number (n,) of the irreducible diagonal block of each row and of each column of a square pattern (n, n).
+
+    Ordered by these numbers the matrix is upper triangular by blocks. A structurally singular one counts as one block.
+    """
+    from graphlib import TopologicalSorter
+
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
+
+    n = len(pattern)
+    column_of = maximum_bipartite_matching(csr_array(pattern), perm_type="column")
+    if n == 0 or (column_of < 0).any():
+        return np.zeros(n, np.int64), np.zeros(n, np.int64)
+    count, label = connected_components(csr_array(pattern[:, column_of]), directed=True, connection="strong")
+    needed_by: dict[int, set[int]] = {k: set() for k in range(count)}
+    for r, c in zip(*np.nonzero(pattern[:, column_of]), strict=True):
+        if label[r] != label[c]:
+            needed_by[int(label[c])].add(int(label[r]))
+    order = np.empty(count, np.int64)
+    order[list(TopologicalSorter(needed_by).static_order())] = np.arange(count)
+    rows = order[label]
+    columns = np.empty(n, np.int64)
+    columns[column_of] = rows
+    return rows, columns
+
+
+def _by_part(chosen: np.ndarray, part: np.ndarray) -> np.ndarray:
+    indices = np.flatnonzero(chosen)
+    return indices[np.argsort(part[indices], kind="stable")]
 
 
 def _triples(rows: list) -> np.ndarray:
@@ -159,9 +213,9 @@ def _cheapest_pivot(
 
 @inlined
 def factorise(seq, jac, fac):
-    """Factor J, compact (m, 6).
+    """Factor J, compact (m, 6), and fill ``fac.determinant``.
 
-    Returns (sign, margin): sign of the block's determinant, and its smallest over its largest pivot; 0 if singular.
+    Returns the smallest over the largest pivot of the dense block; 0 if singular.
     """
     w = fac.values
     for e in range(seq.read.shape[0]):
@@ -175,36 +229,41 @@ def factorise(seq, jac, fac):
 
 @inlined
 def _factorise_block(seq, fac):
-    """LU with partial pivoting of the dense block; its diagonal keeps the inverse pivots."""
+    """LU of the dense block with partial pivoting in each diagonal block; its diagonal keeps the inverse pivots."""
     block, order = fac.block, fac.order
     k = block.shape[0]
-    sign, smallest, largest = 1.0, np.inf, 0.0
+    smallest, largest = np.inf, 0.0
     for a in range(k):
         order[a] = a
         for b in range(k):
             block[a, b] = fac.values[seq.block[a, b]]
-    for c in range(k):
-        best, size = c, abs(block[c, c])
-        for r in range(c + 1, k):
-            if abs(block[r, c]) > size:
-                best, size = r, abs(block[r, c])
-        if best != c:
-            sign = -sign
-            order[c], order[best] = order[best], order[c]
-            for b in range(k):
-                block[c, b], block[best, b] = block[best, b], block[c, b]
-        smallest, largest = min(smallest, size), max(largest, size)
-        if block[c, c] < 0.0:
-            sign = -sign
-        inverse = 1.0 / block[c, c]
-        block[c, c] = inverse
-        for r in range(c + 1, k):
-            factor = block[r, c] * inverse
-            block[r, c] = factor
-            for b in range(c + 1, k):
-                block[r, b] -= factor * block[c, b]
+    first = 0
+    for d in range(seq.ends.shape[0]):
+        end = seq.ends[d]
+        determinant = 1.0
+        for c in range(first, end):
+            best, size = c, abs(block[c, c])
+            for r in range(c + 1, end):
+                if abs(block[r, c]) > size:
+                    best, size = r, abs(block[r, c])
+            if best != c:
+                determinant = -determinant
+                order[c], order[best] = order[best], order[c]
+                for b in range(k):
+                    block[c, b], block[best, b] = block[best, b], block[c, b]
+            smallest, largest = min(smallest, size), max(largest, size)
+            determinant *= block[c, c]
+            inverse = 1.0 / block[c, c]
+            block[c, c] = inverse
+            for r in range(c + 1, end):
+                factor = block[r, c] * inverse
+                block[r, c] = factor
+                for b in range(c + 1, k):
+                    block[r, b] -= factor * block[c, b]
+        fac.determinant[d] = determinant
+        first = end
     margin = smallest / largest if k > 0 else 1.0
-    return sign, margin if margin > 0.0 else 0.0
+    return margin if margin > 0.0 else 0.0
 
 
 @inlined

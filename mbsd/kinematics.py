@@ -6,9 +6,17 @@
 
 The last Newton step moves q by less than ``TOLERANCE``, so its factors serve velocities and accelerations too.
 
-Branch guard: a step is refused (the caller halves it) when Newton does not contract, when the correction is not
-small against the step that was predicted, or when the sign of det J changes though the prediction was not
-confirmed: then the pose may lie on the other assembly.
+Branch guard: a step is refused, and the caller puts a pose into it, when
+
+- a driver goes further than its stride or jumps (motions between two poses would go unseen);
+- Newton does not contract well, or corrects a large part of what was predicted;
+- the step is not the one that the rates at both ends make,  dq = h (v_0 + v_1) / 2 - h^2 (a_1 - a_0) / 12,
+  so that equations which hold again after a pitch or a turn cannot be met on another one;
+- the determinant of an irreducible block of J changes sign, shrinks fast, or would on a straight line through its last
+  two values: near such a pose two assemblies come close, and steps shorter than the way to it tell them apart.
+
+Two assemblies that meet within a step of ``CROSSING`` are a change point. It is passed along the smooth motion, which the
+prediction must confirm on both sides; lengths that agree to 1e-12 or so count as equal.
 
 Source: Haug 1989, ch. 4 (Newton-Raphson); Hairer, Norsett, Wanner, Solving ODEs I, II.6 (Hermite interpolation).
 """
@@ -20,6 +28,7 @@ import numpy as np
 from mbsd.assembly import evaluate_gamma, evaluate_nu, evaluate_position
 from mbsd.elimination import factorise, solve
 from mbsd.jit import inlined, kernel
+from mbsd.law_step import jumps
 
 TOLERANCE = 1e-12
 """Of a Newton correction, relative to the mechanism's size (m) and to 1 rad."""
@@ -29,7 +38,15 @@ MAX_ITERATIONS = 12
 CONFIRMED = 1e-3
 """A correction below this part of the predicted step confirms the branch, even past a change point."""
 SUSPICIOUS = 0.25
-"""A correction above this part of the predicted step may have left the branch."""
+"""A correction above this part of the step may have left the branch."""
+CONTRACTS = 0.1
+"""A second correction above this part of the first was not made near the solution."""
+UNEXPLAINED = 0.02
+"""Part of a step, in sizes and rad, that the rates at its ends may leave unexplained."""
+SHRINKS = 0.1
+"""A determinant that falls to this part of its last value, or heads for it, may vanish in between."""
+CROSSING = 1e-5
+"""Length of a step, in sizes and rad, within which two assemblies meet at a change point."""
 LONGEST_STRETCH = 4.0
 """Beyond this ratio of step lengths the quintic is not trusted; the last (q, v, a) alone predicts."""
 
@@ -83,12 +100,48 @@ def _extent(delta, per_metre):
     return largest
 
 
+@inlined
+def _heads_for_zero(determinants, times, k):
+    """Whether a determinant before row k may have vanished within the step to k, or between rows 0 and 1 (then 1).
+
+    Returns the index of the refused row, 0 if there is none.
+    """
+    for d in range(determinants.shape[1]):
+        now = determinants[k, d]
+        before = determinants[k - 1, d]
+        if not now * before > SHRINKS * before * before:
+            return k
+        if k > 1:
+            slope = (before - determinants[k - 2, d]) / (times[k - 1] - times[k - 2])
+            if (before + slope * (times[k] - times[k - 1])) * before < SHRINKS * before * before:
+                return k
+        if k == 2:  # seen backwards, for the first step has nothing before it
+            slope = (now - before) / (times[2] - times[1])
+            if (before - slope * (times[1] - times[0])) * before < SHRINKS * before * before:
+                return 1
+    return 0
+
+
+@inlined
+def _unexplained(q, v, a, k, h, per_metre):
+    """Largest part of step k that the rates at its ends do not explain, in sizes and rad; NaN counts as infinite."""
+    largest = 0.0
+    for c in range(3, q.shape[1]):
+        gap = abs(q[k, c] - q[k - 1, c] - h * (0.5 * (v[k, c] + v[k - 1, c]) - h / 12.0 * (a[k, c] - a[k - 1, c])))
+        if c % 3 != 2:
+            gap *= per_metre
+        if not gap <= largest:
+            largest = gap if gap == gap else np.inf
+    return largest
+
+
 @kernel
-def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, start):
+def sweep(system, seq, fac, ws, size, times, drives, stride, q, v, a, residual, determinant, start):
     """Solve positions, velocities and accelerations at ``times[start:]``; rows before ``start`` are known.
 
-    times (T,), drives (T, motions, 3), q, v, a (T, 3 nb), residual (T,) largest |Phi| and sign (T,) of det J are
-    filled. With ``start`` 0, q[0] must hold the assembled pose. ``size`` is the mechanism's length (m).
+    times (T,), drives (T, motions + 1, 3), stride (motions + 1,) how far each law may go in a step; q, v, a (T, 3 nb),
+    residual (T,) largest |Phi| and determinant (T, d) of each block of J are filled. With ``start`` 0, q[0] must hold
+    the assembled pose. ``size`` is the mechanism's length (m).
     Returns (status, index): DONE and T, or why and at which index the step was refused.
     """
     n3 = q.shape[1]
@@ -97,17 +150,23 @@ def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, st
     delta = ws.delta
     right = ws.right
     for k in range(start, times.shape[0]):
+        h = 0.0
         if k > 0:
+            h = times[k] - times[k - 1]
+            for motion in range(1, drives.shape[1]):
+                if jumps(drives[k, motion], drives[k - 1, motion], h, stride[motion]):
+                    return BRANCH_DOUBT, k
             _predict(q, v, a, times, k, times[k], pose)
         else:
             for c in range(n3):
                 pose[c] = q[0, c]
         first = 0.0
+        second = 0.0
         last = np.inf
         evaluate_nu(system, drives[k], right[1])
         for iteration in range(MAX_ITERATIONS):
             evaluate_position(system, pose, drives[k], ws)
-            determinant, margin = factorise(seq, ws.jac, fac)
+            margin = factorise(seq, ws.jac, fac)
             if margin < 1e-12:
                 return SINGULAR, k
             for r in range(ws.phi.shape[0]):
@@ -118,6 +177,8 @@ def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, st
             change = _extent(delta[0], per_metre)
             if iteration == 0:
                 first = change
+            elif iteration == 1:
+                second = change
             if change <= TOLERANCE:
                 break
             if iteration > 0 and not change < 0.5 * last:
@@ -125,25 +186,33 @@ def sweep(system, seq, fac, ws, size, times, drives, q, v, a, residual, sign, st
             last = change
         if not change <= ROUNDING:
             return NO_CONTRACTION, k
-        if k > 0:
-            for c in range(3, n3):
-                delta[0, c] = pose[c] - q[k - 1, c]
-            step = _extent(delta[0], per_metre)
-            if first > SUSPICIOUS * step + 1e-9:
-                return BRANCH_DOUBT, k
-            if determinant != sign[k - 1] and first > CONFIRMED * step + 1e-9:
-                return BRANCH_DOUBT, k
         for c in range(n3):
             q[k, c] = pose[c]
-        sign[k] = determinant
+        for d in range(determinant.shape[1]):
+            determinant[k, d] = fac.determinant[d]
         worst = 0.0
         for r in range(ws.phi.shape[0]):
             worst = max(worst, abs(ws.phi[r]))
         residual[k] = worst
         for c in range(3, n3):
             v[k, c] = delta[1, c]
+        if k > 0:
+            for c in range(3, n3):
+                delta[0, c] = pose[c] - q[k - 1, c]
+            step = _extent(delta[0], per_metre)
+            if first > SUSPICIOUS * step + 1e-9 or second > CONTRACTS * first + 1e-9:
+                return BRANCH_DOUBT, k
+            refused = _heads_for_zero(determinant, times, k)
+            if refused == 1:
+                for c in range(3, n3):
+                    delta[0, c] = q[1, c] - q[0, c]
+                step = _extent(delta[0], per_metre)
+            if refused > 0 and (step > CROSSING or first > CONFIRMED * step + 1e-9):
+                return BRANCH_DOUBT, refused
         evaluate_gamma(system, v[k], drives[k], ws, right[0])
         solve(seq, fac, 1, right, delta)
         for c in range(3, n3):
             a[k, c] = delta[0, c]
+        if k > 0 and _unexplained(q, v, a, k, h, per_metre) > UNEXPLAINED:
+            return BRANCH_DOUBT, k
     return DONE, times.shape[0]

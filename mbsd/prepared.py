@@ -12,7 +12,8 @@ from mbsd.arguments import number_array
 from mbsd.assembly import residual_and_jacobian
 from mbsd.assur.groups import Groups
 from mbsd.assur.plan import describe, plan_groups
-from mbsd.assur.solve import SOLVED, solve_groups
+from mbsd.assur.points import DOUBTED, OPEN, SOLVED
+from mbsd.assur.solve import solve_groups
 from mbsd.elimination import Elimination, Factors, plan
 from mbsd.errors import AssemblyError, BranchError, ModelError, SingularPoseError
 from mbsd.mobility import Mobility, choose_rows, joint_mobility, refuse_overdriven
@@ -21,16 +22,30 @@ from mbsd.packing import Packed, pack
 from mbsd.shown import shown
 from mbsd.specials import ACTIVE, ROW
 from mbsd.start import assemble
+from mbsd.steps import Steps
 from mbsd.users_function import law_of
 
-SHORTEST_STEP = 1e-7
-"""A step refused at this part of the output step is not cured by halving."""
+ZERO_LENGTH = 1e-12
+"""Square of a length in sizes below which it counts as zero."""
 RUNAWAY = 30.0
 """Turning this many times faster than usual is the mark of a toggle; at a change point rates stay as they are."""
 LARGEST_ANGLE = 1e12
 """Of a driver (rad): beyond it neighbouring numbers are more than 1e-4 rad apart."""
 REDUNDANT_GAP = 1e-7
 """Largest gap, in sizes, by which redundant joints may disagree."""
+
+
+class March:
+    """A motion at the times asked for, and at all steps on the way."""
+
+    def __init__(self, q: np.ndarray, v: np.ndarray, a: np.ndarray, steps: Steps, closed: bool) -> None:
+        self.steps, self.closed = steps, closed
+        """``closed``: solved in closed form."""
+        self.all_q = q
+        """(steps, 3 nb)"""
+        every = slice(None) if steps.wanted.all() else steps.wanted
+        self.q, self.v, self.a = q[every], v[every], a[every]
+        """(T, 3 nb)"""
 
 
 @dataclass
@@ -49,85 +64,97 @@ class Prepared:
 
     @property
     def route(self) -> str:
-        """How positions are found."""
+        """How positions are found, as long as no two assemblies meet on the way."""
         if self.groups is None:
             return "Newton-Raphson"
         return f"closed form: {describe(self.groups, self.packed.body_names)}"
 
     def kinematics(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(T, nb, 3) positions, velocities and accelerations of the centres of mass and angles; ground is body 0."""
-        q, v, a, _ = self.march(times)
+        motion = self.march(times)
         shape = (len(times), -1, 3)
-        return q.reshape(shape), v.reshape(shape), a.reshape(shape)
+        return motion.q.reshape(shape), motion.v.reshape(shape), motion.a.reshape(shape)
 
-    def march(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
-        """Closed forms where they serve, else Newton-Raphson; also returns how many steps were inserted."""
-        grid = np.ascontiguousarray(times, float)
-        drives = self.packed.drives(grid)
+    def march(self, times: np.ndarray) -> March:
+        """The motion at rising times (T,) (s): closed forms where they serve, else Newton-Raphson."""
+        steps = Steps(self.packed, times)
         if self.groups is not None:
-            closed = self._closed_form(self.groups, grid, drives)
-            if closed is not None:
-                return *closed, 0
-        return self._newton(times, grid, drives)
+            found = self._closed_form(self.groups, steps)
+            if found is not None:
+                return March(*found, steps, True)
+        out_of_reach = steps.out_of_reach
+        steps = Steps(self.packed, times)  # those of the closed form may be just where branches meet
+        found = self._newton(steps)
+        if out_of_reach is not None:
+            raise self._out_of_reach(out_of_reach)
+        return March(*found, steps, False)
 
-    def _closed_form(
-        self, groups: Groups, grid: np.ndarray, drives: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-        """Positions, velocities, accelerations; None where a step is in doubt and Newton-Raphson must look closer."""
-        n3 = len(self.q0)
-        q, v, a = np.zeros((len(grid), n3)), np.zeros((len(grid), n3)), np.zeros((len(grid), n3))
-        turn, point = np.zeros((n3 // 3, 2)), np.zeros((3, 8))
+    def _closed_form(self, groups: Groups, steps: Steps) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+        """Positions, velocities, accelerations (T, 3 nb) at all steps; None where branches meet or a group opens."""
+        n3, size = len(self.q0), self.packed.size
+        turn, point, before = np.zeros((n3 // 3, 2)), np.zeros((4, 8)), np.zeros((len(groups.kind), 2))
         turn[0, 0] = 1.0
-        status, _ = solve_groups(groups, self.q0, grid, drives, q, v, a, turn, point)
-        return (q, v, a) if status == SOLVED else None
-
-    def _newton(
-        self, times: np.ndarray, grid: np.ndarray, drives: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
-        """Run the kernel; halve the steps it refuses."""
-        packed = self.packed
-        wanted = np.ones(len(grid), bool)
+        q, v, a = (np.zeros((len(steps.times), n3)) for _ in range(3))
         first = 0
-        q, v, a, residual, sign = self._arrays(len(grid))
-        q[0] = self.q0
         while True:
+            status, index, part = solve_groups(
+                groups, self.q0, steps.times, steps.drives, steps.stride, ZERO_LENGTH * size * size, first, q, v, a,
+                turn, point, before,
+            )  # fmt: skip
+            if status == SOLVED:
+                return q, v, a
+            if status == OPEN:
+                steps.out_of_reach = float(steps.times[index])
+            if status != DOUBTED:
+                return None
+            if steps.follow_laws():
+                q, v, a = (np.zeros((len(steps.times), n3)) for _ in range(3))
+                first = 0
+                continue
+            if not steps.divide(index, part):
+                return None
+            q, v, a = (np.insert(array, index, 0.0, axis=0) for array in (q, v, a))
+            first = index - 1
+
+    def _newton(self, steps: Steps) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Positions, velocities, accelerations (T, 3 nb) at all steps; those that the kernel refuses are divided."""
+        packed = self.packed
+        arrays = self._arrays(len(steps.times))
+        first = 0
+        while True:
+            q, v, a, residual, determinant = arrays
             status, index = kinematics.sweep(
-                packed.system,
-                self.sequence,
-                self.factors,
-                packed.ws,
-                packed.size,
-                grid,
-                drives,
-                q,
-                v,
-                a,
-                residual,
-                sign,
-                first,
-            )
+                packed.system, self.sequence, self.factors, packed.ws, packed.size, steps.times, steps.drives,
+                steps.stride, q, v, a, residual, determinant, first,
+            )  # fmt: skip
             packed.specials.check()
             if status == kinematics.DONE:
                 break
             if index == 0:
-                raise self._refused(status, grid, 0, drives, q, v)
-            middle = (grid[index - 1] + grid[index]) / 2
-            if not middle - grid[index - 1] > SHORTEST_STEP * float(np.ptp(times)) / len(times):
-                raise self._refused(status, grid, index, drives, q, v)
-            grid = np.insert(grid, index, middle)
-            drives = np.insert(drives, index, packed.drives(np.array([middle]))[0], axis=0)
-            wanted = np.insert(wanted, index, False)
-            q, v, a = (np.insert(array, index, 0.0, axis=0) for array in (q, v, a))
-            residual, sign = np.insert(residual, index, 0.0), np.insert(sign, index, 0.0)
+                raise self._refused(status, steps.times, 0, steps.drives, q, v)
+            if steps.follow_laws():
+                arrays, first = self._arrays(len(steps.times)), 0
+                continue
+            if not steps.divide(index):
+                raise self._refused(status, steps.times, index, steps.drives, q, v)
+            arrays = tuple(np.insert(array, index, 0.0, axis=0) for array in arrays)
             first = index
-        self._refuse_disagreeing(grid, residual, q, drives)
-        if wanted.all():
-            return q, v, a, 0
-        return q[wanted], v[wanted], a[wanted], int((~wanted).sum())
+        self._refuse_disagreeing(steps.times, residual, q, steps.drives)
+        return q, v, a
 
     def _arrays(self, count: int) -> tuple[np.ndarray, ...]:
-        n3 = len(self.q0)
-        return np.zeros((count, n3)), np.zeros((count, n3)), np.zeros((count, n3)), np.zeros(count), np.zeros(count)
+        n3, blocks = len(self.q0), len(self.sequence.ends)
+        q, v, a = (np.zeros((count, n3)) for _ in range(3))
+        q[0] = self.q0
+        return q, v, a, np.zeros(count), np.zeros((count, blocks))
+
+    def _out_of_reach(self, time: float) -> Exception:
+        """The error for a motion on whose way a group cannot close, whatever Newton-Raphson made of it."""
+        return SingularPoseError(
+            f"{self.packed.name}: the links cannot follow the drivers beyond t = {time:.9g} s "
+            f"({self._driver_values(self.packed.drives(np.array([time]))[0])}): a toggle, beyond which they do not reach "
+            "each other. Drive within the reachable range, change the lengths, or drive another body."
+        )
 
     def _refuse_disagreeing(self, grid: np.ndarray, residual: np.ndarray, q: np.ndarray, drives: np.ndarray) -> None:
         """Rows left out as redundant must hold too."""

@@ -20,11 +20,11 @@ def sweep(m: Mechanism, duration: float | None, steps: int, times: Sequence[floa
     """See :meth:`mbsd.model.Mechanism.sweep`."""
     grid = sweep_times(m, duration, steps, times)
     ready = prepare(m, float(grid[0]), float(grid[-1]))
-    q, v, a, inserted = ready.march(grid)
-    packed = ready.packed
+    march = ready.march(grid)
+    q, v, a, packed = march.q, march.v, march.a, ready.packed
     drives = packed.drives(grid)
-    refuse_passed(packed, grid, q)
-    refuse_passed_contacts(m, packed, grid, q)
+    refuse_passed(packed, march.steps.times, march.all_q)
+    refuse_passed_contacts(m, packed, march.steps.times, march.all_q)
     loads = inverse_dynamics(ready, grid, drives, q, v, a)
     shape = (len(grid), -1, 3)
     return Solution(
@@ -38,9 +38,9 @@ def sweep(m: Mechanism, duration: float | None, steps: int, times: Sequence[floa
         lam=loads.lam,
         drives=drives,
         singularity_margin=loads.margin,
-        stats=Stats(*(float(r) for r in loads.residuals), steps=len(grid), inserted_steps=inserted),
+        stats=Stats(*(float(r) for r in loads.residuals), steps=len(grid), inserted_steps=march.steps.inserted),
         mobility=ready.mobility,
-        route=ready.route,
+        route=ready.route if march.closed else "Newton-Raphson",
     )
 
 
@@ -50,8 +50,8 @@ def sweep_times(
     """(T,) rising times (s) of a sweep. Raises ModelError."""
     if times is not None:
         grid = np.asarray(times, float)
-        if grid.ndim != 1 or len(grid) < 2 or not np.isfinite(grid).all() or not (np.diff(grid) > 0).all():
-            raise ModelError(f"{m.name}: times must be two or more rising finite numbers")
+        if grid.ndim != 1 or len(grid) < 1 or not np.isfinite(grid).all() or not (np.diff(grid) > 0).all():
+            raise ModelError(f"{m.name}: times must be rising finite numbers")
         return grid
     if isinstance(steps, bool) or not isinstance(steps, int | np.integer) or steps < 1:
         raise ModelError(f"{m.name}: steps is {steps!r}; it must be a whole number above zero")

@@ -60,7 +60,7 @@ def test_coordinates_of_limited_joints_in_moving_axes() -> None:
     m.drive_coordinate("pull", guide, hook.at(0.05, 0.0), harmonic(0.4, 3.0, 0.2))
     t = np.linspace(0.0, 2.0, 50)
     ready = prepare(m, 0.0, 2.0)
-    q = ready.march(t)[0]
+    q = ready.march(t).q
     pivot, slide = limits_of(ready.packed)
     np.testing.assert_allclose(coordinate(ready.packed, slide, q), 0.4 * np.sin(3 * t + 0.2), atol=1e-12)
     np.testing.assert_allclose(coordinate(ready.packed, pivot, q), 0.8 * np.sin(2 * t) - 0.7, atol=1e-12)

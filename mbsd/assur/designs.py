@@ -11,9 +11,15 @@ from __future__ import annotations
 import math
 
 from mbsd.assur.groups import DRIVEN, PRP, ROD, RPR, RRP, RRR, SLIDE, WELDED
-from mbsd.assur.points import DOUBTED, FLAT, NEAR, OPEN, SOLVED
-from mbsd.assur.slides import PARALLEL
+from mbsd.assur.points import DOUBTED, OPEN, SOLVED, WOUND
 from mbsd.jit import inlined, threaded
+
+NEAR = 0.25
+"""Part of the angle to the other branch by which the extrapolated motion may be missed."""
+FLAT = 1e-10
+"""Discriminant over squared lengths at which branches meet."""
+PARALLEL = 1e-3
+"""Sine of the angle between two slides below which their crossing is in doubt."""
 
 
 @inlined
@@ -46,10 +52,13 @@ def _follow(place, b, leader, turn):
 
 
 @threaded
-def place_designs(groups, numbers, start, driven, fixed, place, point, roots, body, arm, turned, out, angle, status):
+def place_designs(
+    groups, numbers, start, driven, every, fixed, place, point, roots, body, arm, turned, out, angle, status
+):
     """Fill out (n, points, T, 2), angle (n, bodies, T) and status (n,) of n designs with numbers (n, g, 14).
 
-    driven (T, g, 2) cosine and sine of DRIVEN groups' angles, values of the other laws; fixed (g, 2, 2) cosine and sine
+    Of the poses solved, equally far apart in time, every ``every``th is kept.
+    driven (every (T - 1) + 1, g, 2) cosine and sine of DRIVEN groups' angles, values of the other laws; fixed (g, 2, 2) cosine and sine
     of the constant angles of A and B of the other groups.
     Points: body (points,) and arm (n, points, 2) from centres of mass; turned (bodies,) whose angles are wanted, going
     on from start (3 nb,). Scratch: place (nb, 4) with (0, 0, 1, 0) for ground, point (2, 2), roots (g, 2).

@@ -1,6 +1,11 @@
-"""Points carried by bodies, for the closed forms, and when a step is doubted.
+"""Points carried by bodies, for the closed forms, and when a step between two poses is doubted.
 
 p = r + s,   p' = r' + omega s_perp,   p'' = r'' + alpha s_perp - omega^2 s;   s_perp = (-s_y, s_x)
+
+The sign of a group's root is that of the start as long as its discriminant D stays above zero, at the poses and
+between them. Between two poses D is the cubic through both ends with their rates: where it has a minimum there and
+falls by more than half, a pose at the minimum decides. Bodies turn by less than ``WOUND`` from pose to pose, so whole
+turns are counted.
 """
 
 from __future__ import annotations
@@ -9,13 +14,14 @@ import math
 
 from mbsd.jit import internal
 
-SOLVED, DOUBTED, OPEN = 0, 1, 2
-NEAR = 0.25
-"""Part of the angle to the other branch by which the extrapolated motion may be missed."""
-FLAT = 1e-10
-"""Discriminant over squared lengths at which branches meet."""
-JUMP = 0.25
-"""Part of a law's step that its rates may leave unexplained."""
+SOLVED, DOUBTED, OPEN, MEETING = 0, 1, 2, 3
+"""Solved; a pose between is needed; out of reach; the two branches meet within rounding."""
+FLAT = 1e-12
+"""Discriminant over its scale at which branches meet: lengths that agree to this part count as equal."""
+DEEP = 0.5
+"""Part of the lower end below which the discriminant must not fall between two poses."""
+WOUND = 1.0
+"""Angle (rad) by which a body may turn from pose to pose, by its angles and by its rates."""
 
 
 @internal
@@ -81,18 +87,32 @@ def follow(q, v, a, turn, b, leader, angle):
 
 
 @internal
-def doubtful(q, last, v, a, h, c, square):
-    """Whether angle c of pose q strays from the motion before (last, v, a) as if on the way to the other branch.
-
-    ``square``: squared sine of half the angle between the branches.
-    """
-    miss = q[c] - (last[c] + h * (v[c] + 0.5 * h * a[c]))
-    return not miss * miss < NEAR * NEAR * square
+def wound(q, last, v, before, h, c):
+    """Whether angle c is too far from that of the pose ``last``, h seconds and rates ``before`` earlier, to count turns."""
+    return not (abs(q[c] - last[c]) <= WOUND and h * abs(v[c]) <= WOUND and h * abs(before[c]) <= WOUND)
 
 
 @internal
-def jumps(law, before, h):
-    """Whether a law's value (3,) is not where its rates lead from the value h seconds before: it jumps."""
-    step = law[0] - before[0]
-    gap = step - h * (0.5 * (law[1] + before[1]) - h / 12.0 * (law[2] - before[2]))
-    return not abs(gap) <= JUMP * abs(step) + 1e-9
+def reach(discriminant, scale):
+    """SOLVED above zero, OPEN below, MEETING where it is zero beside ``scale``, what it is a difference of."""
+    if discriminant > FLAT * scale:
+        return SOLVED
+    return OPEN if discriminant < -FLAT * scale else MEETING
+
+
+@internal
+def dip(fall, before, rise, after):
+    """Where between two poses the discriminant has a low minimum, as a part of the step; 0 if nowhere.
+
+    ``fall`` and ``rise``: its rates at both ends times the step. Source: cubic Hermite interpolation.
+    """
+    if not (fall < 0.0 and rise > 0.0):
+        return 0.0
+    change = after - before
+    second = 3.0 * change - 2.0 * fall - rise
+    third = fall + rise - 2.0 * change
+    s = -fall / (second + math.sqrt(max(second * second - 3.0 * third * fall, 0.0)))
+    low = before + s * (fall + s * (second + s * third))
+    if low > DEEP * min(before, after):
+        return 0.0
+    return min(max(s, 1e-6), 1.0 - 1e-6)

@@ -13,18 +13,19 @@ from __future__ import annotations
 
 import math
 
-from mbsd.assur.points import DOUBTED, FLAT, OPEN, SOLVED, aim, carried, doubtful, follow, hang
+from mbsd.assur.points import MEETING, SOLVED, aim, carried, follow, hang, reach
 from mbsd.jit import internal
 
-PARALLEL = 1e-3
-"""Sine of the angle between two slides below which their crossing is in doubt."""
-EXPECTED = 0.25
-"""Part of a step by which the extrapolated motion may be missed."""
+PARALLEL = 1e-6
+"""Sine of the angle between two slides below which they do not cross."""
 
 
 @internal
-def solve_prp(body, n, qk, vk, ak, last, v, a, h, turn, point):
-    """``last``, ``v``, ``a`` (3 nb,): the pose and rates h seconds ago; h is 0 at the start."""
+def solve_prp(body, n, qk, vk, ak, turn, point):
+    """Fill positions, velocities and accelerations qk, vk, ak (3 nb,) of the group's bodies; return SOLVED or why not.
+
+    ``point`` (4, 8): scratch; its last row gets the discriminant and its rate, here the squared sine between the slides.
+    """
     p = point[0]
     r = point[1]
     g = point[2]
@@ -40,7 +41,7 @@ def solve_prp(body, n, qk, vk, ak, last, v, a, h, turn, point):
     fy = turn[k2, 1] * n[9] + turn[k2, 0] * n[10]
     sine = fx * ey - fy * ex
     if not abs(sine) > PARALLEL:
-        return DOUBTED
+        return MEETING
     inverse = 1.0 / sine
     dx = r[0] - p[0]
     dy = r[1] - p[1]
@@ -48,6 +49,8 @@ def solve_prp(body, n, qk, vk, ak, last, v, a, h, turn, point):
     second = (ex * dy - ey * dx) * inverse
     w1 = vk[3 * k1 + 2]
     w2 = vk[3 * k2 + 2]
+    point[3, 0] = sine * sine
+    point[3, 1] = 2.0 * sine * (fx * ex + fy * ey) * (w1 - w2)
     a1 = ak[3 * k1 + 2]
     a2 = ak[3 * k2 + 2]
     sx = first * ex
@@ -76,22 +79,12 @@ def solve_prp(body, n, qk, vk, ak, last, v, a, h, turn, point):
     if two >= 0:
         follow(qk, vk, ak, turn, two, k2, n[11])
         hang(qk, vk, ak, turn, two, g, n[12], n[13])
-    if h > 0.0:
-        missed = 0.0
-        moved = 0.0
-        for c in range(3 * one, 3 * one + 2):
-            rate = h * v[c]
-            off = abs(qk[c] - last[c] - rate - 0.5 * h * h * a[c])
-            missed = max(missed, off)
-            moved = max(moved, abs(qk[c] - last[c]), abs(rate))
-        if not missed <= EXPECTED * moved + 1e-9:
-            return DOUBTED
     return SOLVED
 
 
 @internal
-def solve_rod(body, n, law, qk, vk, ak, last, v, a, h, turn, point):
-    """law (3,): l and its rates beside the constant length. See :func:`solve_prp`."""
+def solve_rod(body, n, law, qk, vk, ak, last, turn, point):
+    """law (3,): l and its rates beside the constant length; last (3 nb,): the pose before. See :func:`solve_prp`."""
     p = point[0]
     r = point[1]
     one = body[0]
@@ -104,24 +97,25 @@ def solve_rod(body, n, law, qk, vk, ak, last, v, a, h, turn, point):
     dx = r[0] - p[0]
     dy = r[1] - p[1]
     square = dx * dx + dy * dy
-    if not square > FLAT * first:
-        return DOUBTED
+    second = rod * rod
+    middle = first + second - square
+    left = 4.0 * first * second - middle * middle
+    fx = r[2] - p[2]
+    fy = r[3] - p[3]
+    point[3, 0] = left
+    point[3, 1] = 8.0 * first * rod * law[1] - 4.0 * middle * (rod * law[1] - dx * fx - dy * fy)
+    state = reach(left, 4.0 * first * second)
+    if state != SOLVED:
+        return state
     inverse = 1.0 / square
-    along = 0.5 * (square + first - rod * rod) * inverse
-    height = first * inverse - along * along
-    if not height > FLAT:
-        return OPEN if height < -FLAT else DOUBTED
-    height = n[9] * math.sqrt(height)
+    along = 0.5 * (square + first - second) * inverse
+    height = n[9] * 0.5 * inverse * math.sqrt(left)
     ux = along * dx - height * dy
     uy = along * dy + height * dx
     wx = ux - dx
     wy = uy - dy
     aim(turn, qk, last[3 * one + 2], one, ux, uy, lx, ly)
-    if h > 0.0 and doubtful(qk, last, v, a, h, 3 * one + 2, height * height / (along * along + height * height)):
-        return DOUBTED
     lever = 1.0 / (wy * ux - wx * uy)
-    fx = r[2] - p[2]
-    fy = r[3] - p[3]
     omega = (rod * law[1] + wx * fx + wy * fy) * lever
     rate_x = -omega * uy - fx
     rate_y = omega * ux - fy

@@ -13,36 +13,46 @@ PRP, ROD and SLIDE are in slides.py, points carried by a body in points.py.
     YOKE  n . (Q - S_0 - s e) = 0;  with k the point Q as K1 carries it:
           s' n.e = n . (q' - k'),   s'' n.e = n . (q'' - k'' - 2 omega_K (q' - k')_perp)
 
-The branch is that of the start. A step is doubted, and all is left to Newton-Raphson, where the other branch lies
-nearly as close to the extrapolated motion, where the discriminant vanishes, or where a law jumps.
+Discriminants D, whose sign tells whether the group closes, and whose rates tell whether it does between two poses:
+
+    RRR   D = 4 a^2 b^2 - m^2,  m = a^2 + b^2 - |Q - P|^2;   D' = 4 m (Q - P) . (q' - p')
+    RRP   D = a^2 - c^2,  c = (Q - P) x e;                   D' = -2 c c'
+    RPR   D = |Q - P|^2 - offset^2;                          D' = 2 (Q - P) . (q' - p')
+
+The branch is that of the start. A step is doubted, and a pose between is asked for, where the discriminant may vanish
+between its ends, where a body turns too far to count turns, or where a law moves too far or jumps.
 """
 
 from __future__ import annotations
 
 import math
 
-from mbsd.assur.groups import DRIVEN, PRP, ROD, RPR, RRP, RRR, WELDED, YOKE
-from mbsd.assur.points import DOUBTED, FLAT, OPEN, SOLVED, aim, carried, doubtful, follow, hang, jumps
+from mbsd.assur.groups import DRIVEN, PRP, RPR, RRP, RRR, SLIDE, WELDED, YOKE
+from mbsd.assur.points import DOUBTED, MEETING, SOLVED, aim, carried, dip, follow, hang, reach, wound
 from mbsd.assur.slides import solve_prp, solve_rod, solve_slide
 from mbsd.jit import kernel
+from mbsd.law_step import jumps
 
 
 @kernel
-def solve_groups(groups, start, times, drives, q, v, a, turn, point):
-    """Fill q, v, a (T, 3 nb) at times (T,) with drives (T, motions + 1, 3), angles going on from start (3 nb,).
+def solve_groups(groups, start, times, drives, stride, tiny, first_row, q, v, a, turn, point, before):
+    """Fill rows ``first_row`` .. of q, v, a (T, 3 nb) at times (T,) with drives (T, motions + 1, 3).
 
-    ``turn`` (nb, 2) must hold (1, 0) for ground; ``point`` (3, 8) is scratch. Returns (status, index).
+    Angles go on from start (3 nb,). ``stride`` (motions + 1,) is how far each law may go in one step, ``tiny`` (m^2)
+    the square of a length that counts as zero. The row ``first_row`` itself is not compared with the one before it.
+    Scratch: ``turn`` (nb, 2) with (1, 0) for ground, ``point`` (4, 8), ``before`` (g, 2) discriminants and their rates.
+    Returns (status, index, part): where a step was DOUBTED, the part of it at which a pose is asked for.
     """
     p = point[0]
     r = point[1]
     g = point[2]
-    for k in range(times.shape[0]):
+    for k in range(first_row, times.shape[0]):
         qk = q[k]
         vk = v[k]
         ak = a[k]
-        before = max(k - 1, 0)
-        last = start if k == 0 else q[before]
-        h = times[k] - times[k - 1] if k > 0 else 0.0
+        last = start if k == 0 else q[k - 1]
+        goes_on = k > first_row
+        h = times[k] - times[k - 1] if goes_on else 0.0
         for e in range(groups.kind.shape[0]):
             kind = groups.kind[e]
             body = groups.body[e, 0]
@@ -53,9 +63,10 @@ def solve_groups(groups, start, times, drives, q, v, a, turn, point):
             at = 3 * body
             if kind <= WELDED:
                 if kind == DRIVEN:
-                    d = drives[k, groups.motion[e]]
-                    if k > 0 and jumps(d, drives[k - 1, groups.motion[e]], h):
-                        return DOUBTED, k
+                    motion = groups.motion[e]
+                    d = drives[k, motion]
+                    if goes_on and jumps(d, drives[k - 1, motion], h, stride[motion]):
+                        return DOUBTED, k, 0.5
                     angle = qk[3 * k2 + 2] + n[5] * (n[4] + d[0])
                     vk[at + 2] = vk[3 * k2 + 2] + n[5] * d[1]
                     ak[at + 2] = ak[3 * k2 + 2] + n[5] * d[2]
@@ -68,7 +79,10 @@ def solve_groups(groups, start, times, drives, q, v, a, turn, point):
                 turn[body, 1] = math.sin(angle)
                 carried(qk, vk, ak, turn, k1, n[0], n[1], p)
                 hang(qk, vk, ak, turn, body, p, n[2], n[3])
-            elif kind == RRR:
+                continue
+            left = 1.0
+            rate_of_left = 0.0
+            if kind == RRR:
                 carried(qk, vk, ak, turn, k1, n[0], n[1], p)
                 carried(qk, vk, ak, turn, k2, n[6], n[7], r)
                 lx = n[4] - n[2]
@@ -80,27 +94,24 @@ def solve_groups(groups, start, times, drives, q, v, a, turn, point):
                 dx = r[0] - p[0]
                 dy = r[1] - p[1]
                 square = dx * dx + dy * dy
-                if not square > FLAT * first:
-                    return DOUBTED, k
+                middle = first + second - square
+                left = 4.0 * first * second - middle * middle
+                state = reach(left, 4.0 * first * second)
+                if state != SOLVED:
+                    return state, k, 0.0
                 inverse = 1.0 / square
                 along = 0.5 * (square + first - second) * inverse
-                height = first * inverse - along * along
-                if not height > FLAT:
-                    return (OPEN if height < -FLAT else DOUBTED), k
-                height = n[12] * math.sqrt(height)
+                height = n[12] * 0.5 * inverse * math.sqrt(left)
                 ux = along * dx - height * dy
                 uy = along * dy + height * dx
                 wx = ux - dx
                 wy = uy - dy
                 aim(turn, qk, last[at + 2], body, ux, uy, lx, ly)
                 aim(turn, qk, last[3 * other + 2], other, wx, wy, mx, my)
-                if k > 0 and doubtful(
-                    qk, last, v[k - 1], a[k - 1], h, at + 2, height * height / (along * along + height * height)
-                ):
-                    return DOUBTED, k
                 det = 1.0 / (uy * wx - ux * wy)
                 fx = r[2] - p[2]
                 fy = r[3] - p[3]
+                rate_of_left = 4.0 * middle * (dx * fx + dy * fy)
                 omega = (fx * wx + fy * wy) * det
                 turning = (fx * ux + fy * uy) * det
                 fx = r[4] - p[4] + omega * omega * ux - turning * turning * wx
@@ -108,6 +119,8 @@ def solve_groups(groups, start, times, drives, q, v, a, turn, point):
                 vk[at + 2] = -omega
                 ak[at + 2] = -(fx * wx + fy * wy) * det
                 vk[3 * other + 2] = -turning
+                if goes_on and wound(qk, last, vk, v[k - 1], h, 3 * other + 2):
+                    return DOUBTED, k, 0.5
                 ak[3 * other + 2] = -(fx * ux + fy * uy) * det
                 hang(qk, vk, ak, turn, body, p, n[2], n[3])
                 hang(qk, vk, ak, turn, other, r, n[8], n[9])
@@ -124,8 +137,9 @@ def solve_groups(groups, start, times, drives, q, v, a, turn, point):
                 along = dx * ex + dy * ey
                 across = dx * ey - dy * ex
                 left = square - across * across
-                if not left > FLAT * square:
-                    return (OPEN if left < -FLAT * square else DOUBTED), k
+                state = reach(left, square)
+                if state != SOLVED:
+                    return state, k, 0.0
                 root = n[13] * math.sqrt(left)
                 slide = root - along
                 sx = slide * ex
@@ -133,9 +147,8 @@ def solve_groups(groups, start, times, drives, q, v, a, turn, point):
                 ux = dx + sx
                 uy = dy + sy
                 aim(turn, qk, last[at + 2], body, ux, uy, lx, ly)
-                if k > 0 and doubtful(qk, last, v[k - 1], a[k - 1], h, at + 2, left / square):
-                    return DOUBTED, k
                 spin = vk[3 * k2 + 2]
+                rate_of_left = -2.0 * across * ((r[2] - p[2]) * ey - (r[3] - p[3]) * ex + spin * along)
                 turning = ak[3 * k2 + 2]
                 carried_x = r[2] - spin * sy
                 carried_y = r[3] + spin * sx
@@ -168,19 +181,22 @@ def solve_groups(groups, start, times, drives, q, v, a, turn, point):
                 dy = r[1] - p[1]
                 square = dx * dx + dy * dy
                 left = square - n[6] * n[6]
-                if not left > FLAT * square:
-                    return (OPEN if left < -FLAT * square else DOUBTED), k
+                state = reach(left, square)
+                if not left > tiny:
+                    state = min(state, MEETING)
+                if state != SOLVED:
+                    return state, k, 0.0
                 root = n[12] * math.sqrt(left)
                 aim(turn, qk, last[at + 2], body, dx, dy, root * n[4] - n[6] * n[5], root * n[5] + n[6] * n[4])
-                if k > 0 and doubtful(qk, last, v[k - 1], a[k - 1], h, at + 2, left / square):
-                    return DOUBTED, k
                 ex = turn[body, 0] * n[4] - turn[body, 1] * n[5]
                 ey = turn[body, 1] * n[4] + turn[body, 0] * n[5]
                 fx = r[2] - p[2]
                 fy = r[3] - p[3]
                 inverse = 1.0 / root
                 omega = (ex * fy - ey * fx) * inverse
-                rate = (dx * fx + dy * fy) * inverse
+                rate = dx * fx + dy * fy
+                rate_of_left = 2.0 * rate
+                rate *= inverse
                 fx = r[4] - p[4] + omega * omega * dx + 2.0 * omega * rate * ey
                 fy = r[5] - p[5] + omega * omega * dy - 2.0 * omega * rate * ex
                 vk[at + 2] = omega
@@ -220,15 +236,27 @@ def solve_groups(groups, start, times, drives, q, v, a, turn, point):
                 hang(qk, vk, ak, turn, body, g, n[9], n[10])
             else:
                 bodies = groups.body[e]
-                law = drives[k, groups.motion[e]]
-                if k > 0 and groups.motion[e] > 0 and jumps(law, drives[k - 1, groups.motion[e]], h):
-                    return DOUBTED, k
+                motion = groups.motion[e]
+                law = drives[k, motion]
+                if goes_on and motion > 0 and jumps(law, drives[k - 1, motion], h, stride[motion]):
+                    return DOUBTED, k, 0.5
+                if kind == SLIDE:
+                    solve_slide(bodies, n, law, qk, vk, ak, turn, point)
+                    continue
                 if kind == PRP:
-                    state = solve_prp(bodies, n, qk, vk, ak, last, v[before], a[before], h, turn, point)
-                elif kind == ROD:
-                    state = solve_rod(bodies, n, law, qk, vk, ak, last, v[before], a[before], h, turn, point)
+                    state = solve_prp(bodies, n, qk, vk, ak, turn, point)
                 else:
-                    state = solve_slide(bodies, n, law, qk, vk, ak, turn, point)
+                    state = solve_rod(bodies, n, law, qk, vk, ak, last, turn, point)
                 if state != SOLVED:
-                    return state, k
-    return SOLVED, times.shape[0]
+                    return state, k, 0.0
+                left = point[3, 0]
+                rate_of_left = point[3, 1]
+            if goes_on:
+                if wound(qk, last, vk, v[k - 1], h, at + 2):
+                    return DOUBTED, k, 0.5
+                part = dip(h * before[e, 1], before[e, 0], h * rate_of_left, left)
+                if part > 0.0:
+                    return DOUBTED, k, part
+            before[e, 0] = left
+            before[e, 1] = rate_of_left
+    return SOLVED, times.shape[0], 0.0

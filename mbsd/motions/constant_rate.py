@@ -26,6 +26,10 @@ class ConstantRate(Motion):
         """One turn, for an angle."""
         return 2 * math.pi / abs(self.rate) if self.rate else None
 
+    def knots(self, first: float, last: float) -> np.ndarray:
+        """None: it never turns back."""
+        return np.zeros(0)
+
     def compiled(self, first: float, last: float) -> Compiled:
         """As kernels evaluate it."""
         from mbsd.laws import POLYNOMIAL

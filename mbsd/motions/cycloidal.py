@@ -27,6 +27,11 @@ class Cycloidal(Motion):
     begin: float = 0.0
     start: float = 0.0
 
+    def knots(self, first: float, last: float) -> np.ndarray:
+        """Where it begins and ends; it never turns back."""
+        times = np.array([self.begin, self.begin + self.duration])
+        return times[(times >= first) & (times <= last)]
+
     def compiled(self, first: float, last: float) -> Compiled:
         """As kernels evaluate it."""
         from mbsd.laws import CYCLOIDAL

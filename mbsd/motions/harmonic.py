@@ -28,6 +28,14 @@ class Harmonic(Motion):
         """One swing."""
         return 2 * math.pi / abs(self.rate) if self.rate else None
 
+    def knots(self, first: float, last: float) -> np.ndarray:
+        """Where it turns back."""
+        if not (self.rate and self.amplitude):
+            return np.zeros(0)
+        ends = sorted((self.rate * time + self.phase) / math.pi - 0.5 for time in (first, last))
+        turns = np.arange(math.ceil(ends[0]), math.floor(ends[1]) + 1)
+        return np.sort(((turns + 0.5) * math.pi - self.phase) / self.rate)
+
     def compiled(self, first: float, last: float) -> Compiled:
         """As kernels evaluate it."""
         from mbsd.laws import HARMONIC

@@ -34,6 +34,14 @@ class Motion:
         """Time (s) of one turn or one swing; None if the law does not repeat."""
         return None
 
+    def knots(self, first: float, last: float) -> np.ndarray:
+        """Rising times (s) from ``first`` to ``last`` that are so close that the law does not go and come back between two.
+
+        A sweep looks at them where several lie between two of its outputs. A law of which nothing is known is looked at
+        513 times.
+        """
+        return np.linspace(first, last, 513)
+
     def over(self, first: float, last: float) -> Motion:
         """The law made ready for times ``first`` .. ``last`` (s)."""
         return self

@@ -20,6 +20,12 @@ class Polynomial(Motion):
 
     coefficients: tuple[float, ...]
 
+    def knots(self, first: float, last: float) -> np.ndarray:
+        """Where it turns back."""
+        roots = np.polynomial.Polynomial(self.coefficients).deriv().roots()
+        turns = np.sort(roots.real[np.abs(roots.imag) <= 1e-6 * np.abs(roots)])
+        return turns[(turns >= first) & (turns <= last)]
+
     def compiled(self, first: float, last: float) -> Compiled:
         """As kernels evaluate it."""
         from mbsd.laws import POLYNOMIAL

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -28,6 +29,15 @@ class Table(Motion):
     def period(self) -> float | None:
         """The table's span, if it was declared periodic."""
         return float(self.times[-1] - self.times[0]) if self.periodic else None
+
+    def knots(self, first: float, last: float) -> np.ndarray:
+        """Its own times."""
+        times = self.times
+        if self.periodic:
+            span = times[-1] - times[0]
+            turns = np.arange(math.floor((first - times[0]) / span), math.floor((last - times[0]) / span) + 1)
+            times = np.unique((times[:-1] + span * turns[:, None]).ravel())
+        return times[(times >= first) & (times <= last)]
 
     def compiled(self, first: float, last: float) -> Compiled:
         """The spline's own pieces. Raises ModelError if the table does not cover ``first`` .. ``last`` (s)."""

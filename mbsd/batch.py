@@ -23,6 +23,7 @@ from mbsd.errors import ModelError
 from mbsd.model import Marker, Mechanism
 from mbsd.packing import Packed
 from mbsd.prepared import prepare
+from mbsd.steps import divisions
 
 
 class Moved(NamedTuple):
@@ -90,15 +91,16 @@ def batch(
     out = np.empty((count, len(markers), len(grid), 2))
     out_angles = np.empty((count, len(turned), len(grid)))
     status = np.zeros(count, np.int64)
-    driven, fixed = _turns(groups, packed.drives(grid))
+    every = divisions(packed, grid)
+    driven, fixed = _turns(groups, packed.drives(np.linspace(grid[0], grid[-1], every * (len(grid) - 1) + 1)))
 
     def work(first: int) -> None:
         part = slice(first, min(first + CHUNK, count))
         place = np.zeros((len(packed.body_names), 4))
         place[0, 2] = 1.0
-        scratch, roots = np.zeros((2, 2)), np.zeros((len(groups.kind), 2))
+        scratch, roots, last = np.zeros((2, 2)), np.zeros((len(groups.kind), 2)), np.zeros(len(turned))
         place_designs(
-            groups, numbers[part], ready.q0, driven, fixed, place, scratch, roots,
+            groups, numbers[part], ready.q0, driven, every, fixed, place, scratch, roots, last,
             bodies, arms_of[part], turned, out[part], out_angles[part], status[part],
         )  # fmt: skip
         for part_of in (out, out_angles):

@@ -15,8 +15,8 @@ Branch guard: a step is refused, and the caller puts a pose into it, when
 - the determinant of an irreducible block of J changes sign, shrinks fast, or would on a straight line through its last
   two values: near such a pose two assemblies come close, and steps shorter than the way to it tell them apart.
 
-Two assemblies that meet within a step of ``CROSSING`` are a change point. It is passed along the smooth motion, which the
-prediction must confirm on both sides; lengths that agree to 1e-12 or so count as equal.
+Two assemblies that meet within a step of ``CROSSING`` are a change point. It is passed along the smooth motion, which
+the prediction must confirm on both sides; lengths that agree to 1e-12 or so count as equal.
 
 Source: Haug 1989, ch. 4 (Newton-Raphson); Hairer, Norsett, Wanner, Solving ODEs I, II.6 (Hermite interpolation).
 """
@@ -126,12 +126,15 @@ def _heads_for_zero(determinants, times, k):
 def _unexplained(q, v, a, k, h, per_metre):
     """Largest part of step k that the rates at its ends do not explain, in sizes and rad; NaN counts as infinite."""
     largest = 0.0
-    for c in range(3, q.shape[1]):
-        gap = abs(q[k, c] - q[k - 1, c] - h * (0.5 * (v[k, c] + v[k - 1, c]) - h / 12.0 * (a[k, c] - a[k - 1, c])))
-        if c % 3 != 2:
-            gap *= per_metre
-        if not gap <= largest:
-            largest = gap if gap == gap else np.inf
+    half = 0.5 * h
+    twelfth = h * h / 12.0
+    now, before, rate, rate_before, bend, bend_before = q[k], q[k - 1], v[k], v[k - 1], a[k], a[k - 1]
+    for b in range(3, q.shape[1], 3):
+        for c in range(b, b + 3):
+            gap = now[c] - before[c] - half * (rate[c] + rate_before[c]) + twelfth * (bend[c] - bend_before[c])
+            gap = abs(gap) * (per_metre if c < b + 2 else 1.0)
+            if not gap <= largest:
+                largest = gap if gap == gap else np.inf
     return largest
 
 

@@ -73,11 +73,12 @@ def coordinate(packed: Packed, limit: Limit, q: np.ndarray) -> np.ndarray:
     return gap[:, 0] * (c * axis[0] - s * axis[1]) + gap[:, 1] * (s * axis[0] + c * axis[1])
 
 
-def refuse_passed(packed: Packed, times: np.ndarray, q: np.ndarray) -> None:
-    """Raise LimitError for the first limit that the motion q (T, 3 nb) passes."""
+def refuse_passed(packed: Packed, times: np.ndarray, q: np.ndarray, smooth: bool = False) -> None:
+    """Raise LimitError for the first limit that the motion q (T, 3 nb) passes; ``smooth``: at peaks in between too."""
     first: tuple[float, Limit, np.ndarray, int] | None = None
     for limit in limits_of(packed):
         value = coordinate(packed, limit, q)
+        value = _with_peaks(value) if smooth else value
         slack = SLACK * (1.0 if limit.angular else packed.size)
         beyond = np.flatnonzero((value < limit.lower - slack) | (value > limit.upper + slack))
         if len(beyond):
@@ -96,6 +97,17 @@ def refuse_passed(packed: Packed, times: np.ndarray, q: np.ndarray) -> None:
         f"{_said(end, limit)}; it would go to {_said(furthest, limit)}. Drive within the limits, widen them, or change "
         "the lengths."
     )
+
+
+def _with_peaks(value: np.ndarray) -> np.ndarray:
+    """(T,) with each peak, which lies between equal steps, as high as the parabola through it and its neighbours."""
+    out = value.copy()
+    left, middle, right = value[:-2], value[1:-1], value[2:]
+    bend = left - 2 * middle + right
+    peak = ((middle > left) & (middle >= right)) | ((middle < left) & (middle <= right))
+    rise = np.where(peak & (np.abs(right - left) <= np.abs(2 * bend)), (right - left) ** 2, 0.0)
+    out[1:-1] -= np.divide(rise, 8 * bend, out=np.zeros_like(bend), where=bend != 0)
+    return out
 
 
 def _crossing(limit: Limit, times: np.ndarray, value: np.ndarray, at: int) -> float:

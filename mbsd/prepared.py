@@ -41,11 +41,24 @@ class March:
     def __init__(self, q: np.ndarray, v: np.ndarray, a: np.ndarray, steps: Steps, closed: bool) -> None:
         self.steps, self.closed = steps, closed
         """``closed``: solved in closed form."""
-        self.all_q = q
-        """(steps, 3 nb)"""
+        self._all = q, v, a
         every = slice(None) if steps.wanted.all() else steps.wanted
         self.q, self.v, self.a = q[every], v[every], a[every]
         """(T, 3 nb)"""
+
+    def closely(self) -> tuple[np.ndarray, np.ndarray]:
+        """Times (N,) and poses (N, 3 nb) of all steps and of seven times within each, by quintics through its ends."""
+        from mbsd.cams.profile import hermite
+
+        times, (q, v, a) = self.steps.times, self._all
+        if len(times) < 2:
+            return times, q
+        h, samples = np.diff(times), np.stack([q, v, a], axis=-1)
+        coefficients = hermite(h, samples[:-1], samples[1:])
+        ahead = h[:, None] * np.arange(8) / 8
+        poses = np.einsum("sxp,scp->sxc", ahead[..., None] ** np.arange(6), coefficients).reshape(-1, q.shape[1])
+        inner = (times[:-1, None] + ahead).ravel()
+        return np.append(inner, times[-1]), np.vstack([poses, q[-1:]])
 
 
 @dataclass
@@ -152,8 +165,8 @@ class Prepared:
         """The error for a motion on whose way a group cannot close, whatever Newton-Raphson made of it."""
         return SingularPoseError(
             f"{self.packed.name}: the links cannot follow the drivers beyond t = {time:.9g} s "
-            f"({self._driver_values(self.packed.drives(np.array([time]))[0])}): a toggle, beyond which they do not reach "
-            "each other. Drive within the reachable range, change the lengths, or drive another body."
+            f"({self._driver_values(self.packed.drives(np.array([time]))[0])}): a toggle, beyond which they do not "
+            "reach each other. Drive within the reachable range, change the lengths, or drive another body."
         )
 
     def _refuse_disagreeing(self, grid: np.ndarray, residual: np.ndarray, q: np.ndarray, drives: np.ndarray) -> None:

@@ -6,6 +6,8 @@ outputs passes unseen, and a step that the solver doubts is divided further.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from mbsd.errors import ModelError
@@ -19,6 +21,8 @@ SHORTEST = 1e-7
 """A step divided to this part of its length that is still refused is not cured by dividing it."""
 MOST = 20_000_000
 """Numbers of a motion, steps times coordinates, beyond which a sweep is refused."""
+ASTRAY = 0.01
+"""Part of a stride by which a law may be off the cubic through both ends of a step."""
 AT_ONCE = 64
 """Parts into which a step is divided before its laws are looked at again."""
 
@@ -27,6 +31,41 @@ def strides(packed: Packed) -> np.ndarray:
     """(motions + 1,) how far each law may go in one step (rad or m); entry 0 is the law that is always zero."""
     drivers = packed.joints[len(packed.joints) - len(packed.motions) :]
     return np.array([np.inf, *(TURN if driver.kind.angular else LENGTH * packed.size for driver in drivers)])
+
+
+def divisions(packed: Packed, times: np.ndarray) -> int:
+    """Equal parts of the steps of ``times`` (T,), themselves equal, in which no law goes further than its stride."""
+    first, last, steps = float(times[0]), float(times[-1]), len(times) - 1
+    stride = strides(packed)
+    parts = max([1, *(math.ceil(2 * len(law.knots(first, last)) / steps) for law in packed.motions)])
+    for _ in range(8):
+        refuse_endless(packed, np.linspace(first, last, 2), parts * steps)
+        inner = np.linspace(first, last, parts * steps + 1)
+        need = _strides_taken(inner, packed.drives(inner), stride).max(initial=0.0)
+        if need <= 1.0 + 1e-9:
+            break
+        parts = math.ceil(parts * need)
+    return parts
+
+
+def _strides_taken(times: np.ndarray, drives: np.ndarray, stride: np.ndarray) -> np.ndarray:
+    """(T - 1,) strides that the furthest law goes in each step, by its values or by its rates."""
+    value, rate = drives[:, 1:, 0], np.abs(drives[:, 1:, 1])
+    by_rate = np.diff(times)[:, None] * np.maximum(rate[1:], rate[:-1])
+    return (np.maximum(np.abs(np.diff(value, axis=0)), by_rate) / stride[1:]).max(axis=1, initial=0.0)
+
+
+def refuse_endless(packed: Packed, times: np.ndarray, steps: float) -> None:
+    """Raise ModelError where following the drivers over ``times`` (T,) takes more steps than there is room for."""
+    if steps * 3 * len(packed.body_names) <= MOST:
+        return
+    drives = packed.drives(times)
+    way = np.abs(np.diff(drives[:, 1:, 0], axis=0)).sum(axis=0) / strides(packed)[1:]
+    driver = packed.joints[len(packed.joints) - len(packed.motions) + int(np.argmax(way))]
+    raise ModelError(
+        f"{packed.name}: following the drivers from t = {times[0]:.6g} s to {times[-1]:.6g} s takes {steps:.2g} steps, "
+        f"most of them for driver '{driver.name}'. Sweep a shorter time, or drive it more slowly."
+    )
 
 
 class Steps:
@@ -51,7 +90,7 @@ class Steps:
         return int(len(self.wanted) - np.count_nonzero(self.wanted))
 
     def divide(self, index: int, part: float = 0.5) -> bool:
-        """Put a time into the step that ends at ``index``, at the given part of it; False if it is too short for that."""
+        """Put a time into the step that ends at ``index``, at the given part of it; False if it is too short."""
         start, end = self.times[index - 1], self.times[index]
         middle = start + part * (end - start)
         if not (end - start > self._shortest[index] and start < middle < end):
@@ -63,42 +102,35 @@ class Steps:
         """Divide all steps in which a law goes further than its stride; returns whether there were any."""
         count = len(self.times)
         for _ in range(64):
-            h = np.diff(self.times)[:, None]
-            value, rate = self.drives[:, 1:, 0], np.abs(self.drives[:, 1:, 1])
-            way = np.maximum(np.abs(np.diff(value, axis=0)), h * np.maximum(rate[1:], rate[:-1]))
-            need = np.ceil((way / self.stride[1:]).max(axis=1, initial=0.0) * (1.0 - 1e-9))
-            need[h[:, 0] <= self._shortest[1:]] = 1
+            h = np.diff(self.times)
+            need = np.ceil(_strides_taken(self.times, self.drives, self.stride) * (1.0 - 1e-9))
+            need[h <= self._shortest[1:]] = 1
             parts = np.clip(need, 1, AT_ONCE).astype(np.int64)
             if (parts == 1).all():
                 break
-            self._refuse_endless(float(need.sum()), need)
+            refuse_endless(self.packed, self.times, float(need.sum()))
             at = np.repeat(np.arange(1, len(self.times)), parts - 1)
             first = np.cumsum(parts - 1) - (parts - 1)
             number = np.arange(len(at)) - np.repeat(first, parts - 1) + 1
-            self._put(at, self.times[at - 1] + h[at - 1, 0] * number / parts[at - 1])
+            self._put(at, self.times[at - 1] + h[at - 1] * number / parts[at - 1])
         return len(self.times) > count
 
     def _put_knots(self, knots: np.ndarray) -> None:
-        """Take those of a step that holds several: a law may go and come back in it."""
+        """Take those at which a law is not where the ends of its step lead: it may go and come back in that step."""
         knots = knots[~np.isin(knots, self.times) & (knots > self.times[0]) & (knots < self.times[-1])]
         at = np.searchsorted(self.times, knots)
-        several = np.bincount(at, minlength=1)[at] > 1
-        self._put(at[several], knots[several])
+        h = (self.times[at] - self.times[at - 1])[:, None]
+        u = (knots - self.times[at - 1])[:, None] / h
+        start, end = self.drives[at - 1], self.drives[at]
+        way = end[..., 0] - start[..., 0]
+        rise, fall = h * start[..., 1] - way, way - h * end[..., 1]
+        led = start[..., 0] + u * (way + (1.0 - u) * ((1.0 - u) * rise + u * fall))  # cubic Hermite interpolation
+        astray = np.abs(self.packed.drives(knots)[..., 0] - led) > ASTRAY * self.stride
+        taken = astray.any(axis=1)
+        self._put(at[taken], knots[taken])
 
     def _put(self, at: np.ndarray, times: np.ndarray) -> None:
         self.drives = np.insert(self.drives, at, self.packed.drives(times), axis=0)
         self.wanted = np.insert(self.wanted, at, False)
         self._shortest = np.insert(self._shortest, at, self._shortest[at])
         self.times = np.insert(self.times, at, times)
-
-    def _refuse_endless(self, steps: float, need: np.ndarray) -> None:
-        if steps * 3 * len(self.packed.body_names) <= MOST:
-            return
-        k = int(np.argmax(need))
-        way = np.abs(self.drives[k + 1, 1:, 0] - self.drives[k, 1:, 0]) / self.stride[1:]
-        driver = self.packed.joints[len(self.packed.joints) - len(self.packed.motions) + int(np.argmax(way))]
-        raise ModelError(
-            f"{self.packed.name}: following the drivers from t = {self.times[0]:.6g} s to {self.times[-1]:.6g} s takes "
-            f"{steps:.2g} steps, most of them for driver '{driver.name}' near t = {self.times[k]:.6g} s. Sweep a "
-            "shorter time, or drive it more slowly."
-        )

@@ -10,7 +10,7 @@ import numpy as np
 from mbsd.closed_contacts import refuse_passed_contacts
 from mbsd.errors import ModelError
 from mbsd.inverse_dynamics import inverse_dynamics
-from mbsd.limits import refuse_passed
+from mbsd.limits import limits_of, refuse_passed
 from mbsd.model import Mechanism
 from mbsd.prepared import prepare
 from mbsd.solution import Solution, Stats
@@ -23,8 +23,10 @@ def sweep(m: Mechanism, duration: float | None, steps: int, times: Sequence[floa
     march = ready.march(grid)
     q, v, a, packed = march.q, march.v, march.a, ready.packed
     drives = packed.drives(grid)
-    refuse_passed(packed, march.steps.times, march.all_q)
-    refuse_passed_contacts(m, packed, march.steps.times, march.all_q)
+    if m.contacts or limits_of(packed):
+        inner, poses = march.closely()
+        refuse_passed(packed, inner, poses, smooth=True)
+        refuse_passed_contacts(m, packed, inner, poses)
     loads = inverse_dynamics(ready, grid, drives, q, v, a)
     shape = (len(grid), -1, 3)
     return Solution(

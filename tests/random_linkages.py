@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from mbsd import Mechanism
+from mbsd import Mechanism, constant_rate, harmonic
 from mbsd.model import Body, Marker
 
 GRAVITY = 9.81
@@ -91,6 +91,19 @@ def linkage(seed: int, loops: int, damping: bool = False, carried: Carried | Non
         _add_loop(made, rng, carried, loop, kind, (str(hosts[0]), str(hosts[1])), middles)
     _add_forces(made, rng, carried, damping, middles)
     return made
+
+
+def driven_linkage(seed: int, loops: int) -> Mechanism:
+    """A linkage whose cranks turn steadily or swing; most cannot follow all the way."""
+    made, rng = linkage(seed, loops), np.random.default_rng(seed)
+    for k, (host, crank) in enumerate(made.cranks):
+        rate = float(rng.choice([-1, 1]) * rng.choice([0.5, 1.0, 2.0]))
+        lies = made.frames[crank.name][2] - made.frames[host.name][2]
+        law = (
+            harmonic(float(rng.uniform(0.2, 3.0)), rate, 0.0, lies) if rng.random() < 0.3 else constant_rate(rate, lies)
+        )
+        made.m.drive_relative_angle(f"motor{k}", host, crank, law)
+    return made.m
 
 
 def _add_loop(

@@ -12,6 +12,7 @@ import pytest
 
 from mbsd import AssemblyError, Mechanism, constant_rate, curve
 from mbsd.solution import Solution
+from tests.genevas import geneva
 
 FOLDER = Path(__file__).parent / "reference"
 
@@ -21,17 +22,6 @@ def _case(name: str) -> dict[str, Any]:
 
 
 # -- Geneva -----------------------------------------------------------------------------------------------------
-
-
-def _geneva(slots: int, distance: float = 0.1, start: float = 0.0) -> Mechanism:
-    m = Mechanism("geneva", gravity=None)
-    crank, wheel = m.body("crank"), m.body("wheel", 1.0, (0, 0), 2e-3)
-    m.revolute("O", m.ground.origin, crank.origin)
-    m.revolute("W", m.ground.at(distance, 0), wheel.origin)
-    m.geneva("index", crank.origin, wheel.origin, slots, distance * math.sin(math.pi / slots))
-    m.drive_angle("motor", crank, constant_rate(1.0, start))
-    m.start_near(wheel=5)
-    return m
 
 
 @pytest.mark.parametrize("row", _case("analytic_geneva")["expected"]["table"], ids=lambda row: str(row["slots"]))
@@ -49,7 +39,7 @@ def test_geneva_by_its_table(row: dict[str, float]) -> None:
             ]
         )
     )
-    sol = _geneva(slots, start=start).sweep(times=np.concatenate([[0.0], angles[1:] - start]))
+    sol = geneva(slots, start=start).sweep(times=np.concatenate([[0.0], angles[1:] - start]))
     angle, wheel = sol.body("crank").theta, sol.body("wheel")
     lam = row["crank_over_centre"]
     driven = np.abs(angle) < entry
@@ -70,7 +60,7 @@ def test_geneva_by_its_table(row: dict[str, float]) -> None:
 
 
 def test_a_geneva_goes_on_turn_after_turn_and_needs_its_radius() -> None:
-    sol = _geneva(4, start=-2.0).sweep(duration=10 * math.pi, steps=3000)
+    sol = geneva(4, start=-2.0).sweep(duration=10 * math.pi, steps=3000)
     wheel = sol.body("wheel").theta
     assert wheel[-1] - wheel[0] == pytest.approx(-5 * math.pi / 2, abs=1e-9)
     m = Mechanism("geneva")

@@ -53,20 +53,23 @@ def _follow(place, b, leader, turn):
 
 @threaded
 def place_designs(
-    groups, numbers, start, driven, every, fixed, place, point, roots, body, arm, turned, out, angle, status
+    groups, numbers, start, driven, every, fixed, place, point, roots, last, body, arm, turned, out, angle, status
 ):
     """Fill out (n, points, T, 2), angle (n, bodies, T) and status (n,) of n designs with numbers (n, g, 14).
 
     Of the poses solved, equally far apart in time, every ``every``th is kept.
-    driven (every (T - 1) + 1, g, 2) cosine and sine of DRIVEN groups' angles, values of the other laws; fixed (g, 2, 2) cosine and sine
-    of the constant angles of A and B of the other groups.
+    driven (every (T - 1) + 1, g, 2) cosine and sine of DRIVEN groups' angles, values of the other laws; fixed (g, 2, 2)
+    cosine and sine of the constant angles of A and B of the other groups.
     Points: body (points,) and arm (n, points, 2) from centres of mass; turned (bodies,) whose angles are wanted, going
-    on from start (3 nb,). Scratch: place (nb, 4) with (0, 0, 1, 0) for ground, point (2, 2), roots (g, 2).
+    on from start (3 nb,). Scratch: place (nb, 4) with (0, 0, 1, 0) for ground, point (2, 2), roots (g, 2), last
+    (bodies,).
     """
     p = point[0]
     r = point[1]
     for design in range(numbers.shape[0]):
         status[design] = SOLVED
+        for i in range(turned.shape[0]):
+            last[i] = start[3 * turned[i] + 2]
         for k in range(driven.shape[0]):
             state = SOLVED
             for e in range(groups.kind.shape[0]):
@@ -200,9 +203,17 @@ def place_designs(
             if state != SOLVED:
                 status[design] = state
                 break
-            for i in range(body.shape[0]):
-                _turned(place, body[i], arm[design, i, 0], arm[design, i, 1], out[design, i, k])
             for i in range(turned.shape[0]):
                 now = math.atan2(place[turned[i], 3], place[turned[i], 2])
-                before = start[3 * turned[i] + 2] if k == 0 else angle[design, i, k - 1]
-                angle[design, i, k] = now + 2.0 * math.pi * math.floor((before - now) / (2.0 * math.pi) + 0.5)
+                now += 2.0 * math.pi * math.floor((last[i] - now) / (2.0 * math.pi) + 0.5)
+                if k > 0 and not abs(now - last[i]) <= WOUND:
+                    status[design] = DOUBTED
+                last[i] = now
+            if status[design] != SOLVED:
+                break
+            if k % every != 0:
+                continue
+            for i in range(body.shape[0]):
+                _turned(place, body[i], arm[design, i, 0], arm[design, i, 1], out[design, i, k // every])
+            for i in range(turned.shape[0]):
+                angle[design, i, k // every] = last[i]

@@ -5,7 +5,7 @@ p = r + s,   p' = r' + omega s_perp,   p'' = r'' + alpha s_perp - omega^2 s;   s
 The sign of a group's root is that of the start as long as its discriminant D stays above zero, at the poses and
 between them. Between two poses D is the cubic through both ends with their rates: where it has a minimum there and
 falls by more than half, a pose at the minimum decides. Bodies turn by less than ``WOUND`` from pose to pose, so whole
-turns are counted.
+turns are counted, and the quintic through both ends is the motion between them.
 """
 
 from __future__ import annotations
@@ -21,7 +21,9 @@ FLAT = 1e-12
 DEEP = 0.5
 """Part of the lower end below which the discriminant must not fall between two poses."""
 WOUND = 1.0
-"""Angle (rad) by which a body may turn from pose to pose, by its angles and by its rates."""
+"""Angle (rad) by which a body may turn from pose to pose."""
+UNEXPLAINED = 0.02
+"""Part of it (rad) that the rates at both ends may leave unexplained."""
 
 
 @internal
@@ -87,9 +89,11 @@ def follow(q, v, a, turn, b, leader, angle):
 
 
 @internal
-def wound(q, last, v, before, h, c):
-    """Whether angle c is too far from that of the pose ``last``, h seconds and rates ``before`` earlier, to count turns."""
-    return not (abs(q[c] - last[c]) <= WOUND and h * abs(v[c]) <= WOUND and h * abs(before[c]) <= WOUND)
+def wound(q, last, v, v_last, a, a_last, h, c):
+    """Whether angle c turns too far to be counted on from the pose and rates h seconds before, or unexplained."""
+    turned = q[c] - last[c]
+    gap = turned - h * (0.5 * (v[c] + v_last[c]) - h / 12.0 * (a[c] - a_last[c]))
+    return not (abs(turned) <= WOUND and abs(gap) <= UNEXPLAINED)
 
 
 @internal

@@ -24,7 +24,7 @@ PARALLEL = 1e-6
 def solve_prp(body, n, qk, vk, ak, turn, point):
     """Fill positions, velocities and accelerations qk, vk, ak (3 nb,) of the group's bodies; return SOLVED or why not.
 
-    ``point`` (4, 8): scratch; its last row gets the discriminant and its rate, here the squared sine between the slides.
+    ``point`` (4, 8): scratch; its last row gets the discriminant and its rate, here sine^2 between the slides.
     """
     p = point[0]
     r = point[1]

@@ -119,9 +119,9 @@ def solve_groups(groups, start, times, drives, stride, tiny, first_row, q, v, a,
                 vk[at + 2] = -omega
                 ak[at + 2] = -(fx * wx + fy * wy) * det
                 vk[3 * other + 2] = -turning
-                if goes_on and wound(qk, last, vk, v[k - 1], h, 3 * other + 2):
-                    return DOUBTED, k, 0.5
                 ak[3 * other + 2] = -(fx * ux + fy * uy) * det
+                if goes_on and wound(qk, last, vk, v[k - 1], ak, a[k - 1], h, 3 * other + 2):
+                    return DOUBTED, k, 0.5
                 hang(qk, vk, ak, turn, body, p, n[2], n[3])
                 hang(qk, vk, ak, turn, other, r, n[8], n[9])
             elif kind == RRP:
@@ -252,7 +252,7 @@ def solve_groups(groups, start, times, drives, stride, tiny, first_row, q, v, a,
                 left = point[3, 0]
                 rate_of_left = point[3, 1]
             if goes_on:
-                if wound(qk, last, vk, v[k - 1], h, at + 2):
+                if wound(qk, last, vk, v[k - 1], ak, a[k - 1], h, at + 2):
                     return DOUBTED, k, 0.5
                 part = dip(h * before[e, 1], before[e, 0], h * rate_of_left, left)
                 if part > 0.0:

@@ -35,7 +35,7 @@ class Motion:
         return None
 
     def knots(self, first: float, last: float) -> np.ndarray:
-        """Rising times (s) from ``first`` to ``last`` that are so close that the law does not go and come back between two.
+        """Rising times (s) in ``first`` .. ``last`` so close that the law does not turn back between two.
 
         A sweep looks at them where several lie between two of its outputs. A law of which nothing is known is looked at
         513 times.

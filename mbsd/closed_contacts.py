@@ -57,8 +57,11 @@ def refuse_passed_contacts(m: Mechanism, packed: Packed, times: np.ndarray, q: n
     for gap in gaps(m, packed, q, limits=False):
         if gap.value.min() < -gap.slack:
             at = int(np.flatnonzero(gap.value < -gap.slack)[0])
+            before = max(at - 1, 0)
+            share = max(gap.value[before], 0.0) / (gap.value[before] - gap.value[at]) if at else 1.0
+            time = times[before] + share * (times[at] - times[before])
             raise LimitError(
-                f"{m.name}: at t = {times[at]:.6g} s the motion is beyond contact '{gap.name}', at the furthest by "
+                f"{m.name}: at t = {time:.6g} s the motion is beyond contact '{gap.name}', at the furthest by "
                 f"{-gap.value.min():.3g} {gap.unit}. Drive less far, or simulate, where contacts push back."
             )
 

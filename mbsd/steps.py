@@ -118,6 +118,8 @@ class Steps:
     def _put_knots(self, knots: np.ndarray) -> None:
         """Take those at which a law is not where the ends of its step lead: it may go and come back in that step."""
         knots = knots[~np.isin(knots, self.times) & (knots > self.times[0]) & (knots < self.times[-1])]
+        if not len(knots):
+            return
         at = np.searchsorted(self.times, knots)
         h = (self.times[at] - self.times[at - 1])[:, None]
         u = (knots - self.times[at - 1])[:, None] / h
@@ -127,7 +129,8 @@ class Steps:
         led = start[..., 0] + u * (way + (1.0 - u) * ((1.0 - u) * rise + u * fall))  # cubic Hermite interpolation
         astray = np.abs(self.packed.drives(knots)[..., 0] - led) > ASTRAY * self.stride
         taken = astray.any(axis=1)
-        self._put(at[taken], knots[taken])
+        if taken.any():
+            self._put(at[taken], knots[taken])
 
     def _put(self, at: np.ndarray, times: np.ndarray) -> None:
         self.drives = np.insert(self.drives, at, self.packed.drives(times), axis=0)

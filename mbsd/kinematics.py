@@ -101,24 +101,24 @@ def _extent(delta, per_metre):
 
 
 @inlined
-def _heads_for_zero(determinants, times, k):
-    """Whether a determinant before row k may have vanished within the step to k, or between rows 0 and 1 (then 1).
+def _heads_for_zero(determinants, times, k, first):
+    """Index of the step in which a determinant may have vanished: k, or the one after row ``first``; 0 if in none.
 
-    Returns the index of the refused row, 0 if there is none.
+    ``first``: the row at which the determinants begin.
     """
     for d in range(determinants.shape[1]):
         now = determinants[k, d]
         before = determinants[k - 1, d]
         if not now * before > SHRINKS * before * before:
             return k
-        if k > 1:
+        if k > first + 1:
             slope = (before - determinants[k - 2, d]) / (times[k - 1] - times[k - 2])
             if (before + slope * (times[k] - times[k - 1])) * before < SHRINKS * before * before:
                 return k
-        if k == 2:  # seen backwards, for the first step has nothing before it
-            slope = (now - before) / (times[2] - times[1])
-            if (before - slope * (times[1] - times[0])) * before < SHRINKS * before * before:
-                return 1
+        if k == first + 2:  # seen backwards, for the first step has nothing before it
+            slope = (now - before) / (times[k] - times[k - 1])
+            if (before - slope * (times[k - 1] - times[k - 2])) * before < SHRINKS * before * before:
+                return k - 1
     return 0
 
 
@@ -139,8 +139,10 @@ def _unexplained(q, v, a, k, h, per_metre):
 
 
 @kernel
-def sweep(system, seq, fac, ws, size, times, drives, stride, q, v, a, residual, determinant, start):
+def sweep(system, seq, fac, ws, size, times, drives, stride, q, v, a, residual, determinant, start, chosen):
     """Solve positions, velocities and accelerations at ``times[start:]``; rows before ``start`` are known.
+
+    The rows of J in ``seq`` are those chosen for times from ``chosen`` on.
 
     times (T,), drives (T, motions + 1, 3), stride (motions + 1,) how far each law may go in a step; q, v, a (T, 3 nb),
     residual (T,) largest |Phi| and determinant (T, d) of each block of J are filled. With ``start`` 0, q[0] must hold
@@ -205,10 +207,10 @@ def sweep(system, seq, fac, ws, size, times, drives, stride, q, v, a, residual, 
             step = _extent(delta[0], per_metre)
             if first > SUSPICIOUS * step + 1e-9 or second > CONTRACTS * first + 1e-9:
                 return BRANCH_DOUBT, k
-            refused = _heads_for_zero(determinant, times, k)
-            if refused == 1:
+            refused = _heads_for_zero(determinant, times, k, chosen) if k > chosen else 0
+            if 0 < refused < k:
                 for c in range(3, n3):
-                    delta[0, c] = q[1, c] - q[0, c]
+                    delta[0, c] = q[refused, c] - q[refused - 1, c]
                 step = _extent(delta[0], per_metre)
             if refused > 0 and (step > CROSSING or first > CONFIRMED * step + 1e-9):
                 return BRANCH_DOUBT, refused

@@ -22,6 +22,8 @@ from mbsd.start import CLOSED, assemble, close, rough_pose
 
 RANK_TOLERANCE = 1e-8
 """A row that adds less than this part of itself to the others repeats them."""
+BETTER = 4.0
+"""Rows are exchanged for others whose least singular value is this many times larger."""
 
 
 @dataclass(frozen=True)
@@ -119,6 +121,20 @@ def choose_rows(packed: Packed, q: np.ndarray, time: float) -> np.ndarray:
             "the drivers do not fix the motion here. Start a little before or after it, or drive another body."
         )
     return np.array(kept)
+
+
+def best_rows(packed: Packed, known: np.ndarray) -> np.ndarray | None:
+    """(n,) rows of the last evaluated J that are furthest from dependent; None if ``known`` (n,) are nearly as good.
+
+    Where joints repeat each other, rows that serve at one pose may be dependent at another. Source: pivoted QR.
+    """
+    from scipy.linalg import qr, svdvals
+
+    jac = packed.jacobian() * packed.row_scale()[:, None] * packed.column_scale()
+    chosen = np.sort(qr(jac.T, mode="r", pivoting=True)[1][: packed.coordinates])
+    if svdvals(jac[chosen])[-1] <= BETTER * svdvals(jac[known])[-1]:
+        return None
+    return chosen
 
 
 def _best_rows(packed: Packed, q: np.ndarray) -> tuple[list[int], list[int], np.ndarray]:

@@ -16,7 +16,7 @@ from mbsd.assur.points import DOUBTED, OPEN, SOLVED
 from mbsd.assur.solve import solve_groups
 from mbsd.elimination import Elimination, Factors, plan
 from mbsd.errors import AssemblyError, BranchError, ModelError, SingularPoseError
-from mbsd.mobility import Mobility, choose_rows, joint_mobility, refuse_overdriven
+from mbsd.mobility import Mobility, best_rows, choose_rows, joint_mobility, refuse_overdriven
 from mbsd.model import Mechanism
 from mbsd.packing import Packed, pack
 from mbsd.shown import shown
@@ -131,14 +131,14 @@ class Prepared:
 
     def _newton(self, steps: Steps) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Positions, velocities, accelerations (T, 3 nb) at all steps; those that the kernel refuses are divided."""
-        packed = self.packed
-        arrays = self._arrays(len(steps.times))
-        first = 0
+        packed, sequence, factors = self.packed, self.sequence, self.factors
+        arrays = self._arrays(len(steps.times), sequence)
+        first = chosen = 0
         while True:
             q, v, a, residual, determinant = arrays
             status, index = kinematics.sweep(
-                packed.system, self.sequence, self.factors, packed.ws, packed.size, steps.times, steps.drives,
-                steps.stride, q, v, a, residual, determinant, first,
+                packed.system, sequence, factors, packed.ws, packed.size, steps.times, steps.drives, steps.stride,
+                q, v, a, residual, determinant, first, chosen,
             )  # fmt: skip
             packed.specials.check()
             if status == kinematics.DONE:
@@ -146,8 +146,16 @@ class Prepared:
             if index == 0:
                 raise self._refused(status, steps.times, 0, steps.drives, q, v)
             if steps.follow_laws():
-                arrays, first = self._arrays(len(steps.times)), 0
+                arrays, first, chosen = self._arrays(len(steps.times), sequence), 0, 0
                 continue
+            if self.mobility.redundant_rows and index - 1 > chosen:
+                residual_and_jacobian(packed.system, q[index - 1], steps.drives[index - 1], packed.ws)
+                kept = best_rows(packed, sequence.rows)
+                if kept is not None:
+                    sequence, factors = plan(_sample_jacobians(packed), kept, packed.system.row_body)
+                    first = chosen = index - 1
+                    arrays = *arrays[:4], np.zeros((len(steps.times), len(sequence.ends)))
+                    continue
             if not steps.divide(index):
                 raise self._refused(status, steps.times, index, steps.drives, q, v)
             arrays = tuple(np.insert(array, index, 0.0, axis=0) for array in arrays)
@@ -155,8 +163,8 @@ class Prepared:
         self._refuse_disagreeing(steps.times, residual, q, steps.drives)
         return q, v, a
 
-    def _arrays(self, count: int) -> tuple[np.ndarray, ...]:
-        n3, blocks = len(self.q0), len(self.sequence.ends)
+    def _arrays(self, count: int, sequence: Elimination) -> tuple[np.ndarray, ...]:
+        n3, blocks = len(self.q0), len(sequence.ends)
         q, v, a = (np.zeros((count, n3)) for _ in range(3))
         q[0] = self.q0
         return q, v, a, np.zeros(count), np.zeros((count, blocks))

@@ -100,6 +100,26 @@ def test_a_change_point_is_passed_on_the_smooth_motion(closed: bool) -> None:
         assert np.abs(end_of(m, motion, "coupler", COUPLER) - exact).max() < 1e-7, steps
 
 
+@pytest.mark.parametrize("steps", [1, 2, 4, 7, 12, 360])
+def test_a_third_crank_decides_where_two_alone_would_not(steps: int) -> None:
+    """Three parallel cranks, not in line: two of them with the coupler lie flat at 0 and pi, all three never do."""
+    m = Mechanism("three cranks")
+    feet = {"one": (0.0, 0.0), "two": (0.4, 0.0), "three": (0.15, 0.3)}
+    coupler = m.body("coupler")
+    for name, (x, y) in feet.items():
+        crank = m.bar(name, 0.1)
+        m.revolute(f"foot {name}", m.ground.at(x, y), crank.start)
+        m.revolute(f"head {name}", crank.end, coupler.at(x, y))
+        m.start_near(**{name: 60})
+    m.start_near(coupler=(0.05, 0.087, 0))
+    m.drive_angle("motor", m.bodies["one"], constant_rate(1.0, math.pi / 3))
+    times = np.linspace(0.0, 4 * math.pi, steps + 1)
+    for moved in (0.0, 2 * math.pi / 3):  # outputs at the flat poses, too
+        sol = m.sweep(times=np.append(0.0, times + moved) if moved else times)
+        for name in feet:
+            np.testing.assert_allclose(sol.body(name).theta, math.pi / 3 + sol.t, atol=1e-9)
+
+
 def test_two_linkages_that_pass_at_the_same_time_both_stay() -> None:
     """Both determinants would change their signs at once, and the determinant of the whole would not."""
     more = 1e-8

@@ -183,6 +183,10 @@ def to_motion(solution: Solution, parts: contract.Parts, inputs: str, packages: 
         drivers=drivers,
         points=points,
         energy=contract.Energy(kinetic=solution.energy.kinetic.tolist(), potential=solution.energy.potential.tolist()),
+        events=[
+            contract.EventMark(time=event.time, name=event.name, what=event.what, energy=event.energy)
+            for event in solution.events
+        ],
         diagnostics=contract.Diagnostics(
             position_residual=stats.position_residual,
             velocity_residual=stats.velocity_residual,

@@ -20,10 +20,12 @@ Array = NDArray[np.float64]
 def hermite(time: Array, value: Array, rate: Array, acceleration: Array, t: Array | float) -> Array:
     """Quintic through samples at ``time`` (n,) with their first and second derivatives, evaluated at ``t`` (m,).
 
-    ``t`` outside ``time`` is held at the nearest end.
+    Samples right before and after an event share a time; at that time the later counts. ``t`` outside ``time`` is
+    held at the nearest end.
     """
     t = np.clip(np.atleast_1d(np.asarray(t, dtype=float)), time[0], time[-1])
-    i = np.clip(np.searchsorted(time, t, side="right") - 1, 0, len(time) - 2)
+    starts = np.flatnonzero(np.diff(time) > 0)
+    i = starts[np.clip(np.searchsorted(time[starts], t, side="right") - 1, 0, len(starts) - 1)]
     h = time[i + 1] - time[i]
     s = (t - time[i]) / h
     s3, s4, s5 = s**3, s**4, s**5

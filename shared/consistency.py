@@ -87,16 +87,37 @@ def _refuse_unfit_names(names: Mapping[str, Iterable[str]], path: Path | str) ->
 
 
 def _refuse_ragged(motion: Motion, path: Path | str) -> None:
-    """Every series is as long as ``time``, which has two values or more and grows."""
+    """Every series is as long as ``time``, which has two values or more and grows, but for both rows of an event."""
     count = len(motion.time)
     if count < 2:
         raise UserError(f"{path}: time has {count} values; a motion needs two or more")
-    for index in range(1, count):
-        if not motion.time[index] > motion.time[index - 1]:
-            raise UserError(f"{path}: time[{index}] = {motion.time[index]} does not come after the value before it")
     for field, series in _series(motion, ""):
         if len(series) != count:
             raise UserError(f"{path}: {field} has {len(series)} values, time has {count}")
+    if motion.time[0] == motion.time[-1]:
+        raise UserError(f"{path}: time[0] and time[-1] are both {motion.time[0]}; a motion needs two different times")
+    happened = {event.time for event in motion.events}
+    for index in range(1, count):
+        before, now = motion.time[index - 1 : index + 1]
+        if now < before or (now == before and now not in happened):
+            raise UserError(
+                f"{path}: time[{index}] = {now} does not come after the value before it, and no event has that time; "
+                "only right before and after an event may two rows share a time"
+            )
+        if now == before:
+            _refuse_leap(motion, index, path)
+
+
+def _refuse_leap(motion: Motion, index: int, path: Path | str) -> None:
+    """At an event velocities may jump, poses may not."""
+    for name, body in motion.bodies.items():
+        for field, series in (("x", body.x), ("y", body.y), ("theta", body.theta)):
+            before, now = series[index - 1 : index + 1]
+            if abs(now - before) > RETURN_TOLERANCE * max(1.0, abs(before)):
+                raise UserError(
+                    f"{path}: bodies.{name}.{field} jumps from {before:.6g} to {now:.6g} at the event of "
+                    f"{motion.time[index]:.6g} s; velocities may jump there, poses may not"
+                )
 
 
 def _refuse_wrong_period(motion: Motion, path: Path | str) -> None:
@@ -128,5 +149,5 @@ def _series(value: Any, field: str) -> Iterator[tuple[str, list[float]]]:
     elif isinstance(value, dict):
         for name, item in value.items():
             yield from _series(item, f"{field}.{name}")
-    elif isinstance(value, list) and field != "diagnostics.redundant":
+    elif isinstance(value, list) and field not in ("diagnostics.redundant", "events"):
         yield field, value

@@ -111,6 +111,17 @@ class Energy(_Strict, kw_only=True):
     potential: Series
 
 
+class EventMark(_Strict, kw_only=True):
+    """Something that happened at one moment of a simulation: an impact, a contact that opens, an event of the user."""
+
+    time: float
+    name: str
+    what: str
+    """event, end, impact, closes, opens, sticks, slides."""
+    energy: float
+    """Kinetic energy after less before (J), of all that happens at this time; told with the first."""
+
+
 class Diagnostics(_Strict, kw_only=True):
     """How good the numbers are."""
 
@@ -140,11 +151,14 @@ class Motion(_Strict, kw_only=True):
     period: Positive | None
     """Every pose repeats after this time (s), and ``time`` spans it exactly, both ends included; else null."""
     time: Series
+    """Rises; rows right before and right after an event share its time: poses agree there, rates may differ."""
     bodies: dict[str, BodyMotion]
     joints: dict[str, JointMotion]
     drivers: dict[str, DriverMotion]
     points: dict[str, PointMotion]
     energy: Energy
+    events: list[EventMark] = []
+    """In the order of their times."""
     diagnostics: Diagnostics
 
 

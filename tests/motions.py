@@ -15,6 +15,7 @@ from shared.contract import (
     Diagnostics,
     DriverMotion,
     Energy,
+    EventMark,
     JointMotion,
     Motion,
     PointMotion,
@@ -157,6 +158,43 @@ def four_bar_motion(
             singularity_margin=np.abs(np.sin(theta["rocker"] - theta["coupler"])).tolist(),
         ),
     )
+
+
+def bouncing_ball(steps: int = 40, restitution: float = 0.5, mass: float = 0.2) -> Motion:
+    """A ball that falls 1 m and bounces once; both rows of the impact are there.
+
+    It strikes at sqrt(2 / g) s with sqrt(2 g) m/s, where it loses (1 - e^2) m g of its energy.
+    """
+    g = float(-GRAVITY[1])
+    strike = float(np.sqrt(2 / g))
+    times = np.sort(np.append(np.linspace(0.0, 2 * strike, steps + 2 + steps % 2), [strike, strike]))
+    after = times > strike
+    after[np.flatnonzero(times == strike)[-1]] = True
+    late = times - strike
+    speed = restitution * g * strike
+    zero = np.zeros_like(times)
+    y = np.where(after, speed * late - g * late**2 / 2, 1.0 - g * times**2 / 2)
+    vy = np.where(after, speed - g * late, -g * times)
+    columns = _columns(np.stack([zero, y], 1), np.stack([zero, vy], 1), np.stack([zero, zero - g], 1))
+    turning = {name: zero.tolist() for name in ("theta", "omega", "alpha")}
+    loss = (restitution**2 - 1) * mass * g
+    return Motion(
+        mechanism="ball",
+        provenance=Provenance(inputs="0" * 64, versions={}),
+        gravity=(0.0, -g),
+        period=None,
+        time=times.tolist(),
+        bodies={"ball": BodyMotion(**columns, **turning, z=0.0, mass=mass, com=(0.0, 0.0), inertia=1e-4)},
+        joints={},
+        drivers={},
+        points={"P": PointMotion(body="ball", **columns)},
+        energy=Energy(kinetic=(mass * vy**2 / 2).tolist(), potential=(mass * g * y).tolist()),
+        events=[EventMark(time=strike, name="floor", what="impact", energy=loss)],
+        diagnostics=Diagnostics(
+            position_residual=0.0, velocity_residual=0.0, acceleration_residual=0.0, power_residual=0.0, dof=3,
+            redundant=[], singularity_margin=np.ones_like(times).tolist(),
+        ),
+    )  # fmt: skip
 
 
 def _unit(angle: np.ndarray) -> np.ndarray:

@@ -18,7 +18,7 @@ from shared.clearance import Clearance, read_clearance, write_clearance
 from shared.contract import BodyMotion, BodyParts, Mass, Motion, Parts, Piece, Provenance
 from shared.errors import UserError
 from shared.shot import Shot, read_shot, write_shot
-from tests.motions import four_bar_motion
+from tests.motions import bouncing_ball, four_bar_motion
 
 MOTION = four_bar_motion(steps=12)
 CONTENT = jsonfile.encode(MOTION)
@@ -304,3 +304,27 @@ def test_units_and_conventions_are_written() -> None:
     assert document["units"]["length"] == "m"
     assert "second body" in document["conventions"]["reaction"]
     assert list(document)[:3] == ["schema", "schema_version", "mechanism"]
+
+
+def test_both_rows_of_an_event_may_share_its_time(path: Path) -> None:
+    ball = bouncing_ball()
+    contract.write_motion(path, ball)
+    assert contract.read_motion(path) == ball
+    row = ball.time.index(ball.events[0].time)
+    assert ball.time[row] == ball.time[row + 1]
+    with pytest.raises(UserError, match=rf"time\[{row + 1}\] = .* no event has that time; only right before and after"):
+        contract.write_motion(path, msgspec.structs.replace(ball, events=[]))
+    leaping = list(ball.bodies["ball"].y)
+    leaping[row] += 0.01
+    with pytest.raises(UserError, match=r"bodies\.ball\.y jumps from 0\.01 to .* poses may not"):
+        body = msgspec.structs.replace(ball.bodies["ball"], y=leaping)
+        contract.write_motion(path, msgspec.structs.replace(ball, bodies={"ball": body}))
+    with pytest.raises(UserError, match="a motion needs two different times"):
+        contract.write_motion(path, msgspec.structs.replace(ball, time=[ball.events[0].time] * len(ball.time)))
+
+
+def test_a_motion_without_events_is_read_as_before(path: Path) -> None:
+    document = json.loads(jsonfile.encode(MOTION))
+    del document["events"]
+    path.write_text(json.dumps(document))
+    assert contract.read_motion(path) == MOTION

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from render.poses import Moment, Poses, hermite, moment
-from tests.motions import four_bar_motion
+from tests.motions import bouncing_ball, four_bar_motion
 
 MOTION = four_bar_motion()
 FINE = four_bar_motion(steps=360 * 7)
@@ -67,3 +67,19 @@ def test_a_motion_without_a_period_runs_there_and_back():
     once = msgspec.structs.replace(MOTION, period=None)
     times = [moment(once, frame, 8).time for frame in range(9)]
     assert times == pytest.approx([0, 0.25, 0.5, 0.75, 1, 0.75, 0.5, 0.25, 0])
+
+
+@pytest.mark.parametrize("cut", [0, 1])
+def test_an_impact_is_met_from_both_sides(cut: int) -> None:
+    """Free flight is a parabola, so quintics are exact before, at and after the impact; ``cut``: it comes last."""
+    ball = bouncing_ball(steps=6)
+    strike = ball.events[0].time
+    poses = Poses(ball)
+    if cut:
+        poses.time = poses.time[: ball.time.index(strike) + 2]
+    for t in np.linspace(0.0, strike if cut else ball.time[-1], 41):
+        x, y, theta = poses.body("ball", Moment(float(t), 0))
+        late = t - strike
+        exact = 1 - 9.81 * t * t / 2 if t < strike else 0.5 * 9.81 * strike * late - 9.81 * late**2 / 2
+        assert y == pytest.approx(exact, abs=1e-12)
+        assert (x, theta) == (0.0, 0.0)

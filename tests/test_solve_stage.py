@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 
-from mbsd import Mechanism, constant_rate
+from mbsd import Mechanism, angle_reaches, constant_rate
 from mechanisms import loading
 from mechanisms.solve_stage import apply_masses, solve, to_motion
 from shared import contract
@@ -99,6 +100,22 @@ def test_a_point_in_millimetres_is_told_in_a_line(
     solve("arm", _parts("ground", "arm"))
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("solve: warning: arm: trace P: its point (60, 30) on arm is")
+
+
+def test_events_reach_the_file_with_both_of_their_rows(tmp_path: Path) -> None:
+    m = Mechanism("arm", gravity=(0, -9.81))
+    arm = m.bar("arm", 0.2, mass=0.3)
+    m.revolute("A", m.ground.at(0, 0), arm.start)
+    m.event("passes", angle_reaches(arm, -1.0), action=lambda moment: moment.set_velocity("arm", 0.0, 0.2, 2.0))
+    m.start_near(arm=0)
+    motion = to_motion(m.simulate(0.4, steps=20, event_rows=True), _parts("ground", "arm"), "key", {})
+    contract.write_motion(tmp_path / "data.json", motion)
+    assert contract.read_motion(tmp_path / "data.json") == motion
+    (event,) = motion.events
+    before = motion.time.index(event.time)
+    assert motion.time[before + 1] == event.time
+    assert motion.bodies["arm"].omega[before] < -5.0
+    assert motion.bodies["arm"].theta[before : before + 2] == pytest.approx([-1.0, -1.0], abs=1e-9)
 
 
 def test_names_that_differ_are_told() -> None:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from render.plots.loads import energy, hodographs, reactions
+from render.plots.energy import energy
+from render.plots.loads import hodographs, reactions
 from render.plots.path import path
 from render.plots.rates import bodies, point, slider
 from render.plots.style import house_style

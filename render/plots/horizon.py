@@ -34,7 +34,8 @@ def horizon(motion: Motion) -> Horizon:
     if len(motion.drivers) == 1:
         ((name, driver),) = motion.drivers.items()
         angle = np.degrees(driver.value)
-        if "angle" in driver.kind and np.all(np.diff(angle) > 0):
+        moves = np.diff(angle)[np.diff(motion.time) > 0]  # both rows of an event have the same angle
+        if "angle" in driver.kind and np.all(moves > 0):
             return Horizon(angle, f"{name} angle (deg)", True)
     return Horizon(np.asarray(motion.time), "time (s)", False)
 

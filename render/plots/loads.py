@@ -1,4 +1,4 @@
-"""What the joints carry and the drivers give: reactions, hodographs, energy and power."""
+"""What the joints carry and the drivers give: reactions and hodographs."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from render.plots.horizon import horizon
+from render.plots.magnitudes import NOISE, force_scale, torque_scale, without_noise
 from render.plots.rates import draw
-from render.plots.style import INK, PALETTE, QUIET, colour, page, rows
+from render.plots.style import INK, colour, page, rows
 from shared.contract import Motion
 
 PANELS = 12
@@ -19,11 +20,12 @@ PANELS = 12
 def reactions(motion: Motion) -> Figure:
     """Magnitude of every joint's reaction (N), its torque where it carries one (N m), and the drivers' effort."""
     over = horizon(motion)
+    weak, slack = NOISE * force_scale(motion), NOISE * torque_scale(motion)
     forces = [(name, np.hypot(joint.fx, joint.fy), colour(i)) for i, (name, joint) in enumerate(motion.joints.items())]
     torques = [
         (name, np.asarray(joint.torque), colour(i))
         for i, (name, joint) in enumerate(motion.joints.items())
-        if np.abs(joint.torque).max() > 1e-12
+        if np.abs(joint.torque).max() > slack
     ]
     turning, pushing = [], []
     for i, (name, driver) in enumerate(motion.drivers.items()):
@@ -41,13 +43,14 @@ def reactions(motion: Motion) -> Figure:
         "magnitude of each joint's reaction, and what the driver must give",
     )
     for axes, (label, lines) in zip(rows(figure, len(panels)), panels, strict=True):
-        draw(axes, over, label, lines)
+        draw(axes, over, label, lines, floor=slack if "N m" in label else weak)
     over.dress(figure.axes[-1])
     return figure
 
 
 def hodographs(motion: Motion) -> Figure:
     """The tip of each joint's reaction vector (N) over the motion, drawn from the origin; the dot is the start."""
+    weak = NOISE * force_scale(motion)
     largest = sorted(
         motion.joints, key=lambda name: -float(np.hypot(motion.joints[name].fx, motion.joints[name].fy).max())
     )
@@ -62,7 +65,7 @@ def hodographs(motion: Motion) -> Figure:
     figure.subplots_adjust(left=0.07, right=0.975, top=0.83, bottom=0.085, wspace=0.22, hspace=0.34)
     for axes, name in zip(grid, shown, strict=False):
         joint = motion.joints[name]
-        fx, fy = np.asarray(joint.fx), np.asarray(joint.fy)
+        fx, fy = without_noise(np.asarray(joint.fx), weak), without_noise(np.asarray(joint.fy), weak)
         ink = colour(list(motion.joints).index(name))
         top = int(np.hypot(fx, fy).argmax())
         axes.axhline(0, color="#9aa3ab", linewidth=0.8, zorder=1)
@@ -89,45 +92,4 @@ def hodographs(motion: Motion) -> Figure:
         axes.set_ylabel("fy (N)", labelpad=1)
     for axes in grid[len(shown) :]:
         axes.set_visible(False)
-    return figure
-
-
-def energy(motion: Motion) -> Figure:
-    """Energies (J) from their start, and the power balance: what drivers give is what the energy gains (W)."""
-    over = horizon(motion)
-    time = np.asarray(motion.time)
-    kinetic, potential = np.asarray(motion.energy.kinetic), np.asarray(motion.energy.potential)
-    total = kinetic + potential
-    given = np.sum([driver.power for driver in motion.drivers.values()], axis=0) if motion.drivers else 0.0 * time
-    figure = page(
-        motion.mechanism,
-        "energy and power",
-        "potential energy counts from its start; the drivers' power is the rate of the energy, "
-        f"largest difference {motion.diagnostics.power_residual:.1e} W",
-    )
-    upper, lower = rows(figure, 2)
-    draw(
-        upper,
-        over,
-        "energy (J)",
-        [
-            ("kinetic", kinetic, PALETTE[0]),
-            ("potential", potential - potential[0], PALETTE[1]),
-            ("total", total - potential[0], INK),
-        ],
-    )
-    draw(lower, over, "power (W)", [("drivers", given, PALETTE[2])])
-    rate = np.gradient(total, time, edge_order=2)
-    lower.lines[0].set(linewidth=5.0, alpha=0.35)
-    lower.plot(over.values, rate, color=INK, linewidth=1.2, linestyle=(0, (5, 3)), zorder=4)
-    lower.text(
-        0.012,
-        0.94,
-        "wide: power of the drivers     dashed: d(kinetic + potential)/dt",
-        transform=lower.transAxes,
-        color=QUIET,
-        fontsize=9,
-        va="top",
-    )
-    over.dress(lower)
     return figure

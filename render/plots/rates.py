@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from render.plots.horizon import Horizon, horizon
+from render.plots.magnitudes import NOISE, speed_scale, without_noise
 from render.plots.style import FAINT, INK, LABELLED, PALETTE, colour, label_ends, page, rows
 from shared.contract import BodyMotion, Motion, PointMotion
 
@@ -27,10 +28,13 @@ def bodies(motion: Motion) -> Figure:
     over = horizon(motion)
     inks = list(motion.bodies)
     turning = [name for name, body in motion.bodies.items() if np.ptp(body.theta) > STILL] or inks
+    fastest = speed_scale(motion)
+    floors = {"theta": STILL, "omega": NOISE * fastest, "alpha": NOISE * fastest**2}
     for axes, (field, label) in zip(rows(figure, 3), kinds, strict=True):
         series = {name: np.asarray(getattr(motion.bodies[name], field)) for name in turning}
         scale = np.degrees(1.0) if field == "theta" else 1.0
-        draw(axes, over, label, [(name, scale * values, colour(inks.index(name))) for name, values in series.items()])
+        lines = [(name, scale * values, colour(inks.index(name))) for name, values in series.items()]
+        draw(axes, over, label, lines, floor=floors[field])
     over.dress(figure.axes[-1])
     return figure
 
@@ -48,9 +52,13 @@ def slider(motion: Motion, name: str) -> Figure:
     )
 
 
-def draw(axes: Axes, over: Horizon, label: str, lines: Sequence[Line], *, zero: bool = True) -> None:
-    """Lines with their labels at the right; of many, the largest get labels and the rest stay faint."""
+def draw(axes: Axes, over: Horizon, label: str, lines: Sequence[Line], *, floor: float = 0.0) -> None:
+    """Lines with their labels at the right; of many, the largest get labels and the rest stay faint.
+
+    What is below ``floor`` is rounding and drawn as zero.
+    """
     axes.set_ylabel(label)
+    lines = [(text, without_noise(values, floor), ink) for text, values, ink in lines]
     by_size = sorted(lines, key=lambda line: -float(np.ptp(line[1])))
     named = [line for line in lines if any(line is big for big in by_size[:LABELLED])]
     for line in lines:
@@ -58,9 +66,11 @@ def draw(axes: Axes, over: Horizon, label: str, lines: Sequence[Line], *, zero: 
         is_named = any(line is big for big in named)
         axes.plot(over.values, values, color=ink if is_named else FAINT, zorder=3 if is_named else 2, label=text)
     low, high = axes.get_ylim()
-    if high - low < 1e-9:  # a constant is a straight line, not the noise of its last digit
-        axes.set_ylim(low - 1.0, high + 1.0)
-    elif zero and low < 0 < high:
+    if all(np.ptp(values) == 0.0 for _, values, _ in lines):  # a constant is a straight line in the middle
+        size = max((abs(float(values[0])) for _, values, _ in lines), default=0.0) or 1.0
+        axes.set_ylim(low - 0.25 * size, high + 0.25 * size)
+        low, high = axes.get_ylim()
+    if low < 0 < high:
         axes.axhline(0, color="#9aa3ab", linewidth=0.9, zorder=1)
     if "deg" in label:
         axes.yaxis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 1.5, 3, 4.5, 9, 10]))
@@ -73,11 +83,13 @@ def _plane_motion(motion: Motion, moving: PointMotion | BodyMotion, title: str, 
     """Three rows of components, with magnitudes; along an axis alone that component says it all."""
     figure = page(motion.mechanism, title, subtitle)
     over = horizon(motion)
+    fast = max(float(np.hypot(moving.vx, moving.vy).max()), 0.0)
+    floors = {"": 0.0, "v": NOISE * fast, "a": NOISE * fast * speed_scale(motion)}
     components = {axis: ink for axis, ink in zip("xy", PALETTE, strict=False) if np.ptp(getattr(moving, axis)) > STILL}
     for axes, (rate, label) in zip(rows(figure, 3), KINDS, strict=True):
         lines = [(rate + axis, np.asarray(getattr(moving, rate + axis)), ink) for axis, ink in components.items()]
         if rate and len(components) == 2:
             lines.insert(0, (f"|{rate}|", np.hypot(lines[0][1], lines[1][1]), INK))
-        draw(axes, over, label, lines)
+        draw(axes, over, label, lines, floor=floors[rate])
     over.dress(figure.axes[-1])
     return figure

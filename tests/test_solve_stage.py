@@ -106,9 +106,14 @@ def test_events_reach_the_file_with_both_of_their_rows(tmp_path: Path) -> None:
     m = Mechanism("arm", gravity=(0, -9.81))
     arm = m.bar("arm", 0.2, mass=0.3)
     m.revolute("A", m.ground.at(0, 0), arm.start)
-    m.event("passes", angle_reaches(arm, -1.0), action=lambda moment: moment.set_velocity("arm", 0.0, 0.2, 2.0))
+    m.event(
+        "passes",
+        angle_reaches(arm, -1.0),
+        direction=-1,
+        action=lambda moment: moment.set_velocity("arm", 0.0, 0.2, 2.0),
+    )
     m.start_near(arm=0)
-    motion = to_motion(m.simulate(0.4, steps=20, event_rows=True), _parts("ground", "arm"), "key", {})
+    motion = to_motion(m.simulate(0.25, steps=20, event_rows=True), _parts("ground", "arm"), "key", {})
     contract.write_motion(tmp_path / "data.json", motion)
     assert contract.read_motion(tmp_path / "data.json") == motion
     (event,) = motion.events

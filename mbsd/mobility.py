@@ -131,7 +131,7 @@ def best_rows(packed: Packed, known: np.ndarray) -> np.ndarray | None:
     from scipy.linalg import qr, svdvals
 
     jac = packed.jacobian() * packed.row_scale()[:, None] * packed.column_scale()
-    chosen = np.sort(qr(jac.T, mode="r", pivoting=True)[1][: packed.coordinates])
+    chosen = np.sort(qr(jac.T, mode="r", pivoting=True)[-1][: packed.coordinates])
     if svdvals(jac[chosen])[-1] <= BETTER * svdvals(jac[known])[-1]:
         return None
     return chosen

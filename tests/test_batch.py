@@ -72,6 +72,29 @@ def test_designs_that_do_not_close_are_marked() -> None:
     assert np.isfinite(result.points["P"][0]).all()
 
 
+@pytest.mark.parametrize("steps", [1, 2, 3, 12])
+def test_few_outputs_give_the_same_motion(steps: int) -> None:
+    rockers = {"rocker": np.linspace(0.28, 0.32, 5)}
+    few = four_bar().batch(lengths=rockers, angles=["rocker"], steps=steps)
+    many = four_bar().batch(lengths=rockers, angles=["rocker"], steps=360)
+    assert few.closes.all()
+    np.testing.assert_allclose(few.angles["rocker"], many.angles["rocker"][:, :: 360 // steps], atol=1e-12)
+
+
+def test_designs_near_a_change_point_are_right_or_doubted() -> None:
+    """A crank of 0.1 m with ground 0.3 and coupler 0.25 m just turns, or just does not, with a rocker of 0.15 m."""
+    more = np.array([-1e-2, -1e-6, -1e-9, 0.0, 1e-12, 1e-9, 1e-6, 1e-3, 1e-2])
+    lengths = {"coupler": np.full(len(more), 0.25), "rocker": 0.15 + more}
+    pivots = {"D": np.tile([0.3, 0.0], (len(more), 1))}
+    for steps in (1, 12, 360):
+        found = four_bar().batch(lengths=lengths, places=pivots, angles=["rocker"], steps=steps)
+        assert not found.closes[more < 0].any()
+        assert found.closes[-1]
+        for k in np.flatnonzero(found.closes):
+            m = four_bar(coupler=0.25, rocker=0.15 + more[k], x=0.3, y=0.0)
+            np.testing.assert_allclose(found.angles["rocker"][k], m.sweep(steps=steps).body("rocker").theta, atol=1e-9)
+
+
 def test_threads_change_nothing() -> None:
     coupler = np.linspace(0.35, 0.42, 200)
     one, two = (four_bar().batch(lengths={"coupler": coupler}, threads=n, steps=40) for n in (1, 2))

@@ -3,7 +3,7 @@
 PRESET ?= preview
 FRAME ?= 0
 NAME ?=
-N ?= 1000
+N ?=
 SEED ?= 1
 PYTEST ?= -n 2 --dist loadfile
 
@@ -35,7 +35,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install check list run-all all new test lint format bench hunt schema docs integrators lock clean clean-all always
+.PHONY: help install check list run-all all new test lint format bench hunt torture schema docs integrators lock clean clean-all always
 
 # A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
 define upto_motion
@@ -136,7 +136,10 @@ bench: install ## the solver beside its peers: a table, and out/bench.json
 	@$(PYTHON) -m benchmarks
 
 hunt: install ## N random mechanisms (1000), each solved again in other words; SEED=1 says which: out/hunt.json
-	@$(PYTHON) -m tools.hunt --n "$$N" --seed "$$SEED"
+	@$(PYTHON) -m tools.hunt --n "$${N:-1000}" --seed "$$SEED"
+
+torture: install ## N films of a postage stamp (20), killed and damaged while they are made; SEED=1: out/torture.json
+	@$(PYTHON) -m tools.torture --n "$${N:-20}" --seed "$$SEED"
 
 schema: install ## write docs/schema/ from shared/contract.py, shared/shot.py and the solver's joints and laws
 	@$(PYTHON) -m shared.schema

@@ -43,6 +43,7 @@ def _pictures(mechanism: str, store: FrameStore, names: Sequence[str]) -> Iterat
     for number, name in enumerate(names):
         content = store.read(name)
         if content is None:
+            store.find(name.partition("-")[0])  # removes it, so that it is missed
             raise UserError(
                 f"{mechanism}: frame {number} ({name}) changed or went while the film was written; the same command "
                 "renders it again"

@@ -25,6 +25,7 @@ from shared.stages import Stage
 
 FEWEST_SAMPLES = 500_000
 """In one picture, for its time to say something about another size."""
+ATTEMPTS = 3
 RESERVE = 200e6
 """Bytes left free on the disk beside the frames."""
 
@@ -44,7 +45,10 @@ def run(name: str, preset: Preset) -> None:
     with store.locked():
         tally = Tally()
         try:
-            render(pictures, store, frames, f"{film.shot.frames} frames in the film", tally)
+            for _ in range(ATTEMPTS):
+                render(pictures, store, frames, f"{film.shot.frames} frames in the film", tally)
+                if all(store.find(pictures.key(frame)) for frame in frames):
+                    break  # nothing was damaged while the others were rendered
         finally:
             tally.write(store, preset, time.perf_counter() - started)
         found = [picture_of(pictures, store, frame) for frame in frames]

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -27,6 +28,8 @@ from render.picture_file import fault
 from render.presets import PRESETS, Preset
 from render.store import FrameIndex, FrameStore, Timing
 from shared import jsonfile
+from shared.errors import UserError
+from shared.files import file_hash
 from shared.paths import ROOT, Out
 from shared.shot import Label, Shot, write_shot
 from tests import film_fixture
@@ -96,6 +99,44 @@ def test_three_turns_cost_one_and_a_changed_colour_costs_all(out_root: Path, cap
     assert np.array_equal(pixels(out.stills / "tiny-0008.png"), pixels(store.folder / index.frames[2]))
     assert out.poster.is_file()
     assert not [path for path in out_root.rglob("*") if "tmp-" in path.name or ".part." in path.name]
+
+
+def test_a_picture_damaged_while_the_others_are_rendered_is_never_filmed(
+    out_root: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    """Swapped for another whole picture before the index is written, and once more while the film is."""
+    out = film_fixture.write(Shot(turns=1, seconds_per_turn=0.1))
+    store, render = FrameStore(out.frames("tiny")), frames.render
+    ways = [lambda first, second: first.write_bytes(second.read_bytes())]
+
+    def render_and_swap(*arguments: Any) -> None:
+        render(*arguments)
+        if ways:
+            ways.pop()(*sorted(store.folder.glob("[!.]*.png"))[:2])
+
+    monkeypatch.setattr(frames, "render", render_and_swap)
+    film.run("four_bar", TINY)
+    assert capsys.readouterr().out.count("is not the picture that was rendered any more") == 1
+    content = out.film("tiny").read_bytes()
+
+    out.film("tiny").unlink()
+    done = frames.run
+
+    def run_and_swap(*arguments: Any) -> None:
+        done(*arguments)
+        first, second = sorted(store.folder.glob("[!.]*.png"))[:2]
+        stamp = (out.stamps / "frames-tiny.json").read_text()
+        hashes = [file_hash(path) for path in (first, second)]
+        first.write_bytes(second.read_bytes())  # and stamped so, as if it had happened just before the stage's end
+        (out.stamps / "frames-tiny.json").write_text(stamp.replace(*hashes))
+
+    monkeypatch.setattr(frames, "run", run_and_swap)
+    with pytest.raises(UserError, match=r"four_bar: frame \d \(.*\.png\) changed or went while the film was written"):
+        film.run("four_bar", TINY)
+    assert not out.film("tiny").exists()
+    monkeypatch.setattr(frames, "run", done)
+    film.run("four_bar", TINY)
+    assert out.film("tiny").read_bytes() == content
 
 
 def start(preset: str) -> subprocess.Popen[bytes]:

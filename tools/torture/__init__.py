@@ -1,0 +1,1 @@
+"""Runs of make with faults at random moments."""

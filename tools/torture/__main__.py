@@ -1,0 +1,132 @@
+"""``python -m tools.torture``: a film at the size of a postage stamp, made while things go wrong.
+
+--n 100 --seed 1    a hundred rounds: a run of make with a random fault at a random moment (kills, a full disk, damaged
+                    files, two runs at once), then the same command again, which has to end with the right film
+--keep              keep the project's folder after a round that went wrong, and end there
+
+Exit code 1 if a film was wrong or short, a picture was lost or rendered twice, a run hung or ended in a traceback, or a
+process or temporary file stayed. The report is also in out/torture.json.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import random
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from shared.console import run_cli, say, warn
+from shared.errors import UserError
+from shared.files import write_bytes
+from shared.paths import out_root
+from tools.torture.faults import FAULTS, FULL, Fault
+from tools.torture.project import Project
+from tools.torture.rounds import Outcome, play
+
+ROUNDS, SEED = 20, 1
+COUNTS = ("wrong", "lost", "redone", "refused", "hangs", "orphans", "tracebacks")
+
+
+def main() -> int:
+    """Play the rounds, report, and say by the exit code whether anything went wrong."""
+    parser = argparse.ArgumentParser(
+        prog="python -m tools.torture", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--n", type=_count, default=ROUNDS)
+    parser.add_argument("--seed", type=int, default=SEED)
+    parser.add_argument("--keep", action="store_true")
+    arguments = parser.parse_args()
+    report = out_root() / "torture.json"  # before the project sets a folder of its own
+    project = Project(Path(tempfile.mkdtemp(prefix="mbsd-torture-")).resolve())
+    outcomes: list[Outcome] = []
+    kept = False
+    try:
+        project.build()
+        reference, length = _reference(project)
+        faults = [*FAULTS, *(FULL if project.mounted else [])]
+        if not project.mounted:
+            warn(
+                "torture", "a small disk can be mounted by root alone, so no disk gets full; the tests do that as well"
+            )
+        for number, fault in _rounds(faults, arguments.n, arguments.seed):
+            outcome = play(project, fault, random.Random(f"{arguments.seed} {number}"), reference, length)
+            outcomes.append(outcome)
+            say("torture", f"{number + 1}/{arguments.n}: {_words(outcome)}")
+            if outcome.bad:
+                warn("torture", f"round {number + 1} of seed {arguments.seed}: {json.dumps(outcome.as_json())}")
+                print(project.said())
+                if arguments.keep:
+                    kept = True
+                    break
+                project.forget()
+                _reference(project)
+    finally:
+        if kept:
+            say("torture", f"kept: {project.folder}")
+        else:
+            project.remove()
+    return _report(outcomes, arguments.seed, report)
+
+
+def _rounds(faults: Sequence[Fault], count: int, seed: int) -> Iterator[tuple[int, Fault]]:
+    """Number and fault of each round: every fault comes once before one comes again."""
+    chance = random.Random(seed)
+    hat: list[Fault] = []
+    for number in range(count):
+        if not hat:
+            hat = chance.sample(faults, len(faults))
+        yield number, hat.pop()
+
+
+def _reference(project: Project) -> tuple[bytes, float]:
+    """The film of a run that nothing disturbs, and how long it takes (s)."""
+    begin = time.monotonic()
+    code = project.start().wait(timeout=300)
+    if code:
+        raise UserError(f"the undisturbed run ended with code {code}:\n{project.said()}")
+    length = time.monotonic() - begin
+    project.kill()
+    return project.film.read_bytes(), length
+
+
+def _words(outcome: Outcome) -> str:
+    hit = f"after {outcome.moment:.1f} s" if outcome.hit else "nothing to hit"
+    then = f"code {outcome.code}" + (f", {outcome.damaged} pictures destroyed" if outcome.damaged > 0 else "")
+    return f"{outcome.fault} ({outcome.state}, {hit}): {then}, {'WRONG' if outcome.bad else 'right'}"
+
+
+def _report(outcomes: list[Outcome], seed: int, path: Path) -> int:
+    """Say the sums and write the file; 1 if anything went wrong."""
+    sums = {name: sum(getattr(outcome, name) for outcome in outcomes) for name in COUNTS}
+    sums["leftovers"] = sum(len(outcome.leftovers) for outcome in outcomes)
+    seconds = sum(outcome.seconds for outcome in outcomes)
+    document = {
+        "seed": seed,
+        "rounds": len(outcomes),
+        "hit": sum(outcome.hit for outcome in outcomes),
+        **sums,
+        "destroyed by faults": sum(max(outcome.damaged, 0) for outcome in outcomes),
+        "seconds": round(seconds, 1),
+        "faults": dict(sorted(Counter(outcome.fault for outcome in outcomes).items())),
+        "outcomes": [outcome.as_json() for outcome in outcomes],
+    }
+    write_bytes(path, json.dumps(document, indent=1).encode() + b"\n")
+    words = ", ".join(f"{name} {count}" for name, count in sums.items())
+    say("torture", f"{len(outcomes)} rounds in {seconds:.0f} s, {document['hit']} faults hit: {words}")
+    return int(any(outcome.bad for outcome in outcomes))
+
+
+def _count(text: str) -> int:
+    """A number of rounds."""
+    number = int(text)
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"{text} rounds; give 1 or more")
+    return number
+
+
+if __name__ == "__main__":
+    run_cli(main)

@@ -21,6 +21,7 @@ from mbsd.forces.rotating_frame import ROTATING_FRAME
 from mbsd.forces.tyre import TYRE
 from mbsd.forces.user_force import USER_FORCE
 from mbsd.joint import Joint
+from mbsd.motions.function import checked_pulses
 from mbsd.names import no_such
 from mbsd.shown import shown
 
@@ -157,11 +158,22 @@ class AddingInteractions(AddingForces):
         params["joint"] = known.name
         return self._add_force(FRICTION, name, known.i, known.j, params)
 
-    def user_force(self, name: str, function: Callable[..., Any], *bodies: Body) -> Force:
+    def user_force(
+        self,
+        name: str,
+        function: Callable[..., Any],
+        *bodies: Body,
+        breaks: Sequence[float] = (),
+        shortest: float | None = None,
+    ) -> Force:
         """Forces on bodies by a function of the user, ``function(t, q, v)``, Python or compiled with numba.njit.
 
         q and v hold x, y, theta and their rates of the bodies' frames, three numbers a body in the order given; the
         function returns fx, fy (N, at the frame's origin) and torque (N m) of each body in that order.
+
+        A simulation looks at it at 2583 times before, with the bodies as they start, so that steps end where it jumps
+        or is short. ``breaks`` (s): where else it jumps. ``shortest`` (s): how long the shortest thing in it lasts, if
+        that depends on the motion or is less than 1/2000 of the duration; no step is longer.
         """
         what = f"force '{name}'"
         if not callable(function):
@@ -170,5 +182,7 @@ class AddingInteractions(AddingForces):
             self._own_body(body, what)
         if not bodies or len(set(map(id, bodies))) < len(bodies):
             raise ModelError(f"{self.name}: {what} needs the bodies it acts on, each once")
-        params = {"function": function, "bodies": [body.name for body in bodies]}
+        at, least = checked_pulses(f"{self.name}: {what}", breaks, shortest)
+        params: dict[str, Any] = {"function": function, "bodies": [body.name for body in bodies]}
+        params |= ({"breaks": at} if at else {}) | ({"shortest": least} if least else {})
         return self._add_force(USER_FORCE, name, self.ground.origin, bodies[0].origin, params, same_body=True)

@@ -59,13 +59,23 @@ def pieces(breaks: np.ndarray, coefficients: np.ndarray, periodic: bool = False)
 
 def hermite_pieces(x: np.ndarray, samples: np.ndarray, periodic: bool = False) -> Compiled:
     """The quintic through value, first and second derivative, samples (p + 1, 3), at rising x (p + 1,)."""
-    h = np.diff(x)
-    f, df, ddf = samples[:-1].T
-    rise = samples[1:, 0] - f - h * df - h**2 * ddf / 2
-    slope = (samples[1:, 1] - df - h * ddf) * h
-    bend = (samples[1:, 2] - ddf) * h**2
+    return pieces(x, hermite_coefficients(np.diff(x), samples[:-1], samples[1:]), periodic)
+
+
+def hermite_coefficients(h: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """(p, 6) quintics over widths h (p,) from value and two derivatives (p, 3) at both ends, lowest power first."""
+    f, df, ddf = left.T
+    rise = right[:, 0] - f - h * df - h**2 * ddf / 2
+    return quintic_coefficients(h, left, rise, (right[:, 1] - df - h * ddf) * h, (right[:, 2] - ddf) * h**2)
+
+
+def quintic_coefficients(
+    h: np.ndarray, left: np.ndarray, rise: np.ndarray, slope: np.ndarray, bend: np.ndarray
+) -> np.ndarray:
+    """(p, 6) from what the right ends have beyond the parabola at the left: f, h f' and h^2 f'', each (p,)."""
     c3, c4, c5 = 10 * rise - 4 * slope + bend / 2, -15 * rise + 7 * slope - bend, 6 * rise - 3 * slope + bend / 2
-    return pieces(x, np.column_stack([f, df, ddf / 2, c3 / h**3, c4 / h**4, c5 / h**5]), periodic)
+    f, df, ddf = left.T
+    return np.column_stack([f, df, ddf / 2, c3 / h**3, c4 / h**4, c5 / h**5])
 
 
 def spline_pieces(spline: Any, periodic: bool = False) -> Compiled:

@@ -20,7 +20,7 @@ from mbsd.laws import Laws, evaluate_law, pack_laws
 from mbsd.markers import place
 from mbsd.motions import Motion
 from mbsd.user_loads import apply_user_forces, pack_user_forces
-from mbsd.users_function import law_of
+from mbsd.users_function import law_of, tell_missed
 
 if TYPE_CHECKING:
     from mbsd.packing import Packed
@@ -115,8 +115,9 @@ def compiled_laws(packed: Packed, start: float, end: float) -> Laws:
     for force in packed.forces:
         for what, law in force.laws.items():
             with law_of(f"{packed.name}: force '{force.name}': {what}"):
-                ready = law.over(start, end) if isinstance(law, Motion) else law
+                ready = law.as_load(start, end) if isinstance(law, Motion) else law
                 laws.append(ready.compiled(start, end))
+                tell_missed(f"{packed.name}: force '{force.name}': {what}", ready)
     return pack_laws(laws)
 
 

@@ -16,7 +16,7 @@ from mbsd.model import Force, Joint, Mechanism
 from mbsd.motions import Motion
 from mbsd.specials import Specials
 from mbsd.system import System, Workspace, workspace
-from mbsd.users_function import law_of
+from mbsd.users_function import law_of, tell_missed
 
 SMALLEST_SIZE = 1e-12
 """Below this (m) all joints sit at the centres of mass, and 1 m serves as size."""
@@ -99,6 +99,7 @@ class Packed:
         for k, (name, law) in enumerate(zip(self.driver_names, self.motions, strict=True)):
             with law_of(f"{self.name}: driver '{name}'"):
                 self.motions[k] = law.over(start, end)
+            tell_missed(f"{self.name}: driver '{name}'", self.motions[k])
 
     def row_scale(self) -> np.ndarray:
         """(m,) what makes residual rows dimensionless: 1 / size for lengths, 1 for angles."""

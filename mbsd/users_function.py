@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 
-from mbsd.errors import MechanismError, ModelError
+from mbsd.errors import MechanismError, ModelError, ModelWarning
 from mbsd.shown import shown
 
 
@@ -45,6 +46,13 @@ def law_of(what: str) -> Iterator[None]:
         raise
     except Exception as error:
         raise ModelError(f"{what}: its law fails: {described(error)}") from error
+
+
+def tell_missed(what: str, law: object) -> None:
+    """Warn of what the fit of a law could not resolve; ``what`` names the mechanism and the driver or force."""
+    missed = getattr(law, "missed", None)
+    if missed:
+        warnings.warn(f"{what}: {missed}", ModelWarning, stacklevel=5)
 
 
 def described(error: BaseException) -> str:

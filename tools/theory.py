@@ -30,7 +30,7 @@ SECTIONS = (
     ("Constraints", "Every joint and driver is made of these; each gives rows of Phi and J.", ("mbsd/constraints",)),
     ("Joints", "", ("mbsd/joints",)),
     ("Drivers", "A driver is a constraint with a law of time; its effort is minus its multiplier.", ("mbsd/drivers",)),
-    ("Laws of motion", "", ("mbsd/motions",)),
+    ("Laws of motion", "", ("mbsd/motions", "mbsd/fitting")),
     ("Cams", "", ("mbsd/cams",)),
     ("Positions, velocities, accelerations", "", ("mbsd/kinematics.py", "mbsd/elimination.py", "mbsd/assur")),
     ("Mobility", "", ("mbsd/mobility.py",)),

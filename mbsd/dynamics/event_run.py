@@ -114,6 +114,7 @@ class EventRun:
         state = self.state
         start = float(state.clock[TIME])
         while not self.ended:
+            self.ready.stops.cross(state)
             self._make_valid()
             before = copied(state)
             status = self.run.advance(state, self.out, end, 1)

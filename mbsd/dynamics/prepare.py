@@ -18,6 +18,7 @@ from mbsd.dynamics.large import MANY_COORDINATES, blocks_of, consistent_large, i
 from mbsd.dynamics.run import AUTO, Run
 from mbsd.dynamics.schur import plan_schur
 from mbsd.dynamics.sliding import sliding_for
+from mbsd.dynamics.stops import Stops, stops_of
 from mbsd.dynamics.switches import Switches, all_contacts, with_contacts
 from mbsd.errors import MobilityError, ModelError
 from mbsd.integrators import state as run_state
@@ -86,7 +87,13 @@ class PreparedDynamics:
         key = method.name, type(arrays)
         if key not in self.advancing:
             self.advancing[key] = Often(method.advance)
-        return self.advancing[key](arrays, *rest)
+        return self.stops.through(self.advancing[key], arrays, *rest)
+
+    @cached_property
+    def stops(self) -> Stops:
+        """Where steps end because loads or laws jump or are short there."""
+        loads, laws, initial = self.dynamics.loads, self.dynamics.laws, self.initial
+        return stops_of(self.packed, loads, laws, self.start, self.end, initial.q, initial.v)
 
     @cached_property
     def embedded(self) -> Embedded | None:
@@ -114,7 +121,8 @@ class PreparedDynamics:
         """Tolerances in the mechanism's own sizes. Raises ModelError for options that the method does not have."""
         one = np.concatenate([np.ones(3), self.packed.column_scale()]) * tolerance
         numbers = method.numbers(self.packed.name, options)
-        longest = float(duration) / OUTPUTS_LONGEST
+        shortest = [force.params.get("shortest") for force in self.packed.forces if "function" in force.params]
+        longest = min([float(duration) / OUTPUTS_LONGEST, *(length for length in shortest if length)])
         growing = np.stack([np.where(np.arange(len(one)) % 3 == 2, 0.0, tolerance), np.full(len(one), tolerance)])
         return run_state.Settings(
             np.stack([one, one]), float(tolerance), growing, longest, SMALLEST_STEP * longest, float(step), numbers

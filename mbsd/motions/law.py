@@ -13,10 +13,6 @@ if TYPE_CHECKING:
     from mbsd.laws import Compiled
 
 Times = np.ndarray
-COMPILED_PIECES = (256, 1024, 4096, 16384, 65536)
-"""Tried in turn for a law that has no compiled form of its own."""
-COMPILED_TOLERANCE = np.array([1e-12, 1e-10, 1e-8])
-"""Of f, f' and f'' halfway between the samples, relative to their largest values."""
 
 
 def refuse_non_finite(law: str, **numbers: float) -> None:
@@ -46,20 +42,21 @@ class Motion:
         """The law made ready for times ``first`` .. ``last`` (s)."""
         return self
 
+    def as_load(self, first: float, last: float) -> Motion:
+        """The law made ready for ``first`` .. ``last`` (s) as a force or torque, of which f alone counts."""
+        return self.over(first, last)
+
     def compiled(self, first: float, last: float) -> Compiled:
-        """The law as kernels evaluate it over ``first`` .. ``last`` (s): quintic pieces unless the law knows better."""
-        from mbsd.laws import hermite_pieces, pack_laws, tabulate_law
+        """The law as kernels evaluate it over ``first`` .. ``last`` (s): quintic pieces unless the law knows better.
+
+        Raises ModelError where f or f' jumps, and where f' and f'' are not the derivatives of f.
+        """
+        from mbsd.fitting.exact import exact_pieces
+        from mbsd.fitting.look import look_times
 
         last = last if last > first else first + 1.0
-        for count in COMPILED_PIECES:
-            times = np.linspace(first, last, 2 * count + 1)
-            samples = self(times)
-            law = hermite_pieces(times[::2], samples[::2])
-            check = np.zeros_like(samples)
-            tabulate_law(pack_laws([law]), 1, times, check)
-            if (np.abs(check - samples) <= COMPILED_TOLERANCE * (np.abs(samples).max(axis=0) + 1e-300)).all():
-                break
-        return law
+        looks = look_times(first, last)
+        return exact_pieces(self, first, last, (), looks, self(looks)[:, 2])
 
     def __call__(self, times: Times) -> np.ndarray:
         """(T,) times to (T, 3): f, f', f''."""

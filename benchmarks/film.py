@@ -8,7 +8,8 @@ from pathlib import Path
 from benchmarks.rows import Row
 from render.store import Timing
 from shared import jsonfile
-from shared.console import say
+from shared.console import say, warn
+from shared.errors import UserError
 from shared.paths import out_root
 
 LARGEST_OVERHEAD = 1.10
@@ -28,7 +29,11 @@ def rows_of_films() -> tuple[list[Row], list[str]]:
 
 
 def _rows_of(path: Path, missed: list[str]) -> list[Row]:
-    timing = jsonfile.read(path, Timing)
+    try:
+        timing = jsonfile.read(path, Timing)
+    except UserError as error:
+        warn("bench", str(error))
+        return []
     mechanism, frames = path.parents[2].name, timing.rendered
     print(
         f"\nfilm of {mechanism}, {timing.preset}: {frames} frames on {timing.device}, "

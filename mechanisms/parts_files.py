@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import re
+import shutil
 import tempfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from shared.errors import UserError
 
 TOLERANCE = 0.018
 """Largest distance of the mesh from the true surface (mm)."""
@@ -26,7 +29,7 @@ def stl_bytes(solid: Any) -> bytes:
 
     Small parts get a finer mesh than :data:`TOLERANCE` until it holds their volume to :data:`VOLUME_GOAL`.
     The kernel gives the same triangles each time, but those of a face with many holes in another order, and
-    normals that differ in their last bits.
+    normals that differ in their last bits. Raises UserError if the kernel cannot write its file.
     """
     volume = solid.Volume()
     for finer in (1, 2, 4):
@@ -50,7 +53,19 @@ def _mesh(solid: Any, tolerance: float, angle: float) -> np.ndarray:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "solid.stl"
         solid.exportStl(str(path), tolerance, angle, ascii=False, relative=False, parallel=False)
-        return np.frombuffer(path.read_bytes(), dtype=_TRIANGLE, offset=84).copy()
+        content = path.read_bytes() if path.exists() else b""
+        if len(content) < 84 or len(content) != 84 + _TRIANGLE.itemsize * int.from_bytes(content[80:84], "little"):
+            raise UserError(_cut(path, content))
+        return np.frombuffer(content, dtype=_TRIANGLE, offset=84).copy()
+
+
+def _cut(path: Path, content: bytes) -> str:
+    """Words for a file that the CAD kernel cut short; it reports no error when a disk is full."""
+    free = shutil.disk_usage(path.parent).free / 1e6
+    return (
+        f"the CAD kernel wrote {len(content)} bytes of {path.name} and no more; {free:.1f} MB are free at "
+        f"{path.parent.parent}: free some disk space or set TMPDIR to another folder"
+    )
 
 
 def _volume(corners: np.ndarray) -> float:
@@ -64,11 +79,16 @@ def _normals(corners: np.ndarray) -> np.ndarray:
 
 
 def step_bytes(solid: Any, name: str) -> bytes:
-    """STEP of a ``cadquery.Solid``, in mm. Its product is called ``name``; when it was written is left out."""
+    """STEP of a ``cadquery.Solid``, in mm. Its product is called ``name``; when it was written is left out.
+
+    Raises UserError if the kernel cannot write its file.
+    """
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "solid.step"
         solid.exportStep(str(path))
-        content = path.read_bytes()
+        content = path.read_bytes() if path.exists() else b""
+        if not content.rstrip().endswith(b"END-ISO-10303-21;"):
+            raise UserError(_cut(path, content))
     content = _TIMESTAMP.sub(rb"\1'1970-01-01T00:00:00'", content, count=1)
     # by itself the kernel numbers the products of a process
     return _PRODUCT.sub(f"= PRODUCT('{name}','{name}'".encode(), content, count=1)

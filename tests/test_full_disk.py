@@ -135,3 +135,22 @@ def test_a_limit_on_the_size_of_files(out_root: Path, stage: str):
     assert not list(out_root.rglob("*.part.*")) + list(out_root.rglob("tmp-*")) + list(out_root.rglob("*.mp4"))
     assert not list(out.folder.rglob("*.png")) + list(out.folder.rglob("*.blend"))
     assert file_hash(out.motion) == motion
+
+
+@pytest.mark.parametrize("file", ["step", "stl"])
+def test_a_solid_that_the_cad_kernel_cuts_short_is_refused(file: str):
+    """Its writers say nothing of a full disk either; a cut STEP went unnoticed."""
+    code = (
+        "import cadquery, resource\n"
+        "from mechanisms.parts_files import step_bytes, stl_bytes\n"
+        "from shared.console import run_cli\n"
+        "solid = cadquery.Workplane().box(10, 10, 10).val()\n"
+        "write = {'step': lambda: step_bytes(solid, 'a'), 'stl': lambda: stl_bytes(solid)}\n"
+        f"assert len(write['{file}']()) > 600\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (500, 500))\n"
+        f"run_cli(lambda: write['{file}']() and None)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 1
+    assert f"error: the CAD kernel wrote 500 bytes of solid.{file} and no more; " in done.stderr
+    assert "free some disk space or set TMPDIR" in done.stderr

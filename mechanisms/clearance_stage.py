@@ -44,7 +44,10 @@ LIMIT = 0.05
 REACH = 5.0
 """Larger gaps are not measured (mm)."""
 PACKAGES = ("manifold3d", "numpy", "scipy")
-SOURCES = [ROOT / "mechanisms" / name for name in ("clearance", "clearance_stage.py", "parts_files.py")]
+SOURCES = [
+    *(ROOT / "mechanisms" / name for name in ("clearance", "clearance_stage.py", "parts_files.py")),
+    *(ROOT / "shared" / f"{name}.py" for name in ("clearance", "contract", "jsonfile")),
+]
 
 
 def run(name: str) -> None:

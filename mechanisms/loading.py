@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import dataclasses
 import importlib
+import os
 import sys
 import traceback
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
-from importlib.abc import MetaPathFinder
-from importlib.machinery import ModuleSpec, SourceFileLoader
-from importlib.util import spec_from_file_location
+from importlib.machinery import EXTENSION_SUFFIXES, SOURCE_SUFFIXES, ExtensionFileLoader, FileFinder, SourceFileLoader
 from pathlib import Path
 from types import CodeType, ModuleType
 from typing import Any, Literal
 
+from mechanisms.recording import is_installed
 from shared.errors import UserError
-from shared.paths import MECHANISMS, canonical_name, mechanism_folder
+from shared.paths import MECHANISMS, ROOT, canonical_name, mechanism_folder
 
 File = Literal["mechanism", "parts", "shot"]
 
@@ -37,6 +37,7 @@ def load(name: str, file: File) -> ModuleType:
     path = folder / f"{file}.py"
     if not path.is_file():
         raise UserError(f"{folder.name}: {_shown(path)} is missing; a mechanism has mechanism.py, parts.py and shot.py")
+    importlib.invalidate_caches()
     with author_code(name):
         module = importlib.import_module(f"mechanisms.{folder.name}.{file}")
     for attribute, form in REQUIRED[file].items():
@@ -92,19 +93,20 @@ class _SourceOnly(SourceFileLoader):
         return self.source_to_code(self.get_data(self.path), self.path)
 
 
-class _MechanismFiles(MetaPathFinder):
-    """Finds ``mechanisms.<folder>.<file>``."""
+def _author_folder(path: str) -> FileFinder:
+    """Path hook: finds the modules in folders of the author's, below a mechanism or outside of the project.
 
-    def find_spec(
-        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
-    ) -> ModuleSpec | None:
-        package, _, rest = fullname.partition(".")
-        folder, dot, file = rest.partition(".")
-        source = MECHANISMS / folder / f"{file}.py"
-        ours = package == "mechanisms" and dot and (MECHANISMS / folder / "mechanism.py").is_file()
-        if not ours or not source.is_file():
-            return None
-        return spec_from_file_location(fullname, source, loader=_SourceOnly(fullname, str(source)))
+    Raises ImportError for the program's own folders, those of installed packages and the standard library.
+    """
+    place = Path(os.path.abspath(path))
+    if place.is_relative_to(MECHANISMS):
+        folder = place.relative_to(MECHANISMS).parts[:1]
+        ours = not folder or not (MECHANISMS / folder[0] / "mechanism.py").is_file()
+    else:
+        ours = place.is_relative_to(ROOT) or is_installed(f"{place}{os.sep}")
+    if ours or not place.is_dir():
+        raise ImportError(f"{path} holds none of the author's files")
+    return FileFinder(path, (ExtensionFileLoader, EXTENSION_SUFFIXES), (_SourceOnly, SOURCE_SUFFIXES))
 
 
 def _is_below(filename: str, folder: Path) -> bool:
@@ -115,4 +117,4 @@ def _shown(path: Path) -> str:
     return path.relative_to(MECHANISMS.parent).as_posix()
 
 
-sys.meta_path.insert(0, _MechanismFiles())
+sys.path_hooks.insert(0, _author_folder)

@@ -1,7 +1,8 @@
 """The ``parts`` stage: mechanisms/<name>/parts.py becomes STL, STEP and parts.json.
 
-It runs again only if something changed that the solids follow from: parts.py, the part library, the densities,
-CadQuery, or a parameter that ``parts()`` reads. A file whose bytes would be the same is not touched.
+It runs again only if something changed that the solids follow from: parts.py and what it imports or reads, the part
+library, the densities, CadQuery, or a parameter that ``parts()`` reads. mechanism.py itself counts only where parts.py
+uses more of it than the parameters' values. A file whose bytes would be the same is not touched.
 """
 
 from __future__ import annotations
@@ -11,23 +12,32 @@ import re
 from pathlib import Path
 from typing import Any
 
+from mechanisms.cad_reads import told_of_cad_files
+from mechanisms.loaded_files import author_files, loaded_inputs, modules_now
 from mechanisms.loading import author_code, load, params
+from mechanisms.params_use import only_annotates
+from mechanisms.plain_values import plain_text
+from mechanisms.recording import recording
 from mechanisms.traced_params import fields_of, traced
 from shared.console import say
 from shared.contract import BodyParts, Parts, Piece, Provenance, write_parts
 from shared.errors import UserError
 from shared.files import sources_hash, write_bytes
+from shared.inputs import Inputs, observed
 from shared.materials import MATERIALS
 from shared.paths import ROOT, Out, mechanism_folder
 from shared.shapes.units import metres
 from shared.stages import Stage, key_of, versions
 from shared.suggestions import did_you_mean
 
+_STAGE = ("parts_stage", "parts_files", "mass_properties", "mesh_check", "traced_params")
+_SHARED = ("contract", "jsonfile")
 SOURCES = [
     ROOT / "shared" / "shapes",
-    *(ROOT / "mechanisms" / f"{name}.py" for name in ("parts_stage", "parts_files", "mass_properties", "mesh_check")),
+    *(ROOT / "mechanisms" / f"{name}.py" for name in _STAGE),
+    *(ROOT / "shared" / f"{name}.py" for name in _SHARED),
 ]
-PACKAGES = ("cadquery", "cadquery-ocp")
+PACKAGES = ("cadquery", "cadquery-ocp", "numpy", "trimesh")
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
@@ -37,40 +47,62 @@ def run(name: str) -> None:
     Raises UserError naming the solid, the number and the remedy if a solid is refused; what was there stays.
     """
     out = Out(name)
-    given = params(out.name)
-    known = Stage(out, "parts", "", []).notes().get("reads")
-    if known is not None and Stage(out, "parts", _key(out.name, given, known), [out.parts]).is_fresh():
+    before = modules_now()
+    with recording() as recorder:
+        given = params(out.name)
+    notes = Stage(out, "parts", "", []).notes()
+    reads, inputs = notes.get("parameters"), observed(notes.get("inputs"))
+    if isinstance(reads, list) and inputs and Stage(out, "parts", _key(given, reads, inputs), [out.parts]).is_fresh():
         say("parts", f"{out.name}: nothing to do")
         return
-    bodies, reads = _build(out.name, given)
-    key = _key(out.name, given, reads)
+    bodies, reads, inputs = _build(out.name, given)
+    if _more_than_values(out.name, given, reads):
+        mechanism = loaded_inputs(mechanism_folder(name) / "mechanism.py", f"mechanisms.{out.name}", before)
+        inputs = inputs.joined(mechanism).joined(recorder.inputs())
+    key = _key(given, reads, inputs)
     files: dict[str, bytes] = {}
     described = {body: _body(out.name, body, solids, files) for body, solids in bodies.items()}
     document = Parts(
         mechanism=out.name, provenance=Provenance(inputs=key, versions=versions(*PACKAGES)), bodies=described
     )
     written = _write(out, files, document)
-    Stage(out, "parts", key, [out.parts, *(out.parts_folder / file for file in files)]).done(reads=reads)
+    Stage(out, "parts", key, [out.parts, *(out.parts_folder / file for file in files)]).done(
+        parameters=reads, inputs=inputs.names()
+    )
     say("parts", _summary(out.name, document, written))
 
 
-def _key(name: str, given: Any, reads: list[str]) -> str:
+def _key(given: Any, reads: list[str], inputs: Inputs) -> str:
     """Hash of all that the parts follow from; ``reads`` are the attributes of Params that parts() reads."""
-    folder = mechanism_folder(name)
     fields = fields_of(given)
-    values = {read: fields[read] for read in reads if read in fields}
-    # a property or method of Params can compute anything: then the text of its file counts as well
-    computed = [] if len(values) == len(reads) else [folder / "mechanism.py"]
+    values = {read: plain_text(fields[read]) for read in reads if read in fields}
     densities = {material: MATERIALS[material].density for material in sorted(MATERIALS)}
-    return key_of(sources_hash(*SOURCES, folder / "parts.py"), versions(*PACKAGES), densities, values, *computed)
+    return key_of(sources_hash(*SOURCES), versions(*PACKAGES), densities, values, inputs.digest())
 
 
-def _build(name: str, given: Any) -> tuple[dict[str, list[Any]], list[str]]:
-    """The solids by body, and the names that parts() read from its parameters."""
-    module = load(name, "parts")
+def _more_than_values(name: str, given: Any, reads: list[str]) -> bool:
+    """Whether the parts follow from more of mechanism.py than from the values of parameters.
+
+    A property or method of Params can compute anything, a value may have no text that tells it, and parts.py or what it
+    imports may use other names of mechanism.py.
+    """
+    fields, folder, package = fields_of(given), mechanism_folder(name), f"mechanisms.{name}"
+    if any(read not in fields or plain_text(fields[read]) is None for read in reads):
+        return True
+    return not only_annotates(
+        author_files(folder / "parts.py", package, folder / "mechanism.py"), f"{package}.mechanism"
+    )
+
+
+def _build(name: str, given: Any) -> tuple[dict[str, list[Any]], list[str], Inputs]:
+    """The solids by body, the names that parts() read from its parameters, and what parts.py was made of and read."""
     stand_in, seen = traced(given)
-    with author_code(name):
-        bodies = module.parts(stand_in)
+    folder, before = mechanism_folder(name), modules_now()
+    with recording() as recorder, told_of_cad_files(recorder):
+        module = load(name, "parts")
+        with author_code(name):
+            bodies = module.parts(stand_in)
+    loaded = loaded_inputs(folder / "parts.py", f"mechanisms.{name}", before, leave_out=folder / "mechanism.py")
     from shared.shapes.solid import Solid
 
     if not isinstance(bodies, dict) or not bodies:
@@ -93,7 +125,7 @@ def _build(name: str, given: Any) -> tuple[dict[str, list[Any]], list[str]]:
                     f"{did_you_mean(solid.material, MATERIALS)}"
                 )
             known[solid.name] = body
-    return bodies, sorted(seen)
+    return bodies, sorted(seen), loaded.joined(recorder.inputs())
 
 
 def _body(name: str, body: str, solids: list[Any], files: dict[str, bytes]) -> BodyParts:

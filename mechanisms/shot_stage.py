@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import msgspec
 
+from mechanisms.loaded_files import loaded_inputs, modules_now
 from mechanisms.loading import load
+from mechanisms.recording import recording
 from shared.console import say
 from shared.errors import UserError
-from shared.paths import MECHANISMS, ROOT, Out
+from shared.files import sources_hash
+from shared.inputs import Inputs, observed
+from shared.paths import ROOT, Out, mechanism_folder
 from shared.shot import Names, Shot, refuse_unknown, write_shot
 from shared.stages import Stage, key_of
+
+SOURCES = [ROOT / "shared" / f"{name}.py" for name in ("shot", "jsonfile")]
 
 
 def run(name: str) -> None:
@@ -21,12 +27,15 @@ def run(name: str) -> None:
     """
     out = Out(name)
     names = _names(out)
-    key = key_of(MECHANISMS / out.name / "shot.py", ROOT / "shared" / "shot.py", names and names.listed())
-    stage = Stage(out, "shot", key, [out.shot])
-    if stage.is_fresh():
+    known = observed(Stage(out, "shot", "", []).notes().get("inputs"))
+    if known and Stage(out, "shot", _key(names, known), [out.shot]).is_fresh():
         say("shot", f"{out.name}: nothing to do")
         return
-    shot = load(out.name, "shot").shot
+    before = modules_now()
+    with recording() as recorder:
+        shot = load(out.name, "shot").shot
+    loaded = loaded_inputs(mechanism_folder(out.name) / "shot.py", f"mechanisms.{out.name}", before)
+    inputs = loaded.joined(recorder.inputs())
     if not isinstance(shot, Shot):
         raise UserError(
             f"{out.name}: mechanisms/{out.name}/shot.py: 'shot' is a {type(shot).__name__}; write shot = Shot(...)"
@@ -34,8 +43,13 @@ def run(name: str) -> None:
     if names:
         refuse_unknown(shot, names)
     write_shot(out.shot, shot)
-    stage.done()
+    Stage(out, "shot", _key(names, inputs), [out.shot]).done(inputs=inputs.names())
     say("shot", f"{out.name}: {shot.frames} frames of film, {shot.turns} turns at {shot.fps} frames a second")
+
+
+def _key(names: Names | None, inputs: Inputs) -> str:
+    """Hash of all that shot.json follows from; ``inputs``: what shot.py is made of, and what it reads."""
+    return key_of(sources_hash(*SOURCES), names and names.listed(), inputs.digest())
 
 
 class _Motion(msgspec.Struct):

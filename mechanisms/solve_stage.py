@@ -8,37 +8,50 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from mechanisms import loading
+from mechanisms.loaded_files import loaded_inputs, modules_now
+from mechanisms.recording import recording
 from shared import console, contract
 from shared.errors import UserError
 from shared.files import sources_hash
-from shared.paths import MECHANISMS, ROOT, Out
+from shared.inputs import Inputs, observed, sources_state
+from shared.paths import ROOT, Out, mechanism_folder
 from shared.stages import Stage, key_of, versions
 from shared.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
 
+PACKAGES = ("numpy", "scipy", "numba", "llvmlite")
+SOURCES = [ROOT / "mechanisms" / "solve_stage.py", ROOT / "shared" / "contract.py", ROOT / "shared" / "jsonfile.py"]
+
 
 def run(name: str) -> None:
     """Solve one mechanism unless data.json already stands for the same inputs. Raises UserError."""
     out = Out(name)
     parts = contract.read_parts(out.parts)
-    masses = {body: (solids.mass, solids.z) for body, solids in parts.bodies.items()}
-    packages = versions("numpy", "scipy", "numba")
-    key = key_of(
-        MECHANISMS / name / "mechanism.py",
-        sources_hash(ROOT / "mbsd", ROOT / "mechanisms" / "solve_stage.py", ROOT / "shared" / "contract.py"),
-        masses,
-        packages,
-    )
-    stage = Stage(out, "solve", key, [out.motion])
-    if stage.is_fresh():
+    notes = Stage(out, "solve", "", []).notes()
+    known = observed(notes.get("inputs"))
+    if known and Stage(out, "solve", _key(parts, known), [out.motion]).is_fresh():
         console.say("solve", f"{name}: nothing to do")
         return
-    solution = solve(name, parts)
-    contract.write_motion(out.motion, to_motion(solution, parts, key, packages))
-    stage.done()
+    before = modules_now()
+    with recording() as recorder:
+        solution = solve(name, parts)
+        motion = to_motion(solution, parts, "", versions(*PACKAGES))
+    loaded = loaded_inputs(mechanism_folder(name) / "mechanism.py", f"mechanisms.{name}", before)
+    loaded.sources.pop("mbsd", None)  # it counts anyway
+    inputs = loaded.joined(recorder.inputs())
+    key = _key(parts, inputs)
+    motion.provenance.inputs = key
+    contract.write_motion(out.motion, motion)
+    Stage(out, "solve", key, [out.motion]).done(inputs=inputs.names())
     console.say("solve", f"{name}: {_summary(solution)}")
+
+
+def _key(parts: contract.Parts, inputs: Inputs) -> str:
+    """Hash of all that the motion follows from; ``inputs``: what mechanism.py is made of, and what it reads."""
+    masses = {body: (solids.mass, solids.z) for body, solids in parts.bodies.items()}
+    return key_of(sources_hash(*SOURCES), sources_state("mbsd"), masses, versions(*PACKAGES), inputs.digest())
 
 
 def solve(name: str, parts: contract.Parts) -> Solution:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from render.inputs import stage_key
+from render.inputs import encoder_version, stage_key
 from render.presets import Preset
 from shared.console import say
 from shared.errors import UserError
@@ -20,7 +20,7 @@ def run(name: str, preset: Preset) -> None:
     """The stage: out/films/<mechanism>-<preset>.mp4."""
     out = Out(name)
     film = out.film(preset.name)
-    stage = Stage(out, f"film-{preset.name}", stage_key(out, preset), [film])
+    stage = Stage(out, f"film-{preset.name}", stage_key(out, preset, encoder_version()), [film])
     if stage.is_fresh():
         say("film", f"{out.name}: {preset}: nothing to do")
         return

@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING
 from render.presets import Preset
 from shared.errors import UserError
 from shared.files import sources_hash
-from shared.paths import Out, mechanism_folder
+from shared.paths import ROOT, Out, mechanism_folder
 from shared.stages import key_of
 
 if TYPE_CHECKING:
     from render.describe import Film
 
+SHARED = ("contract", "materials", "shot")
+"""Files of shared/ that decide what is seen; the others say, write and check."""
 STAGE_OF = {"motion": "solve", "parts": "parts", "shot": "run"}
 
 
@@ -34,11 +36,19 @@ def stage_key(out: Out, preset: Preset, *more: object) -> str:
     return key_of(out.motion, out.parts, out.shot, picture_sources(), preset, blender_version(), *more)
 
 
+def encoder_version() -> str:
+    """Version of the package that brings ffmpeg; empty where the system's own is used."""
+    try:
+        return metadata.version("imageio-ffmpeg")
+    except metadata.PackageNotFoundError:
+        return ""
+
+
 def picture_sources() -> str:
     """Hash of the sources that make pictures; the plots are not among them."""
     room = Path(__file__).parent
-    files = [path for path in sorted(room.glob("*.py")) if not path.name.startswith("plots")]
-    return sources_hash(*files, room / "blender")
+    shared = [ROOT / "shared" / f"{name}.py" for name in SHARED]
+    return sources_hash(*sorted(room.glob("*.py")), room / "blender", *shared)
 
 
 def blender_version() -> str:

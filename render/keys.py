@@ -9,8 +9,10 @@ from typing import Any
 
 import msgspec
 
+from render.framing import SENSOR
 from render.presets import Preset
 from render.scene import Scene, State
+from render.solids import MILLIMETRE
 from shared.files import sources_hash
 
 DIGITS = 9
@@ -21,14 +23,14 @@ BLENDER_SOURCES = Path(__file__).parent / "blender"
 def scene_key(scene: Scene, preset: Preset, blender: str) -> str:
     """Everything that all frames have in common; STL files count by content, not by place.
 
-    ``blender`` is the version of bpy.
+    ``blender`` is the version of bpy. Of other rooms than its own, Blender's side takes these two numbers alone.
     """
     plain = _rounded(msgspec.to_builtins(scene))
     for piece in plain["pieces"]:
         del piece["stl"]
     shown = {key: plain[key] for key in ("pieces", "trails", "labels", "studio")}
     picture = [preset.width, preset.height, preset.samples, preset.motion_blur]
-    return _hash([shown, picture, sources_hash(BLENDER_SOURCES), blender])
+    return _hash([shown, picture, sources_hash(BLENDER_SOURCES), blender, SENSOR, MILLIMETRE])
 
 
 def frame_key(scene: str, states: Sequence[State]) -> str:

@@ -8,7 +8,7 @@ import hashlib
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -104,12 +104,17 @@ def file_hash(path: Path) -> str:
         return hashlib.file_digest(handle, "sha256").hexdigest()
 
 
-def sources_hash(*folders_or_files: Path) -> str:
-    """SHA-256 over the Python sources below the given folders (or the files themselves), by name and content."""
+def sources_hash(*folders_or_files: Path, leave_out: Collection[Path] = ()) -> str:
+    """SHA-256 over the Python sources below the given folders (or the files themselves), by name and content.
+
+    Sources below the folders in ``leave_out`` do not count.
+    """
     digest = hashlib.sha256()
     for root in folders_or_files:
         files = sorted(root.rglob("*.py")) if root.is_dir() else [root]
         for file in files:
+            if any(file.is_relative_to(folder) for folder in leave_out):
+                continue
             digest.update(file.relative_to(root.parent).as_posix().encode())
             digest.update(b"\0")
             digest.update(file.read_bytes())

@@ -51,7 +51,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.Fixt
     root = tmp_path / "mechanisms"
     monkeypatch.setattr(paths, "MECHANISMS", root)
     monkeypatch.setattr(loading, "MECHANISMS", root)
-    monkeypatch.setattr(shot_stage, "MECHANISMS", root)
     monkeypatch.setattr(mechanisms, "__path__", [*mechanisms.__path__, str(root)])
     name = "linkage_" + "".join(c if c.isalnum() else "_" for c in request.node.name).lower()
     (root / name).mkdir(parents=True)

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import ast
 import math
+import shutil
 from pathlib import Path
 
 import msgspec
 import pytest
 
+from render import inputs
+from render import keys as render_keys
 from render.describe import Film
 from render.frames import Pictures
+from render.inputs import SHARED, stage_key
 from render.keys import frame_key, scene_key
 from render.presets import PRESETS
 from shared.contract import read_motion, read_parts
+from shared.paths import ROOT
 from shared.shot import Camera, Label, Shot, Surface, Trail, read_shot, write_shot
 from tests import film_fixture
 
@@ -90,6 +96,57 @@ def test_preset_and_blender_are_a_part_of_the_key(out_root: Path):
     made = pictures()
     scenes = {scene_key(made.film.scene, preset, version) for preset in PRESETS.values() for version in ("5.2", "5.3")}
     assert len(scenes) == 2 * len(PRESETS)
+
+
+def test_an_edit_of_what_blender_runs_changes_every_key(
+    out_root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    before = keys(pictures())
+    copy = tmp_path / "blender"
+    shutil.copytree(render_keys.BLENDER_SOURCES, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setattr(render_keys, "BLENDER_SOURCES", copy)
+    assert keys(pictures()) == before
+    for file in ("studio.py", "worker.py"):
+        (copy / file).write_text((copy / file).read_text() + "\n# brighter\n")
+        after = keys(pictures())
+        assert not set(before) & set(after)
+        before = after
+
+
+def test_blenders_side_takes_nothing_from_outside_that_no_key_holds():
+    numbers, telling = {"SENSOR", "MILLIMETRE"}, {"picture_file", "errors", "files"}
+    for file in render_keys.BLENDER_SOURCES.glob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text())):
+            room, _, module = (getattr(node, "module", None) or "").partition(".")
+            if room in ("render", "shared") and module.partition(".")[0] not in {"blender", "scene", *telling}:
+                assert isinstance(node, ast.ImportFrom)
+                assert {alias.name for alias in node.names} <= numbers, f"{file}: {module}"
+
+
+def test_every_shared_file_that_decides_what_is_seen_is_in_the_key_of_the_stages():
+    """The others that render/ imports only say, write, check and find files."""
+    others = {"console", "errors", "files", "jsonfile", "locks", "paths", "signals", "stages"}
+    used: set[str] = set()
+    for file in (ROOT / "render").glob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text())):
+            if isinstance(node, ast.ImportFrom) and node.module == "shared":
+                used |= {alias.name for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("shared."):
+                used.add(str(node.module).split(".")[1])
+    assert used - others == set(SHARED)
+
+
+def test_another_colour_of_a_material_makes_the_pictures_again(
+    out_root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    out = film_fixture.write(SHOT)
+    before = stage_key(out, PRESETS["draft"])
+    shutil.copytree(ROOT / "shared", tmp_path / "shared", ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setattr(inputs, "ROOT", tmp_path)
+    assert stage_key(out, PRESETS["draft"]) == before
+    file = tmp_path / "shared" / "materials.py"
+    file.write_text(file.read_text().replace("(0.85, 0.17, 0.02)", "(0.86, 0.17, 0.02)"))
+    assert stage_key(out, PRESETS["draft"]) != before
 
 
 def test_only_blur_makes_neighbours_count(out_root: Path):

@@ -17,11 +17,13 @@ from mechanisms.parts_files import read_mesh, stl_bytes
 from mechanisms.traced_params import traced
 from shared.contract import read_parts
 from shared.errors import UserError
+from shared.inputs import Inputs
 from shared.paths import Out
 from shared.shapes.build import extruded
 from shared.shapes.outline import circle
 from shared.shapes.solid import Solid, placed
 from shared.shapes.units import mm
+from shared.stages import Stage
 
 
 @dataclass(frozen=True)
@@ -161,6 +163,17 @@ def test_reads_of_parameters_are_seen_through_properties_and_asdict() -> None:
 
 def test_a_computed_parameter_makes_the_text_of_its_file_count(bench: Bench) -> None:
     """``half`` may be computed from anything, so all of mechanism.py is part of the key."""
-    plain = parts_stage._key("four_bar", Params(), ["crank"])
-    assert parts_stage._key("four_bar", Params(), ["crank", "half"]) != plain
-    assert parts_stage._key("four_bar", Params(speed=1.0), ["crank"]) == plain
+    nothing = Inputs()
+    plain = parts_stage._key(Params(), ["crank"], nothing)
+    assert parts_stage._key(Params(speed=1.0), ["crank"], nothing) == plain
+    assert parts_stage._key(Params(crank=0.041), ["crank"], nothing) != plain
+    assert not parts_stage._more_than_values("four_bar", Params(), ["crank"])
+    assert parts_stage._more_than_values("four_bar", Params(), ["crank", "half"])
+    bench.run()
+    notes = Stage(Out("four_bar"), "parts", "", []).notes()
+    assert "mechanisms/four_bar/mechanism.py" not in notes["inputs"]["files"]
+    bench.parts = lambda p: {"ground": [washer("plate", mm(p.half))]}
+    bench.params = replace(bench.params, crank=0.050)
+    bench.run()
+    notes = Stage(Out("four_bar"), "parts", "", []).notes()
+    assert "mechanisms/four_bar/mechanism.py" in notes["inputs"]["files"]

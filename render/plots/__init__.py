@@ -20,7 +20,7 @@ def run(name: str) -> None:
     motion = read_motion(out.motion)
     outputs = {plot: out.plots / f"{plot}.png" for plot in plots_of(motion)}
     sources = sources_hash(Path(__file__).parent, ROOT / "shared" / "contract.py")
-    key = key_of(out.motion, sources, versions("matplotlib", "numpy"))
+    key = key_of(out.motion, sources, versions("matplotlib", "numpy", "scipy"))
     stage = Stage(out, "plots", key, list(outputs.values()))
     if stage.is_fresh():
         say("plots", f"{out.name}: nothing to do")

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from mbsd.arguments import finite_number, number_pair
 from mbsd.errors import ModelError
+
+if TYPE_CHECKING:
+    from mbsd.mechanism_base import MechanismBase
 
 __all__ = ["Body", "Marker", "finite_number", "number_pair"]
 
@@ -60,6 +64,28 @@ class Body:
         what = f"{self.owner}: {self.name}.at"
         place = (("x", x), ("y", y), ("angle", angle))
         return Marker(self, *(finite_number(f"{what}: {name}", value) for name, value in place))
+
+    def at_world(self, x: float, y: float, angle: float = 0.0) -> Marker:
+        """The marker that is at (x, y) in the world at the start (m), its x axis turned by ``angle`` there (rad).
+
+        The start is that of the model as it is now, at time 0: links closed, what start_near gives held; on ground it
+        is ``at``. From then on the marker is fixed to the body, whatever is changed. Raises ModelError where joints,
+        drivers and start_near do not tell where the body is, AssemblyError where the links do not close.
+        """
+        from mbsd.world_places import marker_in_world
+
+        what = f"{self.owner}: {self.name}.at_world"
+        place = (("x", x), ("y", y), ("angle", angle))
+        return marker_in_world(self, *(finite_number(f"{what}: {name}", value) for name, value in place))
+
+    def belong(self, mechanism: MechanismBase) -> None:
+        """Let this be a body of ``mechanism``."""
+        self.__dict__["_mechanism"] = mechanism
+
+    @property
+    def mechanism(self) -> MechanismBase | None:
+        """That this body was made for."""
+        return self.__dict__.get("_mechanism")
 
     @property
     def origin(self) -> Marker:

@@ -57,6 +57,7 @@ def check(m: MechanismBase) -> list[Finding]:
         *_marker_angles(m),
         *_law_angles(m),
         *_start_angles(m),
+        *_world_places(m),
     ]
 
 
@@ -246,6 +247,22 @@ def _start_angles(m: MechanismBase) -> Iterator[Finding]:
                 f"start_near({name}={degrees:g}) is {degrees:g} degrees, and {15 * near} degrees in radians",
                 f"start_near takes degrees: write {15 * near} if that is meant",
             )
+
+
+def _world_places(m: MechanismBase) -> Iterator[Finding]:
+    if not m.world_markers:
+        return
+    from mbsd.world_places import moved_markers
+
+    for marker, (x, y, angle), (x_now, y_now) in moved_markers(m):
+        there = f"at ({x_now:.6g}, {y_now:.6g}) m"
+        if f"{x_now:.6g} {y_now:.6g}" == f"{x:.6g} {y:.6g}":
+            there = "turned otherwise"
+        yield Finding(
+            marker.body.name,
+            f"the marker of at_world({x:g}, {y:g}, {angle:g}) is {there} at the start",
+            "Call at_world after start_near and after the joints and drivers that place the body",
+        )
 
 
 def _angular(driver: Joint) -> bool:

@@ -56,6 +56,9 @@ class MechanismBase:
     def __post_init__(self) -> None:
         self._new_name(self.name, "mechanism")
         self.bodies["ground"] = Body("ground", self.name)
+        self.ground.belong(self)
+        self.world_markers: tuple[tuple[Marker, tuple[float, float, float]], ...] = ()
+        """Markers that at_world placed, and where in the world (m, m, rad)."""
 
     def __setattr__(self, name: str, value: object) -> None:
         if name == "gravity":
@@ -73,6 +76,7 @@ class MechanismBase:
         """Add a body. Raises ModelError on a name already used or an impossible mass."""
         self._new_name(name, "body", self.bodies)
         body = self.bodies[name] = Body(name, self.name, mass, com, inertia)  # pyright: ignore[reportArgumentType]
+        body.belong(self)
         return body
 
     def bar(

@@ -47,12 +47,16 @@ def consistent(m: Mechanism, packed: Packed, time: float, metric: np.ndarray) ->
     ``metric`` (3 nb,) is the inverse of the masses that weigh velocities which were not given.
     """
     drive = packed.drives(np.array([time]))[0]
-    q, told = _pose(m, packed, time, drive)
+    q, told = start_pose(m, packed, time, drive)
     v, told_velocities = _velocities(m, packed, q, drive, metric)
     return Initial(q, v, tuple(told), tuple(told_velocities))
 
 
-def _pose(m: Mechanism, packed: Packed, time: float, drive: np.ndarray) -> tuple[np.ndarray, list[str]]:
+def start_pose(m: Mechanism, packed: Packed, time: float, drive: np.ndarray) -> tuple[np.ndarray, list[str]]:
+    """(3 nb,) closed pose that holds what start_near gives where the joints leave it, and a sentence where not.
+
+    drive (motions + 1, 3) at ``time`` (s). Raises AssemblyError.
+    """
     q = assemble(m, packed, time)
     given = given_coordinates(m, packed)
     if not given:

@@ -28,7 +28,8 @@ WORKER = "render.blender.worker"
 TICK = 1.0
 """Seconds between two looks at a silent Blender."""
 FIRST_WORD = 30.0
-"""Seconds of silence after which the user is told; then after twice as many, and so on."""
+"""Seconds of silence after which the user is told, if Blender is stopped or a quarter of its time is over; then after
+twice as many, and so on."""
 
 
 @contextmanager
@@ -126,13 +127,14 @@ class _Child:
                 continue
             silence += TICK
             limit = self.patience.limit(self.doing)
+            if silence < min(word, limit):
+                continue
+            standing = how_it_stands(process.pid)
+            told = f"Blender has said nothing for {duration(silence)} ({self.doing}{standing})"
             if silence >= limit:
-                raise Silent(
-                    f"Blender has said nothing for {duration(silence)} ({self.doing}{how_it_stands(process.pid)})"
-                )
-            if silence >= word:
-                word *= 2
-                told = f"Blender has said nothing for {duration(silence)} ({self.doing}{how_it_stands(process.pid)})"
+                raise Silent(told)
+            if standing or silence >= limit / 4:  # a large picture may well be quiet for that long
+                word = 2 * silence
                 warn("film", f"{told}; it is started again after {duration(limit)}")
 
     def _end(self, process: subprocess.Popen[bytes], chat: IO[bytes]) -> None:

@@ -19,7 +19,7 @@ from tools.torture.rounds import Outcome
 def test_two_rounds(out_root: Path, tmp_path: Path) -> None:
     """Kills and damages at random moments lose nothing; the seed is fixed, so that it is the same test each day."""
     done = subprocess.run(
-        [sys.executable, "-m", "tools.torture", "--n", "2", "--seed", "11"],
+        [sys.executable, "-m", "tools.torture", "--n", "2", "--seed", "8"],
         cwd=ROOT,
         env=os.environ | {"MBSD_OUT": str(out_root), "TMPDIR": str(tmp_path)},
         capture_output=True,

@@ -1,4 +1,4 @@
-"""The stage ``solve``: mechanism.py and the masses of parts.json to data.json."""
+"""The stage ``solve``: mechanism.py and the masses of parts.json to data.json, and the skeleton to skeleton.json."""
 
 from __future__ import annotations
 
@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING, Any
 from mechanisms import loading
 from mechanisms.loaded_files import loaded_inputs, modules_now
 from mechanisms.recording import recording
+from mechanisms.skeleton_file import skeleton_of
 from shared import console, contract
 from shared.errors import UserError
 from shared.files import sources_hash
 from shared.inputs import Inputs, observed, sources_state
 from shared.paths import ROOT, Out, mechanism_folder
+from shared.skeleton import write_skeleton
 from shared.stages import Stage, key_of, versions
 from shared.suggestions import did_you_mean
 
@@ -22,16 +24,19 @@ if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
 
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite")
-SOURCES = [ROOT / "mechanisms" / "solve_stage.py", ROOT / "shared" / "contract.py", ROOT / "shared" / "jsonfile.py"]
+SOURCES = [
+    *(ROOT / "mechanisms" / name for name in ("solve_stage.py", "skeleton_file.py")),
+    *(ROOT / "shared" / name for name in ("contract.py", "jsonfile.py", "skeleton.py")),
+]
 
 
 def run(name: str) -> None:
-    """Solve one mechanism unless data.json already stands for the same inputs. Raises UserError."""
+    """Solve one mechanism unless its files already stand for the same inputs. Raises UserError."""
     out = Out(name)
     parts = contract.read_parts(out.parts)
     notes = Stage(out, "solve", "", []).notes()
     known = observed(notes.get("inputs"))
-    if known and Stage(out, "solve", _key(parts, known), [out.motion]).is_fresh():
+    if known and Stage(out, "solve", _key(parts, known), [out.motion, out.skeleton]).is_fresh():
         console.say("solve", f"{name}: nothing to do")
         return
     before = modules_now()
@@ -43,8 +48,9 @@ def run(name: str) -> None:
     inputs = loaded.joined(recorder.inputs())
     key = _key(parts, inputs)
     motion.provenance.inputs = key
+    write_skeleton(out.skeleton, skeleton_of(solution, motion.provenance))
     contract.write_motion(out.motion, motion)
-    Stage(out, "solve", key, [out.motion]).done(inputs=inputs.names())
+    Stage(out, "solve", key, [out.motion, out.skeleton]).done(inputs=inputs.names())
     console.say("solve", f"{name}: {_summary(solution)}")
 
 

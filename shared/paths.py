@@ -91,6 +91,7 @@ class Out:
         self.name = mechanism_name(name)
         self.folder = out_root() / self.name
         self.motion = self.folder / "data.json"
+        self.skeleton = self.folder / "skeleton.json"
         self.parts_folder = self.folder / "parts"
         self.parts = self.parts_folder / "parts.json"
         self.clearance = self.folder / "clearance.json"

@@ -12,6 +12,7 @@ from shared.contract import Motion, Parts
 from shared.files import write_bytes
 from shared.paths import ROOT
 from shared.shot import Shot
+from shared.skeleton import Skeleton
 
 FOLDER = ROOT / "docs" / "schema"
 PUBLISHED: dict[str, type[msgspec.Struct]] = {
@@ -19,6 +20,7 @@ PUBLISHED: dict[str, type[msgspec.Struct]] = {
     "parts": Parts,
     "clearance": Clearance,
     "shot": Shot,
+    "skeleton": Skeleton,
 }
 
 

@@ -21,6 +21,7 @@ from shared.contract import (
     PointMotion,
     Provenance,
 )
+from shared.skeleton import Name, Pose, Skeleton, Stroke
 
 GRAVITY = np.array([0.0, -9.81])
 MASSES = {"crank": 0.05, "coupler": 0.12, "rocker": 0.10}
@@ -194,6 +195,47 @@ def bouncing_ball(steps: int = 40, restitution: float = 0.5, mass: float = 0.2) 
             position_residual=0.0, velocity_residual=0.0, acceleration_residual=0.0, power_residual=0.0, dof=3,
             redundant=[], singularity_margin=np.ones_like(times).tolist(),
         ),
+    )  # fmt: skip
+
+
+def plain_skeleton(motion: Motion, poses: int = 12) -> Skeleton:
+    """Bars between the joints of each body, and a name at each body and joint: what the plots need of a skeleton."""
+    steps = np.linspace(0, len(motion.time) - 1, poses + 1).round().astype(int)[:-1]
+
+    def bars(step: int) -> list[Stroke]:
+        ends = {
+            body: [
+                value
+                for joint in motion.joints.values()
+                if body in joint.bodies
+                for value in (joint.x[step], joint.y[step])
+            ]
+            for body in motion.bodies
+        }
+        return [
+            Stroke(
+                points=points, closed=len(points) > 4, ink=f"body:{body}", fill=f"body:{body}", alpha=0.2, width=1.5,
+                order=2.0, dash=[],
+            )
+            for body, points in ends.items()
+            if len(points) > 2
+        ]  # fmt: skip
+
+    names = [
+        Name(text=name, at=(body.x[0], body.y[0]), clearance=0.003, ink=f"body:{name}")
+        for name, body in motion.bodies.items()
+    ]
+    places: dict[tuple[float, float], list[str]] = {}
+    for name, joint in motion.joints.items():
+        places.setdefault((joint.x[0], joint.y[0]), []).append(name)
+    names += [Name(text=", ".join(here), at=at, clearance=0.003, ink="ink") for at, here in places.items()]
+    names += [
+        Name(text=name, at=(point.x[0], point.y[0]), clearance=0.003, ink="ink")
+        for name, point in motion.points.items()
+    ]
+    return Skeleton(
+        mechanism=motion.mechanism, provenance=motion.provenance, unit=0.004, names=names,
+        poses=[Pose(time=motion.time[step], strokes=bars(step)) for step in steps],
     )  # fmt: skip
 
 

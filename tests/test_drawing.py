@@ -22,6 +22,8 @@ from mbsd.drawing import look
 from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.outline import hull, rounded
 from mbsd.drawing.pose import pose_of, start_pose
+from mbsd.drawing.skeleton import draw_on, measure
+from mbsd.drawing.strokes import ROLES, Recorder, moved, strokes_of
 from mbsd.drawing.symbols import free_side
 from mbsd.drawing.wheels import draw_gear_pair
 from mbsd.forces.kind import ForceKind
@@ -77,6 +79,46 @@ def test_pins_stand_where_the_joints_are() -> None:
     trails = [np.asarray(line.get_path().vertices) for line in ax.lines if line.get_zorder() == 1]
     (trail,) = (path for path in trails if len(path) == 25)
     np.testing.assert_allclose(trail[:, 1], sol.point("P").y)
+
+
+@pytest.mark.parametrize("build", [four_bar, slider_crank], ids=lambda build: build.__name__)
+def test_strokes_are_what_is_drawn(build) -> None:
+    """Every line and outline of the matplotlib drawing, with its width and order, and every name."""
+    sol = build().sweep(steps=24)
+    ax = sol.draw(step=7).ax
+    (first,) = strokes_of(sol, [7])
+    polylines = [np.asarray(line.get_path().vertices) for line in ax.lines if line.get_zorder() != 1]
+    looks = [(line.get_linewidth(), line.get_zorder()) for line in ax.lines if line.get_zorder() != 1]
+    mine = [stroke for stroke in first.strokes if not stroke.closed]
+    assert len(mine) == len(polylines) > 10
+    for stroke, points, look_of in zip(mine, polylines, looks, strict=True):
+        np.testing.assert_array_equal(stroke.points, points)
+        assert (stroke.width, stroke.order) == look_of
+    outlines = [stroke for stroke in first.strokes if stroke.closed]
+    for stroke, patch in zip(outlines, ax.patches, strict=True):
+        np.testing.assert_array_equal(stroke.points, np.asarray(patch.get_path().vertices)[: len(stroke.points)])
+    assert {text for label in first.labels for text in label.text.split(", ")} == {
+        name for text in words(ax) for name in text.split(", ")
+    }
+    known = {*ROLES.values(), *(f"body:{name}" for name in sol.mechanism.bodies)}
+    assert {stroke.ink for stroke in first.strokes} | {label.colour for label in first.labels} <= known
+    first, other = strokes_of(sol, [7, 12])
+    assert first.unit == other.unit  # symbols of one size, so that poses can be compared
+    elsewhere = moved(first, other)
+    assert 0 < len(elsewhere) < len(other.strokes)  # what stands on the ground stays
+    assert moved(first, first) == []
+
+
+@pytest.mark.parametrize("kind", all_kinds(), ids=lambda kind: kind.name)
+def test_every_kind_has_strokes_on_a_canvas_without_matplotlib(kind: JointKind) -> None:
+    m = Mechanism("example")
+    first = m.body("first", 1.0, (0.4, 0.1), 0.3)
+    kind.example(m, first.at(0.11, 0.2, 0.3), m.body("second", 1.5, (0.3, 0.0), 0.2).at(-0.4, 0.5, -0.6))
+    pose = start_pose(m)
+    recorder = Recorder(None, measure(m, pose)[2])
+    draw_on(recorder, m, pose, {name: f"body:{name}" for name in m.bodies if name != "ground"}, frames=False)
+    assert recorder.strokes
+    assert all(np.isfinite(stroke.points).all() and len(stroke.points) > 1 for stroke in recorder.strokes)
 
 
 def test_the_start_is_that_of_the_solution() -> None:

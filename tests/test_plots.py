@@ -15,23 +15,33 @@ from matplotlib.text import Text
 from PIL import Image
 
 from render import plots
+from render.plots import figures
 from render.plots.energy import powers, statement
-from render.plots.figures import figure
 from render.plots.horizon import horizon
-from render.plots.style import spread
+from render.plots.style import colour, spread
 from shared.contract import Motion, write_motion
 from shared.errors import UserError
 from shared.paths import Out
-from tests.motions import bouncing_ball, four_bar_motion
+from shared.skeleton import read_skeleton, write_skeleton
+from tests.motions import bouncing_ball, four_bar_motion, plain_skeleton
 
 MOTION = four_bar_motion(steps=72)
 NAMES = ["bodies", "energy", "hodographs", "path", "point-P", "reactions"]
 
 
+def figure(plot: str, motion: Motion) -> Figure:
+    return figures.figure(plot, motion, plain_skeleton(motion))
+
+
+def write(out: Out, motion: Motion) -> None:
+    write_motion(out.motion, motion)
+    write_skeleton(out.skeleton, plain_skeleton(motion))
+
+
 @pytest.fixture
 def out(out_root: Path) -> Out:
     out = Out("four_bar")
-    write_motion(out.motion, MOTION)
+    write(out, MOTION)
     return out
 
 
@@ -137,7 +147,7 @@ def with_slider_and_torque() -> Motion:
 
 def test_a_slider_a_joint_torque_and_a_pusher_get_their_plots(out: Out) -> None:
     motion = with_slider_and_torque()
-    write_motion(out.motion, motion)
+    write(out, motion)
     plots.run("four_bar")
     assert (out.plots / "slider-slider.png").is_file()
     assert not list(out.plots.glob("point-*"))
@@ -287,3 +297,27 @@ def test_small_machines_are_not_taken_for_noise() -> None:
             for line, same in zip(axes.lines, other.lines, strict=True):
                 if len(np.asarray(line.get_ydata())) == len(MOTION.time):
                     np.testing.assert_allclose(1e8 * np.asarray(line.get_ydata()), same.get_ydata(), atol=1e-12)
+
+
+def test_a_skeleton_of_another_motion_is_refused(out: Out) -> None:
+    other = msgspec.structs.replace(MOTION.provenance, inputs="1" * 64)
+    write_skeleton(out.skeleton, msgspec.structs.replace(plain_skeleton(MOTION), provenance=other))
+    with pytest.raises(
+        UserError, match=r"skeleton\.json is of another motion than data\.json; run make solve-four-bar"
+    ):
+        plots.run("four_bar")
+    out.skeleton.write_text(out.skeleton.read_text().replace('"points": [', '"points": [0.0, ', 1))
+    with pytest.raises(UserError, match=r"poses\[0\]\.strokes\[0\]\.points has 5 numbers; x and y in turn"):
+        read_skeleton(out.skeleton)
+
+
+def test_the_path_holds_every_stroke_in_its_bodys_colour() -> None:
+    skeleton = plain_skeleton(MOTION)
+    (axes,) = figure("path", MOTION).axes
+    drawn = {tuple(np.ravel(line.get_xydata()).round(9)): line for line in axes.lines}
+    for pose in skeleton.poses:
+        for stroke in pose.strokes:
+            closed = stroke.points + (stroke.points[:2] if stroke.closed else [])
+            line = drawn[tuple(np.round(closed, 9))]
+            assert line.get_color() == colour(list(MOTION.bodies).index(stroke.ink.removeprefix("body:")))
+            assert (line.get_alpha() == 0.3) is (pose is not skeleton.poses[0])

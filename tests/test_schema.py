@@ -12,7 +12,7 @@ from shared import jsonfile, schema
 from shared.clearance import Clearance, PairClearance
 from shared.contract import Provenance
 from shared.shot import Shot
-from tests.motions import four_bar_motion
+from tests.motions import four_bar_motion, plain_skeleton
 from tests.test_contract import parts_document
 
 PAIR = PairClearance(
@@ -32,6 +32,7 @@ DOCUMENTS = {
     "parts": parts_document(),
     "clearance": CLEARANCE,
     "shot": Shot(),
+    "skeleton": plain_skeleton(four_bar_motion(steps=12)),
 }
 
 

@@ -6,14 +6,11 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from mbsd.drawing.look import INK, PAPER
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 Point = np.ndarray
 
@@ -33,7 +30,8 @@ class Label:
 class Canvas:
     """Where symbols are drawn. ``unit`` (m) is about the radius of a pin's outer circle."""
 
-    ax: Axes
+    ax: Any
+    """matplotlib.axes.Axes; a canvas that only records has none."""
     unit: float
     obstacles: list[Point] = field(default_factory=list)
     """(k, 2) points of what is drawn (m)."""

@@ -50,14 +50,7 @@ def draw(m: Mechanism, pose: Pose, ax: Axes | None, frames: bool, names: bool) -
         import matplotlib  # noqa: F401
     except ImportError as error:
         raise ModelError("drawing needs matplotlib: install mbsd[draw]") from error
-    points = {name: _points(m, pose, name) for name in m.bodies}
-    wide = [reach(joint, pose) for joint in m.joints.values()]
-    loads = [force_reach(force, pose) for force in m.forces.values()]
-    everything = np.concatenate([*points.values(), *pose.paths.values(), *wide, *loads])
-    if not len(everything):
-        everything = np.zeros((1, 2))
-    low, high = everything.min(axis=0), everything.max(axis=0)
-    unit = _unit(high - low, points)
+    low, high, unit = measure(m, pose)
     low, high = low - 3.4 * unit, high + 3.4 * unit
     own = ax is None
     if ax is None:
@@ -66,6 +59,32 @@ def draw(m: Mechanism, pose: Pose, ax: Axes | None, frames: bool, names: bool) -
     colours = {name: colour(k) for k, name in enumerate(name for name in m.bodies if name != "ground")}
     for path in pose.paths.values():
         canvas.line(path, QUIET, 1.2, order=1, alpha=0.8)
+    draw_on(canvas, m, pose, colours, frames)
+    _finish(ax, low, high, m.name, pose)
+    picture = Picture(ax, own)
+    if own:  # the layout is settled once, so that names stand right and every format is the same picture
+        picture.figure.draw_without_rendering()
+        picture.figure.set_layout_engine("none")
+    if names:
+        place_names(canvas)
+    return picture
+
+
+def measure(m: Mechanism, pose: Pose) -> tuple[np.ndarray, np.ndarray, float]:
+    """Lowest and highest x, y (m) of all that is drawn, and the unit of the symbols (m)."""
+    points = {name: _points(m, pose, name) for name in m.bodies}
+    wide = [reach(joint, pose) for joint in m.joints.values()]
+    loads = [force_reach(force, pose) for force in m.forces.values()]
+    everything = np.concatenate([*points.values(), *pose.paths.values(), *wide, *loads])
+    if not len(everything):
+        everything = np.zeros((1, 2))
+    low, high = everything.min(axis=0), everything.max(axis=0)
+    return low, high, _unit(high - low, points)
+
+
+def draw_on(canvas: Canvas, m: Mechanism, pose: Pose, colours: dict[str, str], frames: bool) -> None:
+    """Draw bodies, joints, drivers, forces and traced points, and ask for their names. ``colours``: by body."""
+    points, unit = {name: _points(m, pose, name) for name in m.bodies}, canvas.unit
     for name in colours:
         _link(canvas, m, pose, name, points[name], colours[name], frames)
     if frames:
@@ -81,14 +100,6 @@ def draw(m: Mechanism, pose: Pose, ax: Axes | None, frames: bool, names: bool) -
         rim = name_place(m, pose, name, unit)
         place, clearance = (_middle(points[name]), 1.1) if rim is None else (rim, 0.4)
         canvas.label(name, place, clearance, colours[name], 9.5)
-    _finish(ax, low, high, m.name, pose)
-    picture = Picture(ax, own)
-    if own:  # the layout is settled once, so that names stand right and every format is the same picture
-        picture.figure.draw_without_rendering()
-        picture.figure.set_layout_engine("none")
-    if names:
-        place_names(canvas)
-    return picture
 
 
 def _points(m: Mechanism, pose: Pose, name: str) -> np.ndarray:

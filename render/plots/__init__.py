@@ -1,4 +1,4 @@
-"""Plots of a motion: ``python -m render plots NAME`` reads data.json and writes out/<mechanism>/plots/*.png."""
+"""Plots of a motion: ``python -m render plots NAME`` draws out/<mechanism>/plots/ from data.json and skeleton.json."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ from pathlib import Path
 
 from shared.console import say
 from shared.contract import Motion, read_motion
+from shared.errors import UserError
 from shared.files import sources_hash, whole_file
 from shared.paths import ROOT, Out
+from shared.skeleton import read_skeleton
 from shared.stages import Stage, key_of, versions
 
 
@@ -17,10 +19,15 @@ def run(name: str) -> None:
     Raises UserError if data.json is missing or does not hold together.
     """
     out = Out(name)
-    motion = read_motion(out.motion)
+    motion, skeleton = read_motion(out.motion), read_skeleton(out.skeleton)
+    if skeleton.provenance != motion.provenance:
+        raise UserError(
+            f"{out.name}: {out.skeleton} is of another motion than {out.motion.name}; "
+            f"run make solve-{out.name.replace('_', '-')}"
+        )
     outputs = {plot: out.plots / f"{plot}.png" for plot in plots_of(motion)}
-    sources = sources_hash(Path(__file__).parent, ROOT / "shared" / "contract.py")
-    key = key_of(out.motion, sources, versions("matplotlib", "numpy", "scipy"))
+    sources = sources_hash(Path(__file__).parent, *(ROOT / "shared" / name for name in ("contract.py", "skeleton.py")))
+    key = key_of(out.motion, out.skeleton, sources, versions("matplotlib", "numpy", "scipy"))
     stage = Stage(out, "plots", key, list(outputs.values()))
     if stage.is_fresh():
         say("plots", f"{out.name}: nothing to do")
@@ -31,7 +38,7 @@ def run(name: str) -> None:
     for plot, path in outputs.items():
         with whole_file(path) as temporary:
             # No software, no date: the same motion gives the same bytes.
-            figure(plot, motion).savefig(temporary, format="png", metadata={"Software": None})
+            figure(plot, motion, skeleton).savefig(temporary, format="png", metadata={"Software": None})
     for older in set(out.plots.glob("*.png")) - set(outputs.values()):
         older.unlink()
     stage.done()

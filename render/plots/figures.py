@@ -10,14 +10,17 @@ from render.plots.path import path
 from render.plots.rates import bodies, point, slider
 from render.plots.style import house_style
 from shared.contract import Motion
+from shared.skeleton import Skeleton
 
-WHOLE = {"path": path, "bodies": bodies, "reactions": reactions, "hodographs": hodographs, "energy": energy}
+WHOLE = {"bodies": bodies, "reactions": reactions, "hodographs": hodographs, "energy": energy}
 ONE = {"point-": point, "slider-": slider}
 
 
-def figure(plot: str, motion: Motion) -> Figure:
-    """Draw one plot: a name of :data:`WHOLE`, or ``point-<P>``, ``slider-<body>``."""
+def figure(plot: str, motion: Motion, skeleton: Skeleton) -> Figure:
+    """Draw one plot: ``path``, a name of :data:`WHOLE`, or ``point-<P>``, ``slider-<body>``."""
     with house_style():
+        if plot == "path":
+            return path(motion, skeleton)
         if plot in WHOLE:
             return WHOLE[plot](motion)
         prefix = next(prefix for prefix in ONE if plot.startswith(prefix))

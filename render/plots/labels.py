@@ -21,6 +21,7 @@ class _Label:
     colour: str
     size: float
     weight: str
+    clearance: float
 
 
 class Labels:
@@ -31,9 +32,17 @@ class Labels:
         self.labels: list[_Label] = []
         self.lines: list[np.ndarray] = []
 
-    def add(self, text: str, at: tuple[float, float], colour: str, size: float = 10.5, weight: str = "normal") -> None:
-        """A name for the point ``at`` (data coordinates)."""
-        self.labels.append(_Label(text, at, colour, size, weight))
+    def add(
+        self,
+        text: str,
+        at: tuple[float, float],
+        colour: str,
+        size: float = 10.5,
+        weight: str = "normal",
+        clearance: float = 0.0,
+    ) -> None:
+        """A name for the point ``at``, ``clearance`` away from it at least (data coordinates)."""
+        self.labels.append(_Label(text, at, colour, size, weight, clearance))
 
     def avoid_lines(self, corners: list[tuple[float, float]]) -> None:
         """A line that the names should leave free (data coordinates)."""
@@ -53,8 +62,10 @@ class Labels:
         for label in self.labels:
             half = np.array([0.32 * label.size * len(label.text) + 2.0, 0.55 * label.size + 1.0]) * scale
             origin = to_pixels(label.at)
+            away = max(DISTANCE, 4.0 + float(to_pixels((label.clearance, 0))[0] - to_pixels((0, 0))[0]))
             middles = [
-                origin + np.array([np.cos(a), np.sin(a)]) * (DISTANCE + half * [abs(np.cos(a)), abs(np.sin(a))])
+                origin + np.array([np.cos(a), np.sin(a)]) * (far * away + half * [abs(np.cos(a)), abs(np.sin(a))])
+                for far in (1.0, 2.0)
                 for a in DIRECTIONS
             ]
             middle = min(middles, key=lambda m: _cost(m, half, obstacles, boxes, np.asarray(frame.extents)))

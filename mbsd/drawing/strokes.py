@@ -1,0 +1,144 @@
+"""The skeleton as plain polylines, for programs that draw by themselves: the same symbols, no matplotlib."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mbsd.drawing.canvas import Canvas, Label, Point
+from mbsd.drawing.look import AXIS_X, AXIS_Y, FAINT, INK, LOAD, MOVED, PAPER, QUIET, WRONG
+from mbsd.drawing.pose import pose_of
+from mbsd.drawing.skeleton import draw_on, measure
+
+if TYPE_CHECKING:
+    from mbsd.solution import Solution
+
+ROLES = {
+    INK: "ink",
+    QUIET: "quiet",
+    PAPER: "paper",
+    FAINT: "faint",
+    MOVED: "driver",
+    LOAD: "load",
+    WRONG: "wrong",
+    AXIS_X: "x",
+    AXIS_Y: "y",
+}
+"""What the colours of the drawing stand for; those of bodies are ``body:`` and the name."""
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """One polyline or closed outline."""
+
+    points: np.ndarray
+    """(k, 2) m, world."""
+    closed: bool
+    ink: str
+    """Role of the line's colour (:data:`ROLES`, or ``body:crank``)."""
+    fill: str | None
+    """Role of the filling's colour; None: not filled."""
+    alpha: float
+    """Of the filling, or of an open line."""
+    width: float
+    """Points."""
+    order: float
+    """Higher ones are drawn over lower ones."""
+    dash: tuple[float, ...]
+    """Lengths of strokes and gaps in line widths; empty: solid."""
+
+
+@dataclass(frozen=True)
+class Strokes:
+    """The mechanism in one pose."""
+
+    time: float
+    strokes: list[Stroke]
+    labels: list[Label]
+    """Names with the place they belong to; their colours are roles."""
+    unit: float
+    """Size of the symbols (m): about the radius of a pin's outer circle."""
+
+
+@dataclass(eq=False)
+class Recorder(Canvas):
+    """A canvas that keeps what is drawn."""
+
+    strokes: list[Stroke] = field(default_factory=list)
+
+    def line(
+        self, points: Sequence[Point] | Point, colour: str = INK, width: float = 1.4, order: float = 4, **more: Any
+    ) -> None:
+        """A polyline (m), kept."""
+        dash = more.get("linestyle", (0, ()))[1]
+        self._keep(np.asarray(points, float), False, colour, None, more.get("alpha", 1.0), width, order, dash)
+
+    def shape(
+        self,
+        points: Point,
+        edge: str = INK,
+        fill: str = PAPER,
+        width: float = 1.4,
+        order: float = 4,
+        alpha: float = 1.0,
+    ) -> None:
+        """A closed outline (m), kept."""
+        self._keep(np.asarray(points, float), True, edge, fill, alpha, width, order)
+
+    def band(self, outer: Point, inner: Point, colour: str) -> None:
+        """What lies between two outlines (m), kept as one outline with a seam, and both edges."""
+        seam = np.vstack([outer, outer[:1], inner[::-1], inner[-1:]])
+        self._keep(seam, True, colour, colour, 0.12, 0.0, 1.69)
+        for outline in (outer, inner):
+            self._keep(np.asarray(outline, float), True, colour, None, 1.0, 1.3, 1.7)
+
+    def label(self, text: str, anchor: Point, clearance: float, colour: str = INK, size: float = 10.0) -> None:
+        """Ask for a name; its colour is kept as a role."""
+        super().label(text, anchor, clearance, _role(colour), size)
+
+    def _keep(
+        self,
+        points: np.ndarray,
+        closed: bool,
+        ink: str,
+        fill: str | None,
+        alpha: float,
+        width: float,
+        order: float,
+        dash: Sequence[float] = (),
+    ) -> None:
+        role = None if fill is None else _role(fill)
+        self.strokes.append(Stroke(points, closed, _role(ink), role, alpha, width, order, tuple(map(float, dash))))
+
+
+def strokes_of(solution: Solution, steps: Sequence[int]) -> list[Strokes]:
+    """The skeleton at output ``steps``, in symbols of one size."""
+    m = solution.mechanism
+    colours = {name: f"body:{name}" for name in m.bodies if name != "ground"}
+    poses = [pose_of(solution, None, int(step)) for step in steps]
+    unit = min((measure(m, pose)[2] for pose in poses), default=1.0)
+    out = []
+    for step, pose in zip(steps, poses, strict=True):
+        canvas = Recorder(None, unit)
+        draw_on(canvas, m, pose, colours, frames=False)
+        out.append(Strokes(float(solution.t[step]), canvas.strokes, canvas.labels, unit))
+    return out
+
+
+def moved(first: Strokes, other: Strokes) -> list[Stroke]:
+    """The strokes of ``other`` that are elsewhere than in ``first``."""
+    slack = 1e-6 * first.unit
+    pairs = itertools.zip_longest(first.strokes, other.strokes)
+    return [b for a, b in pairs if b is not None and (a is None or _differ(a.points, b.points, slack))]
+
+
+def _differ(a: np.ndarray, b: np.ndarray, slack: float) -> bool:
+    return a.shape != b.shape or bool(np.abs(a - b).max(initial=0.0) > slack)
+
+
+def _role(colour: str) -> str:
+    return ROLES.get(colour, colour)

@@ -8,7 +8,8 @@ from shared.contract import BodyParts, Mass, Parts, Piece, Provenance, write_mot
 from shared.files import file_hash
 from shared.paths import Out
 from shared.shot import Shot, write_shot
-from tests.motions import four_bar_motion
+from shared.skeleton import write_skeleton
+from tests.motions import four_bar_motion, plain_skeleton
 
 LENGTHS = {"crank": 0.040, "coupler": 0.120, "rocker": 0.090}
 GROUND = 0.120
@@ -44,9 +45,11 @@ def solids() -> dict[str, dict[str, tuple[Any, str]]]:
 
 
 def write(shot: Shot | None = None, name: str = "four_bar") -> Out:
-    """data.json, parts.json with its STL files, and shot.json below the folder of results."""
+    """data.json, skeleton.json, parts.json with its STL files, and shot.json below the folder of results."""
     out = Out(name)
-    write_motion(out.motion, four_bar_motion())
+    motion = four_bar_motion()
+    write_motion(out.motion, motion)
+    write_skeleton(out.skeleton, plain_skeleton(motion))
     mass = Mass(mass=0.1, com=(0.0, 0.0), inertia=1e-5, volume=1e-5)
     bodies: dict[str, BodyParts] = {}
     out.parts_folder.mkdir(parents=True, exist_ok=True)

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 from mechanisms import loading
 from mechanisms.loaded_files import loaded_inputs, modules_now
 from mechanisms.recording import recording
-from mechanisms.skeleton_file import skeleton_of
 from shared import console, contract
 from shared.errors import UserError
 from shared.files import sources_hash
@@ -39,6 +38,8 @@ def run(name: str) -> None:
     if known and Stage(out, "solve", _key(parts, known), [out.motion, out.skeleton]).is_fresh():
         console.say("solve", f"{name}: nothing to do")
         return
+    from mechanisms.skeleton_file import skeleton_of
+
     before = modules_now()
     with recording() as recorder:
         solution = solve(name, parts)

@@ -25,9 +25,10 @@ from mbsd.friction_along import with_friction
 from mbsd.joint import Joint
 from mbsd.loads import compiled_laws, loads_along, pack_loads
 from mbsd.model import Mechanism
-from mbsd.names import no_such
+from mbsd.names import names_in, no_such
 from mbsd.packing import Packed, pack
 from mbsd.reactions import wrenches
+from mbsd.shown import shown
 from mbsd.solution import Solution
 from mbsd.variants import copied
 
@@ -112,9 +113,11 @@ class ActuatedMotion:
 
 def inverse_dynamics(m: Mechanism, motion: Solution, actuators: Sequence[str]) -> ActuatedMotion:
     """See :meth:`mbsd.model.Mechanism.inverse_dynamics`."""
-    actuators = [actuators] if isinstance(actuators, str) else list(actuators)
+    actuators = names_in(f"{m.name}: inverse_dynamics: actuators", actuators)
     if not actuators or len(set(actuators)) < len(actuators):
         raise ModelError(f"{m.name}: inverse_dynamics needs the names of actuators, each once, got {actuators!r}")
+    if not isinstance(motion, Solution):
+        raise ModelError(f"{m.name}: the motion is {shown(motion)}; give what sweep() or simulate() returned")
     if motion.mechanism is not m:
         raise ModelError(f"{m.name}: the motion is one of '{motion.mechanism.name}', not of this mechanism")
     refuse_pushing(m, motion)

@@ -21,7 +21,7 @@ from mbsd.joints.pin_in_slot import PIN_IN_SLOT
 from mbsd.joints.prismatic import PRISMATIC
 from mbsd.joints.revolute import REVOLUTE
 from mbsd.joints.weld import WELD
-from mbsd.mechanism_base import MechanismBase
+from mbsd.mechanism_base import SHORTEST, MechanismBase
 from mbsd.motions import Motion
 from mbsd.motions.function import Function
 from mbsd.shown import shown
@@ -51,10 +51,10 @@ class AddingJoints(MechanismBase):
     def distance(self, name: str, i: Marker, j: Marker, length: float) -> Joint:
         """A massless rod of the given length (m) between the points of markers i and j."""
         length = self._number(f"joint '{name}': length", length)
-        if length <= 0:
+        if length < SHORTEST:
             raise ModelError(
-                f"{self.name}: distance joint '{name}' has length {length:g} m; it must be positive "
-                "(use a revolute joint for two points that coincide)"
+                f"{self.name}: distance joint '{name}' has length {length:g} m; it must be positive, {SHORTEST:g} m or "
+                "more (use a revolute joint for two points that coincide)"
             )
         return self._join(DISTANCE, name, i, j, length=length)
 

@@ -180,7 +180,10 @@ class AddingMachineJoints(AddingJoints):
         if not isinstance(profile, CamProfile):
             if not isinstance(profile, Mapping):
                 raise ModelError(f"{self.name}: joint '{name}' needs a profile from mbsd.cams, got {shown(profile)}")
-            profile = cam_from(profile)
+            try:
+                profile = cam_from(profile)
+            except ModelError as error:
+                raise ModelError(f"{self.name}: joint '{name}': {error}") from error
         if profile.flat != flat:
             raise ModelError(
                 f"{self.name}: joint '{name}' is {'cam_flat' if flat else 'cam_roller'}, but its profile is for the "
@@ -250,8 +253,7 @@ class AddingMachineJoints(AddingJoints):
     def _radii(self, name: str, **radii: float) -> dict[str, float]:
         out = {key: self._number(f"joint '{name}': {key}", value) for key, value in radii.items()}
         for key, value in out.items():
-            if value <= 0:
-                raise ModelError(f"{self.name}: joint '{name}' has {key} {value:g} m; it must be positive")
+            self._length(f"joint '{name}' has {key}", value)
         return out
 
     def _phase(self, name: str, phase: Sequence[float] | None) -> tuple[float, float] | None:

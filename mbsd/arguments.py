@@ -19,6 +19,7 @@ import numpy as np
 from mbsd.errors import ModelError
 from mbsd.names import no_such
 from mbsd.shown import shown
+from mbsd.users_function import described
 
 LARGEST = 1e100
 """Of any number: squares and products of a few such numbers can still be represented."""
@@ -69,7 +70,10 @@ def number_array(what: str, value: object, finite: bool = True) -> np.ndarray:
             finite_number(f"{what}{at}", one) if finite else _number(f"{what}{at}", one)
     if array.dtype.kind not in "fiuO":
         raise ModelError(f"{what} is {shown(value)}; it must be numbers")
-    out = array.astype(float)
+    try:
+        out = array.astype(float)
+    except (OverflowError, TypeError, ValueError):
+        raise ModelError(f"{what} is {shown(value)}; its numbers must be finite") from None
     if finite and not (np.abs(out) <= LARGEST).all():
         at = np.unravel_index(int(np.argmin(np.abs(out) <= LARGEST)), out.shape)
         finite_number(f"{what}{''.join(f'[{k}]' for k in at)}", float(out[at]))
@@ -162,7 +166,13 @@ def checked[F: Callable[..., Any]](function: F) -> F:
             check = checks.get(name) if name in own else checks.get(named.name) if named is not None else None
             if check is not None:
                 keywords[name] = check(f"{what}: {name}", value)
-        return function(*positional, **keywords)
+        try:
+            return function(*positional, **keywords)
+        except (ArithmeticError, np.linalg.LinAlgError, MemoryError, RecursionError) as error:
+            raise ModelError(
+                f"{what}: numbers go beyond what can be computed ({described(error)}). Look at the largest and "
+                "smallest lengths, masses and stiffnesses, and at how much is asked for at once"
+            ) from error
 
     def _refuse_misnamed(where: str, given: tuple[Any, ...], keywords: dict[str, Any]) -> None:
         if len(given) > len(places) and rest is None:

@@ -15,14 +15,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mbsd.arguments import number_array, whole_number
 from mbsd.assur.designs import place_designs
 from mbsd.assur.groups import BRANCH, DRIVEN, PRP, RPR, RRP, SLIDE, WELDED, YOKE, Groups
 from mbsd.assur.plan import plan_groups
 from mbsd.assur.solve import DOUBTED, SOLVED
 from mbsd.errors import ModelError
 from mbsd.model import Marker, Mechanism
+from mbsd.names import names_in, no_such
+from mbsd.output_times import refuse_beyond_memory
 from mbsd.packing import Packed
 from mbsd.prepared import prepare
+from mbsd.shown import shown
 from mbsd.steps import divisions
 
 
@@ -37,6 +41,7 @@ class Moved(NamedTuple):
     """Row of the distance constraints."""
 
 
+MOST_THREADS = 1024
 CHUNK = 64
 """Designs that a thread takes at once."""
 
@@ -69,6 +74,16 @@ def batch(
     """See :meth:`mbsd.model.Mechanism.batch`."""
     from mbsd.sweep import sweep_times
 
+    for what, given in (("lengths", lengths), ("places", places)):
+        if not isinstance(given, Mapping):
+            raise ModelError(
+                f"{m.name}: batch: {what} are {shown(given)}; give names and their values: {{name: [...]}}"
+            )
+    angles = names_in(f"{m.name}: batch: angles", angles)
+    if threads is not None:
+        threads = whole_number(f"{m.name}: batch: threads", threads)
+        if threads > MOST_THREADS:
+            raise ModelError(f"{m.name}: batch: threads is {shown(threads)}; it must be {MOST_THREADS} at most")
     grid = sweep_times(m, duration, steps, None)
     ready = prepare(m, float(grid[0]), float(grid[-1]))
     packed, groups = ready.packed, ready.groups
@@ -81,6 +96,11 @@ def batch(
     count = len(values)
     numbers = _numbers(packed, ready.q0, groups, values, moved)
     markers = list(m.traces.values())
+    refuse_beyond_memory(
+        f"{m.name}: {count} designs at {len(grid)} times",
+        count * (len(grid) * (2 * len(markers) + len(angles)) + groups.number.size),
+        "Take fewer designs or steps at once",
+    )
     arms = np.array([(p.x, p.y) for p in markers]).reshape(-1, 2)
     bodies = np.array([packed.body_names.index(p.body.name) for p in markers], np.int64)
     arms_of = np.tile(arms - packed.com[bodies], (count, 1, 1)) if markers else np.zeros((count, 0, 2))
@@ -192,8 +212,7 @@ def _parameters(
             number = int(packed.markers[packed.joints.index(joint)][0 if first else 1])
             target = [Moved([(number, axis)]) for axis in (0, 1)]
         else:
-            known = ", ".join([*m.joints, *m.traces])
-            raise ModelError(f"{m.name}: batch: there is no joint or traced point '{name}'; there is: {known}")
+            raise ModelError(f"{m.name}: batch: {no_such('joint or traced point', name, [*m.joints, *m.traces])}")
         columns += [change[:, 0] - base.x, change[:, 1] - base.y]
         moved += target
     if not columns:
@@ -222,13 +241,11 @@ def _at_end(marker: Marker, length: float) -> bool:
 
 
 def _finite(m: Mechanism, name: str, values: Any, width: int) -> np.ndarray:
-    out = np.asarray(values, float)
+    out = number_array(f"{m.name}: batch: values of '{name}'", values)
     out = out[:, None] if width == 1 and out.ndim == 1 else out
     if out.ndim != 2 or out.shape[1] != width:
         shape = "(designs,)" if width == 1 else "(designs, 2)"
         raise ModelError(f"{m.name}: batch: values of '{name}' have shape {np.shape(values)}; give {shape}")
-    if not np.isfinite(out).all():
-        raise ModelError(f"{m.name}: batch: values of '{name}' must be finite")
     return out
 
 

@@ -7,7 +7,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from mbsd.arguments import finite_number
 from mbsd.body import Body, Marker
+from mbsd.errors import ModelError
+from mbsd.shown import shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,11 +43,16 @@ class Happening:
 
 def angle_reaches(body: Body, angle: float) -> Callable[[float, Any], float]:
     """Event function: the angle of a body (rad, counted over turns) less ``angle``."""
+    _refuse_other("angle_reaches", body, Body)
+    angle = finite_number("angle_reaches: angle", angle)
     return lambda t, moment: moment.body(body.name).theta - angle
 
 
 def distance_reaches(i: Marker, j: Marker, length: float) -> Callable[[float, Any], float]:
     """Event function: the distance of two points (m) less ``length``."""
+    _refuse_other("distance_reaches", i, Marker)
+    _refuse_other("distance_reaches", j, Marker)
+    length = finite_number("distance_reaches: length", length)
 
     def value(t: float, moment: Any) -> float:
         first, second = moment.point(i), moment.point(j)
@@ -55,4 +63,11 @@ def distance_reaches(i: Marker, j: Marker, length: float) -> Callable[[float, An
 
 def speed_reaches(body: Body, omega: float) -> Callable[[float, Any], float]:
     """Event function: the angular velocity of a body (rad/s) less ``omega``."""
+    _refuse_other("speed_reaches", body, Body)
+    omega = finite_number("speed_reaches: omega", omega)
     return lambda t, moment: moment.body(body.name).omega - omega
+
+
+def _refuse_other(what: str, value: object, wanted: type) -> None:
+    if not isinstance(value, wanted):
+        raise ModelError(f"{what} needs a {wanted.__name__.lower()}, got {shown(value)}")

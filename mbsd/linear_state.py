@@ -12,21 +12,24 @@ from mbsd.errors import ModelError
 from mbsd.linearisation import Linearisation
 from mbsd.linearisation import linearise as linearise_start
 from mbsd.model import Mechanism
-from mbsd.names import no_such
+from mbsd.names import names_in, no_such
+from mbsd.shown import shown
 from mbsd.solution import Solution
 from mbsd.variants import copied, started_at
 
 
 def linearise(m: Mechanism, at: Equilibrium | Solution | str, t: float | None, inputs: Sequence[str]) -> Linearisation:
     """See :meth:`mbsd.model.Mechanism.linearise`."""
-    inputs = [inputs] if isinstance(inputs, str) else list(inputs)
+    inputs = names_in(f"{m.name}: linearise: inputs", inputs)
     for name in inputs:
         if not isinstance(name, str) or (name not in m.drivers and name not in m.forces):
             raise ModelError(f"{m.name}: {no_such('driver or force to be an input', name, [*m.drivers, *m.forces])}")
-    if at == "equilibrium":
+    if isinstance(at, str) and at not in ("equilibrium", "start"):
+        raise ModelError(f"{m.name}: linearise: {no_such('state', at, ('equilibrium', 'start'))}, or give a solution")
+    if isinstance(at, str) and at == "equilibrium":
         at = equilibrium(m, 0.0 if t is None else float(t), nearest=False)
         t = None
-    elif at == "start":
+    elif isinstance(at, str):
         model, time = copied(m), 0.0 if t is None else float(t)
         return linearise_start(with_efforts(model, dict.fromkeys(_drivers(m, inputs), 0.0)), time, inputs)
     if isinstance(at, Equilibrium):
@@ -37,7 +40,7 @@ def linearise(m: Mechanism, at: Equilibrium | Solution | str, t: float | None, i
         return linearise_start(with_efforts(at.model, efforts), float(at.solution.t[0]), inputs)
     if not isinstance(at, Solution):
         raise ModelError(
-            f"{m.name}: linearise at {at!r}; say 'equilibrium', 'start', or give an equilibrium or solution"
+            f"{m.name}: linearise at {shown(at)}; say 'equilibrium', 'start', or give an equilibrium or solution"
         )
     _own(m, at)
     if t is None:

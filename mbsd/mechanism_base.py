@@ -17,6 +17,9 @@ from mbsd.shown import shown
 STANDARD_GRAVITY = (0.0, -9.80665)
 """m/s^2, ISO 80000-3."""
 
+SHORTEST = 1e-12
+"""Below this (m) two places count as one; see mbsd/packing.py."""
+
 
 @dataclass(frozen=True)
 class Start:
@@ -61,6 +64,8 @@ class MechanismBase:
         """Markers that at_world placed, and where in the world (m, m, rad)."""
 
     def __setattr__(self, name: str, value: object) -> None:
+        if name == "name" and not isinstance(value, str):
+            raise ModelError(f"a mechanism needs a name, got {shown(value)}")
         if name == "gravity":
             value = number_pair(f"{self.name}: gravity (m/s^2)", (0.0, 0.0) if value is None else value)
         super().__setattr__(name, value)
@@ -91,9 +96,7 @@ class MechanismBase:
 
         With a mass and nothing else it is a uniform slender rod: com at the middle, inertia m l^2 / 12.
         """
-        length = self._number(f"bar '{name}': length", length)
-        if length <= 0:
-            raise ModelError(f"{self.name}: bar '{name}' has length {length:g} m; it must be positive")
+        length = self._length(f"bar '{name}' has length", length)
         com = (length / 2, 0.0) if com is None else com
         mass = self._number(f"mass of body '{name}'", mass)
         inertia = mass * length**2 / 12 if inertia is None else inertia
@@ -128,9 +131,21 @@ class MechanismBase:
 
     def _new_name(self, name: str, what: str, *taken: Mapping[str, object]) -> None:
         if not isinstance(name, str) or not name or name != name.strip() or not name.isprintable():
-            raise ModelError(f"{self.name}: a {what} needs a name without spaces around it, got {shown(name)}")
+            where = "" if what == "mechanism" else f"{self.name}: "
+            raise ModelError(f"{where}a {what} needs a name without spaces around it, got {shown(name)}")
         if any(name in names for names in taken):
             raise ModelError(f"{self.name}: there are two of the name '{name}'; the {what} needs another")
+
+    def _length(self, what: str, value: object) -> float:
+        """A length (m) that is above zero, and no smaller than what counts as a length."""
+        length = self._number(what, value)
+        if length <= 0:
+            raise ModelError(f"{self.name}: {what} {length:g} m; it must be positive")
+        if length < SHORTEST:
+            raise ModelError(
+                f"{self.name}: {what} {length:g} m; it must be {SHORTEST:g} m or more: lengths are in metres"
+            )
+        return length
 
     def _number(self, what: str, value: object) -> float:
         return finite_number(f"{self.name}: {what}", value)

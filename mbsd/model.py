@@ -149,7 +149,9 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
         """
         from mbsd.batch import batch
 
-        return batch(self, lengths or {}, places or {}, angles, duration, steps, threads)
+        return batch(
+            self, {} if lengths is None else lengths, {} if places is None else places, angles, duration, steps, threads
+        )
 
     def simulate(
         self,
@@ -169,7 +171,8 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
         ``steps`` equal output steps over ``duration`` seconds, both ends included; ``times`` (s), rising, replaces
         both. ``method`` names an integrator (mbsd/integrators). Methods with an error estimate keep to ``tolerance``
         (relative to the mechanism's size, to 1 rad, and to speeds); those with a fixed step take ``step`` (s), by
-        default the time between outputs. ``progress`` is called with the part done (0 .. 1).
+        default the time between outputs. ``progress`` is called with the part done (0 .. 1); what it
+        raises ends the run.
         ``event_rows`` adds two rows at every event, right before and after it (contacts, stops: docs/events.md).
         ``formulation``: "reference" integrates all coordinates and projects them onto the joints; "independent" only
         as many as there are degrees of freedom, where the mechanism falls apart into driven bodies and Assur groups:

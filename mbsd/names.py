@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+from mbsd.errors import ModelError
 from mbsd.shown import shown
 
 LISTED = 30
@@ -25,6 +26,14 @@ def no_such(what: str, name: object, known: Iterable[object]) -> str:
     said = f"there is no {what} {f"'{name}'" if isinstance(name, str) and len(name) < 60 else shown(name)}"
     meant = _meant(name, names)
     return f"{said}; there is: {listed}" if meant is None else f"{said}, did you mean '{meant}'? There is: {listed}"
+
+
+def names_in(what: str, value: object) -> list[str]:
+    """``value``, one name or a list of names, as a list; raises ModelError naming ``what`` it is for."""
+    parts = [value] if isinstance(value, str) else list(value) if isinstance(value, list | tuple) else [None]
+    if not all(isinstance(part, str) for part in parts):
+        raise ModelError(f"{what} are {shown(value)}; give a list of names")
+    return parts  # pyright: ignore[reportReturnType]
 
 
 def _meant(name: object, names: list[str]) -> str | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -12,6 +11,7 @@ from mbsd.errors import ModelError
 from mbsd.inverse_dynamics import inverse_dynamics
 from mbsd.limits import limits_of, refuse_passed
 from mbsd.model import Mechanism
+from mbsd.output_times import equal_times, rising_times
 from mbsd.prepared import prepare
 from mbsd.solution import Solution, Stats
 
@@ -51,12 +51,7 @@ def sweep_times(
 ) -> np.ndarray:
     """(T,) rising times (s) of a sweep. Raises ModelError."""
     if times is not None:
-        grid = np.asarray(times, float)
-        if grid.ndim != 1 or len(grid) < 1 or not np.isfinite(grid).all() or not (np.diff(grid) > 0).all():
-            raise ModelError(f"{m.name}: times must be rising finite numbers")
-        return grid
-    if isinstance(steps, bool) or not isinstance(steps, int | np.integer) or steps < 1:
-        raise ModelError(f"{m.name}: steps is {steps!r}; it must be a whole number above zero")
+        return rising_times(m, times, 1)
     if duration is None:
         periods = [law.period for law in (d.motion for d in m.drivers.values()) if law is not None and law.period]
         if not periods and not m.drivers:
@@ -65,6 +60,4 @@ def sweep_times(
             raise ModelError(f"{m.name}: no driver repeats, so there is no natural duration; say sweep(duration=...)")
         else:
             duration = float(periods[0])
-    if not (math.isfinite(duration) and duration > 0):
-        raise ModelError(f"{m.name}: duration is {duration} s; it must be positive")
-    return np.linspace(0.0, duration, int(steps) + 1)
+    return equal_times(m, duration, steps)

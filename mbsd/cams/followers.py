@@ -16,6 +16,7 @@ Machinery, ch. 8; Gonzalez-Palacios, Angeles, Cam Synthesis, 1993, ch. 3.
 
 from __future__ import annotations
 
+import inspect
 import math
 from collections.abc import Mapping
 from typing import Any
@@ -27,6 +28,7 @@ from mbsd.cams.lift import Lift
 from mbsd.cams.profile import CamProfile, hermite
 from mbsd.errors import ModelError
 from mbsd.names import no_such
+from mbsd.shown import shown
 
 
 def roller_cam(lift: Lift, base_radius: float, roller_radius: float, offset: float = 0.0) -> CamProfile:
@@ -34,7 +36,7 @@ def roller_cam(lift: Lift, base_radius: float, roller_radius: float, offset: flo
 
     At cam angle 0 and lift 0 the roller's centre is at (offset, sqrt((base + roller)^2 - offset^2)).
     """
-    sizes = _sizes("roller_cam", base_radius=base_radius, roller_radius=roller_radius)
+    sizes = _sizes("roller_cam", lift, base_radius=base_radius, roller_radius=roller_radius)
     sizes["offset"] = finite_number("roller_cam: offset", offset)
     reach = base_radius + roller_radius
     if abs(offset) >= reach:
@@ -60,6 +62,7 @@ def oscillating_roller_cam(
     """
     sizes = _sizes(
         "oscillating_roller_cam",
+        lift,
         base_radius=base_radius,
         roller_radius=roller_radius,
         arm=arm,
@@ -90,7 +93,7 @@ def oscillating_roller_cam(
 
 def flat_cam(lift: Lift, base_radius: float) -> CamProfile:
     """A cam for a translating flat face across its motion (along y). Sizes in m."""
-    sizes = _sizes("flat_cam", base_radius=base_radius)
+    sizes = _sizes("flat_cam", lift, base_radius=base_radius)
 
     def support(theta: np.ndarray, s: np.ndarray) -> np.ndarray:
         return np.stack([math.pi / 2 - theta, base_radius + s[..., 0], -s[..., 1], s[..., 2]], axis=-1)
@@ -103,7 +106,7 @@ def oscillating_flat_cam(lift: Lift, base_radius: float, pivot_distance: float, 
 
     ``face_offset`` (m): how far the face is from the line through the pivot, towards the cam.
     """
-    sizes = _sizes("oscillating_flat_cam", base_radius=base_radius, pivot_distance=pivot_distance)
+    sizes = _sizes("oscillating_flat_cam", lift, base_radius=base_radius, pivot_distance=pivot_distance)
     sizes["face_offset"] = finite_number("oscillating_flat_cam: face_offset", face_offset)
     sine = (base_radius + face_offset) / pivot_distance
     if not -1 < sine < 1:
@@ -137,6 +140,8 @@ def oscillating_flat_cam(lift: Lift, base_radius: float, pivot_distance: float, 
 
 def cam_from(data: Mapping[str, Any]) -> CamProfile:
     """The cam of plain data, as CamProfile.data gives it."""
+    if not isinstance(data, Mapping):
+        raise ModelError(f"cam: {shown(data)} is no cam; give what CamProfile.data holds")
     makers = {
         "roller": roller_cam,
         "flat": flat_cam,
@@ -149,10 +154,20 @@ def cam_from(data: Mapping[str, Any]) -> CamProfile:
         raise ModelError(f"cam: {no_such('follower', follower, makers)}")
     if "lift" not in data:
         raise ModelError("cam: the lift is missing; keep what CamProfile.data gives as it is")
-    return makers[follower](Lift.from_data(data["lift"]), **rest)
+    maker = makers[follower]
+    known = list(inspect.signature(maker).parameters)[1:]
+    for key in rest:
+        if key not in known:
+            raise ModelError(f"cam: {follower}: {no_such('argument', key, known)}")
+    missing = [key for key in known if key not in rest and key not in ("offset", "face_offset")]
+    if missing:
+        raise ModelError(f"cam: {follower}: {missing[0]} is missing; keep what CamProfile.data gives as it is")
+    return maker(Lift.from_data(data["lift"]), **rest)
 
 
-def _sizes(what: str, **sizes: float) -> dict[str, float]:
+def _sizes(what: str, lift: Lift, **sizes: float) -> dict[str, float]:
+    if not isinstance(lift, Lift):
+        raise ModelError(f"{what}: the lift is {shown(lift)}; make one with Lift.of(...) or Lift.table(...)")
     out = {key: finite_number(f"{what}: {key}", value) for key, value in sizes.items()}
     for key, value in out.items():
         if value <= 0:

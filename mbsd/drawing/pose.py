@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.arguments import finite_number
 from mbsd.body import Marker
 from mbsd.errors import AssemblyError, ModelError
 from mbsd.model import Mechanism
+from mbsd.shown import shown
 
 if TYPE_CHECKING:
     from mbsd.solution import Solution
@@ -71,13 +73,14 @@ def pose_of(sol: Solution, t: float | None, step: int | None) -> Pose:
     if t is not None and step is not None:
         raise ModelError(f"{m.name}: give a time t or a step to draw, not both")
     if t is not None:
+        t = finite_number(f"{m.name}: time t (s)", t)
         slack = 1e-9 * float(np.ptp(sol.t))
         if not sol.t[0] - slack <= t <= sol.t[-1] + slack:
             raise ModelError(f"{m.name}: t = {t} s is outside of the solution, {sol.t[0]:g} .. {sol.t[-1]:g} s")
         step = int(np.argmin(np.abs(sol.t - t)))
     step = 0 if step is None else step
     if isinstance(step, bool) or not isinstance(step, int | np.integer) or not -len(sol.t) <= step < len(sol.t):
-        raise ModelError(f"{m.name}: step is {step!r}; the solution has steps 0 .. {len(sol.t) - 1}")
+        raise ModelError(f"{m.name}: step is {shown(step)}; the solution has steps 0 .. {len(sol.t) - 1}")
     views = {name: sol.body(name) for name in m.bodies}
     frames = {n: (float(v.x[step]), float(v.y[step]), float(v.theta[step])) for n, v in views.items()}
     points = {name: sol.point(name) for name in m.traces}

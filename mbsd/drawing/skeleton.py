@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.arguments import switch
 from mbsd.body import Marker
 from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.loads import draw_force, force_reach
@@ -20,6 +21,7 @@ from mbsd.drawing.symbols import Place, draw_joint, free_side
 from mbsd.drawing.wheels import name_place
 from mbsd.errors import ModelError
 from mbsd.model import Mechanism
+from mbsd.shown import shown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,9 +49,13 @@ SLIDING = ("prismatic", "pin_in_slot")
 def draw(m: Mechanism, pose: Pose, ax: Axes | None, frames: bool, names: bool) -> Picture:
     """Draw ``m`` in ``pose`` into ``ax``, or into a figure of its own."""
     try:
-        import matplotlib  # noqa: F401
+        import matplotlib.axes
     except ImportError as error:
         raise ModelError("drawing needs matplotlib: install mbsd[draw]") from error
+    if ax is not None and not isinstance(ax, matplotlib.axes.Axes):
+        raise ModelError(f"{m.name}: ax is {shown(ax)}; give axes of matplotlib, or leave it out")
+    for what, value in (("frames", frames), ("names", names)):
+        switch(f"{m.name}: draw: {what}", value)
     low, high, unit = measure(m, pose)
     low, high = low - 3.4 * unit, high + 3.4 * unit
     own = ax is None

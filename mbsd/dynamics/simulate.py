@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import math
 import pkgutil
 import warnings
 from collections.abc import Callable, Mapping, Sequence
@@ -25,8 +24,14 @@ from mbsd.inverse_dynamics import JACOBIAN_NUMBERS
 from mbsd.limits import refuse_passed
 from mbsd.loads import loads_along
 from mbsd.model import Mechanism
+from mbsd.names import no_such
+from mbsd.output_times import equal_times, rising_times
 from mbsd.reactions import generalised, times_compact, wrenches
+from mbsd.shown import shown
 from mbsd.solution import Solution, Stats
+
+LEAST_TOLERANCE = 1e-16
+MOST_STEPS = 1e12
 
 
 def simulate(
@@ -45,12 +50,21 @@ def simulate(
     """See :meth:`mbsd.model.Mechanism.simulate`."""
     integrator = integrator_named(m.name, method)
     integrator.numbers(m.name, options)
-    grid = output_times(m.name, duration, steps, times)
-    for what, value in (("tolerance", tolerance), ("step", step)):
-        if value is not None and not (math.isfinite(value) and value > 0):
-            raise ModelError(f"{m.name}: {what} is {value}; it must be positive")
+    grid = output_times(m, duration, steps, times)
+    if not LEAST_TOLERANCE <= tolerance <= 1.0:
+        raise ModelError(
+            f"{m.name}: tolerance is {tolerance:g}; it must be positive, within {LEAST_TOLERANCE:g} .. 1, and 1e-12 is "
+            "near what rounding allows"
+        )
+    if step is not None and not (step > 0 and (grid[-1] - grid[0]) / step <= MOST_STEPS):
+        raise ModelError(
+            f"{m.name}: step is {step:g} s; it must be positive, and {grid[-1] - grid[0]:g} s may take {MOST_STEPS:g} "
+            "steps at most"
+        )
+    if progress is not None and not callable(progress):
+        raise ModelError(f"{m.name}: progress is {shown(progress)}; it must be a function of the part done, 0 .. 1")
     if formulation not in FORMULATIONS:
-        raise ModelError(f"{m.name}: there is no formulation '{formulation}'; there is: {', '.join(FORMULATIONS)}")
+        raise ModelError(f"{m.name}: {no_such('formulation', formulation, FORMULATIONS)}")
     ready = prepare_dynamics(m, float(grid[0]), float(grid[-1]), contacts=True)
     if ready.initial.velocities:
         warnings.warn(
@@ -80,26 +94,19 @@ def integrator_named(model: str, method: str) -> Integrator:
         for module in pkgutil.iter_modules(mbsd.integrators.__path__):
             importlib.import_module(f"mbsd.integrators.{module.name}")
     if method not in INTEGRATORS:
-        raise ModelError(f"{model}: there is no integrator '{method}'; there is: {', '.join(sorted(INTEGRATORS))}")
+        raise ModelError(f"{model}: {no_such('integrator', method, sorted(INTEGRATORS))}")
     return INTEGRATORS[method]
 
 
 def output_times(
-    model: str, duration: float | None, steps: int, times: Sequence[float] | np.ndarray | None
+    m: Mechanism, duration: float | None, steps: int, times: Sequence[float] | np.ndarray | None
 ) -> np.ndarray:
     """(T,) rising output times (s). Raises ModelError for anything else."""
     if times is not None:
-        grid = np.asarray(times, float)
-        if grid.ndim != 1 or len(grid) < 2 or not np.isfinite(grid).all() or not (np.diff(grid) > 0).all():
-            raise ModelError(f"{model}: times must be two or more rising finite numbers")
-        return grid
-    if isinstance(steps, bool) or not isinstance(steps, int | np.integer) or steps < 1:
-        raise ModelError(f"{model}: steps is {steps!r}; it must be a whole number above zero")
+        return rising_times(m, times, 2)
     if duration is None:
-        raise ModelError(f"{model}: say how long: simulate(duration=...) in seconds, or simulate(times=...)")
-    if not (math.isfinite(duration) and duration > 0):
-        raise ModelError(f"{model}: duration is {duration} s; it must be positive")
-    return np.linspace(0.0, duration, int(steps) + 1)
+        raise ModelError(f"{m.name}: say how long: simulate(duration=...) in seconds, or simulate(times=...)")
+    return equal_times(m, duration, steps)
 
 
 def solution(

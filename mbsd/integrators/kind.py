@@ -12,6 +12,7 @@ import numpy as np
 
 from mbsd.errors import ModelError
 from mbsd.names import no_such
+from mbsd.shown import shown
 
 if TYPE_CHECKING:
     from mbsd.dynamics.arrays import Dynamics
@@ -72,7 +73,9 @@ class Integrator:
                 raise ModelError(f"{model}: method '{self.name}': {no_such('option', name, self.options)}")
             option = self.options[name]
             if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not math.isfinite(value):
-                raise ModelError(f"{model}: option '{name}' of '{self.name}' is {value!r}; it must be a finite number")
+                raise ModelError(
+                    f"{model}: option '{name}' of '{self.name}' is {shown(value)}; it must be a finite number"
+                )
             if not option.low <= value <= option.high:
                 raise ModelError(
                     f"{model}: option '{name}' of '{self.name}' is {value:g}; "

@@ -27,8 +27,10 @@ from mbsd.joint import Joint
 from mbsd.joints.kind import KINDS
 from mbsd.mechanism_base import Start, StartVelocity
 from mbsd.model import Mechanism
+from mbsd.names import no_such
 from mbsd.saving.entry import Entry
 from mbsd.saving.laws import called, law_from, plain
+from mbsd.shown import shown
 
 SCHEMA, SCHEMA_VERSION = "mbsd.model", 1
 
@@ -45,7 +47,7 @@ def build(written: Mapping[str, Any], where: str = "model") -> Mechanism:
     """The mechanism of a document. Raises ModelError naming the field (``where`` is the file) and the remedy."""
     top = Entry(written, where)
     _refuse_other_version(top)
-    m = Mechanism(top.text("name"), top.numbers("gravity", 2))
+    m = top.within(lambda: Mechanism(top.text("name"), top.numbers("gravity", 2)))
     for name, entry in top.entries("bodies"):
         _read_body(m, name, entry)
     for part in ("joints", "drivers"):
@@ -117,8 +119,8 @@ def _state(state: Any) -> dict[str, Any]:
 def _refuse_other_version(top: Entry) -> None:
     for key, wanted in (("schema", SCHEMA), ("schema_version", SCHEMA_VERSION)):
         found = top.get(key)
-        if found != wanted:
-            said = "missing" if found is None else repr(found)
+        if found != wanted or isinstance(found, bool):
+            said = "missing" if found is None else shown(found)
             raise ModelError(
                 f"{top.where}: {key} is {said}, this program reads {wanted!r}; save the model again with this version"
             )
@@ -172,9 +174,7 @@ def _read_contact(m: Mechanism, name: str, entry: Entry) -> None:
 def _kind[K](entry: Entry, what: str, kinds: Mapping[str, K]) -> K:
     kind = kinds.get(entry.text("kind"))
     if kind is None:
-        raise ModelError(
-            f"{entry.where}: there is no {what} of kind '{entry.text('kind')}'; there is: {', '.join(kinds)}"
-        )
+        raise ModelError(f"{entry.where}: {no_such(f'{what} of kind', entry.text('kind'), kinds)}")
     return kind
 
 

@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
+from mbsd.arguments import finite_number
 from mbsd.errors import ModelError
+from mbsd.names import no_such
+from mbsd.shown import shown
 
 
 class Entry:
@@ -13,7 +16,7 @@ class Entry:
 
     def __init__(self, data: Any, where: str) -> None:
         if not isinstance(data, Mapping):
-            raise ModelError(f"{where} is {_short(data)}; it must be an object")
+            raise ModelError(f"{where} is {shown(data)}; it must be an object")
         self.data = data
         self.where = where
 
@@ -29,14 +32,14 @@ class Entry:
         """A list of ``count`` finite numbers."""
         values = self._needed(key)
         if not isinstance(values, list) or len(values) != count:
-            raise ModelError(f"{self.where}.{key} is {_short(values)}; it must be a list of {count} numbers")
+            raise ModelError(f"{self.where}.{key} is {shown(values)}; it must be a list of {count} numbers")
         return tuple(_number(value, f"{self.where}.{key}[{k}]") for k, value in enumerate(values))
 
     def text(self, key: str) -> str:
         """A string."""
         value = self._needed(key)
         if not isinstance(value, str):
-            raise ModelError(f"{self.where}.{key} is {_short(value)}; it must be a text")
+            raise ModelError(f"{self.where}.{key} is {shown(value)}; it must be a text")
         return value
 
     def entry(self, key: str) -> Entry:
@@ -60,7 +63,7 @@ class Entry:
         """Raise ModelError for a field that is not one of ``known``."""
         others = [key for key in self.data if key not in known]
         if others:
-            raise ModelError(f"{self.where}: there is no field '{others[0]}'; there is: {', '.join(known)}")
+            raise ModelError(f"{self.where}: {no_such('field', others[0], known)}")
 
     def _needed(self, key: str) -> Any:
         if key not in self.data:
@@ -69,11 +72,4 @@ class Entry:
 
 
 def _number(value: Any, where: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ModelError(f"{where} is {_short(value)}; it must be a number")
-    return float(value)
-
-
-def _short(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."
+    return finite_number(where, value)

@@ -19,6 +19,9 @@ import numpy as np
 
 from mbsd.body import Body, Marker
 from mbsd.errors import ModelError
+from mbsd.names import no_such
+from mbsd.shown import shown
+from mbsd.users_function import described
 
 LAW_PLACES = ("mbsd.motions", "mbsd.curves")
 """Folders and files of laws."""
@@ -84,14 +87,17 @@ def law_from(data: Mapping[str, Any], where: str) -> Any:
     known = loadable_laws()
     factory = known.get(name) if isinstance(name, str) else None
     if factory is None:
-        raise ModelError(f"{where}: there is no law {name!r}; there is: {', '.join(sorted(known))}")
+        raise ModelError(f"{where}: {no_such('law', name, sorted(known))}")
     numbers = {key: value for key, value in data.items() if key != "law"}
     if any(isinstance(value, dict) for value in numbers.values()):
         numbers = {k: law_from(v, f"{where}.{k}") if isinstance(v, dict) else v for k, v in numbers.items()}
     arguments: list[Any] = []
     for parameter in inspect.signature(factory).parameters.values():
         if parameter.kind is inspect.Parameter.VAR_POSITIONAL:
-            arguments += numbers.pop(parameter.name, [])
+            several = numbers.pop(parameter.name, [])
+            if not isinstance(several, list | tuple):
+                raise ModelError(f"{where}: {parameter.name} is {shown(several)}; it must be a list")
+            arguments += several
     return called(factory, where, arguments, numbers)
 
 
@@ -105,8 +111,8 @@ def called(function: Callable[..., Any], where: str, arguments: list[Any], named
         return function(*bound.args, **bound.kwargs)
     except ModelError as error:
         raise ModelError(f"{where}: {error}") from error
-    except (TypeError, ValueError) as error:
-        raise ModelError(f"{where}: a number is expected, {error}") from error
+    except (TypeError, ValueError, ArithmeticError, LookupError, AttributeError) as error:
+        raise ModelError(f"{where}: a number is expected, {described(error)}") from error
 
 
 def _name(value: Any) -> str:

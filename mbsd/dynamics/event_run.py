@@ -20,6 +20,7 @@ from mbsd.dynamics.crossing import first_crossing
 from mbsd.dynamics.dense import Quintic
 from mbsd.dynamics.jumps import Jumps
 from mbsd.dynamics.moment import Moment
+from mbsd.dynamics.pace import Pace
 from mbsd.dynamics.resting import carried
 from mbsd.dynamics.switches import STICKS
 from mbsd.dynamics.trail import Snapshot
@@ -57,6 +58,8 @@ NEAR = 1e-11
 STILL = 1e-9
 INSIDE = 1e-6
 """A contact that starts deeper than this part of the size (rad) inside is refused."""
+EVENT_STEPS = 20
+"""Steps that an event is worth where the pace of a run is looked at."""
 AT_ONE_TIME = 500
 """Events that may happen without time going on."""
 
@@ -112,15 +115,14 @@ class EventRun:
     def to(self, end: float, progress: Callable[[float], None] | None = None) -> bool:
         """Go on to ``end`` (s); False if a terminal event came before."""
         state = self.state
-        start = float(state.clock[TIME])
+        pace = Pace(self.run, state, end, progress)
         while not self.ended:
             self.ready.stops.cross(state)
             self._make_valid()
             before = copied(state)
             status = self.run.advance(state, self.out, end, 1)
-            if progress is not None:
-                progress((state.clock[TIME] - start) / (end - start))
             found = self._crossing(before) if state.clock[TIME] > before.clock[TIME] else None
+            pace.note(extra=0 if found is None else EVENT_STEPS)
             if found is None:
                 self._note_rows()
                 if status == REACHED and state.clock[TIME] >= end:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.dynamics.multipliers import fill_multipliers
+from mbsd.dynamics.pace import Pace, steps_at_once
 from mbsd.errors import ModelError, SimulationError
 from mbsd.integrators import state as run_state
 from mbsd.integrators.kind import Integrator
@@ -19,8 +20,6 @@ if TYPE_CHECKING:
     from mbsd.embedding.embed import Embedded
     from mbsd.embedding.run import EmbeddedRun
 
-STEPS_AT_ONCE = 2000
-"""Between two looks at the clock and the keyboard."""
 NO_LIMIT = 10**12
 AUTO, REFERENCE, INDEPENDENT = FORMULATIONS = "auto", "reference", "independent"
 """Which coordinates are integrated; "auto" takes independent ones where it can."""
@@ -43,6 +42,7 @@ class Run:
         self.formulation = formulation
         self.method = method
         self.tolerance = tolerance
+        self.steps_at_once = steps_at_once(ready.packed.coordinates, method.matrices[0] > 0)
         self.scratch = ready.scratch(method)
         self.settings = ready.settings(method, tolerance, step, duration, options)
 
@@ -105,13 +105,11 @@ class Run:
         self, state: run_state.State, out: run_state.Output, progress: Callable[[float], None] | None = None
     ) -> None:
         """``to_end`` in reference coordinates."""
-        start, end = float(state.clock[run_state.TIME]), float(out.t[-1])
-        while True:
-            status = self.advance(state, out, end, STEPS_AT_ONCE)
-            if progress is not None:
-                progress((state.clock[run_state.TIME] - start) / (end - start))
-            if status == run_state.REACHED:
-                return
+        end = float(out.t[-1])
+        pace = Pace(self, state, end, progress)
+        while self.advance(state, out, end, self.steps_at_once) != run_state.REACHED:
+            pace.note()
+        pace.note()
 
     def _failure(self, status: int, state: run_state.State) -> SimulationError:
         packed, method = self.ready.packed, self.method

@@ -13,8 +13,9 @@ X, Y, COS, SIN, OMEGA, MASS, INERTIA = range(7)
 KIND, FIRST, SECOND, K1, K2, LAW, COORDINATE = range(7)
 """Columns of Embedding.group: kind, bodies A and B, known bodies, law of a driver, coordinate; -1 or law 0 for none."""
 NUMBERS = 20
-SIGN, NEAR, SINE = 16, 17, 18
-"""Columns of Embedding.number that change: branch, whether it may change within a step, squared sine of its angle."""
+SIGN, NEAR, SINE, AVOID = 16, 17, 18, 19
+"""Columns of Embedding.number that change: branch, whether it may change within a step, squared sine of its angle;
+and the squared sine below which the pose is unclear, a number of the run."""
 THETA, BEND, TURNS = 0, 1, 2
 """Columns of EmbeddingScratch.base: angle, convective acceleration, then the rates of turning."""
 VALUE, SPEED, BASE = 0, 1, 2
@@ -79,6 +80,10 @@ class EmbeddingScratch(NamedTuple):
     """(2,) the largest rate of a body for one unit of a coordinate, and where another choice is looked for."""
     before: Any
     """(3, 3 nb) q, v, a of a pose before an unclear one."""
+    joined_body: Any
+    """(2, nb, 4) of poses beside an unclear one: place and turn, and their errors."""
+    joined_rate: Any
+    """(2, nb, 3 (C + 1)) the same of ``rate``."""
     multipliers: Any
     """(0,)"""
     state: Any

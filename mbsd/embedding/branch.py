@@ -12,8 +12,8 @@ from mbsd.embedding.arrays import BASE, BEND, THETA, TURNS, VALUE
 from mbsd.jit import internal
 
 SOLVED, DOUBTED = 0, 1
-AVOIDED = 1e-6
-"""Squared sine of the angle between a group's two links below which rates are lost in rounding."""
+FLOOR = 1e-6
+"""Squared sine of the angle between a group's two links below which no tolerance is met by its closed form."""
 WIDE = 0.36
 """Squared sine above which a group keeps its branch through a step."""
 MISSED = 0.5

@@ -10,6 +10,7 @@ import numpy as np
 
 from mbsd.assur.plan import Plan
 from mbsd.embedding.arrays import (
+    AVOID,
     BASE,
     COS,
     INERTIA,
@@ -23,6 +24,8 @@ from mbsd.embedding.arrays import (
     Embedding,
     EmbeddingScratch,
 )
+from mbsd.embedding.branch import FLOOR
+from mbsd.embedding.bridge import KEPT
 from mbsd.embedding.coordinates import MOST, Coordinate, choices, coordinates_of
 from mbsd.embedding.equations import derivative, settle
 from mbsd.embedding.numbers import group_numbers, group_table
@@ -38,6 +41,11 @@ POOR = 20.0
 """A choice under which some body moves faster than this is not begun with, and left where it is the best."""
 SMALLEST_STEP = 1e-6
 """Part of the longest step at which a run leaves its coordinates."""
+ROUNDING = 5e-14
+"""Of a step's accelerations, in rad/s^2 by rad, times the cubed sine of the angle between a group's two links: where it
+passes the tolerance the closed form gives way to poses beside."""
+WIDEST = 0.1**2
+"""Squared sine above which closed forms always stand."""
 DOUBLED = 2.0
 """Another choice is looked for when some body moves this much faster than when the coordinates were chosen."""
 
@@ -52,9 +60,11 @@ class Embedded:
     sensitivity: float
     """The largest rate of a body for one unit of a coordinate, dimensionless, at the pose of the choice."""
 
-    def copied(self) -> Embedding:
-        """Arrays of one run, which changes branches."""
-        return self.arrays._replace(number=self.arrays.number.copy())
+    def copied(self, tolerance: float = math.inf) -> Embedding:
+        """Arrays of one run, which changes branches, at a relative tolerance."""
+        number = self.arrays.number.copy()
+        number[:, AVOID] = min(max((ROUNDING / tolerance) ** (2.0 / 3.0), FLOOR), WIDEST)
+        return self.arrays._replace(number=number)
 
     def state(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """(2, 3 + f) of q, v (3 nb,)."""
@@ -127,6 +137,8 @@ def scratch_for(ready: PreparedDynamics, made: Embedded, stages: int, q: np.ndar
         force=np.zeros(3 * bodies),
         watch=np.full(2, np.inf),
         before=np.zeros((3, 3 * bodies)),
+        joined_body=np.zeros((2, bodies, KEPT)),
+        joined_rate=np.zeros((2, bodies, 3 * columns + 3)),
         multipliers=np.zeros(0),
         state=np.zeros((2, 3 + count)),
         stages=np.zeros((stages, 2, 3 + count)),

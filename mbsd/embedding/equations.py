@@ -27,6 +27,7 @@ from mbsd.embedding.arrays import (
     Y,
 )
 from mbsd.embedding.branch import SOLVED, WIDE, predicted
+from mbsd.embedding.bridge import bridge
 from mbsd.embedding.groups import solve_groups
 from mbsd.jit import inlined, internal, kernel
 from mbsd.laws import evaluate_laws
@@ -138,6 +139,8 @@ def accelerate(dyn, scratch, t, state, a, lam):
     status = solve_groups(
         dyn.group, dyn.number, scratch.body, rate, scratch.base, coordinate, drive, dyn.gravity, scratch.sums
     )
+    if status != SOLVED:
+        status = bridge(dyn, scratch, t)
     if status == SOLVED:
         if dyn.loads.total > 0:
             for b in dyn.loaded:

@@ -12,6 +12,7 @@ import math
 
 from mbsd.assur.groups import PRP, ROD, RPR, RRP, RRR, WELDED, YOKE
 from mbsd.embedding.arrays import (
+    AVOID,
     COORDINATE,
     COS,
     FIRST,
@@ -32,7 +33,7 @@ from mbsd.embedding.arrays import (
     X,
     Y,
 )
-from mbsd.embedding.branch import AVOIDED, DOUBTED, SOLVED, doubted, predicted
+from mbsd.embedding.branch import DOUBTED, SOLVED, doubted, predicted
 from mbsd.embedding.lengths import solve_rod, solve_slide
 from mbsd.embedding.one_slide import solve_rpr, solve_rrp
 from mbsd.embedding.two_slides import solve_prp, solve_yoke
@@ -75,7 +76,7 @@ def solve_groups(group, number, body, rate, base, coordinate, drive, gravity, su
             half = 0.5 * (square + n[13])
             cross = n[12] * square - half * half
             n[SINE] = cross * n[14]
-            if not n[SINE] > AVOIDED:
+            if not n[SINE] > n[AVOID]:
                 return DOUBTED
             inverse = 1.0 / square
             cross = math.sqrt(cross)

@@ -9,8 +9,25 @@ from __future__ import annotations
 
 import math
 
-from mbsd.embedding.arrays import COORDINATE, COS, FIRST, K1, K2, LAW, NEAR, OMEGA, SIGN, SIN, SINE, SPEED, VALUE, X, Y
-from mbsd.embedding.branch import AVOIDED, DOUBTED, SOLVED, doubted, predicted
+from mbsd.embedding.arrays import (
+    AVOID,
+    COORDINATE,
+    COS,
+    FIRST,
+    K1,
+    K2,
+    LAW,
+    NEAR,
+    OMEGA,
+    SIGN,
+    SIN,
+    SINE,
+    SPEED,
+    VALUE,
+    X,
+    Y,
+)
+from mbsd.embedding.branch import DOUBTED, SOLVED, doubted, predicted
 from mbsd.embedding.carrying import carry, hang, place, turn, turned_x, turned_y
 from mbsd.jit import internal
 
@@ -39,7 +56,7 @@ def solve_rod(bodies, n, body, rate, base, coordinate, drive):
     half = 0.5 * (square + n[9] - rod * rod)
     cross = n[9] * square - half * half
     n[SINE] = cross / (n[9] * rod * rod)
-    if not n[SINE] > AVOIDED:
+    if not n[SINE] > n[AVOID]:
         return DOUBTED
     cross = math.sqrt(cross)
     if n[NEAR] > 0.0:

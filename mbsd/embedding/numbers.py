@@ -21,7 +21,8 @@ import math
 import numpy as np
 
 from mbsd.assur.groups import BRANCH, DRIVEN, PRP, ROD, RPR, RRP, RRR, WELDED, YOKE, Groups
-from mbsd.embedding.arrays import NEAR, NUMBERS, SIGN
+from mbsd.embedding.arrays import AVOID, NEAR, NUMBERS, SIGN
+from mbsd.embedding.branch import FLOOR
 
 
 def group_table(groups: Groups) -> np.ndarray:
@@ -45,6 +46,7 @@ def group_numbers(groups: Groups) -> np.ndarray:
         row[: len(numbers)] = numbers
         row[SIGN] = n[BRANCH[int(kind)]] if int(kind) in BRANCH else 1.0
         row[NEAR] = 0.0
+        row[AVOID] = FLOOR
     return out
 
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 
-from mbsd.embedding.arrays import COS, FIRST, K1, K2, NEAR, OMEGA, SECOND, SIGN, SIN, SINE, SPEED, X, Y
-from mbsd.embedding.branch import AVOIDED, DOUBTED, SOLVED, doubted, predicted
+from mbsd.embedding.arrays import AVOID, COS, FIRST, K1, K2, NEAR, OMEGA, SECOND, SIGN, SIN, SINE, SPEED, X, Y
+from mbsd.embedding.branch import DOUBTED, SOLVED, doubted, predicted
 from mbsd.embedding.carrying import carry, hang, place, turn, turned_x, turned_y
 from mbsd.jit import internal
 
@@ -34,7 +34,7 @@ def solve_rrp(bodies, n, body, rate, base, coordinate):
     across = dx * ey - dy * ex
     left = n[14] - across * across
     n[SINE] = left * n[15]
-    if not n[SINE] > AVOIDED:
+    if not n[SINE] > n[AVOID]:
         return DOUBTED
     root = math.sqrt(left)
     if n[NEAR] > 0.0:
@@ -115,7 +115,7 @@ def solve_rpr(bodies, n, body, rate, base, coordinate):
     square = dx * dx + dy * dy
     left = square - n[6] * n[6]
     n[SINE] = left / square if square > 0.0 else 0.0
-    if not n[SINE] > AVOIDED:
+    if not n[SINE] > n[AVOID]:
         return DOUBTED
     root = math.sqrt(left)
     if n[NEAR] > 0.0:

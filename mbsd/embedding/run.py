@@ -3,10 +3,11 @@ where none is clear."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from mbsd.dynamics.run import STEPS_AT_ONCE
+from mbsd.dynamics.pace import Pace
 from mbsd.embedding.arrays import LIMIT, SENSITIVITY
 from mbsd.embedding.embed import DOUBLED, GOOD, POOR, Embedded, begin_at, embed, scratch_for
 from mbsd.embedding.equations import write
@@ -17,7 +18,9 @@ if TYPE_CHECKING:
     from mbsd.dynamics.run import Run
 
 PASSING = 6
-"""Steps in reference coordinates before independent ones are tried again."""
+"""Steps in reference coordinates before independent ones are tried again; doubled while they do not lead away."""
+AWAY = 1e-2
+"""Part of the longest step by which passing must advance before it counts as having led away."""
 BEYOND = 0.05
 """Part of the duration by which the last step may go beyond the end."""
 HYSTERESIS = 0.7
@@ -29,6 +32,7 @@ class EmbeddedRun:
 
     def __init__(self, run: Run, made: Embedded, state: run_state.State) -> None:
         self.run, self.ready, self.whole = run, run.ready, state
+        self._passing, self._passed = PASSING, -math.inf
         self._take(made)
 
     def in_one_go(
@@ -37,12 +41,12 @@ class EmbeddedRun:
         """Go on to the last output time; ``state`` is the one with which this run began."""
         start, end = float(state.clock[TIME]), float(out.t[-1])
         method, target = self.run.method, end
+        pace = Pace(self.run, state, end, progress)
         while True:
             arrays = self.arrays, self.scratch, self.own, out, self.settings
-            status = self.ready.advance(method, *arrays, target, STEPS_AT_ONCE)
+            status = self.ready.advance(method, *arrays, target, self.run.steps_at_once)
             self.ready.packed.specials.check()
-            if progress is not None:
-                progress((state.clock[TIME] - start) / (end - start))
+            pace.note(self._in_reference_coordinates)
             if status == run_state.REACHED:
                 state.y[...] = out.y[-1]
                 state.clock[TIME], state.clock[WORK], state.count[STARTED] = end, out.work[-1], 0
@@ -62,7 +66,7 @@ class EmbeddedRun:
     def _take(self, made: Embedded) -> None:
         """Go on in these coordinates from the whole state."""
         (q, v), clock = self.whole.y, self.whole.clock
-        self.arrays = made.copied()
+        self.arrays = made.copied(self.run.tolerance)
         self.scratch = scratch_for(self.ready, made, self.run.method.stages, q)
         self.settings = made.settings(self.run.settings)
         begun = run_state.start_state(made.state(q, v), 0, float(clock[TIME]))
@@ -79,6 +83,11 @@ class EmbeddedRun:
         here = run_state.output_for(self.whole.clock[TIME : TIME + 1], self.whole.y.shape[1], 0)
         write(self.arrays, self.scratch, float(here.t[0]), self.own.y.copy(), self.scratch.stages[0], here, 0)
         self.whole.y[...] = here.y[0]
+
+    def _in_reference_coordinates(self) -> run_state.State:
+        """The whole state now."""
+        self._write_whole()
+        return self.whole
 
     def _embedded(self) -> Embedded | None:
         return embed(self.ready, self.whole.y[0], self.whole.y[1], float(self.whole.clock[TIME]))
@@ -98,8 +107,12 @@ class EmbeddedRun:
     def _pass(self, out: run_state.Output, end: float) -> bool:
         """Take some steps in reference coordinates; returns whether the end is still ahead."""
         self._start_anew()
+        near = self.whole.clock[TIME] - self._passed < AWAY * self.settings.longest
+        self._passing = min(2 * self._passing, self.run.steps_at_once) if near else PASSING
         while True:
-            if self.run.advance(self.whole, out, end, PASSING) == run_state.REACHED:
+            status = self.run.advance(self.whole, out, end, self._passing)
+            self._passed = float(self.whole.clock[TIME])
+            if status == run_state.REACHED:
                 return False
             made = self._embedded()
             if made is not None:

@@ -10,6 +10,7 @@ import numpy as np
 
 from mbsd.dynamics.multipliers import fill_multipliers
 from mbsd.dynamics.pace import Pace, steps_at_once
+from mbsd.dynamics.stuck import jump
 from mbsd.errors import ModelError, SimulationError
 from mbsd.integrators import state as run_state
 from mbsd.integrators.kind import Integrator
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from mbsd.embedding.run import EmbeddedRun
 
 NO_LIMIT = 10**12
+JUMP_STEP = 1e-9
+"""Part of the longest step within which a force that jumps is looked for where steps shrink to nothing."""
 AUTO, REFERENCE, INDEPENDENT = FORMULATIONS = "auto", "reference", "independent"
 """Which coordinates are integrated; "auto" takes independent ones where it can."""
 
@@ -104,12 +107,21 @@ class Run:
     def in_one_go(
         self, state: run_state.State, out: run_state.Output, progress: Callable[[float], None] | None = None
     ) -> None:
-        """``to_end`` in reference coordinates."""
+        """``to_end`` in reference coordinates, carried across singular poses by independent ones if asked for these."""
         end = float(out.t[-1])
-        pace = Pace(self, state, end, progress)
+        if self.formulation == REFERENCE:
+            from mbsd.embedding.across import Across, can_carry
+
+            if can_carry(self):
+                if Across(self, state, out, Pace(self, state, end, progress)).to_end():
+                    fill_multipliers(self.ready.dynamics, self.scratch, out)
+                return
+        pace = None if progress is None else Pace(self, state, end, progress)
         while self.advance(state, out, end, self.steps_at_once) != run_state.REACHED:
+            pace = pace or Pace(self, state, end, progress)
             pace.note()
-        pace.note()
+        if pace is not None:
+            pace.note()
 
     def _failure(self, status: int, state: run_state.State) -> SimulationError:
         packed, method = self.ready.packed, self.method
@@ -131,8 +143,12 @@ class Run:
                 f"{where}: numbers are no longer finite after a step of {self.settings.step:.3g} s. "
                 "Take a smaller step, or method='dop853'; stiff springs and dampers ask for method='radau'."
             )
+        short = f"steps below {state.clock[run_state.STEP]:.1e} s do not meet the tolerance {self.tolerance:g}"
+        jumping = jump(self, state, JUMP_STEP * self.settings.longest)
+        if jumping is not None:
+            return SimulationError(f"{where}: {short}; {jumping}")
         return SimulationError(
-            f"{where}: steps below {state.clock[run_state.STEP]:.1e} s do not meet the tolerance {self.tolerance:g}. "
+            f"{where}: {short}. "
             "The pose is singular here, or a force jumps or grows without bound; change the lengths, smooth the force, "
             "or loosen the tolerance."
         )

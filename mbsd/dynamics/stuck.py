@@ -22,7 +22,7 @@ from mbsd.dynamics.acceleration import derivative
 from mbsd.friction_along import friction_under
 from mbsd.integrators.state import TIME, State
 from mbsd.joint_friction import X
-from mbsd.loads import compiled_laws, loads_along, pack_loads
+from mbsd.loads import loads_along, pack_loads
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -55,19 +55,11 @@ class Stiffest(NamedTuple):
 
 def diagnosis(run: Run, state: State, h: float, left: float) -> str | None:
     """What keeps steps at h (s), with the remedy, or None if the run may go on; ``left`` steps are still to do."""
-    ready, time = run.ready, float(state.clock[TIME])
-    slope = np.zeros_like(state.y)
-    derivative(ready.dynamics, run.scratch, time, state.y, slope, np.zeros_like(state.lam))
-    if not np.isfinite(slope).all():
-        return None
-    found = _jumping(run, time, state.y, slope, h)
-    if found is not None:
-        force, size = found
-        return (
-            f"force '{force.name}' jumps there, by {size:.3g} (N or N m). Make it smooth, say with "
-            f"tanh(speed / slip_speed) in place of sign(speed), or take friction of a joint with sticks=True."
-        )
-    stiff = _stiffest(run, time, state.y, slope)
+    found = jump(run, state, h)
+    slope = _slope(run, state)
+    if found is not None or slope is None:
+        return found
+    stiff = _stiffest(run, float(state.clock[TIME]), state.y, slope)
     if stiff is None or not STABILITY[0] < h * stiff.rate < STABILITY[1] or h > NEEDLESS * _own_time(run, state, slope):
         return None
     joint = stiff.force.params.get("joint")
@@ -76,6 +68,26 @@ def diagnosis(run: Run, state: State, h: float, left: float) -> str | None:
         f"force '{stiff.force.name}'{where} is stiff, it acts within {1.0 / stiff.rate:.1e} s, and about {left:.1e} "
         "steps would follow. Take method='radau', or lower its damping, friction or stiffness."
     )
+
+
+def jump(run: Run, state: State, h: float) -> str | None:
+    """The force that jumps within some steps of h (s), with the remedy, or None."""
+    slope = _slope(run, state)
+    found = None if slope is None else _jumping(run, float(state.clock[TIME]), state.y, slope, h)
+    if found is None:
+        return None
+    force, size = found
+    return (
+        f"force '{force.name}' jumps there, by {size:.3g} (N or N m). Make it smooth, say with "
+        "tanh(speed / slip_speed) in place of sign(speed), or take friction of a joint with sticks=True."
+    )
+
+
+def _slope(run: Run, state: State) -> np.ndarray | None:
+    """(2, 3 nb) d(state)/dt, or None where it is not finite."""
+    slope, time = np.zeros_like(state.y), float(state.clock[TIME])
+    derivative(run.ready.dynamics, run.scratch, time, state.y, slope, np.zeros_like(state.lam))
+    return slope if np.isfinite(slope).all() else None
 
 
 def _own_time(run: Run, state: State, slope: np.ndarray) -> float:
@@ -138,17 +150,26 @@ def _each(run: Run, times: np.ndarray, states: np.ndarray) -> Iterator[tuple[For
 
     Friction of joints is that under the last normal forces.
     """
-    packed, span = run.ready.packed, (run.ready.start, run.ready.end)
+    packed, own = run.ready.packed, run.ready.dynamics.loads
     q, v = np.ascontiguousarray(states[:, 0]), np.ascontiguousarray(states[:, 1])
-    normal = run.ready.dynamics.loads.normal[X]
-    rubbing = 0
+    at = np.zeros(4, np.int64)
     for force, markers in zip(packed.forces, packed.force_markers, strict=True):
         alone = copy.copy(packed)
         alone.forces, alone.force_markers = [force], np.array([markers])
-        loads = pack_loads(alone)
-        if len(loads.rub):
-            pressed = np.full((len(q), 1), normal[rubbing])
-            rubbing += 1
-            yield force, friction_under(alone, loads, q, v, pressed)
+        lone = pack_loads(alone)
+        size = [len(part) for part in (lone.element, lone.interaction, lone.user, lone.rub)]
+        elements, interactions, users, rubs = (slice(a, a + n) for a, n in zip(at, size, strict=True))
+        at += size
+        loads = own._replace(
+            element=own.element[elements],
+            place=own.place[elements],
+            interaction=own.interaction[interactions],
+            user=own.user[users],
+            rub=own.rub[rubs],
+            rub_number=own.rub_number[rubs],
+            total=sum(size[:3]),
+        )
+        if size[3]:
+            yield force, friction_under(packed, loads, q, v, np.tile(own.normal[X, rubs], (len(q), 1)))
         else:
-            yield force, loads_along(alone, loads, compiled_laws(alone, *span), times, q, v)
+            yield force, loads_along(packed, loads, run.ready.dynamics.laws, times, q, v)

@@ -10,8 +10,9 @@ import numpy as np
 
 from mbsd.dynamics.prepare import PreparedDynamics
 from mbsd.dynamics.run import Run
+from mbsd.errors import SimulationError
 from mbsd.event import Event, Happening
-from mbsd.integrators.state import ACCEPTED, NEXT, TIME, Output
+from mbsd.integrators.state import ACCEPTED, NEXT, TIME, WORK, Output
 
 if TYPE_CHECKING:
     from mbsd.dynamics.event_run import EventRun
@@ -114,8 +115,20 @@ def resumed(ready: PreparedDynamics, run: Run, trail: Trail, times: np.ndarray, 
         state.y[...] = snapshot.y if k < 0 else trail.out.y[k]
         met = EventRun(ready, run, state, out, events)
         met.resume(snapshot, snapshot.work if k < 0 else float(trail.out.work[k]))
-        met.to(float(times[last - 1]))
-        pieces.append(trail_of(met))
+        try:
+            met.to(float(times[last - 1]))
+            pieces.append(trail_of(met))
+        except SimulationError:
+            if events or ready.switches.touches or ready.sticks:
+                raise
+            # near a singular pose, which independent coordinates pass
+            state, out = ready.begun(times[first:last])
+            state.clock[TIME] = snapshot.time if k < 0 else trail.out.t[k]
+            state.y[...] = snapshot.y if k < 0 else trail.out.y[k]
+            state.clock[WORK] = snapshot.work if k < 0 else trail.out.work[k]
+            run.to_end(state, out)
+            held = np.broadcast_to(ready.switches.held(), out.lam.shape)
+            pieces.append(Trail(out, held, int(state.count[ACCEPTED]), independent=True))
         steps += pieces[-1].steps
         first = last
     out = Output(*(np.concatenate(parts) for parts in zip(*(piece.out for piece in pieces), strict=True)))

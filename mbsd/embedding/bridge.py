@@ -40,62 +40,53 @@ KEPT = SIN + 1
 
 
 @internal
-def _joined(dyn, scratch, t, way, fastest):
-    """Fill scratch.joined_body and joined_rate from poses beside; returns whether all are clear and agree."""
-    body = scratch.body
-    rate = scratch.rate
-    coordinate = scratch.coordinate
-    drive = scratch.drive
+def _joined(
+    laws, group, number, gravity, body, rate, base, coordinate, drive, sums, joined_body, joined_rate, t, way, fastest
+):
+    """Fill joined_body and joined_rate from poses beside; returns whether all are clear and agree."""
     columns = coordinate.shape[0] - 1
     for part in range(2):
         for b in range(1, body.shape[0]):
             for c in range(KEPT):
-                scratch.joined_body[part, b, c] = 0.0
+                joined_body[part, b, c] = 0.0
             for c in range(rate.shape[1]):
-                scratch.joined_rate[part, b, c] = 0.0
+                joined_rate[part, b, c] = 0.0
     for i in range(APART.shape[0]):
         for side in range(2):
             ahead = (1.0 - 2.0 * side) * APART[i] * way / fastest
             for j in range(columns):
                 coordinate[j, VALUE] += ahead * (coordinate[j, SPEED] if columns > 1 else 1.0)
             if drive.shape[0] > 1:
-                evaluate_laws(dyn.laws, drive.shape[0], t + ahead, drive)
-            status = solve_groups(
-                dyn.group, dyn.number, body, rate, scratch.base, coordinate, drive, dyn.gravity, scratch.sums
-            )
+                evaluate_laws(laws, drive.shape[0], t + ahead, drive)
+            status = solve_groups(group, number, body, rate, base, coordinate, drive, gravity, sums)
             for j in range(columns):
                 coordinate[j, VALUE] -= ahead * (coordinate[j, SPEED] if columns > 1 else 1.0)
             if status != SOLVED:
                 return False
             for b in range(1, body.shape[0]):
                 for c in range(KEPT):
-                    scratch.joined_body[0, b, c] += WEIGHTS[i] * body[b, c]
-                    scratch.joined_body[1, b, c] += ERROR_WEIGHTS[i] * body[b, c]
+                    joined_body[0, b, c] += WEIGHTS[i] * body[b, c]
+                    joined_body[1, b, c] += ERROR_WEIGHTS[i] * body[b, c]
                 for c in range(rate.shape[1]):
-                    scratch.joined_rate[0, b, c] += WEIGHTS[i] * rate[b, c]
-                    scratch.joined_rate[1, b, c] += ERROR_WEIGHTS[i] * rate[b, c]
+                    joined_rate[0, b, c] += WEIGHTS[i] * rate[b, c]
+                    joined_rate[1, b, c] += ERROR_WEIGHTS[i] * rate[b, c]
     for b in range(1, body.shape[0]):
-        if not abs(scratch.joined_body[1, b, COS]) + abs(scratch.joined_body[1, b, SIN]) <= CLOSE:
+        if not abs(joined_body[1, b, COS]) + abs(joined_body[1, b, SIN]) <= CLOSE:
             return False
         turning = 0.0
         for j in range(columns):
-            turning += scratch.joined_rate[1, b, 3 * j + 2] * (coordinate[j, SPEED] if columns > 1 else 1.0)
+            turning += joined_rate[1, b, 3 * j + 2] * (coordinate[j, SPEED] if columns > 1 else 1.0)
         if not abs(turning) <= CLOSE_RATE * fastest:
             return False
     return True
 
 
 @internal
-def bridge(dyn, scratch, t):
-    """Fill body, rate and sums of the scratch near an unclear pose; returns SOLVED or DOUBTED.
+def bridge(laws, group, number, gravity, body, rate, base, coordinate, drive, sums, joined_body, joined_rate, t):
+    """Fill body, rate and sums near an unclear pose; returns SOLVED or DOUBTED.
 
-    Coordinates and drive are those of the pose, and stay.
+    Arrays are those of Embedding and EmbeddingScratch; coordinates and drive are those of the pose, and stay.
     """
-    base = scratch.base
-    body = scratch.body
-    rate = scratch.rate
-    coordinate = scratch.coordinate
-    drive = scratch.drive
     columns = coordinate.shape[0] - 1
     fastest = 0.0
     for b in range(1, base.shape[0]):
@@ -107,35 +98,51 @@ def bridge(dyn, scratch, t):
     way = WAY
     if fastest > 0.0:
         for _ in range(HALVINGS):
-            found = _joined(dyn, scratch, t, way, fastest)
+            found = _joined(
+                laws,
+                group,
+                number,
+                gravity,
+                body,
+                rate,
+                base,
+                coordinate,
+                drive,
+                sums,
+                joined_body,
+                joined_rate,
+                t,
+                way,
+                fastest,
+            )
             if found:
                 break
             way *= 0.5
         if drive.shape[0] > 1:
-            evaluate_laws(dyn.laws, drive.shape[0], t, drive)
+            evaluate_laws(laws, drive.shape[0], t, drive)
     if not found:
         usual = 0.0
-        for e in range(dyn.number.shape[0]):
-            usual = dyn.number[e, AVOID]
-            dyn.number[e, AVOID] = FLOOR
-        status = solve_groups(dyn.group, dyn.number, body, rate, base, coordinate, drive, dyn.gravity, scratch.sums)
-        for e in range(dyn.number.shape[0]):
-            dyn.number[e, AVOID] = usual
+        for e in range(number.shape[0]):
+            usual = number[e, AVOID]
+            number[e, AVOID] = FLOOR
+        status = solve_groups(group, number, body, rate, base, coordinate, drive, gravity, sums)
+        for e in range(number.shape[0]):
+            number[e, AVOID] = usual
         return status
     total = 0.0
     push = 0.0
     single = rate.shape[1] == 6
     for b in range(1, body.shape[0]):
         for c in range(KEPT):
-            body[b, c] = scratch.joined_body[0, b, c]
+            body[b, c] = joined_body[0, b, c]
         for c in range(rate.shape[1]):
-            rate[b, c] = scratch.joined_rate[0, b, c]
+            rate[b, c] = joined_rate[0, b, c]
         if single:
             mass = body[b, MASS]
             inertia = body[b, INERTIA]
             total += mass * (rate[b, 0] * rate[b, 0] + rate[b, 1] * rate[b, 1]) + inertia * rate[b, 2] * rate[b, 2]
-            push += mass * (rate[b, 0] * (dyn.gravity[0] - rate[b, 3]) + rate[b, 1] * (dyn.gravity[1] - rate[b, 4]))
+            push += mass * (rate[b, 0] * (gravity[0] - rate[b, 3]) + rate[b, 1] * (gravity[1] - rate[b, 4]))
             push -= inertia * rate[b, 2] * rate[b, 5]
-    scratch.sums[0] = total
-    scratch.sums[1] = push
+    sums[0] = total
+    sums[1] = push
     return SOLVED

@@ -140,7 +140,21 @@ def accelerate(dyn, scratch, t, state, a, lam):
         dyn.group, dyn.number, scratch.body, rate, scratch.base, coordinate, drive, dyn.gravity, scratch.sums
     )
     if status != SOLVED:
-        status = bridge(dyn, scratch, t)
+        status = bridge(
+            dyn.laws,
+            dyn.group,
+            dyn.number,
+            dyn.gravity,
+            scratch.body,
+            rate,
+            scratch.base,
+            coordinate,
+            drive,
+            scratch.sums,
+            scratch.joined_body,
+            scratch.joined_rate,
+            t,
+        )
     if status == SOLVED:
         if dyn.loads.total > 0:
             for b in dyn.loaded:

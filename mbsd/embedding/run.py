@@ -41,16 +41,18 @@ class EmbeddedRun:
         """Go on to the last output time; ``state`` is the one with which this run began."""
         start, end = float(state.clock[TIME]), float(out.t[-1])
         method, target = self.run.method, end
-        pace = Pace(self.run, state, end, progress)
+        pace = None if progress is None else Pace(self.run, state, end, progress)
         while True:
             arrays = self.arrays, self.scratch, self.own, out, self.settings
             status = self.ready.advance(method, *arrays, target, self.run.steps_at_once)
             self.ready.packed.specials.check()
-            pace.note(self._in_reference_coordinates)
+            if pace is not None:
+                pace.note(self._in_reference_coordinates)
             if status == run_state.REACHED:
                 state.y[...] = out.y[-1]
                 state.clock[TIME], state.clock[WORK], state.count[STARTED] = end, out.work[-1], 0
                 return
+            pace = pace or Pace(self.run, state, end, progress)
             if status == run_state.PAUSED:
                 continue
             last_output = state.count[NEXT] == len(out.t) - 1
@@ -62,6 +64,30 @@ class EmbeddedRun:
             self._write_whole()
             if not (status == run_state.CHOOSE and self._choose()) and not self._pass(out, end):
                 return
+
+    def one_step(self, out: run_state.Output, end: float) -> int | None:
+        """Take one step towards ``end`` (s) and write it into the whole state; PAUSED, REACHED, or None in vain."""
+        state = self.whole
+        arrays = self.arrays, self.scratch, self.own, out, self.settings
+        status = self.ready.advance(self.run.method, *arrays, end, 1)
+        self.ready.packed.specials.check()
+        if status == run_state.REACHED:
+            state.y[...] = out.y[-1]
+            state.clock[TIME], state.clock[WORK], state.count[STARTED] = end, out.work[-1], 0
+            return status
+        if status not in (run_state.PAUSED, run_state.CHOOSE):
+            return None
+        step, started = float(state.clock[STEP]), int(state.count[STARTED])
+        self._write_whole()
+        if status == run_state.CHOOSE and not self._choose():
+            return None
+        if status == run_state.PAUSED:
+            state.clock[STEP], state.count[STARTED] = step, started
+        return run_state.PAUSED
+
+    def leave(self) -> None:
+        """Let the whole state be gone on from in reference coordinates."""
+        self._start_anew()
 
     def _take(self, made: Embedded) -> None:
         """Go on in these coordinates from the whole state."""

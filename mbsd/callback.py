@@ -26,6 +26,7 @@ from numba.core.ccallback import CFunc
 from numba.core.dispatcher import Dispatcher
 from numba.extending import intrinsic
 
+from mbsd import interrupts
 from mbsd.errors import ModelError
 from mbsd.shown import shown
 from mbsd.users_function import described
@@ -111,6 +112,8 @@ class Callback:
         copied, out = self._view(inputs, len(self._failure) - 2).copy(), self._view(outputs, self.outputs)
         try:
             out[:] = self._values(t, copied)
+            if interrupts.taken():
+                raise KeyboardInterrupt
             if all(map(math.isfinite, out)):
                 return
         except BaseException as error:  # kept for check(): nothing can be raised through a C function
@@ -119,12 +122,16 @@ class Callback:
         if not self._failure[0]:
             self._failure[0], self._failure[1], self._failure[2:] = 1.0, t, copied
 
+    interrupts.CALLED.update((_run.__code__,))
+
     def _view(self, address: int, length: int) -> np.ndarray:
         key = address, length
         if key not in self._views:
             buffer = (ctypes.c_double * length).from_address(address)
             self._views[key] = np.frombuffer(buffer, np.float64) if length else np.zeros(0)
         return self._views[key]
+
+    interrupts.CALLED.update((_view.__code__,))
 
     def _compile(self) -> CFunc:
         """The numba function in a frame that splits the input and remembers a failure."""

@@ -31,8 +31,6 @@ CHECKED = 2000
 """Steps, the refused among them, between two looks at the pace."""
 MANY = 2e5
 """Steps still to do at which a run is examined."""
-HOPELESS = 1e10
-"""Steps still to do that no one waits for."""
 PATIENCE = 10.0
 """s before the first word of a long run; the gaps double."""
 
@@ -79,14 +77,10 @@ class Pace:
             self._checks, self._next = 0, 1
             return
         self._checks += 1
-        if self._checks < self._next and left < HOPELESS:
+        if self._checks < self._next:
             return
         self._next *= 2
         found = diagnosis(self.run, current() if current else self.state, advance, left)
-        if found is None and left >= HOPELESS:
-            found = (
-                "nothing that jumps or is stiff was found; look for a pose that is singular, or loosen the tolerance"
-            )
         if found is not None:
             raise SimulationError(
                 f"{self.run.ready.packed.name}: {self.run.method.name} no longer advances at t = {at:.6g} s: the last "

@@ -40,6 +40,8 @@ STABILITY = 0.1, 30.0
 """h lambda of explicit methods whose steps are limited by stability."""
 NEEDLESS = 1e-5
 """Part of the time in which bodies move by the mechanism's size: shorter steps are not what the motion needs."""
+HOPELESS = 1e9
+"""Steps of that sort that no one waits for."""
 DIFFERENCE = 1e-6
 """Of velocities and coordinates, in sizes and rad."""
 MANY_BODIES = 100
@@ -59,9 +61,13 @@ def diagnosis(run: Run, state: State, h: float, left: float) -> str | None:
     slope = _slope(run, state)
     if found is not None or slope is None:
         return found
-    stiff = _stiffest(run, float(state.clock[TIME]), state.y, slope)
-    if stiff is None or not STABILITY[0] < h * stiff.rate < STABILITY[1] or h > NEEDLESS * _own_time(run, state, slope):
+    if h > NEEDLESS * _own_time(run, state, slope):
         return None
+    stiff = _stiffest(run, float(state.clock[TIME]), state.y, slope)
+    if stiff is None or not STABILITY[0] < h * stiff.rate < STABILITY[1]:
+        if left < HOPELESS:
+            return None
+        return "no force jumps or is stiff there. Look for a pose that is singular, or loosen the tolerance."
     joint = stiff.force.params.get("joint")
     where = f" of joint '{joint}'" if joint else ""
     return (

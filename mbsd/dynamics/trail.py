@@ -13,6 +13,7 @@ from mbsd.dynamics.run import Run
 from mbsd.errors import SimulationError
 from mbsd.event import Event, Happening
 from mbsd.integrators.state import ACCEPTED, NEXT, TIME, WORK, Output
+from mbsd.interrupts import kept
 
 if TYPE_CHECKING:
     from mbsd.dynamics.event_run import EventRun
@@ -65,6 +66,13 @@ def follow(
     ready: PreparedDynamics, run: Run, times: np.ndarray, events: list[Event], event_rows: bool, progress: Progress
 ) -> Trail:
     """Simulate from the consistent start to the last of ``times`` (s)."""
+    with kept():
+        return _followed(ready, run, times, events, event_rows, progress)
+
+
+def _followed(
+    ready: PreparedDynamics, run: Run, times: np.ndarray, events: list[Event], event_rows: bool, progress: Progress
+) -> Trail:
     from mbsd.dynamics.event_run import EventRun
 
     state, out = ready.begun(times)

@@ -187,7 +187,7 @@ def gone(content: bytes, chance: random.Random) -> None:
 
 
 STAGE, FILM, BLENDER = "tools.torture.stage", "tools.torture.stage film", "render.blender.worker"
-SHELL = "tools/run_all.sh"
+SHELL, MAKE = "tools/run_all.sh", "make run-all"
 TERM, INT, HUP, KILL = signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL
 STOP, SEGV = signal.SIGSTOP, signal.SIGSEGV
 MAKE_TELLS = [INT, HUP] if sys.platform == "linux" else []
@@ -200,7 +200,7 @@ FAULTS = [
     Fault("Blender stopped", signal_to(BLENDER, STOP), during=BLENDER),
     Fault("a stage stopped for a while", stop_for_a_while, during=FILM),
     Fault("SIGKILL to ffmpeg", signal_to("ffmpeg", KILL), during="ffmpeg"),
-    Fault("a read-only disk", read_only, undo=writable),
+    Fault("a read-only disk", read_only, undo=writable, during=MAKE),
     Fault("a folder in place of a lock", folder_for_lock),
     Fault("two runs at once", second_run),
     Fault("a picture cut", damaged(pictures, cut)),

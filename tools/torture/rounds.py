@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from render.picture_file import is_as_named
-from tools.torture.faults import BLENDER, FILM, STAGE, Fault
+from tools.torture.faults import BLENDER, FILM, MAKE, STAGE, Fault
 from tools.torture.project import Project
 
 HANG = 180.0
@@ -23,7 +23,7 @@ POLL = 0.1
 TRACEBACK = r"^Traceback \(most recent call last\):\n(?:[ \t].*\n)*(?!KeyboardInterrupt)\S"
 """Python's own word for Ctrl-C while a program is still being loaded is none of ours."""
 STATES = ("empty", "half", "finished")
-LATEST = {"": 1.1, STAGE: 0.3, FILM: 0.25, BLENDER: 0.2, "ffmpeg": 0.01}
+LATEST = {"": 1.1, MAKE: 0.2, STAGE: 0.3, FILM: 0.25, BLENDER: 0.2, "ffmpeg": 0.01}
 """Latest moment of a fault after the start of the process that it needs, as a part of the time of a whole run."""
 
 

@@ -78,7 +78,7 @@ def with_efforts(m: Mechanism, efforts: Mapping[str, Amount | None]) -> Mechanis
                 params = {key: value for key, value in force.params.items() if key not in ("torque", "force")}
                 _put(out, force.kind, name, force.i, force.j, params, effort)
         else:
-            raise ModelError(f"{m.name}: {no_such('driver or force to give an effort', name, [*m.drivers, *m.forces])}")
+            raise ModelError(f"{m.name}: {no_such('driver or force', name, [*m.drivers, *m.forces])}")
     return out
 
 

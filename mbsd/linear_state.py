@@ -23,7 +23,7 @@ def linearise(m: Mechanism, at: Equilibrium | Solution | str, t: float | None, i
     inputs = names_in(f"{m.name}: linearise: inputs", inputs)
     for name in inputs:
         if not isinstance(name, str) or (name not in m.drivers and name not in m.forces):
-            raise ModelError(f"{m.name}: {no_such('driver or force to be an input', name, [*m.drivers, *m.forces])}")
+            raise ModelError(f"{m.name}: {no_such('driver or force', name, [*m.drivers, *m.forces])}")
     if isinstance(at, str) and at not in ("equilibrium", "start"):
         raise ModelError(f"{m.name}: linearise: {no_such('state', at, ('equilibrium', 'start'))}, or give a solution")
     if isinstance(at, str) and at == "equilibrium":

@@ -194,7 +194,7 @@ def _direction(ready: PreparedDynamics, name: str, time: float) -> np.ndarray:
     packed, m = ready.packed, ready.packed.name
     names = [force.name for force in packed.forces]
     if name not in names:
-        raise ModelError(f"{m}: {no_such('driver or force to be an input', name, names)}")
+        raise ModelError(f"{m}: {no_such('driver or force', name, names)}")
     return unit_direction(packed, packed.forces[names.index(name)], ready.initial.q, time)[3:]
 
 

@@ -104,7 +104,7 @@ def test_what_actuators_cannot_do_is_told() -> None:
 def test_wrong_arguments_are_refused() -> None:
     m = slider_crank()
     sol = m.simulate(0.1, steps=4)
-    with pytest.raises(ModelError, match="no driver or force 'engine' to give an effort; there is: spring, motor"):
+    with pytest.raises(ModelError, match="no driver or force 'engine'; there is: spring, motor"):
         m.with_efforts(engine=3.0)
     with pytest.raises(ModelError, match="'spring' is a spring; only drivers"):
         m.with_efforts(spring=3.0)

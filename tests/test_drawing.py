@@ -135,7 +135,7 @@ def test_a_time_or_a_step_not_both_and_within_the_solution() -> None:
     for arguments, says in (
         ((0.1, 5), "not both"),
         ((0.3, None), "t = 0.3 s is outside of the solution, 0 .. 0.2 s"),
-        ((math.nan, None), "outside"),
+        ((math.nan, None), "is nan"),
         ((None, 11), "steps 0 .. 10"),
         ((None, 1.5), "step is 1.5"),
     ):

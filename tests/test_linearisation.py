@@ -260,7 +260,7 @@ def test_a_singular_pose_is_refused() -> None:
 
 def test_wrong_arguments_are_refused() -> None:
     m = spring_four_bar()
-    with pytest.raises(ModelError, match="no driver or force 'motor' to be an input; there is: spring"):
+    with pytest.raises(ModelError, match="no driver or force 'motor'; there is: spring"):
         m.linearise(inputs=["motor"])
     m.bushing("rubber", m.ground.at(0.8, 0), m.bodies["rocker"].start, (1.0, 1.0, 1.0))
     with pytest.raises(ModelError, match=r"'rubber' \(bushing\) has no single direction"):

@@ -58,7 +58,14 @@ def run(name: str) -> None:
 def _key(parts: contract.Parts, inputs: Inputs) -> str:
     """Hash of all that the motion follows from; ``inputs``: what mechanism.py is made of, and what it reads."""
     masses = {body: (solids.mass, solids.z) for body, solids in parts.bodies.items()}
-    return key_of(sources_hash(*SOURCES), sources_state("mbsd"), masses, versions(*PACKAGES), inputs.digest())
+    return key_of(
+        sources_hash(*SOURCES),
+        sources_state("mbsd"),
+        sources_state("mbsd/drawing"),
+        masses,
+        versions(*PACKAGES),
+        inputs.digest(),
+    )
 
 
 def solve(name: str, parts: contract.Parts) -> Solution:

@@ -265,7 +265,7 @@ def test_wrong_arguments_are_refused() -> None:
     m.bushing("rubber", m.ground.at(0.8, 0), m.bodies["rocker"].start, (1.0, 1.0, 1.0))
     with pytest.raises(ModelError, match=r"'rubber' \(bushing\) has no single direction"):
         m.linearise(inputs=["rubber"])
-    with pytest.raises(ModelError, match="linearise at 'rest'"):
+    with pytest.raises(ModelError, match="linearise: there is no state 'rest'"):
         m.linearise("rest")
     with pytest.raises(ModelError, match="say at which time"):
         m.linearise(m.simulate(0.1, steps=2))

@@ -56,7 +56,7 @@ def run(name: str) -> None:
     Raises UserError naming both pieces, the time, the depth or gap, and the remedy, if two pieces come too near.
     """
     out = Out(name)
-    parts, motion = read_parts(out.parts), read_motion(out.motion)
+    parts, motion = read_parts(out.parts, out.name), read_motion(out.motion, out.name)
     key = key_of(out.parts, out.motion, sources_hash(*SOURCES), versions(*PACKAGES), LIMIT, REACH)
     stage = Stage(out, "clearance", key, [out.clearance])
     if stage.is_fresh():

@@ -23,15 +23,10 @@ DYNAMIC = ("import_module", "__import__", "sys.modules", "runpy", "exec(", "eval
 """Words in a file that may load modules unseen by its import statements."""
 
 
-def modules_now() -> set[str]:
-    """Names of the modules that are loaded."""
-    return set(sys.modules)
-
-
 def loaded_inputs(start: Path, package: str, before: set[str], leave_out: Path | None = None) -> Inputs:
     """Files, rooms and packages that ``start``, a file of the package ``package``, was made of.
 
-    ``before``: the modules that were loaded before it, from :func:`modules_now`; later ones count although no import
+    ``before``: names of the modules that were loaded before it; later ones count although no import
     statement names them. ``leave_out`` and what only that file imports do not count.
     """
     found = Inputs()

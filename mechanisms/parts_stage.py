@@ -9,13 +9,11 @@ from __future__ import annotations
 
 import hashlib
 import re
+import sys
 from pathlib import Path
 from typing import Any
 
-from mechanisms.cad_reads import told_of_cad_files
-from mechanisms.loaded_files import author_files, loaded_inputs, modules_now
 from mechanisms.loading import author_code, load, params
-from mechanisms.params_use import only_annotates
 from mechanisms.plain_values import plain_text
 from mechanisms.recording import recording
 from mechanisms.traced_params import fields_of, traced
@@ -47,7 +45,7 @@ def run(name: str) -> None:
     Raises UserError naming the solid, the number and the remedy if a solid is refused; what was there stays.
     """
     out = Out(name)
-    before = modules_now()
+    before = set(sys.modules)
     with recording() as recorder:
         given = params(out.name)
     notes = Stage(out, "parts", "", []).notes()
@@ -55,6 +53,8 @@ def run(name: str) -> None:
     if isinstance(reads, list) and inputs and Stage(out, "parts", _key(given, reads, inputs), [out.parts]).is_fresh():
         say("parts", f"{out.name}: nothing to do")
         return
+    from mechanisms.loaded_files import loaded_inputs
+
     bodies, reads, inputs = _build(out.name, given)
     if _more_than_values(out.name, given, reads):
         mechanism = loaded_inputs(mechanism_folder(name) / "mechanism.py", f"mechanisms.{out.name}", before)
@@ -86,6 +86,9 @@ def _more_than_values(name: str, given: Any, reads: list[str]) -> bool:
     A property or method of Params can compute anything, a value may have no text that tells it, and parts.py or what it
     imports may use other names of mechanism.py.
     """
+    from mechanisms.loaded_files import author_files
+    from mechanisms.params_use import only_annotates
+
     fields, folder, package = fields_of(given), mechanism_folder(name), f"mechanisms.{name}"
     if any(read not in fields or plain_text(fields[read]) is None for read in reads):
         return True
@@ -96,8 +99,11 @@ def _more_than_values(name: str, given: Any, reads: list[str]) -> bool:
 
 def _build(name: str, given: Any) -> tuple[dict[str, list[Any]], list[str], Inputs]:
     """The solids by body, the names that parts() read from its parameters, and what parts.py was made of and read."""
+    from mechanisms.cad_reads import told_of_cad_files
+    from mechanisms.loaded_files import loaded_inputs
+
     stand_in, seen = traced(given)
-    folder, before = mechanism_folder(name), modules_now()
+    folder, before = mechanism_folder(name), set(sys.modules)
     with recording() as recorder, told_of_cad_files(recorder):
         module = load(name, "parts")
         with author_code(name):

@@ -16,7 +16,6 @@ import sysconfig
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from importlib.abc import MetaPathFinder
 from pathlib import Path
 from types import FrameType, ModuleType
 from typing import Any
@@ -240,7 +239,7 @@ def _is_stage(file: str) -> bool:
     return os.path.dirname(file) == STAGES
 
 
-class _LastFinder(MetaPathFinder):
+class _LastFinder:
     """Is asked for the modules that no other finder finds, and finds none either."""
 
     def find_spec(self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None) -> None:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import sys
+
 import msgspec
 
-from mechanisms.loaded_files import loaded_inputs, modules_now
 from mechanisms.loading import load
 from mechanisms.recording import recording
 from shared.console import say
@@ -31,7 +32,9 @@ def run(name: str) -> None:
     if known and Stage(out, "shot", _key(names, known), [out.shot]).is_fresh():
         say("shot", f"{out.name}: nothing to do")
         return
-    before = modules_now()
+    from mechanisms.loaded_files import loaded_inputs
+
+    before = set(sys.modules)
     with recording() as recorder:
         shot = load(out.name, "shot").shot
     loaded = loaded_inputs(mechanism_folder(out.name) / "shot.py", f"mechanisms.{out.name}", before)

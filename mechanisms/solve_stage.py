@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from mechanisms import loading
-from mechanisms.loaded_files import loaded_inputs, modules_now
 from mechanisms.recording import recording
 from shared import console, contract
 from shared.errors import UserError
@@ -32,15 +32,16 @@ SOURCES = [
 def run(name: str) -> None:
     """Solve one mechanism unless its files already stand for the same inputs. Raises UserError."""
     out = Out(name)
-    parts = contract.read_parts(out.parts)
+    parts = contract.read_parts(out.parts, out.name)
     notes = Stage(out, "solve", "", []).notes()
     known = observed(notes.get("inputs"))
     if known and Stage(out, "solve", _key(parts, known), [out.motion, out.skeleton]).is_fresh():
         console.say("solve", f"{name}: nothing to do")
         return
+    from mechanisms.loaded_files import loaded_inputs
     from mechanisms.skeleton_file import skeleton_of
 
-    before = modules_now()
+    before = set(sys.modules)
     with recording() as recorder:
         solution = solve(name, parts)
         motion = to_motion(solution, parts, "", versions(*PACKAGES))

@@ -66,4 +66,6 @@ def read_film(out: Out) -> Film:
     from shared.shot import read_shot
 
     refuse_missing(out)
-    return Film(read_motion(out.motion), read_parts(out.parts), read_shot(out.shot), out.parts_folder)
+    return Film(
+        read_motion(out.motion, out.name), read_parts(out.parts, out.name), read_shot(out.shot), out.parts_folder
+    )

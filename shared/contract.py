@@ -204,10 +204,11 @@ class Parts(_Strict, kw_only=True):
     bodies: dict[str, BodyParts]
 
 
-def read_motion(path: Path) -> Motion:
-    """Read data.json; raises UserError on anything that does not hold together."""
+def read_motion(path: Path, mechanism: str | None = None) -> Motion:
+    """Read data.json; raises UserError if it does not hold together, or if it is of another ``mechanism``."""
     motion = jsonfile.read(path, Motion)
     _refuse_inconsistent(motion, path)
+    _refuse_other_mechanism(motion.mechanism, mechanism, path)
     return motion
 
 
@@ -217,10 +218,11 @@ def write_motion(path: Path, motion: Motion) -> None:
     jsonfile.write(path, motion)
 
 
-def read_parts(path: Path) -> Parts:
-    """Read parts.json and see that its STL files stand beside it; raises UserError if not."""
+def read_parts(path: Path, mechanism: str | None = None) -> Parts:
+    """Read parts.json and see that its STL files stand beside it; raises UserError as :func:`read_motion`."""
     parts = jsonfile.read(path, Parts)
     _refuse_inconsistent(parts, path)
+    _refuse_other_mechanism(parts.mechanism, mechanism, path)
     for body, solids in parts.bodies.items():
         for name, piece in solids.pieces.items():
             if not (path.parent / piece.stl).is_file():
@@ -235,6 +237,13 @@ def write_parts(path: Path, parts: Parts) -> None:
     """Check and write parts.json, whole."""
     _refuse_inconsistent(parts, path)
     jsonfile.write(path, parts)
+
+
+def _refuse_other_mechanism(found: str, expected: str | None, path: Path) -> None:
+    if expected is not None and found != expected:
+        raise UserError(
+            f"{path} is of the mechanism '{found}', but stands among the results of '{expected}'; make it again"
+        )
 
 
 def _refuse_inconsistent(document: Motion | Parts, path: Path) -> None:

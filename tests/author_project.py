@@ -10,11 +10,13 @@ from types import ModuleType
 import pytest
 
 import mechanisms
-from mechanisms import loading
+from mechanisms import loaded_files, loading
 from shared import paths
 from shared.paths import ROOT
 
 HEAD = "from pathlib import Path\nfrom shared.shot import Shot\nHERE = Path(__file__).parent\n"
+
+assert loaded_files.ROOT == ROOT  # loaded before a project of a test's own takes its place
 
 
 class Project:

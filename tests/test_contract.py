@@ -40,6 +40,17 @@ def parts_document(**changes: Any) -> Parts:
     return Parts(**({"mechanism": "four_bar", "provenance": provenance, "bodies": {"crank": body}} | changes))
 
 
+def test_a_file_of_another_mechanism_is_refused(path: Path) -> None:
+    contract.write_motion(path, MOTION)
+    assert contract.read_motion(path, "four_bar") == MOTION
+    with pytest.raises(UserError, match=r"data\.json is of the mechanism 'four_bar', but stands among .* 'arm'"):
+        contract.read_motion(path, "arm")
+    contract.write_parts(path, parts_document())
+    (path.parent / "crank.stl").write_bytes(b"solid")
+    with pytest.raises(UserError, match=r"is of the mechanism 'four_bar', but stands among .*results of 'arm'"):
+        contract.read_parts(path, "arm")
+
+
 def test_round_trip(path: Path) -> None:
     contract.write_motion(path, MOTION)
     assert contract.read_motion(path) == MOTION

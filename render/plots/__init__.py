@@ -19,7 +19,7 @@ def run(name: str) -> None:
     Raises UserError if data.json is missing or does not hold together.
     """
     out = Out(name)
-    motion, skeleton = read_motion(out.motion), read_skeleton(out.skeleton)
+    motion, skeleton = read_motion(out.motion, out.name), read_skeleton(out.skeleton)
     if skeleton.provenance != motion.provenance:
         raise UserError(
             f"{out.name}: {out.skeleton} is of another motion than {out.motion.name}; "

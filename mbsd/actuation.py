@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbsd.adding_forces import Amount
-from mbsd.assembly import tabulate
 from mbsd.closed_contacts import refuse_pushing
+from mbsd.curve_following import tabulate_along
 from mbsd.errors import MobilityError, ModelError
 from mbsd.force import Force
 from mbsd.forces.actuator import ACTUATOR
@@ -137,7 +137,7 @@ def inverse_dynamics(m: Mechanism, motion: Solution, actuators: Sequence[str]) -
     right = (weight.ravel() + applied - inertia * a)[:, 3:]
     push = np.stack([_directions(packed, bare.forces[name], q, motion.t)[:, 3:] for name in actuators], axis=1)
     phi, gamma, compact = np.zeros((count, rows)), np.zeros((count, rows)), np.zeros((count, rows, 6))
-    tabulate(system, packed.drives(motion.t), q, v, packed.ws, phi, compact, gamma)
+    tabulate_along(packed, packed.drives(motion.t), q, v, phi, compact, gamma)
     jacobian = packed.spread(compact)
     (lam, effort, left), friction = with_friction(
         packed,

@@ -80,11 +80,12 @@ class AddingContacts(MechanismBase):
         It goes through ``points`` (k, 2) in the axes of marker ``terrain`` (m), for a ground from left to right; beyond
         its ends an open curve goes on straight.
         """
-        from mbsd.curve_numbers import checked_points, refuse_tight
+        from mbsd.curve_numbers import checked_points, refuse_crossing, refuse_tight
 
         what = f"{self.name}: contact '{name}'"
         params = self._amounts(name, radius=radius) | self._frictions(name, friction, static_friction)
         plain = checked_points(what, points, closed)
+        refuse_crossing(what, plain, closed)
         refuse_tight(what, plain, closed, params["radius"])
         params |= {"points": plain, "closed": bool(closed)}
         return self._touch(TERRAIN, name, terrain, point, restitution, params)

@@ -31,14 +31,14 @@ class ContactView:
 
 def contact_view(packed: Packed, row: int, q: np.ndarray, v: np.ndarray, lam: np.ndarray) -> ContactView:
     """Of the contact whose gap is ``row``; q, v (T, nb, 3), lam (T, m)."""
-    from mbsd.assembly import tabulate
+    from mbsd.curve_following import tabulate_along
     from mbsd.reactions import times_compact
 
     count, rows = len(lam), len(packed.ws.phi)
     flat_q, flat_v = q.reshape(count, -1), v.reshape(count, -1)
     phi, gamma, compact = np.zeros((count, rows)), np.zeros((count, rows)), np.zeros((count, rows, 6))
     drives = np.zeros((count, len(packed.motions) + 1, 3))
-    tabulate(packed.system, drives, flat_q, flat_v, packed.ws, phi, compact, gamma)
+    tabulate_along(packed, drives, flat_q, flat_v, phi, compact, gamma)
     joint = packed.joint_of_row(row)
     friction = -lam[:, row + 1] if len(joint.kind.constraints) > 1 else np.zeros(count)
     return ContactView(phi[:, row], times_compact(packed, compact, flat_v)[:, row], -lam[:, row], friction)

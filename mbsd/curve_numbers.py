@@ -15,6 +15,10 @@ from mbsd.arguments import number_array
 from mbsd.curves import Curve
 from mbsd.errors import ModelError
 
+FINE, MOST_CHORDS = 4, 4000
+"""Chords of a piece, and in all, with which crossings are looked for."""
+PART_OF_LOOP = 1 / 8
+"""Of the shortest loop: how far a point may go in one step."""
 LEAST_PIECES, LEAST_PARTS = 128, 4
 """Pieces in all, and for each piece of the spline: the nearest node leads to the foot, arc lengths are exact."""
 
@@ -44,9 +48,17 @@ def curve_pieces(points: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarr
 
 
 def curve_numbers(
-    breaks: np.ndarray, coefficients: np.ndarray, closed: bool, distance: float, radius: float
+    breaks: np.ndarray,
+    coefficients: np.ndarray,
+    closed: bool,
+    distance: float,
+    radius: float,
+    farthest: float = 0.0,
 ) -> np.ndarray:
-    """The own numbers of a curve constraint; a closed curve ends with arc length and turning of a round."""
+    """The own numbers of a curve constraint; a closed curve ends with arc length and turning of a round.
+
+    ``farthest``: how far the foot may go at once on a curve that crosses itself (m).
+    """
     fine = 8
     nodes, weights = np.polynomial.legendre.leggauss(fine)
     h = np.diff(breaks)
@@ -62,15 +74,52 @@ def curve_numbers(
     ends = np.vstack([tangent(np.zeros(len(h))), tangent(h)[-1:]])
     turning = np.unwrap(np.arctan2(ends[:, 1], ends[:, 0]))
     rows = np.column_stack([breaks[:-1], coefficients.reshape(len(h), 12), arc[:-1], turning[:-1]])
-    head = [distance, radius, float(closed), breaks[-1] - breaks[0], len(h)]
+    head = [distance, radius, float(closed), breaks[-1] - breaks[0], len(h), farthest, math.nan]
     return np.concatenate([head, rows.ravel(), [arc[-1], turning[-1] - turning[0]]])
 
 
 def disc_numbers(params: Mapping[str, Any]) -> list[np.ndarray]:
     """Those of the constraints `curve` and `curve_rolling` of a disc on a curve: ``points``, ``closed``, ``radius``."""
     closed, radius = params["closed"], params["radius"]
-    numbers = curve_numbers(*curve_pieces(np.array(params["points"], float), closed), closed, radius, radius)
+    pieces = curve_pieces(np.array(params["points"], float), closed)
+    numbers = curve_numbers(*pieces, closed, radius, radius, farthest_step(*pieces, closed, radius))
     return [numbers, numbers]
+
+
+def crossings(breaks: np.ndarray, coefficients: np.ndarray, closed: bool, distance: float) -> np.ndarray:
+    """(c, 2) pairs of parameters at which the curve parallel at ``distance`` (m, left) crosses itself, roughly."""
+    fine = max(1, min(FINE, MOST_CHORDS // len(coefficients)))
+    s = (np.diff(breaks)[:, None] * np.arange(fine) / fine)[..., None]
+    u = (breaks[:-1, None] + s[..., 0]).ravel()
+    powers = np.arange(6)
+    place = np.einsum("pdk,psk->psd", coefficients, s**powers).reshape(-1, 2)
+    slope = np.einsum("pdk,psk->psd", coefficients[:, :, 1:] * powers[1:], s ** powers[:-1]).reshape(-1, 2)
+    place = place + distance * np.stack([-slope[:, 1], slope[:, 0]], axis=1) / np.hypot(*slope.T)[:, None]
+    a, b = (place, np.roll(place, -1, axis=0)) if closed else (place[:-1], place[1:])
+    u, n = u[: len(a)], len(a)
+    out: list[np.ndarray] = []
+
+    def side(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> np.ndarray:
+        return (q[..., 0] - p[..., 0]) * (r[..., 1] - p[..., 1]) - (q[..., 1] - p[..., 1]) * (r[..., 0] - p[..., 0])
+
+    for k in range(n - 2):
+        others = np.arange(k + 2, n - (closed and k == 0))
+        one, two = side(a[k], b[k], a[others]), side(a[k], b[k], b[others])
+        three, four = side(a[others], b[others], a[k]), side(a[others], b[others], b[k])
+        for hit in others[(one * two <= 0) & (three * four <= 0) & ((one != 0) | (two != 0))]:
+            out.append(np.array([u[k], u[hit]]))
+    return np.array(out).reshape(-1, 2)
+
+
+def farthest_step(breaks: np.ndarray, coefficients: np.ndarray, closed: bool, distance: float) -> float:
+    """How far the foot may go at once (m): a part of the shortest loop of a curve that crosses itself, else 0."""
+    found = crossings(breaks, coefficients, closed, distance)
+    if not len(found):
+        return 0.0
+    around = np.abs(found[:, 1] - found[:, 0])
+    if closed:
+        around = np.minimum(around, breaks[-1] - breaks[0] - around)
+    return float(around.min()) * PART_OF_LOOP
 
 
 def graph_numbers(profile: Curve) -> np.ndarray:
@@ -109,6 +158,19 @@ def checked_points(what: str, points: object, closed: bool) -> list[list[float]]
     if not math.isfinite(float(steps.sum())):
         raise ModelError(f"{what}: the points are too far apart")
     return array.tolist()
+
+
+def refuse_crossing(what: str, points: list[list[float]], closed: bool) -> None:
+    """Raise ModelError for a curve that crosses itself: it has no side on which matter could be."""
+    pieces = curve_pieces(np.array(points), closed)
+    found = crossings(*pieces, closed, 0.0)
+    if len(found):
+        k = min(int(np.searchsorted(pieces[0], found[0, 0], "right")) - 1, len(pieces[1]) - 1)
+        x, y = pieces[1][k, :, 0]
+        raise ModelError(
+            f"{what}: the curve crosses itself near ({x:.4g}, {y:.4g}) m, where it has no side that is free; cut it "
+            "into curves that do not, or take rolling_on_curve or point_on_curve, which follow it through"
+        )
 
 
 def refuse_tight(what: str, points: list[list[float]], closed: bool, radius: float) -> None:

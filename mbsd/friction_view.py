@@ -35,7 +35,7 @@ def friction_view(
 
     A joint that an action let go has no friction.
     """
-    from mbsd.assembly import tabulate
+    from mbsd.curve_following import tabulate_along
     from mbsd.friction_along import normals_along
     from mbsd.joint_friction import FIRST, WAY, tabulate_rates
     from mbsd.loads import pack_loads
@@ -44,7 +44,7 @@ def friction_view(
     flat_q, flat_v = (np.ascontiguousarray(part.reshape(count, -1)) for part in (q, v))
     phi, gamma, compact = np.zeros((count, rows)), np.zeros((count, rows)), np.zeros((count, rows, 6))
     drives = np.zeros((count, len(packed.motions) + 1, 3))
-    tabulate(packed.system, drives, flat_q, flat_v, packed.ws, phi, compact, gamma)
+    tabulate_along(packed, drives, flat_q, flat_v, phi, compact, gamma)
     loads = pack_loads(packed)
     normal = normals_along(packed, loads, flat_q, compact, lam)
     k = [force.name for force in packed.forces if force.kind.of_reactions].index(name)

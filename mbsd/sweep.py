@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from mbsd.closed_contacts import refuse_passed_contacts
+from mbsd.curve_following import CurveFollowing, refuse_jumps
 from mbsd.errors import ModelError
 from mbsd.inverse_dynamics import inverse_dynamics
 from mbsd.limits import limits_of, refuse_passed
@@ -27,6 +28,8 @@ def sweep(m: Mechanism, duration: float | None, steps: int, times: Sequence[floa
         inner, poses = march.closely()
         refuse_passed(packed, inner, poses, smooth=True)
         refuse_passed_contacts(m, packed, inner, poses)
+    if CurveFollowing(packed):
+        refuse_jumps(packed, *march.closely())
     loads = inverse_dynamics(ready, grid, drives, q, v, a)
     shape = (len(grid), -1, 3)
     return Solution(

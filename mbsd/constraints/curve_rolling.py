@@ -18,6 +18,7 @@ import math
 from mbsd.constraints.curve_pieces import (
     ARC,
     CLOSED,
+    COUNT,
     CX,
     CY,
     DDDX,
@@ -36,7 +37,7 @@ from mbsd.constraints.curve_pieces import (
     find_foot,
     place_on,
 )
-from mbsd.constraints.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA, FYY, OWN, PHASE, A, F, X, Y, equation
+from mbsd.constraints.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA, FYY, PHASE, A, F, X, Y, equation
 from mbsd.jit import internal
 
 NODES = (-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640)
@@ -83,7 +84,7 @@ def residual(numbers, relative, out):
     r = numbers[RADIUS]
     value = s - r * (beta - relative[A]) - numbers[PHASE]
     if numbers[CLOSED] != 0.0:
-        last = TABLE + WIDTH * int(numbers[OWN + 4])  # a round: arc length and turning of the tangent
+        last = TABLE + WIDTH * int(numbers[COUNT])  # a round: arc length and turning of the tangent
         period = abs(numbers[last] - r * numbers[last + 1])
         if period > 0.0:
             value -= period * math.floor(value / period + 0.5)

@@ -103,6 +103,7 @@ class EventRun:
         self.dynamics.sliding.table[:, 0] = snapshot.factor
         self.dynamics.loads.rub_number[:, SENSE] = snapshot.senses
         self.packed.system.numbers[:] = snapshot.numbers
+        self.ready.following.settle(*self.state.y)
         for stick, (state, sign) in zip(self.sticks, snapshot.joints, strict=True):
             stick.state, stick.sign = state, sign
         for touch, status in zip(self.switches.touches, snapshot.states, strict=True):

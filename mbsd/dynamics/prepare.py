@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mbsd.curve_following import CurveFollowing
 from mbsd.dynamics.acceleration import derivative
 from mbsd.dynamics.arrays import Dynamics, Scratch, scratch_for
 from mbsd.dynamics.dependent import refuse_singular_start
@@ -87,7 +88,15 @@ class PreparedDynamics:
         key = method.name, type(arrays)
         if key not in self.advancing:
             self.advancing[key] = Often(method.advance)
-        return self.stops.through(self.advancing[key], arrays, *rest)
+        advancing = self.advancing[key]
+        if self.following and isinstance(arrays, Dynamics):
+            return self.following.through(partial(self.stops.through, advancing), arrays, *rest)
+        return self.stops.through(advancing, arrays, *rest)
+
+    @cached_property
+    def following(self) -> CurveFollowing:
+        """The points on curves that cross themselves."""
+        return CurveFollowing(self.packed)
 
     @cached_property
     def stops(self) -> Stops:
@@ -104,6 +113,7 @@ class PreparedDynamics:
 
     def begun(self, times: np.ndarray) -> tuple[run_state.State, run_state.Output]:
         """A run at its consistent start, and room for its outputs."""
+        self.following.settle(self.initial.q, self.initial.v)
         rows = len(self.packed.ws.phi)
         state = run_state.start_state(np.stack([self.initial.q, self.initial.v]), rows, float(times[0]))
         return state, run_state.output_for(times, len(self.initial.q), rows)

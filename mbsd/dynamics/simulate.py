@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 import mbsd.integrators
-from mbsd.assembly import tabulate
+from mbsd.curve_following import tabulate_along
 from mbsd.dynamics.dependent import refuse_opened
 from mbsd.dynamics.joint_sticks import standing
 from mbsd.dynamics.large import MANY_COORDINATES
@@ -123,7 +123,7 @@ def solution(
         at = slice(start, min(start + chunk, count))
         phi, gamma = np.zeros((2, at.stop - start, rows))
         compact = np.zeros((at.stop - start, rows, 6))
-        tabulate(packed.system, drives[at], q[at], v[at], packed.ws, phi, compact, gamma)
+        tabulate_along(packed, drives[at], q[at], v[at], phi, compact, gamma)
         held = trail.held[at]
         refuse_opened(ready, out.t[at], phi * held)
         lam[at] = _least_norm(ready, compact, out.lam[at], held)

@@ -89,6 +89,8 @@ def can_embed(ready: PreparedDynamics) -> str | None:
     """Why a mechanism must stay in reference coordinates, or None."""
     packed, dynamics = ready.packed, ready.dynamics
     count = ready.mobility.dof - len(packed.motions)
+    if ready.following:
+        return "a point is on a curve that crosses itself"
     if ready.switches.touches:
         return "it has contacts or limits"
     if ready.mobility.redundant_rows or ready.mobility.singular:

@@ -35,7 +35,7 @@ def surface(force: Force) -> list[float]:
     """Numbers of the surface, as interactions/surface.py reads them."""
     profile = force.laws.get("profile")
     if not isinstance(profile, Curve):
-        return [0.0] * 7
+        return [0.0] * 9
     from mbsd.curve_numbers import graph_numbers
 
     return graph_numbers(profile).tolist()

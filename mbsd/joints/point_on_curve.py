@@ -3,7 +3,8 @@
     Phi = n . (p_j - c(u)) - D        constraint `curve`, 1 row, c(u) the curve's point nearest to p_j
 
 The curve is a quintic spline through points in the axes of marker i. D > 0 is on its left: the centre of a roller or a
-disc of radius D that slides. The reaction on body j is a force across the curve. The curve must not cross itself.
+disc of radius D that slides. The reaction on body j is a force across the curve. Where the curve crosses itself, a
+simulation goes on along the branch the point is on (curve_following.py), and a sweep that may have left it is refused.
 """
 
 from __future__ import annotations
@@ -20,11 +21,11 @@ if TYPE_CHECKING:
 def _numbers(params: Mapping[str, Any]) -> list[np.ndarray]:
     import numpy as np
 
-    from mbsd.curve_numbers import curve_numbers, curve_pieces
+    from mbsd.curve_numbers import curve_numbers, curve_pieces, farthest_step
 
-    closed = params["closed"]
+    closed, distance = params["closed"], params["distance"]
     pieces = curve_pieces(np.array(params["points"], float), closed)
-    return [curve_numbers(*pieces, closed, params["distance"], 0.0)]
+    return [curve_numbers(*pieces, closed, distance, 0.0, farthest_step(*pieces, closed, distance))]
 
 
 POINT_ON_CURVE = register(

@@ -63,7 +63,7 @@ class Mode:
     def of(self, body: str) -> np.ndarray:
         """(3,) shape of one body. Raises ModelError for a body that is not there."""
         if body not in self.shape:
-            raise ModelError(no_such("body in the mode", body, self.shape))
+            raise ModelError(no_such("body", body, self.shape))
         return self.shape[body]
 
     def __str__(self) -> str:

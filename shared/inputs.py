@@ -21,7 +21,7 @@ from shared import paths
 from shared.files import file_hash, sources_hash
 
 PICTURES = ("mbsd/drawing",)
-"""Sources that decide no number."""
+"""Sources that decide no number; what they draw has them in its key by their own name."""
 RESULTS = "results:"
 """Before the names of files in the folder of results, which may be anywhere."""
 

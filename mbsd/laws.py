@@ -57,6 +57,12 @@ def pieces(breaks: np.ndarray, coefficients: np.ndarray, periodic: bool = False)
     return PIECES, np.concatenate([[len(rows), PERIODIC if periodic else TANGENT, breaks[-1]], rows.ravel()])
 
 
+def breaks_of(law: Compiled) -> np.ndarray:
+    """(p + 1,) rising breaks of pieces; none of another law."""
+    kind, numbers = law
+    return np.append(numbers[3::7], numbers[2]) if kind == PIECES else np.zeros(0)
+
+
 def hermite_pieces(x: np.ndarray, samples: np.ndarray, periodic: bool = False) -> Compiled:
     """The quintic through value, first and second derivative, samples (p + 1, 3), at rising x (p + 1,)."""
     return pieces(x, hermite_coefficients(np.diff(x), samples[:-1], samples[1:]), periodic)

@@ -37,7 +37,8 @@ def divisions(packed: Packed, times: np.ndarray) -> int:
     """Equal parts of the steps of ``times`` (T,), themselves equal, in which no law goes further than its stride."""
     first, last, steps = float(times[0]), float(times[-1]), len(times) - 1
     stride = strides(packed)
-    parts = max([1, *(math.ceil(2 * len(law.knots(first, last)) / steps) for law in packed.motions)])
+    crowd = np.diff(np.flatnonzero(Steps(packed, times).wanted))  # outputs and knots within each step
+    parts = 2 * int(crowd.max(initial=1)) - 1
     for _ in range(8):
         refuse_endless(packed, np.linspace(first, last, 2), parts * steps)
         inner = np.linspace(first, last, parts * steps + 1)

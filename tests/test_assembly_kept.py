@@ -224,6 +224,8 @@ def test_turns_and_returns_between_two_outputs_are_followed() -> None:
         (cycloidal(6 * math.pi, 0.001, 0.4), 6 * math.pi),
         (table(times, there_and_back), 0.0),
         (function(lambda t: 200 * t**2, lambda t: 400 * t, lambda t: 400.0), 200.0),
+        (function(lambda t: 200 * t**2), 200.0),
+        (function(lambda t: 20 * math.exp(-(((t - 0.437) / 0.002) ** 2))), 0.0),
     ):
         sol = pusher(law).sweep(1.0, steps=1)
         assert sol.body("crank").theta[-1] == pytest.approx(turned, abs=1e-9)

@@ -61,6 +61,13 @@ class Function(Motion):
         seen = _samples(self.ddf, looks)
         return exact_pieces(self, first, last, self.breaks, looks, seen)
 
+    def knots(self, first: float, last: float) -> np.ndarray:
+        """Where a pulse cannot hide, and its breaks."""
+        from mbsd.fitting.look import look_times
+
+        times = np.unique(np.concatenate([look_times(first, last, self.shortest), self.breaks]))
+        return times[(times >= first) & (times <= last)]
+
     def __call__(self, times: Times) -> np.ndarray:
         """(T,) times to (T, 3): f, f', f''."""
         if self.df is None or self.ddf is None:
@@ -121,6 +128,14 @@ class Fitted(Function):
     def as_load(self, first: float, last: float) -> Motion:
         """Itself."""
         return self
+
+    def knots(self, first: float, last: float) -> np.ndarray:
+        """Where its pieces meet, and their middles."""
+        from mbsd.laws import breaks_of
+
+        breaks = breaks_of(self.law)
+        times = np.sort(np.concatenate([breaks, 0.5 * (breaks[1:] + breaks[:-1])]))
+        return times[(times >= first) & (times <= last)]
 
     def compiled(self, first: float, last: float) -> Compiled:
         """As kernels evaluate it."""

@@ -104,7 +104,8 @@ def sizes(values: Numbers, size: float) -> dict[str, float]:
     out = dict(largest)
     out["q"] = max(size, 1.0)
     out["v"] = max(largest["v"], 1e-9)
-    out["a"] = max(largest["a"], 1e-9)
+    turning = float(np.abs(values["v"][:, 2::3]).max(initial=0.0))
+    out["a"] = max(largest["a"], turning**2, 1e-9)  # where bodies turn evenly, accelerations cancel
     force = max(largest.get("reactions", 0.0), largest.get("efforts", 0.0), 1e-9)
     for key in ("reactions", "efforts"):
         if key in out:

@@ -36,8 +36,9 @@ def chain(m: Mechanism, rng: np.random.Generator, count: int, cart: bool) -> lis
 
 
 def some_force(m: Mechanism, rng: np.random.Generator, name: str, bodies: list[Body]) -> None:
-    """A force of a random kind, of a size that fits bodies of 1 kg and 1 m, between two bodies or one and ground."""
-    first, second = (bodies[k] for k in rng.choice(len(bodies), 2, replace=False))
+    """A force of a random kind on one of ``bodies`` but the first, which is ground; its size fits 1 kg and 1 m."""
+    second = bodies[int(rng.integers(1, len(bodies)))]
+    first = [body for body in bodies if body is not second][int(rng.integers(len(bodies) - 1))]
     i, j = (body.at(*(float(x) for x in rng.normal(scale=0.3, size=2))) for body in (first, second))
     kind = str(rng.choice(_KINDS))
     if kind == "spring":

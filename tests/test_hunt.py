@@ -23,9 +23,11 @@ from tools.hunt import case
 from tools.hunt.__main__ import hunt
 from tools.hunt.agreement import SAME, Growth, Words, compare_driven, compare_free
 from tools.hunt.checks import one_assembly, smooth
-from tools.hunt.described import exchanged, on_a_base, seen_from, shuffled
+from tools.hunt.described import on_a_base, seen_from
+from tools.hunt.free_case import nudged
 from tools.hunt.outcome import AGREED, BASE, HUNG, WRONG, CaseResult, Outcome
 from tools.hunt.pool import results
+from tools.hunt.reordered import exchanged, shuffled
 from tools.hunt.subject import Subject, all_families
 
 LENGTHS = (0.4, 0.1, 0.38, 0.3)
@@ -125,8 +127,6 @@ def _turned_back(pose: tuple[float, float, float]) -> tuple[float, float]:
 
 
 def test_the_bound_of_free_motions_grows_with_what_a_nudge_comes_to() -> None:
-    from tools.hunt.simulating import nudged
-
     m = Mechanism("pendulum")
     rod = m.bar("rod", 1.0, 1.0)
     m.revolute("A", m.ground.origin, rod.start)

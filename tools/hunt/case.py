@@ -10,8 +10,9 @@ import numpy as np
 from mbsd.variants import started_at
 from tools.hunt.agreement import Growth
 from tools.hunt.checks import closed, driven_problems, finite
+from tools.hunt.free_case import Free, nudged
 from tools.hunt.outcome import AGREED, BASE, REFUSED, WRONG, CaseResult, Outcome, Raw, attempt
-from tools.hunt.simulating import RUNS, Free, nudged
+from tools.hunt.simulating import RUNS
 from tools.hunt.subject import Family, Subject, all_families
 from tools.hunt.sweeping import HEALTHY, SWEEPS, Driven
 

@@ -1,4 +1,4 @@
-"""One mechanism in other words: other frames, world, order, ends exchanged, a base between it and ground.
+"""One mechanism in other words: other frames, another world, a base between it and ground.
 
 Each function makes a new mechanism, with bodies of its own, that moves alike. A frame P of a body, given in its old
 frame as (x, y, angle), takes a marker M to P^-1 M; G is the new frame of ground, so a start pose S becomes G^-1 S P and
@@ -39,20 +39,6 @@ ANGLES_OF_BODIES = {
     "force",
 }
 """Kinds that name bodies, and that this file knows how to turn."""
-SYMMETRIC = {
-    "revolute",
-    "weld",
-    "distance",
-    "angle_lock",
-    "prismatic",
-    "belt",
-    "spring",
-    "curve_of_length",
-    "gravitation",
-    "drive_distance",
-    "rope",
-}
-"""Kinds whose ends may be exchanged as they are; limits change their sign."""
 
 
 def after(first: Pose, second: Pose) -> Pose:
@@ -198,61 +184,6 @@ def _in_old_words(
         return out
 
     return seen
-
-
-# -- order and ends -----------------------------------------------------------------------------------------------
-
-
-def shuffled(m: Mechanism, rng: np.random.Generator) -> Mechanism:
-    """Bodies, joints, drivers and forces in another order."""
-    out = seen_from(m, {})
-    for name in ("bodies", "joints", "drivers", "forces", "contacts"):
-        table = getattr(out, name)
-        keys = list(table)
-        order = [keys[k] for k in rng.permutation(len(keys))]
-        if name == "bodies":
-            order = ["ground", *(key for key in order if key != "ground")]
-        entries = {key: table[key] for key in order}
-        table.clear()
-        table.update(entries)
-    return out
-
-
-def exchanged(m: Mechanism, rng: np.random.Generator) -> Mechanism:
-    """First and second marker exchanged of half of what allows it."""
-    out = seen_from(m, {})
-    rubbed = {force.params.get("joint") for force in out.forces.values()}
-    for table in (out.joints, out.drivers, out.forces, out.contacts):
-        for name, one in table.items():
-            if rng.random() < 0.5 and name not in rubbed:
-                table[name] = _turned_round(one)
-    return out
-
-
-def _turned_round(one: Any) -> Any:
-    """The same joint or force with its ends exchanged; as it is where the kind does not allow it."""
-    params, kind = dict(one.params), one.kind.name
-    if kind == "drive_relative_angle":
-        return replace(one, i=one.j, j=one.i, motion=raised(one.motion, 0.0, sign=-1.0))
-    if kind == "torsion_spring" and "free_angle" not in one.laws:
-        params["free_angle"] = -params.get("free_angle", 0.0)
-        return replace(one, i=one.j, j=one.i, params=params)
-    if kind in ("gear_pair", "rigid_discs"):
-        if params.get("internal") or params.get("inside"):
-            return one
-    elif kind not in SYMMETRIC:
-        return one
-    if "radius_i" in params:
-        params["radius_i"], params["radius_j"] = params["radius_j"], params["radius_i"]
-    if params.get("phase") is not None:
-        params["phase"] = tuple(reversed(params["phase"]))
-    if params.get("limits") is not None:
-        low, high = params["limits"]
-        params["limits"] = (None if high is None else -high, None if low is None else -low)
-    return replace(one, i=one.j, j=one.i, params=params)
-
-
-# -- a base -------------------------------------------------------------------------------------------------------
 
 
 def on_a_base(m: Mechanism, world: Pose, mass: float = 0.0) -> Mechanism:

@@ -4,137 +4,28 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from mbsd import Mechanism
 from mbsd.dynamics.simulate import integrator_named
-from mbsd.errors import MechanismError, SimulationError
+from mbsd.errors import SimulationError
 from mbsd.integrators.kind import INTEGRATORS
-from mbsd.solution import Solution
 from mbsd.variants import started_at
-from tools.hunt.agreement import NUDGE, SAME, SLACK, Growth, Verdict, Words, compare_free
+from tools.hunt.agreement import Words
 from tools.hunt.changed import there_and_back
 from tools.hunt.checks import balanced, closed, finite
-from tools.hunt.described import back, duplicate, exchanged, on_a_base, seen_from, shuffled, turnable
+from tools.hunt.described import back, duplicate, on_a_base, seen_from, turnable
+from tools.hunt.free_case import OUTPUTS, TOLERANCE, Free
 from tools.hunt.outcome import AGREED, REFUSED, UNCLEAR, WRONG, Outcome, attempt
-from tools.hunt.refusals import cannot_be_saved, expected_refusal
-from tools.hunt.subject import Subject
+from tools.hunt.refusals import cannot_be_saved
+from tools.hunt.reordered import exchanged, shuffled
 from tools.hunt.sweeping import HEALTHY, random_frames, random_pose
 
-TOLERANCE = 1e-9
-OUTPUTS = 60
 STEPS = (1, 2, 3, 5, 12, 30, 360, 1440)
 FIXED_STEPS = 400
 """Of methods without an error estimate, over the duration; then twice as many."""
-
-
-@dataclass
-class Free:
-    """A case under way."""
-
-    subject: Subject
-    rng: np.random.Generator
-    first: Solution | None = None
-    refused: MechanismError | None = None
-    growth: Growth | None = None
-    told: list[str] = field(default_factory=list)
-
-    @property
-    def m(self) -> Mechanism:
-        """As built, but that it starts at the closed pose and consistent velocities of the first solution."""
-        return self.subject.m
-
-    @property
-    def grid(self) -> np.ndarray:
-        """(T,) outputs."""
-        return np.linspace(0.0, self.subject.duration, OUTPUTS + 1)
-
-    @property
-    def margin(self) -> float:
-        """Least singularity margin seen."""
-        return 0.0 if self.first is None else float(self.first.singularity_margin.min())
-
-    def touches(self) -> bool:
-        """Whether events decide the motion."""
-        return "contacts" in self.subject.traits
-
-    def run(self, m: Mechanism, **options: Any) -> tuple[Solution | None, MechanismError | None]:
-        """Simulate over the case's outputs, with its tolerance, unless said otherwise."""
-        options = {"times": self.grid, "tolerance": TOLERANCE} | options
-        return attempt(lambda: m.simulate(**options))
-
-    def compared(self, name: str, m: Mechanism, words: Words = SAME, **options: Any) -> Outcome:
-        """Simulate ``m`` and compare."""
-        other, error = self.run(m, **options)
-        if error is not None:
-            return self.refusal(name, error)
-        assert other is not None
-        return self.agreement(name, other, words, float(options.get("tolerance", TOLERANCE)))
-
-    def agreement(self, name: str, other: Solution, words: Words, tolerance: float) -> Outcome:
-        """A solution against the first one."""
-        problems = finite(other) or closed(other)
-        if problems:
-            return Outcome(name, WRONG, "against its own equations", "; ".join(problems))
-        if self.first is None or self.growth is None:
-            margin = float(other.singularity_margin.min())
-            if margin < HEALTHY or {"stiff", "contacts"} & self.subject.traits:
-                return Outcome(name, AGREED, "proved what was refused as built")
-            return Outcome(name, WRONG, "solved, but refused as built", f"margin {margin:.3g}; {self.refused}")
-        verdict = self.verdict(other, words, tolerance)
-        if verdict.agrees:
-            return Outcome(name, AGREED) if verdict.compared else Outcome(name, UNCLEAR, "too sensitive")
-        if self.less_sure():
-            verdict = self.verdict(other, words, tolerance)
-            if verdict.agrees:
-                return Outcome(name, AGREED if verdict.compared else UNCLEAR, "sensitive")
-        return Outcome(name, WRONG, "differs", verdict.words)
-
-    def verdict(self, other: Solution, words: Words, tolerance: float, slack: float = SLACK) -> Verdict:
-        """Of a comparison with the first solution."""
-        assert self.first is not None
-        assert self.growth is not None
-        return compare_free(self.first, other, self.growth, TOLERANCE + tolerance, words, slack)
-
-    def less_sure(self) -> bool:
-        """Measure the growth of errors by further nudges; False if there is nothing new to learn."""
-        if self.told or self.first is None or self.growth is None:
-            return False
-        self.told.append("nudged again")
-        for size in (-1.0, 10.0, 0.1):
-            other, _ = self.run(nudged(self.m, size))
-            if other is not None:
-                self.growth = self.growth.larger(Growth.between(self.first, other))
-        return True
-
-    def refusal(self, name: str, error: MechanismError) -> Outcome:
-        """A refusal where the first solution was solved, or was refused too."""
-        kind = type(error).__name__
-        if self.first is None:
-            return Outcome(name, REFUSED, f"{kind}, as built too", str(error))
-        if expected_refusal(error):
-            return Outcome(name, REFUSED, f"{kind}, what a method is not made for", str(error))
-        if self.margin < HEALTHY and isinstance(error, SimulationError):
-            return Outcome(name, REFUSED, f"{kind} near a singular pose, solved as built", str(error))
-        return Outcome(name, WRONG, f"refused ({kind}), solved as built", str(error))
-
-
-def nudged(m: Mechanism, size: float = 1.0) -> Mechanism:
-    """Velocities and gravity changed by ``size`` NUDGE of themselves and of 1 m/s and 10 m/s^2."""
-    from dataclasses import replace
-
-    out, by = duplicate(m), size * NUDGE
-    gx, gy = out.gravity or (0.0, 0.0)
-    out.gravity = gx * (1 + by) + 10 * by, gy * (1 + by) + 7 * by
-    for k, (name, old) in enumerate(out.velocities.items()):
-        turn = by * (1.0 + abs(old.omega)) * (1.0 if k % 2 else -0.7)
-        out.velocities[name] = replace(old, omega=old.omega + turn)
-    return out
-
 
 Variation = Callable[[Free], Outcome]
 RUNS: dict[str, Variation] = {}

@@ -15,9 +15,10 @@ from mbsd.solution import Solution
 from tools.hunt.agreement import SAME, Words, compare_driven
 from tools.hunt.changed import there_and_back
 from tools.hunt.checks import driven_problems
-from tools.hunt.described import Pose, back, duplicate, exchanged, on_a_base, seen_from, shuffled, turnable
+from tools.hunt.described import Pose, back, duplicate, on_a_base, seen_from, turnable
 from tools.hunt.outcome import AGREED, REFUSED, UNCLEAR, WRONG, Outcome, attempt
 from tools.hunt.refusals import cannot_be_saved, expected_refusal
+from tools.hunt.reordered import exchanged, shuffled
 from tools.hunt.subject import Subject
 
 A_TURN = 360
@@ -77,6 +78,8 @@ class Driven:
         return Outcome(name, AGREED)
 
     def _solved_though_refused(self, name: str, other: Solution) -> Outcome:
+        if other.t[-1] < self.grid[-1]:
+            return Outcome(name, UNCLEAR, "ends before what was refused as built, perhaps")
         margin = float(other.singularity_margin.min())
         if margin < HEALTHY or self.subject.distance < HEALTHY:
             return Outcome(name, AGREED, "proved what was refused as built, near a singular pose")

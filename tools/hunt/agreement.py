@@ -8,14 +8,16 @@ Driven motions. Newton-Raphson ends below 1e-12 of the mechanism's size, closed 
 residual, which the Jacobian's inverse turns into an error of the pose of about the residual times 1 / margin, margin
 the ratio of its least to its largest singular value. Velocities solve with the same Jacobian at that pose and lose
 1 / margin again, accelerations, reactions and efforts twice. So with e = DRIVEN / margin the bounds are e, e / margin
-and e / margin^2 of the largest value of their kind. Instants where that is above USELESS are not compared.
+and e / margin^2 of the largest value of their kind. Instants where that is above USELESS are not compared. Where joints
+are redundant, the rows that are solved are only some of all, worse conditioned than the margin of all tells: there e
+is DRIVEN_REDUNDANT / margin.
 
 Free motions. A tolerance bounds the error of a step, and the motion carries it on. How much is measured: the same
 mechanism is simulated with its velocities and its gravity changed by NUDGE = 1e-6, and what comes of it divided by
 NUDGE is the growth of errors. The bound is SLACK tolerance (growth + largest value), for each kind of number by
 itself; the tolerance is the sum of both solutions'. SLACK = 1000 is the sum over a few hundred steps, each of which
 may err by the tolerance. Chaotic motions have a growth that makes the bound useless after some time; instants where it
-is more than USELESS = 1e-2 of the largest value are not compared.
+is more than USELESS = 1e-3 of the largest value are not compared.
 """
 
 from __future__ import annotations
@@ -25,13 +27,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from mbsd import Mechanism
 from mbsd.solution import Solution
 from tools.hunt.described import BASE, NOWHERE, Pose
 
-DRIVEN = 1e-11
+DRIVEN, DRIVEN_REDUNDANT = 1e-11, 1e-9
 SLACK = 1000.0
 NUDGE = 1e-6
-USELESS = 1e-2
+USELESS = 1e-3
 
 Numbers = dict[str, np.ndarray]
 
@@ -47,6 +50,15 @@ class Words:
 
 
 SAME = Words()
+
+
+def turned_drivers(first: Mechanism, other: Mechanism) -> frozenset[str]:
+    """Drivers of relative angles whose bodies changed places."""
+    return frozenset(
+        name
+        for name, driver in other.drivers.items()
+        if driver.kind.name == "drive_relative_angle" and driver.i.body.name != first.drivers[name].i.body.name
+    )
 
 
 def numbers(sol: Solution, first: Solution, words: Words, rows: np.ndarray, first_rows: np.ndarray) -> Numbers:
@@ -167,7 +179,7 @@ def _whose(first: Solution, key: str, column: int) -> str:
 def driven_limits(first: Solution, rows: np.ndarray, size: dict[str, float], loosened: float) -> dict[str, np.ndarray]:
     """Bounds of a driven motion; ``loosened`` is added to DRIVEN, as the tolerance of an integrator."""
     margin = np.clip(first.singularity_margin[rows], 1e-12, None)
-    e = (DRIVEN + loosened) / margin
+    e = ((DRIVEN_REDUNDANT if first.mobility.redundant_rows else DRIVEN) + loosened) / margin
     out = {}
     for key, largest in size.items():
         limit = e / margin ** POWERS[key]

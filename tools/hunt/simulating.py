@@ -13,7 +13,7 @@ from mbsd.dynamics.simulate import integrator_named
 from mbsd.errors import SimulationError
 from mbsd.integrators.kind import INTEGRATORS
 from mbsd.variants import started_at
-from tools.hunt.agreement import Words
+from tools.hunt.agreement import Words, turned_drivers
 from tools.hunt.changed import there_and_back
 from tools.hunt.checks import balanced, closed, finite
 from tools.hunt.described import back, duplicate, on_a_base, seen_from, turnable
@@ -73,7 +73,8 @@ def _order(case: Free) -> Outcome:
 
 @variation("ends exchanged")
 def _ends(case: Free) -> Outcome:
-    return case.compared("ends exchanged", exchanged(case.m, case.rng), Words({}))
+    m = exchanged(case.m, case.rng)
+    return case.compared("ends exchanged", m, Words({}, turned_drivers(case.m, m)))
 
 
 def _outputs(count: int) -> Variation:

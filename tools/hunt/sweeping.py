@@ -12,7 +12,7 @@ import numpy as np
 from mbsd import Mechanism
 from mbsd.errors import MechanismError
 from mbsd.solution import Solution
-from tools.hunt.agreement import SAME, Words, compare_driven
+from tools.hunt.agreement import SAME, Words, compare_driven, turned_drivers
 from tools.hunt.changed import there_and_back
 from tools.hunt.checks import driven_problems
 from tools.hunt.described import Pose, back, duplicate, on_a_base, seen_from, turnable
@@ -163,12 +163,7 @@ def _order(case: Driven) -> Outcome:
 @variation("ends exchanged")
 def _ends(case: Driven) -> Outcome:
     m = exchanged(case.m, case.rng)
-    turned = frozenset(
-        name
-        for name, driver in m.drivers.items()
-        if driver.kind.name == "drive_relative_angle" and driver.i.body.name != case.m.drivers[name].i.body.name
-    )
-    return case.against_first("ends exchanged", m, case.grid, Words({}, turned))
+    return case.against_first("ends exchanged", m, case.grid, Words({}, turned_drivers(case.m, m)))
 
 
 @variation("all at once")

@@ -98,6 +98,8 @@ def _free(subject: Subject, rng: np.random.Generator, result: CaseResult, every:
         result.outcomes.append(Outcome(BASE, REFUSED, type(case.refused).__name__, str(case.refused)))
     else:
         problems = finite(case.first) or closed(case.first)
+        if not problems and subject.truth is not None:
+            problems = subject.truth(case.first)
         result.outcomes.append(
             Outcome(BASE, WRONG, "against its own equations", "; ".join(problems))
             if problems

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from scipy.integrate import solve_ivp
 
 from mbsd import Mechanism, constant_rate, curve, harmonic
 from mbsd.body import Body
+from mbsd.solution import Solution
 from tests.assur_models import MODELS
 from tests.random_linkages import linkage
 from tools.hunt.mechanisms.machines import solid
@@ -143,6 +145,43 @@ def with_friction(rng: np.random.Generator) -> Subject:
         )
     traits = {"sticks", "contacts"} if sticks else {"stiff"}
     return Subject(m, float(rng.uniform(0.1, 0.4)), False, traits=frozenset(traits))
+
+
+@family("four-bars in a row, free")
+def four_bars_in_a_row(rng: np.random.Generator) -> Subject:
+    """One to five parallelograms of equal bars swing through the poses where all lie flat, as one pendulum.
+
+    With n of them, w the angle of the n + 1 rods:  ((n + 1) / 3 + n) w'' = -g ((n + 1) / 2 + n) cos(w).
+    """
+    count, length = int(rng.integers(1, 6)), float(rng.uniform(0.3, 1.5))
+    m, start, speed = Mechanism("row", (0.0, -9.81)), float(rng.uniform(0.5, 2.6)), float(rng.uniform(-2, 2))
+    for k in range(count + 1):
+        bar = m.bar(f"rod{k}", length, 1.0)
+        m.revolute(f"foot{k}", m.ground.at(k * length, 0), bar.start)
+        m.start_near(**{bar.name: math.degrees(start)})
+        m.start_moving(**{bar.name: speed})
+        if k:
+            deck = m.bar(f"deck{k}", length, 1.0)
+            m.revolute(f"left{k}", m.bodies[f"rod{k - 1}"].end, deck.start)
+            m.revolute(f"right{k}", deck.end, bar.end)
+            m.start_near(**{deck.name: 0.0})
+    pull = 9.81 * ((count + 1) / 2 + count) / (((count + 1) / 3 + count) * length)
+
+    def judge(sol: Solution) -> list[str]:
+        exact = solve_ivp(
+            lambda t, y: (y[1], -pull * np.cos(y[0])),
+            (0.0, sol.t[-1]),
+            (start, speed),
+            method="DOP853",
+            t_eval=sol.t,
+            rtol=1e-13,
+            atol=1e-13,
+        )
+        off = np.abs(sol.body(f"rod{count}").theta - exact.y[0])
+        k = int(np.argmax(off))
+        return [] if off[k] < 1e-6 else [f"the last rod is {off[k]:.3g} rad off at t = {sol.t[k]:.6g} s"]
+
+    return Subject(m, float(rng.uniform(0.5, 2.0)), False, truth=judge, traits=frozenset({"bifurcates"}))
 
 
 @family("redundant joints, free")

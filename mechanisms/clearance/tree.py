@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-SIDES = 24
+SIDES = 4
 """Facets longer than the piece's diameter over this are halved: long ones would be near to everything."""
 SHORTEST = 1.0
 """No facet is halved below this length in the plane (mm)."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import replace
 
 import msgspec
@@ -16,6 +15,7 @@ from mechanisms.clearance.facets import nearest, separation
 from mechanisms.clearance.path import BodyPath, RelativePath, paths, points, relative
 from mechanisms.clearance.pieces import MeshPiece
 from mechanisms.clearance.search import RESOLUTION as SHARP
+from mechanisms.clearance.search import Search
 from mechanisms.clearance.spans import Spans
 from mechanisms.clearance.sweep import Sweep
 from mechanisms.clearance.tree import FacetTree
@@ -295,9 +295,7 @@ def test_a_cam_and_a_roller_that_run_close_all_the_time(gap: float, steps: int) 
         disc("follower", "roller", 0, 0, 10.0, 1.0, 7.0, 120),
     )
     sagitta = 30.0 * (1 - math.cos(math.pi / 240)) + 10.0 * (1 - math.cos(math.pi / 120))
-    begun = time.perf_counter()
     (pair,) = checked([cam, roller], motion).pairs
-    assert time.perf_counter() - begun < 30.0
     assert pair.proof == "motion"
     assert gap - 1e-6 <= 1e3 * pair.gap <= gap + sagitta
     assert 1e3 * (pair.gap - pair.proven) <= SHARP + 1e-3
@@ -440,9 +438,33 @@ def test_every_group_of_facets_holds_its_facets() -> None:
         while node:
             corners = tree.facets[leaf]
             assert np.hypot(*(corners[:, :2] - tree.centre[node]).T).max() <= tree.radius[node] + 1e-9
+            inside = (corners[:, :2] - tree.box_centre[node]) @ tree.axes.T
+            assert (np.abs(inside) <= tree.box_half[node] + 1e-9).all()
             assert tree.low[node] <= corners[:, 2].min()
             assert corners[:, 2].max() <= tree.high[node]
             node //= 2
+
+
+@pytest.mark.parametrize("tilt", [0.0, 0.4, 1.0])
+def test_a_slider_between_rails_is_proven_by_its_flat_sides(tilt: float) -> None:
+    """It runs 60 mm along its rails, 0.2 mm from each: whole walls are kept apart at once, however far they slide."""
+    times = np.linspace(0.0, 1.0, 41)
+    along = np.array([math.cos(tilt), math.sin(tilt)])
+    way = [f(2 * math.pi * times) for f in (np.sin, np.cos, lambda x: -np.sin(x))]
+    x, vx, ax, y, vy, ay = (0.03 * (2 * math.pi) ** k * u * way[k] for u in along for k in range(3))
+    still = np.zeros_like(times)
+    motion = motion_of(times, slider=(x, y, still + tilt, vx, vy, still, ax, ay, still))
+    slider = box("slider", "slider", 0.0, 0.0, 0.0, (20.0, 10.0, 5.0))
+    turned = np.array([[along[0], -along[1], 0], [along[1], along[0], 0], [0, 0, 1]])
+    rails = [box("ground", f"rail {k}", 0.0, 7.2 * k, 0.0, (100.0, 4.0, 5.0)) for k in (-1, 1)]
+    rails = [MeshPiece("ground", rail.name, rail.triangles @ turned.T) for rail in rails]
+    for pair in checked([slider, *rails], motion).pairs:
+        assert pair.gap == pytest.approx(0.2e-3)
+        assert pair.proven >= 0.2e-3 - SHARP * 1e-3
+    sweep = Sweep(rails[0], slider, paths(motion)["ground"], paths(motion)["slider"])
+    search = Search(sweep.still.sides, sweep.mover.sides, sweep.path, sweep.still.centre)
+    search.run(0.2, 0.0, 1)
+    assert search.looked < 60_000
 
 
 def test_plates_that_face_each_other_count_where_nothing_else_is_nearer() -> None:

@@ -4,12 +4,12 @@ Branch and bound over space and time. A candidate is a group of facets of either
 Within the span every point of the mover stays within e = h^2 / 8 max |a| of the straight line between its ends (h is
 the span's length, a the acceleration that path.py bounds), which gives three tests:
 
-- groups whose upright cylinders stay apart by more than what is sought are dropped; of others the larger group is
-  halved, or the span where the mover travels farther in it than the groups are wide;
+- groups whose upright cylinders or boxes stay apart by more than what is sought are dropped; of others the larger group
+  is halved, or the span where the mover travels farther in it than the groups are wide;
 - of two single facets the gap is measured at the middle of the span: an upper bound of the least gap;
 - a direction that separates two facets by s0 and s1 at the ends of the span separates them by min(s0, s1) - e in
   between: a lower bound. Along the normal of either facet parts may slide past each other as fast as they like and it
-  stays sharp. If it is not enough, the span is halved.
+  stays sharp. If it is not enough, the span is halved. The sides of the boxes do the same for whole groups of facets.
 
 What is left is known to :data:`RESOLUTION`. The cost follows from how much surface runs close to other surface, not
 from how close it runs or how fast.
@@ -57,6 +57,8 @@ class Search:
         self.offset = np.append(offset, 0.0)
         self.spans = Spans(path)
         self.best = self.time = self.proven = self.off = 0.0
+        self.looked = 0
+        """Candidates looked at."""
 
     def run(self, best: float, time: float, poses: int) -> Least:
         """Until nothing is left that could be nearer than what is known, less the resolution.
@@ -67,11 +69,10 @@ class Search:
         spans = np.arange(len(self.spans))
         rows = np.column_stack([np.ones_like(spans), np.ones_like(spans), spans])
         todo = [(rows, np.zeros(len(rows)))]
-        looked = 0
         while todo and self.best > 0:
             rows, low = self._taken(todo)
-            looked += len(rows)
-            if looked > MOST:
+            self.looked += len(rows)
+            if self.looked > MOST:
                 for rest in (*todo, (rows, low)):
                     self._settle(*rest)
                 break
@@ -101,6 +102,8 @@ class Search:
         stray = self.spans.stray(span, self.b.reach[b])
         low = np.maximum(low, self._apart(rows) - stray)
         near = low < self._sought(span)  # False for groups without facets, whose bounds are not numbers
+        low[near] = np.maximum(low[near], self._boxes_apart(rows[near]))
+        near &= low < self._sought(span)
         self._settle(rows[~near], low[~near])
         rows, low, stray = rows[near], low[near], stray[near]
         single = (rows[:, 0] >= self.a.leaves) & (rows[:, 1] >= self.b.leaves)
@@ -133,6 +136,27 @@ class Search:
         bx, by = self.b.centre[b].T
         ax, ay = self.a.centre[a].T + self.offset[:2, None]
         plane = np.hypot(x + c * bx - s * by - ax, y + s * bx + c * by - ay) - self.a.radius[a] - self.b.radius[b]
+        height = np.maximum(self.a.low[a] - self.b.high[b], self.b.low[b] - self.a.high[a])
+        return np.hypot(np.maximum(plane, 0.0), np.maximum(height, 0.0))
+
+    def _boxes_apart(self, rows: np.ndarray) -> np.ndarray:
+        """(n,): how far (mm) the two groups' boxes stay apart over the whole span, along a side of either."""
+        a, b, span = rows.T
+        poses = self.spans.ends[span]
+        centre, half = self.a.box_centre[a] + self.offset[:2], self.a.box_half[a]
+        c, s = np.cos(poses[:, :, 2]), np.sin(poses[:, :, 2])
+        turn = np.moveaxis(np.array([[c, -s], [s, c]]), (0, 1), (2, 3))
+        """(n, 3, 2, 2) at start, middle and end."""
+        gap = poses[:, :, :2] + np.einsum("nkij,nj->nki", turn, self.b.box_centre[b]) - centre[:, None]
+        axes = np.einsum("nkij,xj->nkxi", turn, self.b.axes)
+        plane = np.full(len(rows), -np.inf)
+        for direction in (*np.broadcast_to(self.a.axes[:, None], (2, len(rows), 2)), axes[:, 1, 0], axes[:, 1, 1]):
+            wide = (np.abs(direction @ self.a.axes.T) * half).sum(axis=1)[:, None]
+            wide = wide + (np.abs(np.einsum("nkxi,ni->nkx", axes, direction)) * self.b.box_half[b][:, None]).sum(axis=2)
+            along = np.einsum("nki,ni->nk", gap, direction)
+            for side in (along - wide, -along - wide):
+                plane = np.maximum(plane, np.minimum(side[:, 0], side[:, 2]))
+        plane -= self.spans.push[span] + self.b.reach[b] * self.spans.spin[span]
         height = np.maximum(self.a.low[a] - self.b.high[b], self.b.low[b] - self.a.high[a])
         return np.hypot(np.maximum(plane, 0.0), np.maximum(height, 0.0))
 

@@ -1,7 +1,8 @@
 """The facets of a piece as a tree of upright cylinders: a circle in the plane and a range of heights hold each group.
 
 A turn in the plane leaves such a cylinder as it is, so it bounds its facets at every pose. Node 1 is the root, node k
-has the children 2 k and 2 k + 1, and the leaves are single facets.
+has the children 2 k and 2 k + 1, and the leaves are single facets. Upright boxes along the piece's own axes, those of
+most of its walls, bound the same groups more closely: a slider's cheeks lie flat in them.
 """
 
 from __future__ import annotations
@@ -40,6 +41,24 @@ class FacetTree:
             self.low[nodes], self.high[nodes] = low[:, 2], high[:, 2]
         self.reach = np.hypot(*self.centre.T) + self.radius
         """By node: how far its facets reach from the origin (mm)."""
+        self.axes = _axes_of_walls(facets)
+        """(2, 2): the unit directions of the boxes, one a row."""
+        along = self.facets[:, :, :2] @ self.axes.T
+        least, most = np.full((2 * self.leaves, 2), np.nan), np.full((2 * self.leaves, 2), np.nan)
+        for level in range(self.leaves.bit_length()):
+            nodes, corners = slice(1 << level, 2 << level), along.reshape(1 << level, -1, 2)
+            least[nodes], most[nodes] = np.fmin.reduce(corners, axis=1), np.fmax.reduce(corners, axis=1)
+        self.box_centre, self.box_half = (least + most) / 2 @ self.axes, (most - least) / 2
+        """(nodes, 2): the centre of each box (mm), and half its widths along the axes."""
+
+
+def _axes_of_walls(facets: np.ndarray) -> np.ndarray:
+    """(2, 2): the direction, up to quarter turns, of the normals of most upright area, and the one across it."""
+    wall = np.cross(facets[:, 1] - facets[:, 0], facets[:, 2] - facets[:, 0])[:, :2] @ np.array([1.0, 1j])
+    turned = np.sum(np.abs(wall) * np.exp(4j * np.angle(wall)))
+    angle = float(np.angle(turned)) / 4
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, s], [-s, c]])
 
 
 def _order(centres: np.ndarray) -> np.ndarray:

@@ -15,7 +15,7 @@ import os
 import time
 from functools import partial
 
-from shared.console import progress, run_cli, say
+from shared.console import progress, run_cli, say, warn
 from shared.errors import UserError
 from shared.paths import out_root
 from tools.hunt import case
@@ -25,6 +25,8 @@ from tools.hunt.report import Tally
 
 SEEDS = 1_000_000
 """Cases of one --seed have numbers from seed * SEEDS on."""
+EACH = 30.0
+"""s after which the report is written again, so that a hunt that is killed has not been in vain."""
 
 
 def main() -> int:
@@ -49,17 +51,19 @@ def main() -> int:
 def hunt(n: int, seed: int, jobs: int, limit: float = LIMIT, kind: str | None = None) -> int:
     """n cases, of one kind if it is given; 0 if none was wrong or hung."""
     tally, began, stopped = Tally(), time.monotonic(), False
-    seeds = range(seed * SEEDS, seed * SEEDS + n)
+    seeds, path, written = range(seed * SEEDS, seed * SEEDS + n), out_root() / "hunt.json", time.monotonic()
     try:
         with progress("hunt", n, "case") as shown:
             for result in results(seeds, partial(case.run, name=kind), jobs, limit):
-                tally.add(result)
-                found = tally.count(WRONG) + tally.count(HUNG)
-                shown.advance(1, f"{found} found" if found else "")
+                for outcome in tally.add(result):
+                    warn("hunt", f"{outcome.state}: case {result.seed} ({result.family}), {outcome.variation}")
+                shown.advance(1, f"{len(tally.findings)} found" if tally.findings else "")
+                if time.monotonic() - written > EACH:
+                    tally.write(path, seed, n, time.monotonic() - began)
+                    written = time.monotonic()
     except KeyboardInterrupt:
         stopped = True
     seconds = time.monotonic() - began
-    path = out_root() / "hunt.json"
     tally.write(path, seed, n, seconds)
     tally.show(seconds)
     say("hunt", f"{path}; one case in detail: python -m tools.hunt --case NUMBER")

@@ -10,7 +10,7 @@ from typing import Any
 
 from shared.console import duration
 from shared.files import write_bytes
-from tools.hunt.outcome import AGREED, HUNG, REFUSED, STATES, WRONG, CaseResult, Outcome
+from tools.hunt.outcome import HUNG, REFUSED, STATES, UNCLEAR, WRONG, CaseResult, Outcome
 
 SHOWN = 20
 """Findings that the table names; the file has all."""
@@ -28,8 +28,10 @@ class Tally:
         self.not_compared: Counter[str] = Counter()
         self.findings: list[tuple[CaseResult, Outcome]] = []
 
-    def add(self, result: CaseResult) -> None:
-        """One more case."""
+    def add(self, result: CaseResult) -> list[Outcome]:
+        """One more case; what it found."""
+        found = [outcome for outcome in result.outcomes if outcome.state in (WRONG, HUNG)]
+        self.findings += [(result, outcome) for outcome in found]
         self.cases[result.family] += 1
         self.seconds[result.family] += result.seconds
         for outcome in result.outcomes:
@@ -37,10 +39,9 @@ class Tally:
             self.variations[outcome.variation][outcome.state] += 1
             if outcome.state == REFUSED:
                 self.reasons[outcome.reason] += 1
-            elif outcome.state in (WRONG, HUNG):
-                self.findings.append((result, outcome))
-            elif outcome.state != AGREED:
+            elif outcome.state == UNCLEAR:
                 self.not_compared[outcome.reason] += 1
+        return found
 
     def count(self, state: str) -> int:
         """Solutions that came out so."""

@@ -105,6 +105,7 @@ def driven_problems(sol: Solution, subject: Subject) -> list[str]:
         out += subject.truth(sol)
     out += one_assembly(sol, subject)
     per_turn = (len(sol.t) - 1) / subject.turns
-    if per_turn >= DENSE and sol.singularity_margin.min() > RESOLVED < subject.distance:
+    even = len(sol.t) > 1 and np.ptp(np.diff(sol.t)) < 1e-6 * sol.t[-1]
+    if even and per_turn >= DENSE and sol.singularity_margin.min() > RESOLVED < subject.distance:
         out += smooth(sol)
     return out

@@ -56,7 +56,6 @@ def test_whatever_ends_run_all_ends_its_stages(tmp_path: Path, victim: str, how:
         env=clean | {"PYTHONPATH": str(ROOT)},
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a shell's "make test &" ignores it
     )
     try:
         wait_until(left.exists)

@@ -94,8 +94,6 @@ def test_long_runs_say_where_they_are(monkeypatch: pytest.MonkeyPatch, caplog: p
 
 
 RUNNING = """
-import signal
-signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background may have it ignored
 from tests.test_pace import pendulum
 m = pendulum()
 {extra}

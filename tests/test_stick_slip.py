@@ -343,7 +343,7 @@ def test_what_cannot_be_is_refused() -> None:
             m.simulate(0.1, method=method)
     with pytest.raises(ModelError, match="joints that stick"):
         m.simulate(0.1, formulation="independent")
-    with pytest.raises(ModelError, match=r"no friction of a joint 'rab'; there is: rub"):
+    with pytest.raises(ModelError, match=r"no friction of a joint 'rab', did you mean 'rub'"):
         m.simulate(0.1).friction("rab")
 
 

@@ -45,6 +45,9 @@ def run(name: str) -> None:
     Raises UserError naming the solid, the number and the remedy if a solid is refused; what was there stays.
     """
     out = Out(name)
+    if not (mechanism_folder(out.name) / "parts.py").is_file():
+        say("parts", f"{out.name}: there is no parts.py, so none are made")
+        return
     before = set(sys.modules)
     with recording() as recorder:
         given = params(out.name)

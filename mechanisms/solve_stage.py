@@ -3,42 +3,42 @@
 from __future__ import annotations
 
 import sys
-import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from mechanisms import loading
+from mechanisms import loading, solving
 from mechanisms.recording import recording
 from shared import console, contract
-from shared.errors import UserError
 from shared.files import sources_hash
 from shared.inputs import Inputs, observed, sources_state
 from shared.paths import ROOT, Out, mechanism_folder
 from shared.skeleton import write_skeleton
 from shared.stages import Stage, key_of, versions
-from shared.suggestions import did_you_mean
 
 if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
+    from mbsd import Solution
 
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite")
+_STAGE = ("solve_stage", "solving", "masses", "estimated_masses", "motion_file", "skeleton_file")
 SOURCES = [
-    *(ROOT / "mechanisms" / name for name in ("solve_stage.py", "skeleton_file.py")),
+    *(ROOT / "mechanisms" / f"{name}.py" for name in _STAGE),
     *(ROOT / "shared" / name for name in ("contract.py", "jsonfile.py", "skeleton.py")),
 ]
 
 
 def run(name: str) -> None:
-    """Solve one mechanism unless its files already stand for the same inputs. Raises UserError."""
+    """Solve one mechanism unless its files already stand for the same inputs; parts need not be there.
+
+    Raises UserError.
+    """
     out = Out(name)
-    parts = contract.read_parts(out.parts, out.name)
+    parts = contract.read_parts(out.parts, out.name) if out.parts.is_file() else None
     notes = Stage(out, "solve", "", []).notes()
     known = observed(notes.get("inputs"))
     if known and Stage(out, "solve", _key(parts, known), [out.motion, out.skeleton]).is_fresh():
         console.say("solve", f"{name}: nothing to do")
         return
     from mechanisms.loaded_files import loaded_inputs
+    from mechanisms.motion_file import to_motion
     from mechanisms.skeleton_file import skeleton_of
 
     before = set(sys.modules)
@@ -56,9 +56,9 @@ def run(name: str) -> None:
     console.say("solve", f"{name}: {_summary(solution)}")
 
 
-def _key(parts: contract.Parts, inputs: Inputs) -> str:
+def _key(parts: contract.Parts | None, inputs: Inputs) -> str:
     """Hash of all that the motion follows from; ``inputs``: what mechanism.py is made of, and what it reads."""
-    masses = {body: (solids.mass, solids.z) for body, solids in parts.bodies.items()}
+    masses = parts and {body: (solids.mass, solids.z) for body, solids in parts.bodies.items()}
     return key_of(
         sources_hash(*SOURCES),
         sources_state("mbsd"),
@@ -69,162 +69,15 @@ def _key(parts: contract.Parts, inputs: Inputs) -> str:
     )
 
 
-def solve(name: str, parts: contract.Parts) -> Solution:
-    """Build the mechanism, give it the masses of its parts and solve its motion.
+def solve(name: str, parts: contract.Parts | None) -> Solution:
+    """Build the mechanism, give it masses, say where those are from, and solve its motion. Raises UserError."""
+    from mechanisms.masses import give_masses
 
-    ``mechanism.py`` may define ``motion(m, p) -> Solution`` to say what is solved; without it one period of the
-    driver is. Raises UserError.
-    """
-    from mbsd import MechanismError
-    from mbsd.solution import Solution
-
-    module = loading.load(name, "mechanism")
-    p = loading.params(name)
-    try:
-        m = build(name, module, p)
-        apply_masses(m, parts)
-        with loading.author_code(name), _model_warnings_said(name):
-            motion: Any = getattr(module, "motion", None)
-            solution = motion(m, p) if motion else m.sweep()
-    except MechanismError as error:
-        raise UserError(str(error)) from error
-    if not isinstance(solution, Solution):
-        raise UserError(
-            f"mechanisms/{name}/mechanism.py: motion() returned {_kind(solution)}; it must return a Solution, "
-            "as m.sweep() and m.simulate() do"
-        )
-    _refuse_other(name, m, solution.mechanism)
-    return solution
-
-
-def build(name: str, module: Any, p: Any) -> Mechanism:
-    """The model of ``build(p)`` in ``module``. Raises UserError unless it is a Mechanism called as its folder."""
-    from mbsd import Mechanism
-
-    with loading.author_code(name):
-        m = module.build(p)
-    file = f"mechanisms/{name}/mechanism.py"
-    if not isinstance(m, Mechanism):
-        raise UserError(f"{file}: build() returned {_kind(m)}, not a Mechanism; does it end with 'return m'?")
-    if m.name != name:
-        raise UserError(
-            f"{file}: build() calls its mechanism '{m.name}', but the folder is {name}, and files are found by the "
-            f'folder\'s name; write Mechanism("{name}")'
-        )
-    return m
-
-
-def _refuse_other(name: str, m: Mechanism, solved: Mechanism) -> None:
-    """What motion() solved may be a variant of the model, with the same name and bodies."""
-    if solved is not m and (solved.name != name or set(solved.bodies) != set(m.bodies)):
-        raise UserError(
-            f"mechanisms/{name}/mechanism.py: motion() solved '{solved.name}' with the bodies "
-            f"{', '.join(solved.bodies)}; solve the mechanism it is given, '{name}', or a variant with the same bodies"
-        )
-
-
-@contextmanager
-def _model_warnings_said(name: str) -> Iterator[None]:
-    """Say what the solver warns of in a line each, without the place in this file where it was called."""
-    from mbsd import ModelWarning
-
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", ModelWarning)
-        try:
-            yield
-        finally:
-            for warning in caught:
-                if issubclass(warning.category, ModelWarning):
-                    console.warn("solve", str(warning.message))
-    for warning in caught:
-        if not issubclass(warning.category, ModelWarning):
-            warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
-
-
-def _kind(value: object) -> str:
-    return "None" if value is None else f"a {type(value).__name__}"
-
-
-def apply_masses(m: Mechanism, parts: contract.Parts) -> None:
-    """Masses from CAD, by body name. Raises UserError if names do not match."""
-    bodies = set(m.bodies) - {"ground"}
-    solids = set(parts.bodies) - {"ground"}
-    for missing, where, there in ((bodies - solids, "parts.py", solids), (solids - bodies, "mechanism.py", bodies)):
-        if missing:
-            raise UserError(
-                f"{m.name}: {where} has no body '{min(missing)}'; it has: {', '.join(sorted(there)) or 'none'}"
-                f"{did_you_mean(min(missing), there) or '.'} mechanism.py and parts.py must name the same bodies"
-            )
-    for name in bodies:
-        mass = parts.bodies[name].mass
-        m.set_mass(name, mass.mass, mass.com, mass.inertia)
-
-
-def to_motion(solution: Solution, parts: contract.Parts, inputs: str, packages: dict[str, str]) -> contract.Motion:
-    """The solution as the contract has it: plain lists, author's frames."""
-    import mbsd
-
-    m = solution.mechanism
-    frame_fields = ("x", "y", "theta", "vx", "vy", "omega", "ax", "ay", "alpha")
-    bodies = {
-        name: contract.BodyMotion(
-            **{field: getattr(solution.body(name), field).tolist() for field in frame_fields},
-            z=parts.bodies[name].z,
-            mass=body.mass,
-            com=body.com,
-            inertia=body.inertia,
-        )
-        for name, body in m.bodies.items()
-        if name != "ground"
-    }
-    joints = {
-        name: contract.JointMotion(
-            kind=joint.kind.name,
-            bodies=joint.bodies,
-            **{field: getattr(solution.joint(name), field).tolist() for field in ("x", "y", "fx", "fy", "torque")},
-        )
-        for name, joint in m.joints.items()
-    }
-    drivers = {
-        name: contract.DriverMotion(
-            kind=driver.kind.name.removeprefix("drive_"),
-            **{field: getattr(solution.driver(name), field).tolist() for field in ("value", "effort", "power")},
-        )
-        for name, driver in m.drivers.items()
-    }
-    points = {
-        name: contract.PointMotion(
-            body=marker.body.name,
-            **{field: getattr(solution.point(name), field).tolist() for field in ("x", "y", "vx", "vy", "ax", "ay")},
-        )
-        for name, marker in m.traces.items()
-    }
-    stats = solution.stats
-    return contract.Motion(
-        mechanism=m.name,
-        provenance=contract.Provenance(inputs=inputs, versions=packages | {"mbsd": mbsd.__version__}),
-        gravity=(float(m.gravity[0]), float(m.gravity[1])) if m.gravity else (0.0, 0.0),
-        period=solution.period,
-        time=solution.t.tolist(),
-        bodies=bodies,
-        joints=joints,
-        drivers=drivers,
-        points=points,
-        energy=contract.Energy(kinetic=solution.energy.kinetic.tolist(), potential=solution.energy.potential.tolist()),
-        events=[
-            contract.EventMark(time=event.time, name=event.name, what=event.what, energy=event.energy)
-            for event in solution.events
-        ],
-        diagnostics=contract.Diagnostics(
-            position_residual=stats.position_residual,
-            velocity_residual=stats.velocity_residual,
-            acceleration_residual=stats.acceleration_residual,
-            power_residual=stats.power_residual,
-            dof=solution.mobility.dof,
-            redundant=list(solution.mobility.redundant),
-            singularity_margin=solution.singularity_margin.tolist(),
-        ),
-    )
+    module, p = loading.load(name, "mechanism"), loading.params(name)
+    m = solving.build(name, module, p)
+    for sentence in give_masses(m, parts)[1]:
+        console.say("solve", f"{name}: {sentence}")
+    return solving.motion_of(name, module, m, p)
 
 
 def _summary(solution: Solution) -> str:

@@ -65,7 +65,8 @@ class BodyMotion(_Strict, kw_only=True):
     ax: Series
     ay: Series
     alpha: Series
-    z: float
+    z: float | None
+    """Height of its layer (m); null where there are no parts yet."""
     mass: NonNegative
     com: tuple[float, float]
     inertia: NonNegative

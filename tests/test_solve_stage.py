@@ -9,7 +9,9 @@ import pytest
 
 from mbsd import Mechanism, angle_reaches, constant_rate
 from mechanisms import loading
-from mechanisms.solve_stage import apply_masses, solve, to_motion
+from mechanisms.masses import give_masses
+from mechanisms.motion_file import to_motion
+from mechanisms.solve_stage import solve
 from shared import contract
 from shared.errors import UserError
 
@@ -37,7 +39,7 @@ def _parts(*names: str) -> contract.Parts:
 
 def test_masses_of_the_parts_reach_model_and_file() -> None:
     m, parts = _mechanism(), _parts("ground", "arm")
-    apply_masses(m, parts)
+    give_masses(m, parts)
     assert (m.bodies["arm"].mass, m.bodies["arm"].com, m.bodies["arm"].inertia) == (0.3, (0.11, 0.01), 2e-4)
     motion = to_motion(m.sweep(steps=8), parts, "key", {"numpy": "2"})
     arm = motion.bodies["arm"]
@@ -125,8 +127,19 @@ def test_events_reach_the_file_with_both_of_their_rows(tmp_path: Path) -> None:
 
 def test_names_that_differ_are_told() -> None:
     with pytest.raises(UserError, match=r"it has: army; did you mean 'army'\? mechanism\.py and parts\.py must name"):
-        apply_masses(_mechanism(), _parts("ground", "army"))
+        give_masses(_mechanism(), _parts("ground", "army"))
     with pytest.raises(UserError, match=r"arm: parts\.py has no body 'arm'; it has: lever"):
-        apply_masses(_mechanism(), _parts("ground", "lever"))
+        give_masses(_mechanism(), _parts("ground", "lever"))
     with pytest.raises(UserError, match=r"arm: mechanism\.py has no body 'lever'"):
-        apply_masses(_mechanism(), _parts("ground", "arm", "lever"))
+        give_masses(_mechanism(), _parts("ground", "arm", "lever"))
+
+
+def test_a_mass_of_mechanism_py_wins_over_that_of_the_parts() -> None:
+    m = _mechanism()
+    m.set_mass("arm", 0.5, (0.1, 0.0), 1e-3)
+    source, (said,) = give_masses(m, _parts("ground", "arm"))
+    assert source == {"arm": "mechanism"}
+    assert (m.bodies["arm"].mass, m.bodies["arm"].com, m.bodies["arm"].inertia) == (0.5, (0.1, 0.0), 1e-3)
+    assert said == "masses of mechanism.py count, not those of the parts: arm 0.5 kg (parts 0.3 kg)"
+    m = _mechanism()
+    assert give_masses(m, _parts("ground", "arm")) == ({"arm": "parts"}, [])

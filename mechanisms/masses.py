@@ -1,0 +1,71 @@
+"""Where the mass of each body is from: mechanism.py, or else its parts, or else an estimate."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from shared.errors import UserError
+from shared.suggestions import did_you_mean
+
+if TYPE_CHECKING:
+    from mbsd import Mechanism
+    from shared.contract import Parts
+
+Source = Literal["mechanism", "parts", "estimate"]
+ALIKE = 1e-9
+"""Masses of mechanism.py and of the parts that differ by less, relatively, are one."""
+
+
+def give_masses(m: Mechanism, parts: Parts | None) -> tuple[dict[str, Source], list[str]]:
+    """Give each body of ``m`` that has no mass that of its parts, or an estimate where there are no parts yet.
+
+    A body whose mass or inertia mechanism.py gives keeps it. Returns where each mass is from, and a sentence on each
+    thing that a user may not expect. Raises UserError if parts and mechanism do not name the same bodies.
+    """
+    if parts is not None:
+        _refuse_other_bodies(m, parts)
+    given = [name for name, body in m.bodies.items() if body.mass > 0 or body.inertia > 0]
+    source: dict[str, Source] = {}
+    for name in m.bodies:
+        if name != "ground":
+            source[name] = "mechanism" if name in given else "estimate" if parts is None else "parts"
+    if parts is None:
+        return source, _estimate(m, [name for name in source if source[name] == "estimate"])
+    for name in source:
+        if source[name] == "parts":
+            mass = parts.bodies[name].mass
+            m.set_mass(name, mass.mass, mass.com, mass.inertia)
+    differing = [
+        f"{name} {m.bodies[name].mass:.4g} kg (parts {parts.bodies[name].mass.mass:.4g} kg)"
+        for name in source
+        if source[name] == "mechanism" and _differ(m.bodies[name].mass, parts.bodies[name].mass.mass)
+    ]
+    return source, [f"masses of mechanism.py count, not those of the parts: {', '.join(differing)}"] * bool(differing)
+
+
+def _estimate(m: Mechanism, names: list[str]) -> list[str]:
+    """Give these bodies the mass of plates; the sentence that says so."""
+    if not names:
+        return []
+    from mechanisms.estimated_masses import estimated_masses
+
+    estimates = estimated_masses(m)
+    for name in names:
+        m.set_mass(name, estimates[name].mass, estimates[name].com, estimates[name].inertia)
+    masses = ", ".join(f"{name} {estimates[name].mass:.3g} kg" for name in names)
+    return [f"no parts yet, so masses are estimated as aluminium bars and plates through the markers: {masses}"]
+
+
+def _differ(one: float, other: float) -> bool:
+    return abs(one - other) > ALIKE * max(one, other)
+
+
+def _refuse_other_bodies(m: Mechanism, parts: Parts) -> None:
+    bodies = set(m.bodies) - {"ground"}
+    solids = set(parts.bodies) - {"ground"}
+    for missing, where, there in ((bodies - solids, "parts.py", solids), (solids - bodies, "mechanism.py", bodies)):
+        if missing:
+            raise UserError(
+                f"{m.name}: {where} has no body '{min(missing)}'; it has: {', '.join(sorted(there)) or 'none'}"
+                f"{did_you_mean(min(missing), there) or '.'} mechanism.py and parts.py must name the same bodies"
+            )

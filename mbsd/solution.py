@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     import pandas
     from matplotlib.axes import Axes
 
+    from mbsd.body import Marker
     from mbsd.drawing.picture import Picture
     from mbsd.mobility import Mobility
     from mbsd.model import Mechanism
@@ -231,6 +232,11 @@ class Solution:
         names = list(self.mechanism.traces)
         self._index(name, names, "traced point")
         marker = self.mechanism.traces[name]
+        return self._frame(self.packed.body_names.index(marker.body.name), (marker.x, marker.y), marker.angle)
+
+    def place(self, marker: Marker) -> FrameView:
+        """Motion of a marker of the mechanism, also of one that is not traced."""
+        self._index(marker.body.name, self.packed.body_names, "body")
         return self._frame(self.packed.body_names.index(marker.body.name), (marker.x, marker.y), marker.angle)
 
     def joint(self, name: str) -> JointView:

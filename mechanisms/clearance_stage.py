@@ -46,7 +46,8 @@ REACH = 5.0
 PACKAGES = ("manifold3d", "numpy", "scipy")
 SOURCES = [
     *(ROOT / "mechanisms" / name for name in ("clearance", "clearance_stage.py", "parts_files.py")),
-    *(ROOT / "shared" / f"{name}.py" for name in ("clearance", "contract", "jsonfile")),
+    *sorted((ROOT / "shared").glob("contract*.py")),
+    *(ROOT / "shared" / f"{name}.py" for name in ("clearance", "jsonfile")),
 ]
 
 

@@ -29,7 +29,7 @@ from shared.stages import Stage, key_of, versions
 from shared.suggestions import did_you_mean
 
 _STAGE = ("parts_stage", "parts_files", "mass_properties", "mesh_check", "traced_params")
-_SHARED = ("contract", "jsonfile")
+_SHARED = ("contract", "contract_base", "contract_parts", "jsonfile")
 SOURCES = [
     ROOT / "shared" / "shapes",
     *(ROOT / "mechanisms" / f"{name}.py" for name in _STAGE),

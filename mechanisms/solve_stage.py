@@ -16,12 +16,14 @@ from shared.stages import Stage, key_of, versions
 
 if TYPE_CHECKING:
     from mbsd import Solution
+    from mechanisms.masses import Source
 
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite")
-_STAGE = ("solve_stage", "solving", "masses", "estimated_masses", "motion_file", "skeleton_file")
+_STAGE = ("solve_stage", "solving", "masses", "estimated_masses", "motion_file", "shapes", "skeleton_file")
 SOURCES = [
     *(ROOT / "mechanisms" / f"{name}.py" for name in _STAGE),
-    *(ROOT / "shared" / name for name in ("contract.py", "jsonfile.py", "skeleton.py")),
+    *sorted((ROOT / "shared").glob("contract*.py")),
+    *(ROOT / "shared" / name for name in ("jsonfile.py", "skeleton.py")),
 ]
 
 
@@ -43,8 +45,8 @@ def run(name: str) -> None:
 
     before = set(sys.modules)
     with recording() as recorder:
-        solution = solve(name, parts)
-        motion = to_motion(solution, parts, "", versions(*PACKAGES))
+        solution, sources = solve(name, parts)
+        motion = to_motion(solution, parts, "", versions(*PACKAGES), sources)
     loaded = loaded_inputs(mechanism_folder(name) / "mechanism.py", f"mechanisms.{name}", before)
     loaded.sources.pop("mbsd", None)  # it counts anyway
     inputs = loaded.joined(recorder.inputs())
@@ -69,15 +71,19 @@ def _key(parts: contract.Parts | None, inputs: Inputs) -> str:
     )
 
 
-def solve(name: str, parts: contract.Parts | None) -> Solution:
-    """Build the mechanism, give it masses, say where those are from, and solve its motion. Raises UserError."""
+def solve(name: str, parts: contract.Parts | None) -> tuple[Solution, dict[str, Source]]:
+    """Build the mechanism, give it masses, say where those are from, and solve its motion. Raises UserError.
+
+    Also returns where the mass of each body is from.
+    """
     from mechanisms.masses import give_masses
 
     module, p = loading.load(name, "mechanism"), loading.params(name)
     m = solving.build(name, module, p)
-    for sentence in give_masses(m, parts)[1]:
+    sources, sentences = give_masses(m, parts)
+    for sentence in sentences:
         console.say("solve", f"{name}: {sentence}")
-    return solving.motion_of(name, module, m, p)
+    return solving.motion_of(name, module, m, p), sources
 
 
 def _summary(solution: Solution) -> str:

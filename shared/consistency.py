@@ -22,6 +22,8 @@ SPAN_TOLERANCE = 1e-9
 """Largest difference between the period and the time spanned, relative."""
 RETURN_TOLERANCE = 1e-5
 """Largest difference between the poses at both ends of a period (m or rad, relative above 1)."""
+_NO_SERIES = {"redundant", "events", "start_changes", "shape"}
+"""Fields with lists that are not of time."""
 _UNFIT = re.compile(r"[/\\\x00-\x1f\x7f]")
 """What the name of a body, joint, driver or point cannot hold, because files are named after it."""
 
@@ -44,6 +46,8 @@ def refuse_inconsistent_motion(motion: Motion, path: Path | str) -> None:
             "joints": motion.joints,
             "drivers": motion.drivers,
             "points": motion.points,
+            "forces": motion.forces,
+            "contacts": motion.contacts,
         },
         path,
     )
@@ -52,10 +56,16 @@ def refuse_inconsistent_motion(motion: Motion, path: Path | str) -> None:
         raise UserError(f"{path}: bodies has 'ground', which does not move; leave it out")
     used = [(f"joints.{name}.bodies", body) for name, joint in motion.joints.items() for body in joint.bodies]
     used += [(f"points.{name}.body", point.body) for name, point in motion.points.items()]
+    used += _bodies_of_loads(motion)
     for field, body in used:
         if body not in known:
             raise UserError(f"{path}: {field} names '{body}', which is no body; there is: {', '.join(sorted(known))}")
     _refuse_wrong_period(motion, path)
+    _refuse_wrong_events(motion, path)
+    if motion.schema_version == 1:
+        newer = [field for field in ("forces", "contacts", "start_changes") if getattr(motion, field)]
+        if newer:
+            raise UserError(f"{path}: schema_version is 1, which has no {newer[0]}; make the file again")
 
 
 def refuse_inconsistent_parts(parts: Parts, path: Path | str) -> None:
@@ -74,6 +84,33 @@ def refuse_inconsistent_parts(parts: Parts, path: Path | str) -> None:
                 seen[file] = f"{field}.{kind}"
             if piece.z_range[0] > piece.z_range[1]:
                 raise UserError(f"{path}: {field}.z_range is {list(piece.z_range)}; the lowest point comes first")
+
+
+def _bodies_of_loads(motion: Motion) -> list[tuple[str, str]]:
+    """Fields of forces, contacts and shapes that name a body, with that name."""
+    used = [(f"contacts.{name}.bodies", body) for name, one in motion.contacts.items() for body in one.bodies]
+    used += [
+        (f"drivers.{name}.bodies", body) for name, driver in motion.drivers.items() for body in driver.bodies or ()
+    ]
+    for name, force in motion.forces.items():
+        used += [(f"forces.{name}.actions[{k}].body", action.body) for k, action in enumerate(force.actions)]
+    for field in ("joints", "forces", "contacts"):
+        for name, one in getattr(motion, field).items():
+            if one.shape is not None:
+                used += [(f"{field}.{name}.shape.bodies", body) for body in one.shape.bodies]
+    return used
+
+
+def _refuse_wrong_events(motion: Motion, path: Path | str) -> None:
+    """Events come in the order of their times, within the time that is told."""
+    first, last = motion.time[0], motion.time[-1]
+    for index, event in enumerate(motion.events):
+        before = motion.events[index - 1].time if index else first
+        if not before <= event.time <= last:
+            raise UserError(
+                f"{path}: events[{index}] '{event.name}' is at {event.time:.9g} s; events come in the order of their "
+                f"times, here within {before:.9g} .. {last:.9g} s"
+            )
 
 
 def _refuse_unfit_names(names: Mapping[str, Iterable[str]], path: Path | str) -> None:
@@ -142,12 +179,17 @@ def _refuse_wrong_period(motion: Motion, path: Path | str) -> None:
                 )
 
 
-def _series(value: Any, field: str) -> Iterator[tuple[str, list[float]]]:
+def _series(value: Any, field: str) -> Iterator[tuple[str, list[Any]]]:
+    """All lists that have a value for each time, with their fields."""
     if isinstance(value, msgspec.Struct):
         for name in value.__struct_fields__:
-            yield from _series(getattr(value, name), f"{field}.{name}" if field else name)
+            if name not in _NO_SERIES:
+                yield from _series(getattr(value, name), f"{field}.{name}" if field else name)
     elif isinstance(value, dict):
         for name, item in value.items():
             yield from _series(item, f"{field}.{name}")
-    elif isinstance(value, list) and field not in ("diagnostics.redundant", "events"):
+    elif isinstance(value, list) and field.endswith(".actions"):
+        for index, item in enumerate(value):
+            yield from _series(item, f"{field}[{index}]")
+    elif isinstance(value, list):
         yield field, value

@@ -97,12 +97,13 @@ def _refuse_doubled(content: bytes, path: Path | str) -> None:
 
 def _refuse_other_version(header: _Header, kind: type[msgspec.Struct], path: Path | str) -> None:
     for field in msgspec.structs.fields(kind):
-        found = getattr(header, field.name, field.default)
-        if field.name in _Header.__struct_fields__ and found != field.default:
+        if field.name not in _Header.__struct_fields__:
+            continue
+        found, read = getattr(header, field.name), typing.get_args(field.type)
+        if type(found) is bool or found not in read:
             said = "missing" if found is None else repr(found)
-            raise UserError(
-                f"{path}: {field.name} is {said}, this program reads {field.default!r}; make the file again"
-            )
+            reads = " or ".join(repr(one) for one in read)
+            raise UserError(f"{path}: {field.name} is {said}, this program reads {reads}; make the file again")
 
 
 def _reason(content: bytes, kind: type[msgspec.Struct], error: msgspec.DecodeError) -> str:

@@ -26,7 +26,9 @@ def run(name: str) -> None:
             f"run make solve-{out.name.replace('_', '-')}"
         )
     outputs = {plot: out.plots / f"{plot}.png" for plot in plots_of(motion)}
-    sources = sources_hash(Path(__file__).parent, *(ROOT / "shared" / name for name in ("contract.py", "skeleton.py")))
+    sources = sources_hash(
+        Path(__file__).parent, *sorted((ROOT / "shared").glob("contract*.py")), ROOT / "shared" / "skeleton.py"
+    )
     key = key_of(out.motion, out.skeleton, sources, versions("matplotlib", "numpy", "scipy"))
     stage = Stage(out, "plots", key, list(outputs.values()))
     if stage.is_fresh():

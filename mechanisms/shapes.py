@@ -1,0 +1,86 @@
+"""How joints, forces and contacts look beyond their signs: markers, wheels, curves, as data.json has them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from shared.contract import Shape
+
+if TYPE_CHECKING:
+    from mbsd import Force, Joint
+
+POINTS = 240
+"""Of an outline at most, about."""
+
+
+def shape_of(one: Joint | Force) -> Shape:
+    """The shape between the two markers of a joint, force or contact."""
+    from mbsd.teeth import with_radii
+
+    params = dict(with_radii(one.params))
+    profile, laws = params.get("profile"), getattr(one, "laws", {})
+    outline: list[tuple[float, float]] = []
+    if profile is not None:
+        outline, sizes = _cam(profile)
+        params |= sizes
+    elif "points" in params:
+        outline = _curve(params["points"], params["closed"])
+    elif "profile" in laws:
+        outline = _profile(laws["profile"])
+    geneva = one.kind.name == "geneva"
+    teeth = params.get("teeth")
+    of_pin = one.kind.name == "friction"
+    return Shape(
+        bodies=one.bodies,
+        markers=((one.i.x, one.i.y, one.i.angle), (one.j.x, one.j.y, one.j.angle)),
+        radius_first=_positive(params.get("radius_i")),
+        radius_second=None if geneva or of_pin else _positive(params.get("radius_j", params.get("radius"))),
+        teeth=[] if teeth is None else [teeth] if isinstance(teeth, int) else list(teeth),
+        ring=bool(params.get("internal") or params.get("inside")),
+        crossed=bool(params.get("crossed")),
+        slots=params.get("slots"),
+        pin_radius=_positive(params.get("radius")) if geneva or of_pin else None,
+        length=None if of_pin else params.get("length", params.get("free_length")),
+        outline=outline,
+        outline_closed=profile is not None or bool(params.get("closed")),
+    )
+
+
+def _positive(value: float | None) -> float | None:
+    return value if value else None
+
+
+def _cam(data: Any) -> tuple[list[tuple[float, float]], dict[str, float]]:
+    """The disc as it is cut, and the radius of its roller if it has one."""
+    from mbsd.cams import cam_from
+
+    profile = cam_from(data)
+    kept = profile.outline[:: max(1, len(profile.outline) // POINTS)]
+    return _pairs(kept), {} if profile.flat else {"radius": profile.sizes["roller_radius"]}
+
+
+def _curve(points: Any, closed: bool) -> list[tuple[float, float]]:
+    """The smooth curve through the points of a joint or terrain."""
+    import numpy as np
+
+    from mbsd.curve_numbers import curve_pieces
+
+    breaks, coefficients = curve_pieces(np.array(points, float), closed)  # (pieces, 2, 6) by rising powers
+    each = max(1, round(POINTS / len(coefficients)))
+    width = np.diff(breaks)
+    ahead = width[:, None] * np.arange(each) / each
+    path = np.einsum("spk,sck->spc", ahead[..., None] ** np.arange(6), coefficients).reshape(-1, 2)
+    end = np.einsum("k,ck->c", width[-1] ** np.arange(6), coefficients[-1])
+    return _pairs(path if closed else np.vstack([path, end]))
+
+
+def _profile(curve: Any) -> list[tuple[float, float]]:
+    """The profile y(x) of a surface with give."""
+    import numpy as np
+
+    x = np.linspace(float(curve.x[0]), float(curve.x[-1]), POINTS + 1)
+    return _pairs(np.stack([x, curve(x)[:, 0]], axis=1))
+
+
+def _pairs(path: Any) -> list[tuple[float, float]]:
+    return [(float(x), float(y)) for x, y in path]

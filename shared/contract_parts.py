@@ -1,0 +1,53 @@
+"""parts.json: the solids of one mechanism, as structs. shared/contract.py reads and writes them."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import msgspec
+
+from shared.contract_base import UNITS, Count, NonNegative, Provenance, Strict
+
+PARTS_UNITS = UNITS | {"stl, step": "mm"}
+
+
+class Mass(Strict, kw_only=True):
+    """Mass properties: kg, centre of mass (m, body frame), inertia about it (kg m^2), volume (m^3)."""
+
+    mass: NonNegative
+    com: tuple[float, float]
+    inertia: NonNegative
+    volume: NonNegative
+
+
+class Piece(Strict, kw_only=True):
+    """One printable solid of a body, in the body's frame; its files stand beside parts.json (millimetres)."""
+
+    material: str
+    stl: str
+    step: str
+    mass: Mass
+    z_range: tuple[float, float]
+    """Lowest and highest point (m)."""
+    triangles: Count
+    stl_sha256: str
+
+
+class BodyParts(Strict, kw_only=True):
+    """All pieces that move with one body, and their mass together. ``ground`` is the frame."""
+
+    pieces: dict[str, Piece]
+    mass: Mass
+    z: float
+    """Middle height of the body's main piece (m)."""
+
+
+class Parts(Strict, kw_only=True):
+    """parts.json: the solids of one mechanism."""
+
+    schema: Literal["mbsd.parts"] = "mbsd.parts"
+    schema_version: Literal[1] = 1
+    mechanism: str
+    units: dict[str, str] = msgspec.field(default_factory=lambda: dict(PARTS_UNITS))
+    provenance: Provenance
+    bodies: dict[str, BodyParts]

@@ -15,15 +15,7 @@ from shared.stages import key_of
 if TYPE_CHECKING:
     from render.describe import Film
 
-SHARED = (
-    "contract",
-    "contract_base",
-    "contract_loads",
-    "contract_motion",
-    "contract_parts",
-    "materials",
-    "shot",
-)
+SHARED = ("contract", "materials", "shot")
 """Files of shared/ that decide what is seen; the others say, write and check."""
 STAGE_OF = {"motion": "solve", "parts": "parts", "shot": "run"}
 
@@ -55,7 +47,7 @@ def encoder_version() -> str:
 def picture_sources() -> str:
     """Hash of the sources that make pictures; the plots are not among them."""
     room = Path(__file__).parent
-    shared = [ROOT / "shared" / f"{name}.py" for name in SHARED]
+    shared = [ROOT / "shared" / f"{name}.py" for name in SHARED] + sorted((ROOT / "shared").glob("contract_*.py"))
     return sources_hash(*sorted(room.glob("*.py")), room / "blender", *shared)
 
 

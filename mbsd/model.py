@@ -121,14 +121,25 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
     ) -> Solution:
         """Solve the driven motion: positions, velocities, accelerations, reactions, driver efforts, energy.
 
-        ``steps`` equal steps over ``duration`` seconds, both ends included; by default one period of the first
-        driver that has one. ``times`` (s), rising, replaces both.
+        ``steps`` equal steps over ``duration`` seconds, both ends included; by default over one :meth:`period`, and
+        where there is none over that of the laws, with a ModelWarning. ``times`` (s), rising, replaces both.
         """
         from mbsd.check import tell
         from mbsd.sweep import sweep
 
         tell(self)
         return sweep(self, duration, steps, times)
+
+    def period(self) -> float | None:
+        """The time (s) after which every body is back but for whole turns, with its velocity and acceleration.
+
+        It is a whole multiple of the common period of all drivers, which gears, belts and indexed wheels make longer:
+        two turns of a driver that turns a gear at half its speed. None where no law repeats, or within 100 of these
+        nothing does. Raises what :meth:`sweep` raises.
+        """
+        from mbsd.period import period
+
+        return period(self)
 
     def batch(
         self,

@@ -13,7 +13,6 @@ sol.energy.kinetic, .potential
 from __future__ import annotations
 
 import html
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -29,6 +28,7 @@ from mbsd.event import Happening
 from mbsd.force_view import ForceView, Moved, force_view
 from mbsd.friction_view import FrictionView, friction_view
 from mbsd.names import no_such
+from mbsd.period import returned
 from mbsd.potential import potential_of
 from mbsd.shown import shown
 
@@ -281,13 +281,10 @@ class Solution:
     @cached_property
     def period(self) -> float | None:
         """The time spanned (s) if pose, velocity and acceleration return to those of the start; else None."""
-        turns = np.round((self.q[-1, :, 2] - self.q[0, :, 2]) / (2 * math.pi))
-        for start, end in ((self.q[0], self.q[-1]), (self.v[0], self.v[-1]), (self.a[0], self.a[-1])):
-            gap = end - start
-            if start is self.q[0] or np.shares_memory(start, self.q):
-                gap = gap - np.stack([0 * turns, 0 * turns, 2 * math.pi * turns], axis=1)
-            if np.abs(gap).max() > 1e-7 * max(1.0, float(np.abs(start).max())):
-                return None
+        ends = ((part[0], part[-1]) for part in (self.q, self.v, self.a))
+        first, last = zip(*ends, strict=True)
+        if not returned((first, last)):
+            return None
         return float(self.t[-1] - self.t[0])
 
     def to_frame(self) -> pandas.DataFrame:

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 
 import numpy as np
 
 from mbsd.closed_contacts import refuse_passed_contacts
 from mbsd.curve_following import CurveFollowing, refuse_jumps
-from mbsd.errors import ModelError
+from mbsd.errors import PACKAGE, ModelError, ModelWarning
 from mbsd.inverse_dynamics import inverse_dynamics
 from mbsd.limits import limits_of, refuse_passed
 from mbsd.model import Mechanism
 from mbsd.output_times import equal_times, rising_times
-from mbsd.prepared import prepare
+from mbsd.period import MOST_TURNS, common_period, repetition, returned
+from mbsd.prepared import March, Prepared, prepare
 from mbsd.solution import Solution, Stats
 
 
@@ -22,6 +24,12 @@ def sweep(m: Mechanism, duration: float | None, steps: int, times: Sequence[floa
     grid = sweep_times(m, duration, steps, times)
     ready = prepare(m, float(grid[0]), float(grid[-1]))
     march = ready.march(grid)
+    if duration is None and times is None and m.drivers:
+        whole = _whole_period(m, ready, march, float(grid[-1]))
+        if whole is not None:
+            grid = equal_times(m, whole, steps)
+            ready = prepare(m, 0.0, whole)
+            march = ready.march(grid)
     q, v, a, packed = march.q, march.v, march.a, ready.packed
     drives = packed.drives(grid)
     if m.contacts or limits_of(packed):
@@ -56,11 +64,44 @@ def sweep_times(
     if times is not None:
         return rising_times(m, times, 1)
     if duration is None:
-        periods = [law.period for law in (d.motion for d in m.drivers.values()) if law is not None and law.period]
-        if not periods and not m.drivers:
-            duration = 1.0  # mobility will name the missing driver
-        elif not periods:
-            raise ModelError(f"{m.name}: no driver repeats, so there is no natural duration; say sweep(duration=...)")
-        else:
-            duration = float(periods[0])
+        duration = _law_duration(m)
     return equal_times(m, duration, steps)
+
+
+def _law_duration(m: Mechanism) -> float:
+    """The common period of the laws (s), or the longest of theirs where there is none. Raises ModelError for none."""
+    if not m.drivers:
+        return 1.0  # mobility will name the missing driver
+    common = common_period(m.drivers.values())
+    if common is not None:
+        return common
+    periods = {name: d.motion.period for name, d in m.drivers.items() if d.motion is not None and d.motion.period}
+    if not periods:
+        raise ModelError(f"{m.name}: no driver repeats, so there is no natural duration; say sweep(duration=...)")
+    return max(periods.values())
+
+
+def _whole_period(m: Mechanism, ready: Prepared, march: March, duration: float) -> float | None:
+    """The mechanism's period (s) where it is longer than the one just swept; None where that one serves.
+
+    Warns where no pose repeats.
+    """
+    shape = (len(march.q), -1, 3)
+    q, v, a = (part.reshape(shape) for part in (march.q, march.v, march.a))
+    if returned(((q[0], v[0], a[0]), (q[-1], v[-1], a[-1]))):
+        return None
+    common = common_period(m.drivers.values())
+    if common is None:
+        why = "the laws of its drivers have no common period"
+    else:
+        found = repetition(m, common, ready).period
+        if found is not None:
+            return found
+        why = f"its bodies are not back within {MOST_TURNS} times {common:.6g} s, after which its drivers repeat"
+    warnings.warn(
+        f"{m.name}: {why}, so the motion does not repeat, and {duration:.6g} s of it are swept; "
+        "say sweep(duration=...) for more or less",
+        ModelWarning,
+        skip_file_prefixes=PACKAGE,
+    )
+    return None

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
 
 SWEEP_STEPS = 360
-"""Of a sweep whose mechanism.py has no STEPS."""
+"""Of one turn of the drivers in a sweep whose mechanism.py has no STEPS."""
 FEWEST, MOST, RATE = 360, 7200, 120.0
 """Steps of a simulation whose mechanism.py has no STEPS: so many a second, within these."""
 
@@ -72,7 +72,7 @@ def _natural(name: str, module: Any, m: Mechanism) -> Solution:
         raise UserError(f"{_file(name)}: STEPS is {steps:g}; it must be a whole number of steps, as in STEPS = 600")
     free = m.mobility().dof - len(m.drivers)
     if free <= 0:
-        return m.sweep(duration, int(steps or SWEEP_STEPS))
+        return m.sweep(duration, int(steps or (SWEEP_STEPS if duration else _steps_of_period(m))))
     if duration is None:
         freedoms = "1 degree of freedom is" if free == 1 else f"{free} degrees of freedom are"
         raise UserError(
@@ -81,6 +81,14 @@ def _natural(name: str, module: Any, m: Mechanism) -> Solution:
             "such as m.drive_angle(...)"
         )
     return m.simulate(duration, int(steps or min(max(FEWEST, math.ceil(RATE * duration)), MOST)), event_rows=True)
+
+
+def _steps_of_period(m: Mechanism) -> int:
+    """Steps of a whole period: so many for each turn of its drivers."""
+    from mbsd.period import common_period
+
+    whole, common = m.period(), common_period(m.drivers.values())
+    return SWEEP_STEPS if whole is None or common is None else min(SWEEP_STEPS * round(whole / common), MOST)
 
 
 def _positive(name: str, module: Any, constant: str, form: str) -> float | None:

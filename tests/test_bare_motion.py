@@ -67,6 +67,20 @@ def test_a_driven_mechanism_is_swept_over_its_period(monkeypatch: pytest.MonkeyP
     assert len(solution.t) == 361
 
 
+def test_a_geared_mechanism_is_swept_until_all_is_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    def build(p: None) -> Mechanism:
+        m = _crank()
+        wheel = m.body("wheel")
+        m.revolute("B", m.ground.at(0.06, 0), wheel.origin)
+        m.gear_pair("mesh", m.bodies["arm"].start, wheel.origin, radius_i=0.02, radius_j=0.04)
+        return m
+
+    _Author(monkeypatch, build)
+    solution = bare_solution("arm")
+    assert solution.period == pytest.approx(1.0)  # two turns of the motor
+    assert len(solution.t) == 721
+
+
 def test_a_stated_duration_and_number_of_steps_count(monkeypatch: pytest.MonkeyPatch) -> None:
     _Author(monkeypatch, _crank, DURATION=0.2, STEPS=10)
     solution = bare_solution("arm")

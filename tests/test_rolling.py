@@ -147,3 +147,31 @@ def test_curves_and_discs_that_cannot_be_are_refused() -> None:
         m.point_on_curve("wire", m.ground.origin, disc.origin, [(0.0, 1.0), (math.nan, 2.0), (2.0, 3.0)])
     with pytest.raises(ModelError, match="points 1 and the next are the same"):
         m.point_on_curve("wire", m.ground.origin, disc.origin, [(0.0, 1.0), (1.0, 2.0), (1.0, 2.0)])
+
+
+@pytest.mark.parametrize("end", [0, -1])
+def test_the_foot_on_the_straight_line_beyond_an_end_is_exact(end: int) -> None:
+    """Also where the point lies at the centre of curvature of the end: there the curve, not the line, has no foot."""
+    from mbsd.constraints.curve_pieces import foot
+    from mbsd.curve_numbers import curve_numbers, curve_pieces
+
+    points = np.array([[-6, -1], [-4, -0.5], [-2, 0], [0, -0.3], [2, -0.5], [4, 0.2], [6, 0.1]], float)
+    breaks, coefficients = curve_pieces(points, False)
+    numbers = np.concatenate([np.zeros(4), curve_numbers(breaks, coefficients, False, 0.2, 0.2)])
+    h = breaks[end] - breaks[-2] if end else 0.0
+    row = coefficients[end]
+    place = (row * h ** np.arange(6)).sum(axis=1)
+    slope = (row[:, 1:] * np.arange(1, 6) * h ** np.arange(5)).sum(axis=1)
+    bend = (row[:, 2:] * np.arange(2, 6) * np.arange(1, 5) * h ** np.arange(4)).sum(axis=1)
+    speed = float(slope @ slope)
+    normal = np.array([-slope[1], slope[0]]) / math.sqrt(speed)
+    scratch = np.zeros(20)
+    outwards = 1.0 if end else -1.0
+    for way in (0.1, 1.0, 3.0):
+        u = breaks[end] + outwards * way
+        on_line = place + slope * outwards * way
+        centre = (speed - bend @ (on_line - place)) / (bend @ normal)
+        for off in (0.2, -0.2, *(centre * (1 + part) for part in (1e-4, -1e-4, 1e-2, -1e-2))):
+            if abs(off) < 2.0:
+                x, y = on_line + off * normal
+                assert abs(foot(numbers, x, y, scratch) - u) < 1e-12, (way, off)

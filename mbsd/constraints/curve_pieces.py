@@ -182,9 +182,11 @@ def _go_to_foot(numbers, relative, x, y, u):
         speed = relative[DX] * relative[DX] + relative[DY] * relative[DY]
         slope = px * relative[DX] + py * relative[DY]
         bend = speed - px * relative[DDX] - py * relative[DDY]
-        step = slope / (bend if bend > 1e-6 * speed else speed)
-        off = numbers[CLOSED] == 0.0 and ((u <= begin and step < 0.0) or (u >= begin + span and step > 0.0))
-        if not off:  # the foot is within a piece of the nearest node, or on the straight line beyond an end
+        open_ended = numbers[CLOSED] == 0.0
+        if open_ended and ((u <= begin and slope < 0.0) or (u >= begin + span and slope > 0.0)):
+            step = slope / speed  # on the straight line beyond an end, which does not bend, the first step is exact
+        else:  # the foot is within a piece of the nearest node
+            step = slope / (bend if bend > 1e-6 * speed else speed)
             step = min(max(step, -longest), longest)
         u += step
         if abs(step) <= 1e-15 * span:

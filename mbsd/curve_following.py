@@ -1,9 +1,10 @@
-"""Points on curves that cross themselves: which branch they are on, step by step.
+"""What a simulation looks at step by step: points on curves that cross themselves, and wheels that may meet.
 
 Such a row keeps the parameter of its foot where the motion was accepted last (constraints/curve_pieces.py). A
 simulation takes one step at a time, moves the parameters on, and divides a step in which a foot goes too far. Poses
 looked at afterwards tell their branch by themselves: at a crossing it is the one along which the point moves. A sweep
 predicts so well that the nearest foot is on the right branch; it is refused where a foot jumps nevertheless.
+Wheels: free_wheels.py.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import numpy as np
 from mbsd.assembly import tabulate
 from mbsd.constraints.curve_pieces import CLOSED, CX, CY, DISTANCE, DX, DY, FARTHEST, LAST, SPAN, TABLE, foot
 from mbsd.errors import BranchError
+from mbsd.free_wheels import FreeWheels
 from mbsd.integrators.state import ACCEPTED, PAUSED, REACHED, TIME, State, copied
 from mbsd.specials import AT, MARKER_I, MARKER_J
 
@@ -45,10 +47,11 @@ class CurveFollowing:
                 self.rows.append(
                     (int(system.special[k, MARKER_I]), int(system.special[k, MARKER_J]), system.numbers[at:])
                 )
+        self.wheels = FreeWheels(packed)
         self._scratch = np.zeros_like(packed.ws.relative)
 
     def __bool__(self) -> bool:
-        return bool(self.rows)
+        return bool(self.rows or self.wheels)
 
     def settle(self, q: np.ndarray, v: np.ndarray) -> None:
         """Take the branches along which the points move at q, v (3 nb,)."""
@@ -101,12 +104,14 @@ class CurveFollowing:
                     return status
                 feet, farthest = self.moved(state.y[0])
                 taken = float(state.clock[TIME] - before.clock[TIME])
+                farthest = max(farthest, self.wheels.approach(before.y, state.y, taken))
                 if farthest <= 1.0 or taken <= SHORTEST * settings.longest:
                     break
                 for part, source in zip(state, before, strict=True):
                     part[...] = source
                 target = float(before.clock[TIME]) + taken / (2.0 * farthest)
             self.accept(feet)
+            self.wheels.refuse_met(float(state.clock[TIME]), state.y[0])
             steps -= int(state.count[ACCEPTED] - before.count[ACCEPTED])
             if state.clock[TIME] >= end:
                 return REACHED
@@ -136,7 +141,7 @@ class CurveFollowing:
 def refuse_jumps(packed: Packed, times: np.ndarray, q: np.ndarray) -> None:
     """Raise BranchError where a point leaves the branch of its curve between poses q (T, 3 nb) of a sweep."""
     following = CurveFollowing(packed)
-    if not following:
+    if not following.rows:
         return
     for k, pose in enumerate(q):
         before = [float(numbers[LAST]) for _, _, numbers in following.rows]
@@ -173,7 +178,7 @@ def tabulate_along(
 ) -> None:
     """``tabulate`` along a motion q, v (T, 3 nb), each pose on the branches along which its points move."""
     following = CurveFollowing(packed)
-    if not following:
+    if not following.rows:
         tabulate(packed.system, drives, q, v, packed.ws, phi, compact, gamma)
         return
     kept = packed.system.numbers.copy()

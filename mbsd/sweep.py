@@ -36,7 +36,7 @@ def sweep(m: Mechanism, duration: float | None, steps: int, times: Sequence[floa
         inner, poses = march.closely()
         refuse_passed(packed, inner, poses, smooth=True)
         refuse_passed_contacts(m, packed, inner, poses)
-    if CurveFollowing(packed):
+    if CurveFollowing(packed).rows:
         refuse_jumps(packed, *march.closely())
     loads = inverse_dynamics(ready, grid, drives, q, v, a)
     shape = (len(grid), -1, 3)

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbsd import AssemblyError, Mechanism, MobilityError, ModelError, constant_rate
+from mbsd import AssemblyError, Mechanism, MobilityError, ModelError, SimulationError, constant_rate
 
 PLANETARY = json.loads((Path(__file__).parent / "reference" / "analytic_planetary.json").read_text())
 SUN, PLANET, RING = 0.020, 0.030, 0.080  # radii in the ratio of the teeth
@@ -261,3 +261,20 @@ def test_a_rack_and_a_toothed_belt_by_teeth(tmp_path: Path) -> None:
     b.change("strap", teeth=None, pitch=None, radius_i=18 * 0.005 / (2 * math.pi), radius_j=60 * 0.005 / (2 * math.pi))
     np.testing.assert_allclose(b.sweep(1.0).q, sol.q, atol=1e-14)
     b.draw().save(tmp_path / "belt.svg")
+
+
+@pytest.mark.parametrize(
+    ("method", "options"),
+    [("dop853", {"tolerance": 1e-3}), ("dop853", {"tolerance": 1e-9}), ("radau", {}), ("rk4", {"step": 0.01})],
+)
+@pytest.mark.parametrize(("stiffness", "when"), [(0.0, "(0.99|1)"), (3.0, "1.8")])
+def test_centres_that_meet_end_the_motion(method: str, options: dict, stiffness: float, when: str) -> None:
+    """Nothing holds the centres apart, and their line keeps its direction: they run into each other."""
+    m = Mechanism("loose", gravity=None)
+    ring, gear = m.body("ring", 2.0, inertia=1.0), m.body("gear", 1.0, inertia=0.1)
+    m.gear_pair("mesh", ring.origin, gear.origin, radius_i=0.5, radius_j=0.2, internal=True)
+    m.torsion_spring("coil", m.ground, gear, stiffness, 0.1, 0.5)
+    m.start_near(ring=(0, 0, 0), gear=(0.3, 0.05, 0))
+    m.start_moving(gear=(-0.3, -0.05, 0.0), ring=(0.0, 0.0, 0.0))
+    with pytest.raises(SimulationError, match=f"loose: the centres of gear_pair 'mesh' meet at t = {when}"):
+        m.simulate(2.0, method=method, **options)

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mbsd import Mechanism
+from mbsd import Mechanism, constant_rate, function
 from mbsd.contacts.kind import CONTACT_KINDS
 from mbsd.forces.kind import FORCE_KINDS
 from mbsd.joints.kind import KINDS
@@ -22,9 +22,10 @@ from tests.four_bars import angles, model
 from tools.hunt import case
 from tools.hunt.__main__ import hunt
 from tools.hunt.agreement import SAME, Growth, Words, compare_driven, compare_free
-from tools.hunt.checks import one_assembly, smooth
+from tools.hunt.checks import driven_problems, one_assembly, smooth
 from tools.hunt.described import on_a_base, seen_from
 from tools.hunt.free_case import nudged
+from tools.hunt.law_error import of_law
 from tools.hunt.outcome import AGREED, BASE, HUNG, WRONG, CaseResult, Outcome
 from tools.hunt.pool import results
 from tools.hunt.reordered import exchanged, shuffled
@@ -138,6 +139,67 @@ def test_the_bound_of_free_motions_grows_with_what_a_nudge_comes_to() -> None:
     assert compare_free(first, m.simulate(1.0, steps=20, tolerance=1e-7), growth, 1e-7).agrees
     rod.mass, rod.inertia = 1.0, rod.inertia * 1.001
     assert not compare_free(first, m.simulate(1.0, steps=20, tolerance=1e-9), growth, 2e-9).agrees
+
+
+def test_a_law_known_by_values_alone_errs_within_its_bound() -> None:
+    for way, lasts in ((6.3, 0.4), (-12.6, 8.3)):
+        w = 2 * math.pi / lasts
+        law = function(lambda t, way=way, lasts=lasts, w=w: 0.7 + way * (t / lasts + 0.05 * math.sin(w * t)))
+        for end in (lasts, 0.97 * lasts, 0.3 * lasts):
+            t = np.linspace(0.0, end, 5001)
+            off = np.abs(law.over(0.0, end)(t)[:, 1:] - _exact(way, lasts, t)).max(axis=0)
+            bound = of_law(law, 0.0, end)
+            assert 0.1 * bound.slope < off[0] < bound.slope
+            assert 0.1 * bound.bend < off[1] < bound.bend < 1e-7 * abs(way) * 0.05 * w**2
+    assert of_law(constant_rate(3.0), 0.0, 1.0).bend == 0.0
+
+
+def _exact(way: float, lasts: float, t: np.ndarray) -> np.ndarray:
+    w = 2 * math.pi / lasts
+    return np.stack([way / lasts + way * 0.05 * w * np.cos(w * t), -way * 0.05 * w**2 * np.sin(w * t)], axis=1)
+
+
+def test_solutions_over_other_spans_agree_where_a_law_is_known_by_values_alone() -> None:
+    m = Mechanism("disc")
+    disc = m.body("disc", 2.0, (0.05, 0.02), 0.1)
+    m.rolling_disc("road", m.ground.origin, disc.origin, 0.2)
+    m.drive_angle("motor", disc, function(lambda t: 6.3 * (t / 8.3 + 0.05 * math.sin(2 * math.pi * t / 8.3))))
+    m.start_near(disc=(0.0, 0.2, 0.0))
+    times = np.linspace(0.0, 8.3, 361)
+    verdict = compare_driven(m.sweep(times=times), m.sweep(times=times[:350]))
+    assert verdict.agrees, verdict.words
+    assert verdict.worst > 1e-4
+    first = m.sweep(times=times)
+    assert not compare_driven(first, replace(first, a=first.a * (1 + 1e-6))).agrees
+
+
+def test_contradicting_velocities_start_alike_in_all_words_of_a_refused_motion() -> None:
+    """Which of the given components a joint leaves depends on the axes: the centres approach, or go apart."""
+    m = Mechanism("loose", gravity=None)
+    ring, gear = m.body("ring", 2.0, inertia=1.0), m.body("gear", 1.0, inertia=0.1)
+    m.gear_pair("mesh", ring.origin, gear.origin, radius_i=0.5, radius_j=0.2, internal=True)
+    m.start_near(ring=(0, 0, 0), gear=(0.3, 0.05, 0))
+    m.start_moving(ring=(0.0, 0.0, 0.0), gear=(-1.0, 1.0, 0.0))
+    result = CaseResult(1, "loose")
+    case._free(Subject(m, 1.0, False), np.random.default_rng(1), result, True)
+    assert "the centres of gear_pair 'mesh' meet" in result.outcomes[0].detail
+    assert not [one for one in result.outcomes if one.state == WRONG]
+
+
+def test_accelerations_that_jump_up_and_down_within_a_step_are_no_left_branch() -> None:
+    subject = case.drawn(41_007_313)[1]
+    assert "jumps" in subject.traits
+    sol = subject.m.sweep(times=np.linspace(0.0, subject.duration, round(90 * subject.turns) + 1))
+    assert not driven_problems(sol, subject)
+    q = sol.q.copy()
+    q[40:, -1, 2] += 0.02
+    assert smooth(replace(sol, q=q))
+
+
+def test_random_cams_can_be() -> None:
+    for seed in range(150):
+        case.drawn(seed, "cam")
+    assert case.drawn(41_004_273)[1] is not None
 
 
 def test_a_left_branch_is_seen_by_its_sign_and_by_its_steps() -> None:

@@ -10,7 +10,9 @@ the ratio of its least to its largest singular value. Velocities solve with the 
 1 / margin again, accelerations, reactions and efforts twice. So with e = DRIVEN / margin the bounds are e, e / margin
 and e / margin^2 of the largest value of their kind. Instants where that is above USELESS are not compared. Where joints
 are redundant, the rows that are solved are only some of all, worse conditioned than the margin of all tells: there e
-is DRIVEN_REDUNDANT / margin.
+is DRIVEN_REDUNDANT / margin. A law known by its values alone has derivatives that err (law_error.py): the error of f'
+over margin adds to velocities, that of f'' over margin to accelerations, which also go with the square of velocities;
+forces have the part of accelerations, over margin again.
 
 Free motions. A tolerance bounds the error of a step, and the motion carries it on. How much is measured: the same
 mechanism is simulated with its velocities and its gravity changed by NUDGE = 1e-6, and what comes of it divided by
@@ -30,6 +32,7 @@ import numpy as np
 from mbsd import Mechanism
 from mbsd.solution import Solution
 from tools.hunt.described import BASE, NOWHERE, Pose
+from tools.hunt.law_error import LawError, law_error
 
 DRIVEN, DRIVEN_REDUNDANT = 1e-11, 1e-9
 SLACK = 1000.0
@@ -176,13 +179,18 @@ def _whose(first: Solution, key: str, column: int) -> str:
     return list(first.mechanism.drivers)[column] if key == "efforts" else ("kinetic", "potential")[column]
 
 
-def driven_limits(first: Solution, rows: np.ndarray, size: dict[str, float], loosened: float) -> dict[str, np.ndarray]:
+def driven_limits(
+    first: Solution, rows: np.ndarray, size: dict[str, float], loosened: float, laws: LawError
+) -> dict[str, np.ndarray]:
     """Bounds of a driven motion; ``loosened`` is added to DRIVEN, as the tolerance of an integrator."""
     margin = np.clip(first.singularity_margin[rows], 1e-12, None)
     e = ((DRIVEN_REDUNDANT if first.mobility.redundant_rows else DRIVEN) + loosened) / margin
+    rate, bend = laws.slope * size["q"] / size["v"] / margin, laws.bend * size["q"] / size["a"] / margin
+    by_laws = {"v": rate, "energies": 2 * rate, "a": bend + 2 * rate}
+    by_laws["reactions"] = by_laws["efforts"] = by_laws["a"] / margin
     out = {}
     for key, largest in size.items():
-        limit = e / margin ** POWERS[key]
+        limit = e / margin ** POWERS[key] + by_laws.get(key, 0.0)
         out[key] = np.where(limit < USELESS, limit * largest + 1e-13, np.inf)
     return out
 
@@ -196,7 +204,8 @@ def compare_driven(first: Solution, other: Solution, words: Words = SAME, loosen
     there = numbers(other, first, words, rows, first_rows)
     shared = {key: here[key] for key in here if key in there}
     size = sizes(shared, _extent(first, other))
-    return judge(first, there, shared, driven_limits(first, first_rows, size, loosened), first.t[first_rows])
+    laws = law_error(first) + law_error(other)
+    return judge(first, there, shared, driven_limits(first, first_rows, size, loosened, laws), first.t[first_rows])
 
 
 def _extent(first: Solution, other: Solution) -> float:

@@ -7,6 +7,7 @@ import warnings
 
 import numpy as np
 
+from mbsd.dynamics.prepare import prepare_dynamics
 from mbsd.variants import started_at
 from tools.hunt.agreement import Growth
 from tools.hunt.checks import closed, driven_problems, finite
@@ -90,9 +91,9 @@ def _driven(subject: Subject, rng: np.random.Generator, result: CaseResult, ever
 
 def _free(subject: Subject, rng: np.random.Generator, result: CaseResult, every: bool) -> None:
     case = Free(subject, rng)
-    case.first, case.refused = case.run(subject.m)
-    if case.first is not None:
-        subject.m = started_at(subject.m, case.first.packed, case.first.q[0].ravel(), case.first.v[0].ravel())
+    start, case.refused = attempt(lambda: prepare_dynamics(subject.m, 0.0, subject.duration, contacts=True))
+    if start is not None:  # which of given velocities are kept depends on the axes: all variations start alike
+        subject.m = started_at(subject.m, start.packed, start.initial.q, start.initial.v)
         case.first, case.refused = case.run(subject.m)
     if case.first is None:
         result.outcomes.append(Outcome(BASE, REFUSED, type(case.refused).__name__, str(case.refused)))

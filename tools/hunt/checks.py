@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from mbsd.assembly import tabulate
 from mbsd.solution import Solution
@@ -14,6 +15,8 @@ RESOLVED = 0.02
 """Singularity margin above which DENSE outputs show every bend of the motion."""
 DENSE = 90
 """Outputs a turn from which on differences say something."""
+BESIDE = 2
+"""Steps; at DENSE outputs a turn they hold the narrowest rise of a cam that is drawn, its accelerations up and down."""
 
 
 def finite(sol: Solution) -> list[str]:
@@ -43,18 +46,19 @@ def closed(sol: Solution) -> list[str]:
 def smooth(sol: Solution) -> list[str]:
     """Steps of a dense motion against its velocities and accelerations.
 
-    The corrected trapezium q' - q = h (v + v') / 2 - h^2 (a' - a) / 12 errs by far less than h^2 |a' - a| / 4 where
-    the motion is smooth, and by less than that where the acceleration jumps once; a branch that is left, or an
-    angle that takes a whole turn more, is no such thing.
+    Within a step, q' - q - h (v + v') / 2 is half the integral of (h - 2 t) a, at most h^2 R / 8 where the acceleration
+    stays within a range R; with the correction of the trapezium, h^2 (a' - a) / 12, less than h^2 R / 4. R is taken
+    from the outputs up to BESIDE steps before and after: between two of them an acceleration may turn back, or jump up
+    and down. A branch that is left, or an angle that takes a whole turn more, is more than that.
     """
     h = np.diff(sol.t)[:, None, None]
     q, v, a = sol.q[:, 1:], sol.v[:, 1:], sol.a[:, 1:]
-    bend = np.abs(np.diff(a, axis=0))
     expected = h * (v[1:] + v[:-1]) / 2 - h**2 * np.diff(a, axis=0) / 12
     gap = np.abs(np.diff(q, axis=0) - expected)
     size = np.array([sol.packed.size, sol.packed.size, 1.0])
-    here = np.maximum(bend[:, :, :].max(axis=(1,), keepdims=True), 0.02 * np.abs(a).max(axis=(1,), keepdims=True)[1:])
-    limit = 0.25 * h**2 * here + 1e-9 * size + 1e-8 * h * np.abs(v[1:]).max(axis=1, keepdims=True)
+    around = sliding_window_view(np.pad(a, ((BESIDE, BESIDE), (0, 0), (0, 0)), "edge"), 2 * BESIDE + 2, axis=0)
+    reach = np.maximum(np.ptp(around, axis=-1), 0.02 * np.abs(a[1:])).max(axis=1, keepdims=True)
+    limit = 0.25 * h**2 * reach + 1e-9 * size + 1e-8 * h * np.abs(v[1:]).max(axis=1, keepdims=True)
     share = gap / limit
     k, b, c = np.unravel_index(int(np.argmax(share)), share.shape)
     if share[k, b, c] <= 1.0:

@@ -126,7 +126,8 @@ class Free:
             return Outcome(name, REFUSED, f"{kind}, as built too", str(error))
         if expected_refusal(error):
             return Outcome(name, REFUSED, f"{kind}, what a method is not made for", str(error))
-        if self.margin < HEALTHY and isinstance(error, SimulationError):
+        singular = self.margin < HEALTHY or "bifurcates" in self.subject.traits  # change points lie between outputs
+        if singular and isinstance(error, SimulationError):
             return Outcome(name, REFUSED, f"{kind} near a singular pose, solved as built", str(error))
         return Outcome(name, WRONG, f"refused ({kind}), solved as built", str(error))
 

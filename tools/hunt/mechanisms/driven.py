@@ -17,6 +17,9 @@ from tools.hunt.laws import swinging, turning
 from tools.hunt.mechanisms.machines import _at_start, driven_crank, solid
 from tools.hunt.subject import Subject, family
 
+STEEPEST_FALL = -0.8
+"""rad per rad of the cam: a flat face on an arm leaves the cam at -1, where there is none."""
+
 
 def _lift(rng: np.random.Generator, height: float) -> Lift:
     if rng.random() < 0.2:
@@ -64,6 +67,8 @@ def cam(rng: np.random.Generator) -> Subject:
                 profile = oscillating_roller_cam(lift, base, 0.3 * base, arm=2.2 * base, pivot_distance=pivot)
                 m.cam_roller("contact", disc.origin, follower.at(2.2 * base, 0), profile)
             else:
+                while lift.pieces()[1][..., 1].min() < STEEPEST_FALL:
+                    lift = _lift(rng, float(rng.uniform(0.05, 0.4)))
                 profile = oscillating_flat_cam(lift, base, pivot_distance=pivot)
                 m.cam_flat("contact", disc.origin, follower.at(1.0 * base, 0), profile)
         m.start_near(follower=(pivot, 0, 150))

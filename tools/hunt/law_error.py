@@ -1,0 +1,70 @@
+"""How exactly the derivatives of a driver's law are known that is a Python function alone: they come from a fit.
+
+Of a piece of the fit, w wide, the last Chebyshev coefficients are below c, and rounding hides r of f
+(mbsd/fitting/leaves.py: both are in its Leaves). T_8' = 64 and T_8'' = 1344 at the ends of -1 .. 1, so
+
+    |error of f''| <= 1344 (2 / w)^2 max(c, r),      |error of f'| <= 64 (2 / w) max(c, r)
+
+Fits over other spans err otherwise, so two solutions differ by the sum of both. What that makes of the motion is in
+agreement.py.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.fitting.cuts import given_cuts
+from mbsd.fitting.fit import fit
+from mbsd.fitting.leaves import BEND_OF_LAST, ROUNDING
+from mbsd.fitting.look import look_times
+from mbsd.fitting.sampled import Sampled
+from mbsd.motions import Motion
+from mbsd.motions.function import Function
+from mbsd.solution import Solution
+from tools.hunt.raised import Raised
+
+SLOPE_OF_LAST = 64.0
+"""T_8' at the ends."""
+
+
+@dataclass(frozen=True)
+class LawError:
+    """Of all drivers together, lengths in sizes of the mechanism."""
+
+    slope: float = 0.0
+    """Of f' (1/s)."""
+    bend: float = 0.0
+    """Of f'' (1/s^2)."""
+
+    def __add__(self, other: LawError) -> LawError:
+        return LawError(self.slope + other.slope, self.bend + other.bend)
+
+
+def law_error(sol: Solution) -> LawError:
+    """Of the laws of a solution, over its span."""
+    out, first, last = LawError(), float(sol.t[0]), float(sol.t[-1])
+    if not last > first:
+        last = first + 1.0  # as the solver does
+    for driver in sol.mechanism.drivers.values():
+        assert driver.motion is not None
+        found = of_law(driver.motion, first, last)
+        scale = 1.0 if "angle" in driver.kind.name else sol.packed.size
+        out += LawError(found.slope / scale, found.bend / scale)
+    return out
+
+
+def of_law(law: Motion, first: float, last: float) -> LawError:
+    """Of one law between two times (s), in its own unit; none of laws that know their derivatives."""
+    raised_by = 0.0
+    while isinstance(law, Raised):
+        law, raised_by = law.law, raised_by + abs(law.by)
+    if not isinstance(law, Function) or law.df is not None:
+        return LawError()
+    looks, f = look_times(first, last, law.shortest), law.f
+    sampled = Sampled(lambda times: np.array([float(f(t)) for t in times]))
+    leaves = fit(sampled, first, last, given_cuts(law.breaks, first, last), looks, False).leaves
+    off = np.maximum(leaves.last, leaves.rounding + ROUNDING * raised_by)
+    halves = 2.0 / leaves.width
+    return LawError(float((SLOPE_OF_LAST * halves * off).max()), float((BEND_OF_LAST * halves**2 * off).max()))

@@ -13,6 +13,7 @@ sol.energy.kinetic, .potential
 from __future__ import annotations
 
 import html
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from mbsd.body import Marker
+    from mbsd.drawing.animation.animate import Animation
     from mbsd.drawing.picture import Picture
     from mbsd.mobility import Mobility
     from mbsd.model import Mechanism
@@ -319,6 +321,30 @@ class Solution:
         from mbsd.drawing.skeleton import draw
 
         return draw(self.mechanism, pose_of(self, t, step), ax, frames, names)
+
+    def animate(
+        self,
+        path: str | os.PathLike[str],
+        show: str | Sequence[str] = "all",
+        rate: float | None = None,
+        fps: float = 30.0,
+        size: tuple[int, int] | None = None,
+        names: bool = True,
+        progress: Callable[[int, int], object] | None = None,
+    ) -> Animation:
+        """The moving skeleton as a film, MP4 or GIF by the path's ending; traced points leave trails.
+
+        ``show``: one or more of ``velocities``, ``accelerations``, ``forces``, ``reactions`` and ``energy`` over one
+        another, ``()`` for the machine alone, or ``"all"``: each in a picture of its own, side by side. Arrows have one
+        scale for the whole film, told by one of a round number. ``rate``: seconds of the motion in a second of the
+        film; by default real time, or a round part or multiple of it, told in the picture, where that would be too
+        short or too long to see. ``fps``: pictures a second; ``size``: pixels, (1280, 720) by default, (800, 450) of a
+        GIF. A motion that repeats (``period``) loops; others play once. ``progress`` is called with the number of
+        pictures drawn, and of all. Needs the extra ``animate``; raises ModelError for what cannot be drawn or written.
+        """
+        from mbsd.drawing.animation.animate import animate
+
+        return animate(self, path, show, rate, fps, size, names, progress)
 
     def __repr__(self) -> str:
         return (

@@ -18,9 +18,15 @@ import pytest
 from shared.paths import ROOT
 
 CORE = {"numpy", "scipy", "numba"}
-OPTIONAL = {"pandas": "pandas", "matplotlib": "draw", "sksundae": "bench"}
+OPTIONAL = {
+    "pandas": "pandas",
+    "matplotlib": "draw",
+    "imageio_ffmpeg": "animate",
+    "PIL": "animate",
+    "sksundae": "bench",
+}
 """What single methods ask for, and the extra that brings it."""
-PACKAGE = {"sksundae": "scikit-sundae"}
+PACKAGE = {"sksundae": "scikit-sundae", "imageio_ffmpeg": "imageio-ffmpeg", "PIL": "pillow"}
 """Of what is imported under another name."""
 BLOCKER = """
 import sys
@@ -57,7 +63,10 @@ with tempfile.TemporaryDirectory() as folder:
 assert m.topology()._repr_svg_().startswith("<svg")
 def outside():
     m.simulate(0.01, method="sundials-bdf")
-for extra, ask in (("pandas", sol.to_frame), ("draw", m.draw), ("draw", sol.draw), ("bench", outside)):
+def film():
+    sol.animate("crank.mp4")
+asked = (("pandas", sol.to_frame), ("draw", m.draw), ("draw", sol.draw), ("animate", film), ("bench", outside))
+for extra, ask in asked:
     try:
         ask()
     except ModelError as error:
@@ -98,7 +107,7 @@ def test_the_wheel_needs_three_packages(wheel: Path) -> None:
     needs = fields.get_all("Requires-Dist", [])
     plain = {re.split(r"[^\w-]", need)[0] for need in needs if "extra ==" not in need}
     assert plain == CORE
-    assert {"draw", "cad", "film", "studio", "pandas"} <= set(fields.get_all("Provides-Extra", []))
+    assert {"draw", "animate", "cad", "film", "studio", "pandas"} <= set(fields.get_all("Provides-Extra", []))
 
 
 def test_the_wheel_solves_where_no_extra_is_installed(wheel: Path, tmp_path: Path) -> None:

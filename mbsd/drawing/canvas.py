@@ -39,6 +39,10 @@ class Canvas:
     """Pins that have ground's sign already."""
     wheels: dict[tuple[str, float], tuple[int, float]] = field(default_factory=dict)
     """Teeth and phase (rad) of the gears drawn, by body and radius."""
+    turned: dict[tuple[str, float], tuple[int, float]] = field(default_factory=dict)
+    """The same of gears that will be drawn, in a motion: as their teeth stood at its start."""
+    coils: dict[str, int] = field(default_factory=dict)
+    """Turns of the springs drawn, by force: a spring that moves keeps them."""
     labels: list[Label] = field(default_factory=list)
 
     def line(

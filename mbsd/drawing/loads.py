@@ -35,7 +35,7 @@ def draw_force(canvas: Canvas, force: Force, pose: Pose) -> None:
     elif element.kind == LINE or len(force.kind.elements(force)) == 1:
         end = i + float((j - i) @ pose.axis(force.i)) * pose.axis(force.i) if element.kind == AXIS else j
         damped = any(term.kind == DAMPING and term.a != 0.0 for term in element.terms)
-        _coil(canvas, i, end, damped)
+        _coil(canvas, force.name, i, end, damped)
         for point in (i, end):
             canvas.circle(point, 0.26, edge=LOAD, fill=LOAD, order=5.5, width=0.5)
         canvas.label(force.name, (i + end) / 2, 1.3, LOAD)
@@ -49,7 +49,17 @@ def force_reach(force: Force, pose: Pose) -> np.ndarray:
     """(k, 2) of what a force's sign needs beside its bodies."""
     place = pose.place(force.j)
     size = force.params["radius"] if "stiffness" in force.params and "radius" in force.params else 0.0
-    return place + size * np.array([[-1.0, -1.0], [1.0, 1.0]])
+    disc = place + size * np.array([[-1.0, -1.0], [1.0, 1.0]])
+    if "stiffness" not in force.params or isinstance(force.laws.get("profile"), Curve) or not size:
+        return disc
+    return np.vstack([disc, pose.place(force.i) + _way(force, pose, size)[:, None] * pose.axis(force.i)])
+
+
+def _way(force: Force, pose: Pose, beyond: float) -> np.ndarray:
+    """(2,) ends of the straight surface that a body touches, along its x axis (m): where the body comes, and more."""
+    here = float((pose.place(force.j) - pose.place(force.i)) @ pose.axis(force.i))
+    ways = np.append(pose.travel.get(f"force {force.name}", np.zeros(0)), here)
+    return np.array([ways.min() - beyond, ways.max() + beyond])
 
 
 def draw_special(canvas: Canvas, force: Force, pose: Pose) -> None:
@@ -71,13 +81,13 @@ def _surface(canvas: Canvas, force: Force, pose: Pose) -> None:
         x = np.linspace(profile.x[0], profile.x[-1], 121)
         y = profile(x)[:, 0]
     else:
-        x = float((centre - origin) @ along) + max(radius, 3.0 * canvas.unit) * np.array([-1.0, 1.0])
+        x = _way(force, pose, max(radius, 3.0 * canvas.unit))
         y = np.zeros(2)
     canvas.line(origin + np.outer(x, along) + np.outer(y, [-along[1], along[0]]), LOAD, 1.6, order=1.5)
     canvas.circle(centre, radius / canvas.unit, edge=LOAD, order=1.6, width=1.2, alpha=0.1)
 
 
-def _coil(canvas: Canvas, i: np.ndarray, j: np.ndarray, damped: bool) -> None:
+def _coil(canvas: Canvas, name: str, i: np.ndarray, j: np.ndarray, damped: bool) -> None:
     """A spring; beside it a dashpot where there is damping."""
     length = float(np.hypot(*(j - i)))
     if length < 0.2 * canvas.unit:
@@ -88,7 +98,7 @@ def _coil(canvas: Canvas, i: np.ndarray, j: np.ndarray, damped: bool) -> None:
     half = min(0.65 * canvas.unit, 0.3 * length)
     shift = 1.1 * half * across if damped else np.zeros(2)
     first, last = i + 0.18 * length * along, j - 0.18 * length * along
-    coils = int(np.clip(round(0.64 * length / (1.4 * canvas.unit)), *COILS))
+    coils = canvas.coils.setdefault(name, int(np.clip(round(0.64 * length / (1.4 * canvas.unit)), *COILS)))
     steps = np.linspace(0.0, 1.0, 2 * coils + 2)
     sides = np.array([0.0, *([1.0, -1.0] * coils), 0.0])
     zigzag = first + steps[:, None] * (last - first) + half * sides[:, None] * across + shift

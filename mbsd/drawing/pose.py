@@ -15,7 +15,9 @@ from mbsd.model import Mechanism
 from mbsd.shown import shown
 
 if TYPE_CHECKING:
-    from mbsd.solution import Solution
+    from mbsd.force import Force
+    from mbsd.joint import Joint
+    from mbsd.solution import FrameView, Solution
 
 
 @dataclass(frozen=True)
@@ -28,7 +30,7 @@ class Pose:
     paths: dict[str, np.ndarray] = field(default_factory=dict)
     """(T, 2) of traced points."""
     travel: dict[str, np.ndarray] = field(default_factory=dict)
-    """(T,) place of a sliding joint's second marker along the axis of the first (m)."""
+    """(T,) place of a joint's second marker along the axis of the first (m); ``force spring``, ``contact floor``."""
 
     def place(self, marker: Marker) -> np.ndarray:
         """(2,) of a marker in the world (m)."""
@@ -81,20 +83,49 @@ def pose_of(sol: Solution, t: float | None, step: int | None) -> Pose:
     step = 0 if step is None else step
     if isinstance(step, bool) or not isinstance(step, int | np.integer) or not -len(sol.t) <= step < len(sol.t):
         raise ModelError(f"{m.name}: step is {shown(step)}; the solution has steps 0 .. {len(sol.t) - 1}")
+    return tracks_of(sol).pose(step)
+
+
+@dataclass(frozen=True)
+class Tracks:
+    """The motion of everything that is drawn, looked up once for many poses."""
+
+    times: np.ndarray
+    views: dict[str, FrameView]
+    """Of bodies, ground included."""
+    paths: dict[str, np.ndarray]
+    """See :class:`Pose`."""
+    travel: dict[str, np.ndarray]
+    """See :class:`Pose`."""
+
+    def pose(self, step: int) -> Pose:
+        """At one of the times."""
+        frames = {n: (float(v.x[step]), float(v.y[step]), float(v.theta[step])) for n, v in self.views.items()}
+        return Pose(frames, f"t = {self.times[step]:.4g} s", True, self.paths, self.travel)
+
+
+def tracks_of(sol: Solution) -> Tracks:
+    """Of a whole solution."""
+    m = sol.mechanism
     views = {name: sol.body(name) for name in m.bodies}
-    frames = {n: (float(v.x[step]), float(v.y[step]), float(v.theta[step])) for n, v in views.items()}
-    points = {name: sol.point(name) for name in m.traces}
     travel = {}
-    for name, joint in (m.joints | m.drivers).items():
+    for name, joint in _markers_of(m).items():
         first, second = views[joint.i.body.name], views[joint.j.body.name]
         gap = _path(second, joint.j) - _path(first, joint.i)
         angle = first.theta + joint.i.angle
         travel[name] = gap[:, 0] * np.cos(angle) + gap[:, 1] * np.sin(angle)
+    points = {name: sol.point(name) for name in m.traces}
     paths = {name: np.stack([view.x, view.y], axis=1) for name, view in points.items()}
-    return Pose(frames, f"t = {sol.t[step]:.4g} s", True, paths, travel)
+    return Tracks(sol.t, views, paths, travel)
 
 
-def _path(view, marker: Marker) -> np.ndarray:
+def _markers_of(m: Mechanism) -> dict[str, Joint | Force]:
+    """All that has two markers. A force or contact may have the name of a joint, so theirs say what they are."""
+    forces = {f"force {name}": force for name, force in m.forces.items()}
+    return {**m.joints, **m.drivers, **forces, **{f"contact {name}": one for name, one in m.contacts.items()}}
+
+
+def _path(view: FrameView, marker: Marker) -> np.ndarray:
     """(T, 2) of a marker, from the motion of its body's frame."""
     c, s = np.cos(view.theta), np.sin(view.theta)
     return np.stack([view.x + c * marker.x - s * marker.y, view.y + s * marker.x + c * marker.y], axis=1)

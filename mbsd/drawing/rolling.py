@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,8 +11,10 @@ import numpy as np
 from mbsd.body import Marker
 from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.look import INK, PAPER, QUIET
+from mbsd.drawing.pose import Pose
 from mbsd.drawing.reach import BESIDE, placed
 from mbsd.drawing.wheels import FEWEST, PITCH, draw_disc, draw_gear, tooth, tooth_depth
+from mbsd.joint import Joint
 from mbsd.teeth import with_radii
 
 if TYPE_CHECKING:
@@ -32,7 +35,7 @@ def draw_rack(canvas: Canvas, place: Place) -> None:
     normal = np.array([-axis[1], axis[0]])
     pinion, name = place.j, place.joint.j.body.name
     fitting = sized.get("teeth", min(max(FEWEST, round(2 * math.pi * radius / (PITCH * u))), MOST))
-    teeth, phase = canvas.wheels.setdefault((name, radius), (fitting, 0.0))
+    teeth, phase = canvas.wheels.setdefault((name, radius), canvas.turned.get((name, radius), (fitting, 0.0)))
     down = math.atan2(-normal[1], -normal[0])  # where the pinion touches, as an angle
     depth = tooth_depth(canvas, radius, teeth)
     foot = place.i + float((pinion - place.i) @ axis) * axis
@@ -55,7 +58,7 @@ def draw_rolling_disc(canvas: Canvas, place: Place) -> None:
     """A disc about marker j on the x axis of marker i."""
     radius, axis = place.joint.params["radius"], place.axis
     a, b = place.range(BESIDE * radius)
-    _way(canvas, place, np.array([a, b]))
+    draw_way(canvas, np.array([a, b]), place.joint.i.body.name, place.colours)
     _disc(canvas, place, radius)
     foot = place.i + float((place.j - place.i) @ axis) * axis
     canvas.label(place.joint.name, foot, 0.6)
@@ -63,7 +66,7 @@ def draw_rolling_disc(canvas: Canvas, place: Place) -> None:
 
 def draw_rolling_on_curve(canvas: Canvas, place: Place) -> None:
     """A disc about marker j on a curve fixed to marker i."""
-    _way(canvas, place, _curve(place))
+    draw_way(canvas, _curve(place), place.joint.i.body.name, place.colours)
     _disc(canvas, place, place.joint.params["radius"])
     canvas.label(place.joint.name, place.j, 0.6)
 
@@ -91,10 +94,10 @@ def _disc(canvas: Canvas, place: Place, radius: float) -> None:
     draw_disc(canvas, place.j, radius, place.pose.frames[marker.body.name][2], colour)
 
 
-def _way(canvas: Canvas, place: Place, path: np.ndarray) -> None:
-    """A line or curve that a disc rolls on, on its left; ground's has strokes on the other side."""
-    if place.joint.i.body.name != "ground":
-        canvas.line(path, place.colours[place.joint.i.body.name], 2.2, order=3.5)
+def draw_way(canvas: Canvas, path: np.ndarray, body: str, colours: dict[str, str]) -> None:
+    """A line or curve of a body that something rolls on, on its left; ground's has strokes on the other side."""
+    if body != "ground":
+        canvas.line(path, colours[body], 2.2, order=3.5)
         return
     canvas.line(path, order=1.5)
     steps = np.diff(path, axis=0)
@@ -109,10 +112,20 @@ def _way(canvas: Canvas, place: Place, path: np.ndarray) -> None:
 
 
 def _curve(place: Place) -> np.ndarray:
-    """(k, 2) of the spline through the points of a joint, in the world (m)."""
+    return curve_path(place.joint, place.pose)
+
+
+def curve_path(joint: Joint, pose: Pose) -> np.ndarray:
+    """(k, 2) of the spline through the points of a joint or contact, in the world (m)."""
+    points = tuple((float(x), float(y)) for x, y in joint.params["points"])
+    return placed(pose, joint.i, _spline(points, joint.params["closed"]))
+
+
+@lru_cache(maxsize=32)
+def _spline(points: tuple[tuple[float, float], ...], closed: bool) -> np.ndarray:
+    """(k, 2) in the axes of the marker (m)."""
     from mbsd.curve_numbers import curve_pieces
 
-    points, closed = np.array(place.joint.params["points"], float), place.joint.params["closed"]
-    breaks, coefficients = curve_pieces(points, closed)
+    breaks, coefficients = curve_pieces(np.array(points), closed)
     end = (coefficients[-1] * (breaks[-1] - breaks[-2]) ** np.arange(6)).sum(axis=1)
-    return placed(place.pose, place.joint.i, np.vstack([coefficients[:, :, 0], end]))
+    return np.vstack([coefficients[:, :, 0], end])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +19,7 @@ from mbsd.drawing.picture import Picture
 from mbsd.drawing.pose import Pose
 from mbsd.drawing.reach import reach
 from mbsd.drawing.symbols import Place, draw_joint, free_side
+from mbsd.drawing.touching import contact_reach, draw_contacts
 from mbsd.drawing.wheels import name_place
 from mbsd.errors import ModelError
 from mbsd.model import Mechanism
@@ -81,6 +83,7 @@ def measure(m: Mechanism, pose: Pose) -> tuple[np.ndarray, np.ndarray, float]:
     points = {name: _points(m, pose, name) for name in m.bodies}
     wide = [reach(joint, pose) for joint in m.joints.values()]
     loads = [force_reach(force, pose) for force in m.forces.values()]
+    loads += [contact_reach(joint, pose) for joint in m.contacts.values()]
     everything = np.concatenate([*points.values(), *pose.paths.values(), *wide, *loads])
     if not len(everything):
         everything = np.zeros((1, 2))
@@ -88,17 +91,37 @@ def measure(m: Mechanism, pose: Pose) -> tuple[np.ndarray, np.ndarray, float]:
     return low, high, _unit(high - low, points)
 
 
-def draw_on(canvas: Canvas, m: Mechanism, pose: Pose, colours: dict[str, str], frames: bool) -> None:
-    """Draw bodies, joints, drivers, forces and traced points, and ask for their names. ``colours``: by body."""
+def measure_all(m: Mechanism, poses: Sequence[Pose]) -> tuple[np.ndarray, np.ndarray, float]:
+    """The same over several poses, in symbols of one size."""
+    lows, highs, _ = zip(*(measure(m, pose) for pose in poses), strict=True)
+    low, high = np.min(lows, axis=0), np.max(highs, axis=0)
+    lengths = [{name: _points(m, pose, name) for name in m.bodies} for pose in poses]
+    return low, high, min(_unit(high - low, points) for points in lengths)
+
+
+def draw_on(
+    canvas: Canvas,
+    m: Mechanism,
+    pose: Pose,
+    colours: dict[str, str],
+    frames: bool,
+    sides: Mapping[str, np.ndarray] | None = None,
+) -> None:
+    """Draw bodies, joints, drivers, forces, contacts and traced points, and ask for their names.
+
+    ``colours``: by body. ``sides``: where ground's signs go, by joint; by default where there is room in this pose.
+    """
     points, unit = {name: _points(m, pose, name) for name in m.bodies}, canvas.unit
     for name in colours:
         _link(canvas, m, pose, name, points[name], colours[name], frames)
     if frames:
         _frame(canvas, pose, "ground", 2.6)
     for joint in (*m.joints.values(), *m.drivers.values()):
-        draw_joint(canvas, Place(joint, pose, colours, _side(m, pose, points, joint.j, unit)))
+        side = free_side(_leaving(m, pose, points, joint.j, unit)) if sides is None else sides[joint.name]
+        draw_joint(canvas, Place(joint, pose, colours, side))
     for force in m.forces.values():
         draw_force(canvas, force, pose)
+    draw_contacts(canvas, list(m.contacts.values()), pose, colours)
     for name, marker in m.traces.items():
         canvas.circle(pose.place(marker), 0.3, fill=colours.get(marker.body.name, INK), order=9, width=0.8)
         canvas.label(name, pose.place(marker), 0.5, colours.get(marker.body.name, INK))
@@ -106,6 +129,16 @@ def draw_on(canvas: Canvas, m: Mechanism, pose: Pose, colours: dict[str, str], f
         rim = name_place(m, pose, name, unit)
         place, clearance = (_middle(points[name]), 1.1) if rim is None else (rim, 0.4)
         canvas.label(name, place, clearance, colours[name], 9.5)
+
+
+def steady_sides(m: Mechanism, poses: Sequence[Pose], unit: float) -> dict[str, np.ndarray]:
+    """By joint, the unit direction of ground's sign that has room in all of these poses."""
+    leaving: dict[str, list[float]] = {}
+    for pose in poses:
+        points = {name: _points(m, pose, name) for name in m.bodies}
+        for joint in (*m.joints.values(), *m.drivers.values()):
+            leaving.setdefault(joint.name, []).extend(_leaving(m, pose, points, joint.j, unit))
+    return {name: free_side(directions) for name, directions in leaving.items()}
 
 
 def _points(m: Mechanism, pose: Pose, name: str) -> np.ndarray:
@@ -127,11 +160,14 @@ def _points(m: Mechanism, pose: Pose, name: str) -> np.ndarray:
     for force in m.forces.values():
         ends = [force.j] if force.kind.name in UNPLACED else [force.i, force.j]
         out += [pose.place(marker) for marker in ends if marker.body.name == name]
+    touching = [contact.j for contact in m.contacts.values() if not contact.params.get("radius")]
+    out += [pose.place(marker) for marker in touching if marker.body.name == name]
     out += [pose.place(marker) for marker in m.traces.values() if marker.body.name == name]
     length = m.bodies[name].length
     if length is not None:
         out += [pose.of(name, 0.0, 0.0), pose.of(name, length, 0.0)]
-    if not out and name != "ground":
+    jointed = any(name in joint.bodies for joint in m.joints.values())
+    if name != "ground" and (not out or not jointed):
         out.append(pose.of(name, *m.bodies[name].com))
     return np.array(out).reshape(-1, 2)
 
@@ -177,13 +213,13 @@ def _frame(canvas: Canvas, pose: Pose, name: str, length: float) -> None:
         canvas.line([origin, end], ink, 1.3, order=6)
 
 
-def _side(m: Mechanism, pose: Pose, points: dict[str, np.ndarray], j: Marker, unit: float) -> np.ndarray:
-    """Where ground's sign has room: away from the links that leave the pin, those of other joints there included."""
+def _leaving(m: Mechanism, pose: Pose, points: dict[str, np.ndarray], j: Marker, unit: float) -> list[float]:
+    """Directions (rad) of the links that leave the pin, those of other joints there included."""
     pin = pose.place(j)
     here = [joint for joint in m.joints.values() if np.hypot(*(pose.place(joint.j) - pin)) < 0.2 * unit]
     moving = {name: None for joint in here for name in joint.bodies if name != "ground"}
     away = [p - pin for name in moving for p in points[name] if np.hypot(*(p - pin)) > 0.2 * unit]
-    return free_side([math.atan2(y, x) for x, y in away])
+    return [math.atan2(y, x) for x, y in away]
 
 
 def _middle(points: np.ndarray) -> np.ndarray:

@@ -30,12 +30,18 @@ def draw_gear_pair(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, 
     at_j = line if internal else line + math.pi  # where gear j is touched
     key_i, key_j = (joint.i.body.name, r_i), (joint.j.body.name, r_j)
     wheels, new_i, new_j = canvas.wheels, key_i not in canvas.wheels, key_j not in canvas.wheels
-    if new_i and new_j and "teeth" in sized:
+    known = {key: canvas.turned[key] for key in (key_i, key_j) if key in canvas.turned}
+    wheels |= {key: place for key, place in known.items() if key not in wheels}
+    if key_i in wheels and key_j in wheels:
+        pass
+    elif new_i and new_j and "teeth" in sized:
         wheels[key_i] = sized["teeth"][0], 0.0
     elif new_i and new_j:
         teeth = max(FEWEST, round(2 * math.pi * min(r_i, r_j) / (PITCH * canvas.unit)))
         wheels[key_i] = round(teeth * r_i / min(r_i, r_j)), 0.0
-    if key_i in wheels:
+    if key_i in wheels and key_j in wheels:
+        pass
+    elif key_i in wheels:
         here = wheels[key_i][0] * line - wheels[key_i][1]  # phase of gear i's teeth at the contact
         teeth = max(3, round(wheels[key_i][0] * r_j / r_i))
         wheels.setdefault(key_j, (teeth, teeth * at_j + (math.pi - here if internal else here - math.pi)))

@@ -1,0 +1,131 @@
+"""``sol.animate(path)``: what is asked for is checked, drawn picture by picture and handed to the encoder."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from mbsd.arguments import finite_number, switch
+from mbsd.drawing.animation.clip import HOLD, clip_of
+from mbsd.drawing.animation.encoders import ffmpeg, held, write_gif, write_mp4
+from mbsd.drawing.animation.page import Page
+from mbsd.drawing.animation.scene import scene_of
+from mbsd.drawing.animation.words import EVERYTHING, QUANTITIES
+from mbsd.errors import ModelError
+from mbsd.names import no_such
+from mbsd.shown import shown
+from mbsd.solution import Solution
+
+SUFFIXES = (".mp4", ".gif")
+SIZE = {".mp4": (1280, 720), ".gif": (800, 450)}
+SMALLEST, LARGEST = 120, 4096
+LONG_ENOUGH = 6.0
+"""Seconds that an MP4 of a motion that repeats lasts at least, by whole rounds."""
+
+
+@dataclass(frozen=True)
+class Animation:
+    """A file that was written; a notebook shows it."""
+
+    path: Path
+    pictures: int
+    """Drawn; an MP4 repeats those of a short round."""
+    seconds: float
+    """On the screen, once through."""
+    rate: float
+    """Seconds of the motion in a second on the screen."""
+
+    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, object]:
+        import base64
+
+        code = base64.b64encode(self.path.read_bytes()).decode()
+        if self.path.suffix.lower() == ".gif":
+            return {"text/html": f'<img src="data:image/gif;base64,{code}">'}
+        return {"text/html": f'<video controls loop autoplay muted src="data:video/mp4;base64,{code}"></video>'}
+
+
+def animate(
+    sol: Solution,
+    path: str | os.PathLike[str],
+    show: str | Sequence[str],
+    rate: float | None,
+    fps: float,
+    size: tuple[int, int] | None,
+    names: bool,
+    progress: Callable[[int, int], object] | None,
+) -> Animation:
+    """See :meth:`mbsd.solution.Solution.animate`."""
+    name = f"{sol.mechanism.name}: animate"
+    target, suffix = _target(name, path)
+    groups = _groups(name, show)
+    wide, high = _size(name, SIZE[suffix] if size is None else size, suffix)
+    if rate is not None and not finite_number(f"{name}: rate", rate) > 0:
+        raise ModelError(f"{name}: rate is {rate:g}; it must be positive: 1 is real time, 0.1 ten times slower")
+    fps = finite_number(f"{name}: fps", fps)
+    if not 1.0 <= fps <= 120.0:
+        raise ModelError(f"{name}: fps is {fps:g}; a film has 1 .. 120 pictures a second")
+    switch(f"{name}: names", names)
+    try:
+        import matplotlib.figure  # noqa: F401
+    except ImportError as error:
+        raise ModelError("an animation needs matplotlib: install mbsd[animate]") from error
+    if suffix == ".mp4":
+        ffmpeg()  # told now, not after the last picture
+    else:
+        fps = 100.0 / max(2, round(100.0 / fps))  # its times are hundredths of a second; most viewers slow down below 2
+    clip = clip_of(sol, rate, fps)
+    page = Page(sol, scene_of(sol, clip), groups, (wide, high), names)
+    count = len(clip.times)
+
+    def pictures() -> Iterator[np.ndarray]:
+        for k in range(count):
+            yield page.picture(k)
+            if progress is not None:
+                progress(k + 1, count)
+
+    if suffix == ".gif":
+        write_gif(target, pictures(), count, fps, 0.0 if clip.repeats else HOLD)
+    else:
+        rounds = max(1, round(LONG_ENOUGH * fps / count)) if clip.repeats else 1
+        still = 0 if clip.repeats else round(HOLD * fps)
+        write_mp4(target, held(pictures(), still), (wide, high), fps, rounds)
+    return Animation(target, count, clip.seconds, clip.rate)
+
+
+def _target(name: str, path: object) -> tuple[Path, str]:
+    if not isinstance(path, str | os.PathLike):
+        raise ModelError(f"{name}: path is {shown(path)}; it must be a text or a path")
+    target = Path(os.fspath(path))
+    suffix = target.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise ModelError(f"{name}: {target} ends with {suffix or 'nothing'}; an animation is an .mp4 or a .gif")
+    return target, suffix
+
+
+def _groups(name: str, show: object) -> tuple[tuple[str, ...], ...]:
+    """The words of each panel."""
+    if isinstance(show, str) and show == "all":
+        return EVERYTHING
+    words: list[str] = [show] if isinstance(show, str) else []
+    for word in show if isinstance(show, list | tuple) else [show]:
+        if not isinstance(word, str) or word not in QUANTITIES:
+            raise ModelError(f"{name}: show: {no_such('quantity', word, [*QUANTITIES, 'all'])}")
+        words.append(word)
+    return (tuple(dict.fromkeys(words)),)
+
+
+def _size(name: str, size: object, suffix: str) -> tuple[int, int]:
+    even = "even " if suffix == ".mp4" else ""
+    if isinstance(size, tuple | list) and len(size) == 2:
+        wide, high = size
+        whole = all(isinstance(side, int) and not isinstance(side, bool) for side in size)
+        if whole and all(SMALLEST <= side <= LARGEST and not (even and side % 2) for side in size):
+            return wide, high
+    raise ModelError(
+        f"{name}: size is {shown(size)}; it must be two {even}whole numbers of pixels, {SMALLEST} .. {LARGEST}: "
+        "size=(1280, 720)"
+    )

@@ -1,0 +1,127 @@
+"""Bars beside the machine: kinetic and potential energy and their sum; the power of each driver and force."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from mbsd.drawing.animation.brush import Brush, Colour, rgba
+from mbsd.drawing.animation.flow import Balance
+from mbsd.drawing.animation.sprites import lay, sprite
+from mbsd.drawing.animation.words import KINETIC, POTENTIAL, TAKEN, with_unit
+from mbsd.drawing.look import INK, QUIET
+
+ROWS = 4
+"""Of powers; the largest ones."""
+TRACK = "#e6e9ed"
+NOTHING = 1e-9
+"""Of the largest power: not shown."""
+
+
+class Bars:
+    """In a box of pixels (left, low, width, height)."""
+
+    def __init__(self, balance: Balance, box: tuple[float, float, float, float], dpi: float) -> None:
+        self.balance, self.box, self.dpi = balance, box, dpi
+        peaks = {name: float(np.abs(power).max(initial=0.0)) for name, power in balance.powers.items()}
+        most = max(peaks.values(), default=0.0)
+        order = sorted(peaks, key=lambda name: -peaks[name])
+        self.powers = [name for name in order if peaks[name] > NOTHING * most][:ROWS] if most > 1e-15 else []
+        self.largest_power = most
+        self.total = balance.kinetic + balance.potential
+        self.largest = float(self.total.max(initial=0.0))
+        px, (left, low, width, height) = dpi / 100, box
+        rows = len(self.powers) * 40 * px + (22 * px if self.powers else 0)
+        self.rows = min(rows, 0.52 * height)
+        self.columns = (left, low + self.rows + 30 * px, width, height - self.rows - 62 * px)
+
+    @property
+    def has_energy(self) -> bool:
+        """Whether there is anything to show."""
+        return self.largest > 1e-15
+
+    def paint_still(self, figure: Any, renderer: Any) -> None:
+        """Words that stay."""
+        px, (left, low, width, _) = self.dpi / 100, self.box
+        if self.has_energy:
+            for k, word in enumerate(("kinetic", "potential", "sum")):
+                _word(figure, renderer, word, self._column(k), self.columns[1] - 13 * px, QUIET, 8.5, "center")
+        if self.powers:
+            _word(figure, renderer, "takes", left + 2 * px, low + self.rows - 8 * px, TAKEN, 8.5, "left")
+            _word(figure, renderer, "gives", left + width - 2 * px, low + self.rows - 8 * px, KINETIC, 8.5, "right")
+            for k, name in enumerate(self.powers):
+                _word(figure, renderer, name, left + 2 * px, self._row(k) + 15 * px, INK, 8.5, "left")
+
+    def draw(self, brush: Brush, k: int) -> None:
+        """The bars at picture ``k``."""
+        px, (left, _, width, _) = self.dpi / 100, self.box
+        kinetic, potential = float(self.balance.kinetic[k]), float(self.balance.potential[k])
+        if self.has_energy:
+            stacks = (((kinetic, KINETIC),), ((potential, POTENTIAL),), ((potential, POTENTIAL), (kinetic, KINETIC)))
+            for number, stack in enumerate(stacks):
+                self._stack(brush, self._column(number), stack)
+        for number, name in enumerate(self.powers):
+            y, middle = self._row(number), left + width / 2
+            half = 5 * px
+            _plate(brush, left, y - half, width, 2 * half, rgba(TRACK))
+            part = float(self.balance.powers[name][k]) / self.largest_power * width / 2
+            _plate(brush, middle + min(part, 0.0), y - half, abs(part), 2 * half, rgba(KINETIC if part > 0 else TAKEN))
+            brush.stroke(np.array([(middle, y - 1.5 * half), (middle, y + 1.5 * half)]), rgba(QUIET), 1.0, 11)
+
+    def lay_words(self, picture: np.ndarray, k: int) -> None:
+        """The numbers that live."""
+        px, (left, _, width, _) = self.dpi / 100, self.box
+        if self.has_energy:
+            values = (self.balance.kinetic[k], self.balance.potential[k], self.total[k])
+            top = self.columns[1] + self.columns[3] + 12 * px
+            for number, value in enumerate(values):
+                lay(
+                    picture,
+                    sprite(_short(float(value), "J", self.largest), 8.5, INK, self.dpi),
+                    self._column(number),
+                    top,
+                )
+        for number, name in enumerate(self.powers):
+            word = sprite(_short(float(self.balance.powers[name][k]), "W", self.largest_power), 8.5, INK, self.dpi)
+            lay(picture, word, left + width - word.shape[1] / 2 - 2 * px, self._row(number) + 15 * px)
+
+    def _column(self, k: int) -> float:
+        return self.columns[0] + self.columns[2] * (k + 0.5) / 3
+
+    def _row(self, k: int) -> float:
+        px = self.dpi / 100
+        return self.box[1] + self.rows - 22 * px - (k + 0.72) * (self.rows - 22 * px) / max(len(self.powers), 1)
+
+    def _stack(self, brush: Brush, x: float, stack: tuple[tuple[float, str], ...]) -> None:
+        px, (_, low, _, height) = self.dpi / 100, self.columns
+        half, y = 13 * px, low
+        _plate(brush, x - half, low, 2 * half, height, rgba(TRACK))
+        for value, ink in stack:
+            high = max(value, 0.0) / self.largest * height
+            _plate(brush, x - half, y, 2 * half, high, rgba(ink))
+            y += high
+
+
+def _plate(brush: Brush, x: float, y: float, width: float, height: float, ink: Colour) -> None:
+    corners = np.array([(x, y), (x + width, y), (x + width, y + height), (x, y + height)])
+    brush.plate(corners, ink, None, 0.0, 10.5)
+
+
+def _word(figure: Any, renderer: Any, text: str, x: float, y: float, ink: str, size: float, side: str) -> None:
+    figure.text(
+        x, y, text, color=ink, fontsize=size, ha=side, va="center", transform=None, parse_math=False
+    ).draw(renderer)  # fmt: skip
+
+
+def _short(value: float, unit: str, largest: float) -> str:
+    """Two digits, in the prefix of the largest value, so that the words do not jump."""
+    import math
+
+    power = 3 * math.floor(math.log10(largest) / 3 + 1e-9) if largest > 0 else 0
+    scaled = value / 10.0**power
+    decimals = max(0, 2 - max(0, math.floor(math.log10(largest / 10.0**power) + 1e-9)))
+    if abs(scaled) < 0.5 * 10.0**-decimals:
+        scaled = 0.0
+    unit_word = with_unit(10.0**power, unit).split(" ")[1]
+    return f"{scaled:.{decimals}f} {unit_word}".replace("-", chr(0x2212))

@@ -1,0 +1,206 @@
+"""A canvas that hands what is drawn straight to the Agg renderer, in pixels, sorted by order; arrows and arcs.
+
+Artists of matplotlib cost more than the strokes they make: an animation draws some hundred strokes a picture.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from mbsd.drawing.canvas import Canvas, Label, Point
+from mbsd.drawing.look import INK, MOVED, PAPER
+
+Colour = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class View:
+    """Metres to pixels, y upwards."""
+
+    scale: float
+    """Pixels a metre."""
+    left: float
+    low: float
+    """Pixels of the world's origin."""
+
+    def pixels(self, points: Point | Sequence[Point]) -> np.ndarray:
+        """(k, 2) of points in metres."""
+        return np.asarray(points, float) * self.scale + (self.left, self.low)
+
+
+@dataclass(frozen=True)
+class Mark:
+    """One path in pixels."""
+
+    order: float
+    path: Any
+    edge: Colour | None
+    fill: Colour | None
+    width: float
+    """Points."""
+    dash: Any
+
+
+@dataclass(eq=False)
+class Brush(Canvas):
+    """Collects paths; ``paint`` draws them."""
+
+    view: View = field(default_factory=lambda: View(1.0, 0.0, 0.0))
+    marks: list[Mark] = field(default_factory=list)
+    tints: dict[str, tuple[str, float]] = field(default_factory=dict)
+    """Another filling for what is drawn in a colour: colour and alpha."""
+    dpi: float = 100.0
+    remembers: bool = False
+    """Whether obstacles for names are kept."""
+
+    def line(
+        self, points: Sequence[Point] | Point, colour: str = INK, width: float = 1.4, order: float = 4, **more: Any
+    ) -> None:
+        """A polyline (m)."""
+        points = np.asarray(points, float)
+        self.keep(points)
+        dash = more.get("linestyle", (0, None))
+        self._add(self.view.pixels(points), False, rgba(colour, more.get("alpha", 1.0)), None, width, order, dash)
+
+    def shape(
+        self,
+        points: Point,
+        edge: str = INK,
+        fill: str = PAPER,
+        width: float = 1.4,
+        order: float = 4,
+        alpha: float = 1.0,
+    ) -> None:
+        """A closed outline (m)."""
+        if order == 2 and edge in self.tints:
+            fill, alpha = self.tints[edge]
+        self.keep(points)
+        filled = rgba(fill, alpha) if alpha > 0 else None
+        self._add(self.view.pixels(points), True, rgba(edge) if width > 0 else None, filled, width, order)
+
+    def band(self, outer: Point, inner: Point, colour: str) -> None:
+        """What lies between two closed outlines (m)."""
+        from matplotlib.path import Path
+
+        self.keep(outer)
+        ring = Path.make_compound_path(
+            Path(self.view.pixels(outer), closed=True), Path(self.view.pixels(inner[::-1]), closed=True)
+        )
+        self.marks.append(Mark(1.7, ring, rgba(colour), rgba(colour, 0.12), 1.3, (0, None)))
+
+    def label(self, text: str, anchor: Point, clearance: float, colour: str = INK, size: float = 10.0) -> None:
+        """A name; those that share a place are not joined, because they may part. Drivers, which turn, get none."""
+        if colour != MOVED:
+            self.labels.append(Label(text, anchor, clearance, colour, size))
+
+    def keep(self, path: Point) -> None:
+        """Only while places for names are looked for."""
+        if self.remembers:
+            super().keep(path)
+
+    def plate(self, pixels: np.ndarray, fill: Colour | None, edge: Colour | None, width: float, order: float) -> None:
+        """A closed outline in pixels."""
+        self._add(pixels, True, edge, fill, width, order)
+
+    def stroke(self, pixels: np.ndarray, colour: Colour, width: float, order: float) -> None:
+        """A polyline in pixels."""
+        self._add(pixels, False, colour, None, width, order)
+
+    def paint(self, renderer: Any) -> None:
+        """Draw all, lower orders first, those of one order as they came."""
+        from matplotlib.transforms import IdentityTransform
+
+        still = IdentityTransform()
+        for mark in sorted(self.marks, key=lambda one: one.order):
+            gc = renderer.new_gc()
+            gc.set_linewidth(renderer.points_to_pixels(mark.width) if mark.edge else 0.0)
+            gc.set_foreground(mark.edge or (0, 0, 0, 0), isRGBA=True)
+            gc.set_capstyle("round")
+            gc.set_joinstyle("round")
+            offset, dashes = mark.dash
+            if dashes is not None and len(dashes):
+                scale = renderer.points_to_pixels(mark.width)
+                gc.set_dashes(offset * scale, [length * scale for length in dashes])
+                gc.set_capstyle("butt")
+            renderer.draw_path(gc, mark.path, still, mark.fill)
+            gc.restore()
+        self.marks.clear()
+
+    def _add(
+        self,
+        pixels: np.ndarray,
+        closed: bool,
+        edge: Colour | None,
+        fill: Colour | None,
+        width: float,
+        order: float,
+        dash: Any = (0, None),
+    ) -> None:
+        from matplotlib.path import Path
+
+        if closed:
+            pixels = np.vstack([pixels, pixels[:1]])
+        path = Path(pixels, closed=closed)
+        path.should_simplify = False
+        self.marks.append(Mark(order, path, edge, fill, width, dash))
+
+
+def rgba(colour: str, alpha: float = 1.0) -> Colour:
+    """Of a hexadecimal colour."""
+    return (int(colour[1:3], 16) / 255, int(colour[3:5], 16) / 255, int(colour[5:7], 16) / 255, alpha)
+
+
+def arrow(brush: Brush, tail: np.ndarray, vector: np.ndarray, colour: str, size: float, cut: bool = False) -> None:
+    """An arrow of ``vector`` pixels with a white rim; ``size``: thickness of its shaft (pixels).
+
+    ``cut``: two strokes across say that it is longer.
+    """
+    length = float(np.hypot(*vector))
+    if length < 0.8 * size:
+        return
+    along = vector / length
+    across = np.array([-along[1], along[0]])
+    head = min(4.6 * size, 0.72 * length)
+    half, wide = 0.5 * size * min(1.0, length / (4.0 * size)), 0.36 * head
+    neck = tail + (length - head) * along
+    outline = np.array([
+        tail + half * across, neck + half * across, neck + wide * across, tail + vector,
+        neck - wide * across, neck - half * across, tail - half * across,
+    ])  # fmt: skip
+    brush.plate(outline, None, rgba(PAPER, 0.9), 2.6, 10.0)
+    brush.plate(outline, rgba(colour, 0.95), None, 0.0, 10.1)
+    for back in (0.8, 1.5) if cut else ():
+        middle = neck - back * head * 0.5 * along
+        slant = across + 0.5 * along
+        brush.stroke(np.array([middle - 1.6 * size * slant, middle + 1.6 * size * slant]), rgba(PAPER), 2.2, 10.2)
+
+
+def arc(brush: Brush, centre: np.ndarray, radius: float, sweep: float, colour: str, size: float) -> None:
+    """An arc of ``sweep`` rad about ``centre`` (pixels) from below, with a head; positive counter-clockwise."""
+    if abs(sweep) * radius < 1.5 * size:
+        return
+    head = min(4.2 * size, 0.7 * abs(sweep) * radius)
+    way = math.copysign(1.0, sweep)
+    start = -math.pi / 2 - 0.5 * sweep
+    end = start + sweep - way * head / radius
+    turn = np.linspace(start, end, max(3, int(abs(sweep) * 14)))
+    path = centre + radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    out = np.array([math.cos(end), math.sin(end)])
+    along = way * np.array([-out[1], out[0]])
+    wing = 0.36 * head * out
+    tip = path[-1] + head * along - 0.12 * head * out
+    triangle = np.array([tip, path[-1] + wing, path[-1] - wing])
+    brush.stroke(path, rgba(PAPER, 0.9), size * 72 / brush.dpi + 2.2, 10.0)
+    brush.plate(triangle, None, rgba(PAPER, 0.9), 2.2, 10.0)
+    brush.stroke(path, rgba(colour, 0.95), size * 72 / brush.dpi, 10.1)
+    brush.plate(triangle, rgba(colour, 0.95), None, 0.0, 10.1)
+
+
+def fresh(brush: Brush, **more: Any) -> Brush:
+    """A brush like this one with nothing on it."""
+    return replace(brush, obstacles=[], supports=[], labels=[], marks=[], **more)

@@ -1,0 +1,83 @@
+"""The times of an animation: a round trip without a doubled frame, or forwards once; at which part of real time."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.errors import ModelError
+from mbsd.solution import Solution
+
+SHORTEST_ROUND, SHORTEST_WAY, LONGEST = 1.0, 2.0, 40.0
+"""Seconds on the screen within which real time is kept: of a motion that repeats, of one that does not."""
+HOLD = 0.8
+"""Seconds for which the last picture of a motion that does not repeat stands."""
+MOST = 6000
+"""Pictures of an animation."""
+
+
+@dataclass(frozen=True)
+class Clip:
+    """When the pictures are."""
+
+    times: np.ndarray
+    """(N,) of the motion (s), rising; the end of a period is left out, because it is its start."""
+    fps: float
+    rate: float
+    """Seconds of the motion in a second on the screen."""
+    repeats: bool
+
+    @property
+    def seconds(self) -> float:
+        """On the screen, once through."""
+        return len(self.times) / self.fps + (0.0 if self.repeats else HOLD)
+
+    @property
+    def words(self) -> str:
+        """What the picture tells of the rate; nothing of real time."""
+        if math.isclose(self.rate, 1.0, rel_tol=1e-9):
+            return ""
+        if self.rate < 1.0 and math.isclose(round(1 / self.rate), 1 / self.rate, rel_tol=1e-9):
+            return f"{round(1 / self.rate)} times slower"
+        return f"{self.rate:.3g} times real time" if self.rate < 1.0 else f"{self.rate:.3g} times faster"
+
+
+def clip_of(sol: Solution, rate: float | None, fps: float) -> Clip:
+    """The whole solution. ``rate`` None: real time, or a round part or multiple of it where that is too short or long.
+
+    Raises ModelError for a solution at a single time, and for more pictures than an animation may have.
+    """
+    m, period = sol.mechanism, sol.period
+    if len(sol.t) < 2:
+        raise ModelError(f"{m.name}: the solution has one time; an animation needs a motion: sweep(steps=...)")
+    start, span = float(sol.t[0]), float(sol.t[-1] - sol.t[0])
+    repeats = period is not None and bool(np.abs(sol.v).max(initial=0.0) > 0)
+    if rate is None:
+        rate = _round_rate(span, SHORTEST_ROUND if repeats else SHORTEST_WAY)
+    wanted = span * fps / rate
+    if wanted > MOST:
+        raise ModelError(
+            f"{m.name}: {span:.4g} s at a rate of {rate:g} and {fps:g} pictures a second are {wanted:.0f} pictures; "
+            f"an animation has {MOST} at most: give a higher rate=, a lower fps=, or a shorter solution"
+        )
+    if repeats:
+        count = max(2, round(wanted))
+        return Clip(start + span * np.arange(count) / count, fps, rate, True)
+    count = max(2, math.floor(wanted + 1e-9) + 1)
+    times = start + rate / fps * np.arange(count)
+    return Clip(np.minimum(times[times <= sol.t[-1] + 1e-9 * span], sol.t[-1]), fps, rate, False)
+
+
+def _round_rate(span: float, shortest: float) -> float:
+    """1 where ``span`` (s) is watchable, else the nearest of ..., 1/5, 1/2, 2, 5, ... that makes it so."""
+    rate, steps = 1.0, (2.0, 2.5, 2.0)
+    for k in range(60):
+        if span / rate < shortest:
+            rate /= steps[k % 3]
+        elif span / rate > LONGEST:
+            rate *= steps[k % 3]
+        else:
+            break
+    return 1.0 / round(1.0 / rate) if rate < 1.0 and 1.0 / rate < 1e6 else rate

@@ -1,0 +1,148 @@
+"""Pictures to files: MP4 by ffmpeg, which any player and web page shows, and GIF by Pillow. Written whole."""
+
+from __future__ import annotations
+
+import io
+import os
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mbsd.drawing.animation.brush import rgba
+from mbsd.drawing.animation.words import CARD, KINETIC, POTENTIAL, QUANTITIES, TAKEN
+from mbsd.drawing.look import INK, PAPER, QUIET
+from mbsd.errors import ModelError
+
+PLAIN = ("-movflags", "+faststart", "-map_metadata", "-1", "-fflags", "+bitexact")
+H264 = (
+    *("-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-profile:v", "high", "-bf", "0"),
+    *("-vf", "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p"),
+    *("-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"),
+    *("-threads", "2", "-flags:v", "+bitexact"),
+    *PLAIN,
+)
+SAMPLED = 6
+"""Pictures from which the colours of a GIF are taken."""
+
+
+def ffmpeg() -> str:
+    """The program that imageio-ffmpeg brings, or the system's. Raises ModelError if there is none."""
+    try:
+        import imageio_ffmpeg
+
+        return imageio_ffmpeg.get_ffmpeg_exe()
+    except (ImportError, RuntimeError):
+        found = shutil.which("ffmpeg")
+        if found is None:
+            raise ModelError(
+                "an MP4 needs ffmpeg: install mbsd[animate], or ffmpeg itself; a path that ends with .gif needs neither"
+            ) from None
+        return found
+
+
+def write_mp4(path: Path, pictures: Iterable[np.ndarray], size: tuple[int, int], fps: float, rounds: int) -> None:
+    """From (H, W, 4) bytes of each picture, all of them ``rounds`` times over, encoded once.
+
+    Raises ModelError where ffmpeg fails or the file cannot be written.
+    """
+    program = [ffmpeg(), "-y", "-loglevel", "error"]
+    raw = ["-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{size[0]}x{size[1]}", "-framerate", f"{fps:.6g}", "-i", "-"]
+    with _whole(path) as target:
+        once = target if rounds == 1 else target.with_stem(f"{target.stem}-once")
+        try:
+            _run(path, [*program, *raw, *H264, str(once)], pictures)
+            if rounds > 1:
+                again = ["-stream_loop", str(rounds - 1), "-i", str(once), "-c", "copy"]
+                _run(path, [*program, *again, *PLAIN, str(target)], ())
+        finally:
+            if rounds > 1:
+                once.unlink(missing_ok=True)
+
+
+def _run(path: Path, command: list[str], pictures: Iterable[np.ndarray]) -> None:
+    with tempfile.TemporaryFile() as chat:
+        process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=chat)
+        try:
+            assert process.stdin is not None
+            with suppress(BrokenPipeError):  # its last word tells why
+                for picture in pictures:
+                    process.stdin.write(np.ascontiguousarray(picture))
+                process.stdin.close()
+            process.wait()
+        finally:
+            if process.poll() is None:
+                process.kill()
+                process.wait()
+        if process.returncode:
+            chat.seek(0)
+            said = chat.read().decode(errors="replace").strip().splitlines() or [f"code {process.returncode}"]
+            raise ModelError(f"cannot write {path}: ffmpeg failed: {said[-1]}")
+
+
+def write_gif(path: Path, pictures: Iterable[np.ndarray], count: int, fps: float, hold: float) -> None:
+    """From (H, W, 4) bytes of ``count`` pictures; plays for ever. ``hold``: seconds more for the last one."""
+    from PIL import Image
+
+    kept = [Image.fromarray(np.ascontiguousarray(picture[..., :3])) for picture in pictures]
+    some = kept[:: max(1, count // SAMPLED)]
+    strip = Image.new("RGB", (some[0].width, some[0].height * len(some)))
+    for k, picture in enumerate(some):
+        strip.paste(picture, (0, k * picture.height))
+    palette = _palette(strip)
+    drawn = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in kept]
+    each = round(100.0 / fps) * 10
+    times = [each] * len(drawn)
+    times[-1] += round(hold * 100) * 10
+    buffer = io.BytesIO()
+    drawn[0].save(
+        buffer, format="GIF", save_all=True, append_images=drawn[1:], duration=times, loop=0, optimize=False, disposal=1
+    )
+    from mbsd.saving.file import write_whole
+
+    write_whole(path, buffer.getvalue())
+
+
+def _palette(strip: Any) -> Any:
+    """The colours of the picture that mean something as they are, and the others of ``strip`` that are met most."""
+    from PIL import Image
+
+    fixed = [INK, PAPER, CARD, QUIET, KINETIC, POTENTIAL, TAKEN, *(one.colour for one in QUANTITIES.values())]
+    plain = [round(255 * part) for colour in fixed for part in rgba(colour)[:3]]
+    found = strip.quantize(256 - len(fixed), method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    out = Image.new("P", (1, 1))
+    out.putpalette((plain + (found.getpalette() or []))[:768])
+    return out
+
+
+def held(pictures: Iterable[np.ndarray], still: int) -> Iterator[np.ndarray]:
+    """All pictures, and the last one ``still`` times more."""
+    picture = np.zeros(0)
+    for picture in pictures:
+        yield picture
+    for _ in range(still):
+        yield picture
+
+
+@contextmanager
+def _whole(path: Path) -> Iterator[Path]:
+    """A temporary file beside the target that replaces it at the end."""
+    temporary = None
+    try:
+        handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
+        os.close(handle)
+        temporary = Path(name)
+        yield temporary
+        temporary.chmod(0o644)
+        os.replace(temporary, path)
+    except OSError as error:
+        why = error.strerror or error
+        raise ModelError(f"cannot write {path}: {why}; choose another place or free some disk space") from error
+    finally:
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)

@@ -1,0 +1,60 @@
+"""Impacts: a ring that spreads where bodies hit each other, larger for a larger impulse."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.drawing.animation.arrows import moving_marker
+from mbsd.drawing.animation.brush import Brush, rgba
+from mbsd.drawing.animation.clip import Clip
+from mbsd.drawing.animation.loads import touched
+from mbsd.drawing.animation.scene import Scene
+from mbsd.drawing.look import MOVED
+
+SECONDS = 0.35
+"""For which the ring is seen."""
+SMALLEST = 0.02
+"""Of the largest impulse."""
+
+
+@dataclass(frozen=True)
+class Impact:
+    """One hit."""
+
+    time: float
+    place: np.ndarray
+    """(2,) m."""
+    part: float
+    """Of the largest impulse."""
+
+
+def impacts_of(scene: Scene) -> list[Impact]:
+    """All that are worth a ring."""
+    sol, m = scene.sol, scene.sol.mechanism
+    hits = [event for event in sol.events if event.what == "impact" and event.name in m.contacts]
+    most = max((abs(event.impulse) for event in hits), default=0.0)
+    out = []
+    for event in hits:
+        joint = m.contacts[event.name]
+        k = int(np.argmin(np.abs(scene.clip.times - event.time)))
+        place = moving_marker(scene.tracks.views, joint.j).place
+        none = np.zeros(len(place))
+        where = touched(scene.tracks, joint, place, np.zeros_like(place), none)[k]
+        part = abs(event.impulse) / most if most > 0 else 0.0
+        if part >= SMALLEST and np.isfinite(where).all():
+            out.append(Impact(event.time, where, part))
+    return out
+
+
+def draw_impacts(brush: Brush, impacts: list[Impact], clip: Clip, k: int) -> None:
+    """Those that were just before picture ``k``."""
+    for impact in impacts:
+        age = (float(clip.times[k]) - impact.time) / clip.rate / SECONDS
+        if 0.0 <= age < 1.0:
+            radius = (0.8 + 3.6 * math.sqrt(impact.part) * math.sqrt(age)) * brush.unit
+            turn = np.linspace(0.0, 2 * math.pi, 49)
+            ring = impact.place + radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+            brush.stroke(brush.view.pixels(ring), rgba(MOVED, 0.85 * (1 - age)), 1.0 + 2.2 * (1 - age), 9.0)

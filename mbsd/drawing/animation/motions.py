@@ -1,0 +1,44 @@
+"""Velocities and accelerations: of joints that move, of traced points, of bodies that no joint holds."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbsd.body import Marker
+from mbsd.drawing.animation.arrows import Arc, Arrow, Moving, moving, moving_marker
+from mbsd.drawing.pose import Tracks
+from mbsd.model import Mechanism
+
+SAME = 1e-9
+"""Of the size of the motion: points that stay closer than this are one."""
+
+
+def motion_arrows(m: Mechanism, tracks: Tracks, quantity: str) -> list[Arrow | Arc]:
+    """Those of ``velocities`` or ``accelerations``; a body none of whose points move gets its turning."""
+    out: list[Arrow | Arc] = []
+    shown: list[Moving] = []
+    points = {name: [moving_marker(tracks.views, marker) for marker in _markers(m, name)] for name in m.bodies}
+    everywhere = np.concatenate([one.place for several in points.values() for one in several] or [np.zeros((1, 2))])
+    slack = SAME * max(float(np.ptp(everywhere, axis=0).max()), 1e-12)
+    for name, view in tracks.views.items():
+        if name == "ground":
+            continue
+        moves = [one for one in points[name] if np.ptp(one.place, axis=0).max() > slack]
+        for one in moves:
+            if any(np.abs(one.place - other.place).max() < slack for other in shown):
+                continue
+            shown.append(one)
+            out.append(Arrow(quantity, one.place, one.velocity if quantity == "velocities" else one.acceleration))
+        if not moves and np.ptp(view.theta) > 0:
+            pivot = points[name][0] if points[name] else moving(view, *m.bodies[name].com)
+            out.append(Arc(quantity, pivot.place, view.omega if quantity == "velocities" else view.alpha))
+    return out
+
+
+def _markers(m: Mechanism, name: str) -> list[Marker]:
+    """Where a body has joints and traced points; its centre of mass if it has none."""
+    joints = [*m.joints.values(), *(one for one in m.contacts.values() if one.kind.name == "rope")]
+    out = [marker for joint in joints for marker in (joint.j, joint.i) if marker.body.name == name]
+    out += [marker for marker in m.traces.values() if marker.body.name == name]
+    body = m.bodies[name]
+    return out or [body.at(*body.com)]

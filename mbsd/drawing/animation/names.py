@@ -1,0 +1,80 @@
+"""Names that go with what they name: each keeps one side of it over the whole clip, the one least in the way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.drawing.animation.brush import Brush
+from mbsd.drawing.animation.sprites import sprite
+
+DIRECTIONS = 12
+DISTANCES = (0.0, 0.6, 1.4)
+"""Beyond the clearance, in heights of the word."""
+MARGIN = 2.0
+"""Pixels."""
+
+
+@dataclass(frozen=True)
+class Placed:
+    """One name."""
+
+    number: int
+    """Among the labels that the machine asks for, which come in the same order each time."""
+    word: np.ndarray
+    """See sprites.py."""
+    off: np.ndarray
+    """(2,) pixels from its anchor to its middle."""
+
+
+def place_names(drawn: Sequence[Brush], frame: tuple[float, float, float, float], keep: int) -> list[Placed]:
+    """For the first ``keep`` labels of some pictures whose obstacles were kept; ``frame``: left, low, right, top."""
+    first = drawn[0]
+    points = [one.view.pixels(np.concatenate(one.obstacles)) for one in drawn]
+    anchors = [one.view.pixels([label.anchor for label in one.labels]) for one in drawn]
+    out: list[Placed] = []
+    taken: list[list[np.ndarray]] = [[] for _ in drawn]
+    for number, label in enumerate(first.labels[:keep]):
+        word = sprite(label.text, 0.92 * label.size, label.colour, first.dpi)
+        size = np.array([word.shape[1], word.shape[0]]) + 2 * MARGIN
+        offs = _offsets(label.clearance * first.unit * first.view.scale, size)
+        costs = np.arange(len(offs)) * 0.4
+        for k in range(len(drawn)):
+            for c, off in enumerate(offs):
+                costs[c] += _cost(anchors[k][number] + off, size, points[k], taken[k], frame)
+        best = offs[int(np.argmin(costs))]
+        for k in range(len(drawn)):
+            taken[k].append(
+                np.concatenate([anchors[k][number] + best - size / 2, anchors[k][number] + best + size / 2])
+            )
+        out.append(Placed(number, word, best))
+    return out
+
+
+def _offsets(clearance: float, size: np.ndarray) -> list[np.ndarray]:
+    out = []
+    order = sorted(range(DIRECTIONS), key=lambda k: abs(k - DIRECTIONS * 3 / 16))
+    for far in DISTANCES:
+        for k in order:
+            angle = 2 * math.pi * k / DIRECTIONS
+            way = np.array([math.cos(angle), math.sin(angle)])
+            half = min(size[0] / 2 / max(abs(way[0]), 1e-9), size[1] / 2 / max(abs(way[1]), 1e-9))
+            out.append((clearance + half + far * size[1]) * way)
+    return out
+
+
+def _cost(
+    middle: np.ndarray,
+    size: np.ndarray,
+    points: np.ndarray,
+    taken: list[np.ndarray],
+    frame: tuple[float, float, float, float],
+) -> float:
+    low, high = middle - size / 2, middle + size / 2
+    inside = ((points > low) & (points < high)).all(axis=1).sum()
+    over = sum(bool((low < box[2:]).all() and (high > box[:2]).all()) for box in taken)
+    outside = low[0] < frame[0] or low[1] < frame[1] or high[0] > frame[2] or high[1] > frame[3]
+    return float(inside) + 60.0 * over + 50.0 * outside

@@ -1,0 +1,129 @@
+"""A page: a title, the time, and one or several panels; drawn once, then picture by picture over what stands still."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from mbsd.drawing.animation.panel import Box, Panel, common_view
+from mbsd.drawing.animation.scene import Scene
+from mbsd.drawing.animation.trails import trails_of
+from mbsd.drawing.animation.words import QUANTITIES
+from mbsd.drawing.look import INK, QUIET
+from mbsd.solution import Solution
+
+HEADER = 50.0
+"""Pixels at 100 dots an inch."""
+GAP = 10.0
+WIDE = 1280.0
+"""Pixels of a picture whose words are 10 points at 100 dots an inch; in others they grow by the root of the width."""
+
+
+class Page:
+    """All pictures of an animation. ``groups``: the words of ``show`` of each panel."""
+
+    def __init__(
+        self,
+        whole: Solution,
+        scene: Scene,
+        groups: Sequence[tuple[str, ...]],
+        size: tuple[int, int],
+        names: bool,
+    ) -> None:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+
+        self.scene, self.size = scene, size
+        self.dpi = 100.0 * math.sqrt(size[0] / WIDE)
+        self.figure = Figure(figsize=(size[0] / self.dpi, size[1] / self.dpi), dpi=self.dpi)
+        self.figure.patch.set_facecolor("white")
+        self.canvas = FigureCanvasAgg(self.figure)
+        trails = trails_of(whole, scene.sol)
+        several = len(groups) > 1
+        boxes = self._boxes(len(groups))
+        self.panels = [
+            Panel(scene, tuple(group), box, self.dpi, several, names, trails)
+            for group, box in zip(groups, boxes, strict=True)
+        ]
+        if several:
+            filled = [panel for panel in self.panels if not panel.is_empty]
+            if len(filled) < len(self.panels):
+                self.panels = [
+                    Panel(scene, panel.quantities, box, self.dpi, len(filled) > 1, names, trails)
+                    for panel, box in zip(filled, self._boxes(len(filled)), strict=True)
+                ] or [Panel(scene, (), self._boxes(1)[0], self.dpi, False, names, trails)]
+            common_view(self.panels)
+        for panel in self.panels:
+            panel.place_names()
+        self._begin()
+
+    def picture(self, k: int) -> np.ndarray:
+        """(H, W, 4) bytes of picture ``k``; the next call changes them."""
+        self.renderer.restore_region(self.still)
+        self.time.set_text(self._time(k))
+        self.time.draw(self.renderer)
+        for panel in self.panels:
+            panel.paint(self.renderer, self.pixels, k)
+        return self.pixels
+
+    def _begin(self) -> None:
+        """Draw what stands still, and keep it."""
+        px, (width, height) = self.dpi / 100, self.size
+        mechanism, clip = self.scene.sol.mechanism, self.scene.clip
+        title = mechanism.name.replace("_", " ")
+        at = {"transform": None, "va": "center", "parse_math": False}
+        y = height - 0.5 * (HEADER + GAP) * px
+        words = [
+            self.figure.text(18 * px, y, title[:1].upper() + title[1:], color=INK, fontsize=15, fontweight="bold", **at)
+        ]
+        self.canvas.draw()
+        self.renderer: Any = self.canvas.get_renderer()
+        x = 18 * px + words[0].get_window_extent(self.renderer).width + 20 * px
+        if len(self.panels) == 1:
+            for quantity in self.panels[0].quantities:
+                words.append(
+                    self.figure.text(x, y - px, QUANTITIES[quantity].title, color=QUANTITIES[quantity].colour,
+                                     fontsize=11.5, fontweight="bold", **at)
+                )  # fmt: skip
+                x += words[-1].get_window_extent(self.renderer).width + 14 * px
+        right = width - 18 * px
+        self.time = self.figure.text(right, y, self._time(len(clip.times) - 1), color=INK, fontsize=13, ha="left", **at)
+        wide = self.time.get_window_extent(self.renderer).width
+        self.time.set_x(right - wide)
+        if clip.words:
+            self.figure.text(right - wide - 18 * px, y, clip.words, color=QUIET, fontsize=10.5, ha="right", **at)
+        self.time.set_visible(False)
+        self.canvas.draw()
+        self.time.set_visible(True)
+        self.renderer = self.canvas.get_renderer()
+        for panel in self.panels:
+            panel.paint_still(self.figure, self.renderer)
+        self.still = self.canvas.copy_from_bbox(self.figure.bbox)
+        self.pixels = np.asarray(self.renderer.buffer_rgba())
+
+    def _time(self, k: int) -> str:
+        """In as many decimals as tell the pictures apart."""
+        times = self.scene.clip.times
+        step = float(np.ptp(times)) / max(1, len(times) - 1)
+        decimals = min(9, max(1, math.ceil(-math.log10(max(step, 1e-12)))))
+        longest = len(f"{times[-1]:.{decimals}f}")
+        return f"t = {times[k]:.{decimals}f} s".rjust(longest + 6)
+
+    def _boxes(self, count: int) -> list[Box]:
+        """Panels side by side: one, two in a row, four in two rows; three of which the first is as wide as two."""
+        px, (width, height) = self.dpi / 100, self.size
+        gap, top = GAP * px, height - HEADER * px
+        columns = 1 if count == 1 else 2
+        rows = math.ceil(count / columns)
+        wide, high = (width - (columns + 1) * gap) / columns, (top - rows * gap) / rows
+        out: list[Box] = []
+        for k in range(count):
+            column, row = k % columns, k // columns
+            last_alone = count % columns and k == count - 1 and count > 1
+            out.append((gap + column * (wide + gap), top - (row + 1) * high - row * gap, wide, high))
+            if last_alone:
+                out[-1] = (gap, out[-1][1], width - 2 * gap, high)
+        return out

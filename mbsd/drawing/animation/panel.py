@@ -1,0 +1,251 @@
+"""One picture of the machine within a page: what stands still on it, and what each picture adds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from mbsd.drawing.animation.arrows import Arc, Arrow
+from mbsd.drawing.animation.bars import Bars
+from mbsd.drawing.animation.brush import Brush, View, arc, arrow, fresh, rgba
+from mbsd.drawing.animation.impacts import draw_impacts, impacts_of
+from mbsd.drawing.animation.names import Placed, place_names
+from mbsd.drawing.animation.scales import LONGEST, Scale, scales_of, unit_of
+from mbsd.drawing.animation.scene import Scene
+from mbsd.drawing.animation.sprites import lay
+from mbsd.drawing.animation.trails import Trail, draw_trails
+from mbsd.drawing.animation.words import CARD, QUANTITIES, SLATE, round_below, with_unit
+from mbsd.drawing.look import INK, QUIET, colour
+
+Box = tuple[float, float, float, float]
+"""Left, low, width, height in pixels."""
+AROUND = 2.8
+"""Room beside the machine, in units of its symbols."""
+FULL_TURN = 1.5 * math.pi
+"""Sweep of the largest arc."""
+NAMED_AT = 8
+"""Pictures in which the places of names are tried."""
+
+
+@dataclass(eq=False)
+class Panel:
+    """Where it is, and what it shows."""
+
+    scene: Scene
+    quantities: tuple[str, ...]
+    box: Box
+    dpi: float
+    titled: bool
+    """Whether its own quantities stand above it: one of several."""
+    names: bool
+    trails: list[Trail]
+    marks: list[Arrow | Arc] = field(init=False)
+    scales: dict[str, Scale] = field(init=False)
+    bars: Bars | None = field(init=False, default=None)
+    placed: list[Placed] = field(init=False, default_factory=list)
+
+    def __post_init__(self) -> None:
+        px, (left, low, width, height) = self.dpi / 100, self.box
+        self.marks = self.scene.marks(self.quantities)
+        self.scales = scales_of(self.marks, self.scene.floor)
+        self.marks = [mark for mark in self.marks if self._seen(mark)]
+        top = low + height - (34 * px if self.titled else 10 * px)
+        bottom = low + (44 * px if self.marks else 30 * px)
+        right = left + width - 12 * px
+        if "energy" in self.quantities:
+            wide = min(0.36 * width, 250 * px)
+            self.bars = Bars(self.scene.balance, (right - wide, bottom, wide, top - bottom), self.dpi)
+            right -= wide + 8 * px
+        self.room = (left + 12 * px, bottom, right, top)
+        inks = self._inks()
+        self.colours = {n: inks[k] for k, n in enumerate(n for n in self.scene.tracks.views if n != "ground")}
+        self.brush = Brush(None, self.scene.unit, view=self._view(), dpi=self.dpi)
+        self.impacts = impacts_of(self.scene)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether its quantities are all nothing."""
+        return not self.marks and not (self.bars is not None and self.bars.has_energy)
+
+    def _seen(self, mark: Arrow | Arc) -> bool:
+        scale = self.scales.get(unit_of(mark))
+        return scale is not None and float(mark.size.max()) > 2e-3 * scale.largest
+
+    def _inks(self) -> list[str]:
+        """Quiet colours beside arrows; each is another, so that a body can be told by it."""
+        count = len(self.scene.tracks.views)
+        if not self.quantities:
+            return [colour(k) for k in range(count)]
+        return [f"#{int(SLATE[k % len(SLATE)][1:], 16) + k // len(SLATE):06x}" for k in range(count)]
+
+    def extent(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest x, y (m) of machine and arrows."""
+        scene, tips = self.scene, [np.zeros((0, 2))]
+        for mark in self.marks:
+            if isinstance(mark, Arrow):
+                vector = self._drawn(mark)
+                back = 0.5 * vector if mark.middle else 0.0
+                tips += [mark.place + vector - back, mark.place - back]
+        points = np.concatenate([scene.low[None] - AROUND * scene.unit, scene.high[None] + AROUND * scene.unit, *tips])
+        return points.min(axis=0), points.max(axis=0)
+
+    def _drawn(self, mark: Arrow) -> np.ndarray:
+        """(T, 2) of an arrow as it is drawn (m)."""
+        size = mark.size
+        part = self.scales[unit_of(mark)].part(size) * self.scene.length
+        return mark.vector * np.divide(part, size, out=np.zeros_like(size), where=size > 0)[:, None]
+
+    def _view(self) -> View:
+        left, low, right, top = self.room
+        least, most = self.extent()
+        size = np.maximum(most - least, 1e-9)
+        scale = float(min((right - left) / size[0], (top - low) / size[1]))
+        middle = (least + most) / 2
+        return View(scale, (left + right) / 2 - scale * middle[0], (low + top) / 2 - scale * middle[1])
+
+    def scale_to(self, scale: float) -> None:
+        """Take another scale (pixels a metre), so that the machine is as large as in another panel."""
+        least, most = self.extent()
+        left, low, right, top = self.room
+        middle = (least + most) / 2
+        self.brush.view = View(scale, (left + right) / 2 - scale * middle[0], (low + top) / 2 - scale * middle[1])
+
+    def place_names(self) -> None:
+        """Find places for the names; the view is final."""
+        if not self.names:
+            return
+        looked = self.scene.looked_at()
+        drawn: list[Brush] = []
+        for k in looked[:: max(1, len(looked) // NAMED_AT)]:
+            brush = fresh(self.brush, wheels={}, turned={}, coils={}, remembers=True)
+            self.scene.draw(brush, int(k), self.colours)
+            drawn.append(brush)
+        bodies = 0 if not self.quantities else len(self.colours)
+        self.placed = place_names(drawn, self.room, len(drawn[0].labels) - bodies)
+
+    # -- what stands still ----------------------------------------------------------------------------------------
+
+    def paint_still(self, figure: Any, renderer: Any) -> None:
+        """Card, title, scale bar and legend."""
+        px, (left, low, width, height) = self.dpi / 100, self.box
+        card = fresh(self.brush)
+        corners = np.array([(left, low), (left + width, low), (left + width, low + height), (left, low + height)])
+        card.plate(corners, rgba(CARD), None, 0.0, 0)
+        card.paint(renderer)
+        if self.titled:
+            x = left + 14 * px
+            for quantity in self.quantities:
+                title = QUANTITIES[quantity].title
+                ink = QUANTITIES[quantity].colour
+                word = figure.text(
+                    0, 0, title, color=ink, fontsize=10.5, fontweight="bold", va="center", transform=None
+                )
+                word.set_position((x, low + height - 18 * px))
+                word.draw(renderer)
+                x += word.get_window_extent(renderer).width + 12 * px
+        self._scale_bar(figure, renderer)
+        self._legend(figure, renderer)
+        if self.bars is not None:
+            self.bars.paint_still(figure, renderer)
+
+    def _scale_bar(self, figure: Any, renderer: Any) -> None:
+        """A length of a round number, at the lower right."""
+        px, (left, low, width, _) = self.dpi / 100, self.box
+        metres = round_below(0.16 * min(width, 500 * px) / self.brush.view.scale)
+        long, x, y = metres * self.brush.view.scale, left + width - 14 * px, low + 17 * px
+        bar = fresh(self.brush)
+        bar.stroke(np.array([(x - long, y), (x, y)]), rgba(QUIET), 1.2, 1)
+        for end in (x - long, x):
+            bar.stroke(np.array([(end, y - 3 * px), (end, y + 3 * px)]), rgba(QUIET), 1.2, 1)
+        bar.paint(renderer)
+        self._word(figure, renderer, with_unit(metres, "m"), x - long - 7 * px, y, QUIET, 8.5, "right")
+
+    def _legend(self, figure: Any, renderer: Any) -> None:
+        """An arrow and an arc of a round number for each quantity."""
+        px, (left, low, _, _) = self.dpi / 100, self.box
+        x, y, brush = left + 16 * px, low + 19 * px, fresh(self.brush)
+        several = len(self.quantities) > 1
+        for quantity in self.quantities:
+            words = QUANTITIES[quantity]
+            for kind, unit in ((Arrow, words.unit), (Arc, words.turning)):
+                mine = [mark for mark in self.marks if mark.quantity == quantity and isinstance(mark, kind)]
+                if not mine or (kind is Arc and unit == words.unit):
+                    continue
+                scale = self.scales[unit]
+                text = with_unit(scale.reference, unit)
+                if kind is Arrow:
+                    long = scale.reference / scale.largest * self.scene.length * self.brush.view.scale
+                    arrow(brush, np.array([x, y]), np.array([long, 0.0]), words.colour, 3.4 * px)
+                    x += long + 8 * px
+                    text += f"  {words.title}" if several else ""
+                else:
+                    sweep = scale.reference / scale.largest * FULL_TURN
+                    arc(brush, np.array([x + 11 * px, y]), 10 * px, sweep, words.colour, 2.8 * px)
+                    x += 30 * px
+                if scale.cut:
+                    text += ", higher ones cut"
+                x += self._word(figure, renderer, text, x, y, INK, 9.0, "left") + 22 * px
+        if not self.marks and self.quantities and not self.bars:
+            titles = " and ".join(QUANTITIES[quantity].title for quantity in self.quantities)
+            self._word(figure, renderer, f"no {titles}: nothing acts", x, y, QUIET, 9.0, "left")
+        brush.paint(renderer)
+
+    def _word(
+        self, figure: Any, renderer: Any, text: str, x: float, y: float, ink: str, size: float, side: str
+    ) -> float:
+        word = figure.text(x, y, text, color=ink, fontsize=size, ha=side, va="center", transform=None, parse_math=False)
+        word.draw(renderer)
+        return float(word.get_window_extent(renderer).width)
+
+    # -- what moves -----------------------------------------------------------------------------------------------
+
+    def paint(self, renderer: Any, picture: np.ndarray, k: int) -> None:
+        """Machine, trails, arrows and names of picture ``k``."""
+        px, scene = self.dpi / 100, self.scene
+        brush = fresh(self.brush, wheels={}, turned={}, coils={}, tints=self._tints(k))
+        draw_trails(brush, self.trails, scene.clip, k)
+        scene.draw(brush, k, self.colours)
+        draw_impacts(brush, self.impacts, scene.clip, k)
+        for mark in self.marks:
+            scale, ink = self.scales[unit_of(mark)], QUANTITIES[mark.quantity].colour
+            size = float(mark.size[k])
+            if size == 0.0:
+                continue
+            part = float(scale.part(size))
+            at = brush.view.pixels(mark.place[k])
+            if isinstance(mark, Arc):
+                radius = max(2.9 * scene.unit * brush.view.scale, 15 * px)
+                arc(brush, at, radius, math.copysign(part * FULL_TURN, mark.value[k]), ink, 3.0 * px)
+            else:
+                vector = mark.vector[k] / size * part * scene.length * brush.view.scale
+                arrow(brush, at - 0.5 * vector if mark.middle else at, vector, ink, 3.4 * px, part >= LONGEST)
+        anchors = [brush.view.pixels(label.anchor) for label in brush.labels]
+        if self.bars is not None:
+            self.bars.draw(brush, k)
+        brush.paint(renderer)
+        for name in self.placed:
+            lay(picture, name.word, *(anchors[name.number] + name.off))
+        if self.bars is not None:
+            self.bars.lay_words(picture, k)
+
+    def _tints(self, k: int) -> dict[str, tuple[str, float]]:
+        """In the picture of the energy, bodies glow with their kinetic energy."""
+        if self.bars is None or not self.bars.has_energy:
+            return {}
+        bodies = self.scene.balance.bodies
+        most = max((float(energy.max()) for energy in bodies.values()), default=0.0)
+        if most <= 0.0:
+            return {}
+        glow = QUANTITIES["energy"].colour
+        return {self.colours[n]: (glow, 0.06 + 0.6 * float(energy[k]) / most) for n, energy in bodies.items()}
+
+
+def common_view(panels: Sequence[Panel]) -> None:
+    """Let the machine be as large in all panels without bars."""
+    alike = [panel for panel in panels if panel.bars is None]
+    for panel in alike:
+        panel.scale_to(min(other.brush.view.scale for other in alike))

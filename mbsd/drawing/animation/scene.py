@@ -1,0 +1,135 @@
+"""What an animation draws, found before the first picture: steady symbols, extent, arrows, scales, traces, impacts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from mbsd.drawing.animation.arrows import Arc, Arrow
+from mbsd.drawing.animation.between import at_times
+from mbsd.drawing.animation.brush import Brush
+from mbsd.drawing.animation.clip import Clip
+from mbsd.drawing.animation.flow import Balance, balance_of, flow_arrows
+from mbsd.drawing.animation.loads import force_arrows, reaction_arrows
+from mbsd.drawing.animation.motions import motion_arrows
+from mbsd.drawing.look import colour
+from mbsd.drawing.pose import Pose, Tracks, tracks_of
+from mbsd.drawing.skeleton import draw_on, measure_all, steady_sides
+from mbsd.solution import Solution
+
+LOOKED_AT = 24
+"""Poses from which extent, sides and names are found."""
+LENGTH = 0.22
+"""Of the largest arrow, in the larger side of the machine."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """One mechanism over one clip."""
+
+    clip: Clip
+    sol: Solution
+    """At the times of the pictures."""
+    tracks: Tracks
+    low: np.ndarray
+    high: np.ndarray
+    """(2,) extent of the machine over the whole motion (m)."""
+    unit: float
+    """Of its symbols (m)."""
+    sides: dict[str, np.ndarray]
+    coils: dict[str, int]
+    wheels: dict[tuple[str, float], tuple[int, float]]
+    """At the first picture."""
+
+    @property
+    def length(self) -> float:
+        """Of the largest arrow (m)."""
+        return LENGTH * max(float((self.high - self.low).max()), 10 * self.unit)
+
+    def pose(self, k: int) -> Pose:
+        """At picture ``k``."""
+        return self.tracks.pose(k)
+
+    def draw(self, brush: Brush, k: int, colours: dict[str, str]) -> None:
+        """The machine at picture ``k``: springs keep their turns, ground its signs, teeth turn with their wheels."""
+        theta = {name: view.theta for name, view in self.tracks.views.items()}
+        brush.coils.update(self.coils)
+        for (body, radius), (teeth, phase) in self.wheels.items():
+            turned = float(theta[body][k] - theta[body][0])
+            brush.turned[body, radius] = teeth, phase + teeth * turned
+        draw_on(brush, self.sol.mechanism, self.pose(k), colours, False, self.sides)
+
+    def looked_at(self) -> np.ndarray:
+        """Some pictures over the whole clip."""
+        return np.unique(np.linspace(0, len(self.clip.times) - 1, LOOKED_AT).round().astype(int))
+
+    @cached_property
+    def balance(self) -> Balance:
+        """Energies and powers."""
+        return balance_of(self.sol)
+
+    def marks(self, quantities: Sequence[str]) -> list[Arrow | Arc]:
+        """Arrows and arcs of these words of ``show``."""
+        out: list[Arrow | Arc] = []
+        for quantity in quantities:
+            out += self._all[quantity]
+        return out
+
+    @cached_property
+    def _all(self) -> dict[str, list[Arrow | Arc]]:
+        m, tracks = self.sol.mechanism, self.tracks
+        return {
+            "velocities": motion_arrows(m, tracks, "velocities"),
+            "accelerations": motion_arrows(m, tracks, "accelerations"),
+            "forces": force_arrows(self.sol, tracks),
+            "reactions": reaction_arrows(self.sol, tracks),
+            "energy": list(flow_arrows(self.sol, tracks)),
+        }
+
+    @cached_property
+    def floor(self) -> dict[str, float]:
+        """By unit, what is nothing but rounding."""
+        size, time = max(float((self.high - self.low).max()), 1e-12), float(np.ptp(self.clip.times))
+        spins = [float(np.abs(view.omega).max()) for view in self.tracks.views.values()]
+        speeds = [float(np.hypot(view.vx, view.vy).max()) for view in self.tracks.views.values()]
+        spin = max(*spins, 1 / time)
+        speed = max(*speeds, size * spin)
+        loads = [float(mark.size.max()) for mark in self.marks(("forces", "reactions")) if isinstance(mark, Arrow)]
+        force = 1e-9 * max(loads, default=0.0)
+        mass = sum(body.mass for body in self.sol.mechanism.bodies.values())
+        force = max(force, 1e-9 * mass * size / time**2, 1e-15)
+        return {
+            "m/s": 1e-9 * speed,
+            "m/s²": 1e-8 * speed * spin,
+            "rad/s": 1e-9 * spin,
+            "rad/s²": 1e-8 * spin**2,
+            "N": force,
+            "N m": 1e-3 * force * size,
+            "W": 1e-3 * force * size / time,
+        }
+
+
+def scene_of(sol: Solution, clip: Clip) -> Scene:
+    """Of a whole solution; symbols and extent are the same in all pictures."""
+    m = sol.mechanism
+    here = at_times(sol, clip.times)
+    whole = tracks_of(sol)
+    tracks = replace(tracks_of(here), travel=whole.travel, paths=whole.paths)
+    some = [tracks.pose(k) for k in np.unique(np.linspace(0, len(clip.times) - 1, LOOKED_AT).round().astype(int))]
+    low, high, unit = measure_all(m, some)
+    sides = steady_sides(m, some, unit)
+    colours = {name: colour(k) for k, name in enumerate(name for name in m.bodies if name != "ground")}
+    turns: dict[str, list[int]] = {}
+    first: dict[tuple[str, float], tuple[int, float]] = {}
+    for k, pose in enumerate(some):
+        brush = Brush(None, unit)
+        draw_on(brush, m, pose, colours, False, sides)
+        for name, count in brush.coils.items():
+            turns.setdefault(name, []).append(count)
+        if k == 0:
+            first = dict(brush.wheels)
+    coils = {name: int(np.median(counts)) for name, counts in turns.items()}
+    return Scene(clip, here, tracks, low, high, unit, sides, coils, first)

@@ -184,7 +184,7 @@ def test_impacts_ring_at_the_floor() -> None:
     impacts = impacts_of(drawn)
     assert impacts[0].time == pytest.approx(math.sqrt(2 / 9.81))
     assert impacts[0].part == 1.0
-    assert all(np.allclose(impact.place, 0.0, atol=0.02) for impact in impacts)
+    assert all(np.allclose(impact.place, 0.0, atol=1e-9) for impact in impacts)
 
 
 # -- scales ----------------------------------------------------------------------------------------------------------

@@ -8,16 +8,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.drawing.animation.arrows import moving_marker
+from mbsd.drawing.animation.between import at_times
 from mbsd.drawing.animation.brush import Brush, rgba
 from mbsd.drawing.animation.clip import Clip
 from mbsd.drawing.animation.loads import touched
 from mbsd.drawing.animation.scene import Scene
 from mbsd.drawing.look import MOVED
+from mbsd.drawing.pose import tracks_of
 
 SECONDS = 0.35
 """For which the ring is seen."""
 SMALLEST = 0.02
 """Of the largest impulse."""
+MOST = 60
 
 
 @dataclass(frozen=True)
@@ -32,21 +35,24 @@ class Impact:
 
 
 def impacts_of(scene: Scene) -> list[Impact]:
-    """All that are worth a ring."""
-    sol, m = scene.sol, scene.sol.mechanism
+    """The hardest ones, that are worth a ring."""
+    sol, m = scene.whole, scene.whole.mechanism
     hits = [event for event in sol.events if event.what == "impact" and event.name in m.contacts]
     most = max((abs(event.impulse) for event in hits), default=0.0)
+    hits = sorted(hits, key=lambda event: -abs(event.impulse))[:MOST]
+    hits = [event for event in hits if abs(event.impulse) >= SMALLEST * most]
+    if not hits or most <= 0.0:
+        return []
+    times = np.unique([min(event.time, float(sol.t[-1])) for event in hits])
+    tracks = tracks_of(at_times(sol, times))
     out = []
     for event in hits:
         joint = m.contacts[event.name]
-        k = int(np.argmin(np.abs(scene.clip.times - event.time)))
-        place = moving_marker(scene.tracks.views, joint.j).place
-        none = np.zeros(len(place))
-        where = touched(scene.tracks, joint, place, np.zeros_like(place), none)[k]
-        part = abs(event.impulse) / most if most > 0 else 0.0
-        if part >= SMALLEST and np.isfinite(where).all():
-            out.append(Impact(event.time, where, part))
-    return out
+        place = moving_marker(tracks.views, joint.j).place
+        where = touched(tracks, joint, place, np.zeros_like(place), np.zeros(len(place)))
+        k = int(np.argmin(np.abs(times - event.time)))
+        out.append(Impact(event.time, where[k], abs(event.impulse) / most))
+    return sorted(out, key=lambda impact: impact.time)
 
 
 def draw_impacts(brush: Brush, impacts: list[Impact], clip: Clip, k: int) -> None:

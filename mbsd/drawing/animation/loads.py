@@ -65,7 +65,7 @@ def touched(tracks: Tracks, joint: Joint, place: np.ndarray, force: np.ndarray, 
         angle = tracks.views[joint.i.body.name].theta + joint.i.angle
         return place - radius * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
     if joint.kind.name in ("rolling_on_curve", "rigid_terrain"):
-        return place + _toward(force, torque, radius)
+        return place + _toward(force, torque, radius) if force.any() else place
     if joint.kind.name == "rigid_discs":
         gap = moving_marker(tracks.views, joint.i).place - place
         length = np.hypot(*gap.T)[:, None]

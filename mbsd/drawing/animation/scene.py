@@ -31,6 +31,8 @@ class Scene:
     """One mechanism over one clip."""
 
     clip: Clip
+    whole: Solution
+    """At its own outputs."""
     sol: Solution
     """At the times of the pictures."""
     tracks: Tracks
@@ -132,4 +134,4 @@ def scene_of(sol: Solution, clip: Clip) -> Scene:
         if k == 0:
             first = dict(brush.wheels)
     coils = {name: int(np.median(counts)) for name, counts in turns.items()}
-    return Scene(clip, here, tracks, low, high, unit, sides, coils, first)
+    return Scene(clip, sol, here, tracks, low, high, unit, sides, coils, first)

@@ -3,6 +3,7 @@
 PRESET ?= preview
 FRAME ?= 0
 NAME ?=
+VIEW ?=
 N ?=
 SEED ?= 1
 PYTEST ?= -n 2 --dist loadfile
@@ -12,10 +13,11 @@ PYTEST ?= -n 2 --dist loadfile
 override PRESET := $(value PRESET)
 override FRAME := $(value FRAME)
 override NAME := $(value NAME)
+override VIEW := $(value VIEW)
 override N := $(value N)
 override SEED := $(value SEED)
 override MECHANISM = $(subst -,_,$*)
-export PRESET FRAME NAME MECHANISM N SEED
+export PRESET FRAME NAME VIEW MECHANISM N SEED
 
 PRESETS := draft preview production final
 ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
@@ -72,6 +74,9 @@ parts-%: install always ## the solids: out/<name>/parts/ (STL, STEP, parts.json)
 
 solve-%: install always ## the motion: out/<name>/data.json
 	$(upto_motion)
+
+animate-%: install always ## the moving skeleton, VIEW=forces,reactions,velocities,...: animation.mp4, .gif
+	@$(STAGE) animate "$$MECHANISM" --view="$$VIEW"
 
 clearance-%: install always ## proof that no two parts touch over the whole motion: clearance.json
 	$(upto_motion)

@@ -1,4 +1,4 @@
-"""The author's side of the line: ``python -m mechanisms {parts,solve,clearance,shot} NAME``, ``new NAME``, ``list``."""
+"""The author's side of the line: ``python -m mechanisms STAGE NAME``, ``new NAME``, ``list``."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from shared.paths import mechanism_folder
 STAGES = {
     "parts": ("mechanisms.parts_stage", "make the solids: STL, STEP and parts.json"),
     "solve": ("mechanisms.solve_stage", "solve the motion: data.json"),
+    "animate": ("mechanisms.animate_stage", "the moving skeleton with its arrows: animation.mp4, animation.gif"),
     "clearance": ("mechanisms.clearance_stage", "prove that no two parts touch over the motion: clearance.json"),
     "shot": ("mechanisms.shot_stage", "check the scene's description: shot.json"),
 }
@@ -21,13 +22,17 @@ def main() -> int | None:
     parser = argparse.ArgumentParser(prog="python -m mechanisms", description="Mechanisms: from a folder to files.")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for command, (_, text) in STAGES.items():
-        commands.add_parser(command, help=text).add_argument("name", help="mechanism; four-bar and four_bar are one")
+        sub = commands.add_parser(command, help=text)
+        sub.add_argument("name", help="mechanism; four-bar and four_bar are one")
+        if command == "animate":
+            sub.add_argument("--view", default="", help="what is shown, such as reactions,velocities; all if not given")
     commands.add_parser("new", help="a new mechanism that already runs").add_argument("name", help="folder to make")
     commands.add_parser("list", help="the mechanisms and what is made of them")
     arguments = parser.parse_args()
     if arguments.command in STAGES:
         name = mechanism_folder(arguments.name).name
-        return importlib.import_module(STAGES[arguments.command][0]).run(name)
+        views = {"view": arguments.view} if arguments.command == "animate" else {}
+        return importlib.import_module(STAGES[arguments.command][0]).run(name, **views)
     if arguments.command == "new":
         from mechanisms import new
 

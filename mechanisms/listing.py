@@ -48,6 +48,8 @@ def _made(name: str) -> list[str]:
     out = Out(name)
     files = {"parts": out.parts, "motion": out.motion, "clearance": out.clearance, "shot": out.shot}
     made = [word for word, path in files.items() if path.is_file()]
+    if out.animation("", ".mp4").is_file():
+        made.append("animation")
     if any(out.plots.glob("*.png")):
         made.append("plots")
     if out.poster.is_file():

@@ -112,6 +112,10 @@ class Out:
         """The frames of one preset, named by what they show."""
         return self.all_frames / preset
 
+    def animation(self, view: str, suffix: str) -> Path:
+        """The moving skeleton; ``view`` names what is shown, empty for all of it side by side."""
+        return self.folder / f"animation{'-' * bool(view)}{view}{suffix}"
+
     def film(self, preset: str) -> Path:
         """The finished film of one preset."""
         return out_root() / "films" / f"{self.name}-{preset}.mp4"

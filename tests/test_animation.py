@@ -295,6 +295,8 @@ def test_a_gif_plays_for_ever_at_real_time_with_the_same_bytes(tmp_path: Path) -
     with Image.open(first) as picture:
         assert picture.size == SMALL
         assert picture.info["loop"] == 0
+        corner = picture.convert("RGB").getpixel((0, 0))
+        assert corner == tuple(int(PAPER[k : k + 2], 16) for k in (1, 3, 5))
         times = []
         for k in range(picture.n_frames):
             picture.seek(k)

@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.drawing.animation.brush import rgba
 from mbsd.drawing.animation.words import CARD, KINETIC, POTENTIAL, QUANTITIES, TAKEN
 from mbsd.drawing.look import INK, PAPER, QUIET
 from mbsd.errors import ModelError
@@ -27,6 +26,8 @@ H264 = (
     *("-threads", "2", "-flags:v", "+bitexact"),
     *PLAIN,
 )
+EXACT = (PAPER, CARD, INK, QUIET, KINETIC, POTENTIAL, TAKEN, *(one.colour for one in QUANTITIES.values()))
+"""Colours that a GIF must not change."""
 SAMPLED = 6
 """Pictures from which the colours of a GIF are taken."""
 
@@ -95,7 +96,7 @@ def write_gif(path: Path, pictures: Iterable[np.ndarray], count: int, fps: float
     for k, picture in enumerate(some):
         strip.paste(picture, (0, k * picture.height))
     palette = _palette(strip)
-    drawn = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in kept]
+    drawn = [_indexed(picture, palette) for picture in kept]
     each = round(100.0 / fps) * 10
     times = [each] * len(drawn)
     times[-1] += round(hold * 100) * 10
@@ -109,14 +110,27 @@ def write_gif(path: Path, pictures: Iterable[np.ndarray], count: int, fps: float
 
 
 def _palette(strip: Any) -> Any:
-    """The colours of the picture that mean something as they are, and the others of ``strip`` that are met most."""
+    """The colours that mean something as they are, and the others of ``strip`` that are met most."""
     from PIL import Image
 
-    fixed = [INK, PAPER, CARD, QUIET, KINETIC, POTENTIAL, TAKEN, *(one.colour for one in QUANTITIES.values())]
-    plain = [round(255 * part) for colour in fixed for part in rgba(colour)[:3]]
-    found = strip.quantize(256 - len(fixed), method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    plain = [int(colour[k : k + 2], 16) for colour in EXACT for k in (1, 3, 5)]
+    found = strip.quantize(256 - len(EXACT), method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     out = Image.new("P", (1, 1))
     out.putpalette((plain + (found.getpalette() or []))[:768])
+    return out
+
+
+def _indexed(picture: Any, palette: Any) -> Any:
+    """Pillow looks for near colours in steps of four; those of :data:`EXACT` are put right."""
+    from PIL import Image
+
+    indexed = picture.quantize(palette=palette, dither=Image.Dither.NONE)
+    red, green, blue = np.moveaxis(np.asarray(picture, np.uint32), -1, 0)
+    whole, numbers = red << 16 | green << 8 | blue, np.array(indexed)
+    for number, colour in enumerate(EXACT):
+        numbers[whole == int(colour[1:], 16)] = number
+    out = Image.fromarray(numbers)
+    out.putpalette(indexed.getpalette())
     return out
 
 

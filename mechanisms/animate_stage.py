@@ -1,0 +1,121 @@
+"""The stage ``animate``: the moving skeleton from mechanism.py alone, as animation.mp4 and animation.gif.
+
+The view says what is shown beside the machine: one or more quantities over one another, ``skeleton`` for the machine
+alone, ``each`` for a film of every quantity; without a view all of them side by side in one film.
+"""
+
+from __future__ import annotations
+
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mechanisms import loading, solving
+from mechanisms.recording import recording
+from shared import console
+from shared.errors import UserError
+from shared.files import sources_hash, whole_file
+from shared.inputs import Inputs, observed, sources_state
+from shared.paths import ROOT, Out, mechanism_folder
+from shared.stages import Stage, key_of, versions
+from shared.suggestions import did_you_mean
+
+if TYPE_CHECKING:
+    from mbsd import Solution
+
+QUANTITIES = ("velocities", "accelerations", "forces", "reactions", "energy")
+VIEWS = (*QUANTITIES, "skeleton", "each")
+PACKAGES = ("numpy", "scipy", "numba", "llvmlite", "matplotlib", "pillow", "imageio-ffmpeg")
+SUFFIXES = (".mp4", ".gif")
+SOURCES = [ROOT / "mechanisms" / f"{name}.py" for name in ("animate_stage", "solving", "masses", "estimated_masses")]
+
+
+def run(name: str, view: str = "") -> None:
+    """Draw the films of one view unless they already stand for the same inputs. Raises UserError."""
+    out = Out(name)
+    films = films_of(view)
+    stale = [words for words in films if not _fresh(out, words)]
+    if not stale:
+        console.say("animate", f"{name}: nothing to do")
+        return
+    from mechanisms.loaded_files import loaded_inputs
+
+    before = set(sys.modules)
+    with recording() as recorder:
+        solution = solve(name)
+    loaded = loaded_inputs(mechanism_folder(name) / "mechanism.py", f"mechanisms.{name}", before)
+    loaded.sources.pop("mbsd", None)  # it counts anyway
+    inputs = loaded.joined(recorder.inputs())
+    for words in stale:
+        paths = _paths(out, words)
+        for path in paths:
+            _draw(solution, path, words)
+        Stage(out, paths[0].stem, _key(inputs), paths).done(inputs=inputs.names())
+
+
+def films_of(view: str) -> list[str]:
+    """The views of the films to make: ``""`` is all quantities side by side. Raises UserError for unknown words."""
+    words = [word.strip() for word in view.split(",") if word.strip()]
+    for word in words:
+        if word not in VIEWS:
+            raise UserError(
+                f"VIEW={view!r}: there is no view {word!r}; there is: {', '.join(VIEWS)}; commas join several, and "
+                f"without VIEW all are side by side{did_you_mean(word, VIEWS)}"
+            )
+    if "each" in words or "skeleton" in words:
+        if len(words) > 1:
+            raise UserError(f"VIEW={view!r}: 'each' and 'skeleton' stand alone")
+        return list(QUANTITIES) if words == ["each"] else words
+    return [",".join(word for word in QUANTITIES if word in words)]
+
+
+def solve(name: str) -> Solution:
+    """The motion of mechanism.py alone; says which masses are estimated. Raises UserError."""
+    from mechanisms.masses import give_masses
+
+    module, p = loading.load(name, "mechanism"), loading.params(name)
+    m = solving.build(name, module, p)
+    for sentence in give_masses(m, None)[1]:
+        console.say("animate", f"{name}: {sentence}")
+    return solving.motion_of(name, module, m, p)
+
+
+def _paths(out: Out, words: str) -> list[Path]:
+    return [out.animation(words.replace(",", "-"), suffix) for suffix in SUFFIXES]
+
+
+def _fresh(out: Out, words: str) -> bool:
+    paths = _paths(out, words)
+    known = observed(Stage(out, paths[0].stem, "", []).notes().get("inputs"))
+    return bool(known) and Stage(out, paths[0].stem, _key(known), paths).is_fresh()
+
+
+def _key(inputs: Inputs) -> str:
+    """Hash of all that a film follows from; ``inputs``: what mechanism.py is made of, and what it reads."""
+    sources = sources_hash(*SOURCES), sources_state("mbsd"), sources_state("mbsd/drawing")
+    return key_of(*sources, versions(*PACKAGES), inputs.digest())
+
+
+def _draw(solution: Solution, path: Path, words: str) -> None:
+    from mbsd import MechanismError
+
+    name = solution.mechanism.name
+    show = "all" if not words else () if words == "skeleton" else tuple(words.split(","))
+    with ExitStack() as stack:
+        bar: console.Progress | None = None
+
+        def progress(done: int, total: int) -> None:
+            nonlocal bar
+            if bar is None:
+                bar = stack.enter_context(console.progress("animate", total, "picture"))
+            bar.advance()
+
+        try:
+            with whole_file(path) as temporary:
+                film = solution.animate(temporary, show=show, progress=progress)
+        except MechanismError as error:
+            raise UserError(f"{name}: {path.name}: {error}") from error
+    rate = "" if film.rate == 1.0 else f", {film.rate:g} of real time"
+    size = path.stat().st_size / 1e6
+    console.say("animate", f"{name}: {path}: {film.pictures} pictures, {film.seconds:.1f} s{rate}, {size:.1f} MB")

@@ -131,7 +131,7 @@ def check(
 
 
 def _axes(motion: Motion, where: dict[str, BodyPath]) -> Axes:
-    """For bodies that a revolute joint connects: the axis as a point (mm) in the frame of either."""
+    """For bodies that revolute joints connect: the axis as a point (mm) in the frame of either."""
     import numpy as np
 
     from mechanisms.clearance.path import relative
@@ -144,7 +144,23 @@ def _axes(motion: Motion, where: dict[str, BodyPath]) -> Axes:
         seen = {body: relative(at, where[body].pose)[:, :2] for body in joint.bodies}
         if all(np.ptp(point, axis=0).max() < 1e-4 for point in seen.values()):
             found[frozenset(joint.bodies)] = {body: point.mean(axis=0) for body, point in seen.items()}
-    return found
+    return _with_common_pins(found)
+
+
+def _with_common_pins(axes: Axes) -> Axes:
+    """Also bodies that turn on a common pin without a joint between the two of them."""
+    import numpy as np
+
+    waiting = list(axes.items())
+    while waiting:
+        pair, at = waiting.pop()
+        for other, there in list(axes.items()):
+            for body in pair & other:
+                ends = pair ^ other
+                if len(ends) == 2 and ends not in axes and np.abs(at[body] - there[body]).max() < 1e-4:
+                    axes[ends] = {end: (at | there)[end] for end in ends}
+                    waiting.append((ends, axes[ends]))
+    return axes
 
 
 def _turn(

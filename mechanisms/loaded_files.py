@@ -112,7 +112,9 @@ def _is_authors(file: Path) -> bool:
     """Whether a file belongs neither to an installed package nor to the program."""
     if is_installed(str(file)):
         return False
-    ours = [ROOT / room for room in ("mbsd", "shared", "render", "tests", "mechanisms/clearance")]
+    ours = [
+        ROOT / room for room in ("mbsd", "shared", "render", "tests", "mechanisms/clearance", "mechanisms/automatic")
+    ]
     return file.parent != ROOT / "mechanisms" and not any(file.is_relative_to(room) for room in ours)
 
 

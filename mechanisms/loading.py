@@ -36,7 +36,10 @@ def load(name: str, file: File) -> ModuleType:
     folder = mechanism_folder(name)
     path = folder / f"{file}.py"
     if not path.is_file():
-        raise UserError(f"{folder.name}: {_shown(path)} is missing; a mechanism has mechanism.py, parts.py and shot.py")
+        raise UserError(
+            f"{folder.name}: {_shown(path)} is missing; a mechanism has mechanism.py, and where it "
+            "wants to, parts.py and shot.py"
+        )
     importlib.invalidate_caches()
     with author_code(name):
         module = importlib.import_module(f"mechanisms.{folder.name}.{file}")
@@ -58,6 +61,11 @@ def params(name: str) -> Any:
                 )
     with author_code(name):
         return module.Params()
+
+
+def has(name: str, file: File) -> bool:
+    """Whether a mechanism has this file; parts.py and shot.py may be left out."""
+    return (mechanism_folder(name) / f"{file}.py").is_file()
 
 
 @contextmanager

@@ -1,8 +1,9 @@
-"""The ``parts`` stage: mechanisms/<name>/parts.py becomes STL, STEP and parts.json.
+"""The ``parts`` stage: mechanisms/<name>/parts.py, or the model by itself, becomes STL, STEP and parts.json.
 
 It runs again only if something changed that the solids follow from: parts.py and what it imports or reads, the part
 library, the densities, CadQuery, or a parameter that ``parts()`` reads. mechanism.py itself counts only where parts.py
-uses more of it than the parameters' values. A file whose bytes would be the same is not touched.
+uses more of it than the parameters' values; and where there is no parts.py, because then the solids follow from the
+model and its motion (mechanisms/automatic). A file whose bytes would be the same is not touched.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from mechanisms.loading import author_code, load, params
+from mechanisms.loading import author_code, has, load, params
 from mechanisms.plain_values import plain_text
 from mechanisms.recording import recording
 from mechanisms.traced_params import fields_of, traced
@@ -35,6 +36,9 @@ SOURCES = [
     *(ROOT / "mechanisms" / f"{name}.py" for name in _STAGE),
     *(ROOT / "shared" / f"{name}.py" for name in _SHARED),
 ]
+_AUTOMATIC = ("automatic", "parts_by_themselves.py", "bare_motion.py", "solving.py", "masses.py", "estimated_masses.py")
+AUTOMATIC = [*SOURCES, *(ROOT / "mechanisms" / name for name in _AUTOMATIC)]
+"""Sources of parts without a parts.py."""
 PACKAGES = ("cadquery", "cadquery-ocp", "numpy", "trimesh")
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
@@ -53,16 +57,19 @@ def run(name: str) -> None:
         given = params(out.name)
     notes = Stage(out, "parts", "", []).notes()
     reads, inputs = notes.get("parameters"), observed(notes.get("inputs"))
-    if isinstance(reads, list) and inputs and Stage(out, "parts", _key(given, reads, inputs), [out.parts]).is_fresh():
-        say("parts", f"{out.name}: nothing to do")
-        return
+    by_itself = not has(out.name, "parts")
+    if isinstance(reads, list) and inputs:
+        key = _key(given, reads, inputs, by_itself)
+        if Stage(out, "parts", key, [out.parts]).is_fresh():
+            say("parts", f"{out.name}: nothing to do")
+            return
     from mechanisms.loaded_files import loaded_inputs
 
     bodies, reads, inputs = _build(out.name, given)
-    if _more_than_values(out.name, given, reads):
+    if by_itself or _more_than_values(out.name, given, reads):
         mechanism = loaded_inputs(mechanism_folder(name) / "mechanism.py", f"mechanisms.{out.name}", before)
         inputs = inputs.joined(mechanism).joined(recorder.inputs())
-    key = _key(given, reads, inputs)
+    key = _key(given, reads, inputs, by_itself)
     files: dict[str, bytes] = {}
     described = {body: _body(out.name, body, solids, files) for body, solids in bodies.items()}
     document = Parts(
@@ -75,12 +82,13 @@ def run(name: str) -> None:
     say("parts", _summary(out.name, document, written))
 
 
-def _key(given: Any, reads: list[str], inputs: Inputs) -> str:
+def _key(given: Any, reads: list[str], inputs: Inputs, by_itself: bool = False) -> str:
     """Hash of all that the parts follow from; ``reads`` are the attributes of Params that parts() reads."""
     fields = fields_of(given)
     values = {read: plain_text(fields[read]) for read in reads if read in fields}
     densities = {material: MATERIALS[material].density for material in sorted(MATERIALS)}
-    return key_of(sources_hash(*SOURCES), versions(*PACKAGES), densities, values, inputs.digest())
+    sources = sources_hash(*(AUTOMATIC if by_itself else SOURCES))
+    return key_of(sources, by_itself, versions(*PACKAGES), densities, values, inputs.digest())
 
 
 def _more_than_values(name: str, given: Any, reads: list[str]) -> bool:
@@ -105,6 +113,10 @@ def _build(name: str, given: Any) -> tuple[dict[str, list[Any]], list[str], Inpu
     from mechanisms.cad_reads import told_of_cad_files
     from mechanisms.loaded_files import loaded_inputs
 
+    if not has(name, "parts"):
+        from mechanisms.parts_by_themselves import solids_of
+
+        return solids_of(name), [], Inputs()
     stand_in, seen = traced(given)
     folder, before = mechanism_folder(name), set(sys.modules)
     with recording() as recorder, told_of_cad_files(recorder):

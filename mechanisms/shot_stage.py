@@ -1,4 +1,4 @@
-"""shot.py becomes shot.json: what the film shows, as data."""
+"""shot.py becomes shot.json: what the film shows, as data. Without a shot.py it is ``Shot()``."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import sys
 
 import msgspec
 
-from mechanisms.loading import load
+from mechanisms.loading import has, load
 from mechanisms.recording import recording
 from shared.console import say
 from shared.errors import UserError
@@ -20,7 +20,7 @@ SOURCES = [ROOT / "shared" / f"{name}.py" for name in ("shot", "jsonfile")]
 
 
 def run(name: str) -> None:
-    """Check ``shot`` of a mechanism's shot.py and write out/<mechanism>/shot.json.
+    """Check ``shot`` of a mechanism's shot.py, or take ``Shot()``, and write out/<mechanism>/shot.json.
 
     Names in the shot are compared with motion and parts where these are made already, as the Makefile does; the
     picture stages compare them again. Raises UserError if shot.py cannot be imported, if a field has a wrong type or
@@ -28,6 +28,9 @@ def run(name: str) -> None:
     """
     out = Out(name)
     names = _names(out)
+    if not has(out.name, "shot"):
+        _without_file(out)
+        return
     known = observed(Stage(out, "shot", "", []).notes().get("inputs"))
     if known and Stage(out, "shot", _key(names, known), [out.shot]).is_fresh():
         say("shot", f"{out.name}: nothing to do")
@@ -48,6 +51,17 @@ def run(name: str) -> None:
     write_shot(out.shot, shot)
     Stage(out, "shot", _key(names, inputs), [out.shot]).done(inputs=inputs.names())
     say("shot", f"{out.name}: {shot.frames} frames of film, {shot.turns} turns at {shot.fps} frames a second")
+
+
+def _without_file(out: Out) -> None:
+    """Write shot.json of ``Shot()``, unless it is there."""
+    stage = Stage(out, "shot", key_of(sources_hash(*SOURCES), "no shot.py"), [out.shot])
+    if stage.is_fresh():
+        say("shot", f"{out.name}: nothing to do")
+        return
+    write_shot(out.shot, Shot())
+    stage.done()
+    say("shot", f"{out.name}: without a shot.py, {Shot().turns} turns at {Shot().fps} frames a second")
 
 
 def _key(names: Names | None, inputs: Inputs) -> str:

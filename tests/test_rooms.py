@@ -38,12 +38,15 @@ def test_a_mechanism_imports_its_own_world_and_no_other_mechanism(file: Path) ->
     allowed = ALLOWED[file.name.removesuffix(".txt")]
     for module in imports(file):
         top = module.partition(".")[0]
-        assert module.startswith(own) or top in allowed or top in sys.stdlib_module_names, f"{file} imports {module}"
+        by_itself = file.name.startswith("parts.py") and f"{module}.".startswith("mechanisms.automatic.")
+        assert by_itself or module.startswith(own) or top in allowed or top in sys.stdlib_module_names, f"{file} imports {module}"
 
 
-def test_a_mechanism_is_three_files() -> None:
+def test_a_mechanism_is_three_files_at_most() -> None:
     for folder in {file.parent for file in FILES}:
-        assert sorted(f.name for f in folder.iterdir() if f.name != "__pycache__") == sorted(ALLOWED), folder
+        files = {f.name for f in folder.iterdir() if f.name != "__pycache__"}
+        assert "mechanism.py" in files
+        assert files <= set(ALLOWED), folder
 
 
 def test_import_linter_sees_every_other_folder() -> None:

@@ -90,6 +90,23 @@ def pedestal(
     return shape
 
 
+def column(height: float, hole: float, top: float, foot: float) -> cq.Workplane:
+    """A plain post from z = 0 to height (mm), tapered from diameter ``foot`` to ``top``, its bore right through."""
+    r = hole / 2
+    return turned(
+        [
+            (r, 0.4),
+            (r + 0.4, 0),
+            (foot / 2 - 0.4, 0),
+            (foot / 2, 0.4),
+            (top / 2, height - 0.6),
+            (top / 2 - 0.6, height),
+            (r + 0.4, height),
+            (r, height - 0.4),
+        ]
+    )
+
+
 def foot(diameter: float, height: float, hole: float) -> cq.Workplane:
     """A round foot below z = 0, tapered, with a hole for its screw: one through hole."""
     r, a = diameter / 2, hole / 2

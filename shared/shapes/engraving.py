@@ -65,13 +65,13 @@ def text(
 
 
 def rule(
-    length: float, x: float, y: float, marks: tuple[float, float] = (2.0, 3.6), width: float = 0.5
+    length: float, x: float, y: float, marks: tuple[float, float] = (2.0, 3.6), width: float = 0.5, step: float = 5.0
 ) -> list[cq.Face]:
-    """Strokes of a scale along +x from (x, y): a short one every 5 mm, a long one every 10 mm, towards +y."""
+    """Strokes of a scale along +x from (x, y): a short one every ``step`` mm, every other one long, towards +y."""
     faces = []
-    for i in range(math.floor(length / 5 + 1e-9) + 1):
+    for i in range(math.floor(length / step + 1e-9) + 1):
         reach = marks[1] if i % 2 == 0 else marks[0]
-        faces.append(groove((x + 5.0 * i, y), (x + 5.0 * i, y + reach), width))
+        faces.append(groove((x + step * i, y), (x + step * i, y + reach), width))
     return faces
 
 

@@ -40,19 +40,21 @@ def link(
     edge: float = 0.8,
     pocket: float = 0.0,
     rim: float = 2.5,
+    inner: Sequence[tuple[float, float, Eye]] = (),
 ) -> cq.Workplane:
-    """A bar from (0, 0) to (length, 0), between z = 0 and z = thickness: two through holes.
+    """A bar from (0, 0) to (length, 0), between z = 0 and z = thickness: two through holes, and one an ``inner`` eye.
 
     The web tapers between ``widths`` and is milled out by ``pocket`` mm on both faces, which leaves a rim and an I
-    section. Raises ValueError if ends, web or pocket do not fit.
+    section. ``inner`` are further eyes (x, y, eye) on it. Raises ValueError if ends, web or pocket do not fit.
     """
     shape = extruded(outline.bar(length, (start.radius, end.radius), widths, fillet), thickness)
+    shape = _with_discs(shape, inner, thickness)
     shape = eased(shape, edge)
     if pocket > 0:
         if thickness - 2 * pocket < 1.0:
             raise ValueError(f"pockets of {pocket:g} mm leave less than 1 mm of a web of {thickness:g} mm")
         shape = _milled_out(shape, _pocket_outline(length, start, end, widths, rim), thickness, pocket)
-    return _with_eyes(shape, [(0.0, 0.0, start), (length, 0.0, end)], thickness, edge)
+    return _with_eyes(shape, [(0.0, 0.0, start), (length, 0.0, end), *inner], thickness, edge)
 
 
 def plate_link(
@@ -62,15 +64,25 @@ def plate_link(
     rims: Sequence[float] | None = None,
     corner: float = 2.5,
     edge: float = 0.8,
+    inner: Sequence[tuple[float, float, Eye]] = (),
 ) -> cq.Workplane:
-    """A plate that carries three or more joints (counter-clockwise x, y, eye), z = 0 to thickness.
+    """A plate that carries two or more joints (counter-clockwise x, y, eye), z = 0 to thickness.
 
     Its sides curve inwards with radius ``waist``. ``rims`` cuts a window: rims[i] is its distance from the line that
-    joins joints i and i + 1. Through holes: one a joint, and the window. Raises ValueError if the window has no room.
+    joins joints i and i + 1. ``inner`` are joints within the plate or on a side of it. Through holes: one a joint, and
+    the window; none for an eye without a bore. Raises ValueError if the window has no room.
     """
     holes = [outline.window([(x, y) for x, y, _ in joints], rims, corner)] if rims else []
     shape = extruded(outline.hull([(x, y, eye.radius) for x, y, eye in joints], waist), thickness, holes=holes)
-    return _with_eyes(eased(shape, edge), joints, thickness, edge)
+    shape = _with_discs(shape, inner, thickness)
+    return _with_eyes(eased(shape, edge), [*joints, *inner], thickness, edge)
+
+
+def _with_discs(shape: cq.Workplane, eyes: Sequence[tuple[float, float, Eye]], thickness: float) -> cq.Workplane:
+    """The shape joined with a disc for each eye; one that lies inside adds nothing."""
+    for x, y, eye in eyes:
+        shape = shape.union(extruded(outline.circle(x, y, eye.radius), thickness))
+    return shape
 
 
 def _with_eyes(
@@ -80,7 +92,8 @@ def _with_eyes(
         root = min(1.0, eye.radius - edge - eye.boss_radius - 0.2)  # ends on the flat, short of the rounded edge
         shape = with_boss(shape, x, y, thickness, eye.boss_radius, eye.above, root)
         shape = with_boss(shape, x, y, 0.0, eye.boss_radius, -eye.below, root)
-        shape = shape.cut(placed(bore(eye.bore, -eye.below, thickness + eye.above, chamfer), x, y))
+        if eye.bore > 0:
+            shape = shape.cut(placed(bore(eye.bore, -eye.below, thickness + eye.above, chamfer), x, y))
     return shape
 
 

@@ -1,0 +1,210 @@
+"""Parts from the model and its motion: ``automatic(m)`` plans them, ``solids()`` builds them.
+
+def parts(p: Params) -> dict[str, list[Solid]]:
+    made = automatic(build(p))
+    made.material("crank", "steel")
+    made.layer("rocker", 2)
+    return made.solids()
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechanisms.automatic.features import KINDS, Feature
+from mechanisms.automatic.heights import Heights, heights
+from mechanisms.automatic.layers import find_layers
+from mechanisms.automatic.layout import Layout
+from mechanisms.automatic.looks import materials
+from mechanisms.automatic.motion import poses_of, times_of
+from mechanisms.automatic.points import styluses, weights
+from mechanisms.automatic.refusal import refusal
+from mechanisms.automatic.sizes import Sizes, of_pin, sizes
+from shared.errors import UserError
+from shared.materials import MATERIALS
+from shared.suggestions import did_you_mean
+
+if TYPE_CHECKING:
+    from mbsd import Mechanism, Solution
+    from mechanisms.automatic.plan import Plan
+    from shared.shapes.solid import Solid
+
+SHAPELESS = ("angle_lock", "constraint")
+"""Kinds of joints that hold by no part of their own."""
+
+
+class Automatic:
+    """Parts by themselves, and what one may want otherwise. Lengths that are given are mm."""
+
+    def __init__(self, m: Mechanism, solution: Solution, pin: float | None = None) -> None:
+        self.m = m
+        self.solution = solution
+        self._pin = pin
+        self._materials: dict[str, str] = {}
+        self._layers: dict[str, int] = {}
+        self._left_out: set[str] = set()
+        self._shapes: dict[str, Callable[[Automatic], Sequence[Solid]]] = {}
+
+    # -- wishes -------------------------------------------------------------------------------------------------
+
+    def material(self, body: str, name: str) -> None:
+        """Make the plate of ``body`` of another material."""
+        self._known(body)
+        if name not in MATERIALS:
+            raise UserError(
+                f"{self.m.name}: material of '{body}': there is no '{name}'; there is {', '.join(MATERIALS)}"
+                f"{did_you_mean(name, MATERIALS)}"
+            )
+        self._materials[body] = name
+
+    def layer(self, body: str, number: int) -> None:
+        """Put ``body`` on a layer, counted from 0 above the base; the others are found around it."""
+        self._known(body)
+        if number < 0:
+            raise UserError(f"{self.m.name}: layer of '{body}' is {number}; the lowest one is 0")
+        self._layers[body] = number
+
+    # -- results ------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def sizes(self) -> Sizes:
+        """Proportions and the scale."""
+        if self._pin is not None:
+            return of_pin(self._pin)
+        shortest, overall = _extents(self.m, self.solution)
+        return sizes(shortest, overall)
+
+    @cached_property
+    def layout(self) -> Layout:
+        """What is to be built, with styluses as tall as the layers allow. Raises UserError where there are none."""
+        return self._found[0]
+
+    @cached_property
+    def levels(self) -> dict[str, int]:
+        """The layer of each moving body, from 0 up."""
+        return self._found[1]
+
+    @cached_property
+    def heights(self) -> Heights:
+        """Heights (rmm) of the layers."""
+        layout = self.layout
+        needs = [need for feature in layout.features for need in feature.needs(self.levels, layout)]
+        pivot = self.sizes.pivot
+        heights_of = heights(self.levels, self.sizes.thickness, needs, 2 * pivot.fit.axial)
+        floor = 4.0 + self.sizes.screw / self.sizes.scale + 2 * pivot.fit.axial
+        if heights_of.bottoms and heights_of.bottoms[0] < floor:
+            from mechanisms.automatic.features import Need
+
+            needs.append(Need(-1, floor))
+            heights_of = heights(self.levels, self.sizes.thickness, needs, 2 * pivot.fit.axial)
+        return heights_of
+
+    def solids(self) -> dict[str, list[Solid]]:
+        """Every piece by the body it moves with, in mm; the first of each list is the body's main piece."""
+        from mechanisms.automatic.built import built
+
+        return built(self.plan(), self.heights)
+
+    def plan(self) -> Plan:
+        """Eyes, feet and hardware, before plates and base are built."""
+        from mechanisms.automatic.plan import Plan
+
+        plan = Plan(self.layout, materials(self.m) | self._materials)
+        plan.reserve([*self.m.bodies, "base_plate"])
+        for feature in self.layout.features:
+            feature.build(plan, self.heights)
+        return plan
+
+    @cached_property
+    def _found(self) -> tuple[Layout, dict[str, int]]:
+        low = self._layout(tall=False)
+        least = self._levels(low)
+        if least is None:
+            raise UserError(refusal(low))
+        if not low.m.traces:
+            return low, least
+        high = self._layout(tall=True)
+        levels = self._levels(high)
+        if levels is None or max(levels.values()) > max(least.values()):
+            return low, least
+        return high, levels
+
+    def _levels(self, layout: Layout) -> dict[str, int] | None:
+        return find_layers(layout.moving, layout.items, layout.conflicts, self._layers)
+
+    def _layout(self, tall: bool) -> Layout:
+        poses = poses_of(self.solution, self.sizes.of_metres(1.0))
+        layout = Layout(self.m, self.sizes, poses, times_of(self.solution))
+        layout.features = [*self._joints(layout)]
+        layout.features += styluses(layout, tall)
+        layout.features += weights(layout)
+        return layout
+
+    def _joints(self, layout: Layout) -> list[Feature]:
+        import mechanisms.automatic.kinds  # noqa: F401  (enters them)
+
+        by_kind: dict[str, list] = {}
+        for name, joint in self.m.joints.items():
+            if joint.kind.name in SHAPELESS:
+                continue
+            if joint.kind.name not in KINDS:
+                raise UserError(
+                    f"{self.m.name}: joint '{name}' is a {joint.kind.name.replace('_', ' ')}, which has no parts by "
+                    f"itself yet (there are: {', '.join(KINDS)}); write mechanisms/{self.m.name}/parts.py"
+                )
+            by_kind.setdefault(joint.kind.name, []).append(joint)
+        return [feature for kind, joints in by_kind.items() for feature in KINDS[kind](self.m, joints, layout)]
+
+    def _known(self, body: str) -> None:
+        names = [name for name in self.m.bodies if name != "ground"]
+        if body not in names:
+            raise UserError(
+                f"{self.m.name}: there is no body '{body}' to shape; there is: {', '.join(names)}"
+                f"{did_you_mean(body, names)}"
+            )
+
+
+def automatic(m: Mechanism, pin: float | None = None, solution: Solution | None = None) -> Automatic:
+    """Parts of ``m``, planned from ``solution``; by default from the motion of the mechanism's folder.
+
+    ``pin``: diameter (mm) of its pins; by default it follows from the links. Raises UserError where it cannot move.
+    """
+    if solution is None:
+        from mechanisms.bare_motion import bare_solution
+
+        solution = bare_solution(m.name)
+    return Automatic(m, solution, pin)
+
+
+def _extents(m: Mechanism, solution: Solution) -> tuple[float, float]:
+    """The shortest distance of two joints of a body, and the longer side of what all joints sweep (m)."""
+    places: dict[str, list[tuple[float, float]]] = {}
+    for joint in m.joints.values():
+        for marker in (joint.i, joint.j):
+            places.setdefault(marker.body.name, []).append((marker.x, marker.y))
+    for name, body in m.bodies.items():
+        if body.length is not None:
+            places.setdefault(name, []).extend([(0.0, 0.0), (body.length, 0.0)])
+    seen = np.concatenate([[[0.0, 0.0]], *[_swept(solution, body, np.array(at)) for body, at in places.items()]])
+    overall = float(np.ptp(seen[1:], axis=0).max()) if len(seen) > 1 else 1.0
+    apart = [
+        float(np.hypot(a[0] - b[0], a[1] - b[1]))
+        for body, at in places.items()
+        for i, a in enumerate(at)
+        for b in at[:i]
+    ]
+    return min((d for d in apart if d > 1e-3 * overall), default=overall), overall
+
+
+def _swept(solution: Solution, body: str, at: np.ndarray) -> np.ndarray:
+    if body == "ground":
+        return at
+    view = solution.body(body)
+    c, s = np.cos(view.theta)[:, None], np.sin(view.theta)[:, None]
+    x = view.x[:, None] + c * at[:, 0] - s * at[:, 1]
+    y = view.y[:, None] + s * at[:, 0] + c * at[:, 1]
+    return np.stack([x.ravel(), y.ravel()], axis=1)

@@ -1,0 +1,108 @@
+"""What is to be built before anything is: places and outlines of all bodies in the plane, and what takes room."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechanisms.automatic.items import Item, Reach, spans_meet
+from mechanisms.automatic.planar import Rounded, around, least_gap
+
+if TYPE_CHECKING:
+    from mbsd import Marker, Mechanism
+    from mechanisms.automatic.features import Anchor, Feature
+    from mechanisms.automatic.items import Levels
+    from mechanisms.automatic.sizes import Sizes
+
+
+@dataclass(eq=False)
+class Layout:
+    """A mechanism in reference millimetres: poses over the motion, features, outlines and what takes room."""
+
+    m: Mechanism
+    sizes: Sizes
+    poses: dict[str, np.ndarray]
+    """By body, (T, 3): x, y (rmm) and theta (rad)."""
+    times: np.ndarray
+    features: list[Feature] = field(default_factory=list)
+    apart: frozenset[str] = frozenset()
+    """Bodies that get no solids from here."""
+    touching: frozenset[frozenset[str]] = frozenset()
+    """Pairs of bodies that may touch by design."""
+
+    def place(self, marker: Marker) -> tuple[float, float]:
+        """A marker in its body's frame (rmm)."""
+        return self.sizes.of_metres(marker.x), self.sizes.of_metres(marker.y)
+
+    @cached_property
+    def anchors(self) -> dict[str, list[Anchor]]:
+        """By moving body, without repeats; the largest radius where two are at one place."""
+        found: dict[str, list[Anchor]] = {name: [] for name in self.moving}
+        for feature in self.features:
+            for anchor in feature.anchors(self):
+                places = found.get(anchor.body)
+                if places is None:
+                    continue
+                same = [i for i, a in enumerate(places) if np.hypot(a.x - anchor.x, a.y - anchor.y) < 0.01]
+                if not same:
+                    places.append(anchor)
+                elif anchor.radius > places[same[0]].radius:
+                    places[same[0]] = anchor
+        return found
+
+    @cached_property
+    def moving(self) -> list[str]:
+        """The bodies that need a layer."""
+        return [name for name in self.m.bodies if name != "ground" and name not in self.apart]
+
+    def outline(self, body: str) -> Rounded:
+        """The shape that holds a body's plate."""
+        anchors = self.anchors[body]
+        radius = max(anchor.radius for anchor in anchors)
+        return around([(anchor.x, anchor.y) for anchor in anchors], radius)
+
+    @cached_property
+    def items(self) -> list[Item]:
+        """Plates of the bodies first, in their order, then all that features add."""
+        plates = [Item(name, name, self.outline(name), Reach((name,))) for name in self.moving]
+        return plates + [item for feature in self.features for item in feature.items(self)]
+
+    @cached_property
+    def conflicts(self) -> list[tuple[int, int]]:
+        """Pairs of items of different bodies that meet in the plane at some time: they need different heights."""
+        found = []
+        for j, second in enumerate(self.items):
+            for i, first in enumerate(self.items[:j]):
+                if self._may_meet(first, second) and self.gap(first, second)[0] < self.sizes.room:
+                    found.append((i, j))
+        return found
+
+    def gap(self, first: Item, second: Item) -> tuple[float, float]:
+        """Least gap in the plane (rmm), and its time (s)."""
+        poses = self.poses[first.body], self.poses[second.body]
+        gap, at = least_gap(first.shape, second.shape, poses, self.sizes.room)
+        return gap, float(self.times[at])
+
+    def _may_meet(self, first: Item, second: Item) -> bool:
+        return not (
+            first.body == second.body
+            or first.body in second.spares
+            or second.body in first.spares
+            or frozenset((first.body, second.body)) in self.touching
+        )
+
+    def is_covered(self, source: object, half_layer: int, levels: Levels) -> bool:
+        """Whether something that meets an item of the feature ``source`` in the plane is at a half layer."""
+        mine = {k for k, item in enumerate(self.items) if item.source is source}
+        others = {j if i in mine else i for i, j in self.conflicts if (i in mine) != (j in mine)}
+        return any(spans_meet(self.items[k].reach.span(levels), (half_layer, half_layer)) for k in others)
+
+    def room_on_base(self, x: float, y: float) -> float:
+        """Half of the distance (rmm) from a place on ground to the next place where something stands there."""
+        places = [a for feature in self.features for a in feature.anchors(self) if a.body == "ground"]
+        away = [math.hypot(a.x - x, a.y - y) for a in places]
+        return min((d for d in away if d > 0.01), default=math.inf) / 2

@@ -1,0 +1,32 @@
+"""Which material each body gets where nobody says: driven ones orange, those on ground colours, others metal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mbsd import Mechanism
+
+DRIVEN = "aluminium_orange"
+ON_GROUND = ("aluminium_blue", "aluminium_red", "aluminium_green", "aluminium_violet")
+BETWEEN = ("aluminium", "aluminium_gold")
+
+
+def materials(m: Mechanism) -> dict[str, str]:
+    """By moving body; colours are used in turn."""
+    driven = {name for driver in m.drivers.values() for name in driver.bodies} - {"ground"}
+    grounded = {name for joint in m.joints.values() if "ground" in joint.bodies for name in joint.bodies} - {"ground"}
+    found: dict[str, str] = {}
+    turns = {"ground": 0, "between": 0}
+    for name in m.bodies:
+        if name == "ground":
+            continue
+        if name in driven and name in grounded:
+            found[name] = DRIVEN
+        elif name in grounded:
+            found[name] = ON_GROUND[turns["ground"] % len(ON_GROUND)]
+            turns["ground"] += 1
+        else:
+            found[name] = BETWEEN[turns["between"] % len(BETWEEN)]
+            turns["between"] += 1
+    return found

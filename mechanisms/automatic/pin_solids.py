@@ -1,0 +1,102 @@
+"""The solids of a pin: what holds it, what runs on it, and what keeps it in place (rmm)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mechanisms.automatic.plan import Foot
+from shared.shapes.base import bolt_circle, column, pedestal
+from shared.shapes.link import Eye
+from shared.shapes.pin import pin, washer
+from shared.shapes.screw import socket_screw
+from shared.shapes.solid import Solid, placed
+
+if TYPE_CHECKING:
+    from mechanisms.automatic.heights import Heights
+    from mechanisms.automatic.pins import Pin
+    from mechanisms.automatic.plan import Plan
+
+FLANGE, CIRCLE = 39.0, 31.0
+"""Diameters of a pedestal's flange and of the circle of its screws."""
+FLANGE_THICKNESS = 4.0
+TOP, FOOT = 17.0, 20.0
+"""Diameters of a pedestal's column."""
+
+
+def moving_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> None:
+    """A pin pressed into the lowest of ``stack``; its head is above the highest."""
+    sizes = plan.layout.sizes
+    pivot, fit = sizes.pivot, sizes.pivot.fit
+    holder, runners = stack[0], stack[1:]
+    x, y = joint.places[holder]
+    low = heights.top(holder)
+    boss = heights.bottom(runners[0]) - pivot.flange_room - fit.axial - pivot.washer_room - low
+    boss = 0.0 if boss < 0.05 else boss
+    plan.eye(holder, x, y, Eye(sizes.eye - 0.5, pivot.held, above=boss, boss=min(9.5, sizes.hardware)))
+    plan.add(holder, pivot.washer_at(f"washer_{joint.name}", x, y, low + boss + fit.seat))
+    _run(joint, runners, holder, plan, heights)
+    start = heights.bottom(holder) + 0.3
+    head = heights.top(runners[-1]) + pivot.flange_room + fit.axial
+    bolt = pin(pivot.pin, head - start, sizes.head)
+    plan.make(holder, f"pin_{joint.name}", placed(bolt, x, y, start), "brass", 0)
+
+
+def ground_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> None:
+    """A pedestal with a fixed pin; a circlip above the highest of ``stack``."""
+    sizes, name = plan.layout.sizes, joint.name
+    pivot, fit = sizes.pivot, sizes.pivot.fit
+    x, y = joint.places["ground"]
+    height = heights.bottom(stack[0]) - pivot.flange_room - fit.axial - pivot.washer_room
+    _pedestal(joint, height, plan)
+    _run(joint, stack, "ground", plan, heights)
+    clip = heights.top(stack[-1]) + pivot.flange_room + pivot.retainer_room - pivot.clip_thickness
+    bolt = pin(pivot.pin, clip + pivot.clip_thickness + sizes.pin_end - 0.5, None, pivot.groove(clip - 0.5))
+    plan.make("ground", f"pin_{name}", placed(bolt, x, y, 0.5), "steel", 0)
+    plan.add(
+        "ground",
+        pivot.washer_at(f"washer_{name}_low", x, y, height + fit.seat),
+        pivot.washer_at(f"washer_{name}_high", x, y, clip - fit.seat - pivot.washer_thickness),
+        pivot.clip_at(f"circlip_{name}", x, y, clip, turn=225),
+    )
+
+
+def _run(joint: Pin, runners: list[str], holder: str, plan: Plan, heights: Heights) -> None:
+    """Bushings in every body that turns on the pin, and a sleeve between each and the next."""
+    sizes = plan.layout.sizes
+    pivot = sizes.pivot
+    run = pivot.flange_room + pivot.fit.axial
+    for below, body in zip([None, *runners], runners, strict=False):
+        label = joint.name if len(runners) == 1 else f"{joint.name}_{body}"
+        x, y = joint.places[body]
+        plan.eye(body, x, y, Eye(sizes.eye, pivot.running))
+        plan.add(body, *pivot.bushings(label, x, y, heights.bottom(body), heights.thickness))
+        if below is not None:
+            start = heights.top(below) + run
+            tube = washer(pivot.pin + pivot.fit.running, pivot.washer, heights.bottom(body) - run - start)
+            at = joint.places[holder]
+            plan.make(holder, f"sleeve_{joint.name}_{below}", placed(tube, *at, start), "steel", 1)
+
+
+def _pedestal(joint: Pin, height: float, plan: Plan) -> None:
+    """On the base plate, with a flange and screws where there is room for them beside its neighbours."""
+    sizes = plan.layout.sizes
+    pivot, seat = sizes.pivot, sizes.pivot.fit.seat
+    x, y = joint.places["ground"]
+    room = plan.layout.room_on_base(x, y)
+    name = f"pedestal_{joint.name}"
+    if room < FLANGE / 2 + 0.5:
+        foot = min(FOOT, 2 * room - 1.0)
+        post = column(height - seat, pivot.held, min(TOP, foot), foot)
+        plan.make("ground", name, placed(post, x, y, seat), "aluminium", 1)
+        plan.feet.append(Foot(joint.name, x, y, foot / 2, dial=joint.driven))
+        return
+    nominal = sizes.screw / sizes.scale
+    post = pedestal(height - seat, pivot.held, TOP, FOOT, FLANGE, FLANGE_THICKNESS, 3, nominal, CIRCLE)
+    plan.make("ground", name, placed(post, x, y, seat), "aluminium", 4)
+    bolts = [(x + u, y + v) for u, v in bolt_circle(CIRCLE, 3)]
+    plan.feet.append(Foot(joint.name, x, y, FLANGE / 2, tuple(bolts), joint.driven))
+    screw = socket_screw(sizes.screw, 11.0 * sizes.scale)
+    screw = screw.newObject([screw.val().scale(1 / sizes.scale)])
+    for i, (u, v) in enumerate(bolts):
+        at = placed(screw, u, v, FLANGE_THICKNESS + 2 * seat)
+        plan.add("ground", Solid(f"screw_{joint.name}_{i + 1}", at, "steel", 0))

@@ -1,0 +1,122 @@
+"""Revolute joints: links that turn about a common axis on one pin, with bushings, washers and circlip.
+
+Joints that share a place on a body share their pin. The lowest body holds it, its head is on top; on ground a pedestal
+holds it, and a circlip keeps it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from mechanisms.automatic.features import Anchor, Feature, Need, kind
+from mechanisms.automatic.items import BASE, Item, Reach
+from mechanisms.automatic.pin_solids import ground_pin, moving_pin
+from mechanisms.automatic.planar import disc
+
+if TYPE_CHECKING:
+    from mbsd import Mechanism
+    from mbsd.joint import Joint
+    from mechanisms.automatic.heights import Heights
+    from mechanisms.automatic.items import Levels
+    from mechanisms.automatic.layout import Layout
+    from mechanisms.automatic.plan import Plan
+
+SAME = 0.02
+"""Places on a body that are nearer than this (rmm) are one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pin:
+    """One axis: the place on each body that turns about it (rmm)."""
+
+    joints: tuple[Joint, ...]
+    places: dict[str, tuple[float, float]]
+
+    @property
+    def name(self) -> str:
+        """Of its first joint."""
+        return self.joints[0].name
+
+    @cached_property
+    def movers(self) -> tuple[str, ...]:
+        """The bodies on it that move."""
+        return tuple(body for body in self.places if body != "ground")
+
+    @property
+    def on_ground(self) -> bool:
+        """Whether a pedestal holds it."""
+        return "ground" in self.places
+
+    @property
+    def home(self) -> str:
+        """The body whose motion its axis is given in."""
+        return "ground" if self.on_ground else self.movers[0]
+
+    @property
+    def driven(self) -> bool:
+        """Whether a driver turns what is on it against ground."""
+        m = self.joints[0].i.body.mechanism
+        drivers = m.drivers.values() if m else ()
+        return self.on_ground and any(d.kind.angular and set(d.bodies) <= set(self.places) for d in drivers)
+
+    def anchors(self, layout: Layout) -> Iterable[Anchor]:
+        """An eye on every body."""
+        return [Anchor(body, x, y, layout.sizes.eye) for body, (x, y) in self.places.items()]
+
+    def items(self, layout: Layout) -> Iterable[Item]:
+        """All heights that pin and pedestal take."""
+        x, y = self.places[self.home]
+        what = f"the pedestal and pin of {self.name}" if self.on_ground else f"the pin of {self.name}"
+        reach = Reach(self.movers, 0, 1, base=self.on_ground)
+        return [Item(what, self.home, disc(x, y, layout.sizes.hardware), reach, frozenset(self.places), self)]
+
+    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
+        """Room for washers and flanges between neighbours on the pin, and for its head or circlip on top."""
+        sizes, pivot = layout.sizes, layout.sizes.pivot
+        running = pivot.fit.axial + pivot.flange_room
+        stack = sorted(levels[body] for body in self.movers)
+        for k, (low, high) in enumerate(pairwise(stack)):
+            if high == low + 1:
+                held = k == 0 and not self.on_ground
+                below = 0.0 if held else running
+                yield Need(low, below + pivot.washer_room + running)
+        top = stack[-1]
+        if layout.is_covered(self, 2 * (top + 1), levels):
+            yield Need(top, sizes.clip_room if self.on_ground else sizes.end_room)
+        if self.on_ground and stack[0] == 0:
+            yield Need(BASE, sizes.pedestal + pivot.washer_room + running)
+
+    def build(self, plan: Plan, heights: Heights) -> None:
+        """Eyes and hardware."""
+        stack = sorted(self.movers, key=lambda body: heights.bottom(body))
+        if self.on_ground:
+            ground_pin(self, stack, plan, heights)
+        else:
+            moving_pin(self, stack, plan, heights)
+
+
+@kind("revolute")
+def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
+    """Joints by their pins: those with a common place on a body are one."""
+    ends = [{marker.body.name: layout.place(marker) for marker in (joint.i, joint.j)} for joint in joints]
+    group = list(range(len(joints)))
+    for j in range(len(joints)):
+        for i in range(j):
+            shared = ends[i].keys() & ends[j].keys()
+            if group[i] != group[j] and any(_same(ends[i][body], ends[j][body]) for body in shared):
+                old, new = group[j], group[i]
+                group = [new if g == old else g for g in group]
+    pins = []
+    for g in dict.fromkeys(group):
+        members = [k for k in range(len(joints)) if group[k] == g]
+        places = {body: place for k in members for body, place in ends[k].items()}
+        pins.append(Pin(tuple(joints[k] for k in members), places))
+    return pins
+
+
+def _same(a: tuple[float, float], b: tuple[float, float]) -> bool:
+    return abs(a[0] - b[0]) < SAME and abs(a[1] - b[1]) < SAME

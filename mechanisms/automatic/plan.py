@@ -1,0 +1,72 @@
+"""What the features agreed on: eyes of every body, feet on the base, and solids, each with a name of its own."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from shared.shapes.link import Eye
+from shared.shapes.solid import Solid
+
+if TYPE_CHECKING:
+    import cadquery as cq
+
+    from mechanisms.automatic.layout import Layout
+
+
+@dataclass(frozen=True)
+class Foot:
+    """Something that stands on the base plate (rmm)."""
+
+    label: str
+    x: float
+    y: float
+    radius: float
+    holes: tuple[tuple[float, float], ...] = ()
+    """Places of its screws."""
+    dial: bool = False
+
+
+@dataclass(eq=False)
+class Plan:
+    """Filled by the features, read by those who build bodies and base."""
+
+    layout: Layout
+    materials: dict[str, str]
+    eyes: dict[str, list[tuple[float, float, Eye]]] = field(default_factory=dict)
+    feet: list[Foot] = field(default_factory=list)
+    solids: dict[str, list[Solid]] = field(default_factory=dict)
+    names: set[str] = field(default_factory=set)
+    main: dict[str, str] = field(default_factory=dict)
+    """Names of the main pieces."""
+
+    def eye(self, body: str, x: float, y: float, eye: Eye) -> None:
+        """An eye of a body's plate at (x, y) in its frame."""
+        self.eyes.setdefault(body, []).append((x, y, eye))
+
+    def add(self, body: str, *solids: Solid) -> None:
+        """Solids that move with ``body``."""
+        kept = self.solids.setdefault(body, [])
+        kept += [Solid(self.named(s.name), s.shape, s.material, s.through_holes) for s in solids]
+
+    def make(self, body: str, name: str, shape: cq.Workplane, material: str, through_holes: int) -> None:
+        """One solid."""
+        self.add(body, Solid(name, shape, material, through_holes))
+
+    def reserve(self, bodies: list[str]) -> None:
+        """Main pieces are called like their bodies."""
+        for body in bodies:
+            self.main[body] = self.named(body)
+
+    def named(self, wish: str) -> str:
+        """A name that no other solid has, of letters, digits and _; some disks take upper and lower case for one."""
+        name = re.sub(r"\W", "_", wish, flags=re.ASCII)
+        if not name[:1].isalpha():
+            name = f"part_{name}"
+        found, number = name, 1
+        while found.lower() in self.names:
+            number += 1
+            found = f"{name}_{number}"
+        self.names.add(found.lower())
+        return found

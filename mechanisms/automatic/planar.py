@@ -1,0 +1,136 @@
+"""Convex shapes with round corners in the plane, and the least gap of two of them while their bodies move."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+COARSE = 7
+"""Every so many poses are looked at first: most pairs that overlap do so in one of these."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rounded:
+    """All points within ``radius`` of a convex ``core`` ((n, 2), counter-clockwise; 1: disc, 2: capsule), rmm."""
+
+    core: np.ndarray
+    radius: float
+
+    @property
+    def reach(self) -> tuple[np.ndarray, float]:
+        """A circle round it: centre and radius."""
+        centre = (self.core.min(axis=0) + self.core.max(axis=0)) / 2
+        return centre, float(np.linalg.norm(self.core - centre, axis=1).max()) + self.radius
+
+
+def disc(x: float, y: float, radius: float) -> Rounded:
+    """A disc."""
+    return Rounded(np.array([[x, y]]), radius)
+
+
+def around(points: Sequence[tuple[float, float]], radius: float) -> Rounded:
+    """All within ``radius`` of the convex hull of points."""
+    return Rounded(convex_hull(np.array(points, dtype=float)), radius)
+
+
+def convex_hull(points: np.ndarray, tolerance: float = 1e-9) -> np.ndarray:
+    """(m, 2): corners of the convex hull, counter-clockwise, none on a line between two others (monotone chain)."""
+    size = max(float(np.ptp(points, axis=0).max()), 1e-300)
+    ordered = sorted({(round(float(x), 12), round(float(y), 12)) for x, y in points})
+    if len(ordered) < 3:
+        return np.array(ordered)
+
+    def half(sequence: list[tuple[float, float]]) -> list[tuple[float, float]]:
+        chain: list[tuple[float, float]] = []
+        for point in sequence:
+            while len(chain) > 1 and _cross(chain[-2], chain[-1], point) <= tolerance * size * size:
+                chain.pop()
+            chain.append(point)
+        return chain[:-1]
+
+    return np.array(half(ordered) + half(ordered[::-1]))
+
+
+def least_gap(
+    first: Rounded, second: Rounded, poses: tuple[np.ndarray, np.ndarray], enough: float
+) -> tuple[float, int]:
+    """Least gap (rmm, negative where they overlap) and the pose it is at; (T, 3) poses x, y, theta of both bodies.
+
+    A gap above ``enough`` need not be the least one, and for one below it the first that is found will do.
+    """
+    centre, radius = first.reach
+    other, beside = second.reach
+    apart = np.linalg.norm(_placed(centre[None], poses[0]) - _placed(other[None], poses[1]), axis=2)[:, 0]
+    gaps = apart - radius - beside
+    near = np.flatnonzero(gaps <= enough)
+    if not len(near):
+        at = int(np.argmin(gaps))
+        return float(gaps[at]), at
+    for chosen in (near[::COARSE], near):
+        a = _placed(first.core, poses[0][chosen])
+        b = _placed(second.core, poses[1][chosen])
+        found = core_gaps(a, b) - first.radius - second.radius
+        at = int(np.argmin(found))
+        if found[at] <= enough:
+            break
+    return float(found[at]), int(chosen[at])
+
+
+def core_gaps(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """(T,): distances of two convex polygons of points (T, n, 2) and (T, m, 2); 0 where they overlap."""
+    found = np.minimum(_corners_to_edges(a, b), _corners_to_edges(b, a))
+    meet = _inside(a[:, 0], b) | _inside(b[:, 0], a) | _cross_each_other(a, b)
+    return np.where(meet, 0.0, found)
+
+
+def _edges(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    if points.shape[1] < 3:
+        return points[:, :1], points[:, -1:]
+    return points, np.roll(points, -1, axis=1)
+
+
+def _corners_to_edges(corners: np.ndarray, polygon: np.ndarray) -> np.ndarray:
+    start, end = _edges(polygon)
+    along = end - start
+    square = np.maximum((along**2).sum(axis=2), 1e-300)
+    to = corners[:, :, None] - start[:, None]
+    part = np.clip((to * along[:, None]).sum(axis=3) / square[:, None], 0.0, 1.0)
+    away = to - part[..., None] * along[:, None]
+    return np.sqrt((away**2).sum(axis=3)).min(axis=(1, 2))
+
+
+def _inside(point: np.ndarray, polygon: np.ndarray) -> np.ndarray:
+    if polygon.shape[1] < 3:
+        return np.zeros(len(point), dtype=bool)
+    start, end = _edges(polygon)
+    return (_turn(end - start, point[:, None] - start) >= 0).all(axis=1)
+
+
+def _cross_each_other(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    if min(a.shape[1], b.shape[1]) < 2:
+        return np.zeros(len(a), dtype=bool)
+    (p, q), (r, s) = _edges(a), _edges(b)
+    p, q, r, s = p[:, :, None], q[:, :, None], r[:, None], s[:, None]
+    one = _turn(q - p, r - p) * _turn(q - p, s - p) < 0
+    other = _turn(s - r, p - r) * _turn(s - r, q - r) < 0
+    return (one & other).any(axis=(1, 2))
+
+
+def _turn(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
+
+
+def _cross(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _placed(points: np.ndarray, pose: np.ndarray) -> np.ndarray:
+    """(T, n, 2): points (n, 2) of a body in the world at poses (T, 3)."""
+    c, s = np.cos(pose[:, 2:]), np.sin(pose[:, 2:])
+    x = pose[:, :1] + c * points[:, 0] - s * points[:, 1]
+    return np.stack([x, pose[:, 1:2] + s * points[:, 0] + c * points[:, 1]], axis=2)

@@ -1,0 +1,102 @@
+"""Known linkages for tests of parts by themselves: bars and plates on pins, driven by a crank."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from mbsd import Mechanism, constant_rate
+
+TURN = constant_rate(2 * math.pi)
+JANSEN = {"a": 38.0, "b": 41.5, "c": 39.3, "d": 40.1, "e": 55.8, "f": 39.4, "g": 36.7, "h": 65.7, "i": 49.0, "j": 50.0}
+JANSEN |= {"k": 61.9, "l": 7.8, "m": 15.0}
+"""Theo Jansen's eleven holy numbers, with the crank and its place."""
+
+
+def four_bar(
+    ground: float, crank: float, coupler: float, rocker: float, start: tuple[float, float] = (45.0, 100.0)
+) -> Mechanism:
+    """Lengths in m; ``start`` are rough angles of coupler and rocker in degrees, the crank at 0."""
+    m = Mechanism("four")
+    a, b, c = m.bar("crank", crank), m.bar("coupler", coupler), m.bar("rocker", rocker)
+    m.revolute("A", m.ground.at(0, 0), a.start)
+    m.revolute("B", a.end, b.start)
+    m.revolute("C", b.end, c.end)
+    m.revolute("D", m.ground.at(ground, 0), c.start)
+    m.drive_angle("motor", a, TURN)
+    m.start_near(crank=0, coupler=start[0], rocker=start[1])
+    return m
+
+
+def drag_link() -> Mechanism:
+    """Crank and rocker both turn fully, each over the other's pivot."""
+    return four_bar(0.04, 0.10, 0.09, 0.11, (20.0, 70.0))
+
+
+def watt() -> Mechanism:
+    """A six-bar: a second dyad on the rocker, which is a plate of three joints."""
+    m = four_bar_with_plate()
+    link, out = m.bar("link", 0.11), m.bar("out", 0.08)
+    m.revolute("E", m.bodies["rocker"].at(0.07, -0.05), link.start)
+    m.revolute("F", link.end, out.end)
+    m.revolute("G", m.ground.at(0.25, 0), out.start)
+    m.start_near(link=10, out=90)
+    return m
+
+
+def four_bar_with_plate() -> Mechanism:
+    """The four-bar of the gallery, its rocker a body of its own frame."""
+    m = Mechanism("watt")
+    crank, coupler, rocker = m.bar("crank", 0.04), m.bar("coupler", 0.12), m.body("rocker")
+    m.revolute("A", m.ground.at(0, 0), crank.start)
+    m.revolute("B", crank.end, coupler.start)
+    m.revolute("C", coupler.end, rocker.at(0.09, 0))
+    m.revolute("D", m.ground.at(0.12, 0), rocker.at(0, 0))
+    m.drive_angle("motor", crank, TURN)
+    m.start_near(crank=0, coupler=45, rocker=100)
+    return m
+
+
+def jansen_leg(unit: float = 2e-3) -> Mechanism:
+    """One leg of Theo Jansen's walker; ``unit`` (m) is one of his."""
+    length = {name: value * unit for name, value in JANSEN.items()}
+    pivot, hub = np.array([-length["a"], -length["l"]]), np.array([length["m"], 0.0])
+    top = _corner(pivot, hub, length["b"], length["j"], 1)
+    back = _corner(pivot, top, length["d"], length["e"], 1)
+    knee = _corner(pivot, hub, length["c"], length["k"], -1)
+    heel = _corner(back, knee, length["f"], length["g"], -1)
+    toe = _corner(heel, knee, length["h"], length["i"], -1)
+    m = Mechanism("jansen")
+    upper, foot = m.body("upper"), m.body("foot")
+    bars = {name: m.bar(name, length[name]) for name in ("m", "j", "k", "c", "f")}
+    m.revolute("O", m.ground.at(0, 0), bars["m"].start)
+    m.revolute("M", bars["m"].end, bars["j"].start)
+    m.revolute("T", bars["j"].end, upper.at(length["b"], 0))
+    m.revolute("G", m.ground.at(*pivot.tolist()), upper.origin)
+    m.revolute("N", bars["m"].end, bars["k"].start)
+    m.revolute("K", bars["k"].end, bars["c"].end)
+    m.revolute("H", m.ground.at(*pivot.tolist()), bars["c"].start)
+    m.revolute("U", upper.at(*_seen(pivot, top, back)), bars["f"].start)
+    m.revolute("F", bars["f"].end, foot.origin)
+    m.revolute("L", bars["c"].end, foot.at(length["g"], 0))
+    m.trace("toe", foot.at(*_seen(heel, knee, toe)))
+    m.drive_angle("motor", bars["m"], constant_rate(-2 * math.pi))
+    ends = {"m": (np.zeros(2), hub), "upper": (pivot, top), "j": (hub, top), "k": (hub, knee)}
+    ends |= {"c": (pivot, knee), "f": (back, heel), "foot": (heel, knee)}
+    m.start_near(**{name: math.degrees(math.atan2(*(q - p)[::-1])) for name, (p, q) in ends.items()})
+    return m
+
+
+def _corner(p: np.ndarray, q: np.ndarray, from_p: float, from_q: float, side: int) -> np.ndarray:
+    """The third corner of a triangle over p q, left of it for ``side`` 1."""
+    apart = float(np.linalg.norm(q - p))
+    along = (q - p) / apart
+    forward = (from_p**2 - from_q**2 + apart**2) / (2 * apart)
+    return p + forward * along + side * math.sqrt(from_p**2 - forward**2) * np.array([-along[1], along[0]])
+
+
+def _seen(origin: np.ndarray, towards: np.ndarray, point: np.ndarray) -> tuple[float, float]:
+    """``point`` in the frame at ``origin`` whose x axis goes ``towards``."""
+    along = (towards - origin) / np.linalg.norm(towards - origin)
+    return float((point - origin) @ along), float((point - origin) @ np.array([-along[1], along[0]]))

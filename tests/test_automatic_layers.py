@@ -1,0 +1,183 @@
+"""Parts by themselves before they are built: sizes, gaps in the plane, the order of layers. No CAD."""
+
+from __future__ import annotations
+
+import math
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from mbsd import Mechanism, MechanismError
+from mechanisms.automatic.automatic import Automatic
+from mechanisms.automatic.items import Item, spans_meet
+from mechanisms.automatic.planar import Rounded, around, convex_hull, core_gaps, least_gap
+from mechanisms.automatic.sizes import sizes, standard
+from shared.errors import UserError
+from tests.linkages import drag_link, four_bar, jansen_leg, watt
+
+
+def _samples(core: np.ndarray, count: int = 60) -> np.ndarray:
+    """Points on all sides of a core."""
+    if len(core) == 1:
+        return core
+    u = np.linspace(0, 1, count)[:, None]
+    return np.concatenate([(1 - u) * a + u * b for a, b in zip(core, np.roll(core, -1, axis=0), strict=True)])
+
+
+def test_gaps_of_polygons_agree_with_many_points_on_their_sides() -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(200):
+        a = convex_hull(rng.normal(size=(rng.integers(1, 7), 2)))
+        b = convex_hull(rng.normal(size=(rng.integers(1, 7), 2))) + rng.uniform(-4, 4, 2)
+        found = float(core_gaps(a[None], b[None])[0])
+        sampled = np.linalg.norm(_samples(a)[:, None] - _samples(b)[None], axis=2).min()
+        if found > 0:
+            assert found <= sampled + 1e-9
+            assert sampled < found + 0.15
+        else:  # they overlap: sides cross, or one holds a corner of the other
+            inside = [p for p in _samples(b) if len(a) > 2 and len(convex_hull(np.vstack([a, p]))) == len(a)]
+            inside += [p for p in _samples(a) if len(b) > 2 and len(convex_hull(np.vstack([b, p]))) == len(b)]
+            assert inside or sampled < 0.15
+
+
+def test_the_least_gap_is_found_over_the_motion() -> None:
+    """A disc on an arm passes a fixed one at the angle where the arm points at it."""
+    angle = np.linspace(0, 2 * np.pi, 721)
+    turning = np.column_stack([np.zeros_like(angle), np.zeros_like(angle), angle])
+    still = np.zeros_like(turning)
+    arm, post = Rounded(np.array([[10.0, 0.0]]), 1.0), Rounded(np.array([[0.0, 14.0]]), 2.0)
+    gap, at = least_gap(arm, post, (turning, still), 0.9)
+    assert gap == pytest.approx(1.0)
+    assert angle[at] == pytest.approx(np.pi / 2)
+
+
+def test_sizes_follow_the_mechanism() -> None:
+    assert standard(7.9) == 6
+    assert standard(0.1) == 0.5
+    assert standard(430.0) == 400
+    clockwork, desk, excavator = sizes(0.004, 0.020), sizes(0.04, 0.17), sizes(0.6, 3.0)
+    assert [s.pin for s in (clockwork, desk, excavator)] == [1.0, 8.0, 120.0]
+    for s in (clockwork, desk, excavator):
+        running = s.pivot.fit.running * s.scale
+        assert 0.15 < running < 0.7, "a fit that a workshop can make"
+        assert s.pivot.bushing > s.pivot.pin + s.pivot.fit.running + 1.0, "a bushing has a wall"
+
+
+def _planned(m: Mechanism) -> Automatic:
+    return Automatic(m, m.sweep())
+
+
+def _clear(made: Automatic) -> None:
+    """No two items of different bodies at one height meet: seen anew, by points on their sides at every third pose."""
+    layout, levels = made.layout, made.levels
+
+    def clouds(item: Item) -> np.ndarray:
+        points, pose = _samples(item.shape.core, 40), layout.poses[item.body][::3]
+        c, s = np.cos(pose[:, 2:]), np.sin(pose[:, 2:])
+        x = pose[:, :1] + c * points[:, 0] - s * points[:, 1]
+        return np.stack([x, pose[:, 1:2] + s * points[:, 0] + c * points[:, 1]], axis=2)
+
+    for first, second in combinations(layout.items, 2):
+        designed = first.body == second.body or first.body in second.spares or second.body in first.spares
+        if designed or not spans_meet(first.reach.span(levels), second.reach.span(levels)):
+            continue
+        a, b = clouds(first), clouds(second)
+        apart = min(float(np.linalg.norm(p[:, None] - q[None], axis=2).min()) for p, q in zip(a, b, strict=True))
+        assert apart > first.shape.radius + second.shape.radius, f"{first.what} meets {second.what}"
+
+
+@pytest.mark.parametrize(("build", "layers"), [(watt, 2), (jansen_leg, 5)], ids=["watt", "jansen"])
+def test_known_linkages_get_few_layers(build: object, layers: int) -> None:
+    made = _planned(build())
+    assert max(made.levels.values()) + 1 == layers
+    _clear(made)
+
+
+def test_no_layer_can_be_spared() -> None:
+    """The Jansen leg has no order in four layers: every one of the 4^7 is tried."""
+    made = _planned(jansen_leg())
+    items, conflicts = made.layout.items, made.layout.conflicts
+    bodies = made.layout.moving
+    rules = [(items[i].reach, items[j].reach) for i, j in conflicts]
+    for code in range(4 ** len(bodies)):
+        levels = {body: code // 4**k % 4 for k, body in enumerate(bodies)}
+        if not any(spans_meet(a.span(levels), b.span(levels)) for a, b in rules):
+            pytest.fail(f"four layers would do: {levels}")
+
+
+def test_heights_leave_room_for_what_is_between_the_layers() -> None:
+    made = _planned(jansen_leg())
+    pivot = made.sizes.pivot
+    for low, high in zip(made.heights.bottoms, made.heights.bottoms[1:], strict=False):
+        assert high - low - made.sizes.thickness >= pivot.washer_room + pivot.fit.axial + pivot.flange_room - 1e-9
+
+
+def test_a_layer_that_is_asked_for_is_given() -> None:
+    made = _planned(four_bar(0.12, 0.04, 0.12, 0.09))
+    made.layer("rocker", 2)
+    assert made.levels["rocker"] == 2
+    _clear(made)
+
+
+def test_bodies_that_cannot_pass_each_other_are_named() -> None:
+    """A drag link's crank and rocker both sweep over the other's pedestal."""
+    with pytest.raises(UserError) as refused:
+        _ = _planned(drag_link()).levels
+    text = str(refused.value)
+    assert "no order of layers lets crank and rocker pass each other" in text
+    assert "the pedestal and pin of A meets rocker at t=" in text
+    assert "the pedestal and pin of D meets crank at t=" in text
+    assert "coupler" not in text
+
+
+def test_a_kind_without_parts_is_refused_by_name() -> None:
+    m = Mechanism("belted")
+    a, b = m.bar("a", 0.05), m.bar("b", 0.05)
+    m.revolute("A", m.ground.at(0, 0), a.start)
+    m.revolute("B", m.ground.at(0.2, 0), b.start)
+    m.belt("loop", a.start, b.start, radius_i=0.02, radius_j=0.03)
+    m.drive_angle("motor", a, lambda t: t)
+    with pytest.raises(UserError, match="joint 'loop' is a belt, which has no parts by itself yet"):
+        _ = Automatic(m, m.sweep(1.0)).levels
+
+
+def _random_linkage(rng: np.random.Generator) -> Mechanism:
+    """A four-bar with plates, or a six-bar, whose crank may turn."""
+    lengths = rng.uniform(0.05, 0.2, 3)
+    m = four_bar(float(lengths[0] + 0.05), float(rng.uniform(0.03, 0.07)), float(lengths[1]), float(lengths[2]))
+    if rng.random() < 0.6:
+        link, out = m.bar("link", float(rng.uniform(0.08, 0.25))), m.bar("out", float(rng.uniform(0.08, 0.2)))
+        carrier = m.bodies["coupler" if rng.random() < 0.5 else "rocker"]
+        m.revolute("E", carrier.at(*rng.uniform(0.02, 0.1, 2).tolist()), link.start)
+        m.revolute("F", link.end, out.end)
+        m.revolute("G", m.ground.at(*rng.uniform(-0.2, 0.3, 2).tolist()), out.start)
+    return m
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_random_linkages_get_layers_without_a_collision_or_a_refusal(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    laid = refused = tried = 0
+    while laid + refused < 12 and tried < 200:
+        tried += 1
+        m = _random_linkage(rng)
+        try:
+            made = _planned(m)
+        except MechanismError:
+            continue  # it cannot turn
+        try:
+            _ = made.levels
+        except UserError as error:
+            refused += "no order of layers lets" in str(error)
+            continue
+        _clear(made)
+        laid += 1
+    assert laid >= 4
+    assert laid + refused == 12
+
+
+def test_the_outline_holds_all_eyes() -> None:
+    shape = around([(0, 0), (10, 0), (10, 10), (3, 2)], 2.0)
+    assert len(shape.core) == 3
+    assert math.isclose(shape.reach[1], math.hypot(5, 5) + 2.0)

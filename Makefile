@@ -44,6 +44,11 @@ define upto_motion
 @$(STAGE) parts "$$MECHANISM"
 @$(STAGE) solve "$$MECHANISM"
 endef
+# Motion and plots go on where there are no parts by themselves.
+define upto_bare_motion
+@$(STAGE) parts "$$MECHANISM" --or-none
+@$(STAGE) solve "$$MECHANISM"
+endef
 define upto_shot
 $(upto_motion)
 @$(STAGE) shot "$$MECHANISM"
@@ -73,7 +78,7 @@ parts-%: install always ## the solids: out/<name>/parts/ (STL, STEP, parts.json)
 	@$(STAGE) parts "$$MECHANISM"
 
 solve-%: install always ## the motion: out/<name>/data.json
-	$(upto_motion)
+	$(upto_bare_motion)
 
 animate-%: install always ## the moving skeleton, VIEW=forces,reactions,velocities,...: animation.mp4, .gif
 	@$(STAGE) animate "$$MECHANISM" --view="$$VIEW"
@@ -83,7 +88,7 @@ clearance-%: install always ## proof that no two parts touch over the whole moti
 	@$(STAGE) clearance "$$MECHANISM"
 
 plot-%: install always ## the plots: out/<name>/plots/
-	$(upto_motion)
+	$(upto_bare_motion)
 	@$(PICTURE) plots "$$MECHANISM"
 
 poster-%: install always ## one picture at its best: out/<name>/poster.png

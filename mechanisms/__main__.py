@@ -26,13 +26,17 @@ def main() -> int | None:
         sub.add_argument("name", help="mechanism; four-bar and four_bar are one")
         if command == "animate":
             sub.add_argument("--view", default="", help="what is shown, such as reactions,velocities; all if not given")
+        if command == "parts":
+            sub.add_argument("--or-none", action="store_true", help="go on where there are no parts by themselves")
     commands.add_parser("new", help="a new mechanism that already runs").add_argument("name", help="folder to make")
     commands.add_parser("list", help="the mechanisms and what is made of them")
     arguments = parser.parse_args()
     if arguments.command in STAGES:
         name = mechanism_folder(arguments.name).name
-        views = {"view": arguments.view} if arguments.command == "animate" else {}
-        return importlib.import_module(STAGES[arguments.command][0]).run(name, **views)
+        stage = importlib.import_module(STAGES[arguments.command][0])
+        if arguments.command == "animate":
+            return stage.run(name, view=arguments.view)
+        return stage.run_or_none(name) if getattr(arguments, "or_none", False) else stage.run(name)
     if arguments.command == "new":
         from mechanisms import new
 

@@ -18,7 +18,7 @@ from mechanisms.loading import author_code, has, load, params
 from mechanisms.plain_values import plain_text
 from mechanisms.recording import recording
 from mechanisms.traced_params import fields_of, traced
-from shared.console import say
+from shared.console import say, warn
 from shared.contract import BodyParts, Parts, Piece, Provenance, write_parts
 from shared.errors import UserError
 from shared.files import sources_hash, write_bytes
@@ -49,9 +49,6 @@ def run(name: str) -> None:
     Raises UserError naming the solid, the number and the remedy if a solid is refused; what was there stays.
     """
     out = Out(name)
-    if not (mechanism_folder(out.name) / "parts.py").is_file():
-        say("parts", f"{out.name}: there is no parts.py, so none are made")
-        return
     before = set(sys.modules)
     with recording() as recorder:
         given = params(out.name)
@@ -80,6 +77,20 @@ def run(name: str) -> None:
         parameters=reads, inputs=inputs.names()
     )
     say("parts", _summary(out.name, document, written))
+
+
+def run_or_none(name: str) -> None:
+    """The same for what needs no parts, motion and plots: where a mechanism without a parts.py has none, that is
+    told.
+    """
+    out = Out(name)
+    try:
+        run(name)
+    except UserError as error:
+        if has(out.name, "parts"):
+            raise
+        out.parts.unlink(missing_ok=True)  # of the model as it was
+        warn("parts", f"{error}; until then there are none")
 
 
 def _key(given: Any, reads: list[str], inputs: Inputs, by_itself: bool = False) -> str:

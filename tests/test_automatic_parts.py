@@ -8,6 +8,7 @@ import pytest
 
 from mechanisms import clearance_stage, parts_stage, shot_stage, solve_stage
 from shared.contract import read_parts
+from shared.errors import UserError
 from shared.paths import ROOT, Out
 from shared.shot import Shot, read_shot
 from tests.author_project import Project
@@ -45,3 +46,21 @@ def test_mechanism_alone_reaches_the_film(project: Project, capsys: pytest.Captu
     project.run()
     assert "solids of 4 bodies" in capsys.readouterr().out
     assert read_parts(out.parts).bodies["rocker"].mass.com[0] > parts.bodies["rocker"].mass.com[0]
+
+
+def test_motion_goes_on_where_there_are_no_parts(project: Project, capsys: pytest.CaptureFixture[str]) -> None:
+    """Where layers are refused, ``parts`` says so and ends; what needs no parts goes on with estimated masses."""
+    text = MECHANISM
+    drag_link = {"ground: float = 0.120": "ground: float = 0.040", "crank: float = 0.040": "crank: float = 0.100"}
+    drag_link |= {"coupler: float = 0.120": "coupler: float = 0.090", "rocker: float = 0.090": "rocker: float = 0.110"}
+    for word, other in (drag_link | {"coupler=45, rocker=100": "coupler=20, rocker=70"}).items():
+        assert word in text
+        text = text.replace(word, other)
+    (project.folder / "mechanism.py").write_text(text)
+    with pytest.raises(UserError, match="arm: no order of layers lets crank and rocker pass each other"):
+        project.run()
+    parts_stage.run_or_none("arm")
+    solve_stage.run("arm")
+    said = capsys.readouterr()
+    assert "until then there are none" in said.out + said.err
+    assert "masses are estimated" in said.out + said.err

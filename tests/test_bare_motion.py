@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, constant_rate
-from mechanisms import loading, parts_stage, solve_stage
+from mechanisms import loading, solve_stage
 from mechanisms.bare_motion import bare_solution
 from mechanisms.estimated_masses import HALF_WIDTH, THICKNESS, estimated_masses
 from shared.contract import read_motion
@@ -151,8 +151,6 @@ def test_a_folder_without_parts_is_solved_and_says_how_heavy_it_took_its_bodies(
 ) -> None:
     project = Project(tmp_path / "project", monkeypatch, solve_stage)
     put("mechanisms/arm/mechanism.py", PENDULUM.format(mass="") + "\nDURATION = 0.2\n")(project)
-    parts_stage.run("arm")
-    assert "no parts.py" in capsys.readouterr().out
     assert project.run()
     said = capsys.readouterr().out
     assert "solve: arm: no parts yet, so masses are estimated" in said

@@ -39,7 +39,9 @@ def test_a_mechanism_imports_its_own_world_and_no_other_mechanism(file: Path) ->
     for module in imports(file):
         top = module.partition(".")[0]
         by_itself = file.name.startswith("parts.py") and f"{module}.".startswith("mechanisms.automatic.")
-        assert by_itself or module.startswith(own) or top in allowed or top in sys.stdlib_module_names, f"{file} imports {module}"
+        assert by_itself or module.startswith(own) or top in allowed or top in sys.stdlib_module_names, (
+            f"{file} imports {module}"
+        )
 
 
 def test_a_mechanism_is_three_files_at_most() -> None:

@@ -6,7 +6,7 @@ import argparse
 import importlib
 
 from shared.console import run_cli
-from shared.paths import mechanism_folder
+from shared.paths import known_name
 
 STAGES = {
     "parts": ("mechanisms.parts_stage", "make the solids: STL, STEP and parts.json"),
@@ -32,7 +32,7 @@ def main() -> int | None:
     commands.add_parser("list", help="the mechanisms and what is made of them")
     arguments = parser.parse_args()
     if arguments.command in STAGES:
-        name = mechanism_folder(arguments.name).name
+        name = known_name(arguments.name)
         stage = importlib.import_module(STAGES[arguments.command][0])
         if arguments.command == "animate":
             return stage.run(name, view=arguments.view)

@@ -7,7 +7,7 @@ import ast
 import msgspec
 
 from shared.console import warn
-from shared.paths import NAME_RULE, Out, mechanism_folder, mechanism_names, out_root, unfit_folders
+from shared.paths import NAME_RULE, Out, mechanism_folder, mechanism_names, out_root, unfit_folders, variants_in
 
 
 class _Diagnostics(msgspec.Struct):
@@ -23,6 +23,9 @@ def run() -> None:
     for name in mechanism_names():
         made = ", ".join(_made(name)) or "nothing yet"
         print(f"{name.replace('_', '-'):<24} {_title(name)}\n{'':<24} {_freedom(name)}made: {made}")
+        for variant in variants_in(mechanism_folder(name) / "mechanism.py"):
+            made = ", ".join(_made(f"{name}-{variant}")) or "nothing yet"
+            print(f"{'':<24} {name}-{variant}: made: {made}".replace("_", "-"))
     for folder in unfit_folders():
         warn("list", f"mechanisms/{folder!r} is left out, because that cannot name a mechanism: {NAME_RULE}")
 
@@ -54,5 +57,5 @@ def _made(name: str) -> list[str]:
         made.append("plots")
     if out.poster.is_file():
         made.append("poster")
-    films = sorted((out_root() / "films").glob(f"{name}-*.mp4"))
-    return made + [f"film ({film.stem.removeprefix(f'{name}-')})" for film in films]
+    presets = [film.stem.removeprefix(f"{name}-") for film in sorted((out_root() / "films").glob(f"{name}-*.mp4"))]
+    return made + [f"film ({preset})" for preset in presets if "-" not in preset]  # else a variant's

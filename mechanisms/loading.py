@@ -15,8 +15,9 @@ from types import CodeType, ModuleType
 from typing import Any, Literal
 
 from mechanisms.recording import is_installed
+from mechanisms.variants import checked_variants, replaced
 from shared.errors import UserError
-from shared.paths import MECHANISMS, ROOT, canonical_name, mechanism_folder
+from shared.paths import MECHANISMS, ROOT, mechanism_folder, mechanism_name, owner_of
 
 File = Literal["mechanism", "parts", "shot"]
 
@@ -50,7 +51,7 @@ def load(name: str, file: File) -> ModuleType:
 
 
 def params(name: str) -> Any:
-    """The default parameters of a mechanism: ``Params()`` of its mechanism.py. Raises UserError as :func:`load`."""
+    """``Params()`` of a mechanism, or what a variant makes of them. Raises UserError as :func:`load`."""
     module = load(name, "mechanism")
     kind: Any = module.Params
     if dataclasses.is_dataclass(kind):
@@ -59,8 +60,14 @@ def params(name: str) -> Any:
                 raise UserError(
                     f"{_shown(Path(str(module.__file__)))}: Params.{field.name} has no default; give it one"
                 )
+    checked_variants(name, module)
     with author_code(name):
-        return module.Params()
+        return replaced(name, module, module.Params())
+
+
+def package_of(name: str) -> str:
+    """The Python package of a mechanism's files, which its variants share."""
+    return f"mechanisms.{owner_of(name)}"
 
 
 def has(name: str, file: File) -> bool:
@@ -75,7 +82,7 @@ def author_code(name: str) -> Iterator[None]:
     A UserError passes as it is. An exception that comes from elsewhere without touching the mechanism's folder
     is a fault of ours and passes too; ``MBSD_TRACEBACK=1`` shows the traceback of either (shared/console.py).
     """
-    folder = MECHANISMS / canonical_name(name)
+    folder = MECHANISMS / owner_of(mechanism_name(name))
     try:
         yield
     except UserError:

@@ -14,7 +14,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from mechanisms.loading import author_code, has, load, params
+from mechanisms.loading import author_code, has, load, package_of, params
 from mechanisms.plain_values import plain_text
 from mechanisms.recording import recording
 from mechanisms.traced_params import fields_of, traced
@@ -64,7 +64,7 @@ def run(name: str) -> None:
 
     bodies, reads, inputs = _build(out.name, given)
     if by_itself or _more_than_values(out.name, given, reads):
-        mechanism = loaded_inputs(mechanism_folder(name) / "mechanism.py", f"mechanisms.{out.name}", before)
+        mechanism = loaded_inputs(mechanism_folder(name) / "mechanism.py", package_of(out.name), before)
         inputs = inputs.joined(mechanism).joined(recorder.inputs())
     key = _key(given, reads, inputs, by_itself)
     files: dict[str, bytes] = {}
@@ -111,7 +111,7 @@ def _more_than_values(name: str, given: Any, reads: list[str]) -> bool:
     from mechanisms.loaded_files import author_files
     from mechanisms.params_use import only_annotates
 
-    fields, folder, package = fields_of(given), mechanism_folder(name), f"mechanisms.{name}"
+    fields, folder, package = fields_of(given), mechanism_folder(name), package_of(name)
     if any(read not in fields or plain_text(fields[read]) is None for read in reads):
         return True
     return not only_annotates(
@@ -134,7 +134,7 @@ def _build(name: str, given: Any) -> tuple[dict[str, list[Any]], list[str], Inpu
         module = load(name, "parts")
         with author_code(name):
             bodies = module.parts(stand_in)
-    loaded = loaded_inputs(folder / "parts.py", f"mechanisms.{name}", before, leave_out=folder / "mechanism.py")
+    loaded = loaded_inputs(folder / "parts.py", package_of(name), before, leave_out=folder / "mechanism.py")
     from shared.shapes.solid import Solid
 
     if not isinstance(bodies, dict) or not bodies:

@@ -6,13 +6,13 @@ import sys
 
 import msgspec
 
-from mechanisms.loading import has, load
+from mechanisms.loading import has, load, package_of
 from mechanisms.recording import recording
 from shared.console import say
 from shared.errors import UserError
 from shared.files import sources_hash
 from shared.inputs import Inputs, observed
-from shared.paths import ROOT, Out, mechanism_folder
+from shared.paths import ROOT, Out, mechanism_folder, owner_of
 from shared.shot import Names, Shot, refuse_unknown, write_shot
 from shared.stages import Stage, key_of
 
@@ -40,12 +40,11 @@ def run(name: str) -> None:
     before = set(sys.modules)
     with recording() as recorder:
         shot = load(out.name, "shot").shot
-    loaded = loaded_inputs(mechanism_folder(out.name) / "shot.py", f"mechanisms.{out.name}", before)
+    loaded = loaded_inputs(mechanism_folder(out.name) / "shot.py", package_of(out.name), before)
     inputs = loaded.joined(recorder.inputs())
     if not isinstance(shot, Shot):
-        raise UserError(
-            f"{out.name}: mechanisms/{out.name}/shot.py: 'shot' is a {type(shot).__name__}; write shot = Shot(...)"
-        )
+        file = f"mechanisms/{owner_of(out.name)}/shot.py"
+        raise UserError(f"{out.name}: {file}: 'shot' is a {type(shot).__name__}; write shot = Shot(...)")
     if names:
         refuse_unknown(shot, names)
     write_shot(out.shot, shot)

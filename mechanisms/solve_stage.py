@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from mechanisms.masses import Source
 
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite")
-_STAGE = ("solve_stage", "solving", "masses", "estimated_masses", "motion_file", "shapes", "skeleton_file")
+_STAGE = ("solve_stage", "solving", "variants", "masses", "estimated_masses", "motion_file", "shapes", "skeleton_file")
 SOURCES = [
     *(ROOT / "mechanisms" / f"{name}.py" for name in _STAGE),
     *sorted((ROOT / "shared").glob("contract*.py")),
@@ -47,7 +47,7 @@ def run(name: str) -> None:
     with recording() as recorder:
         solution, sources = solve(name, parts)
         motion = to_motion(solution, parts, "", versions(*PACKAGES), sources)
-    loaded = loaded_inputs(mechanism_folder(name) / "mechanism.py", f"mechanisms.{name}", before)
+    loaded = loaded_inputs(mechanism_folder(name) / "mechanism.py", loading.package_of(name), before)
     loaded.sources.pop("mbsd", None)  # it counts anyway
     inputs = loaded.joined(recorder.inputs())
     key = _key(parts, inputs)

@@ -15,9 +15,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from mechanisms import loading
+from mechanisms import loading, variants
 from shared import console
 from shared.errors import UserError
+from shared.paths import owner_of
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
@@ -29,18 +30,23 @@ FEWEST, MOST, RATE = 360, 7200, 120.0
 
 
 def build(name: str, module: Any, p: Any) -> Mechanism:
-    """The model of ``build(p)`` in ``module``. Raises UserError unless it is a Mechanism called as its folder."""
+    """The model of ``build(p)`` in ``module``; that of a variant has the variant's name.
+
+    Raises UserError unless it is a Mechanism called as its folder.
+    """
     from mbsd import Mechanism
 
     with loading.author_code(name):
         m = module.build(p)
     if not isinstance(m, Mechanism):
         raise UserError(f"{_file(name)}: build() returned {_kind(m)}, not a Mechanism; does it end with 'return m'?")
-    if m.name != name:
+    folder = owner_of(name)
+    if m.name != folder:
         raise UserError(
-            f"{_file(name)}: build() calls its mechanism '{m.name}', but the folder is {name}, and files are found by "
-            f'the folder\'s name; write Mechanism("{name}")'
+            f"{_file(name)}: build() calls its mechanism '{m.name}', but the folder is {folder}, and files are found "
+            f'by the folder\'s name; write Mechanism("{folder}")'
         )
+    m.name = name
     return m
 
 
@@ -61,6 +67,7 @@ def motion_of(name: str, module: Any, m: Mechanism, p: Any) -> Solution:
             "as m.sweep() and m.simulate() do"
         )
     _refuse_other(name, m, solution.mechanism)
+    solution.mechanism.name = name  # where motion() built the mechanism of a variant anew
     return solution
 
 
@@ -93,7 +100,7 @@ def _steps_of_period(m: Mechanism) -> int:
 
 def _positive(name: str, module: Any, constant: str, form: str) -> float | None:
     """A constant beside build(), or None where there is none. Raises UserError unless it is a positive number."""
-    value = getattr(module, constant, None)
+    value = variants.constant(name, module, constant)
     if value is None:
         return None
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < math.inf:
@@ -103,7 +110,7 @@ def _positive(name: str, module: Any, constant: str, form: str) -> float | None:
 
 def _refuse_other(name: str, m: Mechanism, solved: Mechanism) -> None:
     """What motion() solved may be a variant of the model, with the same name and bodies."""
-    if solved is not m and (solved.name != name or set(solved.bodies) != set(m.bodies)):
+    if solved is not m and (solved.name not in (name, owner_of(name)) or set(solved.bodies) != set(m.bodies)):
         raise UserError(
             f"{_file(name)}: motion() solved '{solved.name}' with the bodies {', '.join(solved.bodies)}; solve the "
             f"mechanism it is given, '{name}', or a variant with the same bodies"
@@ -129,7 +136,7 @@ def _model_warnings_said() -> Iterator[None]:
 
 
 def _file(name: str) -> str:
-    return f"mechanisms/{name}/mechanism.py"
+    return f"mechanisms/{owner_of(name)}/mechanism.py"
 
 
 def _kind(value: object) -> str:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 import os
 import re
 import shlex
+from collections.abc import Iterable
 from pathlib import Path
 
 from shared.errors import UserError
@@ -48,13 +50,52 @@ def canonical_name(name: str) -> str:
 
 
 def mechanism_name(name: str) -> str:
-    """The canonical name; raises UserError if it is none, so that no path or command is made of it."""
+    """The canonical name, of a variant with its mechanism's before a hyphen: ``slider_crank-no_gravity``.
+
+    Raises UserError if it is none, so that no path or command is made of it, and if it may mean two variants.
+    """
     found = canonical_name(name)
     if not NAME.fullmatch(found):
         raise UserError(
             f"{name!r} is not the name of a mechanism: {NAME_RULE}; there is: {', '.join(mechanism_names()) or 'none'}"
         )
-    return found
+    if (MECHANISMS / found / "mechanism.py").is_file():
+        return found
+    meant = [
+        f"{owner}-{variant}"
+        for owner in mechanism_names()
+        if found.startswith(f"{owner}_")
+        for variant in variants_in(MECHANISMS / owner / "mechanism.py")
+        if found == f"{owner}_{variant}"
+    ]
+    if len(meant) > 1:
+        raise UserError(f"'{name}' may be {' or '.join(meant)}; give one of these variants another name in VARIANTS")
+    return meant[0] if meant else found
+
+
+def owner_of(name: str) -> str:
+    """The mechanism of a canonical name: ``slider_crank`` of ``slider_crank-no_gravity``."""
+    return name.partition("-")[0]
+
+
+def variant_of(name: str) -> str | None:
+    """The variant of a canonical name: ``no_gravity`` of ``slider_crank-no_gravity``; None of a mechanism itself."""
+    return name.partition("-")[2] or None
+
+
+def variants_in(file: Path) -> list[str]:
+    """The names in ``VARIANTS = {...}`` of a mechanism.py, read without running it; none where it does not parse."""
+    try:
+        tree = ast.parse(file.read_bytes())
+    except (OSError, SyntaxError, ValueError):
+        return []
+    for statement in tree.body:
+        targets = getattr(statement, "targets", [getattr(statement, "target", None)])
+        value = getattr(statement, "value", None)
+        if any(isinstance(t, ast.Name) and t.id == "VARIANTS" for t in targets) and isinstance(value, ast.Dict):
+            keys = [key.value for key in value.keys if isinstance(key, ast.Constant)]
+            return [key for key in keys if isinstance(key, str) and NAME.fullmatch(key)]
+    return []
 
 
 def mechanism_names() -> list[str]:
@@ -72,11 +113,12 @@ def _folders() -> list[str]:
 
 
 def mechanism_folder(name: str) -> Path:
-    """The folder of a mechanism; raises UserError with the known names if there is none."""
+    """The folder of a mechanism or of a variant's; raises UserError with the known names if there is none."""
     name = mechanism_name(name)
-    folder = MECHANISMS / name
+    folder = MECHANISMS / owner_of(name)
     if not (folder / "mechanism.py").is_file():
         known = mechanism_names()
+        _refuse_unknown_variant(name, known)
         raise UserError(
             f"there is no mechanism '{name}' in mechanisms/; there is: {', '.join(known) or 'none'}"
             f"{did_you_mean(name, known)}"
@@ -84,8 +126,26 @@ def mechanism_folder(name: str) -> Path:
     return folder
 
 
+def known_name(name: str) -> str:
+    """The canonical name of a mechanism or variant that is there; raises UserError as :func:`mechanism_folder`."""
+    mechanism_folder(name)
+    return mechanism_name(name)
+
+
+def _refuse_unknown_variant(name: str, known: Iterable[str]) -> None:
+    """Raise UserError where ``name`` begins with a mechanism that has variants, none of which it is."""
+    for owner in sorted(known, key=len, reverse=True):
+        variants = variants_in(MECHANISMS / owner / "mechanism.py")
+        if name.startswith(f"{owner}_") and variants:
+            other = name.removeprefix(f"{owner}_")
+            raise UserError(
+                f"{owner} has no variant '{other}'; its VARIANTS are: {', '.join(variants)}"
+                f"{did_you_mean(other, variants)}"
+            )
+
+
 class Out:
-    """The result files of one mechanism under :func:`out_root`; raises UserError if ``name`` is no name."""
+    """The result files of one mechanism or variant under :func:`out_root`; raises UserError if ``name`` is no name."""
 
     def __init__(self, name: str) -> None:
         self.name = mechanism_name(name)

@@ -3,6 +3,7 @@
 PRESET ?= preview
 FRAME ?= 0
 NAME ?=
+KIND ?=
 VIEW ?=
 N ?=
 SEED ?= 1
@@ -13,11 +14,12 @@ PYTEST ?= -n 2 --dist loadfile
 override PRESET := $(value PRESET)
 override FRAME := $(value FRAME)
 override NAME := $(value NAME)
+override KIND := $(value KIND)
 override VIEW := $(value VIEW)
 override N := $(value N)
 override SEED := $(value SEED)
 override MECHANISM = $(subst -,_,$*)
-export PRESET FRAME NAME VIEW MECHANISM N SEED
+export PRESET FRAME NAME KIND VIEW MECHANISM N SEED
 
 PRESETS := draft preview production final
 ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
@@ -91,6 +93,11 @@ plot-%: install always ## the plots: out/<name>/plots/
 	$(upto_bare_motion)
 	@$(PICTURE) plots "$$MECHANISM"
 
+compare-%: install always ## the motions of all its variants on the same pages: out/<name>/compare/
+	@names=$$($(STAGE) variants "$$MECHANISM") || exit; for one in $$names; do \
+	$(STAGE) parts "$$one" --or-none && $(STAGE) solve "$$one" || exit; done
+	@$(PICTURE) compare "$$MECHANISM"
+
 poster-%: install always ## one picture at its best: out/<name>/poster.png
 	$(upto_shot)
 	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET"
@@ -115,8 +122,8 @@ scene-%: install always ## save the scene: out/<name>/<name>.blend
 	$(upto_shot)
 	@$(PICTURE) scene "$$MECHANISM" --preset "$$PRESET"
 
-new: install ## a new mechanism that already runs: make new NAME=my_linkage
-	@$(STAGE) new -- "$$NAME"
+new: install ## a new mechanism that already runs: make new NAME=my_linkage KIND=driven|simulated
+	@$(STAGE) new --kind="$${KIND:-driven}" -- "$$NAME"
 
 list: install ## the mechanisms and what is made of them
 	@$(STAGE) list

@@ -1,4 +1,4 @@
-"""The author's side of the line: ``python -m mechanisms STAGE NAME``, ``new NAME``, ``list``."""
+"""The author's side of the line: ``python -m mechanisms {STAGE,variants,new} NAME`` and ``list``."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import argparse
 import importlib
 
 from shared.console import run_cli
-from shared.paths import known_name
+from shared.paths import known_name, mechanism_folder, owner_of, variants_in
 
 STAGES = {
     "parts": ("mechanisms.parts_stage", "make the solids: STL, STEP and parts.json"),
@@ -28,19 +28,27 @@ def main() -> int | None:
             sub.add_argument("--view", default="", help="what is shown, such as reactions,velocities; all if not given")
         if command == "parts":
             sub.add_argument("--or-none", action="store_true", help="go on where there are no parts by themselves")
-    commands.add_parser("new", help="a new mechanism that already runs").add_argument("name", help="folder to make")
+    fresh = commands.add_parser("new", help="a new mechanism that already runs")
+    fresh.add_argument("name", help="folder to make")
+    fresh.add_argument("--kind", default="driven", help="driven or simulated")
+    of = commands.add_parser("variants", help="the names of a mechanism and its variants, a line each")
+    of.add_argument("name", help="mechanism")
     commands.add_parser("list", help="the mechanisms and what is made of them")
     arguments = parser.parse_args()
     if arguments.command in STAGES:
-        name = known_name(arguments.name)
-        stage = importlib.import_module(STAGES[arguments.command][0])
+        name, stage = known_name(arguments.name), importlib.import_module(STAGES[arguments.command][0])
         if arguments.command == "animate":
             return stage.run(name, view=arguments.view)
         return stage.run_or_none(name) if getattr(arguments, "or_none", False) else stage.run(name)
+    if arguments.command == "variants":
+        file = mechanism_folder(arguments.name) / "mechanism.py"
+        owner = owner_of(arguments.name)
+        print(owner, *(f"{owner}-{variant}" for variant in variants_in(file)), sep="\n")
+        return None
     if arguments.command == "new":
         from mechanisms import new
 
-        return new.run(arguments.name)
+        return new.run(arguments.name, arguments.kind)
     from mechanisms import listing
 
     return listing.run()

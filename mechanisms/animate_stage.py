@@ -44,7 +44,7 @@ def run(name: str, view: str = "") -> None:
     before = set(sys.modules)
     with recording() as recorder:
         solution = solve(name)
-    loaded = loaded_inputs(mechanism_folder(name) / "mechanism.py", f"mechanisms.{name}", before)
+    loaded = loaded_inputs(mechanism_folder(name) / "mechanism.py", loading.package_of(name), before)
     loaded.sources.pop("mbsd", None)  # it counts anyway
     inputs = loaded.joined(recorder.inputs())
     for words in stale:

@@ -1,4 +1,4 @@
-"""``make new NAME=my_linkage``: a mechanism's three files, ready to run and to be changed."""
+"""``make new NAME=my_linkage KIND=driven``: the files of a mechanism, ready to run and to be changed."""
 
 from __future__ import annotations
 
@@ -11,29 +11,37 @@ from shared.console import say
 from shared.errors import UserError
 from shared.files import write_bytes
 from shared.paths import MECHANISMS, NAME, NAME_RULE, canonical_name, mechanism_names
+from shared.suggestions import did_you_mean
 
 TEMPLATES = Path(__file__).parent / "new_templates"
-PLACEHOLDER = "@NAME@"
+KINDS = {
+    "driven": "a slider-crank turned by a driver",
+    "simulated": "a double pendulum moved by weight and a spring",
+}
+"""Folders of templates, and what is in them."""
 TAKEN = {"all": "make run-all runs every mechanism", "films": "out/films holds the films"}
 
 
-def run(name: str) -> None:
-    """Write ``mechanisms/<name>/{mechanism,parts,shot}.py``: a slider-crank with comments.
+def run(name: str, kind: str = "driven") -> None:
+    """Write the files of ``mechanisms/<name>/``, with comments; ``kind`` is one of :data:`KINDS`.
 
-    Raises UserError for a missing, unfit or used name; nothing that exists is touched.
+    Raises UserError for a missing, unfit or used name and for an unknown kind; nothing that exists is touched.
     """
     name = canonical_name(name)
+    if kind not in KINDS:
+        known = "; ".join(f"{one}: {what}" for one, what in KINDS.items())
+        raise UserError(f"there is no kind '{kind}' of new mechanism; {known}{did_you_mean(kind, KINDS)}")
     refuse_unfit(name)
+    target = name.replace("_", "-")
     folder = MECHANISMS / name
-    # All three files or none: the folder gets its name when it is complete.
+    # All files or none: the folder gets its name when it is complete.
     with tempfile.TemporaryDirectory(prefix=".new-", dir=MECHANISMS) as temporary:
         draft = Path(temporary) / name
-        for template in sorted(TEMPLATES.glob("*.py.txt")):
-            content = template.read_text().replace(PLACEHOLDER, name)
+        for template in sorted((TEMPLATES / kind).glob("*.py.txt")):
+            content = template.read_text().replace("@NAME@", name).replace("@TARGET@", target)
             write_bytes(draft / template.name.removesuffix(".txt"), content.encode())
         os.rename(draft, folder)
-    target = name.replace("_", "-")
-    say("new", f"{folder.relative_to(MECHANISMS.parent)}/: a slider-crank to change; make run-{target} runs it")
+    say("new", f"{folder.relative_to(MECHANISMS.parent)}/: {KINDS[kind]}, to change; make run-{target} runs it")
 
 
 def refuse_unfit(name: str) -> None:

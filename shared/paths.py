@@ -74,13 +74,13 @@ def mechanism_name(name: str) -> str:
 
 
 def owner_of(name: str) -> str:
-    """The mechanism of a canonical name: ``slider_crank`` of ``slider_crank-no_gravity``."""
-    return name.partition("-")[0]
+    """The mechanism of a name: ``slider_crank`` of ``slider_crank-no_gravity``. Raises UserError if it is none."""
+    return mechanism_name(name).partition("-")[0]
 
 
 def variant_of(name: str) -> str | None:
-    """The variant of a canonical name: ``no_gravity`` of ``slider_crank-no_gravity``; None of a mechanism itself."""
-    return name.partition("-")[2] or None
+    """The variant of a name: ``no_gravity`` of ``slider_crank-no_gravity``; None of a mechanism itself."""
+    return mechanism_name(name).partition("-")[2] or None
 
 
 def variants_in(file: Path) -> list[str]:
@@ -114,10 +114,9 @@ def _folders() -> list[str]:
 
 def mechanism_folder(name: str) -> Path:
     """The folder of a mechanism or of a variant's; raises UserError with the known names if there is none."""
-    name = mechanism_name(name)
     folder = MECHANISMS / owner_of(name)
     if not (folder / "mechanism.py").is_file():
-        known = mechanism_names()
+        known, name = mechanism_names(), mechanism_name(name)
         _refuse_unknown_variant(name, known)
         raise UserError(
             f"there is no mechanism '{name}' in mechanisms/; there is: {', '.join(known) or 'none'}"
@@ -157,6 +156,7 @@ class Out:
         self.clearance = self.folder / "clearance.json"
         self.shot = self.folder / "shot.json"
         self.plots = self.folder / "plots"
+        self.compare = self.folder / "compare"
         self.poster = self.folder / "poster.png"
         self.stills = self.folder / "stills"
         self.scene = self.folder / f"{self.name}.blend"
@@ -165,7 +165,7 @@ class Out:
 
     def refuse_links(self) -> None:
         """Raise UserError if a folder of this mechanism's results is a link."""
-        for folder in (self.parts_folder, self.plots, self.stills, self.stamps, self.all_frames):
+        for folder in (self.parts_folder, self.plots, self.compare, self.stills, self.stamps, self.all_frames):
             refuse_links(folder)
 
     def frames(self, preset: str) -> Path:

@@ -76,7 +76,9 @@ def files_of(tree: Path) -> set[str]:
 def test_a_name_frame_or_preset_reaches_python_as_it_is(tree: Path, word: str) -> None:
     before = files_of(tree)
     for done in (make(tree, "new", f"NAME={word}"), make(tree, "new", NAME=word)):
-        assert done.stdout.endswith(f"<new>\n<-->\n<{word}>\n"), done.stderr
+        assert done.stdout.endswith(f"<new>\n<--kind=driven>\n<-->\n<{word}>\n"), done.stderr
+    for done in (make(tree, "new", "NAME=x", f"KIND={word}"), make(tree, "new", NAME="x", KIND=word)):
+        assert done.stdout.endswith(f"<new>\n<--kind={word}>\n<-->\n<x>\n"), done.stderr
     for done in (make(tree, "still-x", f"FRAME={word}"), make(tree, "still-x", FRAME=word)):
         assert done.stdout.endswith(f"<still>\n<x>\n<--frame={word}>\n<--preset>\n<preview>\n"), done.stderr
     for done in (make(tree, "film-x", f"PRESET={word}"), make(tree, "film-x", PRESET=word)):

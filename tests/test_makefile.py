@@ -75,6 +75,7 @@ def test_each_target_runs_what_it_stands_on() -> None:
     assert [line.split()[0] for line in planned("clearance-x")] == ["parts", "solve", "clearance"]
     assert [line.split()[0] for line in planned("plot-x")] == ["parts", "solve", "plots"]
     assert [line.split()[0] for line in planned("film-x")] == ["parts", "solve", "shot", "film"]
+    assert [line.split()[0] for line in planned("compare-x")][-1] == "compare"
 
 
 @pytest.mark.parametrize("preset", ["big", "draft preview final x", ""])
@@ -89,6 +90,25 @@ def test_an_unknown_mechanism_is_refused_with_the_known_ones() -> None:
     assert done.returncode != 0
     assert re.search(r"error: there is no mechanism 'nope' in mechanisms/; there is: .*four_bar", done.stderr)
     assert "Traceback" not in done.stderr
+
+
+def test_compare_solves_a_mechanism_and_each_of_its_variants(tmp_path: Path) -> None:
+    said = tmp_path / "python"
+    said.write_text('#!/bin/sh\ncase "$3" in variants) printf "a_b\\na_b-c\\n";; *) echo "ran $3 $4";; esac\n')
+    said.chmod(0o755)
+    done = run("make", "-o", "install", f"PYTHON={said}", "compare-a-b")
+    assert re.findall("ran .*", done.stdout) == [
+        "ran parts a_b", "ran solve a_b", "ran parts a_b-c", "ran solve a_b-c", "ran compare a_b",
+    ]  # fmt: skip
+    done = run("make", "-o", "install", "compare-nope")
+    assert done.returncode != 0
+    assert "there is no mechanism 'nope'" in done.stderr
+
+
+def test_an_unknown_kind_of_new_mechanism_is_refused() -> None:
+    done = run("make", "-o", "install", "new", "NAME=my_linkage", "KIND=simulatd")
+    assert done.returncode != 0
+    assert "did you mean 'simulated'?" in done.stderr
 
 
 def test_new_without_a_name_says_what_to_write() -> None:

@@ -17,7 +17,7 @@ ALLOWED = {
     "shot.py": {"shared"},
 }
 FILES = [file for folder in sorted(MECHANISMS.glob("*/mechanism.py")) for file in sorted(folder.parent.glob("*.py"))]
-TEMPLATES = sorted((MECHANISMS / "new_templates").glob("*.py.txt"))
+TEMPLATES = sorted((MECHANISMS / "new_templates").glob("*/*.py.txt"))
 
 
 def imports(file: Path) -> set[str]:
@@ -34,7 +34,7 @@ def imports(file: Path) -> set[str]:
 
 @pytest.mark.parametrize("file", FILES + TEMPLATES, ids=lambda file: f"{file.parent.name}/{file.name}")
 def test_a_mechanism_imports_its_own_world_and_no_other_mechanism(file: Path) -> None:
-    own = f"mechanisms.{file.parent.name}."
+    own = "mechanisms.new_templates." if file in TEMPLATES else f"mechanisms.{file.parent.name}."
     allowed = ALLOWED[file.name.removesuffix(".txt")]
     for module in imports(file):
         top = module.partition(".")[0]

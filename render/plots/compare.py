@@ -1,0 +1,58 @@
+"""Variants of a mechanism on the same pages: ``python -m render compare NAME`` draws out/<name>/compare/.
+
+Each variant has a colour, the same on every page; the numbers are those of their data.json.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from shared.console import say
+from shared.contract import Motion, read_motion
+from shared.errors import UserError
+from shared.files import sources_hash, whole_file
+from shared.paths import ROOT, Out, mechanism_folder, owner_of, variants_in
+from shared.stages import Stage, key_of, versions
+
+
+def run(name: str) -> None:
+    """Draw what the variants of a mechanism do beside each other, if a motion or the drawing code changed.
+
+    Raises UserError for a mechanism without variants, and where one is not solved yet.
+    """
+    owner = owner_of(name)
+    out = Out(owner)
+    variants = variants_in(mechanism_folder(owner) / "mechanism.py")
+    if not variants:
+        raise UserError(
+            f'{owner}: there is nothing to compare; write VARIANTS = {{"name": {{"field": value}}}} beside build() in '
+            f"mechanisms/{owner}/mechanism.py, each with the fields of Params that it replaces"
+        )
+    files = {"as it is": out.motion} | {variant: Out(f"{owner}-{variant}").motion for variant in variants}
+    for variant, file in files.items():
+        if not file.is_file():
+            target = owner.replace("_", "-")
+            raise UserError(f"{owner}: {file} of '{variant}' is missing; run make compare-{target}")
+    key = key_of(
+        *files,
+        *files.values(),
+        sources_hash(Path(__file__).parent, *sorted((ROOT / "shared").glob("contract*.py"))),
+        versions("matplotlib", "numpy", "scipy"),
+    )
+    stage = Stage(out, "compare", key, [])
+    if stage.is_fresh():
+        say("compare", f"{owner}: nothing to do")
+        return
+    from render.plots.beside import figures
+
+    motions: dict[str, Motion] = {variant: read_motion(file) for variant, file in files.items()}
+    drawn = figures(owner, motions)
+    outputs = {plot: out.compare / f"{plot}.png" for plot in drawn}
+    for plot, path in outputs.items():
+        with whole_file(path) as temporary:
+            drawn[plot].savefig(temporary, format="png", metadata={"Software": None})
+    for older in set(out.compare.glob("*.png")) - set(outputs.values()):
+        older.unlink()
+    stage.outputs.extend(outputs.values())
+    stage.done()
+    say("compare", f"{owner}: {len(outputs)} plots of {len(motions)} variants in {out.compare}")

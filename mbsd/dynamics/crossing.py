@@ -1,7 +1,9 @@
 """Where in a step a watched scalar first falls through zero.
 
 Interior samples of the step's quintic also find scalars that dip below zero and come back, and those that leave zero
-at the start of the step (a bounce) and return within it.
+at the start of the step (a bounce) and return within it. A gap that begins within rounding of zero, or an error of the
+integrator below, and opens by its rate and its acceleration, does not close there: a multistep method begins anew with
+steps of order one, whose errors in places are above the gap while it is so young.
 """
 
 from __future__ import annotations
@@ -31,20 +33,25 @@ def first_crossing(
         if not len(below):
             continue
         k = int(below[0])
-        left, right = float(PARTS[k]), float(PARTS[k + 1])
-        if found is not None and left >= found[2]:
+        if found is not None and PARTS[k] >= found[2]:
             continue
-        where, negative = _root(watch, samples, left, right, float(values[k]))
+        where, negative = _root(watch, samples, k, float(values[k]))
+        if where == 0.0 and watch.leaves is not None and watch.leaves(samples(PARTS[[0, -1]])):
+            opened = np.flatnonzero(values > watch.still)
+            below = below[below >= opened[0]] if len(opened) else below[:0]
+            if not len(below):
+                continue
+            where, negative = _root(watch, samples, int(below[0]), float(values[below[0]]))
         if found is None or where < found[1]:
             found = watch, where, negative
     return found
 
 
-def _root(
-    watch: Watch, samples: Callable[[np.ndarray], Samples], left: float, right: float, at_left: float
-) -> tuple[float, float]:
+def _root(watch: Watch, samples: Callable[[np.ndarray], Samples], k: int, at_left: float) -> tuple[float, float]:
+    """Within part k of the step."""
     from scipy.optimize import brentq
 
+    left, right = float(PARTS[k]), float(PARTS[k + 1])
     level = min(0.0, max(at_left, -watch.still))  # within rounding it counts as zero
 
     def value(x: float) -> float:

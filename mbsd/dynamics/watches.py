@@ -43,6 +43,7 @@ class Samples:
         self.t, self.q, self.v = t, np.ascontiguousarray(q), np.ascontiguousarray(v)
         self._rows: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
         self._lam: np.ndarray | None = None
+        self._gamma: np.ndarray | None = None
 
     def residuals(self) -> np.ndarray:
         """(S, m)"""
@@ -61,6 +62,16 @@ class Samples:
                 derivative(self.dynamics, self.scratch, t, np.stack([self.q[k], self.v[k]]), out, self._lam[k])
         return self._lam
 
+    def bends(self) -> np.ndarray:
+        """(S, m) J a - gamma: second derivatives of the residuals."""
+        _, _, compact = self._tabulated()
+        a, out, lam = np.zeros_like(self.v), np.zeros((2, self.q.shape[1])), np.zeros(len(self.packed.ws.phi))
+        for k, t in enumerate(self.t):
+            derivative(self.dynamics, self.scratch, t, np.stack([self.q[k], self.v[k]]), out, lam)
+            a[k] = out[1]
+        assert self._gamma is not None
+        return times_compact(self.packed, compact, a) - self._gamma
+
     def normals(self) -> np.ndarray:
         """(S, f) normal forces of the joints with friction."""
         return normals_along(self.packed, self.dynamics.loads, self.q, self._tabulated()[2], self.multipliers())
@@ -72,6 +83,7 @@ class Samples:
             compact = np.zeros((len(self.t), rows, 6))
             drives = self.packed.drives(self.t)
             tabulate(self.packed.system, drives, self.q, self.v, self.packed.ws, phi, compact, gamma)
+            self._gamma = gamma
             self._rows = phi, times_compact(self.packed, compact, self.v), compact
         return self._rows
 
@@ -91,6 +103,8 @@ class Watch:
     event: Event | None = None
     stops: bool = True
     """False for an event of the user that passes zero the other way: it is only noted."""
+    leaves: Callable[[Samples], bool] | None = None
+    """From the begin and the end of a step: whether the scalar rises away from zero there, by its rates."""
 
 
 def touch_watches(touch: Touch, sign: float, near: np.ndarray, still: np.ndarray, load: float) -> list[Watch]:
@@ -99,7 +113,11 @@ def touch_watches(touch: Touch, sign: float, near: np.ndarray, still: np.ndarray
     if touch.state == OPEN:
         if touch.always_closed:
             return [Watch(name, LOCKS, lambda s: s.rates()[:, gap], still[gap], touch)]
-        return [Watch(name, CLOSES, lambda s: s.residuals()[:, gap], near[gap], touch)]
+
+        def leaves(s: Samples) -> bool:
+            return bool((s.rates()[:, gap] > -still[gap]).all() and (s.bends()[0, gap] > 0.0))
+
+        return [Watch(name, CLOSES, lambda s: s.residuals()[:, gap], near[gap], touch, leaves=leaves)]
     out = [Watch(name, OPENS, lambda s: -s.multipliers()[:, gap], ROUNDING * load, touch)]
     if touch.way is None:
         return out

@@ -63,10 +63,11 @@ help: ## this list
 	@sed -n 's/^\([a-z][a-z-]*\)-%:[^#]*## /\1-<name>|/p; s/^\([a-z][a-z-]*\):[^#]*## /\1|/p' Makefile \
 	| awk -F'|' '{ printf "  %-18s %s\n", $$1, $$2 }'
 
-run-%: install always ## everything of one mechanism: parts, motion, clearance, plots, poster, film
+run-%: install always ## everything of one mechanism: parts, motion, clearance, report, plots, poster, film
 	$(upto_motion)
 	@$(STAGE) clearance "$$MECHANISM"
 	@$(STAGE) shot "$$MECHANISM"
+	@$(PICTURE) report "$$MECHANISM"
 	@$(PICTURE) plots "$$MECHANISM"
 	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET"
 	@$(PICTURE) film "$$MECHANISM" --preset "$$PRESET"
@@ -92,6 +93,10 @@ clearance-%: install always ## proof that no two parts touch over the whole moti
 plot-%: install always ## the plots: out/<name>/plots/
 	$(upto_bare_motion)
 	@$(PICTURE) plots "$$MECHANISM"
+
+report-%: install always ## what was found, in sentences and tables: out/<name>/report.md
+	$(upto_bare_motion)
+	@$(PICTURE) report "$$MECHANISM"
 
 compare-%: install always ## the motions of all its variants on the same pages: out/<name>/compare/
 	@names=$$($(STAGE) variants "$$MECHANISM") || exit; for one in $$names; do \

@@ -28,7 +28,8 @@ QUANTITIES = ("velocities", "accelerations", "forces", "reactions", "energy")
 VIEWS = (*QUANTITIES, "skeleton", "each")
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite", "matplotlib", "pillow", "imageio-ffmpeg")
 SUFFIXES = (".mp4", ".gif")
-SOURCES = [ROOT / "mechanisms" / f"{name}.py" for name in ("animate_stage", "solving", "masses", "estimated_masses")]
+_STAGE = ("animate_stage", "solving", "variants", "masses", "estimated_masses")
+SOURCES = [ROOT / "mechanisms" / f"{name}.py" for name in _STAGE]
 
 
 def run(name: str, view: str = "") -> None:

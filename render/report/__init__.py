@@ -1,0 +1,66 @@
+"""report.md: what a run found, in sentences and tables: ``python -m render report NAME``."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+from render.report import sections
+from render.report.loads import load_section
+from render.report.transmission_words import transmission_section
+from shared.clearance import Clearance, read_clearance
+from shared.console import say
+from shared.contract import Motion, Parts, read_motion, read_parts
+from shared.files import sources_hash, write_bytes
+from shared.paths import ROOT, Out, mechanism_folder
+from shared.stages import Stage, key_of, versions
+
+READ = [*sorted((ROOT / "shared").glob("contract*.py")), ROOT / "shared" / "clearance.py"]
+
+
+def run(name: str) -> None:
+    """Write out/<name>/report.md, if what it tells of or the words have changed. Raises UserError without data.json."""
+    out = Out(name)
+    motion = read_motion(out.motion, out.name)
+    parts = read_parts(out.parts, out.name) if out.parts.is_file() else None
+    clearance = read_clearance(out.clearance) if parts is not None and out.clearance.is_file() else None
+    said = description(out.name)
+    files = [path for path in (out.motion, out.parts, out.clearance) if path.is_file()]
+    key = key_of(*files, len(files), said, sources_hash(Path(__file__).parent, *READ), versions("numpy"))
+    stage = Stage(out, "report", key, [out.report])
+    if stage.is_fresh():
+        say("report", f"{out.name}: nothing to do")
+        return
+    write_bytes(out.report, report(motion, parts, clearance, said).encode())
+    stage.done()
+    say("report", f"{out.name}: {out.report}")
+
+
+def report(motion: Motion, parts: Parts | None, clearance: Clearance | None, said: str = "") -> str:
+    """The whole document, Markdown."""
+    title = motion.mechanism.replace("_", " ").replace("-", ": ")
+    lines = [f"# {title[:1].upper()}{title[1:]}", ""]
+    lines += [said, ""] if said else []
+    lines += sections.motion_section(motion)
+    for head, body in (
+        ("Speeds", sections.speed_section(motion)),
+        ("Loads", load_section(motion)),
+        ("Energy", sections.energy_section(motion)),
+        ("Transmission", transmission_section(motion)),
+        ("Masses", sections.mass_section(motion, parts)),
+        ("Clearance", sections.clearance_section(clearance)),
+    ):
+        if body:
+            lines += ["", f"## {head}", "", *body]
+    text = "\n".join(lines)
+    while "\n\n\n" in text:
+        text = text.replace("\n\n\n", "\n\n")
+    return text.rstrip() + "\n"
+
+
+def description(name: str) -> str:
+    """The docstring of mechanism.py, read without running it; empty where there is none."""
+    try:
+        return ast.get_docstring(ast.parse((mechanism_folder(name) / "mechanism.py").read_text())) or ""
+    except (SyntaxError, OSError):
+        return ""

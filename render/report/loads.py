@@ -1,0 +1,100 @@
+"""Loads in a report: reactions, drivers, forces, contacts."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from render.report.written import moment, table, written
+from shared.contract import Motion
+
+NOTHING = 1e-12
+"""Of the largest in a table: no number."""
+ROUNDING = 1e-9
+"""Of what power could do all the time: no work."""
+SLIDES = ("coordinate", "distance")
+"""Drivers whose value is a length."""
+
+
+def load_section(motion: Motion) -> list[str]:
+    """Reactions, drivers, forces, contacts."""
+    time = np.array(motion.time)
+    lines: list[str] = []
+    forces = {name: np.hypot(joint.fx, joint.fy) for name, joint in motion.joints.items()}
+    torques = {name: np.abs(joint.torque) for name, joint in motion.joints.items()}
+    most = max((float(force.max()) for force in forces.values()), default=0.0)
+    if motion.joints and most <= 0.0 and not any(torque.any() for torque in torques.values()):
+        lines += ["Nothing loads the joints: no body has a mass, and no force acts.", ""]
+    elif motion.joints:
+        rows = []
+        for name, joint in motion.joints.items():
+            k, torque = int(forces[name].argmax()), float(torques[name].max())
+            rows.append([
+                f"{name} ({joint.kind.replace('_', ' ')})", f"{joint.bodies[0]}, {joint.bodies[1]}",
+                written(float(forces[name][k]), "N"), moment(time[k]),
+                written(torque, "N m") if torque > NOTHING * max(most, 1.0) else "",
+            ])  # fmt: skip
+        lines += ["### Reactions", ""]
+        lines += [*table(["joint", "bodies", "peak force", "at", "peak torque"], rows), ""]
+    if motion.drivers:
+        lines += ["### Drivers", ""]
+        rows = []
+        for name, driver in motion.drivers.items():
+            unit = "N" if driver.kind in SLIDES else "N m"
+            effort, power = np.array(driver.effort), np.array(driver.power)
+            k = int(np.abs(effort).argmax())
+            rows.append([
+                name, written(float(effort[k]), unit), moment(time[k]), written(_rms(effort, time), unit),
+                written(float(power.max()), "W"), written(float(power.min()), "W"),
+                _work(power, time),
+            ])  # fmt: skip
+        head = ["driver", "peak effort", "at", "effort, root mean square", "highest power", "lowest power", "work"]
+        lines += [*table(head, rows), ""]
+    if motion.forces:
+        lines += ["### Forces", ""]
+        rows = []
+        for name, force in motion.forces.items():
+            size = np.max([np.hypot(action.fx, action.fy) for action in force.actions], axis=0)
+            twist = np.max([np.abs(action.torque) for action in force.actions], axis=0)
+            k = int(size.argmax() if size.any() else twist.argmax())
+            power = np.array(force.power)
+            rows.append([
+                f"{name} ({force.kind.replace('_', ' ')})", written(float(size.max()), "N") if size.any() else "",
+                written(float(twist.max()), "N m") if twist.any() else "", moment(time[k]),
+                written(float(power.max()), "W"), written(float(power.min()), "W"),
+                _work(power, time),
+            ])  # fmt: skip
+        head = ["force", "peak force", "peak torque", "at", "gives at most", "takes at most", "work"]
+        lines += [*table(head, rows), ""]
+    return lines + _contacts(motion, time)
+
+
+def _contacts(motion: Motion, time: np.ndarray) -> list[str]:
+    if not motion.contacts:
+        return []
+    rows = []
+    for name, contact in motion.contacts.items():
+        normal = np.array(contact.normal)
+        closed = np.array([state != "open" for state in contact.state])
+        share = float(np.trapezoid(closed, time) / (time[-1] - time[0]))
+        hits = [event for event in motion.events if event.what == "impact" and event.name == name]
+        hardest = max((abs(event.impulse) for event in hits), default=0.0)
+        angular = contact.kind in ("angle_stop", "one_way")
+        rows.append([
+            f"{name} ({contact.kind.replace('_', ' ')})", written(float(normal.max()), "N m" if angular else "N"),
+            f"{100 * share:.0f} %", str(len(hits)), written(hardest, "N m s" if angular else "N s") if hits else "",
+        ])  # fmt: skip
+    head = ["contact", "peak normal force", "closed", "impacts", "largest impulse"]
+    return ["### Contacts", "", *table(head, rows), ""]
+
+
+def _rms(values: np.ndarray, time: np.ndarray) -> float:
+    return math.sqrt(float(np.trapezoid(values**2, time)) / float(time[-1] - time[0]))
+
+
+def _work(power: np.ndarray, time: np.ndarray) -> str:
+    """Of all the time; rounding is nothing."""
+    work = float(np.trapezoid(power, time))
+    most = float(np.abs(power).max(initial=0.0)) * float(time[-1] - time[0])
+    return written(work if abs(work) > ROUNDING * most else 0.0, "J")

@@ -1,0 +1,139 @@
+"""The sections of a report, each a list of lines of Markdown made from data.json and what stands beside it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from render.report.written import counted, listed, moment, speed, table, turning, written
+from shared.clearance import Clearance
+from shared.contract import Motion, Parts
+
+G = 9.80665
+
+
+def motion_section(motion: Motion) -> list[str]:
+    """Mobility, what was solved, how well it closes."""
+    found, span = motion.diagnostics, motion.time[-1] - motion.time[0]
+    drivers = listed(list(motion.drivers)) if motion.drivers else ""
+    moved = f"driven by {drivers}" if drivers else "moved by forces alone"
+    times = f"{len(motion.time)} times over {moment(span)}"
+    kind = "simulation" if motion.analysis == "simulation" else "sweep"
+    repeats = f"; it repeats after {moment(motion.period)}" if motion.period else ""
+    lines = [
+        f"The mechanism has {counted(found.dof, 'degree')} of freedom and is {moved}. The {kind} has {times}{repeats}.",
+        "",
+        f"Joints close to {found.position_residual:.1e} (m or rad); velocities fulfil their equations to "
+        f"{found.velocity_residual:.1e} and accelerations to {found.acceleration_residual:.1e} (by s, by s²).",
+    ]
+    if found.redundant:
+        lines += ["", f"Joints that repeat what others hold: {', '.join(found.redundant)}. Their share of the load is "
+                  "that of least norm."]  # fmt: skip
+    margin = np.array(found.singularity_margin)
+    if len(margin) and margin.min() < 0.02:
+        k = int(margin.argmin())
+        lines += ["", f"It comes near a singular pose at t = {moment(motion.time[k])}, where its margin is "
+                  f"{margin[k]:.2g} (0 at a toggle or change point, 1 at best)."]  # fmt: skip
+    if motion.start_changes:
+        lines += ["", "The given start was made consistent:", "", *(f"- {change}" for change in motion.start_changes)]
+    return lines
+
+
+def speed_section(motion: Motion) -> list[str]:
+    """Peak speeds and accelerations of centres of mass and traced points, peak turning."""
+    time, rows = motion.time, []
+    for name, body in motion.bodies.items():
+        theta, omega, alpha = (np.array(part) for part in (body.theta, body.omega, body.alpha))
+        x, y = body.com
+        arm = np.stack([np.cos(theta) * x - np.sin(theta) * y, np.sin(theta) * x + np.cos(theta) * y])
+        v = np.hypot(np.array(body.vx) - omega * arm[1], np.array(body.vy) + omega * arm[0])
+        a = np.hypot(
+            np.array(body.ax) - alpha * arm[1] - omega**2 * arm[0],
+            np.array(body.ay) + alpha * arm[0] - omega**2 * arm[1],
+        )
+        k = int(v.argmax())
+        spin = float(np.abs(omega).max())
+        rows.append(
+            [name, speed(float(v[k])), moment(time[k]), _acceleration(a), turning(spin) if spin > 1e-9 else "0"]
+        )
+    for name, point in motion.points.items():
+        v, a = np.hypot(point.vx, point.vy), np.hypot(point.ax, point.ay)
+        k = int(v.argmax())
+        rows.append([f"point {name}", speed(float(v[k])), moment(time[k]), _acceleration(a), ""])
+    lines = ["Bodies by their centres of mass, and traced points.", ""]
+    return lines + table(["", "peak speed", "at", "peak acceleration", "peak turning"], rows)
+
+
+def energy_section(motion: Motion) -> list[str]:
+    """Kinetic and potential energy, and how well the balance holds."""
+    kinetic, potential = np.array(motion.energy.kinetic), np.array(motion.energy.potential)
+    total = kinetic + potential
+    k = int(kinetic.argmax())
+    lines = [
+        f"Kinetic energy is at most {written(float(kinetic[k]), 'J')} (t = {moment(motion.time[k])}); potential energy "
+        f"changes by {written(float(np.ptp(potential)), 'J')}, their sum by {written(float(np.ptp(total)), 'J')}."
+    ]
+    lost = -sum(event.energy for event in motion.events)
+    if abs(lost) > 0:
+        hits = sum(event.what == "impact" for event in motion.events)
+        lines += ["", f"Impacts and other events ({counted(hits, 'impact')}) take {written(lost, 'J')}."]
+    if motion.energy.audit is not None:
+        time, audit = np.array(motion.time), np.array(motion.energy.audit)
+        for event in motion.events:
+            after = time > event.time
+            twins = np.flatnonzero(np.isclose(time, event.time, rtol=0, atol=0))
+            if len(twins) > 1:
+                after[twins[-1]] = True
+            elif len(twins):
+                after[twins] = True
+            audit = audit - np.where(after, event.energy, 0.0)
+        drift = float(np.abs(audit - audit[0]).max())
+        scale = max(float(kinetic.max()), float(np.ptp(potential)), 1e-300)
+        lines += ["", f"The balance of energy, with the work of all forces and what events take, drifts by "
+                  f"{written(drift, 'J', 2)}: {drift / scale:.1e} of the largest exchange."]  # fmt: skip
+    else:
+        lines += ["", f"The power of the drivers differs from the change of energy by at most "
+                  f"{motion.diagnostics.power_residual:.1e} W."]  # fmt: skip
+    return lines
+
+
+def mass_section(motion: Motion, parts: Parts | None) -> list[str]:
+    """Masses and where they are from."""
+    words = {"mechanism": "mechanism.py", "parts": "the parts", "estimate": "an estimate"}
+    rows = [
+        [name, written(body.mass, "kg"), _place(body.com), written(1e6 * body.inertia, "kg mm²"), words[body.mass_from]]
+        for name, body in motion.bodies.items()
+    ]
+    total = sum(body.mass for body in motion.bodies.values())
+    lines = [f"All that moves weighs {written(total, 'kg')}."]
+    if parts is not None and "ground" in parts.bodies:
+        pieces = sum(len(body.pieces) for body in parts.bodies.values())
+        lines[0] += f" The frame weighs {written(parts.bodies['ground'].mass.mass, 'kg')}; there are {pieces} pieces."
+    lines.append("")
+    return lines + table(["body", "mass", "centre of mass", "inertia", "from"], rows)
+
+
+def clearance_section(clearance: Clearance | None) -> list[str]:
+    """The least gap between two parts."""
+    if clearance is None:
+        return ["It was not checked: there is no clearance.json."]
+    if not clearance.pairs:
+        return [
+            f"No two parts of different bodies come near each other; {counted(clearance.apart, 'pair')} stay apart."
+        ]
+    nearest = min(clearance.pairs, key=lambda pair: pair.gap)
+    when = "" if nearest.time is None else f" at t = {moment(nearest.time)}"
+    names = " and ".join(f"{piece} ({body})" for piece, body in zip(nearest.pieces, nearest.bodies, strict=True))
+    return [
+        f"No two parts touch. {names} come nearest, to {written(nearest.gap, 'm')}{when}; less than "
+        f"{written(nearest.proven, 'm')} is ruled out over the whole motion. {counted(len(clearance.pairs), 'pair')} "
+        f"of pieces were looked at closely, {clearance.apart} never come near."
+    ]
+
+
+def _acceleration(a: np.ndarray) -> str:
+    most = float(a.max())
+    return f"{written(most, 'm/s²')} ({most / G:.2g} g)" if most > 1e-9 else "0"
+
+
+def _place(at: tuple[float, float]) -> str:
+    return f"{1e3 * at[0]:.2f}, {1e3 * at[1]:.2f} mm".replace("-", "\N{MINUS SIGN}")

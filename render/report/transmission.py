@@ -1,0 +1,125 @@
+"""Transmission angle and dead points of four-bars and slider-cranks, from where their pins are.
+
+    four-bar        pins A B C D round the loop; mu: angle at C between coupler and follower
+    slider-crank    mu: angle at C between the rod and the normal of the guide
+    dead points     A, B, C in one line: the follower turns back there, and could not drive the crank from there
+
+mu near 90 degrees passes the force on best; 40 degrees is a usual limit (VDI 2123, VDI 2126).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shared.contract import Motion
+
+LEAST = np.radians(40.0)
+"""Transmission angle that is usually asked for."""
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A driven crank, the coupler and what it moves, all held by ground."""
+
+    crank: str
+    coupler: str
+    follower: str
+    slides: bool
+    """Whether the follower slides."""
+    pins: np.ndarray
+    """(T, 4, 2) A B C D (m); of a slider-crank D is C moved along the guide's normal."""
+    angle: np.ndarray
+    """(T,) of the crank, from A to B (rad), without jumps."""
+
+    @property
+    def transmission(self) -> np.ndarray:
+        """(T,) mu (rad), 0 .. pi/2."""
+        b, c, d = (self.pins[:, k] for k in (1, 2, 3))
+        along, across = b - c, d - c
+        cosine = (along * across).sum(axis=1) / np.maximum(np.hypot(*along.T) * np.hypot(*across.T), 1e-300)
+        return np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
+
+    def dead_points(self, time: np.ndarray) -> list[tuple[float, float]]:
+        """Time (s) and angle of the crank (rad, 0 .. 2 pi) at each."""
+        a, b, c = (self.pins[:, k] for k in (0, 1, 2))
+        first, second = b - a, c - b
+        turn = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+        out: list[tuple[float, float]] = []
+        for k in np.flatnonzero((turn[:-1] > 0) != (turn[1:] > 0)):
+            part = turn[k] / (turn[k] - turn[k + 1]) if turn[k] != turn[k + 1] else 0.0
+            at = time[k] + part * (time[k + 1] - time[k])
+            angle = self.angle[k] + part * (self.angle[k + 1] - self.angle[k])
+            out.append((float(at), float(angle % (2 * np.pi))))
+        return out
+
+    @property
+    def travel(self) -> float:
+        """What the follower does: the angle it swings through (rad), or its stroke (m)."""
+        c, d = self.pins[:, 2], self.pins[:, 3]
+        if self.slides:
+            normal = (d - c)[0] / np.hypot(*(d - c)[0])
+            return float(np.ptp(c @ np.array([normal[1], -normal[0]])))
+        return float(np.ptp(np.unwrap(np.arctan2(*(c - d).T[::-1]))))
+
+    @property
+    def lengths(self) -> tuple[float, float, float, float]:
+        """Crank, coupler, follower and ground of a four-bar (m)."""
+        ends = ((0, 1), (1, 2), (2, 3), (3, 0))
+        one, two, three, four = (float(np.hypot(*(self.pins[0, j] - self.pins[0, i]))) for i, j in ends)
+        return one, two, three, four
+
+
+def loops(motion: Motion) -> list[Loop]:
+    """All loops of a mechanism whose crank a driver turns against ground."""
+    out = []
+    pins: dict[frozenset[str], np.ndarray] = {}
+    for joint in motion.joints.values():
+        if joint.kind == "revolute":
+            pins.setdefault(frozenset(joint.bodies), np.array([joint.x, joint.y]).T)
+    guides = {frozenset(joint.bodies) for joint in motion.joints.values() if joint.kind == "prismatic"}
+    for crank in _driven(motion):
+        a = pins.get(frozenset(("ground", crank)))
+        for pair, b in pins.items():
+            if a is None or crank not in pair or "ground" in pair:
+                continue
+            [coupler] = pair - {crank}
+            for other, c in pins.items():
+                if coupler not in other or crank in other or "ground" in other:
+                    continue
+                [follower] = other - {coupler}
+                held = frozenset(("ground", follower))
+                if held in pins:
+                    out.append(_loop(crank, coupler, follower, False, (a, b, c, pins[held])))
+                elif held in guides:
+                    out.append(_loop(crank, coupler, follower, True, (a, b, c, c + _normal(c))))
+    return out
+
+
+def _driven(motion: Motion) -> list[str]:
+    """Bodies that a driver turns against ground; of files that do not tell, those whose angle is the driver's."""
+    out = []
+    for driver in motion.drivers.values():
+        if driver.kind not in ("angle", "relative_angle"):
+            continue
+        if driver.bodies is not None:
+            out += [body for body in driver.bodies if body != "ground" and "ground" in driver.bodies]
+            continue
+        value = np.array(driver.value)
+        out += [n for n, body in motion.bodies.items() if np.ptp(np.array(body.theta) - value) < 1e-6 < np.ptp(value)]
+    return out
+
+
+def _normal(c: np.ndarray) -> np.ndarray:
+    """(2,) unit normal of the way that a slider goes on ground."""
+    middle = c - c.mean(axis=0)
+    along = np.linalg.svd(middle, full_matrices=False)[2][0]
+    return np.array([-along[1], along[0]])
+
+
+def _loop(
+    crank: str, coupler: str, follower: str, slides: bool, pins: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+) -> Loop:
+    arm = pins[1] - pins[0]
+    return Loop(crank, coupler, follower, slides, np.stack(pins, axis=1), np.unwrap(np.arctan2(*arm.T[::-1])))

@@ -1,0 +1,56 @@
+"""Transmission angle, dead points, stroke and Grashof's condition in sentences."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from render.report.transmission import LEAST, Loop, loops
+from render.report.written import degrees, listed, moment, written
+from shared.contract import Motion
+
+
+def transmission_section(motion: Motion) -> list[str]:
+    """Of every four-bar and slider-crank in the mechanism."""
+    lines: list[str] = []
+    for loop in loops(motion):
+        lines += [*_loop_lines(loop, np.array(motion.time)), ""]
+    return lines[:-1]
+
+
+def _loop_lines(loop: Loop, time: np.ndarray) -> list[str]:
+    mu = loop.transmission
+    k = int(mu.argmin())
+    kind = "slider-crank" if loop.slides else "four-bar"
+    lines = [
+        f"{loop.crank}, {loop.coupler} and {loop.follower} are a {kind}. Its transmission angle lies between "
+        f"{degrees(mu.min())} (crank at {degrees(loop.angle[k] % (2 * math.pi))}, t = {moment(time[k])}) and "
+        f"{degrees(mu.max())}"
+        + (f"; {degrees(LEAST)} are usually asked for." if mu.min() < LEAST else ".")
+    ]  # fmt: skip
+    dead = loop.dead_points(time)
+    if dead:
+        places = listed([f"{degrees(angle)} (t = {moment(at)})" for at, angle in dead[:4]])
+        travel = written(loop.travel, "m") if loop.slides else degrees(loop.travel)
+        does = f"strokes {travel}" if loop.slides else f"swings {travel}"
+        lines.append(
+            f"{loop.coupler} and {loop.crank} are in line with the crank at {places}: there the {loop.follower} turns "
+            f"back, and could not drive. The {loop.follower} {does}."
+        )
+        if len(dead) == 2 and np.ptp(loop.angle) > 1.9 * math.pi:
+            way = (dead[1][0] - dead[0][0]) / (time[-1] - time[0])
+            ratio = max(way, 1 - way) / min(way, 1 - way)
+            lines[-1] += f" One way takes {ratio:.3g} times as long as the other."
+    else:
+        lines.append(f"There is no dead point in this motion: {loop.crank} and {loop.coupler} are never in line.")
+    if not loop.slides:
+        short, *middle, long = sorted(loop.lengths)
+        turns = (
+            "some link can turn fully (Grashof)" if short + long <= sum(middle) else "no link can turn fully (Grashof)"
+        )
+        lines.append(
+            f"Shortest and longest link are {written(short + long, 'm', 4)} together, the two others "
+            f"{written(sum(middle), 'm', 4)}: {turns}."
+        )
+    return [" ".join(lines)]

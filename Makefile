@@ -63,12 +63,13 @@ help: ## this list
 	@sed -n 's/^\([a-z][a-z-]*\)-%:[^#]*## /\1-<name>|/p; s/^\([a-z][a-z-]*\):[^#]*## /\1|/p' Makefile \
 	| awk -F'|' '{ printf "  %-18s %s\n", $$1, $$2 }'
 
-run-%: install always ## everything of one mechanism: parts, motion, clearance, report, plots, poster, film
+run-%: install always ## everything of one mechanism: parts, motion, clearance, report, plots, GLB, poster, film
 	$(upto_motion)
 	@$(STAGE) clearance "$$MECHANISM"
 	@$(STAGE) shot "$$MECHANISM"
 	@$(PICTURE) report "$$MECHANISM"
 	@$(PICTURE) plots "$$MECHANISM"
+	@$(PICTURE) glb "$$MECHANISM"
 	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET"
 	@$(PICTURE) film "$$MECHANISM" --preset "$$PRESET"
 
@@ -102,6 +103,10 @@ compare-%: install always ## the motions of all its variants on the same pages: 
 	@names=$$($(STAGE) variants "$$MECHANISM") || exit; for one in $$names; do \
 	$(STAGE) parts "$$one" --or-none && $(STAGE) solve "$$one" || exit; done
 	@$(PICTURE) compare "$$MECHANISM"
+
+glb-%: install always ## the parts with their motion in one file for any glTF viewer: out/<name>/<name>.glb
+	$(upto_shot)
+	@$(PICTURE) glb "$$MECHANISM"
 
 poster-%: install always ## one picture at its best: out/<name>/poster.png
 	$(upto_shot)

@@ -1,4 +1,4 @@
-"""Pictures: ``python -m render {plots,compare,report,still,poster,frames,film,scene,scene-ui} NAME [--preset P]``."""
+"""Pictures: ``python -m render COMMAND NAME [--preset P]``."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ COMMANDS = {
     "plots": "plots of the motion, its forces and its energy",
     "compare": "all variants of a mechanism on the same pages",
     "report": "what the run found, in sentences and tables: report.md",
+    "glb": "the parts with their motion as one animation, for any glTF viewer",
     "still": "one frame as a picture",
     "poster": "the shot's best moment as poster.png",
     "frames": "render every frame that is not there yet",
@@ -28,7 +29,7 @@ def main() -> int | None:
     for command, text in COMMANDS.items():
         sub = commands.add_parser(command, aliases=[command.replace("-", "_")] if "-" in command else [], help=text)
         sub.add_argument("name", help="mechanism; four-bar and four_bar are one")
-        if command not in ("plots", "compare", "report"):
+        if command not in ("plots", "compare", "report", "glb"):
             sub.add_argument("--preset", default="preview", help=f"{', '.join(PRESETS)}; preview if not given")
         if command == "still":
             sub.add_argument("--frame", type=int, default=0, help="number of the frame, from 0")
@@ -46,6 +47,10 @@ def main() -> int | None:
         from render import report
 
         return report.run(name)
+    if command == "glb":
+        from render import glb
+
+        return glb.run(name)
     return _picture(command, name, preset_named(arguments.preset), arguments)
 
 

@@ -15,14 +15,18 @@ MILLIMETRE = 0.001
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
-def read_vertices(path: Path) -> Array:
-    """Corners (n, 3) in m of a binary STL; raises UserError if the file is not whole."""
+def read_triangles(path: Path) -> Array:
+    """Corners (n, 3, 3) in m of the triangles of a binary STL; raises UserError if the file is not whole."""
     content = path.read_bytes()
     count = int.from_bytes(content[80:84], "little") if len(content) >= 84 else -1
     if len(content) != 84 + _TRIANGLE.itemsize * count or count < 1:
         raise UserError(f"{path} is not a whole binary STL ({len(content)} bytes); make the parts again")
-    corners = np.frombuffer(content, _TRIANGLE, count, 84)["corners"].reshape(-1, 3)
-    return np.unique(corners, axis=0).astype(float) * MILLIMETRE
+    return np.frombuffer(content, _TRIANGLE, count, 84)["corners"].astype(float) * MILLIMETRE
+
+
+def read_vertices(path: Path) -> Array:
+    """Corners (n, 3) in m of a binary STL, each once; raises UserError if the file is not whole."""
+    return np.unique(read_triangles(path).reshape(-1, 3), axis=0)
 
 
 def prism(vertices: Array) -> Array:

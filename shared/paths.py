@@ -157,6 +157,7 @@ class Out:
         self.shot = self.folder / "shot.json"
         self.plots = self.folder / "plots"
         self.compare = self.folder / "compare"
+        self.glb = self.folder / f"{self.name}.glb"
         self.report = self.folder / "report.md"
         self.poster = self.folder / "poster.png"
         self.stills = self.folder / "stills"

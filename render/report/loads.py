@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from render.report.written import moment, table, written
+from render.report.written import first_peak, moment, table, written
 from shared.contract import Motion
 
 NOTHING = 1e-12
@@ -29,7 +29,7 @@ def load_section(motion: Motion) -> list[str]:
     elif motion.joints:
         rows = []
         for name, joint in motion.joints.items():
-            k, torque = int(forces[name].argmax()), float(torques[name].max())
+            k, torque = first_peak(forces[name]), float(torques[name].max())
             rows.append([
                 f"{name} ({joint.kind.replace('_', ' ')})", f"{joint.bodies[0]}, {joint.bodies[1]}",
                 written(float(forces[name][k]), "N"), moment(time[k]),
@@ -43,7 +43,7 @@ def load_section(motion: Motion) -> list[str]:
         for name, driver in motion.drivers.items():
             unit = "N" if driver.kind in SLIDES else "N m"
             effort, power = np.array(driver.effort), np.array(driver.power)
-            k = int(np.abs(effort).argmax())
+            k = first_peak(np.abs(effort))
             rows.append([
                 name, written(float(effort[k]), unit), moment(time[k]), written(_rms(effort, time), unit),
                 written(float(power.max()), "W"), written(float(power.min()), "W"),
@@ -57,7 +57,7 @@ def load_section(motion: Motion) -> list[str]:
         for name, force in motion.forces.items():
             size = np.max([np.hypot(action.fx, action.fy) for action in force.actions], axis=0)
             twist = np.max([np.abs(action.torque) for action in force.actions], axis=0)
-            k = int(size.argmax() if size.any() else twist.argmax())
+            k = first_peak(size if size.any() else twist)
             power = np.array(force.power)
             rows.append([
                 f"{name} ({force.kind.replace('_', ' ')})", written(float(size.max()), "N") if size.any() else "",

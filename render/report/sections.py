@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from render.report.written import counted, listed, moment, speed, table, turning, written
+from render.report.written import counted, first_peak, listed, moment, speed, table, turning, written
 from shared.clearance import Clearance
 from shared.contract import Motion, Parts
 
@@ -50,14 +50,14 @@ def speed_section(motion: Motion) -> list[str]:
             np.array(body.ax) - alpha * arm[1] - omega**2 * arm[0],
             np.array(body.ay) + alpha * arm[0] - omega**2 * arm[1],
         )
-        k = int(v.argmax())
+        k = first_peak(v)
         spin = float(np.abs(omega).max())
         rows.append(
             [name, speed(float(v[k])), moment(time[k]), _acceleration(a), turning(spin) if spin > 1e-9 else "0"]
         )
     for name, point in motion.points.items():
         v, a = np.hypot(point.vx, point.vy), np.hypot(point.ax, point.ay)
-        k = int(v.argmax())
+        k = first_peak(v)
         rows.append([f"point {name}", speed(float(v[k])), moment(time[k]), _acceleration(a), ""])
     lines = ["Bodies by their centres of mass, and traced points.", ""]
     return lines + table(["", "peak speed", "at", "peak acceleration", "peak turning"], rows)
@@ -67,7 +67,7 @@ def energy_section(motion: Motion) -> list[str]:
     """Kinetic and potential energy, and how well the balance holds."""
     kinetic, potential = np.array(motion.energy.kinetic), np.array(motion.energy.potential)
     total = kinetic + potential
-    k = int(kinetic.argmax())
+    k = first_peak(kinetic)
     lines = [
         f"Kinetic energy is at most {written(float(kinetic[k]), 'J')} (t = {moment(motion.time[k])}); potential energy "
         f"changes by {written(float(np.ptp(potential)), 'J')}, their sum by {written(float(np.ptp(total)), 'J')}."
@@ -136,4 +136,5 @@ def _acceleration(a: np.ndarray) -> str:
 
 
 def _place(at: tuple[float, float]) -> str:
-    return f"{1e3 * at[0]:.2f}, {1e3 * at[1]:.2f} mm".replace("-", "\N{MINUS SIGN}")
+    x, y = (round(1e3 * part, 2) + 0.0 for part in at)  # -0 becomes 0
+    return f"{x:.2f}, {y:.2f} mm".replace("-", "\N{MINUS SIGN}")

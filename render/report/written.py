@@ -56,6 +56,11 @@ def counted(count: int, noun: str) -> str:
     return f"{'no' if count == 0 else count} {noun}{'s' * (count != 1)}"
 
 
+def first_peak(values: np.ndarray) -> int:
+    """Where the largest value is; the first of several that are as large but for rounding."""
+    return int(np.argmax(values >= values.max() - 1e-9 * abs(values.max())))
+
+
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     """Lines of a table; the first column is words, the others numbers."""
     lines = [f"| {' | '.join(head)} |", f"|---|{'---:|' * (len(head) - 1)}"]

@@ -1,0 +1,36 @@
+"""The GLB: ``python -m render glb NAME`` writes the parts with their motion as one animation for any glTF viewer."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from render.inputs import SHARED, read_film, refuse_missing
+from shared.console import say
+from shared.files import sources_hash, write_bytes
+from shared.paths import ROOT, Out
+from shared.stages import Stage, key_of, versions
+
+FILES = ("describe", "inputs", "poses", "scene", "solids", "swept", "framing")
+"""Of render/ that decide what is in it."""
+
+
+def run(name: str) -> None:
+    """Write out/<name>/<name>.glb, if the parts, the motion or the shot have changed. Raises UserError."""
+    out = Out(name)
+    refuse_missing(out)
+    sources = [ROOT / "render" / f"{file}.py" for file in FILES]
+    shared = [ROOT / "shared" / f"{file}.py" for file in SHARED] + sorted((ROOT / "shared").glob("contract_*.py"))
+    key = key_of(
+        out.motion, out.parts, out.shot, sources_hash(Path(__file__).parent, *sources, *shared), versions("numpy")
+    )
+    stage = Stage(out, "glb", key, [out.glb])
+    if stage.is_fresh():
+        say("glb", f"{out.name}: nothing to do")
+        return
+    from render.glb.build import glb
+
+    film = read_film(out)
+    write_bytes(out.glb, glb(film))
+    stage.done()
+    seconds = film.motion.time[-1] - film.motion.time[0]
+    say("glb", f"{out.name}: {out.glb}: {seconds:.4g} s, {out.glb.stat().st_size / 1e6:.1f} MB")

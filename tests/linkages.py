@@ -100,3 +100,33 @@ def _seen(origin: np.ndarray, towards: np.ndarray, point: np.ndarray) -> tuple[f
     """``point`` in the frame at ``origin`` whose x axis goes ``towards``."""
     along = (towards - origin) / np.linalg.norm(towards - origin)
     return float((point - origin) @ along), float((point - origin) @ np.array([-along[1], along[0]]))
+
+
+def slider_crank() -> Mechanism:
+    """An offset slider-crank with a rail on ground."""
+    m = Mechanism("slider")
+    crank, rod, slider = m.bar("crank", 0.03), m.bar("rod", 0.1), m.body("slider")
+    m.revolute("A", m.ground.at(0, 0), crank.start)
+    m.revolute("B", crank.end, rod.start)
+    m.revolute("C", rod.end, slider.origin)
+    m.prismatic("guide", m.ground.at(0, 0.01), slider.origin)
+    m.drive_angle("motor", crank, TURN)
+    m.start_near(crank=0, rod=5, slider=0)
+    return m
+
+
+def crank_shaper() -> Mechanism:
+    """A quick return: a block on the crank slides on the lever, which moves the ram."""
+    m = Mechanism("shaper")
+    crank, link = m.bar("crank", 0.04), m.bar("link", 0.06)
+    lever, block, ram = m.body("lever"), m.body("block"), m.body("ram")
+    m.revolute("A", m.ground.at(0, 0.10), crank.start)
+    m.revolute("O", m.ground.at(0, 0), lever.origin)
+    m.revolute("P", crank.end, block.origin)
+    m.prismatic("slide", lever.origin, block.origin)
+    m.revolute("Q", lever.at(0.19, 0), link.start)
+    m.revolute("R", link.end, ram.origin)
+    m.prismatic("guide", m.ground.at(0, 0.185), ram.origin)
+    m.drive_angle("motor", crank, TURN)
+    m.start_near(crank=0, lever=68, block=68, link=175, ram=0)
+    return m

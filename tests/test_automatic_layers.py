@@ -14,7 +14,7 @@ from mechanisms.automatic.items import Item, spans_meet
 from mechanisms.automatic.planar import Rounded, around, convex_hull, core_gaps, least_gap
 from mechanisms.automatic.sizes import sizes, standard
 from shared.errors import UserError
-from tests.linkages import drag_link, four_bar, jansen_leg, watt
+from tests.linkages import crank_shaper, drag_link, four_bar, jansen_leg, slider_crank, watt
 
 
 def _samples(core: np.ndarray, count: int = 60) -> np.ndarray:
@@ -70,7 +70,7 @@ def _planned(m: Mechanism) -> Automatic:
 
 def _clear(made: Automatic) -> None:
     """No two items of different bodies at one height meet: seen anew, by points on their sides at every third pose."""
-    layout, levels = made.layout, made.levels
+    layout, levels = made.layout, made.decided
 
     def clouds(item: Item) -> np.ndarray:
         points, pose = _samples(item.shape.core, 40), layout.poses[item.body][::3]
@@ -87,7 +87,10 @@ def _clear(made: Automatic) -> None:
         assert apart > first.shape.radius + second.shape.radius, f"{first.what} meets {second.what}"
 
 
-@pytest.mark.parametrize(("build", "layers"), [(watt, 2), (jansen_leg, 5)], ids=["watt", "jansen"])
+KNOWN = {"watt": (watt, 2), "jansen": (jansen_leg, 5), "slider": (slider_crank, 2), "shaper": (crank_shaper, 3)}
+
+
+@pytest.mark.parametrize(("build", "layers"), KNOWN.values(), ids=KNOWN.keys())
 def test_known_linkages_get_few_layers(build: object, layers: int) -> None:
     made = _planned(build())
     assert max(made.levels.values()) + 1 == layers
@@ -100,7 +103,7 @@ def test_no_layer_can_be_spared() -> None:
     items, conflicts = made.layout.items, made.layout.conflicts
     bodies = made.layout.moving
     rules = [(items[i].reach, items[j].reach) for i, j in conflicts]
-    for code in range(4 ** len(bodies)):
+    for code in range(4 ** len(bodies)):  # the ends of pins left out: even so there is none
         levels = {body: code // 4**k % 4 for k, body in enumerate(bodies)}
         if not any(spans_meet(a.span(levels), b.span(levels)) for a, b in rules):
             pytest.fail(f"four layers would do: {levels}")
@@ -111,6 +114,14 @@ def test_heights_leave_room_for_what_is_between_the_layers() -> None:
     pivot = made.sizes.pivot
     for low, high in zip(made.heights.bottoms, made.heights.bottoms[1:], strict=False):
         assert high - low - made.sizes.thickness >= pivot.washer_room + pivot.fit.axial + pivot.flange_room - 1e-9
+
+
+def test_a_pin_hangs_where_a_rail_is_above_it() -> None:
+    """The shaper's block slides under its lever: its pin can have no head, and is kept below the crank."""
+    made = _planned(crank_shaper())
+    assert made.levels["crank"] < made.levels["block"] < made.levels["lever"]
+    assert made.decided["pin P"] == 1
+    assert made.decided["pin Q"] == 0
 
 
 def test_a_layer_that_is_asked_for_is_given() -> None:

@@ -86,21 +86,26 @@ class Automatic:
     @cached_property
     def levels(self) -> dict[str, int]:
         """The layer of each moving body, from 0 up."""
+        return {body: self.decided[body] for body in self.layout.moving}
+
+    @property
+    def decided(self) -> dict[str, int]:
+        """The layers, and the choices of items that have one (0 or 1)."""
         return self._found[1]
 
     @cached_property
     def heights(self) -> Heights:
         """Heights (rmm) of the layers."""
         layout = self.layout
-        needs = [need for feature in layout.features for need in feature.needs(self.levels, layout)]
+        needs = [need for feature in layout.features for need in feature.needs(self.decided, layout)]
         pivot = self.sizes.pivot
-        heights_of = heights(self.levels, self.sizes.thickness, needs, 2 * pivot.fit.axial)
+        heights_of = heights(self.decided, layout.moving, self.sizes.thickness, needs, 2 * pivot.fit.axial)
         floor = 4.0 + self.sizes.screw / self.sizes.scale + 2 * pivot.fit.axial
         if heights_of.bottoms and heights_of.bottoms[0] < floor:
             from mechanisms.automatic.features import Need
 
             needs.append(Need(-1, floor))
-            heights_of = heights(self.levels, self.sizes.thickness, needs, 2 * pivot.fit.axial)
+            heights_of = heights(self.decided, layout.moving, self.sizes.thickness, needs, 2 * pivot.fit.axial)
         return heights_of
 
     def solids(self) -> dict[str, list[Solid]]:
@@ -129,7 +134,7 @@ class Automatic:
             return low, least
         high = self._layout(tall=True)
         levels = self._levels(high)
-        if levels is None or max(levels.values()) > max(least.values()):
+        if levels is None or max(levels[b] for b in high.moving) > max(least[b] for b in low.moving):
             return low, least
         return high, levels
 
@@ -183,19 +188,19 @@ def automatic(m: Mechanism, pin: float | None = None, solution: Solution | None 
 def _extents(m: Mechanism, solution: Solution) -> tuple[float, float]:
     """The shortest distance of two joints of a body, and the longer side of what all joints sweep (m)."""
     places: dict[str, list[tuple[float, float]]] = {}
+    pinned: dict[str, list[tuple[float, float]]] = {}
     for joint in m.joints.values():
         for marker in (joint.i, joint.j):
             places.setdefault(marker.body.name, []).append((marker.x, marker.y))
+            if joint.kind.name == "revolute" or (joint.kind.name == "pin_in_slot" and marker is joint.j):
+                pinned.setdefault(marker.body.name, []).append((marker.x, marker.y))
     for name, body in m.bodies.items():
         if body.length is not None:
             places.setdefault(name, []).extend([(0.0, 0.0), (body.length, 0.0)])
     seen = np.concatenate([[[0.0, 0.0]], *[_swept(solution, body, np.array(at)) for body, at in places.items()]])
     overall = float(np.ptp(seen[1:], axis=0).max()) if len(seen) > 1 else 1.0
     apart = [
-        float(np.hypot(a[0] - b[0], a[1] - b[1]))
-        for body, at in places.items()
-        for i, a in enumerate(at)
-        for b in at[:i]
+        float(np.hypot(a[0] - b[0], a[1] - b[1])) for at in pinned.values() for i, a in enumerate(at) for b in at[:i]
     ]
     return min((d for d in apart if d > 1e-3 * overall), default=overall), overall
 

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechanisms.author_errors import is_of_kernel
 from mechanisms.automatic.planar import convex_hull
 from shared.shapes.link import Eye, link, plate_link
+from shared.shapes.outline import inset_corners
 from shared.shapes.solid import placed
 
 if TYPE_CHECKING:
@@ -16,8 +20,17 @@ if TYPE_CHECKING:
 
 type PlacedEye = tuple[float, float, Eye]
 
-SLIM = 3.2
-"""A triangle lower than this many radii of its eyes gets straight sides and no window."""
+EDGES = (0.8, 0.3, 0.0)
+"""Radii of a plate's rounded edges; the largest that the CAD kernel manages is taken."""
+SLIM = 2.0
+"""A plate lower than this many radii of its eyes gets straight sides and no window."""
+BANDS = (0.7, 0.85, 1.0)
+"""Widths of the band round a window, in radii of the largest eye; the first that leaves the eyes their wall is taken.
+"""
+EYE_WALL = 0.85
+"""What stays of a plate round an eye, in its radii."""
+LEAST_WINDOW = 6.0
+CORNER = 2.5
 
 
 def body_shape(eyes: list[PlacedEye], thickness: float) -> tuple[cq.Workplane, int]:
@@ -25,13 +38,15 @@ def body_shape(eyes: list[PlacedEye], thickness: float) -> tuple[cq.Workplane, i
     points = np.array([[x, y] for x, y, _ in eyes])
     if len(eyes) == 1:
         x, y, eye = eyes[0]
-        return plate_link([(x, y, eye), (x, y + 0.5 * eye.radius, Eye(eye.radius, 0.0))], thickness), 1
+        return plate_link([(x, y, eye), (x, y + 0.5 * eye.radius, Eye(eye.radius, 0.0))], thickness), int(eye.bore > 0)
+    bores = sum(eye.bore > 0 for _, _, eye in eyes)
     hull = convex_hull(points, 1e-4)
     corners = [int(np.argmin(np.linalg.norm(points - corner, axis=1))) for corner in hull]
     inner = [eye for k, eye in enumerate(eyes) if k not in corners]
     if len(corners) == 2:
-        return _bar([eyes[k] for k in corners], inner, thickness), len(eyes)
-    return _plate([eyes[k] for k in corners], inner, thickness)
+        return _bar([eyes[k] for k in corners], inner, thickness), bores
+    shape, windows = _plate([eyes[k] for k in corners], inner, thickness)
+    return shape, bores + windows
 
 
 def _bar(ends: list[PlacedEye], inner: list[PlacedEye], thickness: float) -> cq.Workplane:
@@ -40,44 +55,57 @@ def _bar(ends: list[PlacedEye], inner: list[PlacedEye], thickness: float) -> cq.
     length, turn = math.hypot(x1 - x0, y1 - y0), math.atan2(y1 - y0, x1 - x0)
     c, s = math.cos(turn), math.sin(turn)
     beside = [((x - x0) * c + (y - y0) * s, (y - y0) * c - (x - x0) * s, eye) for x, y, eye in inner]
-    widths = tuple(1.28 * eye.radius for eye in (start, end))
-    room = length - start.radius - end.radius
-    pocket = 2.2 if room > 22.0 and not inner else 0.0
-    for fillet, depth in ((12.0, pocket), (12.0, 0.0), (7.0, 0.0), (3.0, 0.0)):
+    widths = 1.28 * start.radius, 1.28 * end.radius
+    straight = [(0.0, 0.0, start), (length, 0.0, end)]
+    ways: list[Callable[[], cq.Workplane]] = []
+    if all(eye.bore > 0 for _, _, eye in beside):
+        pockets = (2.2, 0.0) if length - start.radius - end.radius > 22.0 and not inner else (0.0,)
+        for fillet, pocket in [(12.0, pocket) for pocket in pockets] + [(7.0, 0.0), (3.0, 0.0)]:
+            ways.append(partial(link, length, thickness, start, end, widths, fillet, pocket=pocket, inner=beside))
+    ways += [partial(plate_link, straight, thickness, inner=beside, edge=edge) for edge in EDGES]
+    return placed(_first_made(ways), x0, y0, turn=math.degrees(turn))
+
+
+def _first_made(ways: Sequence[Callable[[], cq.Workplane]]) -> cq.Workplane:
+    """The first shape that has room and that the CAD kernel can make; the last one must."""
+    for way in ways[:-1]:
         try:
-            shape = link(length, thickness, start, end, (widths[0], widths[1]), fillet, pocket=depth, inner=beside)
-            break
-        except ValueError:
-            continue
-    else:
-        shape = plate_link([(0.0, 0.0, start), (length, 0.0, end)], thickness, inner=beside)
-    return placed(shape, x0, y0, turn=math.degrees(turn))
+            shape = way()
+            if shape.val().isValid():
+                return shape
+        except Exception as error:
+            if not isinstance(error, ValueError) and not is_of_kernel(error):
+                raise
+    return ways[-1]()
 
 
 def _plate(corners: list[PlacedEye], inner: list[PlacedEye], thickness: float) -> tuple[cq.Workplane, int]:
-    """A plate with curved sides and a window where it is wide, else one with straight sides."""
-    count = len(corners)
+    """A plate with curved sides and a window where it is wide, else one with straight sides; its number of windows."""
     points = np.array([[x, y] for x, y, _ in corners])
     sides = np.roll(points, -1, axis=0) - points
     lengths = np.linalg.norm(sides, axis=1)
     away = points[None] - points[:, None]
     heights = np.abs(sides[:, None, 0] * away[:, :, 1] - sides[:, None, 1] * away[:, :, 0]).max(axis=1) / lengths
-    radius = max(eye.radius for _, _, eye in corners)
-    holes = len(corners) + len(inner)
-    if heights.min() < SLIM * radius:
-        return plate_link(corners, thickness, inner=inner), holes
+    if inner or heights.min() < SLIM * max(eye.radius for _, _, eye in corners):
+        return _first_made([partial(plate_link, corners, thickness, inner=inner, edge=edge) for edge in EDGES]), 0
     waist = 2.0 * float(lengths.max())
-    if not inner:
-        sag = lengths**2 / (8 * waist)
-        rims = [
-            0.35 * radius + float(sag[i]) * 0.85 - 0.45 * (radius - _least(corners, i, count)) for i in range(count)
-        ]
-        try:
-            return plate_link(corners, thickness, waist=waist, rims=rims), holes + 1
-        except ValueError:
-            pass
-    return plate_link(corners, thickness, waist=waist if not inner else math.inf, inner=inner), holes
+    rims = _rims(corners, points, lengths, waist)
+    ways = [partial(plate_link, corners, thickness, waist=waist, rims=rims, edge=edge) for edge in EDGES]
+    return _first_made(ways), 0 if rims is None else 1
 
 
-def _least(corners: list[PlacedEye], i: int, count: int) -> float:
-    return min(corners[i][2].radius, corners[(i + 1) % count][2].radius)
+def _rims(corners: list[PlacedEye], points: np.ndarray, lengths: np.ndarray, waist: float) -> list[float] | None:
+    """Insets of the window's sides that leave an even band round it and enough round each eye; None if it is too
+    small.
+    """
+    radii = np.array([eye.radius for _, _, eye in corners])
+    edge = (radii + np.roll(radii, -1)) / 2 - lengths**2 / (8 * waist)  # of the plate, from the line of two joints
+    for band in BANDS:
+        rims = np.maximum(band * radii.max() - edge, 0.15 * radii.max())
+        tips = inset_corners([(float(x), float(y)) for x, y in points], (rims + CORNER).tolist())
+        if tips is None or np.linalg.norm(np.roll(tips, -1, axis=0) - tips, axis=1).min() < LEAST_WINDOW:
+            return None
+        apart = np.linalg.norm(tips[:, None] - points[None], axis=2) - CORNER - EYE_WALL * radii
+        if apart.min() >= 0:
+            return rims.tolist()
+    return None

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import cadquery as cq
 
-from mechanisms.automatic.body_shape import body_shape
+from mechanisms.automatic.body_shape import PlacedEye, body_shape
 from mechanisms.automatic.frame import base
+from shared.shapes.link import Eye
 from shared.shapes.solid import Solid, placed
 
 if TYPE_CHECKING:
@@ -19,11 +21,23 @@ def built(plan: Plan, heights: Heights) -> dict[str, list[Solid]]:
     """All solids by body, in mm."""
     made = {"ground": [*base(plan), *plan.solids.get("ground", [])]}
     for body in plan.layout.moving:
-        shape, holes = body_shape(plan.eyes[body], heights.thickness)
+        eyes = plan.eyes.get(body, [])
+        shape, holes = body_shape([*eyes, *_blanks(plan, body, eyes)], heights.thickness)
+        for tool, through in plan.cuts.get(body, []):
+            shape, holes = shape.cut(tool), holes + through
         plate = Solid(plan.main[body], placed(shape, z=heights.bottom(body)), plan.materials[body], holes)
         made[body] = [plate, *plan.solids.get(body, [])]
     scale = plan.layout.sizes.scale
     return {body: [_scaled(solid, scale) for solid in solids] for body, solids in made.items()}
+
+
+def _blanks(plan: Plan, body: str, eyes: list[PlacedEye]) -> list[PlacedEye]:
+    """Places that the outline reaches without an eye there."""
+    return [
+        (anchor.x, anchor.y, Eye(anchor.radius, 0.0))
+        for anchor in plan.layout.anchors[body]
+        if all(math.hypot(anchor.x - x, anchor.y - y) > 0.01 for x, y, _ in eyes)
+    ]
 
 
 def _scaled(solid: Solid, scale: float) -> Solid:

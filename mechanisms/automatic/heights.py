@@ -32,9 +32,11 @@ class Heights:
         return self.bottoms[level + 1] - self.top(body) if level + 1 < len(self.bottoms) else float("inf")
 
 
-def heights(levels: Mapping[str, int], thickness: float, needs: Iterable[Need], least: float) -> Heights:
+def heights(
+    levels: Mapping[str, int], bodies: Iterable[str], thickness: float, needs: Iterable[Need], least: float
+) -> Heights:
     """Stack the layers; ``least`` is the smallest gap (rmm)."""
-    count = max(levels.values(), default=0) + 1
+    count = max((levels[body] for body in bodies), default=0) + 1
     gaps = dict.fromkeys(range(-1, count - 1), least)
     for need in needs:
         if need.gap in gaps:

@@ -14,7 +14,7 @@ BASE = -1
 TOP = 10**6
 
 type Levels = Mapping[str, int]
-"""The layer of each body, as far as it is decided."""
+"""The layer of each body, as far as it is decided; and the choices (0 or 1) of items that have one."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +41,25 @@ class Reach:
         )
 
 
+@dataclass(frozen=True)
+class PinReach:
+    """A pin between the plates of ``bodies``, with an end above the highest (``choice`` 0) or under the lowest (1)."""
+
+    bodies: tuple[str, ...]
+    choice: str
+    base = top = False
+
+    def span(self, levels: Levels) -> tuple[int, int] | None:
+        """As :meth:`Reach.span`; while the choice is open, without an end."""
+        known = [2 * levels[body] for body in self.bodies if body in levels]
+        if not known:
+            return None
+        chosen = levels.get(self.choice)
+        low, high = min(known) + 1, max(known) - 1
+        span = low - 2 if chosen == 1 else low, high + 2 if chosen == 0 else high
+        return span if span[0] <= span[1] else None
+
+
 @dataclass(frozen=True, eq=False)
 class Item:
     """One thing that takes room. ``what`` names it in messages; bodies in ``spares`` may pass through it by design."""
@@ -48,7 +67,7 @@ class Item:
     what: str
     body: str
     shape: Rounded
-    reach: Reach
+    reach: Reach | PinReach
     spares: frozenset[str] = frozenset()
     source: object = None
     """The feature that it belongs to."""

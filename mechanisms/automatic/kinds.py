@@ -1,3 +1,7 @@
 """Every kind of joint that has parts by itself: importing a line's module enters it."""
 
-from mechanisms.automatic import pins  # noqa: F401  revolute
+from mechanisms.automatic import (  # noqa: F401
+    pins,  # revolute
+    slides,  # prismatic
+    slots,  # pin in slot
+)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from mechanisms.automatic.items import TOP, Item, spans_meet
+from mechanisms.automatic.items import TOP, Item, PinReach, spans_meet
 
 TRIES = 60_000
 """Choices that are tried with a given number of layers before more layers are taken."""
@@ -26,6 +26,7 @@ class _Search:
     pins: dict[str, list[int]]
     count: int
     fixed: Mapping[str, int]
+    choices: Sequence[str]
     left: int
     best: dict[str, int] | None = None
     cost: float = float("inf")
@@ -38,7 +39,7 @@ class _Search:
             self.best, self.cost = dict(levels), low
             return
         body = self.order[index]
-        options = [self.fixed[body]] if body in self.fixed else range(self.count)
+        options = [self.fixed[body]] if body in self.fixed else range(2 if body in self.choices else self.count)
         ranked = []
         for level in options:
             levels[body] = level
@@ -65,7 +66,7 @@ class _Search:
 
     def _growth(self, body: str, levels: dict[str, int]) -> float:
         """How much longer the pins get by placing ``body``, and a little for its own height."""
-        total = 0.01 * levels[body]
+        total = (0.3 if body in self.choices else 0.01) * levels[body]
         for k in self.pins[body]:
             after = self.items[k].reach.span(levels)
             level = levels.pop(body)
@@ -87,25 +88,42 @@ def find_layers(
     most: int | None = None,
     tries: int = TRIES,
 ) -> dict[str, int] | None:
-    """The layer of each body, from 0 up, or None where no order was found with up to ``most`` layers.
+    """The layer of each body, from 0 up, and the choices; None where no order was found with up to ``most`` layers.
 
     ``conflicts`` are indices of items that meet in the plane; ``fixed`` gives bodies their layer. The fewest layers
     that do, and with these the shortest pins.
     """
     fixed = fixed or {}
     most = most or len(bodies) + 1
-    rules: dict[str, list[tuple[int, int]]] = {body: [] for body in bodies}
+    choices = list(dict.fromkeys(item.reach.choice for item in items if isinstance(item.reach, PinReach)))
+    rules: dict[str, list[tuple[int, int]]] = {name: [] for name in (*bodies, *choices)}
     for i, j in conflicts:
-        for body in {*items[i].reach.bodies, *items[j].reach.bodies} & set(bodies):
-            rules[body].append((i, j))
-    pins = {body: [k for k, item in enumerate(items) if body in item.reach.bodies] for body in bodies}
-    order = _ordered(bodies, items, conflicts)
+        for name in {*_scope(items[i]), *_scope(items[j])} & rules.keys():
+            rules[name].append((i, j))
+    pins = {name: [k for k, item in enumerate(items) if name in _scope(item)] for name in rules}
+    order = _with_choices(_ordered(bodies, items, conflicts), items)
     for count in range(max([1, *(level + 1 for level in fixed.values())]), most + 1):
-        search = _Search(order, items, rules, pins, count, fixed, tries)
+        search = _Search(order, items, rules, pins, count, fixed, choices, tries)
         search.run()
         if search.best is not None:
             return search.best
     return None
+
+
+def _scope(item: Item) -> tuple[str, ...]:
+    """The bodies and the choice that an item's heights depend on."""
+    reach = item.reach
+    return (*reach.bodies, reach.choice) if isinstance(reach, PinReach) else reach.bodies
+
+
+def _with_choices(order: Sequence[str], items: Sequence[Item]) -> list[str]:
+    """Each choice right after the last of its bodies."""
+    found = list(order)
+    for item in items:
+        if isinstance(item.reach, PinReach) and item.reach.choice not in found:
+            last = max(found.index(body) for body in item.reach.bodies)
+            found.insert(last + 1, item.reach.choice)
+    return found
 
 
 def _ordered(bodies: Sequence[str], items: Sequence[Item], conflicts: Sequence[tuple[int, int]]) -> list[str]:

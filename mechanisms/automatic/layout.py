@@ -38,6 +38,15 @@ class Layout:
         """A marker in its body's frame (rmm)."""
         return self.sizes.of_metres(marker.x), self.sizes.of_metres(marker.y)
 
+    def seen(self, body: str, place: tuple[float, float], other: str) -> np.ndarray:
+        """(T, 2): a place of ``body`` in the frame of another body over the motion (rmm)."""
+        pose, frame = self.poses[body], self.poses[other]
+        c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
+        x = pose[:, 0] + c * place[0] - s * place[1] - frame[:, 0]
+        y = pose[:, 1] + s * place[0] + c * place[1] - frame[:, 1]
+        c, s = np.cos(frame[:, 2]), np.sin(frame[:, 2])
+        return np.stack([c * x + s * y, c * y - s * x], axis=1)
+
     @cached_property
     def anchors(self) -> dict[str, list[Anchor]]:
         """By moving body, without repeats; the largest radius where two are at one place."""

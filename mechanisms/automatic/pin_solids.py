@@ -41,6 +41,35 @@ def moving_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> No
     plan.make(holder, f"pin_{joint.name}", placed(bolt, x, y, start), "brass", 0)
 
 
+def hanging_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> None:
+    """A pin pressed into the highest of ``stack``; a circlip keeps it under the lowest. Its head is where there is
+    room.
+    """
+    sizes, name = plan.layout.sizes, joint.name
+    pivot, fit = sizes.pivot, sizes.pivot.fit
+    holder, runners = stack[-1], stack[:-1]
+    x, y = joint.places[holder]
+    high = heights.bottom(holder)
+    boss = high - pivot.washer_room - fit.axial - pivot.flange_room - heights.top(runners[-1])
+    boss = 0.0 if boss < 0.05 else boss
+    plan.eye(holder, x, y, Eye(sizes.eye - 0.5, pivot.held, below=boss, boss=min(9.5, sizes.hardware)))
+    plan.add(holder, pivot.washer_at(f"washer_{name}_high", x, y, high - boss - pivot.washer_room))
+    _run(joint, runners, holder, plan, heights)
+    clip = heights.bottom(runners[0]) - pivot.flange_room - pivot.retainer_room
+    low = clip - sizes.pin_end
+    levels = heights.levels
+    covered = plan.layout.is_covered(joint, 2 * levels[holder] + 1, levels)
+    covered = covered or plan.layout.is_covered(joint, 2 * levels[holder] + 2, levels)
+    end = heights.top(holder) + (-0.3 if covered else fit.seat)
+    bolt = pin(pivot.pin, end - low, None if covered else sizes.head, pivot.groove(clip - low))
+    plan.make(holder, f"pin_{name}", placed(bolt, x, y, low), "brass", 0)
+    plan.add(
+        holder,
+        pivot.washer_at(f"washer_{name}_low", x, y, clip + pivot.clip_thickness + fit.seat),
+        pivot.clip_at(f"circlip_{name}", x, y, clip, turn=180),
+    )
+
+
 def ground_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> None:
     """A pedestal with a fixed pin; a circlip above the highest of ``stack``."""
     sizes, name = plan.layout.sizes, joint.name

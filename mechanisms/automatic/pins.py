@@ -1,8 +1,7 @@
 """Revolute joints: links that turn about a common axis on one pin, with bushings, washers and circlip.
 
-Joints that share a place on a body share their pin. The lowest body holds it, its head is on top; on ground a pedestal
-holds it, and a circlip keeps it.
-"""
+Joints that share a place on a body share their pin. The lowest body holds it and its head is on top, or the highest
+holds it and it hangs down, kept by a circlip; on ground a pedestal holds it."""
 
 from __future__ import annotations
 
@@ -13,8 +12,8 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from mechanisms.automatic.features import Anchor, Feature, Need, kind
-from mechanisms.automatic.items import BASE, Item, Reach
-from mechanisms.automatic.pin_solids import ground_pin, moving_pin
+from mechanisms.automatic.items import BASE, Item, PinReach, Reach
+from mechanisms.automatic.pin_solids import ground_pin, hanging_pin, moving_pin
 from mechanisms.automatic.planar import disc
 
 if TYPE_CHECKING:
@@ -57,6 +56,11 @@ class Pin:
         return "ground" if self.on_ground else self.movers[0]
 
     @property
+    def choice(self) -> str:
+        """The choice whether its lowest body holds it (0) or its highest (1)."""
+        return f"pin {self.name}"
+
+    @property
     def driven(self) -> bool:
         """Whether a driver turns what is on it against ground."""
         m = self.joints[0].i.body.mechanism
@@ -71,7 +75,7 @@ class Pin:
         """All heights that pin and pedestal take."""
         x, y = self.places[self.home]
         what = f"the pedestal and pin of {self.name}" if self.on_ground else f"the pin of {self.name}"
-        reach = Reach(self.movers, 0, 1, base=self.on_ground)
+        reach = Reach(self.movers, 1, 1, base=True) if self.on_ground else PinReach(self.movers, self.choice)
         return [Item(what, self.home, disc(x, y, layout.sizes.hardware), reach, frozenset(self.places), self)]
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
@@ -79,13 +83,16 @@ class Pin:
         sizes, pivot = layout.sizes, layout.sizes.pivot
         running = pivot.fit.axial + pivot.flange_room
         stack = sorted(levels[body] for body in self.movers)
+        hangs = not self.on_ground and levels[self.choice] == 1
         for k, (low, high) in enumerate(pairwise(stack)):
             if high == low + 1:
-                held = k == 0 and not self.on_ground
-                below = 0.0 if held else running
-                yield Need(low, below + pivot.washer_room + running)
+                held = not self.on_ground and k == (len(stack) - 2 if hangs else 0)
+                yield Need(low, pivot.washer_room + running * (1 if held else 2))
         top = stack[-1]
-        if layout.is_covered(self, 2 * (top + 1), levels):
+        if hangs:
+            if stack[0] == 0 or layout.is_covered(self, 2 * (stack[0] - 1), levels):
+                yield Need(stack[0] - 1, sizes.clip_room)
+        elif layout.is_covered(self, 2 * (top + 1), levels):
             yield Need(top, sizes.clip_room if self.on_ground else sizes.end_room)
         if self.on_ground and stack[0] == 0:
             yield Need(BASE, sizes.pedestal + pivot.washer_room + running)
@@ -95,6 +102,8 @@ class Pin:
         stack = sorted(self.movers, key=lambda body: heights.bottom(body))
         if self.on_ground:
             ground_pin(self, stack, plan, heights)
+        elif heights.levels[self.choice] == 1:
+            hanging_pin(self, stack, plan, heights)
         else:
             moving_pin(self, stack, plan, heights)
 

@@ -37,6 +37,7 @@ class Plan:
     eyes: dict[str, list[tuple[float, float, Eye]]] = field(default_factory=dict)
     feet: list[Foot] = field(default_factory=list)
     solids: dict[str, list[Solid]] = field(default_factory=dict)
+    cuts: dict[str, list[tuple[cq.Workplane, int]]] = field(default_factory=dict)
     names: set[str] = field(default_factory=set)
     main: dict[str, str] = field(default_factory=dict)
     """Names of the main pieces."""
@@ -44,6 +45,10 @@ class Plan:
     def eye(self, body: str, x: float, y: float, eye: Eye) -> None:
         """An eye of a body's plate at (x, y) in its frame."""
         self.eyes.setdefault(body, []).append((x, y, eye))
+
+    def cut(self, body: str, tool: cq.Workplane, through_holes: int) -> None:
+        """Take ``tool`` (z = 0 is the plate's underside) out of a body's plate."""
+        self.cuts.setdefault(body, []).append((tool, through_holes))
 
     def add(self, body: str, *solids: Solid) -> None:
         """Solids that move with ``body``."""

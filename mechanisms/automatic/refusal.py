@@ -31,7 +31,7 @@ def refusal(layout: Layout) -> str:
     return (
         f"{layout.m.name}: no order of layers lets {_listed(bodies)} pass each other: {'; '.join(meetings)}. "
         "Make links shorter or move joints apart so that one stays clear of the other, make pins thinner "
-        "(automatic(m, pin=...)), leave a body without solids (leave_out), or write its shape by hand in parts.py"
+        "(automatic(m, pin=...)), or shape them by hand in parts.py"
     )
 
 

@@ -65,6 +65,8 @@ class Sizes:
     stylus_eye: float = 7.0
     hardware: float = 9.2
     """Radius of all that turns about a pin: flange, washer, head, boss, pedestal."""
+    roller: float = 13.0
+    """Diameter of a roller in a slot."""
     head: Head = Head(14.0, 4.0, 1.6)
     pedestal: float = 8.0
     """Least height of a pedestal."""

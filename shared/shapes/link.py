@@ -74,12 +74,14 @@ def plate_link(
     """
     holes = [outline.window([(x, y) for x, y, _ in joints], rims, corner)] if rims else []
     shape = extruded(outline.hull([(x, y, eye.radius) for x, y, eye in joints], waist), thickness, holes=holes)
-    shape = _with_discs(shape, inner, thickness)
+    corners = [(x, y, eye.radius) for x, y, eye in joints]
+    out = [(x, y, eye) for x, y, eye in inner if not outline.hull_holds(corners, (x, y, eye.radius))]
+    shape = _with_discs(shape, out, thickness)
     return _with_eyes(eased(shape, edge), [*joints, *inner], thickness, edge)
 
 
 def _with_discs(shape: cq.Workplane, eyes: Sequence[tuple[float, float, Eye]], thickness: float) -> cq.Workplane:
-    """The shape joined with a disc for each eye; one that lies inside adds nothing."""
+    """The shape joined with a disc for each eye."""
     for x, y, eye in eyes:
         shape = shape.union(extruded(outline.circle(x, y, eye.radius), thickness))
     return shape

@@ -98,18 +98,41 @@ def hull(circles: Sequence[Circle], waist: float = math.inf) -> cq.Wire:
     return cq.Wire.assembleEdges(edges)
 
 
+def hull_holds(circles: Sequence[Circle], inner: Circle, tolerance: float = 1e-6) -> bool:
+    """Whether the straight-sided hull round ``circles`` holds another circle."""
+    x, y, radius = inner
+    if any(math.hypot(x - u, y - v) + radius <= r + tolerance for u, v, r in circles):
+        return True
+    for i in range(len(circles)):
+        leave, _, arrive = _side(circles[i], circles[(i + 1) % len(circles)], math.inf)
+        along = _unit(arrive - leave)
+        to = np.array([x, y]) - leave
+        if along[0] * to[1] - along[1] * to[0] < radius - tolerance:
+            return False
+        if len(circles) == 2 and not -tolerance <= to @ along <= np.linalg.norm(arrive - leave) + tolerance:
+            return False
+    return True
+
+
 def window(points: Sequence[Point], rims: Sequence[float], corner: float) -> cq.Wire:
     """A convex polygon (counter-clockwise) shrunk by rims[i] at its side from point i to i + 1, with round corners.
 
     Raises ValueError if nothing is left of it.
     """
+    corners = inset_corners(points, [rim + corner for rim in rims])
+    if corners is None:
+        raise ValueError("the rims leave no window; make them or the corner radius smaller")
+    return hull([(float(x), float(y), corner) for x, y in corners])
+
+
+def inset_corners(points: Sequence[Point], insets: Sequence[float]) -> np.ndarray | None:
+    """(n, 2): corners of a convex polygon (counter-clockwise) with its sides moved inwards; None if nothing is left."""
     count = len(points)
     lines = []
-    for i, rim in enumerate(rims):
+    for i, inset in enumerate(insets):
         a, b = np.array(points[i]), np.array(points[(i + 1) % count])
         along = _unit(b - a)
-        inward = np.array([-along[1], along[0]])
-        lines.append((a + (rim + corner) * inward, along))
+        lines.append((a + inset * np.array([-along[1], along[0]]), along))
     corners = []
     for i in range(count):
         (p, u), (q, v) = lines[i - 1], lines[i]
@@ -117,8 +140,8 @@ def window(points: Sequence[Point], rims: Sequence[float], corner: float) -> cq.
         corners.append(p + s * u)
     for i in range(count):
         if (corners[(i + 1) % count] - corners[i]) @ lines[i][1] <= 0:
-            raise ValueError("the rims leave no window; make them or the corner radius smaller")
-    return hull([(float(x), float(y), corner) for x, y in corners])
+            return None
+    return np.array(corners)
 
 
 def _side(a: Circle, b: Circle, waist: float) -> tuple[np.ndarray, np.ndarray | None, np.ndarray]:

@@ -48,7 +48,10 @@ from numba.core.dispatcher import Dispatcher  # noqa: E402
 from mbsd.compile_notice import give_notice  # noqa: E402
 
 give_notice()
-numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]  # in case numba was imported before us
+numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]  # in case numba was imported before us: it read other words
+numba.config.CPU_NAME = os.environ["NUMBA_CPU_NAME"]
+if numba.config.CPU_NAME == "generic":
+    numba.config.CPU_FEATURES = os.environ.get("NUMBA_CPU_FEATURES", "")
 
 _OPTIONS = {"cache": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True, "no_rewrites": True}
 # _nrt off: kernels allocate nothing, and without it numba counts references to every array of a tuple (2x slower)

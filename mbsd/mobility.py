@@ -9,6 +9,7 @@ and the largest counts.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -126,13 +127,20 @@ def choose_rows(packed: Packed, q: np.ndarray, time: float) -> np.ndarray:
 def best_rows(packed: Packed, known: np.ndarray) -> np.ndarray | None:
     """(n,) rows of the last evaluated J that are furthest from dependent; None if ``known`` (n,) are nearly as good.
 
-    Where joints repeat each other, rows that serve at one pose may be dependent at another. Source: pivoted QR.
+    Where joints repeat each other, rows that serve at one pose may be dependent at another.
+    """
+    return better_rows(packed.jacobian() * packed.row_scale()[:, None] * packed.column_scale(), known)
+
+
+def better_rows(jac: np.ndarray, known: Sequence[int] | np.ndarray, better: float = BETTER) -> np.ndarray | None:
+    """(r,) rows of a dimensionless jac (m, n) whose least singular value is ``better`` times that of ``known`` (r,).
+
+    None if there are none. Source: pivoted QR.
     """
     from scipy.linalg import qr, svdvals
 
-    jac = packed.jacobian() * packed.row_scale()[:, None] * packed.column_scale()
-    chosen = np.sort(qr(jac.T, mode="r", pivoting=True)[-1][: packed.coordinates])
-    if svdvals(jac[chosen])[-1] <= BETTER * svdvals(jac[known])[-1]:
+    chosen = np.sort(qr(jac.T, mode="r", pivoting=True)[-1][: len(known)])
+    if svdvals(jac[chosen])[-1] <= better * svdvals(jac[known])[-1]:
         return None
     return chosen
 

@@ -230,3 +230,79 @@ def test_links_that_nearly_close_stay_on_their_branch(formulation: str, longer: 
     assert left.theta[-1] > 5.0
     assert abs(right.theta[-1] - left.theta[-1]) > 4.0
     assert np.ptp(sol.audit) < 1e-5
+
+
+def three_cranks(turned: float) -> Mechanism:
+    """Three parallel cranks of 0.4 m on one deck, the world ``turned`` (rad); any two of them hold the deck."""
+    c, s = math.cos(turned), math.sin(turned)
+    m = Mechanism("three_cranks", gravity=(G * s, -G * c))
+    deck = m.body("deck", mass=0.7, inertia=0.0125)
+    for k, (x, y) in enumerate([(0.0, 0.0), (0.2, 0.1), (0.5, 0.2)]):
+        crank = m.bar(f"crank{k}", 0.4, mass=0.5)
+        m.revolute(f"foot{k}", m.ground.at(c * x - s * y, s * x + c * y), crank.start)
+        m.revolute(f"head{k}", deck.at(x, y), crank.end)
+        m.start_near(**{f"crank{k}": math.degrees(-0.2 + turned)})
+    m.start_near(deck=math.degrees(turned))
+    m.start_moving(crank0=6.0)
+    return m
+
+
+@pytest.mark.parametrize("turned", [0.0, 0.3, 1.1, 2.6])
+def test_redundant_cranks_turn_through_poses_where_two_of_them_lie_flat(turned: float) -> None:
+    """All cranks are one pendulum: (3 m L^2 / 3 + m_d L^2) theta'' = -(3 m / 2 + m_d) g L cos(theta)."""
+    sol = three_cranks(turned).simulate(1.5, tolerance=1e-10)
+    inertia, pull = 0.5 * 0.16 + 0.7 * 0.16, (3 * 0.5 / 2 + 0.7) * G * 0.4
+    exact = solve_ivp(
+        lambda _, y: (y[1], -pull / inertia * math.cos(y[0])),
+        (0.0, 1.5),
+        (-0.2, 6.0),
+        t_eval=sol.t,
+        method="DOP853",
+        rtol=1e-13,
+        atol=1e-13,
+    )
+    np.testing.assert_allclose(sol.body("crank0").theta - turned, exact.y[0], rtol=0, atol=1e-8)
+    assert np.ptp(exact.y[0]) > math.pi, "every pair of cranks has been flat"
+    assert sol.stats.position_residual < 1e-10
+
+
+def test_two_cranks_that_lie_flat_are_passed_between_events_too() -> None:
+    """The same motion where a stop, which it never meets, has it go from event to event."""
+    m, n = three_cranks(0.3), three_cranks(0.3)
+    n.event("never", lambda t, moment: moment.body("crank0").theta - 50.0)
+    plain, watched = m.simulate(1.5, tolerance=1e-10), n.simulate(1.5, tolerance=1e-10)
+    np.testing.assert_allclose(plain.body("crank0").theta, watched.body("crank0").theta, rtol=0, atol=1e-8)
+    some = np.array([0.111, 0.77, 1.31])
+    np.testing.assert_allclose(
+        watched.at(some).body("crank0").theta, m.simulate(times=[0.0, *some], tolerance=1e-10).body("crank0").theta[1:],
+        rtol=0, atol=1e-8,
+    )  # fmt: skip
+
+
+def test_a_massless_base_carries_what_ground_does_near_a_change_point() -> None:
+    """Reactions on a base without mass that is welded to ground, in a run that comes near flat cranks."""
+
+    def on(base: bool) -> Mechanism:
+        m = Mechanism("row", gravity=(0.0, -G))
+        foot = m.ground
+        if base:
+            foot = m.body("base")
+            m.weld("base", m.ground.at(0.3, 0.2), foot.at(0.3, 0.2))
+        rods = [m.bar(f"rod{k}", 1.0, mass=1.0) for k in range(2)]
+        deck = m.bar("deck", 1.0, mass=1.0)
+        for k, rod in enumerate(rods):
+            m.revolute(f"foot{k}", foot.at(k, 0), rod.start)
+            m.revolute(f"head{k}", deck.at(k, 0), rod.end)
+        m.start_near(rod0=51.6328, rod1=51.6328, deck=0)
+        m.start_moving(rod0=-1.5)
+        return m
+
+    rough = on(base=False).simulate(0.6, steps=600)
+    flat = float(np.interp(0.0, -rough.body("rod0").theta, rough.t))
+    times = np.sort([*np.linspace(0.0, 1.5, 301), flat - 1e-6, flat + 1e-6])
+    here, there = (on(base).simulate(times=times, tolerance=1e-9) for base in (False, True))
+    assert here.singularity_margin.min() < 1e-5
+    for name in ("foot0", "foot1", "head0", "head1"):
+        for part in ("fx", "fy"):
+            a, b = getattr(here.joint(name), part), getattr(there.joint(name), part)
+            np.testing.assert_allclose(a, b, rtol=0, atol=1e-4 * np.abs(a).max())

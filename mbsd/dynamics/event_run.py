@@ -18,6 +18,7 @@ import numpy as np
 from mbsd.dynamics.acceleration import derivative
 from mbsd.dynamics.crossing import first_crossing
 from mbsd.dynamics.dense import Quintic
+from mbsd.dynamics.exchange import LOOK, exchange_rows
 from mbsd.dynamics.jumps import Jumps
 from mbsd.dynamics.moment import Moment
 from mbsd.dynamics.pace import Pace
@@ -117,7 +118,11 @@ class EventRun:
         """Go on to ``end`` (s); False if a terminal event came before."""
         state = self.state
         pace = Pace(self.run, state, end, progress)
+        turn = 0
         while not self.ended:
+            if turn % LOOK == 0:
+                exchange_rows(self.ready, state)
+            turn += 1
             self.ready.stops.cross(state)
             self._make_valid()
             before = copied(state)

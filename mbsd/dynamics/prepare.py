@@ -153,12 +153,18 @@ def prepare_dynamics(m: Mechanism, start: float, end: float, contacts: bool = Fa
     large = packed.coordinates > MANY_COORDINATES
     initial = (consistent_large if large else consistent)(m, packed, start, _inverse(metric))
     kept, mobility = independent_large(packed, start, initial.q) if large else _rows(packed, initial.q)
+    if not m.events:  # their actions may release a joint
+        still = _still(packed, mobility)
+        lifted = np.where(still, metric, lifted)
+        light = (inertia == 0) & ~still
+    else:
+        light = inertia == 0
     _refuse_superfluous_drivers(packed, mobility)
     switched = [*all_contacts(m, packed, initial.q), *stuck_rows(packed)] if contacts else []
     if switched:
         packed = with_contacts(m, packed, switched)
     always = packed.contact_rows
-    spare = set(range(always)) - set(kept) if contacts and m.events and not large else set()
+    spare = set() if large else set(range(always)) - set(kept)
     planned = {*kept, *spare, *range(always, len(packed.ws.phi))}
     schur, _ = plan_schur(packed.system.row_body, blocks_of(packed, planned))
     switches = Switches(packed, schur, spare)
@@ -173,7 +179,7 @@ def prepare_dynamics(m: Mechanism, start: float, end: float, contacts: bool = Fa
         inverse=_inverse(lifted),
         metric=_inverse(metric),
         weight=inertia * np.tile([*packed.system.gravity, 0.0], len(packed.body_names)),
-        passes=1 if (inertia[3:] > 0).all() else REFINEMENTS,
+        passes=REFINEMENTS if light[3:].any() else 1,
         baumgarte=np.zeros(2),
         per_size=1.0 / np.concatenate([np.ones(3), packed.column_scale()]),
     )
@@ -190,6 +196,12 @@ def _inertias(packed: Packed) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     mass = float(system.mass.max()) or 1.0
     usual = np.tile([mass, mass, mass * packed.size**2], len(system.mass))
     return inertia, np.where(inertia > 0, inertia, LIFT * usual), np.where(inertia > 0, inertia, usual)
+
+
+def _still(packed: Packed, mobility: Mobility) -> np.ndarray:
+    """(3 nb,) coordinates of bodies that joints hold to ground: any inertia serves there, as they do not accelerate."""
+    still = [name not in mobility.free_bodies for name in packed.body_names]
+    return np.repeat(still, 3)
 
 
 def _inverse(inertia: np.ndarray) -> np.ndarray:

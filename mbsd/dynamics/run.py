@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.dynamics.exchange import LOOK, exchange_rows
 from mbsd.dynamics.multipliers import fill_multipliers
 from mbsd.dynamics.pace import Pace, steps_at_once
 from mbsd.dynamics.stuck import jump
@@ -117,11 +118,23 @@ class Run:
                     fill_multipliers(self.ready.dynamics, self.scratch, out)
                 return
         pace = None if progress is None else Pace(self, state, end, progress)
-        while self.advance(state, out, end, self.steps_at_once) != run_state.REACHED:
+        while self._some_steps(state, out, end) != run_state.REACHED:
             pace = pace or Pace(self, state, end, progress)
             pace.note()
         if pace is not None:
             pace.note()
+
+    def _some_steps(self, state: run_state.State, out: run_state.Output, end: float) -> int:
+        """As :meth:`advance`, with a look at rows that repeat others now and then."""
+        if not self.ready.switches.spare:
+            return self.advance(state, out, end, self.steps_at_once)
+        status = run_state.PAUSED
+        for _ in range(0, self.steps_at_once, LOOK):
+            exchange_rows(self.ready, state)
+            status = self.advance(state, out, end, LOOK)
+            if status == run_state.REACHED:
+                break
+        return status
 
     def _failure(self, status: int, state: run_state.State) -> SimulationError:
         packed, method = self.ready.packed, self.method

@@ -74,8 +74,6 @@ class Switches:
         self.place = {int(row): (k, s) for k, rows in enumerate(schur.rows) for s, row in enumerate(rows) if row >= 0}
         self.released: set[int] = set()
         """Rows of joints that an action let go."""
-        self.spare = sorted(spare)
-        """Rows of joints that repeat others: each holds by itself once those are let go."""
         self.touches: list[Touch] = []
         special = packed.system.special
         self._number_of = {int(special[k, ROW]): int(special[k, AT]) for k in range(len(special))}
@@ -98,8 +96,14 @@ class Switches:
                 )
             )
             friction += not slippery
-        for row in (*self.spare, *range(packed.contact_rows, len(packed.ws.phi))):
+        for row in (*spare, *range(packed.contact_rows, len(packed.ws.phi))):
             self.let_go(row)
+
+    @property
+    def spare(self) -> list[int]:
+        """Rows of joints that repeat others: each can stand in for one of those, or holds once those are released."""
+        held = {int(row) for row in self.bilateral()} | self.released
+        return [row for row in sorted(self.place) if row < self.packed.contact_rows and row not in held]
 
     @property
     def friction_rows(self) -> np.ndarray:
@@ -126,9 +130,9 @@ class Switches:
 
     def stand_in(self, q: np.ndarray) -> None:
         """Take up the spare rows that no others repeat any more in pose q (3 nb,)."""
-        left = [row for row in self.spare if row not in self.released]
+        left = self.spare
         if left:
-            held = [int(row) for row in self.bilateral() if row not in left]
+            held = [int(row) for row in self.bilateral()]
             rows = [*held, *left]
             for k in independent_rows(scaled_jacobian(self.packed, q)[rows]):
                 if k >= len(held):

@@ -1,11 +1,12 @@
 """Rows of joints that repeat others, exchanged during a run for rows that are further from dependent.
 
-The equations of motion hold r independent rows of J; which r does not matter to the motion, but rows that are independent
-at the start may become dependent on the way: of three equal cranks the two that are kept can lie flat where the third
-does not. Multipliers and rounding grow there without bound, although nothing is singular. So now and then the rows are
-chosen anew by pivoted QR of all rows, and taken where their least singular value is clearly the larger.
+The equations of motion hold r independent rows of J. Which r does not matter to the motion, but rows that are
+independent at the start may become dependent on the way: of three equal cranks the two that are kept can lie flat where
+the third does not. Multipliers and rounding grow there without bound, although nothing is singular. So now and then the
+rows are chosen anew by pivoted QR of all, and taken where their least singular value is clearly the larger.
 
-Source: Wehage and Haug 1982, J. Mech. Design 104, 247 (choice by factorisation); Golub and Van Loan, sec. 5.4 (pivoted QR).
+Source: Wehage and Haug 1982, J. Mech. Design 104, 247 (choice by factorisation); Golub and Van Loan, Matrix
+Computations, sec. 5.4 (pivoted QR).
 """
 
 from __future__ import annotations
@@ -21,11 +22,11 @@ if TYPE_CHECKING:
 LOOK = 10
 """Steps between two looks."""
 WORN = 1e3
-"""As BETTER where friction of joints comes from these rows' multipliers: another choice is another division of the load."""
+"""As BETTER where friction of joints comes from these rows' multipliers: other rows divide the load otherwise."""
 
 
 def exchange_rows(ready: PreparedDynamics, state: State) -> None:
-    """Let go and take up rows of ``ready.switches`` so that they serve at ``state``; looks at mechanisms with spare rows."""
+    """Let go and take up rows of ``ready.switches`` so that they serve at ``state``; only where some are spare."""
     switches, packed = ready.switches, ready.packed
     spare = switches.spare
     if not spare:

@@ -1,5 +1,7 @@
 # The face of the project: `make help` lists what there is. GNU make 3.81 and a POSIX shell are enough.
 
+# Twelve frames on one sheet are small: drafts, unless PRESET says otherwise.
+SHEET_PRESET := $(if $(filter undefined,$(origin PRESET)),draft,$(value PRESET))
 PRESET ?= preview
 FRAME ?= 0
 NAME ?=
@@ -19,7 +21,7 @@ override VIEW := $(value VIEW)
 override N := $(value N)
 override SEED := $(value SEED)
 override MECHANISM = $(subst -,_,$*)
-export PRESET FRAME NAME KIND VIEW MECHANISM N SEED
+export PRESET SHEET_PRESET FRAME NAME KIND VIEW MECHANISM N SEED
 
 PRESETS := draft preview production final
 ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
@@ -111,6 +113,10 @@ glb-%: install always ## the parts with their motion in one file for any glTF vi
 poster-%: install always ## one picture at its best: out/<name>/poster.png
 	$(upto_shot)
 	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET"
+
+contact-%: install always ## a sheet of twelve frames, drafts if no PRESET is given: out/<name>/contact.png
+	$(upto_shot)
+	@$(PICTURE) contact "$$MECHANISM" --preset "$$SHEET_PRESET"
 
 still-%: install always ## one frame of the film, FRAME=15 (from 0): out/<name>/stills/
 	$(upto_shot)

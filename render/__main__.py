@@ -14,6 +14,7 @@ COMMANDS = {
     "report": "what the run found, in sentences and tables: report.md",
     "glb": "the parts with their motion as one animation, for any glTF viewer",
     "still": "one frame as a picture",
+    "contact": "a sheet of twelve frames as contact.png",
     "poster": "the shot's best moment as poster.png",
     "frames": "render every frame that is not there yet",
     "film": "frames, then the MP4",
@@ -67,6 +68,10 @@ def _picture(command: str, name: str, preset: Preset, arguments: argparse.Namesp
         from render import still
 
         still.still(name, preset, arguments.frame)
+    elif command == "contact":
+        from render import contact
+
+        contact.run(name, preset)
     elif command == "poster":
         from render import still
 

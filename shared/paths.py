@@ -160,6 +160,7 @@ class Out:
         self.glb = self.folder / f"{self.name}.glb"
         self.report = self.folder / "report.md"
         self.poster = self.folder / "poster.png"
+        self.contact = self.folder / "contact.png"
         self.stills = self.folder / "stills"
         self.scene = self.folder / f"{self.name}.blend"
         self.stamps = self.folder / ".stamps"

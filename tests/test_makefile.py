@@ -42,7 +42,7 @@ def test_help_is_the_default_and_has_a_line_for_every_target() -> None:
     assert listed == [target for target in targets if target != "always"]
     wanted = "help check install list run-<name> solve-<name> parts-<name> clearance-<name> plot-<name> still-<name> "
     wanted += "poster-<name> frames-<name> film-<name> scene-<name> scene-ui-<name> run-all all new test lint bench "
-    wanted += "animate-<name> report-<name> glb-<name> clean clean-all"
+    wanted += "animate-<name> report-<name> glb-<name> contact-<name> clean clean-all"
     assert set(wanted.split()) <= set(listed)
     assert max(map(len, done.stdout.splitlines())) <= 120
 
@@ -63,6 +63,11 @@ def test_picture_targets_take_the_preset(target: str) -> None:
     assert planned(f"{target}-four-bar")[-1].endswith("--preset preview")
     assert planned(f"{target}-four-bar", "PRESET=final")[-1].startswith(f"{target} four_bar")
     assert planned(f"{target}-four-bar", "PRESET=final")[-1].endswith("--preset final")
+
+
+def test_a_contact_sheet_is_of_drafts_unless_asked_otherwise() -> None:
+    assert planned("contact-four-bar")[-1] == "contact four_bar --preset draft"
+    assert planned("contact-four-bar", "PRESET=preview")[-1] == "contact four_bar --preset preview"
 
 
 def test_a_still_takes_its_frame() -> None:

@@ -80,21 +80,6 @@ def test_an_edit_redoes_what_follows_from_it_and_nothing_else(tree: Path) -> Non
     assert not {"shot.json", "parts/crank.stl", "parts/slider.stl", "parts/pin_A.step"} & longer
 
 
-def test_a_simulated_one_is_solved_and_so_are_its_variants(tree: Path) -> None:
-    done = stage(tree, "mechanisms", "new", "--kind=simulated", "my-swing")
-    assert done.returncode == 0, done.stderr
-    assert "a double pendulum moved by weight and a spring, to change; make run-my-swing runs it" in done.stdout
-    assert "run-my-swing-no-spring" in (tree / "mechanisms" / "my_swing" / "mechanism.py").read_text()
-    names = stage(tree, "mechanisms", "variants", "my-swing").stdout.split()
-    assert names == ["my_swing", "my_swing-no_spring", "my_swing-damped"]
-    for name in names:
-        done = stage(tree, "mechanisms", "solve", name)
-        assert done.returncode == 0, done.stderr
-        assert "481 times over 4 s" in done.stdout
-    listed = stage(tree, "mechanisms", "list").stdout
-    assert "my-swing-no-spring: made: motion" in listed
-
-
 def test_an_unknown_kind_is_refused_with_the_known_ones() -> None:
     with pytest.raises(UserError, match=r"no kind 'simulatd'.*driven: .*simulated: .*did you mean 'simulated'\?"):
         new.run("my_linkage", "simulatd")

@@ -7,9 +7,10 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
-from mechanisms import solve_stage
+from mechanisms import new, solve_stage
 from mechanisms.variants import checked_variants, constant, replaced
 from shared import paths
 from shared.contract import read_motion
@@ -150,3 +151,21 @@ def test_names_are_read_without_running_the_file(tmp_path: Path) -> None:
         file.write_text(text)
         assert variants_in(file) == names, text
     assert variants_in(tmp_path / "none.py") == []
+
+
+def test_a_new_simulated_mechanism_is_solved_and_so_are_its_variants(
+    project: Project, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(new, "MECHANISMS", project.root / "mechanisms")
+    new.run("my-swing", "simulated")
+    assert "a double pendulum moved by weight and a spring, to change; make run-my-swing runs it" in (
+        capsys.readouterr().out
+    )
+    file = project.root / "mechanisms" / "my_swing" / "mechanism.py"
+    assert "run-my-swing-no-spring" in file.read_text()
+    assert variants_in(file) == ["no_spring", "damped"]
+    for name in ("my_swing", "my_swing-no_spring", "my_swing-damped"):
+        solve_stage.run(name)
+        assert "481 times over 4 s" in capsys.readouterr().out
+    loss = [np.ptp(read_motion(Out(f"my_swing{v}").motion).forces["spring"].power) for v in ("", "-damped")]
+    assert loss[1] != loss[0]

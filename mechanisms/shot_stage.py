@@ -49,7 +49,7 @@ def run(name: str) -> None:
         refuse_unknown(shot, names)
     write_shot(out.shot, shot)
     Stage(out, "shot", _key(names, inputs), [out.shot]).done(inputs=inputs.names())
-    say("shot", f"{out.name}: {shot.frames} frames of film, {shot.turns} turns at {shot.fps} frames a second")
+    say("shot", f"{out.name}: {shot.turns} turns at {shot.fps} frames a second")
 
 
 def _without_file(out: Out) -> None:

@@ -28,7 +28,7 @@ USUAL_PLACES = (
 
 
 def save(name: str, preset: Preset) -> Path:
-    """The stage: out/<mechanism>/<mechanism>.blend with one turn of the motion on its timeline."""
+    """The stage: out/<mechanism>/<mechanism>.blend with the motion once on its timeline."""
     out = Out(name)
     stage = Stage(out, "scene", stage_key(out, preset), [out.scene])
     if stage.is_fresh():
@@ -41,7 +41,7 @@ def save(name: str, preset: Preset) -> Path:
     film = read_film(out)
     job = Job(
         scene=film.scene,
-        states=[film.state(frame) for frame in range(film.shot.frames_per_turn)],
+        states=[film.state(frame) for frame in range(film.clock.frames)],
         blend=str(out.scene.resolve()),
         width=preset.width,
         height=preset.height,

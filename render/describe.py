@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from render.clock import Clock
 from render.framing import CameraPose, depth_of_field, fit, orbit
 from render.framing import axes as camera_axes
-from render.poses import Poses, moment
+from render.poses import Poses
 from render.scene import LabelSpec, PieceSpec, Point, Scene, State, StudioSpec, SurfaceSpec, TrailSpec
 from render.swept import SweptSpace
 from shared.contract import Motion, Parts, Piece
@@ -21,7 +22,12 @@ from shared.materials import MATERIALS
 from shared.shot import Names, Shot, Surface, Trail, refuse_unknown
 
 Array = NDArray[np.float64]
-TRAIL_RINGS = 160
+TRAIL_RINGS, MOST_RINGS = 160, 3000
+"""Of a trail: the fewest and the most."""
+TRAIL_STRAY = 0.15
+"""How far a trail may stray from its point's way between two rings, in its own radii."""
+BENT = 0.995
+"""Part of the motion over which that holds; stiff contacts accelerate a point at will for a moment."""
 TRAIL_GAP = 0.001
 """Height (m) of a trail over the body that carries its point, if the shot gives none."""
 LABEL_GAP = 0.012
@@ -35,10 +41,12 @@ class Film:
         """``folder`` holds the STL files. Raises UserError if names, bodies or files do not fit together."""
         self.motion, self.parts, self.shot, self.folder = motion, parts, shot, folder
         self.poses = Poses(motion)
+        self.clock = Clock(motion, shot)
         refuse_unknown(shot, Names.of(motion, parts))
         self._refuse_mismatch()
         paths = {trail.point: self._trail_z(trail) for trail in self.trails}
         self.space = SweptSpace(self.poses, parts, folder, paths)
+        self._ring_counts: dict[str, int] = {}
 
     @property
     def trails(self) -> tuple[Trail, ...]:
@@ -62,7 +70,7 @@ class Film:
                 for body, name, piece in self._pieces()
             ],
             trails=[
-                TrailSpec(name=t.point, colour=t.colour, radius=t.radius * self.space.size, rings=TRAIL_RINGS)
+                TrailSpec(name=t.point, colour=t.colour, radius=t.radius * self.space.size, rings=self._rings(t))
                 for t in self.trails
             ],
             labels=[LabelSpec(text=s.text, size=s.size * self.space.size, colour=s.colour) for s in self.shot.labels],
@@ -76,8 +84,8 @@ class Film:
         )
 
     def state(self, frame: int) -> State:
-        """What frame ``frame`` shows; frames before 0 or after the first turn go on with the loop."""
-        at = moment(self.motion, frame, self.shot.frames_per_turn)
+        """What frame ``frame`` shows; frames before 0 or after the first showing go on with the loop."""
+        at = self.clock.moment(frame)
         return State(
             bodies={name: self.poses.body(name, at) for name in self.parts.bodies},
             trails=[self._path(trail, frame) for trail in self.trails],
@@ -86,11 +94,11 @@ class Film:
         )
 
     def camera(self, frame: int) -> CameraPose:
-        """The camera at a frame: it stands still, or swings about the middle once a turn."""
+        """The camera at a frame: it stands still, or swings about the middle once in each showing of the motion."""
         shot = self.shot.camera
         elevation, azimuth = math.radians(shot.elevation), math.radians(shot.azimuth)
         swing = math.radians(shot.orbit)
-        phase = math.tau * (frame % self.shot.frames_per_turn) / self.shot.frames_per_turn
+        phase = math.tau * self.clock.phase(frame)
         position, target, distance = self._stand
         if swing:
             azimuth += swing * math.sin(phase)
@@ -136,22 +144,32 @@ class Film:
         tops = [piece.z_range[1] for piece in solids.pieces.values()] if solids else []
         return max(tops, default=0.0) + TRAIL_GAP
 
+    def _rings(self, trail: Trail) -> int:
+        """So many that the tube strays from the point's way by no more than a part of its own radius.
+
+        Between two moments h apart a chord strays by a h^2 / 8 from a way with acceleration a.
+        """
+        if trail.point not in self._ring_counts:
+            point = self.motion.points[trail.point]
+            bend = float(np.quantile(np.hypot(point.ax, point.ay), BENT))
+            stray = TRAIL_STRAY * trail.radius * self.space.size
+            length = trail.tail * (self.clock.end - self.clock.start) / self.clock.turns
+            wanted = math.ceil(length * math.sqrt(bend / (8 * stray)))
+            self._ring_counts[trail.point] = min(max(TRAIL_RINGS, wanted), MOST_RINGS)
+        return self._ring_counts[trail.point]
+
     def _path(self, trail: Trail, frame: int) -> list[Point]:
-        """Where the point was, from now back to the end of the tail."""
-        count = self.shot.frames_per_turn
-        phase = (frame % count) / count - trail.tail * np.linspace(0, 1, TRAIL_RINGS)
-        start, end = self.motion.time[0], self.motion.time[-1]
-        wrapped = phase - np.floor(phase)
-        if self.motion.period is None:
-            times = start + (end - start) * (1 - np.abs(1 - 2 * wrapped))
-        else:
-            times = start + self.motion.period * wrapped
+        """Where the point was, from now back to the end of the tail; where an impact turned it is among the places."""
+        times = self.clock.trail_times(frame, trail.tail, self._rings(trail))
+        for event in self.motion.events:
+            if times[-1] < event.time < times[0]:
+                times[int(np.abs(times - event.time).argmin())] = event.time
         z = self._trail_z(trail)
         return [(float(x), float(y), z) for x, y in self.poses.point(trail.point, times)]
 
     def _label_place(self, name: str, frame: int) -> Point:
         """Just above the highest piece that its joint or point goes through."""
-        at = moment(self.motion, frame, self.shot.frames_per_turn)
+        at = self.clock.moment(frame)
         if name in self.motion.points:
             x, y = (float(value) for value in self.poses.point(name, np.array([at.time]))[0])
             bodies = (self.motion.points[name].body,)

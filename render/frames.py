@@ -41,12 +41,13 @@ def run(name: str, preset: Preset) -> None:
         return
     film = read_film(out)
     pictures = Pictures(film, preset)
-    frames = range(film.shot.frames_per_turn)
+    frames = range(film.clock.frames)
+    say("frames", f"{out.name}: {film.clock.said()}")
     with store.locked():
         tally = Tally()
         try:
             for _ in range(ATTEMPTS):
-                render(pictures, store, frames, f"{film.shot.frames} frames in the film", tally)
+                render(pictures, store, frames, f"{film.clock.total} frames in the film", tally)
                 if all(store.find(pictures.key(frame)) for frame in frames):
                     break  # nothing was damaged while the others were rendered
         finally:
@@ -58,7 +59,7 @@ def run(name: str, preset: Preset) -> None:
             width=preset.width,
             height=preset.height,
             fps=film.shot.fps,
-            frames=[path.name for path in found] * film.shot.turns,
+            frames=[path.name for path in found] * film.clock.showings,
         )
         jsonfile.write(store.index, index)
         store.prune(set(found), spare=len(set(found)))
@@ -124,7 +125,7 @@ class Pictures:
 
     def key(self, frame: int) -> str:
         """The name of the picture a frame shows."""
-        around = (frame - 1, frame, frame + 1) if self.preset.motion_blur else (frame,)
+        around = self.film.clock.around(frame) if self.preset.motion_blur else (frame,)
         return frame_key(self.scene, [self.state(f) for f in around])
 
     def job(self, frames: Sequence[int], store: FrameStore) -> Job:
@@ -132,7 +133,7 @@ class Pictures:
         states: list[State] = []
         pictures = []
         for frame in frames:
-            around = [self.state(f) for f in (frame - 1, frame, frame + 1)] if self.preset.motion_blur else []
+            around = [self.state(f) for f in self.film.clock.around(frame)] if self.preset.motion_blur else []
             at = len(states) + (1 if around else 0)
             states += around or [self.state(frame)]
             pictures.append(

@@ -1,4 +1,4 @@
-"""The motion at any moment: quintic Hermite between the samples of data.json, and the film's clock.
+"""The motion at any moment: quintic Hermite between the samples of data.json.
 
 Position, velocity and acceleration at both ends of an interval fix one quintic, so the film may have any frame rate.
 Between 361 samples a turn the error is far below a micrometre.
@@ -41,24 +41,10 @@ def hermite(time: Array, value: Array, rate: Array, acceleration: Array, t: Arra
 
 @dataclass(frozen=True)
 class Moment:
-    """A film phase in the motion's own terms: time (s), and how many whole turns came before."""
+    """A moment of the film in the motion's own terms: time (s), and how many whole periods came before."""
 
     time: float
     turns: int
-
-
-def moment(motion: Motion, frame: int, frames_per_turn: int) -> Moment:
-    """The moment that a film frame shows; frames beyond one turn, or before frame 0, go on with the loop.
-
-    A motion without a period runs there and back in one turn, so that it too loops without a jump.
-    The same phase gives the same float in every turn, so later turns find their pictures made.
-    """
-    turns, step = divmod(frame, frames_per_turn)
-    phase = step / frames_per_turn
-    start, end = motion.time[0], motion.time[-1]
-    if motion.period is None:
-        return Moment(start + (end - start) * (1 - abs(1 - 2 * phase)), 0)
-    return Moment(start + motion.period * phase, turns)
 
 
 class Poses:

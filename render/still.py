@@ -38,14 +38,15 @@ def _make(out: Out, preset: Preset, frame: int | None, target: Path, stage: Stag
     from render.store import FrameStore
 
     film = read_film(out)
+    clock = film.clock
     if frame is None:
-        frame = round(film.shot.poster * film.shot.frames_per_turn)
-    elif not 0 <= frame < film.shot.frames:
+        frame = clock.frame_at(film.shot.poster)
+    elif not 0 <= frame < clock.total:
         raise UserError(
-            f"{out.name}: there is no frame {frame}; the film has frames 0 to {film.shot.frames - 1} "
-            f"({film.shot.turns} turns of {film.shot.frames_per_turn})"
+            f"{out.name}: there is no frame {frame}; the film has frames 0 to {clock.total - 1} "
+            f"(the motion {clock.showings} times, {clock.frames} frames each)"
         )
-    frame %= film.shot.frames_per_turn
+    frame %= clock.frames
     pictures = frames.Pictures(film, preset)
     store = FrameStore(out.frames(preset.name))
     with store.locked():

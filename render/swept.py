@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import cmath
+import math
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from render.poses import Moment, Poses, moment
+from render.clock import turns_of
+from render.poses import Moment, Poses
 from render.solids import prism, read_vertices, swept
 from shared.contract import Parts
 
 Array = NDArray[np.float64]
-SAMPLES = 120
-"""Poses over the motion from which the swept space is taken."""
+SAMPLES, MOST = 120, 1200
+"""Poses over the motion from which the swept space is taken: of a turn or a second, and of the whole at most."""
 
 
 class SweptSpace:
@@ -67,7 +69,13 @@ class SweptSpace:
 
     @cached_property
     def _moments(self) -> list[Moment]:
-        return [moment(self._poses.motion, i, SAMPLES) for i in range(SAMPLES)]
+        motion = self._poses.motion
+        start, end = motion.time[0], motion.time[-1]
+        if motion.period is not None:
+            count = min(SAMPLES * turns_of(motion), MOST)
+            return [Moment(start + motion.period * (i / count), 0) for i in range(count)]
+        count = min(max(SAMPLES, math.ceil(SAMPLES * (end - start))), MOST)
+        return [Moment(float(time), 0) for time in np.linspace(start, end, count + 1)]
 
     @cached_property
     def _bodies(self) -> dict[str, Array]:

@@ -51,7 +51,7 @@ class Trail(_Strict, frozen=True):
     point: str
     colour: Colour = (0.90, 0.24, 0.0)
     tail: Annotated[float, msgspec.Meta(gt=0, le=1)] = 0.92
-    """Length behind the point, in turns."""
+    """Length behind the point, in turns; of a motion without a period in parts of it."""
     radius: Annotated[float, msgspec.Meta(gt=0, le=0.1)] = 0.0046
     """At the point, as a part of the size of the swept motion."""
     z: float | None = None
@@ -84,9 +84,16 @@ class Shot(_Strict, frozen=True):
     camera: Camera = Camera()
     look: Literal["studio", "daylight"] = "studio"
     turns: Annotated[int, msgspec.Meta(ge=1, le=1000)] = 3
-    """How often the film shows the motion; every turn after the first costs nothing to render."""
-    seconds_per_turn: Annotated[float, msgspec.Meta(gt=0, le=600)] = 4.0
-    """Film time of one turn (one period; a motion without a period runs there and back in it)."""
+    """How many turns of the drivers the film shows, whole periods of the motion; after the first they cost nothing to
+    render. A motion without a period is shown so often."""
+    seconds_per_turn: Annotated[float, msgspec.Meta(gt=0, le=600)] | None = None
+    """Film time of one turn, or of a whole motion without a period; null is 4 s a turn and 12 s at most a period, and
+    the natural rate of a motion without one."""
+    rate: Annotated[float, msgspec.Meta(gt=0)] | None = None
+    """Seconds of the motion in a second of film, instead of ``seconds_per_turn``: 1 is real time, 0.1 is slowed ten
+    times. Null plays a motion without a period in real time, or at the nearest round factor that makes it 1 .. 20 s."""
+    hold: Annotated[float, msgspec.Meta(ge=0, le=60)] = 1.0
+    """Film time for which a motion without a period stands at its end before it begins anew (s)."""
     fps: Annotated[int, msgspec.Meta(ge=1, le=120)] = 30
     trails: tuple[Trail, ...] | None = None
     """null trails every traced point; () trails none."""
@@ -94,17 +101,7 @@ class Shot(_Strict, frozen=True):
     materials: dict[str, str | Surface] = {}
     """Other surfaces for the film alone, by ``body`` or ``body/piece``: the name of a material or a Surface."""
     poster: Unit = 0.3
-    """Which moment the poster shows, as a part of a turn."""
-
-    @property
-    def frames_per_turn(self) -> int:
-        """Pictures in one turn, at least one."""
-        return max(1, round(self.seconds_per_turn * self.fps))
-
-    @property
-    def frames(self) -> int:
-        """Pictures in the whole film."""
-        return self.turns * self.frames_per_turn
+    """Which moment the poster shows, as a part of the motion."""
 
 
 def read_shot(path: Path) -> Shot:
@@ -114,6 +111,8 @@ def read_shot(path: Path) -> Shot:
 
 def write_shot(path: Path, shot: Shot) -> None:
     """Check types, ranges and numbers, and write shot.json whole."""
+    if shot.rate is not None and shot.seconds_per_turn is not None:
+        raise UserError(f"{path}: rate and seconds_per_turn both say how fast the film goes; give one of them")
     jsonfile.refuse_non_finite(shot, path)
     jsonfile.write(path, jsonfile.decode(jsonfile.encode(shot), Shot, path))
 

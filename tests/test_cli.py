@@ -144,7 +144,7 @@ def test_the_shot_stage_writes_the_shot_once(
     shot_stage.run(folder.name)
     out = Out(folder.name)
     assert (read_shot(out.shot).turns, read_shot(out.shot).fps) == (2, 24)
-    assert capsys.readouterr().out.startswith(f"shot: {folder.name}: 192 frames of film")
+    assert capsys.readouterr().out.startswith(f"shot: {folder.name}: 2 turns at 24 frames a second")
     os.utime(file)
     with monkeypatch.context() as patch:
         patch.setattr(shot_stage, "load", lambda *_: pytest.fail("touched only, yet loaded again"))

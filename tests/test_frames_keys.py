@@ -32,7 +32,7 @@ def pictures(shot: Shot = SHOT, preset: str = "preview") -> Pictures:
 
 
 def keys(made: Pictures) -> list[str]:
-    return [made.key(frame) for frame in range(made.film.shot.frames_per_turn)]
+    return [made.key(frame) for frame in range(made.film.clock.frames)]
 
 
 def test_presets_are_the_published_ones():
@@ -45,7 +45,7 @@ def test_presets_are_the_published_ones():
 
 def test_the_second_turn_shows_the_pictures_of_the_first(out_root: Path):
     made = pictures()
-    count = made.film.shot.frames_per_turn
+    count = made.film.clock.frames
     for frame in range(count):
         first, second = made.film.state(frame), made.film.state(frame + count)
         x, y, theta = second.bodies["crank"]

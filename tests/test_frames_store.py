@@ -269,5 +269,5 @@ def test_starting_with_nothing_to_do_is_quick_and_imports_no_blender():
 
 def test_a_still_outside_the_film_is_refused_in_process(out_root: Path):
     film_fixture.write(Shot(turns=2, seconds_per_turn=0.2))
-    with pytest.raises(UserError, match=r"frames 0 to 11 \(2 turns of 6\)"):
+    with pytest.raises(UserError, match=r"frames 0 to 11 \(the motion 2 times, 6 frames each\)"):
         still.still("four_bar", TINY, 12)

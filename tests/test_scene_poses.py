@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 
-import msgspec
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from render.poses import Moment, Poses, hermite, moment
+from render.clock import Clock
+from render.poses import Moment, Poses, hermite
+from shared.shot import Shot
 from tests.motions import bouncing_ball, four_bar_motion
 
 MOTION = four_bar_motion()
@@ -38,7 +39,8 @@ def test_between_samples_the_four_bar_is_met_to_a_picometre():
 @given(st.integers(-500, 500), st.integers(1, 240))
 def test_the_film_loops_without_a_jump(frame: int, count: int):
     poses = Poses(MOTION)
-    now, later = moment(MOTION, frame, count), moment(MOTION, frame + count, count)
+    clock = Clock(MOTION, Shot(seconds_per_turn=float(count), fps=1))
+    now, later = clock.moment(frame), clock.moment(frame + count)
     assert now.time == later.time
     for name in MOTION.bodies:
         x, y, theta = poses.body(name, now)
@@ -49,8 +51,8 @@ def test_the_film_loops_without_a_jump(frame: int, count: int):
 
 
 def test_angles_go_on_over_the_seam():
-    poses = Poses(MOTION)
-    angles = [poses.body("crank", moment(MOTION, frame, 12))[2] for frame in range(-3, 30)]
+    poses, clock = Poses(MOTION), Clock(MOTION, Shot(seconds_per_turn=12.0, fps=1))
+    angles = [poses.body("crank", clock.moment(frame))[2] for frame in range(-3, 30)]
     assert np.diff(angles) == pytest.approx(math.tau / 12)
 
 
@@ -61,12 +63,6 @@ def test_a_joint_moves_with_its_second_body():
             assert poses.joint(name, Moment(MOTION.time[index], 0)) == pytest.approx(
                 (joint.x[index], joint.y[index]), abs=1e-9
             )
-
-
-def test_a_motion_without_a_period_runs_there_and_back():
-    once = msgspec.structs.replace(MOTION, period=None)
-    times = [moment(once, frame, 8).time for frame in range(9)]
-    assert times == pytest.approx([0, 0.25, 0.5, 0.75, 1, 0.75, 0.5, 0.25, 0])
 
 
 @pytest.mark.parametrize("cut", [0, 1])

@@ -72,8 +72,3 @@ def test_names_the_mechanism_lacks_are_refused_with_those_it_has(out_root: Path,
         refuse_unknown(shot, Names.of(read_motion(out.motion), read_parts(out.parts)))
     for word in ["four_bar", *words]:
         assert word in str(refusal.value)
-
-
-def test_a_film_is_turns_of_equal_length():
-    assert Shot(turns=3, seconds_per_turn=4.0, fps=30).frames == 360
-    assert Shot(turns=1, seconds_per_turn=0.001, fps=1).frames == 1

@@ -47,7 +47,12 @@ def vertices(path: list[Point], radius: float) -> np.ndarray:
     line = np.asarray(path)
     along = np.gradient(line[:, :2], axis=0)
     length = np.linalg.norm(along, axis=1, keepdims=True)
-    along = np.divide(along, length, out=np.tile([1.0, 0.0], (len(line), 1)), where=length > 1e-12)
+    moving = np.flatnonzero(length[:, 0] > 1e-12)
+    if len(moving):  # where the point stood still, the tube goes on as it did beside
+        nearest = moving[np.abs(np.arange(len(line))[:, None] - moving).argmin(axis=1)]
+        along = along[nearest] / length[nearest]
+    else:
+        along = np.tile([1.0, 0.0], (len(line), 1))
     across = np.column_stack([-along[:, 1], along[:, 0], np.zeros(len(line))])
     up = np.array([0.0, 0.0, 1.0])
     angle = np.arange(SIDES) * 2 * np.pi / SIDES

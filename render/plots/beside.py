@@ -18,7 +18,7 @@ PANELS = 9
 """On one page; of more, those in which the motions differ most."""
 STILL = 1e-9
 """m or rad: what varies less stands still."""
-WIDE = 4.2
+WIDE = 3.4
 """Width of the first line, of which the others are laid on top: equal motions show both."""
 Motions = Mapping[str, Motion]
 Panel = tuple[str, str, Callable[[Motion], np.ndarray | None]]

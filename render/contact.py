@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from render.inputs import stage_key
-from render.poses import moment
 from render.presets import Preset
 from shared.console import say
 from shared.files import write_bytes
@@ -51,12 +50,11 @@ def run(name: str, preset: Preset) -> None:
 
 
 def frames_of(film: Film) -> list[int]:
-    """Twelve frames in equal steps: of a motion that repeats over one turn, of another until it ends."""
-    count, number = film.shot.frames_per_turn, COLUMNS * ROWS
-    times = [moment(film.motion, frame, count).time for frame in range(count)]
-    if film.motion.period is not None:
+    """Twelve frames in equal steps: of a motion that repeats over one period, of another until it ends."""
+    count, number = film.clock.moving, COLUMNS * ROWS
+    if film.clock.repeats:
         return [int(frame) for frame in np.arange(number) * count / number]
-    return [int(frame) for frame in np.linspace(0, int(np.argmax(times)), number).round()]
+    return [int(frame) for frame in np.linspace(0, count, number).round()]
 
 
 def sheet(pictures: list[Path], captions: list[str], title: str) -> bytes:
@@ -81,7 +79,7 @@ def sheet(pictures: list[Path], captions: list[str], title: str) -> bytes:
 
 def _captions(film: Film, frames: list[int]) -> list[str]:
     """Times in as many decimals as tell the frames apart."""
-    times = [moment(film.motion, frame, film.shot.frames_per_turn).time for frame in frames]
+    times = [film.clock.moment(frame).time for frame in frames]
     decimals = max(0, math.ceil(1 - math.log10(max(max(times) - min(times), 1e-9) / len(times))))
     return [f"{time:.{min(decimals, 9)}f} s" for time in times]
 

@@ -12,7 +12,6 @@ from PIL import Image
 from render import contact
 from render.describe import Film
 from render.inputs import read_film
-from render.poses import moment
 from render.presets import Preset
 from render.store import FrameStore
 from shared.paths import Out
@@ -30,7 +29,7 @@ def test_a_motion_that_repeats_is_shown_over_one_turn(out_root: Path) -> None:
 def test_another_is_shown_from_its_start_to_its_end(out_root: Path) -> None:
     whole = read_film(film_fixture.write(Shot(seconds_per_turn=4.0)))
     film = Film(msgspec.structs.replace(whole.motion, period=None), whole.parts, whole.shot, whole.folder)
-    times = [moment(film.motion, frame, 120).time for frame in contact.frames_of(film)]
+    times = [film.clock.moment(frame).time for frame in contact.frames_of(film)]
     assert times == sorted(times)
     assert times[0] == film.motion.time[0]
     assert times[-1] == pytest.approx(film.motion.time[-1])

@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+import _thread
 import signal
-from collections.abc import Iterator
+import sys
+import threading
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
+from typing import Any
+
+AGAIN = 0.05
+"""s until a signal comes again whose exception was lost."""
 
 
 class Stopped(SystemExit):
@@ -19,7 +26,9 @@ class Stopped(SystemExit):
 def terminable() -> Iterator[None]:
     """Inside this block the first of either signal raises :class:`Stopped`; later ones do not disturb the cleaning up.
 
-    make and the shell may both pass the same signal on, so a second one means nothing.
+    make and the shell may both pass the same signal on, so a second one means nothing. Where C calls Python back (numba
+    does while it compiles), an exception is printed and lost; then the signal comes again a little later, and so does
+    Ctrl-C.
     """
 
     def leave(number: int, _: FrameType | None) -> None:
@@ -36,8 +45,33 @@ def terminable() -> Iterator[None]:
     except ValueError:  # not the main thread, which alone gets signals
         yield
         return
+    hook = sys.unraisablehook
+    sys.unraisablehook = _coming_again(leave, hook)
     try:
         yield
     finally:
+        sys.unraisablehook = hook
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def _coming_again(
+    leave: Callable[[int, FrameType | None], None], otherwise: Callable[[Any], object]
+) -> Callable[[Any], None]:
+    """A hook for exceptions that cannot be raised, which sends the signal of a lost one again."""
+
+    def lost(unraisable: Any) -> None:
+        error = unraisable.exc_value
+        if isinstance(error, Stopped):
+            number = int(str(error.code)) - 128
+            signal.signal(number, leave)
+        elif isinstance(error, KeyboardInterrupt):
+            number = int(signal.SIGINT)
+        else:
+            otherwise(unraisable)
+            return
+        timer = threading.Timer(AGAIN, _thread.interrupt_main, (number,))
+        timer.daemon = True
+        timer.start()
+
+    return lost

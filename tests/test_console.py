@@ -187,3 +187,22 @@ def test_the_console_and_the_stages_load_quickly() -> None:
 
 def test_a_stream_that_is_no_terminal_is_plain() -> None:
     assert not console._is_terminal(io.StringIO())
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT], ids=lambda number: number.name)
+def test_a_signal_that_comes_while_c_calls_python_still_ends_the_program(number: int) -> None:
+    """As numba's compiler does, in whose callbacks an exception is printed and lost."""
+    code = (
+        "import ctypes, os, signal, time\n"
+        "from shared.console import run_cli\n"
+        "def callback():\n"
+        f"    os.kill(os.getpid(), {int(number)}); time.sleep(0.1)\n"
+        "def main():\n"
+        "    signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "    ctypes.CFUNCTYPE(None)(callback)()\n"
+        "    print('went on'); time.sleep(20); print('to the end')\n"
+        "run_cli(main)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout) == (128 + number, "went on\n")
+    assert done.stderr.startswith("error: stopped")

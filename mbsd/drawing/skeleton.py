@@ -167,9 +167,14 @@ def _points(m: Mechanism, pose: Pose, name: str) -> np.ndarray:
     if length is not None:
         out += [pose.of(name, 0.0, 0.0), pose.of(name, length, 0.0)]
     jointed = any(name in joint.bodies for joint in m.joints.values())
-    if name != "ground" and (not out or not jointed):
+    if name != "ground" and (not out or not jointed or _alone(out)):
         out.append(pose.of(name, *m.bodies[name].com))
     return np.array(out).reshape(-1, 2)
+
+
+def _alone(points: list[np.ndarray]) -> bool:
+    """Whether all are one place: then a body hangs on it by its centre of mass."""
+    return float(np.ptp(points, axis=0).max()) == 0.0
 
 
 def _unit(size: np.ndarray, points: dict[str, np.ndarray]) -> float:

@@ -10,8 +10,8 @@ import numpy as np
 from mbsd.errors import ModelError
 from mbsd.solution import Solution
 
-SHORTEST_ROUND, SHORTEST_WAY, LONGEST = 1.0, 2.0, 40.0
-"""Seconds on the screen within which real time is kept: of a motion that repeats, of one that does not."""
+SHORTEST, LONGEST = 1.0, 40.0
+"""Seconds on the screen within which real time is kept."""
 HOLD = 0.8
 """Seconds for which the last picture of a motion that does not repeat stands."""
 MOST = 6000
@@ -55,7 +55,7 @@ def clip_of(sol: Solution, rate: float | None, fps: float) -> Clip:
     start, span = float(sol.t[0]), float(sol.t[-1] - sol.t[0])
     repeats = period is not None and bool(np.abs(sol.v).max(initial=0.0) > 0)
     if rate is None:
-        rate = _round_rate(span, SHORTEST_ROUND if repeats else SHORTEST_WAY)
+        rate = _round_rate(span)
     wanted = span * fps / rate
     if wanted > MOST:
         raise ModelError(
@@ -70,11 +70,11 @@ def clip_of(sol: Solution, rate: float | None, fps: float) -> Clip:
     return Clip(np.minimum(times[times <= sol.t[-1] + 1e-9 * span], sol.t[-1]), fps, rate, False)
 
 
-def _round_rate(span: float, shortest: float) -> float:
+def _round_rate(span: float) -> float:
     """1 where ``span`` (s) is watchable, else the nearest of ..., 1/5, 1/2, 2, 5, ... that makes it so."""
     rate, steps = 1.0, (2.0, 2.5, 2.0)
     for k in range(60):
-        if span / rate < shortest:
+        if span / rate < SHORTEST:
             rate /= steps[k % 3]
         elif span / rate > LONGEST:
             rate *= steps[k % 3]

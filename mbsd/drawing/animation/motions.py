@@ -36,9 +36,11 @@ def motion_arrows(m: Mechanism, tracks: Tracks, quantity: str) -> list[Arrow | A
 
 
 def _markers(m: Mechanism, name: str) -> list[Marker]:
-    """Where a body has joints and traced points; its centre of mass if it has none."""
+    """Where a body has joints and traced points; its centre of mass too, or a bar's end, if these are one place."""
     joints = [*m.joints.values(), *(one for one in m.contacts.values() if one.kind.name == "rope")]
     out = [marker for joint in joints for marker in (joint.j, joint.i) if marker.body.name == name]
     out += [marker for marker in m.traces.values() if marker.body.name == name]
     body = m.bodies[name]
-    return out or [body.at(*body.com)]
+    if len({(marker.x, marker.y) for marker in out}) < 2:
+        out.append(body.end if body.length is not None and body.mass == 0 else body.at(*body.com))
+    return out

@@ -147,16 +147,17 @@ class Panel:
                 word.set_position((x, low + height - 18 * px))
                 word.draw(renderer)
                 x += word.get_window_extent(renderer).width + 12 * px
-        self._scale_bar(figure, renderer)
-        self._legend(figure, renderer)
+        self._scale_bar(figure, renderer, self._legend(figure, renderer))
         if self.bars is not None:
             self.bars.paint_still(figure, renderer)
 
-    def _scale_bar(self, figure: Any, renderer: Any) -> None:
-        """A length of a round number, at the lower right."""
-        px, (left, low, width, _) = self.dpi / 100, self.box
+    def _scale_bar(self, figure: Any, renderer: Any, taken: float) -> None:
+        """A length of a round number, at the lower right; at the upper right where words reach there (pixels)."""
+        px, (left, low, width, height) = self.dpi / 100, self.box
         metres = round_below(0.16 * min(width, 500 * px) / self.brush.view.scale)
         long, x, y = metres * self.brush.view.scale, left + width - 14 * px, low + 17 * px
+        if taken > x - long - 70 * px:
+            y = low + height - 18 * px
         bar = fresh(self.brush)
         bar.stroke(np.array([(x - long, y), (x, y)]), rgba(QUIET), 1.2, 1)
         for end in (x - long, x):
@@ -164,8 +165,8 @@ class Panel:
         bar.paint(renderer)
         self._word(figure, renderer, with_unit(metres, "m"), x - long - 7 * px, y, QUIET, 8.5, "right")
 
-    def _legend(self, figure: Any, renderer: Any) -> None:
-        """An arrow and an arc of a round number for each quantity."""
+    def _legend(self, figure: Any, renderer: Any) -> float:
+        """An arrow and an arc of a round number for each quantity; returns where they end (pixels)."""
         px, (left, low, _, _) = self.dpi / 100, self.box
         x, y, brush = left + 16 * px, low + 19 * px, fresh(self.brush)
         several = len(self.quantities) > 1
@@ -191,8 +192,9 @@ class Panel:
                 x += self._word(figure, renderer, text, x, y, INK, 9.0, "left") + 22 * px
         if not self.marks and self.quantities and not self.bars:
             titles = " and ".join(QUANTITIES[quantity].title for quantity in self.quantities)
-            self._word(figure, renderer, f"no {titles}: nothing acts", x, y, QUIET, 9.0, "left")
+            x += self._word(figure, renderer, f"no {titles}: nothing acts", x, y, QUIET, 9.0, "left")
         brush.paint(renderer)
+        return x
 
     def _word(
         self, figure: Any, renderer: Any, text: str, x: float, y: float, ink: str, size: float, side: str

@@ -47,7 +47,7 @@ def with_unit(value: float, unit: str, digits: int = 3) -> str:
     if value == 0.0 or not math.isfinite(value):
         return f"0 {unit}"
     power = 0 if unit.startswith("rad") else min(max(3 * math.floor(math.log10(abs(value)) / 3 + 1e-9), -12), 12)
-    if unit.startswith("m") and power > 0 and abs(value) < 1e5:
+    if unit.startswith("m") and power > 0:
         power = 0  # metres by second stay metres
     number = f"{value / 10.0**power:.{digits}g}"
     if "e" in number:

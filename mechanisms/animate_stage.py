@@ -28,7 +28,7 @@ QUANTITIES = ("velocities", "accelerations", "forces", "reactions", "energy")
 VIEWS = (*QUANTITIES, "skeleton", "each")
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite", "matplotlib", "pillow", "imageio-ffmpeg")
 SUFFIXES = (".mp4", ".gif")
-_STAGE = ("animate_stage", "solving", "variants", "masses", "estimated_masses")
+_STAGE = ("animate_stage", "solving", "variants", "refined_times", "masses", "estimated_masses")
 SOURCES = [ROOT / "mechanisms" / f"{name}.py" for name in _STAGE]
 
 

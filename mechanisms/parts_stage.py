@@ -36,7 +36,8 @@ SOURCES = [
     *(ROOT / "mechanisms" / f"{name}.py" for name in _STAGE),
     *(ROOT / "shared" / f"{name}.py" for name in _SHARED),
 ]
-_AUTOMATIC = ("automatic", "parts_by_themselves.py", "bare_motion.py", "solving.py", "masses.py", "estimated_masses.py")
+_MOTION = ("bare_motion", "solving", "variants", "refined_times", "masses", "estimated_masses")
+_AUTOMATIC = ("automatic", "parts_by_themselves.py", *(f"{name}.py" for name in _MOTION))
 AUTOMATIC = [*SOURCES, *(ROOT / "mechanisms" / name for name in _AUTOMATIC)]
 """Sources of parts without a parts.py."""
 PACKAGES = ("cadquery", "cadquery-ocp", "numpy", "trimesh")

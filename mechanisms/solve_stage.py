@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from mechanisms.masses import Source
 
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite")
-_STAGE = ("solve_stage", "solving", "variants", "masses", "estimated_masses", "motion_file", "shapes", "skeleton_file")
+_MOTION = ("solving", "variants", "refined_times", "masses", "estimated_masses")
+_STAGE = ("solve_stage", *_MOTION, "motion_file", "shapes", "skeleton_file")
 SOURCES = [
     *(ROOT / "mechanisms" / f"{name}.py" for name in _STAGE),
     *sorted((ROOT / "shared").glob("contract*.py")),

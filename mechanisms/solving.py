@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 SWEEP_STEPS = 360
 """Of one turn of the drivers in a sweep whose mechanism.py has no STEPS."""
 FEWEST, MOST, RATE = 360, 7200, 120.0
-"""Steps of a simulation whose mechanism.py has no STEPS: so many a second, within these."""
+"""Steps of a simulation whose mechanism.py has no STEPS: so many a second, within these, more where it needs them."""
 
 
 def build(name: str, module: Any, p: Any) -> Mechanism:
@@ -67,6 +67,7 @@ def motion_of(name: str, module: Any, m: Mechanism, p: Any) -> Solution:
             "as m.sweep() and m.simulate() do"
         )
     _refuse_other(name, m, solution.mechanism)
+    _tell_blurred_impacts(name, solution)
     solution.mechanism.name = name  # where motion() built the mechanism of a variant anew
     return solution
 
@@ -87,7 +88,11 @@ def _natural(name: str, module: Any, m: Mechanism) -> Solution:
             f"write DURATION = 2.0 (seconds) beside build() in {_file(name)}, or add a driver, "
             "such as m.drive_angle(...)"
         )
-    return m.simulate(duration, int(steps or min(max(FEWEST, math.ceil(RATE * duration)), MOST)), event_rows=True)
+    if steps is not None:
+        return m.simulate(duration, int(steps), event_rows=True)
+    from mechanisms.refined_times import simulated_closely
+
+    return simulated_closely(m, duration, min(max(FEWEST, math.ceil(RATE * duration)), MOST))
 
 
 def _steps_of_period(m: Mechanism) -> int:
@@ -114,6 +119,19 @@ def _refuse_other(name: str, m: Mechanism, solved: Mechanism) -> None:
         raise UserError(
             f"{_file(name)}: motion() solved '{solved.name}' with the bodies {', '.join(solved.bodies)}; solve the "
             f"mechanism it is given, '{name}', or a variant with the same bodies"
+        )
+
+
+def _tell_blurred_impacts(name: str, solution: Solution) -> None:
+    """Say that impacts lie between rows, so that plots and films would show them as something smooth."""
+    shared = {float(time) for time in solution.t[1:][solution.t[1:] == solution.t[:-1]]}
+    lost = [event for event in solution.events if event.what == "impact" and event.time not in shared]
+    if lost:
+        console.warn(
+            "solve",
+            f"{name}: {len(lost)} impacts, the first '{lost[0].name}' at {lost[0].time:.6g} s, have no rows right "
+            "before and after them and are smoothed in plots and films; write m.simulate(..., event_rows=True) in "
+            "motion()",
         )
 
 

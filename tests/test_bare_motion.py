@@ -164,3 +164,53 @@ def test_a_folder_without_parts_is_solved_and_says_how_heavy_it_took_its_bodies(
     assert project.run()
     assert "estimated" not in capsys.readouterr().out
     assert read_motion(Out("arm").motion).bodies["arm"].mass == 2.5
+
+
+def _bouncing(p: None = None) -> Mechanism:
+    """A ball on a stiff floor, which it touches for some milliseconds."""
+    m = Mechanism("arm", gravity=(0.0, -9.81))
+    ball = m.body("ball", mass=0.1, inertia=1e-5)
+    m.contact("floor", m.ground.origin, ball.origin, stiffness=2e8, exponent=1.5, radius=0.02)
+    m.start_near(ball=(0.0, 0.2, 0.0))
+    return m
+
+
+def test_rows_lie_so_close_that_the_film_shows_the_motion_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Between any two rows the quintic of the film is where a finer simulation is, also in a stiff contact."""
+    from render.poses import hermite
+
+    _Author(monkeypatch, _bouncing, DURATION=1.0)
+    solution, plain = bare_solution("arm"), _bouncing().simulate(1.0, 360)
+    fine = np.linspace(0.0, 1.0, 20001)
+    exact = _bouncing().simulate(times=fine).body("ball").y
+    off = []
+    for found in (solution, plain):
+        ball = found.body("ball")
+        off.append(np.abs(hermite(found.t, ball.y, ball.vy, ball.ay, fine) - exact).max())
+    assert off[0] < 5e-5  # m
+    assert off[1] > 5e-4  # what equal steps would have shown
+    assert 361 < len(solution.t) < 1000
+
+
+def test_what_is_smooth_gets_no_more_rows(monkeypatch: pytest.MonkeyPatch) -> None:
+    _Author(monkeypatch, _pendulum, DURATION=1.0)
+    assert len(bare_solution("arm").t) == 361
+
+
+def test_impacts_without_rows_of_their_own_are_told(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def build(p: None) -> Mechanism:
+        m = Mechanism("arm", gravity=(0.0, -9.81))
+        ball = m.body("ball", mass=0.1, inertia=1e-5)
+        m.rigid_contact("floor", m.ground.origin, ball.origin, radius=0.02, restitution=0.5)
+        m.start_near(ball=(0.0, 0.2, 0.0))
+        return m
+
+    _Author(monkeypatch, build, motion=lambda m, p: m.simulate(0.25, steps=20))
+    bare_solution("arm")
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("solve: warning: arm: 1 impacts, the first 'floor' at 0.19")
+    _Author(monkeypatch, build, DURATION=0.25)
+    bare_solution("arm")
+    assert capsys.readouterr().err == ""

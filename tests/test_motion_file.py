@@ -258,3 +258,37 @@ def test_files_of_version_1_are_read(tmp_path: Path) -> None:
     path.write_text(json.dumps(document))
     with pytest.raises(UserError, match=r"forces\.push"):
         contract.read_motion(path)
+
+
+def _examples() -> dict[str, Mechanism]:
+    """A small simulation with an example of each kind of force and contact, by name."""
+    from mbsd.contacts.kind import CONTACT_KINDS
+    from mbsd.forces.kind import FORCE_KINDS
+
+    found = {}
+    for kind in (*FORCE_KINDS.values(), *CONTACT_KINDS.values()):
+        if kind.name in ("friction", "rigid_contact"):
+            continue  # their examples do not fit here; both are in the tests above
+        m = Mechanism("example")
+        i = m.bar("a", 0.4, mass=1.0)
+        j = m.bar("b", 0.3, mass=0.5)
+        m.revolute("A", m.ground.at(0, 0), i.start)
+        m.revolute("B", m.ground.at(1.0, 0), j.start)
+        kind.example(m, i.at(0.3, 0.05, 0.2), j.at(0.1, -0.02, 0.4))
+        m.start_near(a=20, b=70)
+        found[kind.name] = m
+    return found
+
+
+EXAMPLES = _examples()
+
+
+@pytest.mark.parametrize("kind", EXAMPLES)
+def test_every_kind_of_force_and_contact_reaches_the_file(kind: str, tmp_path: Path) -> None:
+    solution = EXAMPLES[kind].simulate(0.01, steps=4, event_rows=True)
+    motion = to_motion(solution, None, "key", {}, {"a": "mechanism", "b": "mechanism"})
+    contract.write_motion(tmp_path / "data.json", motion)
+    again = contract.read_motion(tmp_path / "data.json")
+    assert again == motion
+    found = {name: one.kind for name, one in (again.forces | again.contacts).items()}
+    assert kind in found.values()

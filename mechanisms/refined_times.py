@@ -1,0 +1,54 @@
+"""Output times so close that what lies between two of them is the quintic that plots, clearance and film show.
+
+    at the middle of a step h   q = (q0 + q1) / 2 + 5 h / 32 (v0 - v1) + h^2 / 64 (a0 + a1)
+
+That is compared with the simulation itself at these middles; steps that differ are divided, and it is simulated again.
+Stiff contacts and short pulses need it: for milliseconds their accelerations say nothing about the rest of a step.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from mbsd import Mechanism
+    from mbsd.solution import Solution
+
+CLOSE = 2e-5
+"""Largest difference, in sizes of the mechanism (turned bodies count by their angle times that size)."""
+PARTS = 4
+"""Into which a step is divided at once."""
+ROUNDS = 4
+MOST = 20_000
+"""Times that a motion has at the most."""
+
+
+def simulated_closely(m: Mechanism, duration: float, steps: int) -> Solution:
+    """``m.simulate`` with both rows of events, in ``steps`` equal steps and more where the motion needs them."""
+    times = np.linspace(0.0, duration, steps + 1)
+    solution = m.simulate(times=times, event_rows=True)
+    for _ in range(ROUNDS):
+        coarse = coarse_steps(solution)
+        if not len(coarse) or len(times) + (PARTS - 1) * len(coarse) > MOST:
+            break
+        starts, ends = solution.t[coarse], solution.t[coarse + 1]
+        inner = (starts[:, None] + (ends - starts)[:, None] * np.arange(1, PARTS) / PARTS).ravel()
+        times = np.unique(np.concatenate([times, inner]))
+        solution = m.simulate(times=times, event_rows=True)
+    return solution
+
+
+def coarse_steps(solution: Solution) -> np.ndarray:
+    """Numbers of the rows after which the quintic leaves the motion, by the motion at the middle of each step."""
+    t, size = solution.t, solution.packed.size
+    steps = np.flatnonzero(np.diff(t) > 1e-9 * (t[-1] - t[0]))
+    middles = (t[steps] + t[steps + 1]) / 2
+    h = np.diff(t)[steps][:, None, None]
+    q, v, a = solution.q, solution.v, solution.a
+    between = (
+        (q[steps] + q[steps + 1]) / 2 + 5 / 32 * h * (v[steps] - v[steps + 1]) + h * h / 64 * (a[steps] + a[steps + 1])
+    )
+    gap = np.abs(between - solution.at(middles).q) * np.array([1.0, 1.0, size])
+    return steps[gap.max(axis=(1, 2)) > CLOSE * size]

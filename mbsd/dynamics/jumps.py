@@ -1,6 +1,6 @@
 """What changes at an event: velocities by actions and impacts; what contacts and joints that stick do from then on.
 
-action   of the user: velocities, forces, joints let go; velocities are brought back onto the joints
+action   of the user: velocities change, joints are released; velocities are brought back onto the joints
 impacts  of contacts that approach (impact.py)
 decide   which contacts are open, slide or stick from now on, and which joints stick (stick_slip.py)
 """
@@ -48,7 +48,7 @@ class Jumps:
         return Compliance(self.packed, self.dynamics, self.switches, float(time), q.copy())
 
     def act(self, event: Event) -> None:
-        """Let the action of an event of the user change velocities, forces and joints."""
+        """Let the action of an event of the user change velocities and release joints."""
         moment = Moment(self.packed, float(self.state.clock[TIME]), self.state.y[0].copy(), self.state.y[1].copy())
         assert event.action is not None
         try:

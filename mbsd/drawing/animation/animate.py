@@ -69,6 +69,10 @@ def animate(
     if not 1.0 <= fps <= 120.0:
         raise ModelError(f"{name}: fps is {fps:g}; a film has 1 .. 120 pictures a second")
     switch(f"{name}: names", names)
+    if progress is not None and not callable(progress):
+        raise ModelError(
+            f"{name}: progress is {shown(progress)}; it must be a function of the pictures drawn, and of all"
+        )
     try:
         import matplotlib.figure  # noqa: F401
     except ImportError as error:

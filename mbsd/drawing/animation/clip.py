@@ -62,6 +62,11 @@ def clip_of(sol: Solution, rate: float | None, fps: float) -> Clip:
             f"{m.name}: {span:.4g} s at a rate of {rate:g} and {fps:g} pictures a second are {wanted:.0f} pictures; "
             f"an animation has {MOST} at most: give a higher rate=, a lower fps=, or a shorter solution"
         )
+    if wanted < 1.0:
+        raise ModelError(
+            f"{m.name}: {span:.4g} s at a rate of {rate:g} and {fps:g} pictures a second are less than one picture; "
+            f"give a rate= of {span * fps / 2:.2g} or less"
+        )
     if repeats:
         count = max(2, round(wanted))
         return Clip(start + span * np.arange(count) / count, fps, rate, True)

@@ -41,7 +41,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install check list run-all all new test lint format bench hunt torture schema docs integrators lock clean clean-all always
+.PHONY: help install check list run-all all gallery new test lint format bench hunt torture schema docs integrators lock clean clean-all always
 
 # A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
 define upto_motion
@@ -137,6 +137,11 @@ scene-ui-%: install always ## open the scene in an installed Blender
 scene-%: install always ## save the scene: out/<name>/<name>.blend
 	$(upto_shot)
 	@$(PICTURE) scene "$$MECHANISM" --preset "$$PRESET"
+
+gallery: install ## posters of all mechanisms (PRESET) and the page that shows them: docs/gallery/
+	@failed=; for file in mechanisms/*/mechanism.py; do one=$${file%/mechanism.py}; one=$${one#mechanisms/}; \
+	"$(MAKE)" --no-print-directory "poster-$$one" PRESET="$$PRESET" || failed="$$failed $$one"; done; \
+	$(PICTURE) gallery && { test -z "$$failed" || { echo "gallery: without:$$failed" >&2; exit 1; }; }
 
 new: install ## a new mechanism that already runs: make new NAME=my_linkage KIND=driven|simulated
 	@$(STAGE) new --kind="$${KIND:-driven}" -- "$$NAME"

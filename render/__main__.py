@@ -34,7 +34,12 @@ def main() -> int | None:
             sub.add_argument("--preset", default="preview", help=f"{', '.join(PRESETS)}; preview if not given")
         if command == "still":
             sub.add_argument("--frame", type=int, default=0, help="number of the frame, from 0")
+    commands.add_parser("gallery", help="docs/gallery/: every mechanism that has a poster")
     arguments = parser.parse_args()
+    if arguments.command == "gallery":
+        from render import gallery
+
+        return gallery.run()
     name, command = mechanism_name(arguments.name), arguments.command.replace("_", "-")
     if command == "plots":
         from render import plots

@@ -99,9 +99,15 @@ class Brush(Canvas):
             self.labels.append(Label(text, anchor, clearance, colour, size))
 
     def keep(self, path: Point) -> None:
-        """Only while places for names are looked for."""
-        if self.remembers:
-            super().keep(path)
+        """Only while places for names are looked for: a point every half unit."""
+        if not self.remembers or len(path) < 2:
+            return
+        path = np.asarray(path, float)
+        gaps = np.diff(path, axis=0)
+        counts = np.clip(np.ceil(np.hypot(*gaps.T) / (0.5 * self.unit)), 1, 400).astype(int)
+        piece = np.repeat(np.arange(len(gaps)), counts)
+        part = (np.arange(len(piece)) - np.repeat(np.cumsum(counts) - counts, counts)) / counts[piece]
+        self.obstacles.append(np.vstack([path[piece] + part[:, None] * gaps[piece], path[-1:]]))
 
     def plate(self, pixels: np.ndarray, fill: Colour | None, edge: Colour | None, width: float, order: float) -> None:
         """A closed outline in pixels."""

@@ -43,8 +43,7 @@ def place_names(drawn: Sequence[Brush], frame: tuple[float, float, float, float]
         offs = _offsets(label.clearance * first.unit * first.view.scale, size)
         costs = np.arange(len(offs)) * 0.4
         for k in range(len(drawn)):
-            for c, off in enumerate(offs):
-                costs[c] += _cost(anchors[k][number] + off, size, points[k], taken[k], frame)
+            costs += _costs(anchors[k][number] + np.array(offs), size, points[k], taken[k], frame)
         best = offs[int(np.argmin(costs))]
         for k in range(len(drawn)):
             taken[k].append(
@@ -66,15 +65,17 @@ def _offsets(clearance: float, size: np.ndarray) -> list[np.ndarray]:
     return out
 
 
-def _cost(
-    middle: np.ndarray,
+def _costs(
+    middles: np.ndarray,
     size: np.ndarray,
     points: np.ndarray,
     taken: list[np.ndarray],
     frame: tuple[float, float, float, float],
-) -> float:
-    low, high = middle - size / 2, middle + size / 2
-    inside = ((points > low) & (points < high)).all(axis=1).sum()
-    over = sum(bool((low < box[2:]).all() and (high > box[:2]).all()) for box in taken)
-    outside = low[0] < frame[0] or low[1] < frame[1] or high[0] > frame[2] or high[1] > frame[3]
-    return float(inside) + 60.0 * over + 50.0 * outside
+) -> np.ndarray:
+    """(c,) of words with these middles (c, 2): what they cover, other words, the edge of the frame."""
+    inside = (np.abs(points - middles[:, None]) < size / 2).all(axis=-1).sum(axis=1)
+    low, high = middles - size / 2, middles + size / 2
+    boxes = np.array(taken).reshape(-1, 1, 4)
+    over = ((low < boxes[..., 2:]) & (high > boxes[..., :2])).all(axis=-1).sum(axis=0)
+    outside = (low < frame[:2]).any(axis=1) | (high > frame[2:]).any(axis=1)
+    return inside + 60.0 * over + 50.0 * outside

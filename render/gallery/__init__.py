@@ -1,0 +1,43 @@
+"""``python -m render gallery``: docs/gallery/, a page with every mechanism that has a poster."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from render.gallery.page import Entry, page, sentences
+from render.gallery.posters import small_poster
+from render.report import description
+from render.report.facts import facts
+from shared.clearance import read_clearance
+from shared.console import say, warn
+from shared.contract import read_motion, read_parts
+from shared.errors import UserError
+from shared.files import write_bytes
+from shared.paths import ROOT, Out, mechanism_names
+
+FOLDER = ROOT / "docs" / "gallery"
+
+
+def run(folder: Path = FOLDER) -> None:
+    """Write README.md and a poster of each mechanism; posters of mechanisms that are gone go. Raises UserError."""
+    entries, posters = [], {}
+    for name in mechanism_names():
+        out = Out(name)
+        if not (out.poster.is_file() and out.motion.is_file()):
+            warn("gallery", f"{name} is left out: it has no poster; make poster-{name.replace('_', '-')}")
+            continue
+        motion = read_motion(out.motion, name)
+        parts = read_parts(out.parts, name) if out.parts.is_file() else None
+        clearance = read_clearance(out.clearance) if parts is not None and out.clearance.is_file() else None
+        posters[f"{name}.jpg"] = small_poster(out.poster)
+        entries.append(Entry(name, sentences(description(name)), facts(motion, parts, clearance)))
+    if not entries:
+        raise UserError("no mechanism has a poster; run make gallery, which makes them")
+    for file, content in posters.items():
+        if not (folder / file).is_file() or (folder / file).read_bytes() != content:
+            write_bytes(folder / file, content)
+    for older in set(folder.glob("*.jpg")) - {folder / file for file in posters}:
+        older.unlink()
+    write_bytes(folder / "README.md", page(entries).encode())
+    size = max(map(len, posters.values())) / 1000
+    say("gallery", f"{len(entries)} mechanisms in {folder / 'README.md'}, posters up to {size:.0f} kB")

@@ -1,0 +1,45 @@
+"""The page of the gallery, Markdown: a poster, what to see in it, the numbers that matter."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+LONGEST = 2
+"""Sentences of each."""
+UNSAID = ("SI units.", "SI units and radians.")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One mechanism."""
+
+    name: str
+    said: str
+    facts: list[str]
+
+
+def page(entries: Sequence[Entry]) -> str:
+    """The whole page, in the order of the names."""
+    lines = [
+        "# Gallery",
+        "",
+        "Every mechanism of `mechanisms/` as it comes out of its short file: `make run-<name>` makes the film, the parts",
+        "and the numbers of one, `make gallery` this page.",
+    ]
+    for entry in entries:
+        title = entry.name.replace("_", " ")
+        title = title[:1].upper() + title[1:]
+        folder = f"../../mechanisms/{entry.name}/mechanism.py"
+        lines += ["", f"## {title}", "", f"![{title}]({entry.name}.jpg)", ""]
+        lines += [entry.said, ""] if entry.said else []
+        lines += [f"{' · '.join(entry.facts)} · [mechanism.py]({folder})"]
+    return "\n".join(lines) + "\n"
+
+
+def sentences(docstring: str) -> str:
+    """The first two sentences of a docstring on one line; what all of them say is left out."""
+    paragraph = " ".join(docstring.split("\n\n")[0].split())
+    found = [one for one in re.split(r"(?<=[.!?])\s+(?=[A-Z0-9])", paragraph) if one and one not in UNSAID]
+    return " ".join(found[:LONGEST])

@@ -1,0 +1,54 @@
+"""The few numbers of a mechanism that a line has room for."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from render.report.loads import SLIDES
+from render.report.transmission import loops
+from render.report.written import counted, degrees, moment, speed, written
+from shared.clearance import Clearance
+from shared.contract import Motion, Parts
+
+
+def facts(motion: Motion, parts: Parts | None, clearance: Clearance | None) -> list[str]:
+    """Freedoms, time, fastest place, largest effort and reaction, transmission angle, mass, clearance."""
+    span = motion.time[-1] - motion.time[0]
+    out = [f"{counted(motion.diagnostics.dof, 'degree')} of freedom"]
+    out.append(f"repeats after {moment(motion.period)}" if motion.period else f"{moment(span)} of motion")
+    speeds = {name: float(np.hypot(body.vx, body.vy).max()) for name, body in motion.bodies.items()}
+    speeds |= {name: float(np.hypot(point.vx, point.vy).max()) for name, point in motion.points.items()}
+    speeds |= {name: v for name, v in _joint_speeds(motion).items() if name not in speeds}
+    fastest = max(speeds, key=lambda name: speeds[name])
+    if speeds[fastest] > 0:
+        out.append(f"{fastest} reaches {speed(speeds[fastest])}")
+    for name, driver in motion.drivers.items():
+        effort = float(np.abs(driver.effort).max())
+        if effort > 0:
+            out.append(f"{name} up to {written(effort, 'N' if driver.kind in SLIDES else 'N m')}")
+    forces = {name: float(np.hypot(joint.fx, joint.fy).max()) for name, joint in motion.joints.items()}
+    if forces and max(forces.values()) > 0:
+        most = max(forces, key=lambda name: forces[name])
+        out.append(f"largest reaction {written(forces[most], 'N')} at {most}")
+    out += [f"transmission angle from {degrees(float(loop.transmission.min()))}" for loop in loops(motion)[:1]]
+    moving = sum(body.mass for body in motion.bodies.values())
+    if parts is not None:
+        pieces = sum(len(body.pieces) for body in parts.bodies.values())
+        out.append(f"{written(moving, 'kg')} moving, {pieces} pieces")
+    if clearance is not None and clearance.pairs:
+        out.append(f"parts stay {written(min(pair.gap for pair in clearance.pairs), 'm')} apart")
+    return out
+
+
+def _joint_speeds(motion: Motion) -> dict[str, float]:
+    """Of the second markers of joints, from their bodies' frames (m/s)."""
+    out = {}
+    for name, joint in motion.joints.items():
+        body = motion.bodies.get(joint.bodies[1])
+        if body is None:
+            continue
+        omega = np.array(body.omega)
+        vx = np.array(body.vx) - omega * (np.array(joint.y) - np.array(body.y))
+        vy = np.array(body.vy) + omega * (np.array(joint.x) - np.array(body.x))
+        out[name] = float(np.hypot(vx, vy).max())
+    return out

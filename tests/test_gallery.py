@@ -1,0 +1,74 @@
+"""The gallery: small posters, two sentences, numbers of the motion; only mechanisms that have a poster."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from render import gallery
+from render.gallery.page import sentences
+from render.gallery.posters import LARGEST, small_poster
+from render.report.facts import facts
+from render.report.written import speed
+from shared.contract import write_motion
+from shared.errors import UserError
+from shared.paths import Out
+from tests.motions import bouncing_ball, four_bar_motion
+
+
+def noise(path: Path, size: tuple[int, int]) -> None:
+    """What a JPEG is worst at."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    Image.fromarray(np.random.default_rng(1).integers(0, 255, (size[1], size[0], 3), dtype=np.uint8)).save(path)
+
+
+def test_a_poster_is_small_whatever_it_shows(tmp_path: Path) -> None:
+    noise(tmp_path / "noise.png", (1280, 720))
+    content = small_poster(tmp_path / "noise.png")
+    assert len(content) <= LARGEST
+    Image.new("RGB", (1280, 720), (30, 40, 50)).save(tmp_path / "plain.png")
+    (tmp_path / "plain.jpg").write_bytes(small_poster(tmp_path / "plain.png"))
+    with Image.open(tmp_path / "plain.jpg") as picture:
+        assert picture.size == (960, 540)
+
+
+@pytest.mark.parametrize(
+    ("docstring", "said"),
+    [
+        ("A crank. SI units.", "A crank."),
+        ("A crank turns\na rocker. It swings 5.4 deg. And more.\n\nRest.", "A crank turns a rocker. It swings 5.4 deg."),
+        ("", ""),
+    ],
+)  # fmt: skip
+def test_two_sentences(docstring: str, said: str) -> None:
+    assert sentences(docstring) == said
+
+
+def test_facts_are_those_of_the_motion() -> None:
+    motion = four_bar_motion()
+    said, fastest = facts(motion, None, None), 0.090 * float(np.abs(motion.bodies["rocker"].omega).max())
+    assert said[:3] == ["1 degree of freedom", "repeats after 1 s", f"C reaches {speed(fastest)}"]
+    assert "motor up to 54 mN m" in said
+    assert "transmission angle from 41.8°" in said
+    assert facts(bouncing_ball(), None, None)[1:3] == ["0.903 s of motion", "ball reaches 4.43 m/s (15.9 km/h)"]
+
+
+def test_the_page_shows_who_has_a_poster(out_root: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "gallery"
+    with pytest.raises(UserError, match="no mechanism has a poster"):
+        gallery.run(folder)
+    assert "four_bar is left out: it has no poster; make poster-four-bar" in capsys.readouterr().err
+    out = Out("four_bar")
+    write_motion(out.motion, four_bar_motion())
+    noise(out.poster, (640, 360))
+    folder.mkdir()
+    (folder / "gone.jpg").touch()
+    gallery.run(folder)
+    assert {path.name for path in folder.iterdir()} == {"README.md", "four_bar.jpg"}
+    text = (folder / "README.md").read_text()
+    assert "## Four bar\n\n![Four bar](four_bar.jpg)\n\nFour-bar crank-rocker A-B-C-D: the crank turns" in text
+    assert "1 degree of freedom · repeats after 1 s ·" in text
+    assert "SI units" not in text

@@ -139,9 +139,9 @@ scene-%: install always ## save the scene: out/<name>/<name>.blend
 	@$(PICTURE) scene "$$MECHANISM" --preset "$$PRESET"
 
 gallery: install ## posters of all mechanisms (PRESET) and the page that shows them: docs/gallery/
-	@failed=; for file in mechanisms/*/mechanism.py; do one=$${file%/mechanism.py}; one=$${one#mechanisms/}; \
-	"$(MAKE)" --no-print-directory "poster-$$one" PRESET="$$PRESET" || failed="$$failed $$one"; done; \
-	$(PICTURE) gallery && { test -z "$$failed" || { echo "gallery: without:$$failed" >&2; exit 1; }; }
+	@for file in mechanisms/*/mechanism.py; do one=$${file%/mechanism.py}; one=$${one#mechanisms/}; \
+	"$(MAKE)" --no-print-directory "poster-$$one" PRESET="$$PRESET" || echo "gallery: no poster of $$one" >&2; done
+	@$(PICTURE) gallery
 
 new: install ## a new mechanism that already runs: make new NAME=my_linkage KIND=driven|simulated
 	@$(STAGE) new --kind="$${KIND:-driven}" -- "$$NAME"

@@ -25,8 +25,8 @@ def page(entries: Sequence[Entry]) -> str:
     lines = [
         "# Gallery",
         "",
-        "Every mechanism of `mechanisms/` as it comes out of its short file: `make run-<name>` makes the film, the parts",
-        "and the numbers of one, `make gallery` this page.",
+        "Every mechanism of `mechanisms/` as it comes out of its short file: `make run-<name>` makes the film,",
+        "the parts and the numbers of one, `make gallery` this page.",
     ]
     for entry in entries:
         title = entry.name.replace("_", " ")

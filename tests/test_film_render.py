@@ -23,6 +23,7 @@ from render.inputs import read_film
 from render.presets import PRESETS, Preset
 from render.store import FrameIndex, FrameStore, Timing
 from shared import jsonfile
+from shared.contract import write_motion
 from shared.paths import ROOT, Out
 from shared.shot import Label, Shot, write_shot
 from tests import film_fixture
@@ -227,3 +228,19 @@ def test_the_saved_scene_plays_the_motion(out_root: Path, tmp_path: Path):
         assert found[f"trail {frame}"] == pytest.approx(state.trails[0][0][:2], abs=2e-6)
     assert found["range"] == [0, 11, 30]
     assert not list(out_root.rglob("*.part.*"))
+
+
+def test_a_motion_that_does_not_repeat_is_held_at_its_end_and_begins_anew(
+    out_root: Path, capsys: pytest.CaptureFixture[str]
+):
+    out = film_fixture.write(Shot(turns=2, rate=5.0, hold=0.1, fps=30))
+    once = msgspec.structs.replace(read_film(out).motion, period=None)
+    write_motion(out.motion, once)
+    film.run("four-bar", TINY)
+    said = capsys.readouterr().out
+    assert "2 x 0.2 s and 0.1 s held at the end, 5 times faster" in said
+    assert "7 of 7 pictures to render, 18 frames in the film" in said  # six that move and the one that is held
+    index = jsonfile.read(FrameStore(out.frames("tiny")).index, FrameIndex)
+    assert index.frames[:9] == index.frames[9:]
+    assert len(set(index.frames[6:9])) == 1
+    assert len(set(index.frames[:7])) == 7

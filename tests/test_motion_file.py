@@ -274,6 +274,7 @@ def _examples() -> dict[str, Mechanism]:
         j = m.bar("b", 0.3, mass=0.5)
         m.revolute("A", m.ground.at(0, 0), i.start)
         m.revolute("B", m.ground.at(1.0, 0), j.start)
+        assert kind.example is not None
         kind.example(m, i.at(0.3, 0.05, 0.2), j.at(0.1, -0.02, 0.4))
         m.start_near(a=20, b=70)
         found[kind.name] = m

@@ -321,3 +321,28 @@ def test_the_path_holds_every_stroke_in_its_bodys_colour() -> None:
             line = drawn[tuple(np.round(closed, 9))]
             assert line.get_color() == colour(list(MOTION.bodies).index(stroke.ink.removeprefix("body:")))
             assert (line.get_alpha() == 0.3) is (pose is not skeleton.poses[0])
+
+
+def test_forces_and_contacts_have_a_page_of_their_own() -> None:
+    from mbsd import Mechanism
+    from mechanisms.motion_file import to_motion
+
+    m = Mechanism("arm", gravity=(0.0, -9.81))
+    arm = m.bar("arm", 0.3, mass=0.4)
+    pin = m.revolute("A", m.ground.at(0, 0), arm.start)
+    m.spring("spring", m.ground.at(0.2, 0.3), arm.end, stiffness=4.0, damping=0.3, free_length=0.15)
+    m.torsion_spring("twist", m.ground, arm, stiffness=0.2)
+    m.drag("air", arm.end, 0.05)
+    m.stop("end", pin, lower=-0.5)
+    m.start_near(arm=10)
+    motion = to_motion(m.simulate(0.5, steps=60, event_rows=True), None, "", {}, {"arm": "mechanism"})
+    assert "forces" in plots.plots_of(motion)
+    assert "forces" not in plots.plots_of(MOTION)
+    drawn = figure("forces", motion)
+    lines = [{line.get_label(): line.get_ydata() for line in axes.lines} for axes in drawn.axes]
+    assert [axes.get_ylabel() for axes in drawn.axes] == ["force (N)", "torque (N m)", "power (W)"]
+    np.testing.assert_array_equal(lines[0]["spring"], motion.forces["spring"].effort)
+    np.testing.assert_array_equal(lines[1]["twist"], motion.forces["twist"].effort)
+    assert max(lines[1]["end lower"]) > 0.0
+    assert {"spring", "twist", "air"} <= set(lines[2])
+    assert overlaps(drawn) == []

@@ -52,6 +52,8 @@ def plots_of(motion: Motion) -> list[str]:
     names = ["path", "bodies", "energy"]
     if motion.joints:
         names += ["reactions", "hodographs"]
+    if motion.forces or motion.contacts:
+        names.append("forces")
     names += [f"point-{point}" for point in motion.points]
     return names + [f"slider-{name}" for name, body in motion.bodies.items() if _only_slides(body.theta)]
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from render.plots.energy import energy
-from render.plots.loads import hodographs, reactions
+from render.plots.loads import forces, hodographs, reactions
 from render.plots.path import path
 from render.plots.rates import bodies, point, slider
 from render.plots.style import house_style
 from shared.contract import Motion
 from shared.skeleton import Skeleton
 
-WHOLE = {"bodies": bodies, "reactions": reactions, "hodographs": hodographs, "energy": energy}
+WHOLE = {"bodies": bodies, "reactions": reactions, "hodographs": hodographs, "forces": forces, "energy": energy}
 ONE = {"point-": point, "slider-": slider}
 
 

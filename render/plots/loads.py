@@ -1,4 +1,4 @@
-"""What the joints carry and the drivers give: reactions and hodographs."""
+"""What the joints carry, the drivers give and the forces do: reactions, hodographs, forces."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from render.plots.horizon import horizon
-from render.plots.magnitudes import NOISE, force_scale, torque_scale, without_noise
+from render.plots.magnitudes import NOISE, force_scale, power_floor, torque_scale, without_noise
 from render.plots.rates import draw
 from render.plots.style import INK, colour, page, rows
 from shared.contract import Motion
@@ -44,6 +44,38 @@ def reactions(motion: Motion) -> Figure:
     )
     for axes, (label, lines) in zip(rows(figure, len(panels)), panels, strict=True):
         draw(axes, over, label, lines, floor=slack if "N m" in label else weak)
+    over.dress(figure.axes[-1])
+    return figure
+
+
+def forces(motion: Motion) -> Figure:
+    """Signed size of every force (N) and torque (N m), what rigid contacts press with, and the power of forces (W)."""
+    over = horizon(motion)
+    weak, slack = NOISE * force_scale(motion), NOISE * torque_scale(motion)
+    pushing, turning, giving = [], [], []
+    for i, (name, force) in enumerate(motion.forces.items()):
+        if force.effort is not None:
+            (turning if force.measures == "angle" else pushing).append((name, np.asarray(force.effort), colour(i)))
+        elif len(force.actions) == 1:
+            sizes = np.hypot(force.actions[0].fx, force.actions[0].fy)
+            pushing.append((f"|{name}|", sizes, colour(i)))
+        giving.append((name, np.asarray(force.power), colour(i)))
+    for i, (name, contact) in enumerate(motion.contacts.items(), len(motion.forces)):
+        of_angle = "angle" in contact.kind or contact.kind == "one_way"
+        (turning if of_angle else pushing).append((name, np.asarray(contact.normal), colour(i)))
+    panels = [
+        ("force (N)", pushing, weak),
+        ("torque (N m)", turning, slack),
+        ("power (W)", giving, power_floor(motion)),
+    ]
+    panels = [panel for panel in panels if panel[1]]
+    figure = page(
+        motion.mechanism,
+        "what the forces do",
+        "positive where it makes its length, angle or gap grow; power: what it gives to the motion",
+    )
+    for axes, (label, lines, floor) in zip(rows(figure, len(panels)), panels, strict=True):
+        draw(axes, over, label, lines, floor=floor)
     over.dress(figure.axes[-1])
     return figure
 

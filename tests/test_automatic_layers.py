@@ -166,11 +166,11 @@ def _random_linkage(rng: np.random.Generator) -> Mechanism:
     return m
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(3))
 def test_random_linkages_get_layers_without_a_collision_or_a_refusal(seed: int) -> None:
     rng = np.random.default_rng(seed)
     laid = refused = tried = 0
-    while laid + refused < 12 and tried < 200:
+    while laid + refused < 9 and tried < 200:
         tried += 1
         m = _random_linkage(rng)
         try:
@@ -184,8 +184,8 @@ def test_random_linkages_get_layers_without_a_collision_or_a_refusal(seed: int) 
             continue
         _clear(made)
         laid += 1
-    assert laid >= 4
-    assert laid + refused == 12
+    assert laid >= 3
+    assert laid + refused == 9
 
 
 def test_the_outline_holds_all_eyes() -> None:

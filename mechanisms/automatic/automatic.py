@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.teeth import with_radii
 from mechanisms.automatic.features import KINDS, Feature
 from mechanisms.automatic.heights import Heights, heights
 from mechanisms.automatic.layers import find_layers
@@ -30,9 +31,12 @@ from shared.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
+    from mbsd.joint import Joint
     from mechanisms.automatic.plan import Plan
     from shared.shapes.solid import Solid
 
+WHEEL = 1.45
+"""A wheel's pitch radius counts as so much of a link: a pin and its flanges must stay inside of its teeth."""
 SHAPELESS = ("angle_lock", "constraint")
 """Kinds of joints that hold by no part of their own."""
 
@@ -99,13 +103,13 @@ class Automatic:
         layout = self.layout
         needs = [need for feature in layout.features for need in feature.needs(self.decided, layout)]
         pivot = self.sizes.pivot
-        heights_of = heights(self.decided, layout.moving, self.sizes.thickness, needs, 2 * pivot.fit.axial)
+        heights_of = heights(self.decided, layout.layered, self.sizes.thickness, needs, 2 * pivot.fit.axial)
         floor = 4.0 + self.sizes.screw / self.sizes.scale + 2 * pivot.fit.axial
         if heights_of.bottoms and heights_of.bottoms[0] < floor:
             from mechanisms.automatic.features import Need
 
             needs.append(Need(-1, floor))
-            heights_of = heights(self.decided, layout.moving, self.sizes.thickness, needs, 2 * pivot.fit.axial)
+            heights_of = heights(self.decided, layout.layered, self.sizes.thickness, needs, 2 * pivot.fit.axial)
         return heights_of
 
     def solids(self) -> dict[str, list[Solid]]:
@@ -134,12 +138,12 @@ class Automatic:
             return low, least
         high = self._layout(tall=True)
         levels = self._levels(high)
-        if levels is None or max(levels[b] for b in high.moving) > max(least[b] for b in low.moving):
+        if levels is None or max(levels[b] for b in high.layered) > max(least[b] for b in low.layered):
             return low, least
         return high, levels
 
     def _levels(self, layout: Layout) -> dict[str, int] | None:
-        return find_layers(layout.moving, layout.items, layout.conflicts, self._layers)
+        return find_layers(layout.layered, layout.items, layout.conflicts, self._layers, together=layout.together)
 
     def _layout(self, tall: bool) -> Layout:
         poses = poses_of(self.solution, self.sizes.of_metres(1.0))
@@ -194,6 +198,10 @@ def _extents(m: Mechanism, solution: Solution) -> tuple[float, float]:
             places.setdefault(marker.body.name, []).append((marker.x, marker.y))
             if joint.kind.name == "revolute" or (joint.kind.name == "pin_in_slot" and marker is joint.j):
                 pinned.setdefault(marker.body.name, []).append((marker.x, marker.y))
+        if joint.kind.name == "gear_pair":
+            for marker, radius in zip((joint.i, joint.j), _radii(joint), strict=True):
+                box = [(marker.x + u * radius, marker.y + v * radius) for u in (-1, 1) for v in (-1, 1)]
+                places.setdefault(marker.body.name, []).extend(box)
     for name, body in m.bodies.items():
         if body.length is not None:
             places.setdefault(name, []).extend([(0.0, 0.0), (body.length, 0.0)])
@@ -202,7 +210,14 @@ def _extents(m: Mechanism, solution: Solution) -> tuple[float, float]:
     apart = [
         float(np.hypot(a[0] - b[0], a[1] - b[1])) for at in pinned.values() for i, a in enumerate(at) for b in at[:i]
     ]
+    apart += [WHEEL * min(_radii(joint)) for joint in m.joints.values() if joint.kind.name == "gear_pair"]
     return min((d for d in apart if d > 1e-3 * overall), default=overall), overall
+
+
+def _radii(joint: Joint) -> tuple[float, float]:
+    """Pitch radii (m) of a gear pair."""
+    sized = with_radii(joint.params)
+    return sized["radius_i"], sized["radius_j"]
 
 
 def _swept(solution: Solution, body: str, at: np.ndarray) -> np.ndarray:

@@ -71,6 +71,8 @@ class Item:
     spares: frozenset[str] = frozenset()
     source: object = None
     """The feature that it belongs to."""
+    meshes: frozenset[str] = frozenset()
+    """Names of items that it touches by design."""
 
 
 def spans_meet(a: tuple[int, int] | None, b: tuple[int, int] | None) -> bool:

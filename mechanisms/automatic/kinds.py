@@ -1,6 +1,7 @@
 """Every kind of joint that has parts by itself: importing a line's module enters it."""
 
 from mechanisms.automatic import (  # noqa: F401
+    gears,  # gear pair
     pins,  # revolute
     slides,  # prismatic
     slots,  # pin in slot

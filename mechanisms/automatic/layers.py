@@ -27,6 +27,8 @@ class _Search:
     count: int
     fixed: Mapping[str, int]
     choices: Sequence[str]
+    groups: Mapping[str, Sequence[str]]
+    """By the first of bodies that share a layer, all of them."""
     left: int
     best: dict[str, int] | None = None
     cost: float = float("inf")
@@ -39,20 +41,22 @@ class _Search:
             self.best, self.cost = dict(levels), low
             return
         body = self.order[index]
-        options = [self.fixed[body]] if body in self.fixed else range(2 if body in self.choices else self.count)
-        ranked = []
+        group = self.groups.get(body, (body,))
+        wished = {self.fixed[member] for member in group if member in self.fixed}
+        options: Sequence[int] = sorted(wished)[:1] if wished else range(2 if body in self.choices else self.count)
+        ranked: list[tuple[float, int]] = []
         for level in options:
-            levels[body] = level
-            if not self._clash(body, levels):
-                ranked.append((low + self._growth(body, levels), level))
-            del levels[body]
+            levels.update(dict.fromkeys(group, level))
+            if not any(self._clash(member, levels) for member in group):
+                ranked.append((low + self._growth(group, levels), level))
+            _remove(levels, group)
         for cost, level in sorted(ranked):
             if self.left <= 0 or cost >= self.cost:
                 return
             self.left -= 1
-            levels[body] = level
+            levels.update(dict.fromkeys(group, level))
             self._place(index + 1, levels, cost)
-            del levels[body]
+            _remove(levels, group)
 
     def _clash(self, body: str, levels: dict[str, int]) -> bool:
         spans: dict[int, tuple[int, int] | None] = {}
@@ -64,16 +68,21 @@ class _Search:
                 return True
         return False
 
-    def _growth(self, body: str, levels: dict[str, int]) -> float:
-        """How much longer the pins get by placing ``body``, and a little for its own height."""
-        total = (0.3 if body in self.choices else 0.01) * levels[body]
-        for k in self.pins[body]:
-            after = self.items[k].reach.span(levels)
-            level = levels.pop(body)
-            before = self.items[k].reach.span(levels)
-            levels[body] = level
-            total += _length(after) - _length(before)
+    def _growth(self, group: Sequence[str], levels: dict[str, int]) -> float:
+        """How much longer the pins get by placing a group of bodies, and a little for its own height."""
+        level = levels[group[0]]
+        total = (0.3 if group[0] in self.choices else 0.01) * level
+        pins = {k for body in group for k in self.pins[body]}
+        total += sum(_length(self.items[k].reach.span(levels)) for k in pins)
+        _remove(levels, group)
+        total -= sum(_length(self.items[k].reach.span(levels)) for k in pins)
+        levels.update(dict.fromkeys(group, level))
         return total
+
+
+def _remove(levels: dict[str, int], group: Sequence[str]) -> None:
+    for body in group:
+        del levels[body]
 
 
 def _length(span: tuple[int, int] | None) -> int:
@@ -87,6 +96,7 @@ def find_layers(
     fixed: Mapping[str, int] | None = None,
     most: int | None = None,
     tries: int = TRIES,
+    together: Sequence[tuple[str, str]] = (),
 ) -> dict[str, int] | None:
     """The layer of each body, from 0 up, and the choices; None where no order was found with up to ``most`` layers.
 
@@ -101,9 +111,10 @@ def find_layers(
         for name in {*_scope(items[i]), *_scope(items[j])} & rules.keys():
             rules[name].append((i, j))
     pins = {name: [k for k, item in enumerate(items) if name in _scope(item)] for name in rules}
-    order = _with_choices(_ordered(bodies, items, conflicts), items)
+    groups = _groups(bodies, together)
+    order = _with_choices(_ordered(bodies, items, conflicts), items, groups)
     for count in range(max([1, *(level + 1 for level in fixed.values())]), most + 1):
-        search = _Search(order, items, rules, pins, count, fixed, choices, tries)
+        search = _Search(order, items, rules, pins, count, fixed, choices, groups, tries)
         search.run()
         if search.best is not None:
             return search.best
@@ -116,12 +127,25 @@ def _scope(item: Item) -> tuple[str, ...]:
     return (*reach.bodies, reach.choice) if isinstance(reach, PinReach) else reach.bodies
 
 
-def _with_choices(order: Sequence[str], items: Sequence[Item]) -> list[str]:
-    """Each choice right after the last of its bodies."""
-    found = list(order)
+def _groups(bodies: Sequence[str], together: Sequence[tuple[str, str]]) -> dict[str, list[str]]:
+    """Bodies that share a layer, by their first one."""
+    first = {body: body for body in bodies}
+    for a, b in together:
+        old, new = first[b], first[a]
+        first = {body: new if head == old else head for body, head in first.items()}
+    found: dict[str, list[str]] = {}
+    for body in bodies:
+        found.setdefault(first[body], []).append(body)
+    return {members[0]: members for members in found.values()}
+
+
+def _with_choices(order: Sequence[str], items: Sequence[Item], groups: Mapping[str, Sequence[str]]) -> list[str]:
+    """Bodies that share a layer once, where the first of them is; each choice right after the last of its bodies."""
+    head = {member: members[0] for members in groups.values() for member in members}
+    found = list(dict.fromkeys(head[body] for body in order))
     for item in items:
         if isinstance(item.reach, PinReach) and item.reach.choice not in found:
-            last = max(found.index(body) for body in item.reach.bodies)
+            last = max(found.index(head[body]) for body in item.reach.bodies)
             found.insert(last + 1, item.reach.choice)
     return found
 

@@ -15,6 +15,7 @@ from mechanisms.automatic.planar import Rounded, around, least_gap
 if TYPE_CHECKING:
     from mbsd import Marker, Mechanism
     from mechanisms.automatic.features import Anchor, Feature
+    from mechanisms.automatic.gears import Wheel
     from mechanisms.automatic.items import Levels
     from mechanisms.automatic.sizes import Sizes
 
@@ -28,6 +29,12 @@ class Layout:
     poses: dict[str, np.ndarray]
     """By body, (T, 3): x, y (rmm) and theta (rad)."""
     times: np.ndarray
+    wheels: dict[str, list[Wheel]] = field(default_factory=dict)
+    """By body; set before outlines are asked for."""
+    extra: list[str] = field(default_factory=list)
+    """Layers that are no body's: wheels on ground."""
+    together: list[tuple[str, str]] = field(default_factory=list)
+    """Pairs that share a layer."""
     features: list[Feature] = field(default_factory=list)
     apart: frozenset[str] = frozenset()
     """Bodies that get no solids from here."""
@@ -61,7 +68,18 @@ class Layout:
                     places.append(anchor)
                 elif anchor.radius > places[same[0]].radius:
                     places[same[0]] = anchor
-        return found
+        return {body: [a for a in places if not self._on_wheel(a)] for body, places in found.items()}
+
+    def _on_wheel(self, anchor: Anchor) -> bool:
+        """Whether a wheel of its body carries it."""
+        reach = min(anchor.radius, self.sizes.hardware)
+        wheels = [wheel for wheel in self.wheels.get(anchor.body, []) if not wheel.ring]
+        return any(math.hypot(anchor.x - w.x, anchor.y - w.y) + reach <= w.root for w in wheels)
+
+    @property
+    def layered(self) -> list[str]:
+        """All that gets a layer."""
+        return [*self.moving, *self.extra]
 
     @cached_property
     def moving(self) -> list[str]:
@@ -77,7 +95,7 @@ class Layout:
     @cached_property
     def items(self) -> list[Item]:
         """Plates of the bodies first, in their order, then all that features add."""
-        plates = [Item(name, name, self.outline(name), Reach((name,))) for name in self.moving]
+        plates = [Item(name, name, self.outline(name), Reach((name,))) for name in self.moving if self.anchors[name]]
         return plates + [item for feature in self.features for item in feature.items(self)]
 
     @cached_property
@@ -99,6 +117,7 @@ class Layout:
     def _may_meet(self, first: Item, second: Item) -> bool:
         return not (
             first.body == second.body
+            or first.what in second.meshes
             or first.body in second.spares
             or second.body in first.spares
             or frozenset((first.body, second.body)) in self.touching

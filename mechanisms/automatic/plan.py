@@ -38,6 +38,8 @@ class Plan:
     feet: list[Foot] = field(default_factory=list)
     solids: dict[str, list[Solid]] = field(default_factory=dict)
     cuts: dict[str, list[tuple[cq.Workplane, int]]] = field(default_factory=dict)
+    wheels: dict[str, tuple[float, float, cq.Workplane, int]] = field(default_factory=dict)
+    """By body: place, shape and through holes of a wheel that is its plate, or a part of it."""
     names: set[str] = field(default_factory=set)
     main: dict[str, str] = field(default_factory=dict)
     """Names of the main pieces."""

@@ -18,12 +18,12 @@ TOLD = 4
 
 def refusal(layout: Layout) -> str:
     """A sentence or two. Pairs of bodies are left out one after the other as long as there is still no order."""
-    items, moving = layout.items, layout.moving
+    items, moving = layout.items, layout.layered
     kept = list(layout.conflicts)
     pairs = list(dict.fromkeys(_pair(layout, rule) for rule in kept))
     for pair in pairs:
         fewer = [rule for rule in kept if _pair(layout, rule) != pair]
-        if find_layers(moving, items, fewer, tries=TRIES) is None:
+        if find_layers(moving, items, fewer, tries=TRIES, together=layout.together) is None:
             kept = fewer
     bodies = sorted({body for rule in kept for k in rule for body in items[k].reach.bodies}, key=moving.index)
     pins = [rule for rule in kept if any(items[k].source is not None for k in rule)] or kept

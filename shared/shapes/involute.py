@@ -1,0 +1,68 @@
+"""Outlines of involute teeth (ISO 53: pressure angle 20 degrees): spur gears, ring gears, racks. Lengths in mm.
+
+A flank is the involute of the base circle, told by points on it; tips and roots are chords. ``play`` is taken from the
+thickness of the teeth along the pitch circle, so two wheels in mesh have the sum of theirs.
+
+Source: ISO 21771: with a tooth s thick at the pitch circle, half its angle at radius r is
+s / (2 r_pitch) + inv(20 deg) - inv(alpha), cos alpha = r_base / r.
+"""
+
+from __future__ import annotations
+
+import math
+
+import cadquery as cq
+import numpy as np
+
+PRESSURE = math.radians(20.0)
+ADDENDUM = 1.0
+"""Height of a tooth above the pitch circle, in modules."""
+DEDENDUM = 1.25
+FLANK = 6
+"""Points on a flank."""
+
+
+def involute(angle: float) -> float:
+    """inv(angle) = tan(angle) - angle."""
+    return math.tan(angle) - angle
+
+
+def longest_tip(radius: float, mate: float) -> float:
+    """Largest tip radius of an external gear that meets the flanks of its ``mate`` above their base circle."""
+    return math.hypot(radius * math.cos(PRESSURE), (radius + mate) * math.sin(PRESSURE))
+
+
+def shortest_tip(ring: float, mate: float) -> float:
+    """Smallest tip radius of a ring gear that meets the flanks of the pinion ``mate`` above their base circle."""
+    return math.hypot(ring * math.cos(PRESSURE), (ring - mate) * math.sin(PRESSURE))
+
+
+def toothed(teeth: int, module: float, tip: float, root: float, play: float, phase: float = 0.0) -> np.ndarray:
+    """(n, 2): the outline of a wheel, counter-clockwise; a tooth points to the angle ``phase`` (rad).
+
+    ``tip`` and ``root`` are radii. The hole of a ring gear is such a wheel, too: its teeth are the ring's spaces, so
+    ``play`` is negative, ``tip`` the ring's root and ``root`` the ring's tip.
+    """
+    pitch = teeth * module / 2
+    base = pitch * math.cos(PRESSURE)
+    thick = (math.pi * module / 2 - play) / (2 * pitch)
+    low = max(base, root)
+    roll = np.linspace(math.sqrt(max((low / base) ** 2 - 1, 0.0)), math.sqrt((tip / base) ** 2 - 1), FLANK)
+    radii = base * np.sqrt(1 + roll**2)
+    half = thick + involute(PRESSURE) - (roll - np.arctan(roll))
+    if half[-1] <= 0:  # pointed before the tip
+        keep = half > 0
+        radii, half = radii[keep], half[keep]
+    if root < low - 1e-9:
+        radii, half = np.insert(radii, 0, root), np.insert(half, 0, half[0])
+    angles = np.concatenate([-half, half[::-1]])
+    flanks = np.concatenate([radii, radii[::-1]])
+    turn = phase + 2 * math.pi * np.arange(teeth)[:, None] / teeth
+    around = (turn + angles).ravel()
+    out = np.tile(flanks, teeth)
+    return np.column_stack([out * np.cos(around), out * np.sin(around)])
+
+
+def wire(points: np.ndarray) -> cq.Wire:
+    """A closed polygon."""
+    return cq.Wire.makePolygon([cq.Vector(float(x), float(y), 0.0) for x, y in points], close=True)

@@ -349,3 +349,30 @@ def test_a_failure_leaves_no_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     with pytest.raises(ModelError, match="cannot write"):
         four_bar().sweep(steps=8).animate(tmp_path / "no" / "film.mp4", size=SMALL)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_chain_names_its_traced_end_alone_and_its_lines_are_thin() -> None:
+    m = Mechanism("chain")
+    before = m.ground.at(0, 0)
+    for k in range(20):
+        link = m.bar(f"link {k}", 0.05, 0.05)
+        m.revolute(f"pin {k}", before, link.start)
+        before = link.end
+    m.trace("end", before)
+    m.start_near(**{f"link {k}": 0 for k in range(20)})
+    sol = m.simulate(0.2, steps=8)
+    page = Page(sol, scene(sol), EVERYTHING, (640, 360), True)
+    for panel in page.panels:
+        assert len(panel.placed) == 1
+        assert panel.brush.thin < 1.0
+    page.picture(3)
+
+
+def test_panels_of_one_scale_share_their_machine() -> None:
+    sol = four_bar().sweep()
+    page = Page(sol, scene(sol), (("velocities",), ("accelerations",)), SMALL, True)
+    picture = page.picture(5).copy()
+    alone = [panel.scene.drawn(panel.brush, 5, panel.colours) for panel in page.panels]
+    assert alone[0] is alone[1]
+    page.scene._drawn.clear()
+    assert np.array_equal(page.picture(5), picture)

@@ -55,6 +55,8 @@ class Brush(Canvas):
     tints: dict[str, tuple[str, float]] = field(default_factory=dict)
     """Another filling for what is drawn in a colour: colour and alpha."""
     dpi: float = 100.0
+    thin: float = 1.0
+    """Of the widths of lines in metres: less where symbols are small."""
     remembers: bool = False
     """Whether obstacles for names are kept."""
 
@@ -65,7 +67,8 @@ class Brush(Canvas):
         points = np.asarray(points, float)
         self.keep(points)
         dash = more.get("linestyle", (0, None))
-        self._add(self.view.pixels(points), False, rgba(colour, more.get("alpha", 1.0)), None, width, order, dash)
+        ink = rgba(colour, more.get("alpha", 1.0))
+        self._add(self.view.pixels(points), False, ink, None, self.thin * width, order, dash)
 
     def shape(
         self,
@@ -81,7 +84,8 @@ class Brush(Canvas):
             fill, alpha = self.tints[edge]
         self.keep(points)
         filled = rgba(fill, alpha) if alpha > 0 else None
-        self._add(self.view.pixels(points), True, rgba(edge) if width > 0 else None, filled, width, order)
+        ink = rgba(edge) if width > 0 else None
+        self._add(self.view.pixels(points), True, ink, filled, self.thin * width, order)
 
     def band(self, outer: Point, inner: Point, colour: str) -> None:
         """What lies between two closed outlines (m)."""
@@ -91,7 +95,7 @@ class Brush(Canvas):
         ring = Path.make_compound_path(
             Path(self.view.pixels(outer), closed=True), Path(self.view.pixels(inner[::-1]), closed=True)
         )
-        self.marks.append(Mark(1.7, ring, rgba(colour), rgba(colour, 0.12), 1.3, (0, None)))
+        self.marks.append(Mark(1.7, ring, rgba(colour), rgba(colour, 0.12), 1.3 * self.thin, (0, None)))
 
     def label(self, text: str, anchor: Point, clearance: float, colour: str = INK, size: float = 10.0) -> None:
         """A name; those that share a place are not joined, because they may part. Drivers, which turn, get none."""
@@ -117,12 +121,13 @@ class Brush(Canvas):
         """A polyline in pixels."""
         self._add(pixels, False, colour, None, width, order)
 
-    def paint(self, renderer: Any) -> None:
-        """Draw all, lower orders first, those of one order as they came."""
-        from matplotlib.transforms import IdentityTransform
+    def paint(self, renderer: Any, others: Sequence[Mark] = (), shift: tuple[float, float] = (0.0, 0.0)) -> None:
+        """Draw all, lower orders first, those of one order as they came; ``others`` too, moved by ``shift`` pixels."""
+        from matplotlib.transforms import Affine2D
 
-        still = IdentityTransform()
-        for mark in sorted(self.marks, key=lambda one: one.order):
+        still, moved = Affine2D(), Affine2D().translate(*shift)
+        every = [*((mark, moved) for mark in others), *((mark, still) for mark in self.marks)]
+        for mark, way in sorted(every, key=lambda one: one[0].order):
             gc = renderer.new_gc()
             gc.set_linewidth(renderer.points_to_pixels(mark.width) if mark.edge else 0.0)
             gc.set_foreground(mark.edge or (0, 0, 0, 0), isRGBA=True)
@@ -133,7 +138,7 @@ class Brush(Canvas):
                 scale = renderer.points_to_pixels(mark.width)
                 gc.set_dashes(offset * scale, [length * scale for length in dashes])
                 gc.set_capstyle("butt")
-            renderer.draw_path(gc, mark.path, still, mark.fill)
+            renderer.draw_path(gc, mark.path, way, mark.fill)
             gc.restore()
         self.marks.clear()
 

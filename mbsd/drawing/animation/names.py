@@ -30,14 +30,17 @@ class Placed:
     """(2,) pixels from its anchor to its middle."""
 
 
-def place_names(drawn: Sequence[Brush], frame: tuple[float, float, float, float], keep: int) -> list[Placed]:
-    """For the first ``keep`` labels of some pictures whose obstacles were kept; ``frame``: left, low, right, top."""
+def place_names(
+    drawn: Sequence[Brush], frame: tuple[float, float, float, float], wanted: Sequence[int]
+) -> list[Placed]:
+    """For the ``wanted`` labels of some pictures whose obstacles were kept; ``frame``: left, low, right, top."""
     first = drawn[0]
     points = [one.view.pixels(np.concatenate(one.obstacles)) for one in drawn]
     anchors = [one.view.pixels([label.anchor for label in one.labels]) for one in drawn]
     out: list[Placed] = []
     taken: list[list[np.ndarray]] = [[] for _ in drawn]
-    for number, label in enumerate(first.labels[:keep]):
+    for number in wanted:
+        label = first.labels[number]
         word = sprite(label.text, 0.92 * label.size, label.colour, first.dpi)
         size = np.array([word.shape[1], word.shape[0]]) + 2 * MARGIN
         offs = _offsets(label.clearance * first.unit * first.view.scale, size)

@@ -29,6 +29,10 @@ FULL_TURN = 1.5 * math.pi
 """Sweep of the largest arc."""
 NAMED_AT = 8
 """Pictures in which the places of names are tried."""
+MOST_NAMES = 16
+"""In a panel; of a mechanism with more, traced points alone have names."""
+FINE = 5.0
+"""Pixels of a unit below which lines are thinner."""
 
 
 @dataclass(eq=False)
@@ -63,7 +67,8 @@ class Panel:
         self.room = (left + 12 * px, bottom, right, top)
         inks = self._inks()
         self.colours = {n: inks[k] for k, n in enumerate(n for n in self.scene.tracks.views if n != "ground")}
-        self.brush = Brush(None, self.scene.unit, view=self._view(), dpi=self.dpi)
+        self.brush = Brush(None, self.scene.unit, dpi=self.dpi)
+        self._look_at(self._view())
         self.impacts = impacts_of(self.scene)
 
     @property
@@ -112,7 +117,11 @@ class Panel:
         least, most = self.extent()
         left, low, right, top = self.room
         middle = (least + most) / 2
-        self.brush.view = View(scale, (left + right) / 2 - scale * middle[0], (low + top) / 2 - scale * middle[1])
+        self._look_at(View(scale, (left + right) / 2 - scale * middle[0], (low + top) / 2 - scale * middle[1]))
+
+    def _look_at(self, view: View) -> None:
+        self.brush.view = view
+        self.brush.thin = min(1.0, max(0.3, self.scene.unit * view.scale * 100 / self.dpi / FINE))
 
     def place_names(self) -> None:
         """Find places for the names; the view is final."""
@@ -124,8 +133,12 @@ class Panel:
             brush = fresh(self.brush, wheels={}, turned={}, coils={}, remembers=True)
             self.scene.draw(brush, int(k), self.colours)
             drawn.append(brush)
-        bodies = 0 if not self.quantities else len(self.colours)
-        self.placed = place_names(drawn, self.room, len(drawn[0].labels) - bodies)
+        count, bodies = len(drawn[0].labels), len(self.colours)
+        joints = count - bodies
+        wanted = range(count if not self.quantities else joints)
+        if len(wanted) > MOST_NAMES:
+            wanted = range(joints - len(self.trails), joints)
+        self.placed = place_names(drawn, self.room, list(wanted)[:MOST_NAMES])
 
     # -- what stands still ----------------------------------------------------------------------------------------
 
@@ -208,9 +221,9 @@ class Panel:
     def paint(self, renderer: Any, picture: np.ndarray, k: int) -> None:
         """Machine, trails, arrows and names of picture ``k``."""
         px, scene = self.dpi / 100, self.scene
-        brush = fresh(self.brush, wheels={}, turned={}, coils={}, tints=self._tints(k))
+        brush = fresh(self.brush, tints=self._tints(k))
+        machine = scene.drawn(brush, k, self.colours)
         draw_trails(brush, self.trails, scene.clip, k)
-        scene.draw(brush, k, self.colours)
         draw_impacts(brush, self.impacts, scene.clip, k)
         for mark in self.marks:
             scale, ink = self.scales[unit_of(mark)], QUANTITIES[mark.quantity].colour
@@ -225,12 +238,12 @@ class Panel:
             else:
                 vector = mark.vector[k] / size * part * scene.length * brush.view.scale
                 arrow(brush, at - 0.5 * vector if mark.middle else at, vector, ink, 3.4 * px, part >= LONGEST)
-        anchors = [brush.view.pixels(label.anchor) for label in brush.labels]
         if self.bars is not None:
             self.bars.draw(brush, k)
-        brush.paint(renderer)
+        corner = brush.view.left, brush.view.low
+        brush.paint(renderer, machine.marks, corner)
         for name in self.placed:
-            lay(picture, name.word, *(anchors[name.number] + name.off))
+            lay(picture, name.word, *(machine.anchors[name.number] + corner + name.off))
         if self.bars is not None:
             self.bars.lay_words(picture, k)
 

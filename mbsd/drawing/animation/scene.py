@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from mbsd.drawing.animation.arrows import Arc, Arrow
 from mbsd.drawing.animation.between import at_times
-from mbsd.drawing.animation.brush import Brush
+from mbsd.drawing.animation.brush import Brush, Mark, View, fresh
 from mbsd.drawing.animation.clip import Clip
 from mbsd.drawing.animation.flow import Balance, balance_of, flow_arrows
 from mbsd.drawing.animation.loads import force_arrows, reaction_arrows
@@ -24,6 +24,15 @@ LOOKED_AT = 24
 """Poses from which extent, sides and names are found."""
 LENGTH = 0.22
 """Of the largest arrow, in the larger side of the machine."""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """The machine in one picture, the world's origin at pixel 0, 0."""
+
+    marks: list[Mark]
+    anchors: np.ndarray
+    """(k, 2) pixels, of its names."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +54,7 @@ class Scene:
     coils: dict[str, int]
     wheels: dict[tuple[str, float], tuple[int, float]]
     """At the first picture."""
+    _drawn: dict[tuple[int, float], Drawn] = field(default_factory=dict)
 
     @property
     def length(self) -> float:
@@ -63,6 +73,20 @@ class Scene:
             turned = float(theta[body][k] - theta[body][0])
             brush.turned[body, radius] = teeth, phase + teeth * turned
         draw_on(brush, self.sol.mechanism, self.pose(k), colours, False, self.sides)
+
+    def drawn(self, brush: Brush, k: int, colours: dict[str, str]) -> Drawn:
+        """The same as marks, in the scale of ``brush``; panels of one scale share it, unless bodies glow in one."""
+        key = k, brush.view.scale
+        if key in self._drawn and not brush.tints:
+            return self._drawn[key]
+        own = fresh(brush, wheels={}, turned={}, coils={}, view=View(brush.view.scale, 0.0, 0.0))
+        self.draw(own, k, colours)
+        anchors = own.view.pixels([label.anchor for label in own.labels]).reshape(-1, 2)
+        out = Drawn(own.marks, anchors)
+        if not brush.tints:
+            self._drawn.clear()
+            self._drawn[key] = out
+        return out
 
     def looked_at(self) -> np.ndarray:
         """Some pictures over the whole clip."""

@@ -49,13 +49,13 @@ def draw_trails(brush: Brush, trails: list[Trail], clip: Clip, k: int) -> None:
     for trail in trails:
         times, path = trail.times, trail.path
         if clip.repeats:
-            brush.line(path, trail.colour, 1.3, order=1.0, alpha=FAINT)
+            brush.stroke(brush.view.pixels(path), rgba(trail.colour, FAINT), 1.3, 1.0)
             times = np.concatenate([times - span, times])
             path = np.concatenate([path, path])
         else:
             passed = path[times <= now + 1e-12]
             if len(passed) > 1:
-                brush.line(passed, trail.colour, 1.3, order=1.0, alpha=1.6 * FAINT)
+                brush.stroke(brush.view.pixels(passed), rgba(trail.colour, 1.6 * FAINT), 1.3, 1.0)
         edges = np.linspace(now - BRIGHT * span, now, SHADES + 1)
         ends = np.searchsorted(times, edges + 1e-12, side="right")
         for shade in range(SHADES):

@@ -7,6 +7,7 @@ FRAME ?= 0
 NAME ?=
 KIND ?=
 VIEW ?=
+SHOW ?=
 N ?=
 SEED ?= 1
 PYTEST ?= -n 2 --dist loadfile
@@ -18,10 +19,11 @@ override FRAME := $(value FRAME)
 override NAME := $(value NAME)
 override KIND := $(value KIND)
 override VIEW := $(value VIEW)
+override SHOW := $(value SHOW)
 override N := $(value N)
 override SEED := $(value SEED)
 override MECHANISM = $(subst -,_,$*)
-export PRESET SHEET_PRESET FRAME NAME KIND VIEW MECHANISM N SEED
+export PRESET SHEET_PRESET FRAME NAME KIND VIEW SHOW MECHANISM N SEED
 
 PRESETS := draft preview production final
 ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
@@ -60,6 +62,7 @@ endef
 
 help: ## this list
 	@echo "make <target>, with PRESET=draft|preview|production|final on every picture target (preview by default)."
+	@echo "SHOW=reactions,forces,velocities,accelerations,title on these targets: arrows and words in the picture."
 	@echo "A mechanism's name takes hyphens or underscores: run-four-bar, run-four_bar."
 	@echo
 	@sed -n 's/^\([a-z][a-z-]*\)-%:[^#]*## /\1-<name>|/p; s/^\([a-z][a-z-]*\):[^#]*## /\1|/p' Makefile \
@@ -72,8 +75,8 @@ run-%: install always ## everything of one mechanism: parts, motion, clearance, 
 	@$(PICTURE) report "$$MECHANISM"
 	@$(PICTURE) plots "$$MECHANISM"
 	@$(PICTURE) glb "$$MECHANISM"
-	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET"
-	@$(PICTURE) film "$$MECHANISM" --preset "$$PRESET"
+	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
+	@$(PICTURE) film "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 
 run-all: install ## run-<name> for every mechanism; goes on after a failure, with a summary at the end
 	@sh tools/run_all.sh "$(MAKE)" "$$PRESET"
@@ -112,31 +115,31 @@ glb-%: install always ## the parts with their motion in one file for any glTF vi
 
 poster-%: install always ## one picture at its best: out/<name>/poster.png
 	$(upto_shot)
-	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET"
+	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 
 contact-%: install always ## a sheet of twelve frames, drafts if no PRESET is given: out/<name>/contact.png
 	$(upto_shot)
-	@$(PICTURE) contact "$$MECHANISM" --preset "$$SHEET_PRESET"
+	@$(PICTURE) contact "$$MECHANISM" --preset "$$SHEET_PRESET" $${SHOW:+--show="$$SHOW"}
 
 still-%: install always ## one frame of the film, FRAME=15 (from 0): out/<name>/stills/
 	$(upto_shot)
-	@$(PICTURE) still "$$MECHANISM" --frame="$$FRAME" --preset "$$PRESET"
+	@$(PICTURE) still "$$MECHANISM" --frame="$$FRAME" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 
 frames-%: install always ## the frames of the film: out/<name>/frames/<preset>/
 	$(upto_shot)
-	@$(PICTURE) frames "$$MECHANISM" --preset "$$PRESET"
+	@$(PICTURE) frames "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 
 film-%: install always ## the film: out/films/<name>-<preset>.mp4
 	$(upto_shot)
-	@$(PICTURE) film "$$MECHANISM" --preset "$$PRESET"
+	@$(PICTURE) film "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 
 scene-ui-%: install always ## open the scene in an installed Blender
 	$(upto_shot)
-	@$(PICTURE) scene-ui "$$MECHANISM" --preset "$$PRESET"
+	@$(PICTURE) scene-ui "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 
 scene-%: install always ## save the scene: out/<name>/<name>.blend
 	$(upto_shot)
-	@$(PICTURE) scene "$$MECHANISM" --preset "$$PRESET"
+	@$(PICTURE) scene "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 
 gallery: install ## posters of all mechanisms (PRESET) and the page that shows them: docs/gallery/
 	@for file in mechanisms/*/mechanism.py; do one=$${file%/mechanism.py}; one=$${one#mechanisms/}; \

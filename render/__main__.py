@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from render.presets import PRESETS, Preset, preset_named
+from render.shown import show_words
 from shared.console import run_cli
 from shared.paths import mechanism_name
 
@@ -32,6 +33,9 @@ def main() -> int | None:
         sub.add_argument("name", help="mechanism; four-bar and four_bar are one")
         if command not in ("plots", "compare", "report", "glb"):
             sub.add_argument("--preset", default="preview", help=f"{', '.join(PRESETS)}; preview if not given")
+            sub.add_argument(
+                "--show", default="", help="what to show: reactions,velocities,title; as shot.py says if not given"
+            )
         if command == "still":
             sub.add_argument("--frame", type=int, default=0, help="number of the frame, from 0")
     commands.add_parser("gallery", help="docs/gallery/: every mechanism that has a poster")
@@ -61,30 +65,31 @@ def main() -> int | None:
 
 
 def _picture(command: str, name: str, preset: Preset, arguments: argparse.Namespace) -> None:
+    show = show_words(arguments.show)
     if command == "film":
         from render import film
 
-        film.run(name, preset)
+        film.run(name, preset, show)
     elif command == "frames":
         from render import frames
 
-        frames.run(name, preset)
+        frames.run(name, preset, show)
     elif command == "still":
         from render import still
 
-        still.still(name, preset, arguments.frame)
+        still.still(name, preset, arguments.frame, show)
     elif command == "contact":
         from render import contact
 
-        contact.run(name, preset)
+        contact.run(name, preset, show)
     elif command == "poster":
         from render import still
 
-        still.poster(name, preset)
+        still.poster(name, preset, show)
     else:
         from render import blend
 
-        (blend.save if command == "scene" else blend.open_in_blender)(name, preset)
+        (blend.save if command == "scene" else blend.open_in_blender)(name, preset, show)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-from render.inputs import stage_key
+from render.inputs import named, stage_key
 from render.presets import Preset
 from shared.console import say
 from shared.errors import UserError
@@ -27,22 +27,23 @@ USUAL_PLACES = (
 )
 
 
-def save(name: str, preset: Preset) -> Path:
+def save(name: str, preset: Preset, show: str = "") -> Path:
     """The stage: out/<mechanism>/<mechanism>.blend with the motion once on its timeline."""
     out = Out(name)
-    stage = Stage(out, "scene", stage_key(out, preset), [out.scene])
+    target = named(out.scene, show)
+    stage = Stage(out, target.stem.replace(out.name, "scene", 1), stage_key(out, preset, show), [target])
     if stage.is_fresh():
-        say("scene", f"{out.name}: {out.scene}: nothing to do")
-        return out.scene
+        say("scene", f"{out.name}: {target}: nothing to do")
+        return target
     from render.blender.job import Job
     from render.child import blender
     from render.inputs import read_film
 
-    film = read_film(out)
+    film = read_film(out, show)
     job = Job(
         scene=film.scene,
         states=[film.state(frame) for frame in range(film.clock.frames)],
-        blend=str(out.scene.resolve()),
+        blend=str(target.resolve()),
         width=preset.width,
         height=preset.height,
         samples=preset.samples,
@@ -56,14 +57,14 @@ def save(name: str, preset: Preset) -> Path:
         for part in out.folder.glob(".*.part.blend*"):
             part.unlink(missing_ok=True)
     stage.done()
-    say("scene", f"{out.name}: {out.scene}: {len(job.states)} frames, {out.scene.stat().st_size / 1e6:.1f} MB")
-    return out.scene
+    say("scene", f"{out.name}: {target}: {len(job.states)} frames, {target.stat().st_size / 1e6:.1f} MB")
+    return target
 
 
-def open_in_blender(name: str, preset: Preset) -> None:
+def open_in_blender(name: str, preset: Preset, show: str = "") -> None:
     """Save the scene and open it in an installed Blender; raises UserError if there is none."""
     program = find_blender()
-    scene = save(name, preset)
+    scene = save(name, preset, show)
     subprocess.Popen(
         [program, str(scene)], start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from render.inputs import stage_key
+from render.inputs import named, stage_key
 from render.presets import Preset
 from shared.console import say
 from shared.files import write_bytes
@@ -27,10 +27,11 @@ HEAD = 46
 PAPER, INK = (250, 250, 251), (32, 37, 43)
 
 
-def run(name: str, preset: Preset) -> None:
+def run(name: str, preset: Preset, show: str = "") -> None:
     """out/<mechanism>/contact.png; frames that the film has are not rendered again."""
     out = Out(name)
-    stage = Stage(out, "contact", stage_key(out, preset), [out.contact])
+    target = named(out.contact, show)
+    stage = Stage(out, target.stem, stage_key(out, preset, show), [target])
     if stage.is_fresh():
         say("contact", f"{out.name}: {preset}: nothing to do")
         return
@@ -38,15 +39,15 @@ def run(name: str, preset: Preset) -> None:
     from render.inputs import read_film
     from render.store import FrameStore
 
-    film = read_film(out)
+    film = read_film(out, show)
     chosen = frames_of(film)
     pictures, store = frames.Pictures(film, preset), FrameStore(out.frames(preset.name))
     with store.locked():
         frames.render(pictures, store, sorted(set(chosen)), "for the contact sheet", frames.Tally())
         found = [frames.picture_of(pictures, store, frame) for frame in chosen]
-        write_bytes(out.contact, sheet(found, _captions(film, chosen), out.name.replace("_", " ").replace("-", ": ")))
+        write_bytes(target, sheet(found, _captions(film, chosen), out.name.replace("_", " ").replace("-", ": ")))
     stage.done()
-    say("contact", f"{out.name}: {out.contact}")
+    say("contact", f"{out.name}: {target}")
 
 
 def frames_of(film: Film) -> list[int]:

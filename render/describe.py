@@ -9,12 +9,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from render import writing
+from render.arrows import Arrows
 from render.clock import Clock
-from render.framing import CameraPose, depth_of_field, fit, orbit
+from render.framing import CameraPose, depth_of_field, fit, half_width, orbit
 from render.framing import axes as camera_axes
 from render.poses import Poses
-from render.scene import LabelSpec, PieceSpec, Point, Scene, State, StudioSpec, SurfaceSpec, TrailSpec
+from render.scene import LabelSpec, PieceSpec, Point, Scene, State, StudioSpec, SurfaceSpec, TrailSpec, Writing
 from render.swept import SweptSpace
+from render.vectors import vectors
 from shared.contract import Motion, Parts, Piece
 from shared.errors import UserError
 from shared.files import file_hash
@@ -47,6 +50,7 @@ class Film:
         paths = {trail.point: self._trail_z(trail) for trail in self.trails}
         self.space = SweptSpace(self.poses, parts, folder, paths)
         self._ring_counts: dict[str, int] = {}
+        self.number = writing.number(motion, shot)
 
     @property
     def trails(self) -> tuple[Trail, ...]:
@@ -81,6 +85,8 @@ class Film:
                 floor=float(self.space.all[:, 2].min()),
                 azimuth=math.radians(self.shot.camera.azimuth),
             ),
+            arrows=self.arrows.specs(),
+            writing=self._writing(),
         )
 
     def state(self, frame: int) -> State:
@@ -91,6 +97,42 @@ class Film:
             trails=[self._path(trail, frame) for trail in self.trails],
             labels=[self._label_place(label.at, frame) for label in self.shot.labels],
             camera=self.camera(frame),
+            arrows=self.arrows.at(at.time, self._arrow_heights),
+            number=self.number(at.time),
+        )
+
+    @cached_property
+    def arrows(self) -> Arrows:
+        """What the shot shows by arrows."""
+        return Arrows(self.poses.time, vectors(self.motion, self.shot.show), self.space.size)
+
+    @cached_property
+    def _arrow_heights(self) -> list[float]:
+        """Of each arrow: on the highest piece where it begins at the start; else over all its bodies."""
+        start = self.clock.moment(0)
+        heights = []
+        for vector in self.arrows.vectors:
+            x, y = (float(value) for value in vector.place[0])
+            tops = [top for body in vector.bodies for top in self.space.tops_at(body, x, y, start)]
+            solids = [self.parts.bodies[body] for body in vector.bodies if body in self.parts.bodies]
+            tops = tops or [piece.z_range[1] for one in solids for piece in one.pieces.values()]
+            heights.append(max(tops, default=float(self.space.moving[:, 2].max())) + TRAIL_GAP)
+        return heights
+
+    @cached_property
+    def _filmed(self) -> Array:
+        """What the camera holds: everything, and the tips of all arrows."""
+        return np.concatenate([self.space.all, *self.arrows.tips(self._arrow_heights)])
+
+    def _writing(self) -> Writing:
+        camera = self.camera(0)
+        _, _, distance = self._stand
+        shown = np.concatenate([self.space.moving, *self.arrows.tips(self._arrow_heights)])
+        return Writing(
+            legend=self.arrows.legend(2 * half_width(self.shot.camera.lens) * distance),
+            corner=writing.emptiest(camera, shown),
+            title=writing.title(self.motion, self.shot),
+            rate=writing.rate(self.clock, self.shot),
         )
 
     def camera(self, frame: int) -> CameraPose:
@@ -115,11 +157,11 @@ class Film:
         """Camera position, the point it looks at, and their distance."""
         shot = self.shot.camera
         elevation, azimuth = math.radians(shot.elevation), math.radians(shot.azimuth)
-        position, distance = fit(self.space.all, azimuth, elevation, shot.lens, shot.margin)
+        position, distance = fit(self._filmed, azimuth, elevation, shot.lens, shot.margin)
         target = position + camera_axes(azimuth, elevation)[2] * distance
         if shot.orbit:
             swing = azimuth + math.radians(shot.orbit) * np.linspace(-1, 1, 9)
-            distance = orbit(self.space.all, target, swing, elevation, shot.lens, shot.margin)
+            distance = orbit(self._filmed, target, swing, elevation, shot.lens, shot.margin)
         return position, target, distance
 
     def _pieces(self) -> list[tuple[str, str, Piece]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from render.inputs import encoder_version, stage_key
+from render.inputs import encoder_version, named, stage_key
 from render.presets import Preset
 from shared.console import say
 from shared.errors import UserError
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from render.store import FrameStore
 
 
-def run(name: str, preset: Preset) -> None:
+def run(name: str, preset: Preset, show: str = "") -> None:
     """The stage: out/films/<mechanism>-<preset>.mp4."""
     out = Out(name)
-    film = out.film(preset.name)
-    stage = Stage(out, f"film-{preset.name}", stage_key(out, preset, encoder_version()), [film])
+    film = named(out.film(preset.name), show)
+    stage = Stage(out, film.stem.replace(out.name, "film", 1), stage_key(out, preset, encoder_version(), show), [film])
     if stage.is_fresh():
         say("film", f"{out.name}: {preset}: nothing to do")
         return
@@ -29,7 +29,7 @@ def run(name: str, preset: Preset) -> None:
     from shared import jsonfile
 
     encode.ffmpeg()  # told now, not after the last frame
-    frames.run(name, preset)
+    frames.run(name, preset, show)
     store = FrameStore(out.frames(preset.name))
     index = jsonfile.read(store.index, FrameIndex)
     encode.encode(_pictures(out.name, store, index.frames), len(index.frames), preset, index.fps, film)

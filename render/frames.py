@@ -30,16 +30,16 @@ RESERVE = 200e6
 """Bytes left free on the disk beside the frames."""
 
 
-def run(name: str, preset: Preset) -> None:
+def run(name: str, preset: Preset, show: str = "") -> None:
     """The stage: every frame of the film in the store, and frames.json."""
     started = time.perf_counter()
     out = Out(name)
     store = FrameStore(out.frames(preset.name))
-    stage = Stage(out, f"frames-{preset.name}", stage_key(out, preset), [store.index])
+    stage = Stage(out, f"frames-{preset.name}", stage_key(out, preset, show), [store.index])
     if stage.is_fresh():
         say("frames", f"{out.name}: {preset}: nothing to do")
         return
-    film = read_film(out)
+    film = read_film(out, show)
     pictures = Pictures(film, preset)
     frames = range(film.clock.frames)
     say("frames", f"{out.name}: {film.clock.said()}")

@@ -36,6 +36,11 @@ def stage_key(out: Out, preset: Preset, *more: object) -> str:
     return key_of(out.motion, out.parts, out.shot, picture_sources(), preset, blender_version(), *more)
 
 
+def named(path: Path, show: str) -> Path:
+    """The path of a picture that shows what SHOW asks for: ``poster-forces-title.png`` beside ``poster.png``."""
+    return path.with_stem("-".join([path.stem, *show.split(",")])) if show else path
+
+
 def encoder_version() -> str:
     """Version of the package that brings ffmpeg; empty where the system's own is used."""
     try:
@@ -59,13 +64,12 @@ def blender_version() -> str:
         raise UserError("bpy (Blender as a module) is not installed; run make install") from None
 
 
-def read_film(out: Out) -> Film:
-    """Read and check data.json, parts.json and shot.json."""
+def read_film(out: Out, show: str = "") -> Film:
+    """Read and check data.json, parts.json and shot.json; ``show`` is what SHOW asks for instead of the shot."""
     from render.describe import Film
     from shared.contract import read_motion, read_parts
-    from shared.shot import read_shot
+    from shared.shot import read_shot, shown
 
     refuse_missing(out)
-    return Film(
-        read_motion(out.motion, out.name), read_parts(out.parts, out.name), read_shot(out.shot), out.parts_folder
-    )
+    shot = shown(read_shot(out.shot), show)
+    return Film(read_motion(out.motion, out.name), read_parts(out.parts, out.name), shot, out.parts_folder)

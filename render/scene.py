@@ -48,6 +48,38 @@ class LabelSpec(msgspec.Struct, kw_only=True, frozen=True):
     colour: Colour
 
 
+class ArrowSpec(msgspec.Struct, kw_only=True, frozen=True):
+    """A vector that changes: a thin shaft with a cone. Tail and tip are in every State; it is drawn over the parts.
+
+    ``colour`` is what the picture has (sRGB 0..1), ``shaft`` and ``head`` are radii, ``point`` the cone's length.
+    """
+
+    name: str
+    colour: Colour
+    shaft: float
+    head: float
+    point: float
+
+
+class LegendRow(msgspec.Struct, kw_only=True, frozen=True):
+    """A reference arrow: what ``number`` is, and its tip, in parts of the picture's width."""
+
+    number: str
+    words: str
+    colour: Colour
+    length: float
+    point: float
+
+
+class Writing(msgspec.Struct, kw_only=True, frozen=True):
+    """What is written over the picture: a legend in a corner, a title at the upper left, the rate of time."""
+
+    legend: list[LegendRow] = []
+    corner: str = "lower left"
+    title: str = ""
+    rate: str = ""
+
+
 class StudioSpec(msgspec.Struct, kw_only=True, frozen=True):
     """Backdrop and lights, sized by the swept motion: its middle, its radius, the floor's height."""
 
@@ -67,12 +99,17 @@ class Scene(msgspec.Struct, kw_only=True, frozen=True):
     trails: list[TrailSpec]
     labels: list[LabelSpec]
     studio: StudioSpec
+    arrows: list[ArrowSpec] = []
+    writing: Writing = Writing()
 
 
 class State(msgspec.Struct, kw_only=True, frozen=True):
-    """What one frame changes: x, y, theta of every body; paths, label places and the camera."""
+    """What one frame changes: x, y, theta of every body; paths, label places, tails and tips of arrows, the camera."""
 
     bodies: dict[str, Point]
     trails: list[list[Point]]
     labels: list[Point]
     camera: CameraPose
+    arrows: list[tuple[Point, Point]] = []
+    number: str = ""
+    """The number that lives, beside the title."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from render.inputs import stage_key
+from render.inputs import named, stage_key
 from render.presets import Preset
 from shared.console import say
 from shared.errors import UserError
@@ -13,23 +13,25 @@ from shared.paths import Out
 from shared.stages import Stage
 
 
-def still(name: str, preset: Preset, frame: int) -> None:
+def still(name: str, preset: Preset, frame: int, show: str = "") -> None:
     """out/<mechanism>/stills/<preset>-<frame>.png; raises UserError if the film has no such frame."""
     out = Out(name)
-    target = out.stills / f"{preset.name}-{frame:04d}.png"
-    stage = Stage(out, f"still-{preset.name}-{frame:04d}", stage_key(out, preset, frame), [target])
-    _make(out, preset, frame, target, stage, "still")
+    target = named(out.stills / f"{preset.name}-{frame:04d}.png", show)
+    stage = Stage(out, f"still-{target.stem}", stage_key(out, preset, frame, show), [target])
+    _make(out, preset, frame, target, stage, show)
 
 
-def poster(name: str, preset: Preset) -> None:
+def poster(name: str, preset: Preset, show: str = "") -> None:
     """out/<mechanism>/poster.png: the moment that ``shot.poster`` names."""
     out = Out(name)
-    stage = Stage(out, "poster", stage_key(out, preset), [out.poster])
-    _make(out, preset, None, out.poster, stage, "poster")
+    target = named(out.poster, show)
+    stage = Stage(out, target.stem, stage_key(out, preset, show), [target])
+    _make(out, preset, None, target, stage, show)
 
 
-def _make(out: Out, preset: Preset, frame: int | None, target: Path, stage: Stage, word: str) -> None:
+def _make(out: Out, preset: Preset, frame: int | None, target: Path, stage: Stage, show: str) -> None:
     """Through the store of frames: a still that the film has shows at once, and the film finds the still."""
+    word = "poster" if frame is None else "still"
     if stage.is_fresh():
         say(word, f"{out.name}: {preset}: nothing to do")
         return
@@ -37,7 +39,7 @@ def _make(out: Out, preset: Preset, frame: int | None, target: Path, stage: Stag
     from render.inputs import read_film
     from render.store import FrameStore
 
-    film = read_film(out)
+    film = read_film(out, show)
     clock = film.clock
     if frame is None:
         frame = clock.frame_at(film.shot.poster)

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 import msgspec
 
@@ -68,6 +68,19 @@ class Label(_Strict, frozen=True):
     colour: Colour = (0.86, 0.88, 0.92)
 
 
+Quantity = Literal["velocities", "accelerations", "forces", "reactions"]
+
+
+class Title(_Strict, frozen=True):
+    """Words over the picture: a name, the rate of time, and a number that lives."""
+
+    text: Annotated[str, msgspec.Meta(min_length=1, max_length=60)] | None = None
+    """null is the mechanism's name."""
+    number: str | None = None
+    """A driver or force (its torque or force) or a traced point (its speed in m/s and km/h); null is the first of the
+    drivers, else of the traced points; "" is none."""
+
+
 class Surface(_Strict, frozen=True):
     """A surface for a piece, where none of the named materials will do."""
 
@@ -98,6 +111,11 @@ class Shot(_Strict, frozen=True):
     trails: tuple[Trail, ...] | None = None
     """null trails every traced point; () trails none."""
     labels: tuple[Label, ...] = ()
+    show: tuple[Quantity, ...] = ()
+    """What arrows show: velocities and accelerations of traced points and centres of mass, forces (springs, loads,
+    contacts by penalty, weights), reactions (of joints and rigid contacts)."""
+    title: Title | None = None
+    """null writes nothing but the rate of a motion without a period that is not in real time."""
     materials: dict[str, str | Surface] = {}
     """Other surfaces for the film alone, by ``body`` or ``body/piece``: the name of a material or a Surface."""
     poster: Unit = 0.3
@@ -117,6 +135,15 @@ def write_shot(path: Path, shot: Shot) -> None:
     jsonfile.write(path, jsonfile.decode(jsonfile.encode(shot), Shot, path))
 
 
+def shown(shot: Shot, words: str) -> Shot:
+    """The shot with what the ``words`` of SHOW (in order, with commas) ask for; without words as it is."""
+    asked = words.split(",")
+    if not words:
+        return shot
+    title = (shot.title or Title()) if "title" in asked else None
+    return msgspec.structs.replace(shot, show=tuple(q for q in get_args(Quantity) if q in asked), title=title)
+
+
 @dataclass(frozen=True)
 class Names:
     """What a shot may name: joints, traced points, and the pieces of each body."""
@@ -125,16 +152,19 @@ class Names:
     joints: tuple[str, ...]
     points: tuple[str, ...]
     pieces: dict[str, tuple[str, ...]]
+    efforts: tuple[str, ...] = ()
+    """Drivers and forces that have one."""
 
     @classmethod
     def of(cls, motion: Motion, parts: Parts) -> Names:
         """The names in a motion and its parts."""
         pieces = {body: tuple(solids.pieces) for body, solids in parts.bodies.items()}
-        return cls(motion.mechanism, tuple(motion.joints), tuple(motion.points), pieces)
+        forces = [name for name, force in motion.forces.items() if force.effort is not None]
+        return cls(motion.mechanism, tuple(motion.joints), tuple(motion.points), pieces, (*motion.drivers, *forces))
 
     def listed(self) -> tuple[object, ...]:
         """All of them, for the key of a stage."""
-        return self.mechanism, self.joints, self.points, tuple(self.pieces.items())
+        return self.mechanism, self.joints, self.points, tuple(self.pieces.items()), self.efforts
 
 
 def refuse_unknown(shot: Shot, names: Names) -> None:
@@ -144,6 +174,8 @@ def refuse_unknown(shot: Shot, names: Names) -> None:
         known(f"trails[{index}].point", trail.point, names.points)
     for index, label in enumerate(shot.labels):
         known(f"labels[{index}].at", label.at, (*names.joints, *names.points))
+    if shot.title is not None and shot.title.number:
+        known("title.number", shot.title.number, (*names.efforts, *names.points))
     pieces = [f"{body}/{piece}" for body, solids in names.pieces.items() for piece in solids]
     for name, surface in shot.materials.items():
         known("materials", name, [*names.pieces, *pieces])

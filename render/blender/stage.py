@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from render.blender import labels, pieces, studio, trail
+from render.blender import arrows, labels, pieces, studio, trail
 from render.blender.job import Job
 from render.framing import SENSOR
 from render.scene import State
@@ -24,10 +24,14 @@ class Stage:
     scene: Any
     bodies: dict[str, Any]
     trails: list[Any]
+    front: Any = None
+    """The scene of what is drawn over the picture: arrows, on nothing; None where there are none."""
 
     def show(self, index: int) -> None:
         """Go to state ``index``."""
         self.scene.frame_set(index)
+        if self.front is not None:
+            self.front.frame_set(index)
         for which, thing in enumerate(self.trails):
             path = self.job.states[index].trails[which]
             trail.place(thing, path, self.job.scene.trails[which].radius)
@@ -52,9 +56,32 @@ def build(job: Job) -> Stage:
     else:
         _dark(scene)
     _animate(job, bodies, camera, texts)
+    front = _front(job, camera) if job.scene.arrows and job.flat is None else None
     scene.frame_start, scene.frame_end = 0, len(job.states) - 1
     scene.render.fps = job.scene.fps
-    return Stage(job, scene, bodies, trails)
+    return Stage(job, scene, bodies, trails, front)
+
+
+def _front(job: Job, camera: Any) -> Any:
+    """A scene with the arrows alone, seen by the same camera without its lens blur: nothing hides them."""
+    import bpy
+
+    front = bpy.data.scenes.new("arrows")
+    front.render.engine = "CYCLES"
+    front.render.film_transparent = True
+    front.view_settings.view_transform = "Standard"
+    eye = camera.copy()
+    eye.data = camera.data.copy()
+    eye.data.dof.use_dof = False
+    front.collection.objects.link(eye)
+    front.camera = eye
+    front.frame_start, front.frame_end = 0, len(job.states) - 1
+    made = [arrows.build(front, spec) for spec in job.scene.arrows]
+    for index, arrow in enumerate(made):
+        tails, tips = (np.array([state.arrows[index][end] for state in job.states]) for end in (0, 1))
+        for thing, path, channels in arrows.channels(arrow, job.scene.arrows[index], tails, tips):
+            _key(thing, path, channels)
+    return front
 
 
 def bake_trails(stage: Stage) -> None:

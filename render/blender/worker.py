@@ -29,6 +29,8 @@ PR_SET_PDEATHSIG = 1
 """Number of the request in Linux's <sys/prctl.h>."""
 ZSTD_SEEKABLE = b"\xb1\xea\x92\x8f"
 """The last bytes of a seekable file of Zstandard."""
+FRONT_SAMPLES = 24
+"""A pixel of arrows."""
 BLEND = 20_000_000
 """Bytes that a saved scene may need."""
 
@@ -60,6 +62,8 @@ def main() -> int:
 
 def _work(job: Job, answer: Callable[..., None]) -> None:
     """Build the scene and make what the job asks for."""
+    import bpy
+
     from render.blender import device, stage
 
     answer(doing="builds the scene")
@@ -71,12 +75,22 @@ def _work(job: Job, answer: Callable[..., None]) -> None:
         answer(path=job.blend)
         return
     _settings(built.scene, job)
+    if built.front is not None:
+        _front_settings(built.front, built.scene, job)
     for picture in job.pictures:
         built.show(picture.state)
+        over = None
         with _signs_of_life(lambda doing, name=picture.name: answer(doing=f"renders {name}: {doing}")):
-            seconds = _render(built.scene)
+            seconds = 0.0
+            if built.front is not None:
+                over = Path(picture.folder) / f".{picture.key}.over.part.png"
+                seconds += _render(built.front)
+                bpy.data.images["Render Result"].save_render(str(over), scene=built.front)
+            seconds += _render(built.scene)
         answer(doing=f"saves {picture.name}")
-        answer(path=str(_save_picture(built.scene, job, picture)), key=picture.key, cycles=seconds)
+        answer(path=str(_save_picture(built.scene, job, picture, over)), key=picture.key, cycles=seconds)
+        if over is not None:
+            over.unlink()
 
 
 def _settings(scene: Any, job: Job) -> None:
@@ -108,6 +122,17 @@ def _settings(scene: Any, job: Job) -> None:
     cycles.denoising_input_passes = "RGB_ALBEDO_NORMAL"
 
 
+def _front_settings(front: Any, scene: Any, job: Job) -> None:
+    """As those of the picture, with an alpha, and sharp edges from more samples: flat colours have no noise."""
+    _settings(front, job)
+    front.render.image_settings.color_mode = "RGBA"
+    front.render.dither_intensity = 0.0
+    front.cycles.device = scene.cycles.device
+    front.cycles.samples = max(FRONT_SAMPLES, job.samples)
+    front.cycles.use_denoising = False
+    front.cycles.max_bounces = 0
+
+
 def _render(scene: Any) -> float:
     """Render one picture; returns the seconds between Blender's own start and end."""
     import bpy
@@ -124,7 +149,7 @@ def _render(scene: Any) -> float:
     on_start.append(started)
     on_end.append(ended)
     try:
-        bpy.ops.render.render()
+        bpy.ops.render.render(scene=scene.name)
     finally:
         on_start.remove(started)
         on_end.remove(ended)
@@ -152,14 +177,24 @@ def _signs_of_life(tell: Callable[[str], None]) -> Iterator[None]:
         bpy.app.handlers.render_stats.remove(stats)
 
 
-def _save_picture(scene: Any, job: Job, picture: Picture) -> Path:
-    """The rendered picture as a checked PNG under the name that its key and its bytes give; returns its path."""
+def _save_picture(scene: Any, job: Job, picture: Picture, over: Path | None) -> Path:
+    """The rendered picture as a checked PNG under the name that its key and its bytes give; returns its path.
+
+    ``over`` is a picture with an alpha that is laid over it.
+    """
     import bpy
+
+    from render.blender import overlay
+
+    def save(path: Path) -> None:
+        bpy.data.images["Render Result"].save_render(str(path), scene=scene)
+        if job.flat is None:
+            overlay.lay(path, over, job.scene.writing, job.states[picture.state].number)
 
     part = Path(picture.folder) / f".{picture.key}.part.png"
     save_whole(
         part,
-        lambda path: bpy.data.images["Render Result"].save_render(str(path), scene=scene),
+        save,
         lambda path: fault(path, job.width, job.height),
         most=3 * job.width * job.height + 4096,
         name=picture.name,
@@ -177,6 +212,10 @@ def _save(built: Any, path: Path) -> None:
 
     stage.bake_trails(built)
     _settings(built.scene, built.job)
+    if built.front is not None:  # in the saved scene the arrows are among the parts
+        for thing in built.front.objects:
+            if thing.type != "CAMERA":
+                built.scene.collection.objects.link(thing)
     built.scene.frame_set(0)
     part = path.with_name(f".{path.stem}.part.blend")
     bpy.context.preferences.filepaths.save_version = 0

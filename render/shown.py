@@ -1,0 +1,21 @@
+"""SHOW=...: which arrows, and whether a title, a picture has instead of what the shot says."""
+
+from __future__ import annotations
+
+from shared.errors import UserError
+from shared.suggestions import did_you_mean
+
+WORDS = ("velocities", "accelerations", "forces", "reactions", "title")
+"""In the order in which they stand in the names of files."""
+
+
+def show_words(text: str) -> str:
+    """The words of SHOW in their order, each once, commas between them; raises UserError for one that is none."""
+    asked = [word.strip() for word in text.split(",") if word.strip()]
+    for word in asked:
+        if word not in WORDS:
+            raise UserError(
+                f"SHOW={text!r}: there is no word {word!r}; there is: {', '.join(WORDS)}; commas join several, and "
+                f"without SHOW a picture has what the shot says{did_you_mean(word, WORDS)}"
+            )
+    return ",".join(word for word in WORDS if word in asked)

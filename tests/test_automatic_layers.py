@@ -61,6 +61,7 @@ def test_sizes_follow_the_mechanism() -> None:
     for s in (clockwork, desk, excavator):
         running = s.pivot.fit.running * s.scale
         assert 0.15 < running < 0.7, "a fit that a workshop can make"
+        assert s.screw <= 4.0 * s.scale, "a screw that fits into a pedestal's flange, or none"
         assert s.pivot.bushing > s.pivot.pin + s.pivot.fit.running + 1.0, "a bushing has a wall"
 
 

@@ -66,6 +66,52 @@ def test_motion_goes_on_where_there_are_no_parts(project: Project, capsys: pytes
     assert "masses are estimated" in said.out + said.err
 
 
+def test_a_short_parts_file_changes_what_it_likes(project: Project) -> None:
+    (project.folder / "mechanism.py").write_text(ARM)
+    (project.folder / "parts.py").write_text(CHANGED)
+    project.run()
+    bodies = read_parts(Out("arm").parts).bodies
+    arm = bodies["arm"].pieces
+    assert set(arm) == {"stick"}
+    assert arm["stick"].material == "pla_orange"
+    assert bodies["ground"].pieces["pin_A"].z_range[1] > arm["stick"].z_range[1]
+    assert arm["stick"].z_range[0] > 0.008  # above its pedestal
+
+
+ARM = """
+from dataclasses import dataclass
+
+from mbsd import Mechanism, constant_rate
+
+
+@dataclass(frozen=True)
+class Params:
+    length: float = 0.16
+
+
+def build(p: Params) -> Mechanism:
+    m = Mechanism("arm")
+    arm = m.bar("arm", p.length)
+    m.revolute("A", m.ground.at(0, 0), arm.start)
+    m.drive_angle("motor", arm, constant_rate(1.0))
+    return m
+"""
+CHANGED = """
+import cadquery as cq
+
+from mechanisms.arm.mechanism import Params, build
+from mechanisms.automatic.automatic import automatic
+from shared.shapes.solid import Solid
+from shared.shapes.units import mm
+
+
+def parts(p: Params) -> dict[str, list[Solid]]:
+    made = automatic(build(p))
+    low, high = made.span("arm")
+    bar = cq.Workplane(origin=(mm(p.length) / 2, 0, low)).box(mm(p.length) + 20, 16, high - low, (True, True, False))
+    made.replace("arm", [Solid("stick", bar.faces(">Z").workplane(origin=(0, 0, 0)).hole(9.0), "pla_orange", 1)])
+    return made.solids()
+"""
 YOKE = """
 from dataclasses import dataclass
 from math import pi

@@ -9,7 +9,7 @@ def parts(p: Params) -> dict[str, list[Solid]]:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -50,8 +50,7 @@ class Automatic:
         self._pin = pin
         self._materials: dict[str, str] = {}
         self._layers: dict[str, int] = {}
-        self._left_out: set[str] = set()
-        self._shapes: dict[str, Callable[[Automatic], Sequence[Solid]]] = {}
+        self._replaced: dict[str, list[Solid]] = {}
 
     # -- wishes -------------------------------------------------------------------------------------------------
 
@@ -71,6 +70,15 @@ class Automatic:
         if number < 0:
             raise UserError(f"{self.m.name}: layer of '{body}' is {number}; the lowest one is 0")
         self._layers[body] = number
+
+    def replace(self, body: str, solids: Sequence[Solid]) -> None:
+        """Build ``body`` of these solids (mm, its frame, at its height) instead: the first is its main piece.
+
+        It keeps its layer, and the others keep clear of the outline that it would have had; :meth:`span` gives its
+        height. Pins, bushings and washers that it would have carried are part of what is replaced.
+        """
+        self._known(body)
+        self._replaced[body] = list(solids)
 
     # -- results ------------------------------------------------------------------------------------------------
 
@@ -116,7 +124,13 @@ class Automatic:
         """Every piece by the body it moves with, in mm; the first of each list is the body's main piece."""
         from mechanisms.automatic.built import built
 
-        return built(self.plan(), self.heights)
+        return built(self.plan(), self.heights) | self._replaced
+
+    def span(self, body: str) -> tuple[float, float]:
+        """Lower and upper face (mm) of the plate of ``body``."""
+        self._known(body)
+        scale = self.sizes.scale
+        return self.heights.bottom(body) * scale, self.heights.top(body) * scale
 
     def plan(self) -> Plan:
         """Eyes, feet and hardware, before plates and base are built."""

@@ -113,7 +113,7 @@ def _pedestal(joint: Pin, height: float, plan: Plan) -> None:
     x, y = joint.places["ground"]
     room = plan.layout.room_on_base(x, y)
     name = f"pedestal_{joint.name}"
-    if room < FLANGE / 2 + 0.5:
+    if room < FLANGE / 2 + 0.5 or sizes.screw == 0:
         foot = min(FOOT, 2 * room - 1.0)
         post = column(height - seat, pivot.held, min(TOP, foot), foot)
         plan.make("ground", name, placed(post, x, y, seat), "aluminium", 1)

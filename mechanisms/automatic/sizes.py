@@ -46,6 +46,8 @@ STANDARD = (
     200,
 )
 """Diameters of pins that there are (mm), after ISO 2338; a larger one is a whole number of 50 mm."""
+THICKEST_SCREW = 4.0
+"""Of a pedestal's flange (rmm)."""
 LEAST_LINK = 2.75
 """The shortest distance of two pins of one body, in diameters of a pin."""
 OVERALL = 20.0
@@ -97,8 +99,11 @@ class Sizes:
 
     @property
     def screw(self) -> float:
-        """Nominal diameter (mm) of the screws of a pedestal: the standard one next to 3 rmm."""
-        return min(SOCKET, key=lambda size: abs(size - 3.0 * self.scale))
+        """Nominal diameter (mm) of the screws of a pedestal: the standard one next to 3 rmm; 0 where all are too
+        thick.
+        """
+        nearest = min(SOCKET, key=lambda size: abs(size - 3.0 * self.scale))
+        return nearest if nearest <= THICKEST_SCREW * self.scale else 0.0
 
 
 def sizes(shortest: float, overall: float) -> Sizes:

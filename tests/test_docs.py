@@ -80,3 +80,10 @@ def test_the_readme_is_short_and_shows_the_two_commands() -> None:
     assert len(text.splitlines()) <= 120
     assert "make run-four-bar" in text
     assert "make test" in text
+
+
+def test_pictures_are_small_enough_for_a_clone() -> None:
+    pictures = [path for path in (ROOT / "docs").rglob("*") if path.suffix in (".svg", ".png", ".jpg", ".gif")]
+    assert len(pictures) > 10
+    large = {path.name: path.stat().st_size for path in pictures if path.stat().st_size > 300_000}
+    assert not large

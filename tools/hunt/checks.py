@@ -18,6 +18,9 @@ DENSE = 90
 BESIDE = 2
 """Steps; at DENSE outputs a turn they hold the narrowest rise of a cam that is drawn, its accelerations up and down."""
 
+FINER, FEW = 256, 3
+"""Steps for one that is looked at again; of more than FEW steps none is."""
+
 
 def finite(sol: Solution) -> list[str]:
     """Numbers that are none."""
@@ -49,8 +52,22 @@ def smooth(sol: Solution) -> list[str]:
     Within a step, q' - q - h (v + v') / 2 is half the integral of (h - 2 t) a, at most h^2 R / 8 where the acceleration
     stays within a range R; with the correction of the trapezium, h^2 (a' - a) / 12, less than h^2 R / 4. R is taken
     from the outputs up to BESIDE steps before and after: between two of them an acceleration may turn back, or jump up
-    and down. A branch that is left, or an angle that takes a whole turn more, is more than that.
+    and down. A branch that is left, or an angle that takes a whole turn more, is more than that. What a sweep does
+    within one step alone, as at the sharp end of a curve, is looked at again in FINER steps, which must meet the same
+    poses.
     """
+    odd = _odd_steps(sol)
+    if not odd or sol.work is not None or len(odd) > FEW:
+        return [told for _, told in odd[:1]]
+    between = [np.linspace(sol.t[k], sol.t[k + 1], FINER + 1)[1:-1] for k, _ in odd]
+    fine = sol.mechanism.sweep(times=np.sort(np.concatenate([sol.t, *between])))
+    apart = float(np.abs(fine.q[np.searchsorted(fine.t, sol.t)] - sol.q).max())
+    still = {int(np.searchsorted(sol.t, fine.t[k], side="right")) - 1 for k, _ in _odd_steps(fine)}
+    return [told for k, told in odd if k in still or apart > RESIDUAL * max(sol.packed.size, 1.0)][:1]
+
+
+def _odd_steps(sol: Solution) -> list[tuple[int, str]]:
+    """The steps that pass their limit, in words, the worst one first."""
     h = np.diff(sol.t)[:, None, None]
     q, v, a = sol.q[:, 1:], sol.v[:, 1:], sol.a[:, 1:]
     expected = h * (v[1:] + v[:-1]) / 2 - h**2 * np.diff(a, axis=0) / 12
@@ -60,14 +77,19 @@ def smooth(sol: Solution) -> list[str]:
     reach = np.maximum(np.ptp(around, axis=-1), 0.02 * np.abs(a[1:])).max(axis=1, keepdims=True)
     limit = 0.25 * h**2 * reach + 1e-9 * size + 1e-8 * h * np.abs(v[1:]).max(axis=1, keepdims=True)
     share = gap / limit
-    k, b, c = np.unravel_index(int(np.argmax(share)), share.shape)
-    if share[k, b, c] <= 1.0:
-        return []
-    return [
-        f"'{sol.packed.body_names[1 + b]}' {('x', 'y', 'theta')[c]} goes on by "
-        f"{sol.q[k + 1, 1 + b, c] - sol.q[k, 1 + b, c]:.6g} from t = {sol.t[k]:.6g} to {sol.t[k + 1]:.6g} s, its "
-        f"velocity by {expected[k, b, c]:.6g}"
-    ]
+    worst = share.reshape(len(share), -1).max(axis=1)
+    out = []
+    for k in sorted(np.flatnonzero(worst > 1.0), key=lambda k: -worst[k]):
+        b, c = np.unravel_index(int(np.argmax(share[k])), share.shape[1:])
+        out.append(
+            (
+                int(k),
+                f"'{sol.packed.body_names[1 + b]}' {('x', 'y', 'theta')[c]} goes on by "
+                f"{sol.q[k + 1, 1 + b, c] - sol.q[k, 1 + b, c]:.6g} from t = {sol.t[k]:.6g} to {sol.t[k + 1]:.6g} s, "
+                f"its velocity by {expected[k, b, c]:.6g}",
+            )
+        )
+    return out
 
 
 def one_assembly(sol: Solution, subject: Subject) -> list[str]:

@@ -14,9 +14,11 @@ import math
 import numpy as np
 
 ROUNDS = 120
-TRIES, SMALL = 12, 80
+TRIES, SMALL = 24, 80
 """Scattered starts of graphs of up to so many nodes."""
 PUSHES = 400
+UNEVEN = 0.02
+"""Part by which distances of the first places differ from those along the edges."""
 
 
 def layout(edges: list[tuple[int, int]], sizes: np.ndarray, length: float) -> np.ndarray:
@@ -83,10 +85,15 @@ def _distances(edges: list[tuple[int, int]], count: int) -> np.ndarray:
 
 
 def _scaled(distance: np.ndarray) -> np.ndarray:
-    """Classical scaling: the two largest eigenvectors of the doubly centred squares."""
+    """Classical scaling: the two largest eigenvectors of the doubly centred squares.
+
+    Eigenvalues of a symmetric graph may be equal, and rounding would choose among their vectors: distances are uneven.
+    """
     count = len(distance)
     centre = np.eye(count) - 1 / count
-    values, vectors = np.linalg.eigh(-0.5 * centre @ distance**2 @ centre)
+    number = np.arange(count)
+    uneven = 1.0 + UNEVEN * np.sin(1.0 + np.add.outer(number, number) + np.multiply.outer(number, number))
+    values, vectors = np.linalg.eigh(-0.5 * centre @ (distance * uneven) ** 2 @ centre)
     vectors = vectors[:, -2:][:, ::-1]
     vectors = vectors * np.sign(vectors[np.abs(vectors).argmax(axis=0), [0, 1]])
     nudge = np.stack([np.zeros(count), np.sin(np.arange(count))], axis=1)  # leaves a line that is no optimum

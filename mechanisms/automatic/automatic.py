@@ -13,9 +13,7 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from mbsd.teeth import with_radii
+from mechanisms.automatic.extents import extents
 from mechanisms.automatic.features import KINDS, Feature
 from mechanisms.automatic.heights import Heights, heights
 from mechanisms.automatic.layers import find_layers
@@ -31,12 +29,9 @@ from shared.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
-    from mbsd.joint import Joint
     from mechanisms.automatic.plan import Plan
     from shared.shapes.solid import Solid
 
-WHEEL = 1.45
-"""A wheel's pitch radius counts as so much of a link: a pin and its flanges must stay inside of its teeth."""
 SHAPELESS = ("angle_lock", "constraint")
 """Kinds of joints that hold by no part of their own."""
 
@@ -87,7 +82,9 @@ class Automatic:
         """Proportions and the scale."""
         if self._pin is not None:
             return of_pin(self._pin)
-        shortest, overall = _extents(self.m, self.solution)
+        import mechanisms.automatic.kinds  # noqa: F401  (enters them)
+
+        shortest, overall = extents(self.m, self.solution)
         return sizes(shortest, overall)
 
     @cached_property
@@ -201,44 +198,3 @@ def automatic(m: Mechanism, pin: float | None = None, solution: Solution | None 
 
         solution = bare_solution(m.name)
     return Automatic(m, solution, pin)
-
-
-def _extents(m: Mechanism, solution: Solution) -> tuple[float, float]:
-    """The shortest distance of two joints of a body, and the longer side of what all joints sweep (m)."""
-    places: dict[str, list[tuple[float, float]]] = {}
-    pinned: dict[str, list[tuple[float, float]]] = {}
-    for joint in m.joints.values():
-        for marker in (joint.i, joint.j):
-            places.setdefault(marker.body.name, []).append((marker.x, marker.y))
-            if joint.kind.name == "revolute" or (joint.kind.name == "pin_in_slot" and marker is joint.j):
-                pinned.setdefault(marker.body.name, []).append((marker.x, marker.y))
-        if joint.kind.name == "gear_pair":
-            for marker, radius in zip((joint.i, joint.j), _radii(joint), strict=True):
-                box = [(marker.x + u * radius, marker.y + v * radius) for u in (-1, 1) for v in (-1, 1)]
-                places.setdefault(marker.body.name, []).extend(box)
-    for name, body in m.bodies.items():
-        if body.length is not None:
-            places.setdefault(name, []).extend([(0.0, 0.0), (body.length, 0.0)])
-    seen = np.concatenate([[[0.0, 0.0]], *[_swept(solution, body, np.array(at)) for body, at in places.items()]])
-    overall = float(np.ptp(seen[1:], axis=0).max()) if len(seen) > 1 else 1.0
-    apart = [
-        float(np.hypot(a[0] - b[0], a[1] - b[1])) for at in pinned.values() for i, a in enumerate(at) for b in at[:i]
-    ]
-    apart += [WHEEL * min(_radii(joint)) for joint in m.joints.values() if joint.kind.name == "gear_pair"]
-    return min((d for d in apart if d > 1e-3 * overall), default=overall), overall
-
-
-def _radii(joint: Joint) -> tuple[float, float]:
-    """Pitch radii (m) of a gear pair."""
-    sized = with_radii(joint.params)
-    return sized["radius_i"], sized["radius_j"]
-
-
-def _swept(solution: Solution, body: str, at: np.ndarray) -> np.ndarray:
-    if body == "ground":
-        return at
-    view = solution.body(body)
-    c, s = np.cos(view.theta)[:, None], np.sin(view.theta)[:, None]
-    x = view.x[:, None] + c * at[:, 0] - s * at[:, 1]
-    y = view.y[:, None] + s * at[:, 0] + c * at[:, 1]
-    return np.stack([x.ravel(), y.ravel()], axis=1)

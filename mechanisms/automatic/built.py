@@ -10,13 +10,14 @@ import cadquery as cq
 from mechanisms.automatic.body_shape import PlacedEye, body_shape
 from mechanisms.automatic.frame import base
 from shared.shapes.build import extruded
-from shared.shapes.link import Eye
+from shared.shapes.link import Eye, with_eyes
 from shared.shapes.outline import circle
 from shared.shapes.solid import Solid, placed
 
 if TYPE_CHECKING:
     from mechanisms.automatic.heights import Heights
     from mechanisms.automatic.plan import Plan
+    from shared.shapes.outline import Circle
 
 
 def built(plan: Plan, heights: Heights) -> dict[str, list[Solid]]:
@@ -33,10 +34,28 @@ def built(plan: Plan, heights: Heights) -> dict[str, list[Solid]]:
 
 
 def _plate(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
-    """A body's plate and its number of through holes: round its eyes, or a wheel that carries them, or both."""
+    """All that is one piece in the layer of a body, and its number of through holes."""
+    if body in plan.wheels:
+        return _geared(plan, body, thickness)
     eyes = plan.eyes.get(body, [])
-    if body not in plan.wheels:
-        return body_shape([*eyes, *_blanks(plan, body, eyes)], thickness)
+    eyes = [*eyes, *_blanks(plan, body, eyes)]
+    plates = plan.plates.get(body, [])
+    if not plates:
+        return body_shape(eyes, thickness)
+    beside = [eye for eye in eyes if not any(_is_held(eye, plate.holds) for plate in plates)]
+    shape, holes = plates[0].shape, sum(plate.through_holes for plate in plates)
+    for plate in plates[1:]:
+        shape = shape.union(plate.shape)
+    if not beside:
+        return with_eyes(shape, eyes, thickness, 0.0), holes + sum(eye.bore > 0 for _, _, eye in eyes)
+    link, own = body_shape(eyes, thickness)
+    bores = [(x, y, Eye(eye.radius, eye.bore)) for x, y, eye in eyes]
+    return with_eyes(shape.union(link), bores, thickness, 0.0), holes + own
+
+
+def _geared(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
+    """The plate of a body with teeth: a wheel that carries its eyes, or a wheel and a plate round its eyes."""
+    eyes = plan.eyes.get(body, [])
     x, y, wheel, holes = plan.wheels[body]
     wheel = placed(wheel, x, y)
     if not plan.layout.anchors[body]:
@@ -50,6 +69,10 @@ def _plate(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
     for u, v, eye in bored:
         shape = shape.cut(placed(extruded(circle(0, 0, eye.bore / 2), 400.0, -200.0), u, v))
     return shape, len(bored)
+
+
+def _is_held(eye: PlacedEye, circle: Circle) -> bool:
+    return math.hypot(eye[0] - circle[0], eye[1] - circle[1]) + eye[2].radius <= circle[2] + 0.01
 
 
 def _blanks(plan: Plan, body: str, eyes: list[PlacedEye]) -> list[PlacedEye]:

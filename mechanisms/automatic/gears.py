@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.teeth import with_radii
+from mechanisms.automatic.extents import Extent, extent
 from mechanisms.automatic.features import Anchor, Feature, Need, kind
 from mechanisms.automatic.gear_solids import build_wheel
 from mechanisms.automatic.items import Item, Reach
@@ -24,7 +25,7 @@ from shared.shapes.involute import ADDENDUM, DEDENDUM, longest_tip, shortest_tip
 from shared.shapes.units import mm
 
 if TYPE_CHECKING:
-    from mbsd import Mechanism
+    from mbsd import Mechanism, Solution
     from mbsd.joint import Joint
     from mechanisms.automatic.heights import Heights
     from mechanisms.automatic.items import Levels
@@ -111,6 +112,18 @@ class Wheel:
     def build(self, plan: Plan, heights: Heights) -> None:
         """The wheel as its body's plate, or as a piece that stands on ground."""
         build_wheel(self, plan, heights)
+
+
+LEAST = 15.2
+"""Least pitch radius (rmm): a pin and its flanges stay inside of its teeth."""
+
+
+@extent("gear_pair")
+def extent_of(joint: Joint, solution: Solution) -> Extent:
+    """Both wheels."""
+    sized = with_radii(joint.params)
+    first, second = sized["radius_i"], sized["radius_j"]
+    return Extent(((joint.i, first), (joint.j, second)), ((min(first, second), LEAST),))
 
 
 @kind("gear_pair")

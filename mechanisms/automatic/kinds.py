@@ -2,6 +2,8 @@
 
 from mechanisms.automatic import (  # noqa: F401
     gears,  # gear pair
+    cams,  # cam and roller, cam and flat face
+    geneva,  # Geneva
     pins,  # revolute
     slides,  # prismatic
     slots,  # pin in slot

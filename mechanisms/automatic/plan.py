@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     import cadquery as cq
 
     from mechanisms.automatic.layout import Layout
+    from shared.shapes.outline import Circle
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,16 @@ class Foot:
     dial: bool = False
 
 
+@dataclass(frozen=True)
+class Plate:
+    """A wheel, a cam, a shoe: part of a body's plate (rmm)."""
+
+    shape: cq.Workplane
+    holds: Circle
+    """x, y, radius of a circle that is solid."""
+    through_holes: int
+
+
 @dataclass(eq=False)
 class Plan:
     """Filled by the features, read by those who build bodies and base."""
@@ -40,6 +51,7 @@ class Plan:
     cuts: dict[str, list[tuple[cq.Workplane, int]]] = field(default_factory=dict)
     wheels: dict[str, tuple[float, float, cq.Workplane, int]] = field(default_factory=dict)
     """By body: place, shape and through holes of a wheel that is its plate, or a part of it."""
+    plates: dict[str, list[Plate]] = field(default_factory=dict)
     names: set[str] = field(default_factory=set)
     main: dict[str, str] = field(default_factory=dict)
     """Names of the main pieces."""
@@ -47,6 +59,10 @@ class Plan:
     def eye(self, body: str, x: float, y: float, eye: Eye) -> None:
         """An eye of a body's plate at (x, y) in its frame."""
         self.eyes.setdefault(body, []).append((x, y, eye))
+
+    def plate(self, body: str, shape: cq.Workplane, holds: Circle, through_holes: int = 0) -> None:
+        """Join ``shape`` (z = 0 is the underside) to a body's plate; eyes within the circle ``holds`` need no link."""
+        self.plates.setdefault(body, []).append(Plate(shape, holds, through_holes))
 
     def cut(self, body: str, tool: cq.Workplane, through_holes: int) -> None:
         """Take ``tool`` (z = 0 is the plate's underside) out of a body's plate."""

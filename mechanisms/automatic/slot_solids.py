@@ -19,13 +19,20 @@ if TYPE_CHECKING:
 def slotted(slot: Slot, plan: Plan, heights: Heights) -> None:
     """Cut the slot, and put a pin with a roller through it: from below with its head on top, from above hanging."""
     sizes = plan.layout.sizes
-    pivot, fit = sizes.pivot, sizes.pivot.fit
-    x, y = slot.pin_at
-    half = (sizes.roller + fit.running) / 2
+    half = (sizes.roller + sizes.pivot.fit.running) / 2
     tool = extruded(outline.hull([(*end, half) for end in slot.ends()]), heights.thickness + 2.0, -1.0)
     plan.cut(slot.slot, tool, 1)
+    slot_pin(slot, plan, heights)
+
+
+def slot_pin(slot: Slot, plan: Plan, heights: Heights, roller_diameter: float | None = None) -> None:
+    """A pin with a roller at the height of the slot's body, on the pin's body: from below its head is on top."""
+    sizes = plan.layout.sizes
+    pivot, fit = sizes.pivot, sizes.pivot.fit
+    x, y = slot.pin_at
+    outer = roller_diameter or sizes.roller
     low, high = heights.bottom(slot.slot), heights.top(slot.slot)
-    roller = washer(pivot.pin + fit.running, sizes.roller, heights.thickness - 0.4, chamfer=0.4)
+    roller = washer(pivot.pin + fit.running, outer, heights.thickness - 0.4, chamfer=0.4)
     plan.make(slot.pin, f"roller_{slot.name}", placed(roller, x, y, low + 0.2), "bronze", 1)
     if heights.bottom(slot.pin) < low:
         boss = max(low - fit.axial - pivot.washer_room - heights.top(slot.pin), 0.0)

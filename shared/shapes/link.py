@@ -54,7 +54,7 @@ def link(
         if thickness - 2 * pocket < 1.0:
             raise ValueError(f"pockets of {pocket:g} mm leave less than 1 mm of a web of {thickness:g} mm")
         shape = _milled_out(shape, _pocket_outline(length, start, end, widths, rim), thickness, pocket)
-    return _with_eyes(shape, [(0.0, 0.0, start), (length, 0.0, end), *inner], thickness, edge)
+    return with_eyes(shape, [(0.0, 0.0, start), (length, 0.0, end), *inner], thickness, edge)
 
 
 def plate_link(
@@ -77,7 +77,7 @@ def plate_link(
     corners = [(x, y, eye.radius) for x, y, eye in joints]
     out = [(x, y, eye) for x, y, eye in inner if not outline.hull_holds(corners, (x, y, eye.radius))]
     shape = _with_discs(shape, out, thickness)
-    return _with_eyes(eased(shape, edge), [*joints, *inner], thickness, edge)
+    return with_eyes(eased(shape, edge), [*joints, *inner], thickness, edge)
 
 
 def _with_discs(shape: cq.Workplane, eyes: Sequence[tuple[float, float, Eye]], thickness: float) -> cq.Workplane:
@@ -87,9 +87,10 @@ def _with_discs(shape: cq.Workplane, eyes: Sequence[tuple[float, float, Eye]], t
     return shape
 
 
-def _with_eyes(
+def with_eyes(
     shape: cq.Workplane, joints: Sequence[tuple[float, float, Eye]], thickness: float, edge: float, chamfer: float = 0.4
 ) -> cq.Workplane:
+    """The shape with the boss and the bore of each eye."""
     for x, y, eye in joints:
         root = min(1.0, eye.radius - edge - eye.boss_radius - 0.2)  # ends on the flat, short of the rounded edge
         shape = with_boss(shape, x, y, thickness, eye.boss_radius, eye.above, root)

@@ -1,0 +1,88 @@
+"""What the scale of the parts follows from: how far the joints reach, and lengths that must hold a pin's width."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from mbsd import Mechanism, Solution
+    from mbsd.body import Marker
+    from mbsd.joint import Joint
+
+LINK = 22.0
+"""Least distance of two pins of one body (rmm)."""
+
+
+@dataclass(frozen=True)
+class Extent:
+    """What a joint says of its own: how far it reaches round its markers, and what must have room for its parts."""
+
+    radii: tuple[tuple[Marker, float], ...] = ()
+    """Markers and radii (m) round them."""
+    least: tuple[tuple[float, float], ...] = ()
+    """Lengths of the model (m), each with the least that it may be in rmm."""
+
+
+type ExtentOf = Callable[[Joint, Solution], Extent]
+
+EXTENTS: dict[str, ExtentOf] = {}
+
+
+def extent(name: str) -> Callable[[ExtentOf], ExtentOf]:
+    """Enter what joints of a kind say of their size."""
+
+    def enter(of: ExtentOf) -> ExtentOf:
+        EXTENTS[name] = of
+        return of
+
+    return enter
+
+
+def extents(m: Mechanism, solution: Solution) -> tuple[float, float]:
+    """The shortest distance of two pins of a body, or what is like one; the longer side of all that is swept (m)."""
+    places: dict[str, list[tuple[float, float]]] = {}
+    pinned: dict[str, list[tuple[float, float]]] = {}
+    least: list[float] = []
+    for joint in m.joints.values():
+        for marker in (joint.i, joint.j):
+            places.setdefault(marker.body.name, []).append((marker.x, marker.y))
+            if joint.kind.name == "revolute" or (joint.kind.name == "pin_in_slot" and marker is joint.j):
+                pinned.setdefault(marker.body.name, []).append((marker.x, marker.y))
+        if joint.kind.name in EXTENTS:
+            own = EXTENTS[joint.kind.name](joint, solution)
+            least += [length * LINK / wanted for length, wanted in own.least]
+            for marker, radius in own.radii:
+                round_it = [(marker.x + radius * u, marker.y + radius * v) for u, v in _ROUND]
+                places.setdefault(marker.body.name, []).extend(round_it)
+    for name, body in m.bodies.items():
+        if body.length is not None:
+            places.setdefault(name, []).extend([(0.0, 0.0), (body.length, 0.0)])
+    seen = np.concatenate([[[0.0, 0.0]], *[_swept(solution, body, np.array(at)) for body, at in places.items()]])
+    overall = float(np.ptp(seen[1:], axis=0).max()) if len(seen) > 1 else 1.0
+    apart = [
+        float(np.hypot(a[0] - b[0], a[1] - b[1])) for at in pinned.values() for i, a in enumerate(at) for b in at[:i]
+    ]
+    return min((d for d in [*apart, *least] if d > 1e-3 * overall), default=overall), overall
+
+
+_ROUND = [(np.cos(a), np.sin(a)) for a in np.linspace(0.0, 2 * np.pi, 16, endpoint=False)]
+
+
+def _swept(solution: Solution, body: str, at: np.ndarray) -> np.ndarray:
+    if body == "ground":
+        return at
+    view = solution.body(body)
+    c, s = np.cos(view.theta)[:, None], np.sin(view.theta)[:, None]
+    x = view.x[:, None] + c * at[:, 0] - s * at[:, 1]
+    y = view.y[:, None] + s * at[:, 0] + c * at[:, 1]
+    return np.stack([x.ravel(), y.ravel()], axis=1)
+
+
+def distance(joint: Joint, solution: Solution) -> float:
+    """Of a joint's two markers at the start (m)."""
+    first, second = (_swept(solution, k.body.name, np.array([[k.x, k.y]]))[0] for k in (joint.i, joint.j))
+    return float(np.hypot(*(second - first)))

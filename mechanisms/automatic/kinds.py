@@ -1,8 +1,8 @@
 """Every kind of joint that has parts by itself: importing a line's module enters it."""
 
 from mechanisms.automatic import (  # noqa: F401
-    gears,  # gear pair
     cams,  # cam and roller, cam and flat face
+    gears,  # gear pair
     geneva,  # Geneva
     pins,  # revolute
     slides,  # prismatic

@@ -31,7 +31,7 @@ VARIANTS = {
 
 
 def lift_law(p: Params) -> Lift:
-    """A rise, a dwell of 60 degrees, a return as long as the rise, and a dwell; m, or rad of an oscillating follower."""
+    """A rise, a dwell of 60 degrees, a return as long as the rise, and a dwell; m, or rad where it swings."""
     height = p.lift / p.arm if p.follower == "oscillating" else p.lift
     rest = 2 * pi - 2 * p.rise - pi / 3
     return Lift.of((p.rise, height, p.law), (pi / 3, height), (p.rise, 0.0, p.law), (rest, 0.0))

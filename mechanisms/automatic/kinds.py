@@ -5,6 +5,7 @@ from mechanisms.automatic import (  # noqa: F401
     gears,  # gear pair
     geneva,  # Geneva
     pins,  # revolute
+    rolling,  # discs on lines and terrains
     slides,  # prismatic
     slots,  # pin in slot
 )

@@ -1,0 +1,77 @@
+"""Wheels on roads by themselves: the road passes under the wheel all the way and stays clear of it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from mbsd import Mechanism, constant_rate
+from mechanisms.automatic.automatic import Automatic
+from mechanisms.automatic.rolling import Rolling
+from shared.errors import UserError
+
+HILLS = [(-0.2, 0.0), (-0.1, 0.01), (0.0, 0.0), (0.1, -0.01), (0.2, 0.0), (0.3, 0.01), (0.4, 0.0)]
+
+
+def _cart(curve: bool) -> Mechanism:
+    """A wheel of 40 mm radius that a driver turns by 2 rad; a body on its axle stays level."""
+    m = Mechanism("cart")
+    wheel, slider = m.body("wheel"), m.body("slider")
+    m.revolute("axle", wheel.origin, slider.at(0, 0))
+    if curve:
+        m.rolling_on_curve("road", m.ground.origin, wheel.origin, HILLS, 0.04)
+    else:
+        m.rolling_disc("road", m.ground.origin, wheel.origin, 0.04)
+    m.angle_lock("level", m.ground.origin, slider.origin)
+    m.drive_angle("motor", wheel, constant_rate(-2.0))
+    m.start_near(wheel=(0, 0.04, 0), slider=(0, 0.04, 0))
+    return m
+
+
+def _made(m: Mechanism) -> tuple[Automatic, Rolling]:
+    made = Automatic(m, m.sweep(1.0, 200))
+    return made, next(feature for feature in made.layout.features if isinstance(feature, Rolling))
+
+
+@pytest.mark.parametrize("curve", [False, True])
+def test_wheel_is_short_of_its_road_by_the_clearance(curve: bool) -> None:
+    made, rolling = _made(_cart(curve))
+    assert made.levels["wheel"] != made.levels["slider"]
+    centre = made.layout.seen("wheel", rolling.at, "ground")
+    start, way = rolling.road[:-1], np.diff(rolling.road, axis=0)
+    part = np.clip(((centre[:, None] - start) * way).sum(axis=2) / (way**2).sum(axis=1), 0.0, 1.0)
+    away = np.linalg.norm(centre[:, None] - start - part[..., None] * way, axis=2).min(axis=1)
+    scale = made.sizes.scale
+    assert (away - rolling.radius).min() * scale > 0.05
+    assert (away - rolling.radius).max() * scale < 0.2
+    assert np.ptp(centre[:, 0]) * scale == pytest.approx(80.0, rel=0.05)  # 2 rad of 40 mm
+
+
+def test_wheel_tyre_and_road_are_sound() -> None:
+    made, rolling = _made(_cart(curve=True))
+    plan = made.plan()
+    (plate,) = plan.plates["wheel"]
+    named = {solid.name: solid for solids in plan.solids.values() for solid in solids}
+    road, tyre = named["road_road"], named["tyre_road"]
+    for solid in (plate.shape, road.shape, tyre.shape):
+        assert solid.val().isValid()
+        assert solid.solids().size() == 1
+    box = road.shape.val().BoundingBox()
+    assert box.zmax == pytest.approx(made.heights.top("wheel"))
+    assert box.xlen > np.ptp(rolling.road[:, 0]) - 1e-6
+    outer = 0.5 * tyre.shape.val().BoundingBox().xlen
+    assert outer == pytest.approx(rolling.radius, abs=0.05)
+
+
+def test_roads_that_move_and_closed_ones_are_refused() -> None:
+    m = Mechanism("ring")
+    wheel = m.body("wheel")
+    angle = np.linspace(0, 2 * math.pi, 24, endpoint=False)
+    points = [(0.2 * math.cos(a), 0.2 * math.sin(a)) for a in angle]
+    m.rolling_on_curve("ring", m.ground.origin, wheel.origin, points, 0.04, closed=True)
+    m.drive_angle("motor", wheel, constant_rate(1.0))
+    m.start_near(wheel=(0.16, 0, 0))
+    with pytest.raises(UserError, match="joint 'ring' rolls on a closed curve"):
+        _ = Automatic(m, m.sweep(0.5, 50)).levels

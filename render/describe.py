@@ -16,9 +16,10 @@ from render.framing import CameraPose, depth_of_field, fit, half_width, orbit
 from render.framing import axes as camera_axes
 from render.poses import Poses
 from render.scene import LabelSpec, PieceSpec, Point, Scene, State, StudioSpec, SurfaceSpec, TrailSpec, Writing
+from render.stretched import Stretched, placed, stretched
 from render.swept import SweptSpace
 from render.vectors import vectors
-from shared.contract import Motion, Parts, Piece
+from shared.contract import Motion, Parts, Piece, Shape
 from shared.errors import UserError
 from shared.files import file_hash
 from shared.materials import MATERIALS
@@ -85,6 +86,7 @@ class Film:
                 floor=float(self.space.all[:, 2].min()),
                 azimuth=math.radians(self.shot.camera.azimuth),
             ),
+            tubes=[spec for one in self.stretched for spec, _ in one.tubes],
             arrows=self.arrows.specs(),
             writing=self._writing(),
         )
@@ -97,6 +99,7 @@ class Film:
             trails=[self._path(trail, frame) for trail in self.trails],
             labels=[self._label_place(label.at, frame) for label in self.shot.labels],
             camera=self.camera(frame),
+            tubes=[path for one in self.stretched for path in one.paths(self.poses, at)],
             arrows=self.arrows.at(at.time, self._arrow_heights),
             number=self.number(at.time),
         )
@@ -107,6 +110,21 @@ class Film:
         return Arrows(self.poses.time, vectors(self.motion, self.shot.show), self.space.size)
 
     @cached_property
+    def stretched(self) -> list[Stretched]:
+        """Springs, dampers and ropes."""
+        return list(stretched(self.motion, self.space.size, self._layer_of))
+
+    def _layer_of(self, shape: Shape, radius: float) -> tuple[float, tuple[float, float]]:
+        """Height of something of that radius that lies over what is at its two ends at the start, and these tops."""
+        at = self.clock.moment(0)
+        places = [placed(self.poses.body(b, at), marker) for b, marker in zip(shape.bodies, shape.markers, strict=True)]
+        tops = []
+        for body, place in zip(shape.bodies, places, strict=True):
+            beside = [top for top in self._tops(body) if body != "ground"] or [float(self.space.all[:, 2].min())]
+            tops.append(max(self.space.tops_at(body, *place, at) or beside))
+        return max(tops) + 1.25 * radius, (tops[0], tops[1])
+
+    @cached_property
     def _arrow_heights(self) -> list[float]:
         """Of each arrow: on the highest piece where it begins at the start; else over all its bodies."""
         start = self.clock.moment(0)
@@ -114,15 +132,17 @@ class Film:
         for vector in self.arrows.vectors:
             x, y = (float(value) for value in vector.place[0])
             tops = [top for body in vector.bodies for top in self.space.tops_at(body, x, y, start)]
-            solids = [self.parts.bodies[body] for body in vector.bodies if body in self.parts.bodies]
-            tops = tops or [piece.z_range[1] for one in solids for piece in one.pieces.values()]
+            tops = tops or [top for body in vector.bodies for top in self._tops(body)]
             heights.append(max(tops, default=float(self.space.moving[:, 2].max())) + TRAIL_GAP)
         return heights
 
     @cached_property
     def _filmed(self) -> Array:
         """What the camera holds: everything, and the tips of all arrows."""
-        return np.concatenate([self.space.all, *self.arrows.tips(self._arrow_heights)])
+        frames = range(0, self.clock.frames, max(1, self.clock.frames // 60))
+        moments = [self.clock.moment(frame) for frame in frames]
+        paths = [path for one in self.stretched for at in moments for path in one.paths(self.poses, at)]
+        return np.concatenate([self.space.all, *self.arrows.tips(self._arrow_heights), *map(np.asarray, paths)])
 
     def _writing(self) -> Writing:
         camera = self.camera(0)
@@ -182,9 +202,12 @@ class Film:
         if trail.z is not None:
             return trail.z
         body = self.motion.points[trail.point].body
+        return max(self._tops(body), default=0.0) + TRAIL_GAP
+
+    def _tops(self, body: str) -> list[float]:
+        """Heights of all pieces of a body (m)."""
         solids = self.parts.bodies.get(body)
-        tops = [piece.z_range[1] for piece in solids.pieces.values()] if solids else []
-        return max(tops, default=0.0) + TRAIL_GAP
+        return [piece.z_range[1] for piece in solids.pieces.values()] if solids else []
 
     def _rings(self, trail: Trail) -> int:
         """So many that the tube strays from the point's way by no more than a part of its own radius.

@@ -48,6 +48,15 @@ class LabelSpec(msgspec.Struct, kw_only=True, frozen=True):
     colour: Colour
 
 
+class TubeSpec(msgspec.Struct, kw_only=True, frozen=True):
+    """A round wire, rod or rope along a path of so many points, which is in every State."""
+
+    name: str
+    surface: SurfaceSpec
+    radius: float
+    points: int
+
+
 class ArrowSpec(msgspec.Struct, kw_only=True, frozen=True):
     """A vector that changes: a thin shaft with a cone. Tail and tip are in every State; it is drawn over the parts.
 
@@ -99,6 +108,7 @@ class Scene(msgspec.Struct, kw_only=True, frozen=True):
     trails: list[TrailSpec]
     labels: list[LabelSpec]
     studio: StudioSpec
+    tubes: list[TubeSpec] = []
     arrows: list[ArrowSpec] = []
     writing: Writing = Writing()
 
@@ -110,6 +120,7 @@ class State(msgspec.Struct, kw_only=True, frozen=True):
     trails: list[list[Point]]
     labels: list[Point]
     camera: CameraPose
+    tubes: list[list[Point]] = []
     arrows: list[tuple[Point, Point]] = []
     number: str = ""
     """The number that lives, beside the title."""

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from render.blender import arrows, labels, pieces, studio, trail
+from render.blender import arrows, labels, pieces, studio, trail, tubes
 from render.blender.job import Job
 from render.framing import SENSOR
 from render.scene import State
@@ -24,6 +24,7 @@ class Stage:
     scene: Any
     bodies: dict[str, Any]
     trails: list[Any]
+    tubes: list[Any]
     front: Any = None
     """The scene of what is drawn over the picture: arrows, on nothing; None where there are none."""
 
@@ -35,6 +36,8 @@ class Stage:
         for which, thing in enumerate(self.trails):
             path = self.job.states[index].trails[which]
             trail.place(thing, path, self.job.scene.trails[which].radius)
+        for which, thing in enumerate(self.tubes):
+            tubes.place(thing, self.job.states[index].tubes[which], self.job.scene.tubes[which].radius)
 
 
 def build(job: Job) -> Stage:
@@ -49,9 +52,11 @@ def build(job: Job) -> Stage:
     camera = _camera(scene, job.states[0])
     texts: list[Any] = []
     trails: list[Any] = []
+    wires: list[Any] = []
     if job.flat is None:
         studio.build(scene, job.scene.studio)
         trails = [trail.build(scene, spec) for spec in job.scene.trails]
+        wires = [tubes.build(scene, spec) for spec in job.scene.tubes]
         texts = [labels.build(scene, spec) for spec in job.scene.labels]
     else:
         _dark(scene)
@@ -59,7 +64,7 @@ def build(job: Job) -> Stage:
     front = _front(job, camera) if job.scene.arrows and job.flat is None else None
     scene.frame_start, scene.frame_end = 0, len(job.states) - 1
     scene.render.fps = job.scene.fps
-    return Stage(job, scene, bodies, trails, front)
+    return Stage(job, scene, bodies, trails, wires, front)
 
 
 def _front(job: Job, camera: Any) -> Any:
@@ -84,18 +89,27 @@ def _front(job: Job, camera: Any) -> Any:
     return front
 
 
-def bake_trails(stage: Stage) -> None:
-    """Give each trail a shape per frame, so that a saved scene plays it."""
+def bake_shapes(stage: Stage) -> None:
+    """Give each trail and tube a shape per frame, so that a saved scene plays them."""
+    scene, states = stage.job.scene, stage.job.states
     for which, thing in enumerate(stage.trails):
-        spec, states = stage.job.scene.trails[which], [state.trails[which] for state in stage.job.states]
-        trail.place(thing, states[0], spec.radius)
-        for path in states:
-            block = thing.shape_key_add(from_mix=False)
-            block.interpolation = "KEY_LINEAR"
-            block.data.foreach_set("co", trail.vertices(path, spec.radius).ravel())
-        keys = thing.data.shape_keys
-        keys.use_relative = False
-        _key(keys, "eval_time", [np.array([block.frame for block in keys.key_blocks])], "OBJECT")
+        radius = scene.trails[which].radius
+        _bake(thing, [trail.vertices(state.trails[which], radius) for state in states])
+    for which, thing in enumerate(stage.tubes):
+        radius = scene.tubes[which].radius
+        _bake(thing, [tubes.vertices(state.tubes[which], radius) for state in states])
+
+
+def _bake(thing: Any, shapes: list[np.ndarray]) -> None:
+    thing.data.vertices.foreach_set("co", shapes[0].ravel())
+    thing.data.update()
+    for shape in shapes:
+        block = thing.shape_key_add(from_mix=False)
+        block.interpolation = "KEY_LINEAR"
+        block.data.foreach_set("co", shape.ravel())
+    keys = thing.data.shape_keys
+    keys.use_relative = False
+    _key(keys, "eval_time", [np.array([block.frame for block in keys.key_blocks])], "OBJECT")
 
 
 def _camera(scene: Any, state: State) -> Any:

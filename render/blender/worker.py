@@ -210,7 +210,7 @@ def _save(built: Any, path: Path) -> None:
 
     from render.blender import stage
 
-    stage.bake_trails(built)
+    stage.bake_shapes(built)
     _settings(built.scene, built.job)
     if built.front is not None:  # in the saved scene the arrows are among the parts
         for thing in built.front.objects:

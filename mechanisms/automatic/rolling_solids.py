@@ -47,7 +47,8 @@ def rolling_solids(rolling: Rolling, plan: Plan, heights: Heights) -> None:
     top = z + heights.thickness
     road = cq.Workplane(obj=_road(rolling, top - fit.seat).translate(cq.Vector(0, 0, fit.seat)))
     plan.make("ground", f"road_{rolling.name}", road, "aluminium", 0)
-    plan.feet += [Foot("", float(u), float(v), ROAD) for u, v in rolling.road[[0, -1]]]
+    beside = rolling.road[[0, -1]] - rolling.radius * rolling.under  # the base plate goes on under the wheel
+    plan.feet += [Foot("", float(u), float(v), ROAD) for u, v in (*rolling.road[[0, -1]], *beside)]
 
 
 def _road(rolling: Rolling, height: float) -> cq.Solid:

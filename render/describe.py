@@ -150,7 +150,7 @@ class Film:
         shown = np.concatenate([self.space.moving, *self.arrows.tips(self._arrow_heights)])
         return Writing(
             legend=self.arrows.legend(2 * half_width(self.shot.camera.lens) * distance),
-            corner=writing.emptiest(camera, shown),
+            corner=writing.emptiest(camera, shown, self.space.standing),
             title=writing.title(self.motion, self.shot),
             rate=writing.rate(self.clock, self.shot),
         )

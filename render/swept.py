@@ -42,6 +42,16 @@ class SweptSpace:
         return np.concatenate([*bodies, *self._trails]) if bodies else self.all
 
     @cached_property
+    def standing(self) -> Array:
+        """What stands still: corners of its pieces, and places between any two corners of one piece."""
+        between = np.linspace(0, 1, 9)[:, None, None, None]
+        inside = [
+            (between * box[None, :, None] + (1 - between) * box[None, None, :]).reshape(-1, 3)
+            for box in (box[:: max(1, len(box) // 24)] for box in self._outlines.get("ground", []))
+        ]
+        return np.concatenate(inside) if inside else np.zeros((0, 3))
+
+    @cached_property
     def middle(self) -> Array:
         """Middle (3,) of the box around everything."""
         return (self.all.min(axis=0) + self.all.max(axis=0)) / 2

@@ -22,14 +22,15 @@ CORNER = 0.34, 0.22
 """Width and height of such a place."""
 
 
-def emptiest(camera: CameraPose, points: Array) -> str:
-    """The corner of the picture that holds the fewest of these points (n, 3)."""
-    x, y = (project(camera, points, 1600, round(1600 / ASPECT)) / (1600, 1600 / ASPECT)).T
-    held = {
-        name: int(((x >= left) & (x <= left + CORNER[0]) & (y >= top) & (y <= top + CORNER[1])).sum())
-        for name, (left, top) in CORNERS.items()
-    }
-    return min(held, key=lambda name: held[name])
+def emptiest(camera: CameraPose, moving: Array, standing: Array) -> str:
+    """The corner of the picture that holds the fewest points of what moves (n, 3), then of what stands (m, 3)."""
+
+    def held(corner: str, points: Array) -> int:
+        (left, top), (wide, high) = CORNERS[corner], CORNER
+        x, y = (project(camera, points, 1600, round(1600 / ASPECT)) / (1600, 1600 / ASPECT)).T
+        return int(((x >= left) & (x <= left + wide) & (y >= top) & (y <= top + high)).sum())
+
+    return min(CORNERS, key=lambda corner: (held(corner, moving), held(corner, standing)))
 
 
 def title(motion: Motion, shot: Shot) -> str:

@@ -14,7 +14,7 @@ from render.arrows import COLOURS, FULL, LONGEST, TINY, Arrows, round_below, sca
 from render.blender import overlay
 from render.blender.arrows import sizes
 from render.clock import Clock
-from render.framing import project
+from render.framing import axes, half_width, project
 from render.inputs import named, read_film
 from render.presets import Preset
 from render.scene import ArrowSpec, LegendRow, Writing
@@ -189,6 +189,26 @@ def test_titles_and_numbers_that_live():
     assert writing.number(motion, Shot())(0.0) == ""
     with pytest.raises(UserError, match="motor"):
         refuse_unknown(Shot(title=Title(number="moto")), Names("four_bar", (), ("P",), {}, ("motor",)))
+
+
+def test_the_legend_keeps_clear_of_what_moves_and_then_of_what_stands(out_root: Path):
+    film = read_film(film_fixture.write(Shot(seconds_per_turn=0.4)))
+    camera, none = film.camera(0), np.zeros((0, 3))
+    wide = 2 * half_width(camera.lens)
+
+    def seen_at(x: float, y: float) -> np.ndarray:
+        """A point that is at these parts of the picture."""
+        sight = np.array([(x - 0.5) * wide, (0.5 - y) * wide * 9 / 16, 1.0])
+        return np.array([camera.position]) + sight @ axes(camera.azimuth, camera.elevation)
+
+    left, right = seen_at(0.1, 0.9), seen_at(0.9, 0.9)
+    assert project(camera, right, 100, 100 * 9 / 16)[0] == pytest.approx([90, 90 * 9 / 16])
+    assert writing.emptiest(camera, none, none) == "lower left"
+    assert writing.emptiest(camera, left, none) == "lower right"
+    assert writing.emptiest(camera, np.concatenate([left, right]), none) == "upper right"
+    assert writing.emptiest(camera, none, left) == "lower right"
+    assert writing.emptiest(camera, left, np.tile(right, (9, 1))) == "upper right"
+    assert len(film.space.standing) > 100
 
 
 def test_the_rate_of_a_simulation_that_is_not_in_real_time_is_always_told():

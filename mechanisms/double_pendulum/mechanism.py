@@ -1,5 +1,4 @@
 """A double pendulum: two rods, one hung on the other, moved by their weight alone.
-
 Its path never repeats, and a start that differs by a tenth of a degree (a variant) leads elsewhere within seconds,
 though each keeps its energy.
 """

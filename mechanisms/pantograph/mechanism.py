@@ -1,5 +1,4 @@
 """A pantograph: four bars round a parallelogram, one end of them pinned to the table.
-
 Its small stylus is led along a heart, and the pen at the far end draws the same heart enlarged.
 """
 

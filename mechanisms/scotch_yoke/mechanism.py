@@ -1,5 +1,4 @@
 """A scotch yoke: the crank's pin runs in a slot across the yoke, so the yoke moves exactly as a cosine.
-
 With a spring against the yoke that is in tune with the crank (the variant), the motor need not shake the yoke any
 more: the spring does.
 """

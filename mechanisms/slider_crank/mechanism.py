@@ -1,7 +1,6 @@
 """A slider-crank: the crank turns evenly, the rod takes the slider to and fro.
-
-The slider spends less than half a turn on the outer half of its stroke, because the rod leans. Gravity acts across the
-guide: it leaves the motion as it is, but the motor must lift crank and rod and is paid back on the way down.
+The slider spends less than half a turn on the outer half of its stroke, because the rod leans. Gravity acts across
+the guide: it leaves the motion as it is, but the motor must lift crank and rod and is paid back on the way down.
 """
 
 from dataclasses import dataclass

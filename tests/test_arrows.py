@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import get_args
 
 import msgspec
 import numpy as np
@@ -18,10 +19,10 @@ from render.framing import axes, half_width, project
 from render.inputs import named, read_film
 from render.presets import Preset
 from render.scene import ArrowSpec, LegendRow, Writing
-from render.shown import show_words
+from render.shown import WORDS, show_words
 from render.vectors import Vector, at_time, vectors
 from shared.errors import UserError
-from shared.shot import Names, Shot, Title, refuse_unknown, shown
+from shared.shot import Names, Quantity, Shot, Title, refuse_unknown, shown
 from tests import film_fixture
 from tests.motions import GRAVITY, MASSES, bouncing_ball, four_bar_motion
 
@@ -134,6 +135,7 @@ def test_short_arrows_shrink_as_a_whole_and_no_shaft_is_longer_than_its_arrow():
 
 
 def test_words_of_show_are_checked_ordered_and_replace_what_the_shot_says():
+    assert (*get_args(Quantity), "title") == WORDS
     assert show_words(" title,reactions , velocities") == "velocities,reactions,title"
     with pytest.raises(UserError, match="did you mean 'reactions'"):
         show_words("reaction")

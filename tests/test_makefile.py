@@ -65,6 +65,12 @@ def test_picture_targets_take_the_preset(target: str) -> None:
     assert planned(f"{target}-four-bar", "PRESET=final")[-1].endswith("--preset final")
 
 
+@pytest.mark.parametrize("target", ["still", "poster", "contact", "frames", "film", "scene", "scene-ui"])
+def test_picture_targets_take_what_to_show(target: str) -> None:
+    assert "--show" not in planned(f"{target}-four-bar")[-1]
+    assert planned(f"{target}-four-bar", "SHOW=reactions,title")[-1].endswith(" --show=reactions,title")
+
+
 def test_a_contact_sheet_is_of_drafts_unless_asked_otherwise() -> None:
     assert planned("contact-four-bar")[-1] == "contact four_bar --preset draft"
     assert planned("contact-four-bar", "PRESET=preview")[-1] == "contact four_bar --preset preview"

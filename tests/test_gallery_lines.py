@@ -1,4 +1,4 @@
-"""Linkages of the gallery that draw, enlarged or straight, against their closed forms."""
+"""Linkages of the gallery that draw, enlarged or straight, and lift, against their closed forms."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import pytest
 
 from mechanisms.pantograph import mechanism as pantograph
 from mechanisms.peaucellier import mechanism as peaucellier
+from mechanisms.scissor_lift import mechanism as lift
 
 
 def test_pantograph_enlarges_place_speed_and_acceleration() -> None:
@@ -23,3 +24,13 @@ def test_peaucellier_draws_a_straight_line() -> None:
     pen = peaucellier.build(p).sweep().point("P")
     np.testing.assert_allclose(pen.x, (p.long**2 - p.side**2) / (2 * p.crank), rtol=1e-12)
     assert np.ptp(pen.y) > p.long / 2
+
+
+def test_scissor_lift() -> None:
+    p = lift.Params()
+    sol = lift.build(p).sweep()
+    foot, platform = sol.body("foot"), sol.body("platform")
+    rise = np.sqrt(p.bar**2 - foot.x**2)
+    np.testing.assert_allclose(platform.y, p.crosses * rise, atol=1e-14)
+    np.testing.assert_allclose(platform.vy, -p.crosses * foot.x * foot.vx / rise, atol=1e-13)
+    np.testing.assert_allclose(platform.theta, 0.0, atol=1e-13)

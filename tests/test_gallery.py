@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from PIL import Image
 
 from render import gallery
 from render.gallery.page import sentences
-from render.gallery.posters import LARGEST, small_poster
+from render.gallery.posters import LARGEST, small_poster, strip
 from render.report.facts import facts
 from render.report.written import speed
 from shared.contract import write_motion
@@ -33,6 +34,20 @@ def test_a_poster_is_small_whatever_it_shows(tmp_path: Path) -> None:
     (tmp_path / "plain.jpg").write_bytes(small_poster(tmp_path / "plain.png"))
     with Image.open(tmp_path / "plain.jpg") as picture:
         assert picture.size == (960, 540)
+
+
+@pytest.mark.parametrize(("count", "size"), [(1, (1280, 180)), (4, (1280, 180)), (6, (1280, 360))])
+def test_all_posters_in_one(count: int, size: tuple[int, int]) -> None:
+    posters = []
+    for k in range(count):
+        buffer = io.BytesIO()
+        Image.new("RGB", (960, 540), (40 * k, 90, 200)).save(buffer, format="JPEG", quality=95)
+        posters.append(buffer.getvalue())
+    with Image.open(io.BytesIO(strip(posters))) as sheet:
+        assert sheet.size == size
+        last = sheet.getpixel((640 + 20, size[1] - 90))  # the middle of the last row is always filled
+    assert isinstance(last, tuple)
+    assert min(abs(last[0] - 40 * k) for k in range(count)) < 6
 
 
 @pytest.mark.parametrize(
@@ -67,7 +82,7 @@ def test_the_page_shows_who_has_a_poster(out_root: Path, tmp_path: Path, capsys:
     folder.mkdir()
     (folder / "gone.jpg").touch()
     assert gallery.run(folder) == int(len(mechanism_names()) > 1)
-    assert {path.name for path in folder.iterdir()} == {"README.md", "four_bar.jpg"}
+    assert {path.name for path in folder.iterdir()} == {"README.md", "four_bar.jpg", "strip.jpg"}
     text = (folder / "README.md").read_text()
     assert "## Four bar\n\n![Four bar](four_bar.jpg)\n\nFour-bar crank-rocker A-B-C-D: the crank turns" in text
     assert "1 degree of freedom · repeats after 1 s ·" in text

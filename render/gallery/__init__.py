@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from render.gallery.page import Entry, page, sentences
-from render.gallery.posters import small_poster
+from render.gallery.posters import small_poster, strip
 from render.report import description
 from render.report.facts import facts
 from shared.clearance import read_clearance
@@ -16,10 +16,12 @@ from shared.files import write_bytes
 from shared.paths import ROOT, Out, mechanism_names
 
 FOLDER = ROOT / "docs" / "gallery"
+STRIP = "strip.jpg"
+"""All posters in one picture, for the README."""
 
 
 def run(folder: Path = FOLDER) -> int:
-    """Write README.md and a poster of each mechanism; posters of mechanisms that are gone go.
+    """Write README.md, a poster of each mechanism and all of them in one; posters of mechanisms that are gone go.
 
     Returns 1 if a mechanism is left out, because it has no poster. Raises UserError if none has one.
     """
@@ -37,6 +39,7 @@ def run(folder: Path = FOLDER) -> int:
         entries.append(Entry(name, sentences(description(name)), facts(motion, parts, clearance)))
     if not entries:
         raise UserError("no mechanism has a poster; run make gallery, which makes them")
+    posters[STRIP] = strip(list(posters.values()))
     for file, content in posters.items():
         if not (folder / file).is_file() or (folder / file).read_bytes() != content:
             write_bytes(folder / file, content)
@@ -44,5 +47,5 @@ def run(folder: Path = FOLDER) -> int:
         older.unlink()
     write_bytes(folder / "README.md", page(entries).encode())
     size = max(map(len, posters.values())) / 1000
-    say("gallery", f"{len(entries)} mechanisms in {folder / 'README.md'}, posters up to {size:.0f} kB")
+    say("gallery", f"{len(entries)} mechanisms in {folder / 'README.md'}, pictures up to {size:.0f} kB")
     return int(len(entries) < len(names))

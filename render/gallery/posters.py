@@ -1,14 +1,20 @@
-"""Posters for a web page: small JPEGs."""
+"""Posters for a web page: small JPEGs, and all of them in one."""
 
 from __future__ import annotations
 
 import io
+import math
+from collections.abc import Sequence
 from pathlib import Path
 
 WIDTH = 960
 LARGEST = 120_000
 """Bytes."""
 QUALITIES = (88, 82, 76, 70, 62, 54, 45)
+TILE = 320, 180
+"""Pixels of a picture in the strip."""
+BESIDE = 4
+"""Pictures in a row of it."""
 
 
 def small_poster(path: Path) -> bytes:
@@ -29,4 +35,27 @@ def small_poster(path: Path) -> bytes:
             content = buffer.getvalue()
             if len(content) <= LARGEST:
                 return content
+    return content
+
+
+def strip(posters: Sequence[bytes]) -> bytes:
+    """All small posters in rows, as one JPEG; the last row is filled from its middle."""
+    from PIL import Image, ImageOps
+
+    wide, high = TILE
+    rows = math.ceil(len(posters) / BESIDE)
+    tiles = [ImageOps.fit(Image.open(io.BytesIO(poster)), TILE, Image.Resampling.LANCZOS) for poster in posters]
+    sheet = Image.new("RGB", (BESIDE * wide, rows * high), tiles[0].getpixel((2, 2)))
+    for row in range(rows):
+        beside = tiles[row * BESIDE : (row + 1) * BESIDE]
+        left = (BESIDE - len(beside)) * wide // 2
+        for k, tile in enumerate(beside):
+            sheet.paste(tile, (left + k * wide, row * high))
+    content = b""
+    for quality in QUALITIES:
+        buffer = io.BytesIO()
+        sheet.save(buffer, format="JPEG", quality=quality, optimize=True, progressive=True)
+        content = buffer.getvalue()
+        if len(content) <= 2 * LARGEST:
+            break
     return content

@@ -43,7 +43,7 @@ def geneva(slots: int, start: float) -> Mechanism:
 
 @pytest.mark.parametrize("slots", [3, 4, 6, 8])
 def test_the_locking_disc_of_a_geneva_turns_in_the_arcs_of_its_wheel(slots: int) -> None:
-    sol = geneva(slots, 0.1).sweep(steps=48)
+    sol = geneva(slots, 0.1).sweep(2 * math.pi, steps=48)
     for step in range(0, 48, 3):
         ax = sol.draw(step=step).ax
         [lock], [wheel] = outlines(ax, 0, 1.9), outlines(ax, 1, 1.8)
@@ -53,7 +53,7 @@ def test_the_locking_disc_of_a_geneva_turns_in_the_arcs_of_its_wheel(slots: int)
 
 @pytest.mark.parametrize("slots", [3, 4, 6, 8])
 def test_the_pin_of_a_geneva_stands_in_a_slot_or_outside(slots: int) -> None:
-    sol = geneva(slots, 0.1).sweep(steps=48)
+    sol = geneva(slots, 0.1).sweep(2 * math.pi, steps=48)
     inside = 0
     for step in range(0, 48, 3):
         [wheel] = outlines(sol.draw(step=step).ax, 1, 1.8)

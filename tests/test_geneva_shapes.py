@@ -15,7 +15,7 @@ THICK = 7.0
 
 
 def _mesh(shape) -> manifold3d.Manifold:
-    points, triangles = shape.val().tessellate(0.02, 0.2)
+    points, triangles = shape.val().tessellate(0.02, 0.05)
     corners = np.array([point.toTuple() for point in points]).round(5)
     return MeshPiece("a", "piece", corners[np.array(triangles)]).manifold
 

@@ -18,10 +18,10 @@ STAGES = ("parts", "solve", "clearance", "shot", "report", "plots", "glb", "post
 
 
 def run(*command: str, cwd: Path = ROOT, **environment: str) -> subprocess.CompletedProcess[str]:
-    """Run a command free of the make that may have started the tests."""
-    inherited = {
-        key: value for key, value in os.environ.items() if key not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "MBSD_MAKE")
-    }
+    """Run a command free of the make that may have started the tests, and of the words that it exports."""
+    words = re.findall(r"^export (.*)$", MAKEFILE, flags=re.MULTILINE)[0].split()
+    makes = {"MAKEFLAGS", "MAKELEVEL", "MFLAGS", "MBSD_MAKE", *words}
+    inherited = {key: value for key, value in os.environ.items() if key not in makes}
     return subprocess.run(command, cwd=cwd, capture_output=True, text=True, env=inherited | environment)
 
 

@@ -18,11 +18,16 @@ import numpy as np
 from mbsd.assembly import tabulate
 from mbsd.friction_along import with_friction
 from mbsd.loads import compiled_laws, loads_along, pack_loads
+from mbsd.packing import Packed
 from mbsd.prepared import Prepared
 from mbsd.reactions import wrenches
 
 JACOBIAN_NUMBERS = 4_000_000
 """How many numbers of Jacobians are held at once."""
+JUMPED = 1e-6
+"""Part of the largest acceleration that is open where an output is taken for one on a jump."""
+BESIDE = 1e-9
+"""How far beside it is looked, in sizes and rad."""
 
 
 @dataclass
@@ -80,10 +85,34 @@ def inverse_dynamics(
         out.wrench[at] = wrenches(packed, compact, q[at], lam)
         rate = np.einsum("trc,tc->tr", jac, v[at, 3:]) - nu[at]
         bend = np.einsum("trc,tc->tr", jac, a[at, 3:]) - gamma
+        _take_nearer_side(packed, drives[at], q[at], v[at], a[at], bend)
         power = (loads[at] * v[at]).sum(axis=1) - (lam * nu[at]).sum(axis=1)
         worst = [np.abs(error).max(initial=0.0) for error in (phi, rate, bend, power)]
         out.residuals = np.maximum(out.residuals, worst)
     return out
+
+
+def _take_nearer_side(
+    packed: Packed, drives: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray, bend: np.ndarray
+) -> None:
+    """Where accelerations jump, as a Geneva's pin enters its slot, that of either side is right: bend (T, m) follows a.
+
+    Rounding decides on which side of the jump an output on it is.
+    """
+    if not len(packed.system.special):
+        return
+    odd = np.flatnonzero(np.abs(bend).max(axis=1, initial=0.0) > JUMPED * np.abs(a).max(initial=0.0))
+    for k in odd:
+        reach = BESIDE / max(float(np.abs(v[k, 3:] / packed.column_scale()).max()), 1e-300)
+        near = q[k] + np.outer([-reach, reach], v[k])
+        phi, gamma = np.zeros((2, 2, bend.shape[1]))
+        compact = np.zeros((2, bend.shape[1], 6))
+        both = np.stack([drives[k], drives[k]]), np.stack([v[k], v[k]])
+        tabulate(packed.system, both[0], near, both[1], packed.ws, phi, compact, gamma)
+        sides = np.einsum("trc,c->tr", packed.spread(compact), a[k, 3:]) - gamma
+        for side in sides:
+            if np.abs(side).max() < np.abs(bend[k]).max():
+                bend[k] = side
 
 
 def _multipliers(ready: Prepared, jac: np.ndarray, loads: np.ndarray) -> np.ndarray:

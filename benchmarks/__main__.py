@@ -25,7 +25,7 @@ from shared.errors import UserError
 from shared.paths import ROOT
 
 CODES = ("mbsd", "numpy", "exudyn", "pylinkage")
-ROUNDS = 3
+ROUNDS = 8
 BARS = {"exudyn": 20.0, "numpy": 200.0, "pylinkage": 2.0}
 """How many times the time of mbsd each peer takes at least."""
 LARGEST_ERROR = 1e-12

@@ -22,7 +22,7 @@ from tests.four_bars import angles, model
 from tools.hunt import case
 from tools.hunt.__main__ import hunt
 from tools.hunt.agreement import SAME, Growth, Words, compare_driven, compare_free
-from tools.hunt.checks import _odd_steps, driven_problems, one_assembly, smooth
+from tools.hunt.checks import driven_problems, odd_steps, one_assembly, smooth
 from tools.hunt.described import on_a_base, seen_from
 from tools.hunt.free_case import nudged
 from tools.hunt.law_error import of_law
@@ -200,7 +200,7 @@ def test_accelerations_that_rise_and_fall_within_a_step_are_no_left_branch() -> 
     """At the end of this curve its slope goes from 1 to 8 within one step."""
     subject = case.drawn(41_009_895)[1]
     sol = subject.m.sweep(times=np.linspace(0.0, subject.duration, round(90 * subject.turns) + 1))
-    assert _odd_steps(sol)
+    assert odd_steps(sol)
     assert not smooth(sol)
     q = sol.q.copy()
     q[40:, -1, 2] += 0.02

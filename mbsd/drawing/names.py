@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -49,14 +50,22 @@ def place_names(canvas: Canvas) -> None:
 
 def _candidates(anchor: np.ndarray, label: Label, size: np.ndarray, unit: float) -> list[np.ndarray]:
     """Centres (pixels) of the name around its anchor, the nearest and those above first."""
+    return [anchor + way for way in offsets(label.clearance * unit, size, DIRECTIONS, DISTANCES)]
+
+
+def offsets(clearance: float, size: np.ndarray, directions: int, distances: Sequence[float]) -> list[np.ndarray]:
+    """From an anchor to the middles of a word of ``size`` (2,) around it: ``clearance`` away (pixels), and farther.
+
+    ``directions`` are counted round the anchor, ``distances`` are beyond the clearance, in heights of the word.
+    """
     out = []
-    order = sorted(range(DIRECTIONS), key=lambda k: abs(k - DIRECTIONS * 3 / 16))
-    for far in DISTANCES:
+    order = sorted(range(directions), key=lambda k: abs(k - directions * 3 / 16))
+    for far in distances:
         for k in order:
-            angle = 2 * math.pi * k / DIRECTIONS
-            direction = np.array([math.cos(angle), math.sin(angle)])
-            half = min(size[0] / 2 / max(abs(direction[0]), 1e-9), size[1] / 2 / max(abs(direction[1]), 1e-9))
-            out.append(anchor + direction * (label.clearance * unit + half + far * size[1]))
+            angle = 2 * math.pi * k / directions
+            way = np.array([math.cos(angle), math.sin(angle)])
+            half = min(size[0] / 2 / max(abs(way[0]), 1e-9), size[1] / 2 / max(abs(way[1]), 1e-9))
+            out.append((clearance + half + far * size[1]) * way)
     return out
 
 

@@ -56,17 +56,17 @@ def smooth(sol: Solution) -> list[str]:
     within one step alone, as at the sharp end of a curve, is looked at again in FINER steps, which must meet the same
     poses.
     """
-    odd = _odd_steps(sol)
+    odd = odd_steps(sol)
     if not odd or sol.work is not None or len(odd) > FEW:
         return [told for _, told in odd[:1]]
     between = [np.linspace(sol.t[k], sol.t[k + 1], FINER + 1)[1:-1] for k, _ in odd]
     fine = sol.mechanism.sweep(times=np.sort(np.concatenate([sol.t, *between])))
     apart = float(np.abs(fine.q[np.searchsorted(fine.t, sol.t)] - sol.q).max())
-    still = {int(np.searchsorted(sol.t, fine.t[k], side="right")) - 1 for k, _ in _odd_steps(fine)}
+    still = {int(np.searchsorted(sol.t, fine.t[k], side="right")) - 1 for k, _ in odd_steps(fine)}
     return [told for k, told in odd if k in still or apart > RESIDUAL * max(sol.packed.size, 1.0)][:1]
 
 
-def _odd_steps(sol: Solution) -> list[tuple[int, str]]:
+def odd_steps(sol: Solution) -> list[tuple[int, str]]:
     """The steps that pass their limit, in words, the worst one first."""
     h = np.diff(sol.t)[:, None, None]
     q, v, a = sol.q[:, 1:], sol.v[:, 1:], sol.a[:, 1:]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from mbsd.drawing.animation.brush import Brush
 from mbsd.drawing.animation.sprites import sprite
+from mbsd.drawing.names import offsets
 
 DIRECTIONS = 12
 DISTANCES = (0.0, 0.6, 1.4)
@@ -43,7 +43,7 @@ def place_names(
         label = first.labels[number]
         word = sprite(label.text, 0.92 * label.size, label.colour, first.dpi)
         size = np.array([word.shape[1], word.shape[0]]) + 2 * MARGIN
-        offs = _offsets(label.clearance * first.unit * first.view.scale, size)
+        offs = offsets(label.clearance * first.unit * first.view.scale, size, DIRECTIONS, DISTANCES)
         costs = np.arange(len(offs)) * 0.4
         for k in range(len(drawn)):
             costs += _costs(anchors[k][number] + np.array(offs), size, points[k], taken[k], frame)
@@ -53,18 +53,6 @@ def place_names(
                 np.concatenate([anchors[k][number] + best - size / 2, anchors[k][number] + best + size / 2])
             )
         out.append(Placed(number, word, best))
-    return out
-
-
-def _offsets(clearance: float, size: np.ndarray) -> list[np.ndarray]:
-    out = []
-    order = sorted(range(DIRECTIONS), key=lambda k: abs(k - DIRECTIONS * 3 / 16))
-    for far in DISTANCES:
-        for k in order:
-            angle = 2 * math.pi * k / DIRECTIONS
-            way = np.array([math.cos(angle), math.sin(angle)])
-            half = min(size[0] / 2 / max(abs(way[0]), 1e-9), size[1] / 2 / max(abs(way[1]), 1e-9))
-            out.append((clearance + half + far * size[1]) * way)
     return out
 
 

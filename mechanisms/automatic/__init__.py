@@ -15,9 +15,10 @@ In this order, a file each:
 
 How a kind of joint is added: a module with a class that has the four methods of :class:`features.Feature`
 (``pins.py`` is the pattern), a function ``gather(m, joints, layout) -> list[Feature]`` under ``@kind("name of the
-joint's kind")``, and a line in ``kinds.py``. ``anchors`` says where the outlines of bodies must reach; ``items``
-gives what takes room besides plates: a convex shape with round corners that moves with one body, and a
-:class:`items.Reach`, which tells its heights from the layers of bodies; ``needs`` asks for gaps between layers once
-these are known; ``build`` gives eyes to plates and adds solids to the plan. The search for layers knows nothing of
-kinds: it sees items alone. Solids that are general belong to shared/shapes.
+joint's kind")``, and a line in ``kinds.py``; ``@force_kind`` and ``@contact_kind`` do the same for forces and
+contacts. ``anchors`` says where the outlines of bodies must reach; ``items`` gives what takes room besides plates:
+a convex shape with round corners that moves with one body, and a :class:`items.Reach`, which tells its heights from
+the layers of bodies; ``needs`` asks for gaps between layers once these are known; ``build`` gives eyes to plates
+and adds solids to the plan. The search for layers knows nothing of kinds: it sees items alone. Solids that are
+general belong to shared/shapes.
 """

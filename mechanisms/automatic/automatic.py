@@ -9,12 +9,12 @@ def parts(p: Params) -> dict[str, list[Solid]]:
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from mechanisms.automatic.extents import extents
-from mechanisms.automatic.features import KINDS, Feature
+from mechanisms.automatic.features import CONTACT_KINDS, FORCE_KINDS, KINDS, Feature
 from mechanisms.automatic.heights import Heights, heights
 from mechanisms.automatic.layers import find_layers
 from mechanisms.automatic.layout import Layout
@@ -29,6 +29,9 @@ from shared.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
+    from mbsd.force import Force
+    from mbsd.joint import Joint
+    from mechanisms.automatic.features import Gather
     from mechanisms.automatic.plan import Plan
     from shared.shapes.solid import Solid
 
@@ -159,7 +162,7 @@ class Automatic:
     def _layout(self, tall: bool) -> Layout:
         poses = poses_of(self.solution, self.sizes.of_metres(1.0))
         layout = Layout(self.m, self.sizes, poses, times_of(self.solution))
-        layout.features = [*self._joints(layout)]
+        layout.features = [*self._joints(layout), *self._forces_and_contacts(layout)]
         layout.features += styluses(layout, tall)
         layout.features += weights(layout)
         return layout
@@ -179,6 +182,11 @@ class Automatic:
             by_kind.setdefault(joint.kind.name, []).append(joint)
         return [feature for kind, joints in by_kind.items() for feature in KINDS[kind](self.m, joints, layout)]
 
+    def _forces_and_contacts(self, layout: Layout) -> list[Feature]:
+        """Of those kinds that have parts; the others need none."""
+        features = _features(FORCE_KINDS, self.m, self.m.forces.values(), layout)
+        return features + _features(CONTACT_KINDS, self.m, self.m.contacts.values(), layout)
+
     def _known(self, body: str) -> None:
         names = [name for name in self.m.bodies if name != "ground"]
         if body not in names:
@@ -186,6 +194,16 @@ class Automatic:
                 f"{self.m.name}: there is no body '{body}' to shape; there is: {', '.join(names)}"
                 f"{did_you_mean(body, names)}"
             )
+
+
+def _features[Thing: (Force, Joint)](
+    kinds: Mapping[str, Gather[Thing]], m: Mechanism, things: Iterable[Thing], layout: Layout
+) -> list[Feature]:
+    by_kind: dict[str, list[Thing]] = {}
+    for thing in things:
+        if thing.kind.name in kinds:
+            by_kind.setdefault(thing.kind.name, []).append(thing)
+    return [feature for kind, same in by_kind.items() for feature in kinds[kind](m, same, layout)]
 
 
 def automatic(m: Mechanism, pin: float | None = None, solution: Solution | None = None) -> Automatic:

@@ -1,13 +1,14 @@
-"""What a kind of joint puts on its bodies, and the registry of kinds; the package's docstring says how to add one."""
+"""What a kind of joint, force or contact puts on its bodies, and the registries; the package's docstring tells how."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
+    from mbsd.force import Force
     from mbsd.joint import Joint
     from mechanisms.automatic.heights import Heights
     from mechanisms.automatic.items import Item, Levels
@@ -53,19 +54,37 @@ class Feature(Protocol):
         ...
 
 
-type Gather = Callable[[Mechanism, list[Joint], Layout], list[Feature]]
-"""The features of all joints of one kind."""
+type Gather[Thing] = Callable[[Mechanism, list[Thing], Layout], Sequence[Feature]]
+"""The features of all joints (forces, contacts) of one kind."""
 
-KINDS: dict[str, Gather] = {}
+KINDS: dict[str, Gather[Joint]] = {}
+"""By the name of a joint's kind. A joint whose kind is not here has no parts by itself."""
+FORCE_KINDS: dict[str, Gather[Force]] = {}
+"""By the name of a force's kind. A force whose kind is not here needs no part."""
+CONTACT_KINDS: dict[str, Gather[Joint]] = {}
+"""By the name of a contact's kind. A contact whose kind is not here needs no part."""
 
 
-def kind(name: str) -> Callable[[Gather], Gather]:
+def kind(name: str) -> Callable[[Gather[Joint]], Gather[Joint]]:
     """Enter the features of a kind of joint."""
+    return _enter(KINDS, name)
 
-    def enter(gather: Gather) -> Gather:
-        if name in KINDS:
+
+def force_kind(name: str) -> Callable[[Gather[Force]], Gather[Force]]:
+    """Enter the features of a kind of force."""
+    return _enter(FORCE_KINDS, name)
+
+
+def contact_kind(name: str) -> Callable[[Gather[Joint]], Gather[Joint]]:
+    """Enter the features of a kind of contact."""
+    return _enter(CONTACT_KINDS, name)
+
+
+def _enter[Thing](kinds: dict[str, Gather[Thing]], name: str) -> Callable[[Gather[Thing]], Gather[Thing]]:
+    def enter(gather: Gather[Thing]) -> Gather[Thing]:
+        if name in kinds:
             raise ValueError(f"{name}: registered twice")
-        KINDS[name] = gather
+        kinds[name] = gather
         return gather
 
     return enter

@@ -11,7 +11,8 @@ Every pair of pieces of two bodies is settled by the first of these that suffice
 What is proven: at every moment of the motion, which between the samples of data.json is the quintic that the film
 shows, the meshes are apart by the ``proven`` gap of clearance.json. It is at most ``resolution`` below the gap that was
 measured, and less what the true motion may be off between two samples there (path.py). Meshes lie within
-``parts_files.TOLERANCE`` of the solids. Pieces of one body are not compared with each other.
+``parts_files.TOLERANCE`` of the solids. Pieces of one body are not compared with each other, nor are pieces of two
+bodies that parts.json says may touch by design; clearance.json names these pairs.
 """
 
 from __future__ import annotations
@@ -91,8 +92,9 @@ def check(
     pairs: list[PairClearance] = []
     refused: list[tuple[Sweep, Least]] = []
     apart, error = 0, 0.0
+    alike = {frozenset(pair) for pair in parts.may_touch} | {frozenset((piece.body,)) for piece in pieces}
     for first, second in combinations(pieces, 2):
-        if first.body == second.body:
+        if frozenset((first.body, second.body)) in alike:
             continue
         height = _height_gap(first, second)
         if height >= reach:
@@ -127,6 +129,7 @@ def check(
         interpolation_error=metres(error),
         pairs=sorted(pairs, key=lambda pair: (pair.gap, pair.pieces)),
         apart=apart,
+        may_touch=parts.may_touch,
     )
 
 
@@ -204,7 +207,10 @@ def _refusal(name: str, refused: list[tuple[Sweep, Least]], limit: float) -> str
     refused = sorted(refused, key=lambda item: (-item[0].depth_at(item[1].time), item[1].gap))
     sweep, least = refused[0]
     pair = f"{sweep.mover.body}: {sweep.mover.name} and {sweep.still.body}: {sweep.still.name}"
-    remedy = "move one to another layer, make it smaller, or cut it out where the other passes (parts.py)"
+    remedy = (
+        "move one to another layer, make it smaller, or cut it out where the other passes (parts.py; there may_touch "
+        "names bodies that touch by design)"
+    )
     if least.gap >= limit:
         text = (
             f"{name}: {pair} come as near as {least.gap:.3g} mm, and between two samples of data.json they may be "
@@ -233,4 +239,6 @@ def _summary(found: Clearance) -> str:
         nearest = found.pairs[0]
         when = "at every angle" if nearest.time is None else f"at t={nearest.time:.3g} s"
         text += f"; nearest {nearest.pieces[0]} and {nearest.pieces[1]}: {mm(nearest.gap):.3f} mm {when}"
+    if found.may_touch:
+        text += f"; not compared, as they may touch: {', '.join(' and '.join(pair) for pair in found.may_touch)}"
     return text

@@ -19,18 +19,21 @@ ALIKE = 1e-9
 def give_masses(m: Mechanism, parts: Parts | None) -> tuple[dict[str, Source], list[str]]:
     """Give each body of ``m`` that has no mass that of its parts, or an estimate where there are no parts yet.
 
-    A body whose mass or inertia mechanism.py gives keeps it. Returns where each mass is from, and a sentence on each
-    thing that a user may not expect. Raises UserError if parts and mechanism do not name the same bodies.
+    A body whose mass or inertia mechanism.py gives keeps it; one that the parts leave out gets an estimate. Returns
+    where each mass is from, and a sentence on each thing that a user may not expect. Raises UserError if parts and
+    mechanism do not name the same bodies.
     """
     if parts is not None:
         _refuse_other_bodies(m, parts)
     given = [name for name, body in m.bodies.items() if body.mass > 0 or body.inertia > 0]
+    solids = parts.bodies if parts is not None else {}
     source: dict[str, Source] = {}
     for name in m.bodies:
         if name != "ground":
-            source[name] = "mechanism" if name in given else "estimate" if parts is None else "parts"
+            source[name] = "mechanism" if name in given else "parts" if name in solids else "estimate"
+    sentences = _estimate(m, [name for name in source if source[name] == "estimate"], parts is not None)
     if parts is None:
-        return source, _estimate(m, [name for name in source if source[name] == "estimate"])
+        return source, sentences
     for name in source:
         if source[name] == "parts":
             mass = parts.bodies[name].mass
@@ -38,12 +41,14 @@ def give_masses(m: Mechanism, parts: Parts | None) -> tuple[dict[str, Source], l
     differing = [
         f"{name} {m.bodies[name].mass:.4g} kg (parts {parts.bodies[name].mass.mass:.4g} kg)"
         for name in source
-        if source[name] == "mechanism" and _differ(m.bodies[name].mass, parts.bodies[name].mass.mass)
+        if source[name] == "mechanism" and name in solids and _differ(m.bodies[name].mass, solids[name].mass.mass)
     ]
-    return source, [f"masses of mechanism.py count, not those of the parts: {', '.join(differing)}"] * bool(differing)
+    if differing:
+        sentences.append(f"masses of mechanism.py count, not those of the parts: {', '.join(differing)}")
+    return source, sentences
 
 
-def _estimate(m: Mechanism, names: list[str]) -> list[str]:
+def _estimate(m: Mechanism, names: list[str], left_out: bool) -> list[str]:
     """Give these bodies the mass of plates; the sentence that says so."""
     if not names:
         return []
@@ -53,7 +58,8 @@ def _estimate(m: Mechanism, names: list[str]) -> list[str]:
     for name in names:
         m.set_mass(name, estimates[name].mass, estimates[name].com, estimates[name].inertia)
     masses = ", ".join(f"{name} {estimates[name].mass:.3g} kg" for name in names)
-    return [f"no parts yet, so masses are estimated as aluminium bars and plates through the markers: {masses}"]
+    why = "bodies without solids" if left_out else "no parts yet, so masses"
+    return [f"{why} are estimated as aluminium bars and plates through the markers: {masses}"]
 
 
 def _differ(one: float, other: float) -> bool:
@@ -62,10 +68,11 @@ def _differ(one: float, other: float) -> bool:
 
 def _refuse_other_bodies(m: Mechanism, parts: Parts) -> None:
     bodies = set(m.bodies) - {"ground"}
-    solids = set(parts.bodies) - {"ground"}
+    solids = {*parts.bodies, *parts.without_solids} - {"ground"}
     for missing, where, there in ((bodies - solids, "parts.py", solids), (solids - bodies, "mechanism.py", bodies)):
         if missing:
             raise UserError(
                 f"{m.name}: {where} has no body '{min(missing)}'; it has: {', '.join(sorted(there)) or 'none'}"
-                f"{did_you_mean(min(missing), there) or '.'} mechanism.py and parts.py must name the same bodies"
+                f"{did_you_mean(min(missing), there) or '.'} mechanism.py and parts.py must name the same bodies "
+                "(Bodies.leave_out names one without solids)"
             )

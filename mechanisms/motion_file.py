@@ -26,7 +26,7 @@ def to_motion(
     packages: dict[str, str],
     sources: Mapping[str, Source] | None = None,
 ) -> contract.Motion:
-    """The solution as the contract has it; without ``parts`` bodies have no height.
+    """The solution as the contract has it; bodies without solids have no height.
 
     ``sources`` tells where the mass of each body is from; if it is not given, from the parts.
     """
@@ -36,7 +36,7 @@ def to_motion(
     bodies = {
         name: contract.BodyMotion(
             **_lists(solution.body(name), FRAME),
-            z=parts.bodies[name].z if parts else None,
+            z=parts.bodies[name].z if parts and name in parts.bodies else None,
             mass=body.mass,
             mass_from=sources[name] if sources else "parts",
             com=body.com,

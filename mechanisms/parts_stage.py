@@ -9,7 +9,6 @@ model and its motion (mechanisms/automatic). A file whose bytes would be the sam
 from __future__ import annotations
 
 import hashlib
-import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -27,9 +26,8 @@ from shared.materials import MATERIALS
 from shared.paths import ROOT, Out, mechanism_folder
 from shared.shapes.units import metres
 from shared.stages import Stage, key_of, versions
-from shared.suggestions import did_you_mean
 
-_STAGE = ("parts_stage", "parts_files", "mass_properties", "mesh_check", "traced_params")
+_STAGE = ("parts_stage", "parts_files", "returned_parts", "mass_properties", "mesh_check", "traced_params")
 _SHARED = ("contract", "contract_base", "contract_parts", "jsonfile")
 SOURCES = [
     ROOT / "shared" / "shapes",
@@ -41,7 +39,6 @@ _AUTOMATIC = ("automatic", "parts_by_themselves.py", *(f"{name}.py" for name in 
 AUTOMATIC = [*SOURCES, *(ROOT / "mechanisms" / name for name in _AUTOMATIC)]
 """Sources of parts without a parts.py."""
 PACKAGES = ("cadquery", "cadquery-ocp", "numpy", "trimesh")
-NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
 def run(name: str) -> None:
@@ -71,7 +68,11 @@ def run(name: str) -> None:
     files: dict[str, bytes] = {}
     described = {body: _body(out.name, body, solids, files) for body, solids in bodies.items()}
     document = Parts(
-        mechanism=out.name, provenance=Provenance(inputs=key, versions=versions(*PACKAGES)), bodies=described
+        mechanism=out.name,
+        provenance=Provenance(inputs=key, versions=versions(*PACKAGES)),
+        bodies=described,
+        without_solids=sorted(getattr(bodies, "left_out", ())),
+        may_touch=sorted(getattr(bodies, "touching", ())),
     )
     written = _write(out, files, document)
     Stage(out, "parts", key, [out.parts, *(out.parts_folder / file for file in files)]).done(
@@ -124,6 +125,7 @@ def _build(name: str, given: Any) -> tuple[dict[str, list[Any]], list[str], Inpu
     """The solids by body, the names that parts() read from its parameters, and what parts.py was made of and read."""
     from mechanisms.cad_reads import told_of_cad_files
     from mechanisms.loaded_files import loaded_inputs
+    from mechanisms.returned_parts import refuse_unfit
 
     if not has(name, "parts"):
         from mechanisms.parts_by_themselves import solids_of
@@ -136,28 +138,7 @@ def _build(name: str, given: Any) -> tuple[dict[str, list[Any]], list[str], Inpu
         with author_code(name):
             bodies = module.parts(stand_in)
     loaded = loaded_inputs(folder / "parts.py", package_of(name), before, leave_out=folder / "mechanism.py")
-    from shared.shapes.solid import Solid
-
-    if not isinstance(bodies, dict) or not bodies:
-        raise UserError(f"{name}: parts() must return a dict of lists of Solid by body, not {type(bodies).__name__}")
-    known: dict[str, str] = {}
-    for body, solids in bodies.items():
-        if not solids or not all(isinstance(solid, Solid) for solid in solids):
-            raise UserError(f"{name}: parts()['{body}'] must be a list of one Solid or more")
-        for solid in solids:
-            if not NAME.fullmatch(solid.name):
-                raise UserError(f"{name}: {body}: a solid is called '{solid.name}'; use letters, digits and _")
-            if solid.name in known:
-                raise UserError(
-                    f"{name}: {known[solid.name]} and {body} both have a solid '{solid.name}'; "
-                    "files are named after solids, so give one of them another name"
-                )
-            if solid.material not in MATERIALS:
-                raise UserError(
-                    f"{name}: {body}: {solid.name} is of '{solid.material}'; there is {', '.join(MATERIALS)}"
-                    f"{did_you_mean(solid.material, MATERIALS)}"
-                )
-            known[solid.name] = body
+    refuse_unfit(name, bodies)
     return bodies, sorted(seen), loaded.joined(recorder.inputs())
 
 

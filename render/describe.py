@@ -202,7 +202,8 @@ class Film:
         if trail.z is not None:
             return trail.z
         body = self.motion.points[trail.point].body
-        return max(self._tops(body), default=0.0) + TRAIL_GAP
+        tops = self._tops(body) or [top for other in self.motion.bodies for top in self._tops(other)]
+        return max(tops, default=0.0) + TRAIL_GAP
 
     def _tops(self, body: str) -> list[float]:
         """Heights of all pieces of a body (m)."""

@@ -52,6 +52,8 @@ class Clearance(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     """Nearest first."""
     apart: int
     """Pairs that never come within the search distance."""
+    may_touch: list[tuple[str, str]] = []
+    """Pairs of bodies that touch by design; their pieces were not compared with each other."""
 
 
 def read_clearance(path: Path) -> Clearance:

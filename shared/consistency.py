@@ -69,8 +69,20 @@ def refuse_inconsistent_motion(motion: Motion, path: Path | str) -> None:
 
 
 def refuse_inconsistent_parts(parts: Parts, path: Path | str) -> None:
-    """Refuse unfit names, files that are not beside parts.json by their names, and heights that are upside down."""
-    _refuse_unfit_names({"bodies": parts.bodies}, path)
+    """Refuse unfit names, files that are not beside parts.json by their names, heights that are upside down, bodies
+    without solids that have some, and pairs of bodies that are not there.
+    """
+    _refuse_unfit_names({"bodies": parts.bodies, "without_solids": parts.without_solids}, path)
+    for body in parts.without_solids:
+        if body in parts.bodies:
+            raise UserError(f"{path}: without_solids names '{body}', which has solids; leave it out of one of the two")
+    for index, pair in enumerate(parts.may_touch):
+        for body in pair:
+            if body not in parts.bodies or pair[0] == pair[1]:
+                raise UserError(
+                    f"{path}: may_touch[{index}] is {' and '.join(pair)}; it must name two bodies that have solids: "
+                    f"{', '.join(parts.bodies)}"
+                )
     seen: dict[str, str] = {}
     for body, solids in parts.bodies.items():
         for name, piece in solids.pieces.items():

@@ -45,7 +45,7 @@ class BodyMotion(Strict, kw_only=True):
     ay: Series
     alpha: Series
     z: float | None
-    """Height of its layer (m); null where there are no parts yet."""
+    """Height of its layer (m); null where there are no parts yet, and of bodies without solids."""
     mass: NonNegative
     mass_from: Literal["mechanism", "parts", "estimate"] = "parts"
     """Where mass, com and inertia are from."""

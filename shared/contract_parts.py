@@ -51,3 +51,7 @@ class Parts(Strict, kw_only=True):
     units: dict[str, str] = msgspec.field(default_factory=lambda: dict(PARTS_UNITS))
     provenance: Provenance
     bodies: dict[str, BodyParts]
+    without_solids: list[str] = []
+    """Bodies of mechanism.py that are left out here."""
+    may_touch: list[tuple[str, str]] = []
+    """Pairs of bodies that touch by design: their pieces are not compared with each other."""

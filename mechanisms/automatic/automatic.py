@@ -9,12 +9,13 @@ def parts(p: Params) -> dict[str, list[Solid]]:
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from mechanisms.automatic.extents import extents
-from mechanisms.automatic.features import CONTACT_KINDS, FORCE_KINDS, KINDS, Feature
+from mechanisms.automatic.features import Need
+from mechanisms.automatic.gathered import gathered
 from mechanisms.automatic.heights import Heights, heights
 from mechanisms.automatic.layers import find_layers
 from mechanisms.automatic.layout import Layout
@@ -29,14 +30,9 @@ from shared.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
-    from mbsd.force import Force
-    from mbsd.joint import Joint
-    from mechanisms.automatic.features import Gather
     from mechanisms.automatic.plan import Plan
+    from shared.shapes.bodies import Bodies
     from shared.shapes.solid import Solid
-
-SHAPELESS = ("angle_lock", "constraint")
-"""Kinds of joints that hold by no part of their own."""
 
 
 class Automatic:
@@ -49,6 +45,8 @@ class Automatic:
         self._materials: dict[str, str] = {}
         self._layers: dict[str, int] = {}
         self._replaced: dict[str, list[Solid]] = {}
+        self._left_out: set[str] = set()
+        self._touching: set[tuple[str, str]] = set()
 
     # -- wishes -------------------------------------------------------------------------------------------------
 
@@ -68,6 +66,7 @@ class Automatic:
         if number < 0:
             raise UserError(f"{self.m.name}: layer of '{body}' is {number}; the lowest one is 0")
         self._layers[body] = number
+        self._plan_anew()
 
     def replace(self, body: str, solids: Sequence[Solid]) -> None:
         """Build ``body`` of these solids (mm, its frame, at its height) instead: the first is its main piece.
@@ -78,6 +77,32 @@ class Automatic:
         self._known(body)
         self._replaced[body] = list(solids)
 
+    def leave_out(self, body: str) -> None:
+        """Build nothing of ``body``. Where a joint would hold it, other bodies keep an eye without a pin.
+
+        Where mechanism.py gives it no mass, that is estimated. Raises UserError for the last body that moves.
+        """
+        self._known(body)
+        wished = [self._materials, self._layers, self._replaced]
+        if any(body in wishes for wishes in wished):
+            raise UserError(f"{self.m.name}: '{body}' has a material, a layer or solids, so it cannot be left out too")
+        if len(self._left_out) + 2 == len(self.m.bodies):
+            raise UserError(f"{self.m.name}: without '{body}' nothing that moves is left; keep one body")
+        self._left_out.add(body)
+        self._plan_anew()
+
+    def may_touch(self, first: str, second: str) -> None:
+        """Let two bodies (one may be ground) share room: they touch by design.
+
+        Neither the order of layers nor the clearance stage keeps them apart.
+        """
+        from shared.shapes.bodies import pair_of
+
+        for body in (first, second):
+            self._known(body, ground=True)
+        self._touching.add(pair_of(first, second))
+        self._plan_anew()
+
     # -- results ------------------------------------------------------------------------------------------------
 
     @cached_property
@@ -85,9 +110,7 @@ class Automatic:
         """Proportions and the scale."""
         if self._pin is not None:
             return of_pin(self._pin)
-        import mechanisms.automatic.kinds  # noqa: F401  (enters them)
-
-        shortest, overall = extents(self.m, self.solution)
+        shortest, overall = extents(self.m, self.solution, self._left_out)
         return sizes(shortest, overall)
 
     @cached_property
@@ -114,17 +137,22 @@ class Automatic:
         heights_of = heights(self.decided, layout.layered, self.sizes.thickness, needs, 2 * pivot.fit.axial)
         floor = 4.0 + self.sizes.screw / self.sizes.scale + 2 * pivot.fit.axial
         if heights_of.bottoms and heights_of.bottoms[0] < floor:
-            from mechanisms.automatic.features import Need
-
             needs.append(Need(-1, floor))
             heights_of = heights(self.decided, layout.layered, self.sizes.thickness, needs, 2 * pivot.fit.axial)
         return heights_of
 
-    def solids(self) -> dict[str, list[Solid]]:
+    def solids(self) -> Bodies:
         """Every piece by the body it moves with, in mm; the first of each list is the body's main piece."""
         from mechanisms.automatic.built import built
+        from shared.shapes.bodies import Bodies
 
-        return built(self.plan(), self.heights) | self._replaced
+        made = Bodies(built(self.plan(), self.heights) | self._replaced)
+        for body in self.layout.apart:
+            made.leave_out(body)
+        for first, second in map(tuple, self.layout.touching):
+            if first in made and second in made:
+                made.may_touch(first, second)
+        return made
 
     def span(self, body: str) -> tuple[float, float]:
         """Lower and upper face (mm) of the plate of ``body``."""
@@ -162,48 +190,27 @@ class Automatic:
     def _layout(self, tall: bool) -> Layout:
         poses = poses_of(self.solution, self.sizes.of_metres(1.0))
         layout = Layout(self.m, self.sizes, poses, times_of(self.solution))
-        layout.features = [*self._joints(layout), *self._forces_and_contacts(layout)]
+        layout.apart = frozenset(self._left_out)
+        layout.touching = frozenset(map(frozenset, self._touching))
+        layout.features = gathered(layout)
         layout.features += styluses(layout, tall)
         layout.features += weights(layout)
         return layout
 
-    def _joints(self, layout: Layout) -> list[Feature]:
-        import mechanisms.automatic.kinds  # noqa: F401  (enters them)
+    def _plan_anew(self) -> None:
+        """Forget what was found before a wish."""
+        for name in ("sizes", "layout", "levels", "heights", "_found"):
+            self.__dict__.pop(name, None)
 
-        by_kind: dict[str, list] = {}
-        for name, joint in self.m.joints.items():
-            if joint.kind.name in SHAPELESS:
-                continue
-            if joint.kind.name not in KINDS:
-                raise UserError(
-                    f"{self.m.name}: joint '{name}' is a {joint.kind.name.replace('_', ' ')}, which has no parts by "
-                    f"itself yet (there are: {', '.join(KINDS)}); write mechanisms/{self.m.name}/parts.py"
-                )
-            by_kind.setdefault(joint.kind.name, []).append(joint)
-        return [feature for kind, joints in by_kind.items() for feature in KINDS[kind](self.m, joints, layout)]
-
-    def _forces_and_contacts(self, layout: Layout) -> list[Feature]:
-        """Of those kinds that have parts; the others need none."""
-        features = _features(FORCE_KINDS, self.m, self.m.forces.values(), layout)
-        return features + _features(CONTACT_KINDS, self.m, self.m.contacts.values(), layout)
-
-    def _known(self, body: str) -> None:
-        names = [name for name in self.m.bodies if name != "ground"]
+    def _known(self, body: str, ground: bool = False) -> None:
+        if body in self._left_out:
+            raise UserError(f"{self.m.name}: '{body}' is left out, so there is nothing of it to shape")
+        names = [name for name in self.m.bodies if ground or name != "ground"]
         if body not in names:
             raise UserError(
                 f"{self.m.name}: there is no body '{body}' to shape; there is: {', '.join(names)}"
                 f"{did_you_mean(body, names)}"
             )
-
-
-def _features[Thing: (Force, Joint)](
-    kinds: Mapping[str, Gather[Thing]], m: Mechanism, things: Iterable[Thing], layout: Layout
-) -> list[Feature]:
-    by_kind: dict[str, list[Thing]] = {}
-    for thing in things:
-        if thing.kind.name in kinds:
-            by_kind.setdefault(thing.kind.name, []).append(thing)
-    return [feature for kind, same in by_kind.items() for feature in kinds[kind](m, same, layout)]
 
 
 def automatic(m: Mechanism, pin: float | None = None, solution: Solution | None = None) -> Automatic:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -42,24 +42,29 @@ def extent(name: str) -> Callable[[ExtentOf], ExtentOf]:
     return enter
 
 
-def extents(m: Mechanism, solution: Solution) -> tuple[float, float]:
-    """The shortest distance of two pins of a body, or what is like one; the longer side of all that is swept (m)."""
+def extents(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) -> tuple[float, float]:
+    """The shortest distance of two pins of a body, or what is like one; the longer side of all that is swept (m).
+
+    Bodies that are ``left_out`` do not count.
+    """
     places: dict[str, list[tuple[float, float]]] = {}
     pinned: dict[str, list[tuple[float, float]]] = {}
     least: list[float] = []
     for joint in m.joints.values():
         for marker in (joint.i, joint.j):
+            if marker.body.name in left_out:
+                continue
             places.setdefault(marker.body.name, []).append((marker.x, marker.y))
             if joint.kind.name == "revolute" or (joint.kind.name == "pin_in_slot" and marker is joint.j):
                 pinned.setdefault(marker.body.name, []).append((marker.x, marker.y))
-        if joint.kind.name in EXTENTS:
+        if joint.kind.name in EXTENTS and not any(body in left_out for body in joint.bodies):
             own = EXTENTS[joint.kind.name](joint, solution)
             least += [length * LINK / wanted for length, wanted in own.least]
             for marker, radius in own.radii:
                 round_it = [(marker.x + radius * u, marker.y + radius * v) for u, v in _ROUND]
                 places.setdefault(marker.body.name, []).extend(round_it)
     for name, body in m.bodies.items():
-        if body.length is not None:
+        if body.length is not None and name not in left_out:
             places.setdefault(name, []).extend([(0.0, 0.0), (body.length, 0.0)])
     seen = np.concatenate([[[0.0, 0.0]], *[_swept(solution, body, np.array(at)) for body, at in places.items()]])
     overall = float(np.ptp(seen[1:], axis=0).max()) if len(seen) > 1 else 1.0

@@ -39,7 +39,7 @@ class Layout:
     apart: frozenset[str] = frozenset()
     """Bodies that get no solids from here."""
     touching: frozenset[frozenset[str]] = frozenset()
-    """Pairs of bodies that may touch by design."""
+    """Pairs of bodies that may touch by design; a feature adds those of its own when it is gathered."""
 
     def place(self, marker: Marker) -> tuple[float, float]:
         """A marker in its body's frame (rmm)."""

@@ -108,26 +108,34 @@ def mass_section(motion: Motion, parts: Parts | None) -> list[str]:
     if parts is not None and "ground" in parts.bodies:
         pieces = sum(len(body.pieces) for body in parts.bodies.values())
         lines[0] += f" The frame weighs {written(parts.bodies['ground'].mass.mass, 'kg')}; there are {pieces} pieces."
+    if parts is not None and parts.without_solids:
+        lines[0] += f" Without solids: {', '.join(parts.without_solids)}."
     lines.append("")
     return lines + table(["body", "mass", "centre of mass", "inertia", "from"], rows)
 
 
 def clearance_section(clearance: Clearance | None) -> list[str]:
-    """The least gap between two parts."""
+    """The least gap between two parts, and what was not compared."""
     if clearance is None:
         return ["It was not checked: there is no clearance.json."]
+    lines = [_nearest(clearance)]
+    if clearance.may_touch:
+        pairs = "; ".join(" and ".join(pair) for pair in clearance.may_touch)
+        lines += ["", f"Bodies that touch by design were not compared with each other: {pairs}."]
+    return lines
+
+
+def _nearest(clearance: Clearance) -> str:
     if not clearance.pairs:
-        return [
-            f"No two parts of different bodies come near each other; {counted(clearance.apart, 'pair')} stay apart."
-        ]
+        return f"No two parts of different bodies come near each other; {counted(clearance.apart, 'pair')} stay apart."
     nearest = min(clearance.pairs, key=lambda pair: pair.gap)
     when = "" if nearest.time is None else f" at t = {moment(nearest.time)}"
     names = " and ".join(f"{piece} ({body})" for piece, body in zip(nearest.pieces, nearest.bodies, strict=True))
-    return [
+    return (
         f"No two parts touch. {names} come nearest, to {written(nearest.gap, 'm')}{when}; less than "
         f"{written(nearest.proven, 'm')} is ruled out over the whole motion. {counted(len(clearance.pairs), 'pair')} "
         f"of pieces were looked at closely, {clearance.apart} never come near."
-    ]
+    )
 
 
 def _acceleration(a: np.ndarray) -> str:

@@ -1,0 +1,67 @@
+"""What ``parts()`` returns: the solids of each body, and what is to be known of bodies besides their solids."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from shared.errors import UserError
+from shared.shapes.solid import Solid
+
+
+class Bodies(dict[str, list[Solid]]):
+    """Solids by body, as a dict; the first of each list is the body's main piece.
+
+    A plain dict does where nothing else is to be said::
+
+        made = Bodies(ground=[...], cam=[...], follower=[...])
+        made.may_touch("cam", "follower")
+        made.leave_out("string")
+        return made
+
+    ``made | {...}`` keeps what was said.
+    """
+
+    def __init__(self, *args: Mapping[str, list[Solid]], **bodies: list[Solid]) -> None:
+        super().__init__(*args, **bodies)
+        self._touching: set[tuple[str, str]] = set()
+        self._left_out: set[str] = set()
+
+    def may_touch(self, first: str, second: str) -> None:
+        """Solids of these two bodies touch by design: the clearance stage does not compare them with each other.
+
+        Raises UserError where both are one.
+        """
+        self._touching.add(pair_of(first, second))
+
+    def leave_out(self, body: str) -> None:
+        """``body`` of mechanism.py has no solids; where mechanism.py gives it no mass, that is estimated."""
+        self._left_out.add(body)
+
+    @property
+    def touching(self) -> frozenset[tuple[str, str]]:
+        """Pairs of bodies that may touch, each in the order of the alphabet."""
+        return frozenset(self._touching)
+
+    @property
+    def left_out(self) -> frozenset[str]:
+        """Bodies without solids."""
+        return frozenset(self._left_out)
+
+    def __or__(self, other: Mapping[str, list[Solid]]) -> Bodies:  # pyright: ignore[reportIncompatibleMethodOverride]
+        joined = Bodies(self)
+        joined.update(other)
+        for one in (self, other):
+            if isinstance(one, Bodies):
+                joined._touching |= one.touching
+                joined._left_out |= one.left_out
+        return joined
+
+    def __ror__(self, other: Mapping[str, list[Solid]]) -> Bodies:  # pyright: ignore[reportIncompatibleMethodOverride]
+        return Bodies(other) | self
+
+
+def pair_of(first: str, second: str) -> tuple[str, str]:
+    """Two bodies in the order of the alphabet. Raises UserError where both are one."""
+    if first == second:
+        raise UserError(f"may_touch('{first}', '{second}'): a body may touch itself anyway; name two bodies")
+    return (first, second) if first < second else (second, first)

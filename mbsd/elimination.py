@@ -20,6 +20,7 @@ fixed pivot sequence).
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -80,10 +81,35 @@ def plan(samples: np.ndarray, kept_rows: np.ndarray, row_body: np.ndarray) -> tu
     ``row_body`` (m, 2): the bodies of each row, to find an entry in the compact J (m, 6).
     """
     matrices = samples[:, kept_rows, :]
-    n = len(kept_rows)
-    value = matrices[0].copy()
     own = np.any(matrices != 0.0, axis=0)
     constant = own & np.all(matrices == matrices[0], axis=0)
+    value = np.where(constant, matrices[0], 0.0)
+    rows, bodies = np.asarray(kept_rows, np.int64), np.asarray(row_body, np.int64)
+    kept, values = _planned(own.tobytes(), constant.tobytes(), value.tobytes(), rows.tobytes(), bodies.tobytes())
+    sequence = Elimination(*(array.copy() for array in kept))
+    n, size = len(sequence.rows), len(sequence.block)
+    return sequence, Factors(
+        values.copy(),
+        np.zeros((size, size)),
+        np.zeros(size, np.int64),
+        np.zeros((size, 2)),
+        np.zeros((n, 2)),
+        np.zeros(len(sequence.ends)),
+    )
+
+
+@lru_cache(maxsize=64)
+def _planned(
+    own_bytes: bytes, constant_bytes: bytes, value_bytes: bytes, rows_bytes: bytes, bodies_bytes: bytes
+) -> tuple[Elimination, np.ndarray]:
+    """The sequence and the values of its constants, which hang on the pattern of J and its constant entries alone.
+
+    They are kept for the next call, so nobody writes into them.
+    """
+    kept_rows, row_body = np.frombuffer(rows_bytes, np.int64), np.frombuffer(bodies_bytes, np.int64).reshape(-1, 2)
+    n = len(kept_rows)
+    own, constant = (np.frombuffer(part, bool).reshape(n, n) for part in (own_bytes, constant_bytes))
+    value, constant = np.frombuffer(value_bytes).reshape(n, n).copy(), constant.copy()
     fixed_value, changed = value.copy(), np.zeros((n, n), bool)
     own_constant = constant.copy()
     pattern = own.copy()
@@ -152,14 +178,7 @@ def plan(samples: np.ndarray, kept_rows: np.ndarray, row_body: np.ndarray) -> tu
         block=block,
         ends=np.flatnonzero(np.diff(row_part[left_rows], append=-1)) + 1,
     )
-    return sequence, Factors(
-        values,
-        np.zeros((size, size)),
-        np.zeros(size, np.int64),
-        np.zeros((size, 2)),
-        np.zeros((n, 2)),
-        np.zeros(len(sequence.ends)),
-    )
+    return sequence, values
 
 
 def irreducible_parts(pattern: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

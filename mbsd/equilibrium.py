@@ -167,7 +167,7 @@ def _solution(m: Mechanism, ready: Statics, q: np.ndarray, lam: np.ndarray, mobi
         wrench=wrenches(packed, compact, q[None], lam[None]),
         lam=lam[None],
         drives=ready.drive[None],
-        singularity_margin=np.array([singular[-1] / singular[0]]),
+        margin=np.array([singular[-1] / singular[0]]),
         stats=Stats(float(np.abs(phi).max(initial=0.0)), 0.0, 0.0, 0.0, steps=1, inserted_steps=0),
         mobility=mobility,
         route="equilibrium",

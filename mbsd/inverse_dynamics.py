@@ -11,6 +11,7 @@ Source: Haug 1989, ch. 6.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -38,8 +39,6 @@ class Efforts:
     """(T, m) multipliers."""
     wrench: np.ndarray
     """(T, joints, 3) fx, fy, torque on the second body at its marker."""
-    margin: np.ndarray
-    """(T,) smallest over largest singular value of the scaled Jacobian."""
     residuals: np.ndarray
     """(4,) largest |Phi|, |J v - nu|, |J a - gamma| and |d(T + V)/dt - power of the drivers|."""
 
@@ -60,18 +59,10 @@ def inverse_dynamics(
         loads += loads_along(packed, rubbing, laws, times, q, v)
     nu = np.zeros((count, rows))
     nu[:, packed.driver_rows :] = drives[:, 1:, 1]
-    out = Efforts(np.zeros((count, rows)), np.zeros((count, len(packed.joints), 3)), np.zeros(count), np.zeros(4))
-    kept = ready.sequence.rows.astype(np.int64)
-    chunk = max(1, JACOBIAN_NUMBERS // max(1, rows * packed.coordinates))
-    for start in range(0, count, chunk):
-        at = slice(start, min(start + chunk, count))
-        phi, gamma = np.zeros((2, at.stop - start, rows))
-        compact = np.zeros((at.stop - start, rows, 6))
-        tabulate(system, drives[at], q[at], v[at], packed.ws, phi, compact, gamma)
+    out = Efforts(np.zeros((count, rows)), np.zeros((count, len(packed.joints), 3)), np.zeros(4))
+    for at in _chunks(packed, count):
+        phi, compact, gamma = _tabulated(packed, drives[at], q[at], v[at])
         jac = packed.spread(compact)
-        scaled = jac[:, kept] * packed.row_scale()[kept, None] * packed.column_scale()
-        singular = np.linalg.svd(scaled, compute_uv=False)
-        out.margin[at] = singular[:, -1] / singular[:, 0]
         lam = out.lam[at]
         if rubbing is None:
             lam[:] = _multipliers(ready, jac, loads[at])
@@ -92,6 +83,34 @@ def inverse_dynamics(
     return out
 
 
+def singularity_margin(packed: Packed, rows: np.ndarray, drives: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """(T,) smallest over largest singular value of the scaled rows (n,) of J along a motion q (T, 3 nb)."""
+    kept, found = rows.astype(np.int64), np.zeros(len(q))
+    scale = packed.row_scale()[kept, None] * packed.column_scale()
+    for at in _chunks(packed, len(q)):
+        _, compact, _ = _tabulated(packed, drives[at], q[at], np.zeros_like(q[at]))
+        singular = np.linalg.svd(packed.spread(compact)[:, kept] * scale, compute_uv=False)
+        found[at] = singular[:, -1] / singular[:, 0]
+    return found
+
+
+def _chunks(packed: Packed, count: int) -> Iterator[slice]:
+    """Of the outputs, so that not too many Jacobians are held at once."""
+    size = max(1, JACOBIAN_NUMBERS // max(1, len(packed.ws.phi) * packed.coordinates))
+    return (slice(start, min(start + size, count)) for start in range(0, count, size))
+
+
+def _tabulated(
+    packed: Packed, drives: np.ndarray, q: np.ndarray, v: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Phi (T, m), compact J (T, m, 6) and gamma (T, m) along a motion."""
+    count, rows = len(q), len(packed.ws.phi)
+    phi, gamma = np.zeros((2, count, rows))
+    compact = np.zeros((count, rows, 6))
+    tabulate(packed.system, drives, q, v, packed.ws, phi, compact, gamma)
+    return phi, compact, gamma
+
+
 def _take_nearer_side(
     packed: Packed, drives: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray, bend: np.ndarray
 ) -> None:
@@ -105,10 +124,7 @@ def _take_nearer_side(
     for k in odd:
         reach = BESIDE / max(float(np.abs(v[k, 3:] / packed.column_scale()).max()), 1e-300)
         near = q[k] + np.outer([-reach, reach], v[k])
-        phi, gamma = np.zeros((2, 2, bend.shape[1]))
-        compact = np.zeros((2, bend.shape[1], 6))
-        both = np.stack([drives[k], drives[k]]), np.stack([v[k], v[k]])
-        tabulate(packed.system, both[0], near, both[1], packed.ws, phi, compact, gamma)
+        _, compact, gamma = _tabulated(packed, np.stack([drives[k], drives[k]]), near, np.stack([v[k], v[k]]))
         sides = np.einsum("trc,c->tr", packed.spread(compact), a[k, 3:]) - gamma
         for side in sides:
             if np.abs(side).max() < np.abs(bend[k]).max():

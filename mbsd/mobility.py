@@ -9,6 +9,7 @@ and the largest counts.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -70,8 +71,8 @@ def joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
     best, start = here, len(independent_rows(here))
     kept = independent_rows(best)
     for tries, seed in ((3, 1), (9, 2)):
-        if seed > 1 and not start < len(kept) < rows:
-            break  # more are tried where branches of other rank meet at the start
+        if len(kept) == rows or (seed > 1 and start == len(kept)):
+            break  # no rank is higher; more are tried where branches of other rank meet at the start
         for near in _nearby(packed, q, tries, seed):
             jac = scaled_jacobian(packed, near)[:rows]
             rank = independent_rows(jac)
@@ -99,12 +100,11 @@ def refuse_overdriven(m: Mechanism, packed: Packed, time: float) -> None:
         _refuse_idle_drivers(packed, joint_mobility(packed, q), _best_rows(packed, q)[1], time)
 
 
-def choose_rows(packed: Packed, q: np.ndarray, time: float) -> np.ndarray:
-    """(n,) independent rows that fix all coordinates, drivers included.
+def choose_rows(packed: Packed, q: np.ndarray, time: float, joints: Mobility) -> np.ndarray:
+    """(n,) independent rows that fix all coordinates, drivers included. ``joints``: mobility of the joints at q.
 
     Raises MobilityError for a missing or superfluous driver, SingularPoseError where only this pose is at fault.
     """
-    joints = joint_mobility(packed, q)
     here, kept, best = _best_rows(packed, q)
     _refuse_idle_drivers(packed, joints, kept, time)
     if len(kept) < packed.coordinates:
@@ -147,8 +147,11 @@ def better_rows(jac: np.ndarray, known: Sequence[int] | np.ndarray, better: floa
 
 def _best_rows(packed: Packed, q: np.ndarray) -> tuple[list[int], list[int], np.ndarray]:
     """Independent rows at q, at the pose near it (or q) that has most of them, and that pose."""
+    here = independent_rows(scaled_jacobian(packed, q))
+    if len(here) == min(packed.coordinates, len(packed.ws.phi)):
+        return here, here, q
     poses = [q, *_nearby(packed, q)]
-    ranked = [independent_rows(scaled_jacobian(packed, pose)) for pose in poses]
+    ranked = [here, *(independent_rows(scaled_jacobian(packed, pose)) for pose in poses[1:])]
     best = max(range(len(poses)), key=lambda k: len(ranked[k]))
     return ranked[0], ranked[best], poses[best]
 
@@ -175,18 +178,19 @@ def scaled_jacobian(packed: Packed, q: np.ndarray) -> np.ndarray:
 
 def independent_rows(jac: np.ndarray) -> list[int]:
     """Rows that are independent of those before them (Gram-Schmidt, done twice for rounding)."""
-    basis = np.zeros((0, jac.shape[1]))
+    basis = np.zeros((min(jac.shape), jac.shape[1]))
     kept: list[int] = []
-    for row, vector in enumerate(jac):
-        length = np.linalg.norm(vector)
-        if length == 0 or len(kept) == jac.shape[1]:
-            continue
-        rest = vector / length
+    lengths = np.sqrt(np.einsum("rc,rc->r", jac, jac))
+    for row in np.flatnonzero(lengths > 0):
+        if len(kept) == len(basis):
+            break
+        rest, before = jac[row] / lengths[row], basis[: len(kept)]
         for _ in range(2):
-            rest = rest - basis.T @ (basis @ rest)
-        if np.linalg.norm(rest) > RANK_TOLERANCE:
-            basis = np.vstack([basis, rest / np.linalg.norm(rest)])
-            kept.append(row)
+            rest = rest - (before @ rest) @ before
+        length = math.sqrt(rest @ rest)
+        if length > RANK_TOLERANCE:
+            basis[len(kept)] = rest / length
+            kept.append(int(row))
     return kept
 
 

@@ -246,9 +246,9 @@ def prepare(m: Mechanism, start: float = 0.0, end: float = 1.0) -> Prepared:
     except AssemblyError:
         refuse_overdriven(m, packed, start)
         raise
-    kept = choose_rows(packed, q0, start)
-    sequence, factors = plan(_sample_jacobians(packed), kept, packed.system.row_body)
     mobility = joint_mobility(packed, q0)
+    kept = choose_rows(packed, q0, start, mobility)
+    sequence, factors = plan(_sample_jacobians(packed), kept, packed.system.row_body)
     groups = plan_groups(packed, q0, mobility.redundant_rows)
     return Prepared(packed, q0, start, sequence, factors, mobility, groups)
 

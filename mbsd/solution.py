@@ -157,8 +157,8 @@ class Solution:
     wrench: np.ndarray
     lam: np.ndarray
     drives: np.ndarray
-    singularity_margin: np.ndarray
-    """(T,) smallest over largest singular value of the scaled Jacobian; 0 at a singular pose."""
+    margin: np.ndarray | Callable[[], np.ndarray] = field(repr=False)
+    """``singularity_margin``, or what finds it when it is asked for."""
     stats: Stats
     mobility: Mobility
     route: str = "integration"
@@ -178,6 +178,11 @@ class Solution:
     """(T,) of forces that act by these instead of by their own laws (inverse dynamics)."""
     between: Callable[[np.ndarray], Solution] | None = field(default=None, repr=False)
     """Of a simulation: the motion at other times; see :meth:`at`."""
+
+    @cached_property
+    def singularity_margin(self) -> np.ndarray:
+        """(T,) smallest over largest singular value of the scaled Jacobian; 0 at a singular pose."""
+        return self.margin() if callable(self.margin) else self.margin
 
     def at(self, times: float | Sequence[float] | np.ndarray) -> Solution:
         """A simulation at any rising times (s) it covers, as exact as at its outputs: integrated from the last one.

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
 from mbsd.closed_contacts import refuse_passed_contacts
 from mbsd.curve_following import CurveFollowing, refuse_jumps
 from mbsd.errors import PACKAGE, ModelError, ModelWarning
-from mbsd.inverse_dynamics import inverse_dynamics
+from mbsd.inverse_dynamics import inverse_dynamics, singularity_margin
 from mbsd.limits import limits_of, refuse_passed
 from mbsd.model import Mechanism
 from mbsd.output_times import equal_times, rising_times
@@ -50,7 +51,7 @@ def sweep(m: Mechanism, duration: float | None, steps: int, times: Sequence[floa
         wrench=loads.wrench,
         lam=loads.lam,
         drives=drives,
-        singularity_margin=loads.margin,
+        margin=partial(singularity_margin, packed, ready.sequence.rows, drives, q),
         stats=Stats(*(float(r) for r in loads.residuals), steps=len(grid), inserted_steps=march.steps.inserted),
         mobility=ready.mobility,
         route=ready.route if march.closed else "Newton-Raphson",

@@ -305,4 +305,6 @@ def test_a_massless_base_carries_what_ground_does_near_a_change_point() -> None:
     for name in ("foot0", "foot1", "head0", "head1"):
         for part in ("fx", "fy"):
             a, b = getattr(here.joint(name), part), getattr(there.joint(name), part)
-            np.testing.assert_allclose(a, b, rtol=0, atol=1e-4 * np.abs(a).max())
+            np.testing.assert_allclose(
+                a, b, rtol=0, atol=1e-3 * np.abs(a).max()
+            )  # 1e-9 over a margin of 1e-5, and more

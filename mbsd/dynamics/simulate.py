@@ -152,7 +152,7 @@ def solution(
         wrench=wrench,
         lam=lam,
         drives=drives,
-        singularity_margin=np.sqrt(np.clip(out.margin, 0.0, None)),
+        margin=np.sqrt(np.clip(out.margin, 0.0, None)),
         stats=Stats(*(float(r) for r in residuals), steps=trail.steps, inserted_steps=0, independent=trail.independent),
         mobility=ready.mobility,
         work=out.work,

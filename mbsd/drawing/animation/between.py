@@ -38,7 +38,7 @@ def at_times(sol: Solution, times: np.ndarray) -> Solution:
         wrench=mixed(sol.wrench),
         lam=mixed(sol.lam),
         drives=mixed(sol.drives),
-        singularity_margin=mixed(sol.singularity_margin),
+        margin=mixed(sol.singularity_margin),
         work=None if sol.work is None else mixed(sol.work),
         held=None if sol.held is None else sol.held[place],
         efforts={name: mixed(effort) for name, effort in sol.efforts.items()},

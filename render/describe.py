@@ -112,7 +112,8 @@ class Film:
     @cached_property
     def stretched(self) -> list[Stretched]:
         """Springs, dampers and ropes."""
-        return list(stretched(self.motion, self.space.size, self._layer_of))
+        held = {force: end for _, _, piece in self._pieces() for force, end in piece.holds.items()}
+        return list(stretched(self.motion, self.space.size, self._layer_of, held))
 
     def _layer_of(self, shape: Shape, radius: float) -> tuple[float, tuple[float, float]]:
         """Height of something of that radius that lies over what is at its two ends at the start, and these tops."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from render.poses import Moment, Poses
 from render.scene import Point, SurfaceSpec, TubeSpec
-from shared.contract import Motion, Shape
+from shared.contract import Held, Motion, Shape
 
 Array = NDArray[np.float64]
 COILS = ("spring", "spring_law", "curve_of_length")
@@ -60,11 +60,15 @@ class Stretched:
 
 
 def stretched(
-    motion: Motion, size: float, height: Callable[[Shape, float], tuple[float, tuple[float, float]]]
+    motion: Motion,
+    size: float,
+    height: Callable[[Shape, float], tuple[float, tuple[float, float]]],
+    held: Mapping[str, Held],
 ) -> Iterator[Stretched]:
     """All springs, dampers, cylinders and ropes between two points that move apart or together.
 
-    ``height(shape, radius)`` says where one of that radius lies (m), and how far down the pin at each end reaches.
+    ``held`` are those whose ends have parts, by name. Of the others ``height(shape, radius)`` says where one of that
+    radius lies (m), and how far down the pin at each end reaches.
     """
     gravity = np.array([*motion.gravity, 0.0])
     strength = float(np.linalg.norm(gravity))
@@ -76,8 +80,12 @@ def stretched(
         coil = force.kind in COILS and any(force.potential)
         if not coil and force.kind not in (*COILS, *CYLINDERS):
             continue
-        radius = min(COIL * size, BROAD * least)
+        own = held.get(name)
+        radius = own.radius if own else min(COIL * size, BROAD * least)
         tubes = _coil(name, radius, least, most) if coil else _cylinder(name, 0.6 * radius, least, most)
+        if own:
+            yield Stretched(name, force.shape, own.z, tubes)
+            continue
         z, feet = height(force.shape, radius)
         yield Stretched(name, force.shape, z, [*tubes, *_pins(name, force.shape, PIN * WIRE * radius, z, feet)])
     for name, contact in motion.contacts.items():

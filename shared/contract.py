@@ -21,7 +21,7 @@ from shared.contract_motion import (
     Motion,
     PointMotion,
 )
-from shared.contract_parts import PARTS_UNITS, BodyParts, Mass, Parts, Piece
+from shared.contract_parts import PARTS_UNITS, BodyParts, Held, Mass, Parts, Piece
 from shared.errors import UserError
 
 __all__ = [
@@ -37,6 +37,7 @@ __all__ = [
     "Energy",
     "EventMark",
     "ForceMotion",
+    "Held",
     "JointMotion",
     "Mass",
     "Motion",

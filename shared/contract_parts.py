@@ -6,7 +6,7 @@ from typing import Literal
 
 import msgspec
 
-from shared.contract_base import UNITS, Count, NonNegative, Provenance, Strict
+from shared.contract_base import UNITS, Count, NonNegative, Positive, Provenance, Strict
 
 PARTS_UNITS = UNITS | {"stl, step": "mm"}
 
@@ -20,6 +20,13 @@ class Mass(Strict, kw_only=True):
     volume: NonNegative
 
 
+class Held(Strict, kw_only=True):
+    """Where the film draws a spring that is fixed to a piece (m): height of its axis, radius of its coil."""
+
+    z: float
+    radius: Positive
+
+
 class Piece(Strict, kw_only=True):
     """One printable solid of a body, in the body's frame; its files stand beside parts.json (millimetres)."""
 
@@ -31,6 +38,8 @@ class Piece(Strict, kw_only=True):
     """Lowest and highest point (m)."""
     triangles: Count
     stl_sha256: str
+    holds: dict[str, Held] = {}
+    """By the names of forces: springs, dampers and actuators that have an end here."""
 
 
 class BodyParts(Strict, kw_only=True):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import cadquery as cq
@@ -87,5 +88,6 @@ def _blanks(plan: Plan, body: str, eyes: list[PlacedEye]) -> list[PlacedEye]:
 def _scaled(solid: Solid, scale: float) -> Solid:
     if scale == 1.0:
         return solid
-    shape = solid.shape.val()
-    return Solid(solid.name, cq.Workplane(obj=shape.scale(scale)), solid.material, solid.through_holes)
+    shape = cq.Workplane(obj=solid.shape.val().scale(scale))
+    holds = tuple(replace(hold, z=hold.z * scale, radius=hold.radius * scale) for hold in solid.holds)
+    return replace(solid, shape=shape, holds=holds)

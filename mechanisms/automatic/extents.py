@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -13,8 +14,12 @@ if TYPE_CHECKING:
     from mbsd.body import Marker
     from mbsd.joint import Joint
 
-LINK = 22.0
-"""Least distance of two pins of one body (rmm)."""
+LINK, STUD = 22.0, 18.0
+"""Least distances of two pins of one body, and of a spring's stud and a pin or stud beside it (rmm)."""
+STRETCHING = ("spring", "spring_law", "curve_of_length", "actuator")
+"""Kinds of forces that act along the line of two points."""
+NEAR = 0.02
+"""Studs that are nearer to each other, as a part of the whole, are on one place, or do not decide the scale."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +54,7 @@ def extents(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) ->
     """
     places: dict[str, list[tuple[float, float]]] = {}
     pinned: dict[str, list[tuple[float, float]]] = {}
+    studs: dict[str, list[tuple[float, float]]] = {}
     least: list[float] = []
     for joint in m.joints.values():
         for marker in (joint.i, joint.j):
@@ -63,6 +69,11 @@ def extents(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) ->
             for marker, radius in own.radii:
                 round_it = [(marker.x + radius * u, marker.y + radius * v) for u, v in _ROUND]
                 places.setdefault(marker.body.name, []).extend(round_it)
+    for force in m.forces.values():
+        if force.kind.name in STRETCHING and not any(body in left_out for body in force.bodies):
+            for marker in (force.i, force.j):
+                places.setdefault(marker.body.name, []).append((marker.x, marker.y))
+                studs.setdefault(marker.body.name, []).append((marker.x, marker.y))
     for name, body in m.bodies.items():
         if body.length is not None and name not in left_out:
             places.setdefault(name, []).extend([(0.0, 0.0), (body.length, 0.0)])
@@ -71,6 +82,9 @@ def extents(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) ->
     apart = [
         float(np.hypot(a[0] - b[0], a[1] - b[1])) for at in pinned.values() for i, a in enumerate(at) for b in at[:i]
     ]
+    for body, at in studs.items():
+        beside = [math.dist(a, b) for i, a in enumerate(at) for b in [*at[:i], *pinned.get(body, [])]]
+        least += [d * LINK / STUD for d in beside if d > NEAR * overall]
     return min((d for d in [*apart, *least] if d > 1e-3 * overall), default=overall), overall
 
 

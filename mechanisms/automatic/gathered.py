@@ -73,6 +73,7 @@ def gathered(layout: Layout) -> list[Feature]:
         else:
             by_kind.setdefault(kind, []).append(joint)
     features = [feature for kind, joints in by_kind.items() for feature in KINDS[kind](m, joints, layout)]
+    layout.features = list(features)  # springs look for pins that hold them
     features += _of(FORCE_KINDS, m, m.forces.values(), layout)
     features += _of(CONTACT_KINDS, m, m.contacts.values(), layout)
     return features + _loose_eyes(loose, features, layout)

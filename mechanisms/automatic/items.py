@@ -73,6 +73,8 @@ class Item:
     """The feature that it belongs to."""
     meshes: frozenset[str] = frozenset()
     """Names of items that it touches by design."""
+    only: frozenset[str] = frozenset()
+    """Names of the items that it keeps away, where it is no thing but a rule; empty: all."""
 
 
 def spans_meet(a: tuple[int, int] | None, b: tuple[int, int] | None) -> bool:

@@ -1,4 +1,4 @@
-"""Every kind of joint that has parts by itself: importing a line's module enters it."""
+"""Every kind of joint, force and contact that has parts by itself: importing a line's module enters it."""
 
 from mechanisms.automatic import (  # noqa: F401
     cams,  # cam and roller, cam and flat face
@@ -8,4 +8,5 @@ from mechanisms.automatic import (  # noqa: F401
     rolling,  # discs on lines and terrains
     slides,  # prismatic
     slots,  # pin in slot
+    springs,  # springs, dampers and actuators between points
 )

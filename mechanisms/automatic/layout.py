@@ -20,6 +20,17 @@ if TYPE_CHECKING:
     from mechanisms.automatic.sizes import Sizes
 
 
+@dataclass(frozen=True)
+class Springs:
+    """Which springs get parts, and where."""
+
+    above: bool = True
+    """Whether they have to lie over both of their bodies."""
+    left_out: frozenset[str] = frozenset()
+    found: list[str] = field(default_factory=list, compare=False)
+    """Names of the others, once features are gathered."""
+
+
 @dataclass(eq=False)
 class Layout:
     """A mechanism in reference millimetres: poses over the motion, features, outlines and what takes room."""
@@ -29,6 +40,7 @@ class Layout:
     poses: dict[str, np.ndarray]
     """By body, (T, 3): x, y (rmm) and theta (rad)."""
     times: np.ndarray
+    springs: Springs = field(default_factory=lambda: Springs())
     wheels: dict[str, list[Wheel]] = field(default_factory=dict)
     """By body; set before outlines are asked for."""
     extra: list[str] = field(default_factory=list)
@@ -118,6 +130,8 @@ class Layout:
         return not (
             first.body == second.body
             or first.what in second.meshes
+            or (first.only and second.what not in first.only)
+            or (second.only and first.what not in second.only)
             or first.body in second.spares
             or second.body in first.spares
             or frozenset((first.body, second.body)) in self.touching

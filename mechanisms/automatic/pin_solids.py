@@ -57,9 +57,7 @@ def hanging_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> N
     _run(joint, runners, holder, plan, heights)
     clip = heights.bottom(runners[0]) - pivot.flange_room - pivot.retainer_room
     low = clip - sizes.pin_end
-    levels = heights.levels
-    covered = plan.layout.is_covered(joint, 2 * levels[holder] + 1, levels)
-    covered = covered or plan.layout.is_covered(joint, 2 * levels[holder] + 2, levels)
+    covered = _flush(joint, holder, plan, heights)
     end = heights.top(holder) + (-0.3 if covered else fit.seat)
     bolt = pin(pivot.pin, end - low, None if covered else sizes.head, pivot.groove(clip - low))
     plan.make(holder, f"pin_{name}", placed(bolt, x, y, low), "brass", 0)
@@ -87,6 +85,25 @@ def ground_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> No
         pivot.washer_at(f"washer_{name}_high", x, y, clip - fit.seat - pivot.washer_thickness),
         pivot.clip_at(f"circlip_{name}", x, y, clip, turn=225),
     )
+
+
+def upper_end(joint: Pin, plan: Plan, heights: Heights) -> tuple[str, float]:
+    """What holds a pin, and the height of the pin's upper end."""
+    sizes = plan.layout.sizes
+    pivot, fit = sizes.pivot, sizes.pivot.fit
+    stack = sorted(joint.movers, key=heights.bottom)
+    top = heights.top(stack[-1])
+    if joint.on_ground:
+        return "ground", top + pivot.flange_room + pivot.retainer_room + sizes.pin_end
+    if heights.levels[joint.choice] == 0:
+        return stack[0], top + pivot.flange_room + fit.axial + sizes.head.height
+    return stack[-1], top + (-0.3 if _flush(joint, stack[-1], plan, heights) else fit.seat + sizes.head.height)
+
+
+def _flush(joint: Pin, holder: str, plan: Plan, heights: Heights) -> bool:
+    """Whether something passes where the head of a hanging pin would be."""
+    half = 2 * heights.levels[holder]
+    return any(plan.layout.is_covered(joint, half + above, heights.levels) for above in (1, 2))
 
 
 def _run(joint: Pin, runners: list[str], holder: str, plan: Plan, heights: Heights) -> None:

@@ -46,6 +46,11 @@ class Pin:
         return tuple(body for body in self.places if body != "ground")
 
     @property
+    def what(self) -> str:
+        """What its item is called."""
+        return f"the pedestal and pin of {self.name}" if self.on_ground else f"the pin of {self.name}"
+
+    @property
     def on_ground(self) -> bool:
         """Whether a pedestal holds it."""
         return "ground" in self.places
@@ -74,9 +79,8 @@ class Pin:
     def items(self, layout: Layout) -> Iterable[Item]:
         """All heights that pin and pedestal take."""
         x, y = self.places[self.home]
-        what = f"the pedestal and pin of {self.name}" if self.on_ground else f"the pin of {self.name}"
         reach = Reach(self.movers, 1, 1, base=True) if self.on_ground else PinReach(self.movers, self.choice)
-        return [Item(what, self.home, disc(x, y, layout.sizes.hardware), reach, frozenset(self.places), self)]
+        return [Item(self.what, self.home, disc(x, y, layout.sizes.hardware), reach, frozenset(self.places), self)]
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """Room for washers and flanges between neighbours on the pin, and for its head or circlip on top."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from shared.shapes.link import Eye
@@ -71,7 +71,7 @@ class Plan:
     def add(self, body: str, *solids: Solid) -> None:
         """Solids that move with ``body``."""
         kept = self.solids.setdefault(body, [])
-        kept += [Solid(self.named(s.name), s.shape, s.material, s.through_holes) for s in solids]
+        kept += [replace(s, name=self.named(s.name)) for s in solids]
 
     def make(self, body: str, name: str, shape: cq.Workplane, material: str, through_holes: int) -> None:
         """One solid."""

@@ -16,16 +16,23 @@ COARSE = 7
 
 @dataclass(frozen=True, eq=False)
 class Rounded:
-    """All points within ``radius`` of a convex ``core`` ((n, 2), counter-clockwise; 1: disc, 2: capsule), rmm."""
+    """All points within ``radius`` of a convex ``core`` ((n, 2), counter-clockwise; 1: disc, 2: capsule), rmm.
+
+    The core of what changes its shape is (T, n, 2), one for each pose.
+    """
 
     core: np.ndarray
     radius: float
 
+    def core_at(self, chosen: np.ndarray) -> np.ndarray:
+        """The core at these poses: (n, 2), or (k, n, 2) where it changes."""
+        return self.core if self.core.ndim == 2 else self.core[chosen]
+
     @property
     def reach(self) -> tuple[np.ndarray, float]:
-        """A circle round it: centre and radius."""
-        centre = (self.core.min(axis=0) + self.core.max(axis=0)) / 2
-        return centre, float(np.linalg.norm(self.core - centre, axis=1).max()) + self.radius
+        """A circle round it: centre, (1, 2) or (T, 1, 2), and radius."""
+        centre = (self.core.min(axis=-2, keepdims=True) + self.core.max(axis=-2, keepdims=True)) / 2
+        return centre, float(np.linalg.norm(self.core - centre, axis=-1).max()) + self.radius
 
 
 def disc(x: float, y: float, radius: float) -> Rounded:
@@ -65,15 +72,15 @@ def least_gap(
     """
     centre, radius = first.reach
     other, beside = second.reach
-    apart = np.linalg.norm(_placed(centre[None], poses[0]) - _placed(other[None], poses[1]), axis=2)[:, 0]
+    apart = np.linalg.norm(_placed(centre, poses[0]) - _placed(other, poses[1]), axis=2)[:, 0]
     gaps = apart - radius - beside
     near = np.flatnonzero(gaps <= enough)
     if not len(near):
         at = int(np.argmin(gaps))
         return float(gaps[at]), at
     for chosen in (near[::COARSE], near):
-        a = _placed(first.core, poses[0][chosen])
-        b = _placed(second.core, poses[1][chosen])
+        a = _placed(first.core_at(chosen), poses[0][chosen])
+        b = _placed(second.core_at(chosen), poses[1][chosen])
         found = core_gaps(a, b) - first.radius - second.radius
         at = int(np.argmin(found))
         if found[at] <= enough:
@@ -130,7 +137,7 @@ def _cross(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float
 
 
 def _placed(points: np.ndarray, pose: np.ndarray) -> np.ndarray:
-    """(T, n, 2): points (n, 2) of a body in the world at poses (T, 3)."""
+    """(T, n, 2): points (n, 2) or (T, n, 2) of a body in the world at poses (T, 3)."""
     c, s = np.cos(pose[:, 2:]), np.sin(pose[:, 2:])
-    x = pose[:, :1] + c * points[:, 0] - s * points[:, 1]
-    return np.stack([x, pose[:, 1:2] + s * points[:, 0] + c * points[:, 1]], axis=2)
+    x = pose[:, :1] + c * points[..., 0] - s * points[..., 1]
+    return np.stack([x, pose[:, 1:2] + s * points[..., 0] + c * points[..., 1]], axis=2)

@@ -8,18 +8,32 @@ import cadquery as cq
 
 
 @dataclass(frozen=True)
+class Hold:
+    """An end of what stretches, such as a spring: where the film draws it (mm)."""
+
+    force: str
+    """Its name in mechanism.py."""
+    z: float
+    """Height of its axis."""
+    radius: float
+    """Of its coil's middle line; a cylinder is somewhat thinner."""
+
+
+@dataclass(frozen=True)
 class Solid:
     """One piece of a body.
 
     ``shape`` is in millimetres, in the frame of the body it moves with, at its height in the assembly (z = 0 is
     the top of the base plate). ``material`` is a key of ``shared.materials.MATERIALS``. ``through_holes`` is the
-    number of holes that go right through: the Euler number of the closed surface is 2 - 2 * through_holes.
+    number of holes that go right through: the Euler number of the closed surface is 2 - 2 * through_holes. ``holds``
+    says which springs are fixed to it, so that the film adds no pins of its own.
     """
 
     name: str
     shape: cq.Workplane
     material: str
     through_holes: int
+    holds: tuple[Hold, ...] = ()
 
 
 def placed(shape: cq.Workplane, x: float = 0.0, y: float = 0.0, z: float = 0.0, turn: float = 0.0) -> cq.Workplane:

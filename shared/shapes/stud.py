@@ -1,0 +1,61 @@
+"""Ball studs: what the eyes of springs and dampers are put on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import cadquery as cq
+
+from shared.shapes.build import turned
+
+TIP = 0.35
+"""Radius of the flat on the last ball, in its own."""
+
+
+@dataclass(frozen=True)
+class Collar:
+    """A ring on the shank (mm): from z up by ``height``."""
+
+    z: float
+    height: float
+    radius: float
+
+
+def ball_stud(
+    shank: float, start: float, end: float, balls: Sequence[float], ball: float, collars: Sequence[Collar] = ()
+) -> cq.Workplane:
+    """A stud on the z axis from ``start`` to ``end`` (mm) with balls of radius ``ball`` at heights along it.
+
+    ``shank`` is its diameter. A ball at an end of the shank ends the stud, with a small flat. No through hole. Raises
+    ValueError if balls and collars overlap.
+    """
+    r = shank / 2
+    half, flat = math.sqrt(ball**2 - r**2), TIP * ball
+    rise = math.sqrt(ball**2 - flat**2)
+    swells: list[tuple[float, float, list[tuple[float, ...]]]] = []
+    for z in balls:
+        low = [(0.0, z - rise), (flat, z - rise)] if z <= start else [(r, z - half)]
+        high = [(flat, z + rise), (0.0, z + rise)] if z >= end else [(r, z + half)]
+        profile = [*low, (ball, z, *high[0]), *high[1:]]
+        swells.append((low[0][1], high[-1][1], profile))
+    for collar in collars:
+        z0, z1, w = collar.z, collar.z + collar.height, collar.radius
+        profile = [(r, z0), (w - 0.3, z0), (w, z0 + 0.3), (w, z1 - 0.3), (w - 0.3, z1), (r, z1)]
+        if z0 <= start:
+            profile[0] = (0.0, z0)
+        swells.append((z0, z1, profile))
+    swells.sort(key=lambda swell: swell[0])
+    for (_, high, _), (low, _, _) in pairwise(swells):
+        if low < high:
+            raise ValueError(f"a stud's balls and collars overlap between {low:g} and {high:g} mm; put them apart")
+    points: list[tuple[float, ...]] = []
+    if not swells or swells[0][0] > start:
+        points += [(0.0, start), (r - 0.3, start), (r, start + 0.3)]
+    for _, _, profile in swells:
+        points += profile
+    if points[-1][0] > 0:
+        points += [(r, end - 0.3), (r - 0.3, end), (0.0, end)]
+    return turned(points)

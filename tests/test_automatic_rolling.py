@@ -9,7 +9,9 @@ import pytest
 
 from mbsd import Mechanism, constant_rate
 from mechanisms.automatic.automatic import Automatic
-from mechanisms.automatic.rolling import Rolling
+from mechanisms.automatic.profiles import distances
+from mechanisms.automatic.roads import Road
+from mechanisms.automatic.rounds import Round
 from shared.errors import UserError
 
 HILLS = [(-0.2, 0.0), (-0.1, 0.01), (0.0, 0.0), (0.1, -0.01), (0.2, 0.0), (0.3, 0.01), (0.4, 0.0)]
@@ -30,27 +32,28 @@ def _cart(curve: bool) -> Mechanism:
     return m
 
 
-def _made(m: Mechanism) -> tuple[Automatic, Rolling]:
+def _made(m: Mechanism) -> tuple[Automatic, Round, np.ndarray]:
     made = Automatic(m, m.sweep(1.0, 200))
-    return made, next(feature for feature in made.layout.features if isinstance(feature, Rolling))
+    features = made.layout.features
+    (wheel,), (road,) = ([f for f in features if isinstance(f, kind)] for kind in (Round, Road))
+    assert road.rounds == [wheel]
+    return made, wheel, road.path
 
 
 @pytest.mark.parametrize("curve", [False, True])
 def test_wheel_is_short_of_its_road_by_the_clearance(curve: bool) -> None:
-    made, rolling = _made(_cart(curve))
+    made, wheel, path = _made(_cart(curve))
     assert made.levels["wheel"] != made.levels["slider"]
-    centre = made.layout.seen("wheel", rolling.at, "ground")
-    start, way = rolling.road[:-1], np.diff(rolling.road, axis=0)
-    part = np.clip(((centre[:, None] - start) * way).sum(axis=2) / (way**2).sum(axis=1), 0.0, 1.0)
-    away = np.linalg.norm(centre[:, None] - start - part[..., None] * way, axis=2).min(axis=1)
+    centre = made.layout.seen("wheel", wheel.at, "ground")
+    away = distances(centre, path)
     scale = made.sizes.scale
-    assert (away - rolling.radius).min() * scale > 0.05
-    assert (away - rolling.radius).max() * scale < 0.2
+    assert (away - wheel.made).min() * scale > 0.05
+    assert (away - wheel.made).max() * scale < 0.2
     assert np.ptp(centre[:, 0]) * scale == pytest.approx(80.0, rel=0.05)  # 2 rad of 40 mm
 
 
 def test_wheel_tyre_and_road_are_sound() -> None:
-    made, rolling = _made(_cart(curve=True))
+    made, wheel, path = _made(_cart(curve=True))
     plan = made.plan()
     (plate,) = plan.plates["wheel"]
     named = {solid.name: solid for solids in plan.solids.values() for solid in solids}
@@ -60,9 +63,9 @@ def test_wheel_tyre_and_road_are_sound() -> None:
         assert solid.solids().size() == 1
     box = road.shape.val().BoundingBox()
     assert box.zmax == pytest.approx(made.heights.top("wheel"))
-    assert box.xlen > np.ptp(rolling.road[:, 0]) - 1e-6
+    assert box.xlen > np.ptp(path[:, 0]) - 1e-6
     outer = 0.5 * tyre.shape.val().BoundingBox().xlen
-    assert outer == pytest.approx(rolling.radius, abs=0.05)
+    assert outer == pytest.approx(wheel.made, abs=0.05)
 
 
 def test_roads_that_move_and_closed_ones_are_refused() -> None:

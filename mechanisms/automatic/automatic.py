@@ -150,7 +150,7 @@ class Automatic:
         made = Bodies(built(self.plan(), self.heights) | self._replaced)
         for body in self.layout.apart:
             made.leave_out(body)
-        for first, second in map(tuple, self.layout.touching):
+        for first, second in map(tuple, self.layout.touching | self.layout.pressing):
             if first in made and second in made:
                 made.may_touch(first, second)
         return made

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,7 +24,7 @@ NEAR = 0.02
 
 @dataclass(frozen=True)
 class Extent:
-    """What a joint says of its own: how far it reaches round its markers, and what must have room for its parts."""
+    """What a joint, contact or force says of its own: how far it reaches, and what must have room for its parts."""
 
     radii: tuple[tuple[Marker, float], ...] = ()
     """Markers and radii (m) round them."""
@@ -32,13 +32,14 @@ class Extent:
     """Lengths of the model (m), each with the least that it may be in rmm."""
 
 
-type ExtentOf = Callable[[Joint, Solution], Extent]
+type ExtentOf = Callable[[Any, Solution], Extent]
+"""Of a joint, a contact or a force."""
 
 EXTENTS: dict[str, ExtentOf] = {}
 
 
 def extent(name: str) -> Callable[[ExtentOf], ExtentOf]:
-    """Enter what joints of a kind say of their size."""
+    """Enter what joints, contacts or forces of a kind say of their size."""
 
     def enter(of: ExtentOf) -> ExtentOf:
         EXTENTS[name] = of
@@ -63,8 +64,9 @@ def extents(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) ->
             places.setdefault(marker.body.name, []).append((marker.x, marker.y))
             if joint.kind.name == "revolute" or (joint.kind.name == "pin_in_slot" and marker is joint.j):
                 pinned.setdefault(marker.body.name, []).append((marker.x, marker.y))
-        if joint.kind.name in EXTENTS and not any(body in left_out for body in joint.bodies):
-            own = EXTENTS[joint.kind.name](joint, solution)
+    for thing in (*m.joints.values(), *m.contacts.values(), *m.forces.values()):
+        if thing.kind.name in EXTENTS and not any(body in left_out for body in thing.bodies):
+            own = EXTENTS[thing.kind.name](thing, solution)
             least += [length * LINK / wanted for length, wanted in own.least]
             for marker, radius in own.radii:
                 round_it = [(marker.x + radius * u, marker.y + radius * v) for u, v in _ROUND]

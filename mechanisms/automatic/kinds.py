@@ -2,6 +2,7 @@
 
 from mechanisms.automatic import (  # noqa: F401
     cams,  # cam and roller, cam and flat face
+    contacts,  # discs on walls and roads, tyres
     gears,  # gear pair
     geneva,  # Geneva
     pins,  # revolute

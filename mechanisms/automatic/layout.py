@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from mechanisms.automatic.features import Anchor, Feature
     from mechanisms.automatic.gears import Wheel
     from mechanisms.automatic.items import Levels
+    from mechanisms.automatic.rounds import Round
     from mechanisms.automatic.sizes import Sizes
 
 
@@ -52,6 +53,10 @@ class Layout:
     """Bodies that get no solids from here."""
     touching: frozenset[frozenset[str]] = frozenset()
     """Pairs of bodies that may touch by design; a feature adds those of its own when it is gathered."""
+    pressing: set[frozenset[str]] = field(default_factory=set)
+    """Such pairs whose contact yields: the order of layers keeps all else of them apart."""
+    rounds: dict[tuple[str, float, float], Round] = field(default_factory=dict)
+    """By body and place: balls, wheels and discs, which several contacts may share."""
 
     def place(self, marker: Marker) -> tuple[float, float]:
         """A marker in its body's frame (rmm)."""

@@ -1,4 +1,4 @@
-"""Which material each body gets where nobody says: driven ones orange, those on ground colours, others metal."""
+"""Which material each body gets where nobody says: driven and free ones orange, on ground colours, others metal."""
 
 from __future__ import annotations
 
@@ -10,10 +10,12 @@ if TYPE_CHECKING:
 DRIVEN = "aluminium_orange"
 ON_GROUND = ("aluminium_blue", "aluminium_red", "aluminium_green", "aluminium_violet")
 BETWEEN = ("aluminium", "aluminium_gold")
+FREE = "aluminium_orange"
 
 
 def materials(m: Mechanism) -> dict[str, str]:
     """By moving body; colours are used in turn."""
+    held = {name for joint in m.joints.values() for name in joint.bodies}
     driven = {name for driver in m.drivers.values() for name in driver.bodies} - {"ground"}
     grounded = {name for joint in m.joints.values() if "ground" in joint.bodies for name in joint.bodies} - {"ground"}
     found: dict[str, str] = {}
@@ -23,6 +25,8 @@ def materials(m: Mechanism) -> dict[str, str]:
             continue
         if name in driven and name in grounded:
             found[name] = DRIVEN
+        elif name not in held:
+            found[name] = FREE
         elif name in grounded:
             found[name] = ON_GROUND[turns["ground"] % len(ON_GROUND)]
             turns["ground"] += 1

@@ -1,0 +1,147 @@
+"""Contacts of discs with surfaces of ground: walls and roads, and the balls, wheels and discs that touch them.
+
+A surface is where the model has it. What touches is smaller by a clearance (cams.py), and where a contact hardly yields
+also by as much as it presses in; where one sees that, the two may touch by design. A body without joints is a ball, or
+where there is friction, which turns it, a wheel with a tyre; a body with joints gets a disc. Other contacts have no
+parts.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.curves import Curve
+from mechanisms.automatic.extents import Extent, extent
+from mechanisms.automatic.features import Feature, contact_kind, force_kind
+from mechanisms.automatic.profiles import curve_path, distances, on_ground, profile_path
+from mechanisms.automatic.roads import along
+from mechanisms.automatic.rounds import Look, Round, round_at
+from mechanisms.automatic.walls import NOSE, Line, roads
+
+if TYPE_CHECKING:
+    from mbsd import Mechanism, Solution
+    from mbsd.force import Force
+    from mbsd.joint import Joint
+    from mechanisms.automatic.layout import Layout
+
+    type Touch = Force | Joint
+
+LEAST = 12.0
+"""Least radius of a ball or wheel (rmm)."""
+YIELDS = 0.3
+"""Bodies that press further into each other (rmm) do so in the film, too."""
+BEYOND = 1.2
+"""How far a road goes on beyond the way of its wheel, in the wheel's radii."""
+
+
+@contact_kind("rigid_contact")
+def rigid_lines(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature]:
+    """Walls, and what touches them."""
+    return _on_lines(m, touches, layout)
+
+
+@force_kind("contact")
+@force_kind("tyre")
+def yielding(m: Mechanism, touches: list[Force], layout: Layout) -> list[Feature]:
+    """Walls and roads, and what presses on them."""
+    found = _on_lines(m, [touch for touch in touches if "profile" not in touch.laws], layout)
+    for touch in touches:
+        profile = touch.laws.get("profile")
+        if isinstance(profile, Curve) and _is_on_ground(touch):
+            found += _on_profile(m, touch, profile, layout)
+    return found
+
+
+@contact_kind("rigid_terrain")
+def terrains(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature]:
+    """Roads and what touches them; closed curves have none."""
+    found: list[Feature] = []
+    for touch in touches:
+        if _is_on_ground(touch) and not touch.params["closed"]:
+            found += _on_road(m, touch, curve_path(touch.params["points"], False), layout)
+    return found
+
+
+def _on_lines(m: Mechanism, touches: Sequence[Touch], layout: Layout) -> list[Feature]:
+    found: list[Feature] = []
+    lines: list[Line] = []
+    for touch in touches:
+        if not _is_on_ground(touch):
+            continue
+        places = _places(touch, layout)
+        way = np.array([math.cos(touch.i.angle), math.sin(touch.i.angle)])
+        line = Line(touch.name, np.array(layout.place(touch.i)), way)
+        gap = (places - line.start) @ line.free - layout.sizes.of_metres(touch.params["radius"])
+        part, new = _round(m, touch, layout, float(gap.min()))
+        line.start = line.start - _set_back(touch, layout) * line.free
+        found += [part] if new else []
+        line = next((other for other in lines if other.is_same(line)), line)
+        lines += [] if line in lines else [line]
+        line.carry(part, places)
+    return [*found, *roads(lines)]
+
+
+def _on_profile(m: Mechanism, touch: Force, profile: Curve, layout: Layout) -> list[Feature]:
+    """A road as long as the profile's points, and as the way of what runs on it."""
+    start = np.array(layout.place(touch.i))
+    way = np.array([math.cos(touch.i.angle), math.sin(touch.i.angle)])
+    run = (_places(touch, layout) - start) @ way / layout.sizes.of_metres(1.0)
+    beyond = BEYOND * touch.params["radius"]
+    first, last = min(profile.x[0], run.min() - beyond), max(profile.x[-1], run.max() + beyond)
+    return _on_road(m, touch, profile_path(profile, float(first), float(last)), layout)
+
+
+def _on_road(m: Mechanism, touch: Touch, path: np.ndarray, layout: Layout) -> list[Feature]:
+    path = on_ground(path, touch.i, layout)
+    gap = distances(_places(touch, layout), path) - layout.sizes.of_metres(touch.params["radius"])
+    part, new = _round(m, touch, layout, float(gap.min()))
+    path = path - _set_back(touch, layout) * _normals(path)
+    return [*([part] if new else []), along(touch.name, [part], path)]
+
+
+def _round(m: Mechanism, touch: Touch, layout: Layout, gap: float) -> tuple[Round, bool]:
+    """What touches; ``gap`` is the least one (rmm), below 0 where it presses in."""
+    body = touch.j.body.name
+    free = not any(body in joint.bodies for joint in m.joints.values())
+    turned = touch.kind.name == "tyre" or (free and touch.params.get("friction", 0.0) > 0.0)
+    look: Look = "wheel" if turned else "ball" if free else "disc"
+    pressed, pair = max(0.0, -gap), frozenset(touch.bodies)
+    if pressed > YIELDS:
+        layout.pressing.add(pair)
+    if pair in layout.touching | layout.pressing:
+        pressed = 0.0
+    radius = max(layout.sizes.of_metres(touch.params["radius"]), NOSE)
+    return round_at(layout, touch.name, body, layout.place(touch.j), radius, look, pressed)
+
+
+def _set_back(touch: Touch, layout: Layout) -> float:
+    """How far the surface lies behind that of the model (rmm), because what touches is larger than there."""
+    return max(0.0, NOSE - layout.sizes.of_metres(touch.params["radius"]))
+
+
+def _places(touch: Touch, layout: Layout) -> np.ndarray:
+    return layout.seen(touch.j.body.name, layout.place(touch.j), "ground")
+
+
+def _is_on_ground(touch: Touch) -> bool:
+    return touch.i.body.name == "ground" and touch.j.body.name != "ground"
+
+
+def _normals(path: np.ndarray) -> np.ndarray:
+    """(n, 2) unit vectors to the left of a path."""
+    way = np.gradient(path, axis=0)
+    return np.stack([-way[:, 1], way[:, 0]], axis=1) / np.hypot(*way.T)[:, None]
+
+
+@extent("rigid_contact")
+@extent("rigid_terrain")
+@extent("contact")
+@extent("tyre")
+def extent_of(touch: Touch, solution: Solution) -> Extent:
+    """What touches."""
+    radius = touch.params["radius"]
+    return Extent(((touch.j, radius),), ((radius, LEAST),) if radius > 0 else ())

@@ -10,7 +10,7 @@ VIEW ?=
 SHOW ?=
 N ?=
 SEED ?= 1
-PYTEST ?= -n 2 --dist loadfile
+PYTEST ?= -n 2 --dist loadgroup --no-loadscope-reorder
 
 # Words of the user are taken as they are: make expands nothing in them, and commands get them through the environment,
 # where no shell reads them. Python refuses what is no name (shared/paths.py).

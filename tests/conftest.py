@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -18,6 +19,19 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Tests that share what a fixture made run in one process (``--dist loadgroup``), the long groups first.
+
+    These are the tests of a file, unless the fixture's values are groups by marks of their own, which are long.
+    """
+    own = {item for item in items if item.get_closest_marker("xdist_group")}
+    counts = Counter(item.path for item in items if item not in own)
+    for item in items:
+        if item not in own:
+            item.add_marker(pytest.mark.xdist_group(item.path.stem))
+    items.sort(key=lambda item: (item not in own, 0 if item in own else -counts[item.path]))
 
 
 @pytest.fixture

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from mbsd.body import Marker
-from mbsd.solution import FrameView
+from mbsd.force_view import Action
+from mbsd.solution import FrameView, Solution
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,15 @@ def moving(view: FrameView, x: float, y: float) -> Moving:
         np.stack([view.vx, view.vy], axis=1) + omega * across,
         np.stack([view.ax, view.ay], axis=1) + alpha * across - omega**2 * arm,
     )
+
+
+def acting(sol: Solution) -> Iterator[tuple[Action, np.ndarray]]:
+    """What each force of the model does to each moving body that feels it, and where (T, 2) (m)."""
+    for view in sol.forces.values():
+        for body in view.bodies:
+            if body != "ground":
+                action = view.on(body)
+                yield action, np.stack([action.x, action.y], axis=1)
 
 
 def moving_marker(views: dict[str, FrameView], marker: Marker) -> Moving:

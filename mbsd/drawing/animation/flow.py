@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.drawing.animation.arrows import Arrow, moving, moving_marker
+from mbsd.drawing.animation.arrows import Arrow, acting, moving, moving_marker
 from mbsd.drawing.pose import Tracks
 from mbsd.model import Mechanism
 from mbsd.solution import Solution
@@ -43,17 +43,12 @@ def flow_arrows(sol: Solution, tracks: Tracks) -> list[Arrow]:
         passes = first != "ground" and joint not in drivers
         giver = middles[first] if passes else 2 * at.place - middles[second]
         out.append(_arrow(at.place, middles[second] - giver, power, force, middle=passes))
-    for view in sol.forces.values():
-        for body in view.bodies:
-            if body == "ground":
-                continue
-            action = view.on(body)
-            place = np.stack([action.x, action.y], axis=1)
-            frame = tracks.views[body]
-            arm = place - np.stack([frame.x, frame.y], axis=1)
-            speed = np.stack([frame.vx - frame.omega * arm[:, 1], frame.vy + frame.omega * arm[:, 0]], axis=1)
-            power = (action.force * speed).sum(axis=1) + action.torque * frame.omega
-            out.append(_arrow(place, middles[body] - place, power, action.force, middle=False))
+    for action, place in acting(sol):
+        frame = tracks.views[action.body]
+        arm = place - np.stack([frame.x, frame.y], axis=1)
+        speed = np.stack([frame.vx - frame.omega * arm[:, 1], frame.vy + frame.omega * arm[:, 0]], axis=1)
+        power = (action.force * speed).sum(axis=1) + action.torque * frame.omega
+        out.append(_arrow(place, middles[action.body] - place, power, action.force, middle=False))
     return out
 
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from mbsd.drawing.animation.arrows import Arc, Arrow, moving, moving_marker
+from mbsd.drawing.animation.arrows import Arc, Arrow, acting, moving, moving_marker
 from mbsd.drawing.pose import Tracks
 from mbsd.joint import Joint
 from mbsd.solution import Solution
@@ -29,13 +29,8 @@ def reaction_arrows(sol: Solution, tracks: Tracks) -> list[Arrow | Arc]:
 def force_arrows(sol: Solution, tracks: Tracks) -> list[Arrow | Arc]:
     """Forces of the model on each moving body that feels them, efforts of drivers on their second body, weights."""
     m, out = sol.mechanism, []
-    for view in sol.forces.values():
-        for body in view.bodies:
-            if body == "ground":
-                continue
-            action = view.on(body)
-            place = np.stack([action.x, action.y], axis=1)
-            out += [Arrow("forces", place, action.force), Arc("forces", place, action.torque)]
+    for action, place in acting(sol):
+        out += [Arrow("forces", place, action.force), Arc("forces", place, action.torque)]
     for k, joint in enumerate(sol.packed.joints):
         if m.drivers.get(joint.name) is joint:
             out += _wrench(sol, tracks, joint, k, "forces")

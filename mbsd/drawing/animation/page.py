@@ -10,6 +10,7 @@ import numpy as np
 
 from mbsd.drawing.animation.panel import Box, Panel, common_view
 from mbsd.drawing.animation.scene import Scene
+from mbsd.drawing.animation.still import paint_still
 from mbsd.drawing.animation.trails import trails_of
 from mbsd.drawing.animation.words import QUANTITIES
 from mbsd.drawing.look import INK, QUIET
@@ -100,7 +101,7 @@ class Page:
         self.time.set_visible(True)
         self.renderer = self.canvas.get_renderer()
         for panel in self.panels:
-            panel.paint_still(self.figure, self.renderer)
+            paint_still(panel, self.figure, self.renderer)
         self.still = self.canvas.copy_from_bbox(self.figure.bbox)
         self.pixels = np.asarray(self.renderer.buffer_rgba())
 

@@ -1,4 +1,4 @@
-"""One picture of the machine within a page: what stands still on it, and what each picture adds."""
+"""One picture of the machine within a page: where it is, what it shows, and what each picture of a clip adds."""
 
 from __future__ import annotations
 
@@ -11,22 +11,20 @@ import numpy as np
 
 from mbsd.drawing.animation.arrows import Arc, Arrow
 from mbsd.drawing.animation.bars import Bars
-from mbsd.drawing.animation.brush import Brush, View, arc, arrow, fresh, rgba
+from mbsd.drawing.animation.brush import Brush, View, arc, arrow, fresh
 from mbsd.drawing.animation.impacts import draw_impacts, impacts_of
 from mbsd.drawing.animation.names import Placed, place_names
-from mbsd.drawing.animation.scales import LONGEST, Scale, scales_of, unit_of
+from mbsd.drawing.animation.scales import FULL_TURN, LONGEST, Scale, scales_of, unit_of
 from mbsd.drawing.animation.scene import Scene
 from mbsd.drawing.animation.sprites import lay
 from mbsd.drawing.animation.trails import Trail, draw_trails
-from mbsd.drawing.animation.words import CARD, QUANTITIES, SLATE, round_below, with_unit
-from mbsd.drawing.look import INK, QUIET, colour
+from mbsd.drawing.animation.words import QUANTITIES, SLATE
+from mbsd.drawing.look import colour
 
 Box = tuple[float, float, float, float]
 """Left, low, width, height in pixels."""
 AROUND = 2.8
 """Room beside the machine, in units of its symbols."""
-FULL_TURN = 1.5 * math.pi
-"""Sweep of the largest arc."""
 NAMED_AT = 8
 """Pictures in which the places of names are tried."""
 MOST_NAMES = 16
@@ -139,84 +137,6 @@ class Panel:
         if len(wanted) > MOST_NAMES:
             wanted = range(joints - len(self.trails), joints)
         self.placed = place_names(drawn, self.room, list(wanted)[:MOST_NAMES])
-
-    # -- what stands still ----------------------------------------------------------------------------------------
-
-    def paint_still(self, figure: Any, renderer: Any) -> None:
-        """Card, title, scale bar and legend."""
-        px, (left, low, width, height) = self.dpi / 100, self.box
-        card = fresh(self.brush)
-        corners = np.array([(left, low), (left + width, low), (left + width, low + height), (left, low + height)])
-        card.plate(corners, rgba(CARD), None, 0.0, 0)
-        card.paint(renderer)
-        if self.titled:
-            x = left + 14 * px
-            for quantity in self.quantities:
-                title = QUANTITIES[quantity].title
-                ink = QUANTITIES[quantity].colour
-                word = figure.text(
-                    0, 0, title, color=ink, fontsize=10.5, fontweight="bold", va="center", transform=None
-                )
-                word.set_position((x, low + height - 18 * px))
-                word.draw(renderer)
-                x += word.get_window_extent(renderer).width + 12 * px
-        self._scale_bar(figure, renderer, self._legend(figure, renderer))
-        if self.bars is not None:
-            self.bars.paint_still(figure, renderer)
-
-    def _scale_bar(self, figure: Any, renderer: Any, taken: float) -> None:
-        """A length of a round number, at the lower right; at the upper right where words reach there (pixels)."""
-        px, (left, low, width, height) = self.dpi / 100, self.box
-        metres = round_below(0.16 * min(width, 500 * px) / self.brush.view.scale)
-        long, x, y = metres * self.brush.view.scale, left + width - 14 * px, low + 17 * px
-        if taken > x - long - 70 * px:
-            y = low + height - 18 * px
-        bar = fresh(self.brush)
-        bar.stroke(np.array([(x - long, y), (x, y)]), rgba(QUIET), 1.2, 1)
-        for end in (x - long, x):
-            bar.stroke(np.array([(end, y - 3 * px), (end, y + 3 * px)]), rgba(QUIET), 1.2, 1)
-        bar.paint(renderer)
-        self._word(figure, renderer, with_unit(metres, "m"), x - long - 7 * px, y, QUIET, 8.5, "right")
-
-    def _legend(self, figure: Any, renderer: Any) -> float:
-        """An arrow and an arc of a round number for each quantity; returns where they end (pixels)."""
-        px, (left, low, _, _) = self.dpi / 100, self.box
-        x, y, brush = left + 16 * px, low + 19 * px, fresh(self.brush)
-        several = len(self.quantities) > 1
-        for quantity in self.quantities:
-            words = QUANTITIES[quantity]
-            for kind, unit in ((Arrow, words.unit), (Arc, words.turning)):
-                mine = [mark for mark in self.marks if mark.quantity == quantity and isinstance(mark, kind)]
-                if not mine or (kind is Arc and unit == words.unit):
-                    continue
-                scale = self.scales[unit]
-                text = with_unit(scale.reference, unit)
-                if kind is Arrow:
-                    long = scale.reference / scale.largest * self.scene.length * self.brush.view.scale
-                    arrow(brush, np.array([x, y]), np.array([long, 0.0]), words.colour, 3.4 * px)
-                    x += long + 8 * px
-                    text += f"  {words.title}" if several else ""
-                else:
-                    sweep = scale.reference / scale.largest * FULL_TURN
-                    arc(brush, np.array([x + 11 * px, y]), 10 * px, sweep, words.colour, 2.8 * px)
-                    x += 30 * px
-                if scale.cut:
-                    text += ", higher ones cut"
-                x += self._word(figure, renderer, text, x, y, INK, 9.0, "left") + 22 * px
-        if not self.marks and self.quantities and not self.bars:
-            titles = " and ".join(QUANTITIES[quantity].title for quantity in self.quantities)
-            x += self._word(figure, renderer, f"no {titles}: nothing acts", x, y, QUIET, 9.0, "left")
-        brush.paint(renderer)
-        return x
-
-    def _word(
-        self, figure: Any, renderer: Any, text: str, x: float, y: float, ink: str, size: float, side: str
-    ) -> float:
-        word = figure.text(x, y, text, color=ink, fontsize=size, ha=side, va="center", transform=None, parse_math=False)
-        word.draw(renderer)
-        return float(word.get_window_extent(renderer).width)
-
-    # -- what moves -----------------------------------------------------------------------------------------------
 
     def paint(self, renderer: Any, picture: np.ndarray, k: int) -> None:
         """Machine, trails, arrows and names of picture ``k``."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -16,6 +17,8 @@ PEAK = 1.7
 """Peaks up to so many times the usual set it themselves; higher ones are cut."""
 LONGEST = 1.35
 """Of an arrow that is cut, in lengths of the usual largest one."""
+FULL_TURN = 1.5 * math.pi
+"""Sweep of the largest arc."""
 NOTHING = 1e-9
 """Of the largest of all pictures of this unit, or of what is usual: rounding, not drawn."""
 

@@ -1,4 +1,6 @@
-"""The stage ``animate``: the moving skeleton from mechanism.py alone, as animation.mp4 and animation.gif.
+"""The stage ``animate``: the moving skeleton from mechanism.py, as animation.mp4 and animation.gif.
+
+Bodies without a mass have that of their parts where these are there and current; no part is made for it.
 
 The view says what is shown beside the machine: one or more quantities over one another, ``skeleton`` for the machine
 alone, ``each`` for a film of every quantity; without a view all of them side by side in one film.
@@ -13,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from mechanisms import loading, solving
 from mechanisms.recording import recording
-from shared import console
+from shared import console, contract
 from shared.errors import UserError
 from shared.files import sources_hash, whole_file
 from shared.inputs import Inputs, observed, sources_state
@@ -23,6 +25,7 @@ from shared.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from mbsd import Solution
+    from shared.contract import Parts
 
 QUANTITIES = ("velocities", "accelerations", "forces", "reactions", "energy")
 VIEWS = (*QUANTITIES, "skeleton", "each")
@@ -36,7 +39,8 @@ def run(name: str, view: str = "") -> None:
     """Draw the films of one view unless they already stand for the same inputs. Raises UserError."""
     out = Out(name)
     films = films_of(view)
-    stale = [words for words in films if not _fresh(out, words)]
+    parts = parts_of(out)
+    stale = [words for words in films if not _fresh(out, parts, words)]
     if not stale:
         console.say("animate", f"{name}: nothing to do")
         return
@@ -44,7 +48,7 @@ def run(name: str, view: str = "") -> None:
 
     before = set(sys.modules)
     with recording() as recorder:
-        solution = solve(name)
+        solution = solve(name, parts)
     loaded = loaded_inputs(mechanism_folder(name) / "mechanism.py", loading.package_of(name), before)
     loaded.sources.pop("mbsd", None)  # it counts anyway
     inputs = loaded.joined(recorder.inputs())
@@ -52,7 +56,7 @@ def run(name: str, view: str = "") -> None:
         paths = _paths(out, words)
         for path in paths:
             _draw(solution, path, words)
-        Stage(out, paths[0].stem, _key(inputs), paths).done(inputs=inputs.names())
+        Stage(out, paths[0].stem, _key(parts, inputs), paths).done(inputs=inputs.names())
 
 
 def films_of(view: str) -> list[str]:
@@ -71,13 +75,32 @@ def films_of(view: str) -> list[str]:
     return [",".join(word for word in QUANTITIES if word in words)]
 
 
-def solve(name: str) -> Solution:
-    """The motion of mechanism.py alone; says which masses are estimated. Raises UserError."""
+def parts_of(out: Out) -> Parts | None:
+    """The parts that are there, unless what they follow from has changed since, which is said."""
+    from mechanisms.parts_stage import are_current
+
+    if not out.parts.is_file():
+        return None
+    if are_current(out.name):
+        return contract.read_parts(out.parts, out.name)
+    target = out.name.replace("_", "-")
+    console.say(
+        "animate", f"{out.name}: the parts are of an older state, so their masses do not count; make parts-{target}"
+    )
+    return None
+
+
+def solve(name: str, parts: Parts | None) -> Solution:
+    """The motion; says which masses are those of the parts, and which are estimated. Raises UserError."""
     from mechanisms.masses import give_masses
 
     module, p = loading.load(name, "mechanism"), loading.params(name)
     m = solving.build(name, module, p)
-    for sentence in give_masses(m, None)[1]:
+    sources, sentences = give_masses(m, parts)
+    of_parts = [body for body, source in sources.items() if source == "parts"]
+    if of_parts:
+        sentences = [f"masses of the parts: {', '.join(of_parts)}", *sentences]
+    for sentence in sentences:
         console.say("animate", f"{name}: {sentence}")
     return solving.motion_of(name, module, m, p)
 
@@ -86,16 +109,17 @@ def _paths(out: Out, words: str) -> list[Path]:
     return [out.animation(words.replace(",", "-"), suffix) for suffix in SUFFIXES]
 
 
-def _fresh(out: Out, words: str) -> bool:
+def _fresh(out: Out, parts: Parts | None, words: str) -> bool:
     paths = _paths(out, words)
     known = observed(Stage(out, paths[0].stem, "", []).notes().get("inputs"))
-    return bool(known) and Stage(out, paths[0].stem, _key(known), paths).is_fresh()
+    return bool(known) and Stage(out, paths[0].stem, _key(parts, known), paths).is_fresh()
 
 
-def _key(inputs: Inputs) -> str:
+def _key(parts: Parts | None, inputs: Inputs) -> str:
     """Hash of all that a film follows from; ``inputs``: what mechanism.py is made of, and what it reads."""
+    masses = parts and {body: solids.mass for body, solids in parts.bodies.items()}
     sources = sources_hash(*SOURCES), sources_state("mbsd"), sources_state("mbsd/drawing")
-    return key_of(*sources, versions(*PACKAGES), inputs.digest())
+    return key_of(*sources, masses, versions(*PACKAGES), inputs.digest())
 
 
 def _draw(solution: Solution, path: Path, words: str) -> None:

@@ -50,14 +50,10 @@ def run(name: str) -> None:
     before = set(sys.modules)
     with recording() as recorder:
         given = params(out.name)
-    notes = Stage(out, "parts", "", []).notes()
-    reads, inputs = notes.get("parameters"), observed(notes.get("inputs"))
     by_itself = not has(out.name, "parts")
-    if isinstance(reads, list) and inputs:
-        key = _key(given, reads, inputs, by_itself)
-        if Stage(out, "parts", key, [out.parts]).is_fresh():
-            say("parts", f"{out.name}: nothing to do")
-            return
+    if _is_fresh(out, given, by_itself):
+        say("parts", f"{out.name}: nothing to do")
+        return
     from mechanisms.loaded_files import loaded_inputs
 
     bodies, reads, inputs = _build(out.name, given)
@@ -81,6 +77,12 @@ def run(name: str) -> None:
     say("parts", _summary(out.name, document, written))
 
 
+def are_current(name: str) -> bool:
+    """Whether the parts that are there are those of the mechanism as it is. Raises UserError for one without Params."""
+    out = Out(name)
+    return _is_fresh(out, params(out.name), not has(out.name, "parts"))
+
+
 def run_or_none(name: str) -> None:
     """The same for what needs no parts, motion and plots: where a mechanism without a parts.py has none, that is
     told.
@@ -93,6 +95,14 @@ def run_or_none(name: str) -> None:
             raise
         out.parts.unlink(missing_ok=True)  # of the model as it was
         warn("parts", f"{error}; until then there are none")
+
+
+def _is_fresh(out: Out, given: Any, by_itself: bool) -> bool:
+    notes = Stage(out, "parts", "", []).notes()
+    reads, inputs = notes.get("parameters"), observed(notes.get("inputs"))
+    if not isinstance(reads, list) or not inputs:
+        return False
+    return Stage(out, "parts", _key(given, reads, inputs, by_itself), [out.parts]).is_fresh()
 
 
 def _key(given: Any, reads: list[str], inputs: Inputs, by_itself: bool = False) -> str:

@@ -7,9 +7,11 @@ from pathlib import Path
 import pytest
 
 from mbsd.drawing.animation.words import QUANTITIES as DRAWN
-from mechanisms import animate_stage
+from mbsd.solution import Solution
+from mechanisms import animate_stage, parts_stage
 from shared.errors import UserError
 from shared.paths import Out
+from tests import film_fixture
 from tests.test_makefile import planned, run
 
 
@@ -74,3 +76,29 @@ def test_a_film_is_made_once(
         "animation-velocities.gif",
         ".stamps",
     }
+
+
+def test_bodies_have_the_masses_of_their_parts_where_these_are_current(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("MBSD_OUT", str(tmp_path))
+    out = film_fixture.write()
+    drawn: list[dict[str, float]] = []
+
+    def draw(solution: Solution, path: Path, words: str) -> None:
+        path.write_bytes(b"film")
+        drawn.append({name: body.mass for name, body in solution.mechanism.bodies.items() if name != "ground"})
+
+    monkeypatch.setattr(animate_stage, "_draw", draw)
+    animate_stage.run("four_bar", "skeleton")
+    assert (
+        "the parts are of an older state, so their masses do not count; make parts-four-bar" in capsys.readouterr().out
+    )
+    assert 0.1 not in drawn[0].values()
+    monkeypatch.setattr(parts_stage, "are_current", lambda name: True)
+    animate_stage.run("four_bar", "skeleton")  # the same sources, other masses
+    assert "four_bar: masses of the parts: crank, coupler, rocker\n" in capsys.readouterr().out
+    assert set(drawn[-1].values()) == {0.1}
+    animate_stage.run("four_bar", "skeleton")
+    assert "nothing to do" in capsys.readouterr().out
+    assert out.parts.is_file()

@@ -85,6 +85,9 @@ def test_nothing_changed_nothing_built(bench: Bench) -> None:
     bench.run()
     bench.run()
     assert bench.builds == 1
+    assert parts_stage.are_current("four_bar")
+    bench.params = replace(bench.params, crank=0.041)
+    assert not parts_stage.are_current("four_bar")
 
 
 def test_a_parameter_that_the_parts_do_not_read_redoes_nothing(bench: Bench) -> None:

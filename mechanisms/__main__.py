@@ -6,7 +6,7 @@ import argparse
 import importlib
 
 from shared.console import run_cli
-from shared.paths import known_name, mechanism_folder, owner_of, variants_in
+from shared.paths import compared, known_name, mechanism_folder, owner_of, variants_in
 
 STAGES = {
     "parts": ("mechanisms.parts_stage", "make the solids: STL, STEP and parts.json"),
@@ -31,7 +31,9 @@ def main() -> int | None:
     fresh = commands.add_parser("new", help="a new mechanism that already runs")
     fresh.add_argument("name", help="folder to make")
     fresh.add_argument("--kind", default="driven", help="driven or simulated")
-    of = commands.add_parser("variants", help="the names of a mechanism and its variants, a line each")
+    of = commands.add_parser(
+        "variants", help="the names of a mechanism and its variants, a line each; it must have some"
+    )
     of.add_argument("name", help="mechanism")
     commands.add_parser("list", help="the mechanisms and what is made of them")
     arguments = parser.parse_args()
@@ -41,9 +43,12 @@ def main() -> int | None:
             return stage.run(name, view=arguments.view)
         return stage.run_or_none(name) if getattr(arguments, "or_none", False) else stage.run(name)
     if arguments.command == "variants":
-        file = mechanism_folder(arguments.name) / "mechanism.py"
         owner = owner_of(arguments.name)
-        print(owner, *(f"{owner}-{variant}" for variant in variants_in(file)), sep="\n")
+        if not variants_in(mechanism_folder(owner) / "mechanism.py"):
+            from mechanisms import loading
+
+            loading.load(owner, "mechanism")  # where it cannot be read, that is told
+        print(owner, *(f"{owner}-{variant}" for variant in compared(owner)), sep="\n")
         return None
     if arguments.command == "new":
         from mechanisms import new

@@ -98,6 +98,18 @@ def variants_in(file: Path) -> list[str]:
     return []
 
 
+def compared(name: str) -> list[str]:
+    """A mechanism's variants, for pages beside each other; raises UserError for one without."""
+    owner = owner_of(name)
+    variants = variants_in(mechanism_folder(owner) / "mechanism.py")
+    if not variants:
+        raise UserError(
+            f'{owner}: there is nothing to compare; write VARIANTS = {{"name": {{"field": value}}}} beside build() in '
+            f"mechanisms/{owner}/mechanism.py, each with the fields of Params that it replaces"
+        )
+    return variants
+
+
 def mechanism_names() -> list[str]:
     """Every mechanism: a folder of ``mechanisms/`` with a fit name that holds a ``mechanism.py``."""
     return [name for name in _folders() if NAME.fullmatch(name)]

@@ -114,6 +114,10 @@ def test_compare_solves_a_mechanism_and_each_of_its_variants(tmp_path: Path) -> 
     done = run("make", "-o", "install", "compare-nope")
     assert done.returncode != 0
     assert "there is no mechanism 'nope'" in done.stderr
+    done = run("make", "-o", "install", "compare-pantograph")
+    assert done.returncode != 0
+    assert "pantograph: there is nothing to compare; write VARIANTS" in done.stderr
+    assert done.stdout == ""  # nothing is made or solved before
 
 
 def test_an_unknown_kind_of_new_mechanism_is_refused() -> None:

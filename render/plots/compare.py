@@ -11,7 +11,7 @@ from shared.console import say
 from shared.contract import Motion, read_motion
 from shared.errors import UserError
 from shared.files import sources_hash, whole_file
-from shared.paths import ROOT, Out, mechanism_folder, owner_of, variants_in
+from shared.paths import ROOT, Out, compared, owner_of
 from shared.stages import Stage, key_of, versions
 
 
@@ -22,13 +22,7 @@ def run(name: str) -> None:
     """
     owner = owner_of(name)
     out = Out(owner)
-    variants = variants_in(mechanism_folder(owner) / "mechanism.py")
-    if not variants:
-        raise UserError(
-            f'{owner}: there is nothing to compare; write VARIANTS = {{"name": {{"field": value}}}} beside build() in '
-            f"mechanisms/{owner}/mechanism.py, each with the fields of Params that it replaces"
-        )
-    files = {"as it is": out.motion} | {variant: Out(f"{owner}-{variant}").motion for variant in variants}
+    files = {"as it is": out.motion} | {variant: Out(f"{owner}-{variant}").motion for variant in compared(owner)}
     for variant, file in files.items():
         if not file.is_file():
             target = owner.replace("_", "-")

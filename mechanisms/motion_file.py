@@ -66,6 +66,7 @@ def to_motion(
             name: contract.DriverMotion(
                 kind=driver.kind.name.removeprefix("drive_"),
                 bodies=driver.bodies,
+                shape=shape_of(driver),
                 **_lists(solution.driver(name), ("value", "effort", "power")),
             )
             for name, driver in m.drivers.items()

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from mbsd import Solution
     from mechanisms.masses import Source
 
+ACTUATORS = ("torque", "force", "actuator")
+"""Kinds of forces that may move a mechanism in place of its drivers."""
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite")
 _MOTION = ("solving", "variants", "refined_times", "masses", "estimated_masses")
 _STAGE = ("solve_stage", *_MOTION, "motion_file", "shapes", "skeleton_file")
@@ -88,10 +90,22 @@ def solve(name: str, parts: contract.Parts | None) -> tuple[Solution, dict[str, 
 
 
 def _summary(solution: Solution) -> str:
-    peaks = [
-        f"{name} up to {abs(driver.effort).max():.3g} {'N m' if driver.angular else 'N'}"
+    efforts = {
+        name: (driver.effort, driver.angular)
         for name in solution.mechanism.drivers
         for driver in [solution.driver(name)]
+    }
+    acting = {
+        name: (force.effort, force.measures == "angle")
+        for name, force in solution.forces.items()
+        if force.kind in ACTUATORS and force.effort is not None
+    }
+    idle = [name for name, (effort, _) in efforts.items() if not effort.any()]
+    if idle:  # their place is taken by forces that were asked for, or nothing has mass
+        efforts = {name: one for name, one in (efforts | acting).items() if name not in idle}
+    peaks = [
+        f"{name} up to {abs(effort).max():.3g} {'N m' if angular else 'N'}"
+        for name, (effort, angular) in efforts.items()
     ]
     return ", ".join(
         [

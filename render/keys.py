@@ -28,7 +28,7 @@ def scene_key(scene: Scene, preset: Preset, blender: str) -> str:
     plain = _rounded(msgspec.to_builtins(scene))
     for piece in plain["pieces"]:
         del piece["stl"]
-    shown = {key: plain[key] for key in ("pieces", "trails", "labels", "studio", "tubes", "arrows", "writing")}
+    shown = {key: part for key, part in plain.items() if key not in ("mechanism", "fps")}
     picture = [preset.width, preset.height, preset.samples, preset.motion_blur]
     return _hash([shown, picture, sources_hash(BLENDER_SOURCES), blender, SENSOR, MILLIMETRE])
 

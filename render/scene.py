@@ -70,14 +70,30 @@ class ArrowSpec(msgspec.Struct, kw_only=True, frozen=True):
     point: float
 
 
+class ArcSpec(msgspec.Struct, kw_only=True, frozen=True):
+    """A torque that changes: a curved arrow about its centre, which is in every State with its sweep (rad).
+
+    ``colour`` as of an arrow; ``radius`` is that of the arc, ``shaft`` and ``head`` radii of the tube and its cone,
+    ``point`` the cone's length.
+    """
+
+    name: str
+    colour: Colour
+    radius: float
+    shaft: float
+    head: float
+    point: float
+
+
 class LegendRow(msgspec.Struct, kw_only=True, frozen=True):
-    """A reference arrow: what ``number`` is, and its tip, in parts of the picture's width."""
+    """A reference arrow: what ``number`` is, and its tip, in parts of the picture's width; or an arc (rad)."""
 
     number: str
     words: str
     colour: Colour
-    length: float
-    point: float
+    length: float = 0.0
+    point: float = 0.0
+    sweep: float = 0.0
 
 
 class Writing(msgspec.Struct, kw_only=True, frozen=True):
@@ -110,11 +126,12 @@ class Scene(msgspec.Struct, kw_only=True, frozen=True):
     studio: StudioSpec
     tubes: list[TubeSpec] = []
     arrows: list[ArrowSpec] = []
+    arcs: list[ArcSpec] = []
     writing: Writing = Writing()
 
 
 class State(msgspec.Struct, kw_only=True, frozen=True):
-    """What one frame changes: x, y, theta of every body; paths, label places, tails and tips of arrows, the camera."""
+    """What one frame changes: x, y, theta of every body; paths, places, arrows, the camera."""
 
     bodies: dict[str, Point]
     trails: list[list[Point]]
@@ -122,5 +139,6 @@ class State(msgspec.Struct, kw_only=True, frozen=True):
     camera: CameraPose
     tubes: list[list[Point]] = []
     arrows: list[tuple[Point, Point]] = []
+    arcs: list[tuple[Point, float]] = []
     number: str = ""
     """The number that lives, beside the title."""

@@ -1,4 +1,4 @@
-"""What arrows stand for: forces, reactions, velocities, accelerations over the motion, each where it acts."""
+"""What straight arrows stand for: forces, reactions, velocities, accelerations over the motion, each where it acts."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from shared.contract import BodyMotion, Motion
+from render.markers import moved
+from shared.contract import BodyMotion, DriverMotion, Motion
 from shared.shot import Quantity
 
 Array = NDArray[np.float64]
@@ -38,6 +39,11 @@ class Vector:
         """(T,)"""
         return np.hypot(*self.value.T)
 
+    @property
+    def unit(self) -> str:
+        """Of its value."""
+        return UNITS[self.quantity]
+
 
 def vectors(motion: Motion, show: Sequence[Quantity]) -> list[Vector]:
     """All that ``show`` asks for, in the order of the file; vectors that are nothing all the time are among them."""
@@ -65,17 +71,38 @@ def _reactions(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
 
 
 def _forces(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
-    """On each moving body that feels them, and the weights."""
+    """On each moving body that feels them, of drivers of a length too, and the weights."""
     for name, force in motion.forces.items():
         for action in force.actions:
             if action.body != "ground":
                 place, value = _two(action.x, action.y), _two(action.fx, action.fy)
                 yield Vector(quantity, f"{name} on {action.body}", (action.body,), place, value)
+    for name, driver in motion.drivers.items():
+        for body, place, value in _pushes(motion, driver):
+            if body != "ground":
+                yield Vector(quantity, f"{name} on {body}", (body,), place, value)
     gravity = np.array(motion.gravity)
     for name, body in motion.bodies.items():
         if body.mass > 0 and gravity.any():
             place = _centre(body)[0]
             yield Vector(quantity, f"weight of {name}", (name,), place, np.tile(body.mass * gravity, (len(place), 1)))
+
+
+def _pushes(motion: Motion, driver: DriverMotion) -> Iterator[tuple[str, Array, Array]]:
+    """What a driver of a distance or coordinate does to its two bodies: each, where (T, 2), and the force (T, 2)."""
+    shape = driver.shape
+    if shape is None or driver.kind not in ("distance", "coordinate"):
+        return
+    (first, angle), (second, _) = (moved(motion, b, m) for b, m in zip(shape.bodies, shape.markers, strict=True))
+    if driver.kind == "distance":  # along the line between the two, on each at its end
+        way = second - first
+        length = np.hypot(*way.T)[:, None]
+        way = np.divide(way, length, out=np.zeros_like(way), where=length > 0)
+    else:  # along the first marker's axis, on both where the second is
+        way, first = np.stack([np.cos(angle), np.sin(angle)], axis=1), second
+    force = np.asarray(driver.effort)[:, None] * way
+    yield shape.bodies[0], first, -force
+    yield shape.bodies[1], second, force
 
 
 def _movements(motion: Motion, quantity: Quantity) -> Iterator[Vector]:

@@ -20,6 +20,8 @@ CORNERS = {"lower left": (0.0, 0.78), "lower right": (0.66, 0.78), "upper right"
 """Left and upper edge of where a legend may be, as parts of the picture; the first one that is emptiest is taken."""
 CORNER = 0.34, 0.22
 """Width and height of such a place."""
+ACTUATORS = ("torque", "force", "actuator")
+"""Kinds of forces that may move a mechanism in place of its drivers."""
 
 
 def emptiest(camera: CameraPose, moving: Array, standing: Array) -> str:
@@ -57,7 +59,7 @@ def number(motion: Motion, shot: Shot) -> Callable[[float], str]:
     """The number that lives, as a function of time; as many decimals as its largest value needs, so it stands still."""
     name = shot.title.number if shot.title is not None else ""
     if name is None:
-        name = next(iter((*motion.drivers, *motion.points)), "")
+        name = _told(motion)
     if not name:
         return lambda t: ""
     time = np.asarray(motion.time)
@@ -72,7 +74,7 @@ def number(motion: Motion, shot: Shot) -> Callable[[float], str]:
 
         return speed
     one = motion.drivers.get(name) or motion.forces[name]
-    turning = "angle" in one.kind or "torsion" in one.kind or getattr(one, "measures", None) == "angle"
+    turning = "angle" in one.kind or getattr(one, "measures", None) == "angle"
     efforts = np.asarray(one.effort if one.effort is not None else np.zeros(len(time)), float)[:, None]
     digits = _decimals(efforts)
 
@@ -81,6 +83,17 @@ def number(motion: Motion, shot: Shot) -> Callable[[float], str]:
         return f"{name}  {f'{value:.{digits}f}'.replace('-', '−')} {'N m' if turning else 'N'}"
 
     return effort
+
+
+def _told(motion: Motion) -> str:
+    """The first of the drivers that give something; of those that act in their place; of the traced points."""
+    drivers = [name for name, driver in motion.drivers.items() if any(driver.effort)]
+    acting = [
+        name
+        for name, force in motion.forces.items()
+        if motion.drivers and force.kind in ACTUATORS and force.effort is not None and any(force.effort)
+    ]
+    return next(iter((*drivers, *acting, *motion.drivers, *motion.points)), "")
 
 
 def _decimals(values: Array) -> int:

@@ -106,7 +106,7 @@ def _bodies_of_loads(motion: Motion) -> list[tuple[str, str]]:
     ]
     for name, force in motion.forces.items():
         used += [(f"forces.{name}.actions[{k}].body", action.body) for k, action in enumerate(force.actions)]
-    for field in ("joints", "forces", "contacts"):
+    for field in ("joints", "drivers", "forces", "contacts"):
         for name, one in getattr(motion, field).items():
             if one.shape is not None:
                 used += [(f"{field}.{name}.shape.bodies", body) for body in one.shape.bodies]

@@ -72,6 +72,8 @@ class DriverMotion(Strict, kw_only=True):
     kind: str
     bodies: tuple[str, str] | None = None
     """First and second; null in files of version 1."""
+    shape: Shape | None = None
+    """Its two markers."""
     value: Series
     effort: Series
     power: Series

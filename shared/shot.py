@@ -78,7 +78,7 @@ class Title(_Strict, frozen=True):
     """null is the mechanism's name."""
     number: str | None = None
     """A driver or force (its torque or force) or a traced point (its speed in m/s and km/h); null is the first of the
-    drivers, else of the traced points; "" is none."""
+    drivers that give something, else of what acts in their place, else of the traced points; "" is none."""
 
 
 class Surface(_Strict, frozen=True):

@@ -11,13 +11,14 @@ import pytest
 from PIL import Image
 
 from render import still, writing
-from render.arrows import COLOURS, FULL, LONGEST, TINY, Arrows, round_below, scales_of, with_unit
+from render.arrows import COLOURS, FULL, Arrows
 from render.blender import overlay
 from render.blender.arrows import sizes
 from render.clock import Clock
 from render.framing import axes, half_width, project
 from render.inputs import named, read_film
 from render.presets import Preset
+from render.scales import LONGEST, TINY, round_below, scales_of, with_unit
 from render.scene import ArrowSpec, LegendRow, Writing
 from render.shown import WORDS, show_words
 from render.vectors import Vector, at_time, vectors

@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 
 from render.blender.trail import CAP, SIDES, vertices
 from render.clock import LONGEST, SHORTEST, Clock, natural_rate, speed, turns_of
-from render.describe import MOST_RINGS, TRAIL_STRAY, Film
+from render.describe import Film
 from render.frames import Pictures
 from render.presets import PRESETS
+from render.trails import MOST_RINGS, STRAY
 from shared.contract import Motion, read_motion, read_parts
 from shared.errors import UserError
 from shared.paths import Out
@@ -159,7 +160,7 @@ def test_trails_of_any_length_stray_by_less_than_their_thickness(out_root: Path)
         stray = (0.1 - np.hypot(*middles.T)).max()
         rings = film.scene.trails[0].rings
         assert len(path) == rings
-        allowed = TRAIL_STRAY * trail.radius * film.space.size
+        allowed = STRAY * trail.radius * film.space.size
         assert stray <= 1.01 * allowed or rings == MOST_RINGS
         assert stray < 0.1 * 0.02
 

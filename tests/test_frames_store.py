@@ -16,7 +16,7 @@ import pytest
 from PIL import Image
 
 from render import blend, frames, still
-from render.blender.worker import _missing_library
+from render.blender.libraries import missing_library
 from render.picture_file import fault, name_of
 from render.presets import PRESETS, Preset
 from render.scratch import scratch_folder, sweep
@@ -239,9 +239,9 @@ def test_missing_and_broken_files_are_a_sentence(out_root: Path):
 
 
 def test_a_missing_system_library_names_its_package():
-    said = _missing_library("libXi.so.6: cannot open shared object file: No such file or directory")
+    said = missing_library("libXi.so.6: cannot open shared object file: No such file or directory")
     assert said == "Blender needs the system library libXi.so.6: sudo apt-get install -y libxi6"
-    assert "libfoo.so.1" in _missing_library("libfoo.so.1: cannot open shared object file")
+    assert "libfoo.so.1" in missing_library("libfoo.so.1: cannot open shared object file")
 
 
 def test_without_an_installed_blender_scene_ui_says_so(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):

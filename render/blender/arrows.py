@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from render.blender.nodes import Graph
-from render.scene import ArrowSpec
+from render.scene import ArrowSpec, Colour
 
 SIDES = 32
 STOUT = 2.2
@@ -65,11 +65,11 @@ def build(scene: Any, spec: ArrowSpec) -> Arrow:
     root = bpy.data.objects.new(f"arrow {spec.name}", None)
     root.empty_display_size = spec.head
     scene.collection.objects.link(root)
-    paint = _paint(spec)
+    made = paint(spec.name, spec.colour)
     things = []
     for name, far in (("shaft", 1.0), ("head", 0.0)):
         mesh = _turned(f"{name} {spec.name}", far)
-        mesh.materials.append(paint)
+        mesh.materials.append(made)
         thing = bpy.data.objects.new(mesh.name, mesh)
         thing.parent = root
         thing.visible_shadow = thing.visible_diffuse = thing.visible_glossy = False
@@ -93,17 +93,17 @@ def _turned(name: str, far: float) -> Any:
     return mesh
 
 
-def _paint(spec: ArrowSpec) -> Any:
+def paint(name: str, colour: Colour) -> Any:
     """Its own light, darker towards the rim, so that it reads as round in any studio."""
     import bpy
 
-    made = bpy.data.materials.new(f"arrow {spec.name}")
+    made = bpy.data.materials.new(f"arrow {name}")
     made.use_nodes = True
     made.cycles.emission_sampling = "NONE"
     graph = Graph(made.node_tree).clear()
     rim = graph.math("POWER", graph.add("LayerWeight", Blend=0.5).outputs["Facing"], 1.6)
     strength = graph.math("SUBTRACT", 1.0, graph.math("MULTIPLY", rim, 0.72))
-    light = graph.add("Emission", Color=tuple(_linear(c) for c in spec.colour), Strength=strength)
+    light = graph.add("Emission", Color=tuple(_linear(c) for c in colour), Strength=strength)
     graph.add("OutputMaterial", Surface=light.outputs[0])
     return made
 

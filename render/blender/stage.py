@@ -5,12 +5,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from render.blender import arrows, labels, pieces, studio, trail, tubes
+from render.blender import arcs, arrows, labels, pieces, studio, trail, tubes
 from render.blender.job import Job
 from render.framing import SENSOR
 from render.scene import State
@@ -27,6 +27,8 @@ class Stage:
     tubes: list[Any]
     front: Any = None
     """The scene of what is drawn over the picture: arrows, on nothing; None where there are none."""
+    arcs: list[Any] = field(default_factory=list)
+    """In that scene."""
 
     def show(self, index: int) -> None:
         """Go to state ``index``."""
@@ -38,6 +40,8 @@ class Stage:
             trail.place(thing, path, self.job.scene.trails[which].radius)
         for which, thing in enumerate(self.tubes):
             tubes.place(thing, self.job.states[index].tubes[which], self.job.scene.tubes[which].radius)
+        for which, thing in enumerate(self.arcs):
+            arcs.place(thing, self.job.scene.arcs[which], *self.job.states[index].arcs[which])
 
 
 def build(job: Job) -> Stage:
@@ -61,10 +65,12 @@ def build(job: Job) -> Stage:
     else:
         _dark(scene)
     _animate(job, bodies, camera, texts)
-    front = _front(job, camera) if job.scene.arrows and job.flat is None else None
+    drawn = (job.scene.arrows or job.scene.arcs) and job.flat is None
+    front = _front(job, camera) if drawn else None
+    curved = [arcs.build(front, spec) for spec in job.scene.arcs] if drawn else []
     scene.frame_start, scene.frame_end = 0, len(job.states) - 1
     scene.render.fps = job.scene.fps
-    return Stage(job, scene, bodies, trails, wires, front)
+    return Stage(job, scene, bodies, trails, wires, front, curved)
 
 
 def _front(job: Job, camera: Any) -> Any:
@@ -90,7 +96,7 @@ def _front(job: Job, camera: Any) -> Any:
 
 
 def bake_shapes(stage: Stage) -> None:
-    """Give each trail and tube a shape per frame, so that a saved scene plays them."""
+    """Give each trail, tube and arc a shape per frame, so that a saved scene plays them."""
     scene, states = stage.job.scene, stage.job.states
     for which, thing in enumerate(stage.trails):
         radius = scene.trails[which].radius
@@ -98,6 +104,8 @@ def bake_shapes(stage: Stage) -> None:
     for which, thing in enumerate(stage.tubes):
         radius = scene.tubes[which].radius
         _bake(thing, [tubes.vertices(state.tubes[which], radius) for state in states])
+    for which, thing in enumerate(stage.arcs):
+        _bake(thing, [arcs.vertices(scene.arcs[which], *state.arcs[which]) for state in states])
 
 
 def _bake(thing: Any, shapes: list[np.ndarray]) -> None:

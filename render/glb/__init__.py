@@ -10,15 +10,12 @@ from shared.files import sources_hash, write_bytes
 from shared.paths import ROOT, Out
 from shared.stages import Stage, key_of, versions
 
-FILES = ("describe", "inputs", "poses", "scene", "solids", "swept", "framing")
-"""Of render/ that decide what is in it."""
-
 
 def run(name: str) -> None:
     """Write out/<name>/<name>.glb, if the parts, the motion or the shot have changed. Raises UserError."""
     out = Out(name)
     refuse_missing(out)
-    sources = [ROOT / "render" / f"{file}.py" for file in FILES]
+    sources = sorted((ROOT / "render").glob("*.py"))
     shared = [ROOT / "shared" / f"{file}.py" for file in SHARED] + sorted((ROOT / "shared").glob("contract_*.py"))
     key = key_of(
         out.motion, out.parts, out.shot, sources_hash(Path(__file__).parent, *sources, *shared), versions("numpy")

@@ -1,0 +1,22 @@
+"""Markers of bodies along a motion."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shared.contract import Motion
+
+Array = NDArray[np.float64]
+
+
+def moved(motion: Motion, body: str, marker: tuple[float, float, float]) -> tuple[Array, Array]:
+    """Where a marker (x, y, angle) of a body is (T, 2), and its angle (T,), at the times of data.json (m, rad)."""
+    x, y, turn = marker
+    count = len(motion.time)
+    if body not in motion.bodies:
+        return np.tile([x, y], (count, 1)), np.full(count, turn)
+    one = motion.bodies[body]
+    theta = np.asarray(one.theta)
+    c, s = np.cos(theta), np.sin(theta)
+    return np.stack([np.asarray(one.x) + c * x - s * y, np.asarray(one.y) + s * x + c * y], axis=1), theta + turn

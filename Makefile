@@ -8,6 +8,7 @@ NAME ?=
 KIND ?=
 VIEW ?=
 SHOW ?=
+SPECTRA ?=
 N ?=
 SEED ?= 1
 PYTEST ?= -n 2 --dist loadgroup --no-loadscope-reorder
@@ -20,10 +21,11 @@ override NAME := $(value NAME)
 override KIND := $(value KIND)
 override VIEW := $(value VIEW)
 override SHOW := $(value SHOW)
+override SPECTRA := $(value SPECTRA)
 override N := $(value N)
 override SEED := $(value SEED)
 override MECHANISM = $(subst -,_,$*)
-export PRESET SHEET_PRESET FRAME NAME KIND VIEW SHOW MECHANISM N SEED
+export PRESET SHEET_PRESET FRAME NAME KIND VIEW SHOW SPECTRA MECHANISM N SEED
 
 PRESETS := draft preview production final
 ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
@@ -96,9 +98,9 @@ clearance-%: install always ## proof that no two parts touch over the whole moti
 	$(upto_motion)
 	@$(STAGE) clearance "$$MECHANISM"
 
-plot-%: install always ## the plots: out/<name>/plots/
+plot-%: install always ## the plots, SPECTRA="shaking force,motor" with spectra of these: out/<name>/plots/
 	$(upto_bare_motion)
-	@$(PICTURE) plots "$$MECHANISM"
+	@$(PICTURE) plots "$$MECHANISM" $${SPECTRA:+--spectra="$$SPECTRA"}
 
 report-%: install always ## what was found, in sentences and tables: out/<name>/report.md
 	$(upto_bare_motion)

@@ -36,6 +36,10 @@ def main() -> int | None:
             sub.add_argument(
                 "--show", default="", help="what to show: reactions,velocities,title; as shot.py says if not given"
             )
+        if command == "plots":
+            sub.add_argument(
+                "--spectra", default="", help="'shaking force', joints, ...; as mechanism.py says if not given"
+            )
         if command == "still":
             sub.add_argument("--frame", type=int, default=0, help="number of the frame, from 0")
     commands.add_parser("gallery", help="docs/gallery/: every mechanism that has a poster")
@@ -48,7 +52,7 @@ def main() -> int | None:
     if command == "plots":
         from render import plots
 
-        return plots.run(name)
+        return plots.run(name, arguments.spectra)
     if command == "compare":
         from render.plots import compare
 

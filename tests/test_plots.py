@@ -113,7 +113,7 @@ def test_the_path_shows_joints_points_and_bodies() -> None:
 
 
 def test_the_axis_is_the_angle_of_one_forward_driver_else_time() -> None:
-    assert horizon(MOTION).label == "motor angle (deg)"
+    assert horizon(MOTION).label == "motor angle (deg; a turn takes 1 s)"
     motor = MOTION.drivers["motor"]
     swinging = msgspec.structs.replace(motor, value=list(np.sin(np.multiply(6, MOTION.time))))
     pushing = msgspec.structs.replace(motor, kind="coordinate")

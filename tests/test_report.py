@@ -66,10 +66,29 @@ def test_a_slider_cranks_dead_points_are_its_dead_centres() -> None:
     assert len(angles) == 2
 
 
-def test_a_simulated_linkage_has_no_driven_loop() -> None:
+def test_a_linkage_that_nothing_turns_has_no_driven_loop() -> None:
     free = msgspec.structs.replace(MOTION, drivers={})
     assert loops(free) == []
     assert "## Transmission" not in report.report(free, None, None)
+
+
+def test_a_crank_that_forces_turn_has_its_dead_points_once_and_tells_how_evenly_it_runs() -> None:
+    run = msgspec.structs.replace(four_bar_motion(turns=3), drivers={}, analysis="simulation", period=None)
+    omega = np.array(run.bodies["crank"].omega) * (1 + 0.1 * np.cos(run.bodies["crank"].theta))
+    crank = msgspec.structs.replace(run.bodies["crank"], omega=omega.tolist())
+    said = report.report(msgspec.structs.replace(run, bodies=run.bodies | {"crank": crank}), None, None)
+    [line] = [line for line in said.splitlines() if "are in line with the crank at" in line]
+    assert line.count(" s)") == 3  # two dead points, and the least transmission angle
+    assert "One way takes" not in line
+    assert "In its last turn the crank has 6.28 rad/s (60 rpm) on average" in said
+    assert "its speed fluctuates by 20 % of the mean" in said
+    assert "on average" not in report.report(MOTION, None, None)
+
+
+def test_a_body_that_turns_about_its_centre_of_mass_does_not_move() -> None:
+    still = msgspec.structs.replace(MOTION.bodies["crank"], com=(1e-19, 0.0))
+    said = report.report(msgspec.structs.replace(MOTION, bodies=MOTION.bodies | {"crank": still}), None, None)
+    assert "| crank | 0 |  | 0 | 6.28 rad/s (60 rpm) |" in said
 
 
 # -- sentences -------------------------------------------------------------------------------------------------------

@@ -4,19 +4,28 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from render.plots.asked import spectra_asked
 from shared.console import say
 from shared.contract import Motion, read_motion
 from shared.errors import UserError
 from shared.files import sources_hash, whole_file
-from shared.paths import ROOT, Out
+from shared.paths import ROOT, Out, variant_of
 from shared.skeleton import read_skeleton
 from shared.stages import Stage, key_of, versions
 
+READ = [
+    *sorted((ROOT / "shared").glob("contract*.py")),
+    ROOT / "shared" / "skeleton.py",
+    ROOT / "render" / "crank.py",
+    *(ROOT / "render" / "report" / f"{name}.py" for name in ("transmission", "written")),
+]
 
-def run(name: str) -> None:
+
+def run(name: str, spectra: str = "") -> None:
     """Draw every plot of one mechanism, if the motion or the drawing code changed; same motion, same bytes.
 
-    Raises UserError if data.json is missing or does not hold together.
+    ``spectra``: names of quantities, commas between them, instead of those of mechanism.py. Raises UserError if
+    data.json is missing or does not hold together, and for a spectrum of what there is not.
     """
     out = Out(name)
     motion, skeleton = read_motion(out.motion, out.name), read_skeleton(out.skeleton)
@@ -25,11 +34,10 @@ def run(name: str) -> None:
             f"{out.name}: {out.skeleton} is of another motion than {out.motion.name}; "
             f"run make solve-{out.name.replace('_', '-')}"
         )
-    outputs = {plot: out.plots / f"{plot}.png" for plot in plots_of(motion)}
-    sources = sources_hash(
-        Path(__file__).parent, *sorted((ROOT / "shared").glob("contract*.py")), ROOT / "shared" / "skeleton.py"
-    )
-    key = key_of(out.motion, out.skeleton, sources, versions("matplotlib", "numpy", "scipy"))
+    names = [*plots_of(motion), *_spectra(motion, out.name, spectra)]
+    outputs = {plot: out.plots / f"{plot}.png" for plot in names}
+    sources = sources_hash(Path(__file__).parent, *READ)
+    key = key_of(out.motion, out.skeleton, sources, names, versions("matplotlib", "numpy", "scipy"))
     stage = Stage(out, "plots", key, list(outputs.values()))
     if stage.is_fresh():
         say("plots", f"{out.name}: nothing to do")
@@ -54,8 +62,25 @@ def plots_of(motion: Motion) -> list[str]:
         names += ["reactions", "hodographs"]
     if motion.forces or motion.contacts:
         names.append("forces")
+    if motion.analysis == "simulation":
+        from render.crank import crank_of
+
+        names += ["turns"] * (crank_of(motion) is not None)
     names += [f"point-{point}" for point in motion.points]
     return names + [f"slider-{name}" for name, body in motion.bodies.items() if _only_slides(body.theta)]
+
+
+def _spectra(motion: Motion, name: str, words: str) -> list[str]:
+    """Plots of the spectra that are asked for; a variant may lack what mechanism.py names."""
+    asked = spectra_asked(name, words)
+    if not asked:
+        return []
+    from render.plots.quantities import known_names, refuse_unknown
+
+    if words or variant_of(name) is None:
+        refuse_unknown(motion, asked)
+    known = known_names(motion)
+    return [f"spectrum-{one.replace(' ', '-')}" for one in asked if one in known]
 
 
 def _only_slides(theta: list[float]) -> bool:

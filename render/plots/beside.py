@@ -66,7 +66,7 @@ def _page(name: str, motions: Motions, title: str, panels: Sequence[Panel]) -> F
     for axes in used[-columns:]:
         axes.set_xlabel("time (s)")
         axes.tick_params(labelbottom=True)
-    _legend(figure, list(motions))
+    legend(figure, list(motions))
     return figure
 
 
@@ -79,7 +79,7 @@ def _draw(axes: Axes, time: np.ndarray, line: np.ndarray, number: int) -> None:
     )  # fmt: skip
 
 
-def _legend(figure: Figure, names: list[str]) -> None:
+def legend(figure: Figure, names: list[str]) -> None:
     """The names in their colours, in a line below the title."""
     x = 0.035
     for number, name in enumerate(names):
@@ -202,5 +202,5 @@ def _paths(name: str, motions: Motions) -> Figure | None:
             axes.plot(x[0], y[0], "o", color="white", markeredgecolor=colour(number), markeredgewidth=2, zorder=4)
             if first:
                 axes.annotate(text, (x[0], y[0]), (8, 8), textcoords="offset points", color=QUIET)
-    _legend(figure, list(motions))
+    legend(figure, list(motions))
     return figure

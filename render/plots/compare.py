@@ -7,11 +7,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from render.plots import READ
+from render.plots.asked import spectra_asked
 from shared.console import say
 from shared.contract import Motion, read_motion
 from shared.errors import UserError
 from shared.files import sources_hash, whole_file
-from shared.paths import ROOT, Out, compared, owner_of
+from shared.paths import Out, compared, owner_of
 from shared.stages import Stage, key_of, versions
 
 
@@ -27,10 +29,12 @@ def run(name: str) -> None:
         if not file.is_file():
             target = owner.replace("_", "-")
             raise UserError(f"{owner}: {file} of '{variant}' is missing; run make compare-{target}")
+    asked = spectra_asked(owner)
     key = key_of(
+        asked,
         *files,
         *files.values(),
-        sources_hash(Path(__file__).parent, *sorted((ROOT / "shared").glob("contract*.py"))),
+        sources_hash(Path(__file__).parent, *READ),
         versions("matplotlib", "numpy", "scipy"),
     )
     stage = Stage(out, "compare", key, [])
@@ -38,9 +42,12 @@ def run(name: str) -> None:
         say("compare", f"{owner}: nothing to do")
         return
     from render.plots.beside import figures
+    from render.plots.beside_spectra import spectra_figure
 
     motions: dict[str, Motion] = {variant: read_motion(file) for variant, file in files.items()}
     drawn = figures(owner, motions)
+    if (spectra := spectra_figure(owner, motions, asked)) is not None:
+        drawn["spectra"] = spectra
     outputs = {plot: out.compare / f"{plot}.png" for plot in drawn}
     for plot, path in outputs.items():
         with whole_file(path) as temporary:

@@ -7,17 +7,33 @@ from matplotlib.figure import Figure
 from render.plots.energy import energy
 from render.plots.loads import forces, hodographs, reactions
 from render.plots.path import path
+from render.plots.quantities import known_names
 from render.plots.rates import bodies, point, slider
+from render.plots.spectra import spectrum_page
 from render.plots.style import house_style
+from render.plots.turns import turns
 from shared.contract import Motion
 from shared.skeleton import Skeleton
 
-WHOLE = {"bodies": bodies, "reactions": reactions, "hodographs": hodographs, "forces": forces, "energy": energy}
-ONE = {"point-": point, "slider-": slider}
+
+def spectrum_of(motion: Motion, name: str) -> Figure:
+    """Of the quantity whose name has hyphens for spaces in ``name``."""
+    return spectrum_page(motion, next(known for known in known_names(motion) if known.replace(" ", "-") == name))
+
+
+WHOLE = {
+    "bodies": bodies,
+    "reactions": reactions,
+    "hodographs": hodographs,
+    "forces": forces,
+    "energy": energy,
+    "turns": turns,
+}
+ONE = {"point-": point, "slider-": slider, "spectrum-": spectrum_of}
 
 
 def figure(plot: str, motion: Motion, skeleton: Skeleton) -> Figure:
-    """Draw one plot: ``path``, a name of :data:`WHOLE`, or ``point-<P>``, ``slider-<body>``."""
+    """Draw one plot: ``path``, a name of :data:`WHOLE` or ``point-<P>``, ``slider-<body>``, ``spectrum-<what>``."""
     with house_style():
         if plot == "path":
             return path(motion, skeleton)

@@ -1,4 +1,4 @@
-"""The horizontal axis: the driver's angle where one angle drives the mechanism forward, time otherwise."""
+"""The horizontal axis: the driver's angle where one angle drives the mechanism one way, time otherwise."""
 
 from __future__ import annotations
 
@@ -25,19 +25,30 @@ class Horizon:
         axes.set_xlim(self.values[0], self.values[-1])
         axes.set_xlabel(self.label)
         if self.degrees:
-            span = float(self.values[-1] - self.values[0])
+            span = abs(float(self.values[-1] - self.values[0]))
             axes.xaxis.set_major_locator(MultipleLocator(_step(span)))
 
 
 def horizon(motion: Motion) -> Horizon:
-    """The driver's angle in degrees if there is one driver, it is an angle and it never turns back; else time in s."""
+    """The driver's angle in degrees if there is one driver, it is an angle and it never turns back; else time in s.
+
+    A driver that turns clockwise has angles that fall from left to right: what comes later is always at the right.
+    """
     if len(motion.drivers) == 1:
         ((name, driver),) = motion.drivers.items()
         angle = np.degrees(driver.value)
         moves = np.diff(angle)[np.diff(motion.time) > 0]  # both rows of an event have the same angle
-        if "angle" in driver.kind and np.all(moves > 0):
-            return Horizon(angle, f"{name} angle (deg)", True)
+        if "angle" in driver.kind and (np.all(moves > 0) or np.all(moves < 0)):
+            return Horizon(angle, f"{name} angle (deg{_pace(motion, angle)})", True)
     return Horizon(np.asarray(motion.time), "time (s)", False)
+
+
+def _pace(motion: Motion, angle: np.ndarray) -> str:
+    """How long a turn takes, of a driver that turns evenly."""
+    even = np.interp(motion.time, [motion.time[0], motion.time[-1]], [angle[0], angle[-1]])
+    if np.abs(angle - even).max() > 1e-6 * np.ptp(angle):
+        return ""
+    return f"; a turn takes {360 * (motion.time[-1] - motion.time[0]) / np.ptp(angle):.4g} s"
 
 
 def _step(span: float) -> float:

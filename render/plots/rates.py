@@ -11,9 +11,13 @@ from matplotlib.ticker import MaxNLocator
 
 from render.plots.horizon import Horizon, horizon
 from render.plots.magnitudes import NOISE, speed_scale, without_noise
-from render.plots.style import FAINT, INK, LABELLED, PALETTE, colour, label_ends, page, rows
+from render.plots.marks import mark
+from render.plots.style import FAINT, INK, LABELLED, PALETTE, QUIET, colour, label_ends, page, rows
+from render.report.written import first_peak, speed, written
 from shared.contract import BodyMotion, Motion, PointMotion
 
+G = 9.80665
+"""m/s²."""
 STILL = 1e-9
 """m or rad: what varies less stands still."""
 KINDS = (("", "position (m)"), ("v", "velocity (m/s)"), ("a", "acceleration (m/s²)"))
@@ -36,6 +40,7 @@ def bodies(motion: Motion) -> Figure:
         lines = [(name, scale * values, colour(inks.index(name))) for name, values in series.items()]
         draw(axes, over, label, lines, floor=floors[field])
     over.dress(figure.axes[-1])
+    mark(figure, over, motion)
     return figure
 
 
@@ -79,6 +84,21 @@ def draw(axes: Axes, over: Horizon, label: str, lines: Sequence[Line], *, floor:
     label_ends(axes, over.values[-1], [(text, float(values[-1]), ink) for text, values, ink in named])
 
 
+def _largest(axes: Axes, over: Horizon, label: str, values: np.ndarray, floor: float) -> None:
+    """A dot where the first line is largest, and what it is there, in words above the axes."""
+    k = first_peak(np.abs(values))
+    if abs(values[k]) <= floor:
+        return
+    axes.plot(over.values[k], values[k], "o", color=INK, markersize=4.5, zorder=5, label="largest")
+    size, at = abs(float(values[k])), float(over.values[k])
+    text = speed(size) if label.startswith("velocity") else f"{written(size, 'm/s²')} ({size / G:.3g} g)"
+    where = f"{at:.4g}°".replace("-", "\N{MINUS SIGN}") if over.degrees else f"{at:.4g} s"
+    axes.text(
+        1.0, 1.02, f"largest {text} at {where}", transform=axes.transAxes, ha="right", va="bottom", color=QUIET,
+        fontsize=9,
+    )  # fmt: skip
+
+
 def _plane_motion(motion: Motion, moving: PointMotion | BodyMotion, title: str, subtitle: str) -> Figure:
     """Three rows of components, with magnitudes; along an axis alone that component says it all."""
     figure = page(motion.mechanism, title, subtitle)
@@ -86,10 +106,15 @@ def _plane_motion(motion: Motion, moving: PointMotion | BodyMotion, title: str, 
     fast = max(float(np.hypot(moving.vx, moving.vy).max()), 0.0)
     floors = {"": 0.0, "v": NOISE * fast, "a": NOISE * fast * speed_scale(motion)}
     components = {axis: ink for axis, ink in zip("xy", PALETTE, strict=False) if np.ptp(getattr(moving, axis)) > STILL}
-    for axes, (rate, label) in zip(rows(figure, 3), KINDS, strict=True):
+    stacked = rows(figure, 3)
+    figure.subplots_adjust(hspace=0.2)
+    for axes, (rate, label) in zip(stacked, KINDS, strict=True):
         lines = [(rate + axis, np.asarray(getattr(moving, rate + axis)), ink) for axis, ink in components.items()]
         if rate and len(components) == 2:
             lines.insert(0, (f"|{rate}|", np.hypot(lines[0][1], lines[1][1]), INK))
         draw(axes, over, label, lines, floor=floors[rate])
+        if rate and lines:
+            _largest(axes, over, label, lines[0][1], floors[rate])
     over.dress(figure.axes[-1])
+    mark(figure, over, motion)
     return figure

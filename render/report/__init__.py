@@ -15,7 +15,7 @@ from shared.files import sources_hash, write_bytes
 from shared.paths import ROOT, Out, mechanism_folder
 from shared.stages import Stage, key_of, versions
 
-READ = [*sorted((ROOT / "shared").glob("contract*.py")), ROOT / "shared" / "clearance.py"]
+READ = [*sorted((ROOT / "shared").glob("contract*.py")), ROOT / "shared" / "clearance.py", ROOT / "render" / "crank.py"]
 
 
 def run(name: str) -> None:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from render.crank import crank_of, driven_bodies
 from render.report.written import counted, first_peak, listed, moment, speed, table, turning, written
 from shared.clearance import Clearance
 from shared.contract import Motion, Parts
 
 G = 9.80665
+ROUNDING = 1e-9
+"""Of the fastest centre of mass: it does not move."""
 
 
 def motion_section(motion: Motion) -> list[str]:
@@ -40,7 +43,7 @@ def motion_section(motion: Motion) -> list[str]:
 
 def speed_section(motion: Motion) -> list[str]:
     """Peak speeds and accelerations of centres of mass and traced points, peak turning."""
-    time, rows = motion.time, []
+    time, rows, centres = motion.time, [], {}
     for name, body in motion.bodies.items():
         theta, omega, alpha = (np.array(part) for part in (body.theta, body.omega, body.alpha))
         x, y = body.com
@@ -50,17 +53,37 @@ def speed_section(motion: Motion) -> list[str]:
             np.array(body.ax) - alpha * arm[1] - omega**2 * arm[0],
             np.array(body.ay) + alpha * arm[0] - omega**2 * arm[1],
         )
+        centres[name] = v, a, float(np.abs(omega).max())
+    fastest = max((float(v.max()) for v, _, _ in centres.values()), default=0.0)
+    for name, (v, a, spin) in centres.items():
         k = first_peak(v)
-        spin = float(np.abs(omega).max())
-        rows.append(
-            [name, speed(float(v[k])), moment(time[k]), _acceleration(a), turning(spin) if spin > 1e-9 else "0"]
-        )
+        spins = turning(spin) if spin > 1e-9 else "0"
+        moves = v[k] > ROUNDING * fastest
+        shown = (speed(float(v[k])), moment(time[k]), _acceleration(a)) if moves else ("0", "", "0")
+        rows.append([name, *shown, spins])
     for name, point in motion.points.items():
         v, a = np.hypot(point.vx, point.vy), np.hypot(point.ax, point.ay)
         k = first_peak(v)
         rows.append([f"point {name}", speed(float(v[k])), moment(time[k]), _acceleration(a), ""])
     lines = ["Bodies by their centres of mass, and traced points.", ""]
-    return lines + table(["", "peak speed", "at", "peak acceleration", "peak turning"], rows)
+    lines += table(["", "peak speed", "at", "peak acceleration", "peak turning"], rows)
+    return lines + _last_turn(motion)
+
+
+def _last_turn(motion: Motion) -> list[str]:
+    """How evenly a crank turns that forces turn: after the run-up, over its last turn."""
+    crank = crank_of(motion)
+    if crank is None or crank.turns < 2 or crank.body in driven_bodies(motion):
+        return []
+    last = crank.angle >= crank.angle[-1] - 2 * np.pi
+    spins = np.abs(np.array(motion.bodies[crank.body].omega))[last]
+    time = np.array(motion.time)[last]
+    mean, most, least = float(np.trapezoid(spins, time) / np.ptp(time)), float(spins.max()), float(spins.min())
+    return [
+        "",
+        f"In its last turn the {crank.body} has {turning(mean)} on average, at least {written(least, 'rad/s')} and at "
+        f"most {written(most, 'rad/s')}: its speed fluctuates by {100 * (most - least) / mean:.2g} % of the mean.",
+    ]
 
 
 def energy_section(motion: Motion) -> list[str]:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from render.crank import crank_of
 from shared.contract import Motion
 
 LEAST = np.radians(40.0)
@@ -21,7 +22,7 @@ LEAST = np.radians(40.0)
 
 @dataclass(frozen=True)
 class Loop:
-    """A driven crank, the coupler and what it moves, all held by ground."""
+    """A crank, the coupler and what it moves, all held by ground."""
 
     crank: str
     coupler: str
@@ -72,14 +73,14 @@ class Loop:
 
 
 def loops(motion: Motion) -> list[Loop]:
-    """All loops of a mechanism whose crank a driver turns against ground."""
+    """All loops of a mechanism whose crank a driver turns against ground, or which forces turn round and round."""
     out = []
     pins: dict[frozenset[str], np.ndarray] = {}
     for joint in motion.joints.values():
         if joint.kind == "revolute":
             pins.setdefault(frozenset(joint.bodies), np.array([joint.x, joint.y]).T)
     guides = {frozenset(joint.bodies) for joint in motion.joints.values() if joint.kind == "prismatic"}
-    for crank in _driven(motion):
+    for crank in _driven(motion) or _turning(motion):
         a = pins.get(frozenset(("ground", crank)))
         for pair, b in pins.items():
             if a is None or crank not in pair or "ground" in pair:
@@ -109,6 +110,12 @@ def _driven(motion: Motion) -> list[str]:
         value = np.array(driver.value)
         out += [n for n, body in motion.bodies.items() if np.ptp(np.array(body.theta) - value) < 1e-6 < np.ptp(value)]
     return out
+
+
+def _turning(motion: Motion) -> list[str]:
+    """The crank of a motion that forces make."""
+    found = crank_of(motion) if motion.analysis == "simulation" else None
+    return [] if found is None else [found.body]
 
 
 def _normal(c: np.ndarray) -> np.ndarray:

@@ -10,6 +10,9 @@ from render.report.transmission import LEAST, Loop, loops
 from render.report.written import degrees, listed, moment, written
 from shared.contract import Motion
 
+SAME = math.radians(1.0)
+"""Dead points whose angles differ by less are one."""
+
 
 def transmission_section(motion: Motion) -> list[str]:
     """Of every four-bar and slider-crank in the mechanism."""
@@ -17,6 +20,15 @@ def transmission_section(motion: Motion) -> list[str]:
     for loop in loops(motion):
         lines += [*_loop_lines(loop, np.array(motion.time)), ""]
     return lines[:-1]
+
+
+def _different(dead: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Those of the first turn: later ones are at the same angles of the crank."""
+    first: list[tuple[float, float]] = []
+    for at, angle in dead:
+        if all(abs(math.remainder(angle - other, 2 * math.pi)) > SAME for _, other in first):
+            first.append((at, angle))
+    return first
 
 
 def _loop_lines(loop: Loop, time: np.ndarray) -> list[str]:
@@ -29,7 +41,8 @@ def _loop_lines(loop: Loop, time: np.ndarray) -> list[str]:
         f"{degrees(mu.max())}"
         + (f"; {degrees(LEAST)} are usually asked for." if mu.min() < LEAST else ".")
     ]  # fmt: skip
-    dead = loop.dead_points(time)
+    passed = loop.dead_points(time)
+    dead = _different(passed)
     if dead:
         places = listed([f"{degrees(angle)} (t = {moment(at)})" for at, angle in dead[:4]])
         travel = written(loop.travel, "m") if loop.slides else degrees(loop.travel)
@@ -38,7 +51,7 @@ def _loop_lines(loop: Loop, time: np.ndarray) -> list[str]:
             f"{loop.coupler} and {loop.crank} are in line with the crank at {places}: there the {loop.follower} turns "
             f"back, and could not drive. The {loop.follower} {does}."
         )
-        if len(dead) == 2 and np.ptp(loop.angle) > 1.9 * math.pi:
+        if len(passed) == 2 and np.ptp(loop.angle) > 1.9 * math.pi:
             way = (dead[1][0] - dead[0][0]) / (time[-1] - time[0])
             ratio = max(way, 1 - way) / min(way, 1 - way)
             lines[-1] += f" One way takes {ratio:.3g} times as long as the other."

@@ -1,0 +1,42 @@
+"""Which spectra are asked for: ``SPECTRA = ("shaking force", "motor")`` in mechanism.py, or SPECTRA=... of make."""
+
+from __future__ import annotations
+
+import ast
+
+from shared.errors import UserError
+from shared.paths import mechanism_folder
+
+FORM = 'write names in quotes: SPECTRA = ("shaking force", "motor")'
+
+
+def spectra_asked(name: str, words: str = "") -> list[str]:
+    """Names of quantities, each once: those of ``words``, commas between them, else those of mechanism.py.
+
+    The file is read without running it. Raises UserError where its SPECTRA is no plain tuple or list of texts.
+    """
+    if words.strip():
+        return list(dict.fromkeys(word.strip() for word in words.split(",") if word.strip()))
+    file = mechanism_folder(name) / "mechanism.py"
+    try:
+        tree = ast.parse(file.read_bytes())
+    except (OSError, SyntaxError, ValueError):
+        return []
+    for statement in tree.body:
+        targets = getattr(statement, "targets", [getattr(statement, "target", None)])
+        if any(isinstance(target, ast.Name) and target.id == "SPECTRA" for target in targets):
+            return _names(statement, f"mechanisms/{file.parent.name}/mechanism.py:{statement.lineno}")
+    return []
+
+
+def _names(statement: ast.stmt, where: str) -> list[str]:
+    value = getattr(statement, "value", None)
+    found = None
+    if value is not None:
+        try:
+            found = ast.literal_eval(value)
+        except ValueError:
+            found = None
+    if not isinstance(found, tuple | list) or not all(isinstance(name, str) for name in found):
+        raise UserError(f"{where}: SPECTRA is not a list of names that can be read without running the file; {FORM}")
+    return list(dict.fromkeys(found))

@@ -1,0 +1,118 @@
+"""Quantities of a motion by the names that SPECTRA gives them: what the machine does to its frame, and parts of it.
+
+shaking force       F = -sum m a        of all bodies, a of their centres of mass: what inertia does to the frame
+shaking moment      M = -sum [(r - r0) x m a + I alpha]       r0: the axis of the crank, else the origin
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from render.crank import crank_of
+from render.plots.magnitudes import NOISE, centre_of_mass, force_scale, speed_scale, torque_scale, without_noise
+from shared.contract import Motion
+from shared.errors import UserError
+from shared.suggestions import did_you_mean
+
+SHAKING = ("shaking force", "shaking moment")
+TURNING, PUSHING = ("torque", "N m"), ("force", "N")
+"""Symbol and unit."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Series over the times of a motion."""
+
+    name: str
+    says: str
+    """What it is, for the page's second line."""
+    symbol: str
+    unit: str
+    components: dict[str, np.ndarray]
+    """(T,) each, by the name of its line."""
+    floor: float
+    """What is rounding."""
+
+    @property
+    def rows(self) -> np.ndarray:
+        """(T, k), rounding taken for zero."""
+        return np.stack([without_noise(values, self.floor) for values in self.components.values()], axis=1)
+
+
+def refuse_unknown(motion: Motion, names: Sequence[str]) -> None:
+    """Raise UserError for a name that is no quantity of the motion."""
+    known = known_names(motion)
+    for name in names:
+        if name not in known:
+            raise UserError(
+                f"{motion.mechanism}: SPECTRA asks for '{name}', which is neither 'shaking force' nor 'shaking moment' "
+                f"nor a joint, driver, force, point or body; there is: {', '.join(known)}{did_you_mean(name, known)}"
+            )
+
+
+def known_names(motion: Motion) -> list[str]:
+    """All names of quantities."""
+    own = [motion.joints, motion.drivers, motion.forces, motion.points, motion.bodies]
+    return list(dict.fromkeys([*SHAKING, *(name for group in own for name in group)]))
+
+
+def quantity(motion: Motion, name: str) -> Quantity:
+    """By a name of :func:`known_names`."""
+    if name in SHAKING:
+        return shaking(motion)[SHAKING.index(name)]
+    weak = {"N": NOISE * force_scale(motion), "N m": NOISE * torque_scale(motion)}
+    if joint := motion.joints.get(name):
+        says = f"reaction of {joint.bodies[0]} on {joint.bodies[1]}, world axes"
+        return Quantity(name, says, "force", "N", _xy(joint.fx, joint.fy), weak["N"])
+    if driver := motion.drivers.get(name):
+        symbol, unit = TURNING if "angle" in driver.kind else PUSHING
+        return Quantity(name, "what the driver gives", symbol, unit, {name: np.asarray(driver.effort)}, weak[unit])
+    if force := motion.forces.get(name):
+        says = force.kind.replace("_", " ")
+        if force.effort is None:
+            return Quantity(name, says, *PUSHING, _xy(force.actions[0].fx, force.actions[0].fy), weak["N"])
+        symbol, unit = TURNING if force.measures == "angle" else PUSHING
+        return Quantity(name, says, symbol, unit, {name: np.asarray(force.effort)}, weak[unit])
+    return _moving(motion, name)
+
+
+def _moving(motion: Motion, name: str) -> Quantity:
+    """The acceleration of a point, or of a body: of its angle where it turns."""
+    moving = motion.points.get(name) or motion.bodies[name]
+    fastest = speed_scale(motion)
+    if name not in motion.points and np.ptp(motion.bodies[name].theta) > NOISE:
+        alpha = {name: np.asarray(motion.bodies[name].alpha)}
+        says = "angular acceleration of the body"
+        return Quantity(name, says, "acceleration", "rad/s²", alpha, NOISE * fastest**2)
+    quick = float(np.hypot(moving.vx, moving.vy).max()) * fastest
+    says = "acceleration, world axes"
+    return Quantity(name, says, "acceleration", "m/s²", _xy(moving.ax, moving.ay), NOISE * quick)
+
+
+def shaking(motion: Motion) -> tuple[Quantity, Quantity]:
+    """Force and moment that inertia puts on the frame."""
+    crank = crank_of(motion)
+    x0, y0 = crank.at if crank else (0.0, 0.0)
+    fx, fy, moment = (np.zeros(len(motion.time)) for _ in range(3))
+    for body in motion.bodies.values():
+        at = centre_of_mass(body)
+        fx, fy = fx - body.mass * at.ax, fy - body.mass * at.ay
+        moment -= body.mass * ((at.x - x0) * at.ay - (at.y - y0) * at.ax)
+        moment -= body.inertia * np.asarray(body.alpha)
+    about = f"the axis of the {crank.body}" if crank else "the origin"
+    force, turning = "force of inertia on the frame, \N{MINUS SIGN}Σ m a", "moment of inertia forces on the frame about"
+    weak, slack = NOISE * force_scale(motion), NOISE * torque_scale(motion)
+    return (
+        Quantity("shaking force", force, *PUSHING, _xy(fx, fy), weak),
+        Quantity("shaking moment", f"{turning} {about}", "moment", "N m", {"moment": moment}, slack),
+    )
+
+
+def _xy(x: Sequence[float] | np.ndarray, y: Sequence[float] | np.ndarray) -> dict[str, np.ndarray]:
+    """Both components; one that is always zero is left out."""
+    both = {"x": np.asarray(x), "y": np.asarray(y)}
+    largest = max(float(np.abs(values).max()) for values in both.values())
+    return {axis: v for axis, v in both.items() if np.abs(v).max() > NOISE * largest} or {"x": both["x"]}

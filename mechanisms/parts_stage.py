@@ -38,7 +38,7 @@ _MOTION = ("bare_motion", "solving", "variants", "refined_times", "masses", "est
 _AUTOMATIC = ("automatic", "parts_by_themselves.py", *(f"{name}.py" for name in _MOTION))
 AUTOMATIC = [*SOURCES, *(ROOT / "mechanisms" / name for name in _AUTOMATIC)]
 """Sources of parts without a parts.py."""
-PACKAGES = ("cadquery", "cadquery-ocp", "numpy", "trimesh")
+PACKAGES = ("cadquery", "cadquery-ocp", "numpy", "python-sat", "trimesh")
 
 
 def run(name: str) -> None:

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from mbsd import Mechanism, constant_rate
+from mbsd import Mechanism, constant_rate, harmonic
 
 TURN = constant_rate(2 * math.pi)
 JANSEN = {"a": 38.0, "b": 41.5, "c": 39.3, "d": 40.1, "e": 55.8, "f": 39.4, "g": 36.7, "h": 65.7, "i": 49.0, "j": 50.0}
@@ -129,4 +129,35 @@ def crank_shaper() -> Mechanism:
     m.prismatic("guide", m.ground.at(0, 0.185), ram.origin)
     m.drive_angle("motor", crank, TURN)
     m.start_near(crank=0, lever=68, block=68, link=175, ram=0)
+    return m
+
+
+def lift(crosses: int, bar: float = 0.16) -> Mechanism:
+    """A scissor lift: three bodies and two for each cross."""
+    m = Mechanism("lift")
+    foot, platform, shoe = m.body("foot"), m.body("platform"), m.body("shoe")
+    left, right = m.ground.at(0, 0), foot.origin
+    for k in range(crosses):
+        a, b = m.bar(f"a{k}", bar), m.bar(f"b{k}", bar)
+        m.revolute(f"left{k}", left, a.start)
+        m.revolute(f"right{k}", right, b.start)
+        m.revolute(f"middle{k}", a.at(bar / 2, 0), b.at(bar / 2, 0))
+        left, right = b.end, a.end
+        m.start_near(**{a.name: 45, b.name: 135})
+    m.revolute("hinge", left, platform.origin)
+    m.revolute("shoe_pin", right, shoe.origin)
+    m.prismatic("floor", m.ground.at(0, 0), foot.origin)
+    m.prismatic("rail", platform.origin, shoe.origin)
+    m.drive_coordinate("cylinder", m.ground.at(0, 0), foot.origin, harmonic(0.035, math.pi / 2, math.pi / 2, 0.11))
+    m.start_near(platform=0, shoe=0, foot=0)
+    return m
+
+
+def hands(count: int = 3, apart: float = 0.03) -> Mechanism:
+    """Bars that turn about pivots side by side, each over all the other pivots."""
+    m = Mechanism("hands")
+    for k in range(count):
+        hand = m.bar(f"hand{k}", 0.1)
+        m.revolute(f"O{k}", m.ground.at(apart * k, 0), hand.start)
+        m.drive_angle(f"motor{k}", hand, constant_rate(2 * math.pi, k))
     return m

@@ -10,11 +10,12 @@ import pytest
 
 from mbsd import Mechanism, MechanismError
 from mechanisms.automatic.automatic import Automatic
-from mechanisms.automatic.items import Item, spans_meet
-from mechanisms.automatic.planar import Rounded, around, convex_hull, core_gaps, least_gap
+from mechanisms.automatic.bridges import Bridge
+from mechanisms.automatic.items import Item, Reach, spans_meet
+from mechanisms.automatic.planar import Rounded, around, convex_hull, core_gaps, disc, least_gap
 from mechanisms.automatic.sizes import sizes, standard
 from shared.errors import UserError
-from tests.linkages import crank_shaper, drag_link, four_bar, jansen_leg, slider_crank, watt
+from tests.linkages import crank_shaper, drag_link, four_bar, hands, jansen_leg, lift, slider_crank, watt
 
 
 def _samples(core: np.ndarray, count: int = 60) -> np.ndarray:
@@ -56,7 +57,7 @@ def test_sizes_follow_the_mechanism() -> None:
     assert standard(7.9) == 6
     assert standard(0.1) == 0.5
     assert standard(430.0) == 400
-    clockwork, desk, excavator = sizes(0.004, 0.020), sizes(0.04, 0.17), sizes(0.6, 3.0)
+    clockwork, desk, excavator = (sizes(*s)[0] for s in ((0.004, 0.020), (0.04, 0.17), (0.6, 3.0)))
     assert [s.pin for s in (clockwork, desk, excavator)] == [1.0, 8.0, 120.0]
     for s in (clockwork, desk, excavator):
         running = s.pivot.fit.running * s.scale
@@ -133,14 +134,44 @@ def test_a_layer_that_is_asked_for_is_given() -> None:
 
 
 def test_bodies_that_cannot_pass_each_other_are_named() -> None:
-    """A drag link's crank and rocker both sweep over the other's pedestal."""
+    """One hand can turn on the base and one under a bridge; a third has no place between these."""
     with pytest.raises(UserError) as refused:
-        _ = _planned(drag_link()).levels
+        _ = _planned(hands()).levels
     text = str(refused.value)
-    assert "no order of layers lets crank and rocker pass each other" in text
-    assert "the pedestal and pin of A meets rocker at t=" in text
-    assert "the pedestal and pin of D meets crank at t=" in text
-    assert "coupler" not in text
+    assert "no order of layers lets hand0, hand1 and hand2 pass each other with pins of 5 mm" in text
+    assert text.count(" on ground meets hand") == 4
+
+
+@pytest.mark.parametrize("build", [drag_link, lambda: hands(2)], ids=["drag link", "two hands"])
+def test_a_pivot_that_is_swept_from_all_sides_hangs_from_a_bridge(build: object) -> None:
+    """Each of the two sweeps over the other's pivot: one stands on the base, below, and one hangs from above."""
+    made = _planned(build())
+    _clear(made)
+    assert made.sizes.pin == made.wishes()[0].pin
+    (bridge,) = [feature for feature in made.layout.features if isinstance(feature, Bridge)]
+    (hanging,) = bridge.pins
+    assert made.decided[hanging.choice] == 1
+    assert sum(made.decided[f"pin {name}"] for name in made.m.joints) == 1
+    posts = [Item("a post", "ground", disc(*end, 10.0), Reach((), base=True, top=True)) for end in bridge.ends]
+    for item in made.layout.items:
+        if item.body != "ground":
+            assert min(made.layout.gap(item, post)[0] for post in posts) > 4.0, item.what
+    (x0, y0), (x1, y1), (x, y) = *bridge.ends, hanging.places["ground"]
+    assert abs((x1 - x0) * (y - y0) - (y1 - y0) * (x - x0)) < 1e-6 * math.hypot(x1 - x0, y1 - y0)
+
+
+def test_the_pivot_that_is_driven_stands() -> None:
+    made = _planned(drag_link())
+    assert (made.decided["pin A"], made.decided["pin D"]) == (0, 1)
+
+
+def test_pins_are_thinner_where_thick_ones_leave_no_order() -> None:
+    """A lift of three crosses, and one of six with 15 bodies."""
+    for crosses, wish, pin, layers in ((2, 12.0, 12.0, 3), (3, 20.0, 16.0, 4), (6, 25.0, 16.0, 4)):
+        made = _planned(lift(crosses))
+        assert (made.wishes()[0].pin, made.sizes.pin) == (wish, pin)
+        assert max(made.levels.values()) + 1 == layers
+        assert not any(isinstance(feature, Bridge) for feature in made.layout.features)
 
 
 def test_a_kind_without_parts_is_refused_by_name() -> None:

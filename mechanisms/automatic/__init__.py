@@ -7,7 +7,8 @@ In this order, a file each:
     kinds.py     each joint becomes a feature: places that bodies must reach, what takes room, how high gaps must be
     points.py    traced points, free ends, lone centres of mass: features without a joint
     layout.py    outlines of bodies round the features' places; which items meet in the plane (planar.py)
-    layers.py    the search for an order of layers; refusal.py says why there is none
+    layers.py    the search for an order of layers (rules as clauses: layer_clauses.py); refusal.py: why there is none
+    decided.py   which thickness of pins, which layers; pivots that must hang get bridges (bridges.py)
     heights.py   layers become heights
     plan.py      features give bodies their eyes, and add hardware
     built.py     plates (body_shape.py), base (frame.py) and hardware become solids, scaled to millimetres

@@ -13,18 +13,16 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from mechanisms.automatic.decided import decided
 from mechanisms.automatic.extents import extents
 from mechanisms.automatic.features import Need
 from mechanisms.automatic.gathered import gathered
 from mechanisms.automatic.heights import Heights, heights
-from mechanisms.automatic.layers import find_layers
 from mechanisms.automatic.layout import Layout, Springs
 from mechanisms.automatic.looks import materials
 from mechanisms.automatic.motion import poses_of, times_of
 from mechanisms.automatic.points import styluses, weights
-from mechanisms.automatic.refusal import refusal
 from mechanisms.automatic.sizes import Sizes, of_pin, sizes
-from shared.console import warn
 from shared.errors import UserError
 from shared.materials import MATERIALS
 from shared.suggestions import did_you_mean
@@ -106,13 +104,10 @@ class Automatic:
 
     # -- results ------------------------------------------------------------------------------------------------
 
-    @cached_property
+    @property
     def sizes(self) -> Sizes:
         """Proportions and the scale."""
-        if self._pin is not None:
-            return of_pin(self._pin)
-        shortest, overall = extents(self.m, self.solution, self._left_out)
-        return sizes(shortest, overall)
+        return self.layout.sizes
 
     @cached_property
     def layout(self) -> Layout:
@@ -173,47 +168,17 @@ class Automatic:
 
     @cached_property
     def _found(self) -> tuple[Layout, dict[str, int]]:
-        low, least = self._placed(Springs())
-        if least is None:
-            low, least = self._placed(Springs(above=False))
-        if least is None and low.springs.found:
-            low, least = self._some_springs(low.springs.found)
-        if least is None:
-            raise UserError(refusal(low))
-        if not low.m.traces:
-            return low, least
-        high = self._layout(tall=True, springs=low.springs)
-        levels = self._levels(high)
-        if levels is None or max(levels[b] for b in high.layered) > max(least[b] for b in low.layered):
-            return low, least
-        return high, levels
+        return decided(self._layout, self.wishes(), self._layers)
 
-    def _placed(self, springs: Springs) -> tuple[Layout, dict[str, int] | None]:
-        low = self._layout(tall=False, springs=springs)
-        return low, self._levels(low)
+    def wishes(self) -> list[Sizes]:
+        """Sizes of pins and all that goes with them, the most wanted first."""
+        if self._pin is not None:
+            return [of_pin(self._pin)]
+        return sizes(*extents(self.m, self.solution, self._left_out))
 
-    def _some_springs(self, names: Sequence[str]) -> tuple[Layout, dict[str, int] | None]:
-        """Those springs, one after the other, that leave an order of layers; of the others it is told."""
-        left_out = frozenset(names)
-        best = self._placed(Springs(False, left_out))
-        for name in names if best[1] is not None else ():
-            more = self._placed(Springs(False, left_out - {name}))
-            if more[1] is not None:
-                best, left_out = more, left_out - {name}
-        if best[1] is not None:
-            warn(
-                "parts",
-                f"{self.m.name}: no order of layers leaves room for {', '.join(sorted(left_out))} beside the others; "
-                "no studs are made there, and the film draws them over all parts",
-            )
-        return best
-
-    def _levels(self, layout: Layout) -> dict[str, int] | None:
-        return find_layers(layout.layered, layout.items, layout.conflicts, self._layers, together=layout.together)
-
-    def _layout(self, tall: bool, springs: Springs) -> Layout:
-        poses = poses_of(self.solution, self.sizes.of_metres(1.0))
-        layout = Layout(self.m, self.sizes, poses, times_of(self.solution), springs)
+    def _layout(self, size: Sizes, springs: Springs, tall: bool = False) -> Layout:
+        poses = poses_of(self.solution, size.of_metres(1.0))
+        layout = Layout(self.m, size, poses, times_of(self.solution), springs)
         layout.apart = frozenset(self._left_out)
         layout.touching = frozenset(map(frozenset, self._touching))
         layout.features = gathered(layout)

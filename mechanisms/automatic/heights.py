@@ -8,6 +8,9 @@ from dataclasses import dataclass
 from mechanisms.automatic.features import Need
 from mechanisms.automatic.items import Levels
 
+ROOF = 12.0
+"""From the highest layer to bridges above it (rmm): room for heads of pins, weights and the like."""
+
 
 @dataclass(frozen=True)
 class Heights:
@@ -17,6 +20,11 @@ class Heights:
     thickness: float
     bottoms: tuple[float, ...]
     """Underside of each layer."""
+
+    @property
+    def roof(self) -> float:
+        """Underside of bridges."""
+        return self.bottoms[-1] + self.thickness + ROOF
 
     def bottom(self, body: str) -> float:
         """Underside of a body's plate."""

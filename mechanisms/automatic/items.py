@@ -15,6 +15,10 @@ TOP = 10**6
 
 type Levels = Mapping[str, int]
 """The layer of each body, as far as it is decided; and the choices (0 or 1) of items that have one."""
+type Ends = tuple[int | None, int | None]
+"""Half layers from the lowest layer of some bodies to an item's lower end (None: it is the base), and from the highest
+to its upper one (None: it goes up through all).
+"""
 
 
 @dataclass(frozen=True)
@@ -30,15 +34,14 @@ class Reach:
     base: bool = False
     top: bool = False
 
+    @property
+    def ends(self) -> dict[str | None, tuple[Ends, ...]]:
+        """By the choice that decides between them."""
+        return {None: ((None if self.base else self.low, None if self.top else self.high),)}
+
     def span(self, levels: Levels) -> tuple[int, int] | None:
         """Lowest and highest half layer, as far as layers are decided: more decided ones only make it longer."""
-        known = [2 * levels[body] for body in self.bodies if body in levels]
-        if not known:
-            return (BASE, BASE) if self.base else None
-        return (
-            BASE if self.base else min(known) + self.low,
-            TOP if self.top else max(known) + self.high,
-        )
+        return _span(self, levels)
 
 
 @dataclass(frozen=True)
@@ -47,17 +50,39 @@ class PinReach:
 
     bodies: tuple[str, ...]
     choice: str
-    base = top = False
+
+    @property
+    def ends(self) -> dict[str | None, tuple[Ends, ...]]:
+        """As :attr:`Reach.ends`."""
+        return {self.choice: ((1, 1), (-1, -1))}
 
     def span(self, levels: Levels) -> tuple[int, int] | None:
         """As :meth:`Reach.span`; while the choice is open, without an end."""
-        known = [2 * levels[body] for body in self.bodies if body in levels]
-        if not known:
-            return None
-        chosen = levels.get(self.choice)
-        low, high = min(known) + 1, max(known) - 1
-        span = low - 2 if chosen == 1 else low, high + 2 if chosen == 0 else high
-        return span if span[0] <= span[1] else None
+        return _span(self, levels)
+
+
+@dataclass(frozen=True)
+class PivotReach:
+    """A pin on ground that stands on the base (``choice`` 0), or hangs from a bridge above all layers (1).
+
+    Of pivots that may do either, one that is ``driven`` stands.
+    """
+
+    bodies: tuple[str, ...]
+    choice: str
+    driven: bool = False
+
+    @property
+    def ends(self) -> dict[str | None, tuple[Ends, ...]]:
+        """As :attr:`Reach.ends`."""
+        return {self.choice: ((None, 1), (-1, None))}
+
+    def span(self, levels: Levels) -> tuple[int, int] | None:
+        """As :meth:`Reach.span`; while the choice is open, what both have in common."""
+        return _span(self, levels)
+
+
+type AnyReach = Reach | PinReach | PivotReach
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +92,7 @@ class Item:
     what: str
     body: str
     shape: Rounded
-    reach: Reach | PinReach
+    reach: AnyReach
     spares: frozenset[str] = frozenset()
     source: object = None
     """The feature that it belongs to."""
@@ -77,6 +102,28 @@ class Item:
     """Names of the items that it keeps away, where it is no thing but a rule; empty: all."""
 
 
+def choice_of(reach: AnyReach) -> str | None:
+    """The choice that an item's heights depend on, if there is one."""
+    return next(iter(reach.ends))
+
+
 def spans_meet(a: tuple[int, int] | None, b: tuple[int, int] | None) -> bool:
     """Whether two spans share a half layer."""
     return a is not None and b is not None and a[0] <= b[1] and b[0] <= a[1]
+
+
+def _span(reach: AnyReach, levels: Levels) -> tuple[int, int] | None:
+    ((choice, ends),) = reach.ends.items()
+    chosen = levels.get(choice) if choice is not None else 0
+    known = [2 * levels[body] for body in reach.bodies if body in levels]
+    spans = [_placed(low, high, known) for low, high in (ends if chosen is None else ends[chosen : chosen + 1])]
+    if any(span is None for span in spans):
+        return None
+    low, high = max(span[0] for span in spans if span), min(span[1] for span in spans if span)
+    return (low, high) if low <= high else None
+
+
+def _placed(low: int | None, high: int | None, known: list[int]) -> tuple[int, int] | None:
+    if not known:
+        return (BASE, BASE) if low is None else None
+    return BASE if low is None else min(known) + low, TOP if high is None else max(known) + high

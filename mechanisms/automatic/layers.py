@@ -1,175 +1,210 @@
 """The order of layers: a layer for each body so that nothing collides and no pin goes through a third body.
 
-A search that goes back (branch and bound) over the bodies, first with one layer, then with more. Its rules are pairs
-of items that meet in the plane: their heights must not. A pin's heights are known in part as soon as one of its
-bodies is placed, so most wrong choices are seen at once. Same model, same layers: nothing here depends on time or
-chance.
+The rules are pairs of items that meet in the plane: their heights must not. A solver of boolean satisfiability finds
+whether there is an order at all, then one with the fewest pivots on bridges, then with the fewest layers, then with the
+shortest pins; what is still open then is decided by the lowest layers, the first bodies first. Where all of this is
+proven, the layers do not depend on the solver; where its budget ends before, they are what it found, the same each
+time: nothing here depends on clocks or chance.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass, field
 
-from mechanisms.automatic.items import TOP, Item, PinReach, spans_meet
+from mechanisms.automatic.items import Item, PivotReach, Reach
+from mechanisms.automatic.layer_clauses import Clauses, choices_of
 
-TRIES = 60_000
-"""Choices that are tried with a given number of layers before more layers are taken."""
+BUDGET = 20_000
+"""Conflicts of the solver that one question may cost, beside the question whether there is any order."""
+PURSE = 60_000
+"""Conflicts that the choice of the best of all orders with so many layers may cost."""
+MANY = 24
+"""With more bodies, few layers are tried before it is asked whether there is any order, with less to spend, and ties
+are left open.
+"""
+LESS = 20
+"""So much less to spend."""
 
 
-@dataclass
-class _Search:
-    order: list[str]
+@dataclass(frozen=True)
+class Problem:
+    """Bodies, items, and which of them meet in the plane; ``fixed`` gives bodies their layer."""
+
+    bodies: Sequence[str]
     items: Sequence[Item]
-    rules: dict[str, list[tuple[int, int]]]
-    """By body, the conflicts that may come up when it is placed."""
-    pins: dict[str, list[int]]
-    count: int
-    fixed: Mapping[str, int]
-    choices: Sequence[str]
-    groups: Mapping[str, Sequence[str]]
-    """By the first of bodies that share a layer, all of them."""
-    left: int
-    best: dict[str, int] | None = None
-    cost: float = float("inf")
+    conflicts: Sequence[tuple[int, int]]
+    fixed: Mapping[str, int] = field(default_factory=dict)
+    together: Sequence[tuple[str, str]] = ()
+    """Pairs that share a layer."""
+    hanging: frozenset[str] = frozenset()
+    """Choices of those pivots on ground that may hang from a bridge."""
 
-    def run(self) -> None:
-        self._place(0, {}, 0.0)
+    @property
+    def heads(self) -> dict[str, str]:
+        """The first of the bodies that share a layer, by body."""
+        first = {body: body for body in self.bodies}
+        for a, b in self.together:
+            old, new = first[b], first[a]
+            first = {body: new if head == old else head for body, head in first.items()}
+        return first
 
-    def _place(self, index: int, levels: dict[str, int], low: float) -> None:
-        if index == len(self.order):
-            self.best, self.cost = dict(levels), low
-            return
-        body = self.order[index]
-        group = self.groups.get(body, (body,))
-        wished = {self.fixed[member] for member in group if member in self.fixed}
-        options: Sequence[int] = sorted(wished)[:1] if wished else range(2 if body in self.choices else self.count)
-        ranked: list[tuple[float, int]] = []
-        for level in options:
-            levels.update(dict.fromkeys(group, level))
-            if not any(self._clash(member, levels) for member in group):
-                ranked.append((low + self._growth(group, levels), level))
-            _remove(levels, group)
-        for cost, level in sorted(ranked):
-            if self.left <= 0 or cost >= self.cost:
-                return
-            self.left -= 1
-            levels.update(dict.fromkeys(group, level))
-            self._place(index + 1, levels, cost)
-            _remove(levels, group)
+    @property
+    def most(self) -> int:
+        """So many layers are enough for every order: each a step above the last, as high as items need at most."""
+        ends = [pair for item in self.items for both in item.reach.ends.values() for pair in both]
+        lowest = min((low for low, _ in ends if low is not None), default=0)
+        highest = max((high for _, high in ends if high is not None), default=0)
+        step = max((highest - lowest) // 2 + 1, 1)
+        fixed = max((level + step for level in self.fixed.values()), default=0)
+        return 1 + step * (len(set(self.heads.values())) - 1) + fixed
 
-    def _clash(self, body: str, levels: dict[str, int]) -> bool:
-        spans: dict[int, tuple[int, int] | None] = {}
-        for i, j in self.rules[body]:
-            for k in (i, j):
-                if k not in spans:
-                    spans[k] = self.items[k].reach.span(levels)
-            if spans_meet(spans[i], spans[j]):
-                return True
-        return False
+    def clauses(self, count: int, told: Sequence[Hashable] = ()) -> Clauses:
+        """All rules with ``count`` layers; ``told`` gives each conflict a key, and only those assumed by it count."""
+        made = Clauses(self.heads, choices_of(self.items), count)
+        for body, level in self.fixed.items():
+            made.add(made.at_least(body, level))
+            made.add(-made.at_least(body, level + 1))
+        for pivot in self._pivots:
+            if pivot.choice not in self.hanging:
+                made.add(-made.choices[pivot.choice])
+        for k, (i, j) in enumerate(self.conflicts):
+            made.apart(self.items[i].reach, self.items[j].reach, told[k] if told else None)
+        return made
 
-    def _growth(self, group: Sequence[str], levels: dict[str, int]) -> float:
-        """How much longer the pins get by placing a group of bodies, and a little for its own height."""
-        level = levels[group[0]]
-        total = (0.3 if group[0] in self.choices else 0.01) * level
-        pins = {k for body in group for k in self.pins[body]}
-        total += sum(_length(self.items[k].reach.span(levels)) for k in pins)
-        _remove(levels, group)
-        total -= sum(_length(self.items[k].reach.span(levels)) for k in pins)
-        levels.update(dict.fromkeys(group, level))
-        return total
+    @property
+    def _pivots(self) -> list[PivotReach]:
+        return [item.reach for item in self.items if isinstance(item.reach, PivotReach)]
 
+    def bridged(self, clauses: Clauses, driven: bool = False) -> list[int]:
+        """Literals that are true for pivots (for driven ones) on bridges."""
+        pivots = [pivot for pivot in self._pivots if pivot.driven or not driven]
+        return [clauses.choices[name] for name in dict.fromkeys(pivot.choice for pivot in pivots)]
 
-def _remove(levels: dict[str, int], group: Sequence[str]) -> None:
-    for body in group:
-        del levels[body]
-
-
-def _length(span: tuple[int, int] | None) -> int:
-    return 0 if span is None or span[1] == TOP else span[1] - span[0]
-
-
-def find_layers(
-    bodies: Sequence[str],
-    items: Sequence[Item],
-    conflicts: Sequence[tuple[int, int]],
-    fixed: Mapping[str, int] | None = None,
-    most: int | None = None,
-    tries: int = TRIES,
-    together: Sequence[tuple[str, str]] = (),
-) -> dict[str, int] | None:
-    """The layer of each body, from 0 up, and the choices; None where no order was found with up to ``most`` layers.
-
-    ``conflicts`` are indices of items that meet in the plane; ``fixed`` gives bodies their layer. The fewest layers
-    that do, and with these the shortest pins.
-    """
-    fixed = fixed or {}
-    most = most or len(bodies) + 1
-    choices = list(dict.fromkeys(item.reach.choice for item in items if isinstance(item.reach, PinReach)))
-    rules: dict[str, list[tuple[int, int]]] = {name: [] for name in (*bodies, *choices)}
-    for i, j in conflicts:
-        for name in {*_scope(items[i]), *_scope(items[j])} & rules.keys():
-            rules[name].append((i, j))
-    pins = {name: [k for k, item in enumerate(items) if name in _scope(item)] for name in rules}
-    groups = _groups(bodies, together)
-    order = _with_choices(_ordered(bodies, items, conflicts), items, groups)
-    for count in range(max([1, *(level + 1 for level in fixed.values())]), most + 1):
-        search = _Search(order, items, rules, pins, count, fixed, choices, groups, tries)
-        search.run()
-        if search.best is not None:
-            return search.best
-    return None
+    @property
+    def clique(self) -> int:
+        """So many layers are needed at least: bodies whose plates all meet each other, found greedily."""
+        meet: dict[str, set[str]] = {head: set() for head in self.heads.values()}
+        for i, j in self.conflicts:
+            a, b = self.items[i].reach, self.items[j].reach
+            if a == Reach(a.bodies[:1]) and b == Reach(b.bodies[:1]) and a.bodies and b.bodies:
+                one, other = self.heads[a.bodies[0]], self.heads[b.bodies[0]]
+                if one != other:
+                    meet[one].add(other)
+                    meet[other].add(one)
+        most = 1
+        for start in meet:
+            clique, left = 1, meet[start]
+            while left:
+                chosen = max(left, key=lambda body: (len(meet[body] & left), body))
+                clique, left = clique + 1, left & meet[chosen]
+            most = max(most, clique)
+        return most
 
 
-def _scope(item: Item) -> tuple[str, ...]:
-    """The bodies and the choice that an item's heights depend on."""
-    reach = item.reach
-    return (*reach.bodies, reach.choice) if isinstance(reach, PinReach) else reach.bodies
+def find_layers(problem: Problem) -> dict[str, int] | None:
+    """The layer of each body, from 0 up, and the choices; None where there is no order, with any number of layers."""
+    least = max([problem.clique, *(level + 1 for level in problem.fixed.values())])
+    few, bridges = len(set(problem.heads.values())) <= MANY, 0
+    if few or problem.hanging:
+        bridges = _fewest_bridges(problem)
+        if bridges is None:
+            return None
+    for count in range(least, problem.most):
+        found = _within(problem, count, bridges, BUDGET if few else BUDGET // LESS)
+        if found is not None:
+            return found
+    return _within(problem, problem.most, bridges, None)
 
 
-def _groups(bodies: Sequence[str], together: Sequence[tuple[str, str]]) -> dict[str, list[str]]:
-    """Bodies that share a layer, by their first one."""
-    first = {body: body for body in bodies}
-    for a, b in together:
-        old, new = first[b], first[a]
-        first = {body: new if head == old else head for body, head in first.items()}
-    found: dict[str, list[str]] = {}
-    for body in bodies:
-        found.setdefault(first[body], []).append(body)
-    return {members[0]: members for members in found.values()}
-
-
-def _with_choices(order: Sequence[str], items: Sequence[Item], groups: Mapping[str, Sequence[str]]) -> list[str]:
-    """Bodies that share a layer once, where the first of them is; each choice right after the last of its bodies."""
-    head = {member: members[0] for members in groups.values() for member in members}
-    found = list(dict.fromkeys(head[body] for body in order))
-    for item in items:
-        if isinstance(item.reach, PinReach) and item.reach.choice not in found:
-            last = max(found.index(head[body]) for body in item.reach.bodies)
-            found.insert(last + 1, item.reach.choice)
+def _fewest_bridges(problem: Problem) -> int | None:
+    """How many pivots must hang from bridges; None if there is no order."""
+    clauses = problem.clauses(problem.most)
+    literals = problem.bridged(clauses)
+    if not clauses.solved():
+        return None
+    found = sum(map(clauses.holds, literals))
+    total = clauses.count_of(literals, len(literals))
+    while found and clauses.solved([-total[found - 1]]):
+        found = sum(map(clauses.holds, literals))
+    clauses.close()
     return found
 
 
-def _ordered(bodies: Sequence[str], items: Sequence[Item], conflicts: Sequence[tuple[int, int]]) -> list[str]:
-    """Bodies so that each has many rules with those before it."""
-    shared: dict[str, dict[str, int]] = {body: {} for body in bodies}
-    for i, j in conflicts:
-        scope = [body for body in {*items[i].reach.bodies, *items[j].reach.bodies} if body in shared]
-        for a in scope:
-            for b in scope:
-                if a != b:
-                    shared[a][b] = shared[a].get(b, 0) + 1
-    order: list[str] = []
-    waiting = list(bodies)
-    while waiting:
-        chosen = max(
-            waiting,
-            key=lambda body: (
-                sum(shared[body].get(done, 0) for done in order),
-                sum(shared[body].values()),
-                -bodies.index(body),
-            ),
-        )
-        order.append(chosen)
-        waiting.remove(chosen)
-    return order
+def _within(problem: Problem, count: int, bridges: int, budget: int | None) -> dict[str, int] | None:
+    """The best order with ``count`` layers and as many bridges; None if there is none, or none found."""
+    clauses = problem.clauses(count)
+    literals = problem.bridged(clauses)
+    if bridges < len(literals):
+        clauses.add(-clauses.count_of(literals, bridges + 1)[bridges])
+    if not clauses.solved(budget=budget):
+        clauses.close()
+        return None
+    few = len(clauses.steps) <= MANY
+    purse = clauses.spent + (PURSE if few else PURSE // LESS)
+    crossings = clauses.crossings(problem.items)
+    clauses.solved()
+    for wish in (
+        problem.bridged(clauses, driven=True),
+        crossings,
+        [clauses.choices[choice] for choice in choices_of(problem.items)],
+        [step for steps in clauses.steps.values() for step in steps] if few else [],
+    ):
+        _lower(clauses, wish, purse)
+    if few:
+        _settle(clauses, [*_highest_first(clauses.steps), *clauses.choices.values()])
+    found = {body: clauses.layer(body) for body in problem.bodies}
+    found |= {choice: int(clauses.holds(literal)) for choice, literal in clauses.choices.items()}
+    clauses.close()
+    return found
+
+
+def _lower(clauses: Clauses, literals: Sequence[int], purse: int) -> None:
+    """Let as few of ``literals`` be true as the solver finds, and keep to that; the model is the best one."""
+    count = sum(map(clauses.holds, literals))
+    if count == 0:
+        for literal in literals:
+            clauses.add(-literal)
+        return
+    total = clauses.count_of(literals, count)
+    while count and clauses.spent < purse and clauses.solved([-total[count - 1]], BUDGET):
+        count = sum(map(clauses.holds, literals))
+    if count < len(total):
+        clauses.add(-total[count])
+    clauses.solved()
+
+
+def _settle(clauses: Clauses, literals: Sequence[int]) -> None:
+    """Let the first literal be false if it can be, then the next: one model of many is the same everywhere."""
+    for literal in literals:
+        if not clauses.holds(literal) or clauses.solved([-literal], BUDGET):
+            clauses.add(-literal)
+        else:
+            clauses.solved()
+
+
+def _highest_first(steps: Mapping[str, Sequence[int]]) -> list[int]:
+    """The highest step of each body first."""
+    return [step for own in steps.values() for step in reversed(own)]
+
+
+def blocking[Key: Hashable](problem: Problem, told: Sequence[Key]) -> list[Key]:
+    """Keys of conflicts that leave no order; without any one of them there would be one. ``told``: one per conflict."""
+    clauses = problem.clauses(problem.most, told)
+    kept = list(dict.fromkeys(told))
+    literals = {key: clauses.keys[key] for key in kept}
+    if clauses.solved(list(literals.values())):
+        raise ValueError("there is an order of layers")
+    kept = _core(clauses, literals, kept)
+    for key in list(kept):
+        fewer = [other for other in kept if other != key]
+        if key in kept and clauses.solved([literals[other] for other in fewer], BUDGET) is False:
+            kept = _core(clauses, literals, fewer)
+    clauses.close()
+    return kept
+
+
+def _core[Key: Hashable](clauses: Clauses, literals: Mapping[Key, int], kept: Sequence[Key]) -> list[Key]:
+    """Those of ``kept`` that the solver needed to see that there is no order."""
+    core = set(clauses.solver.get_core() or ())
+    return [key for key in kept if literals[key] in core]

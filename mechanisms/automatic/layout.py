@@ -10,9 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechanisms.automatic.items import Item, Reach, spans_meet
-from mechanisms.automatic.planar import Rounded, around, least_gap
+from mechanisms.automatic.layers import Problem
+from mechanisms.automatic.planar import Rounded, around, least_gap, placed
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from mbsd import Marker, Mechanism
     from mechanisms.automatic.features import Anchor, Feature
     from mechanisms.automatic.gears import Wheel
@@ -118,12 +121,21 @@ class Layout:
     @cached_property
     def conflicts(self) -> list[tuple[int, int]]:
         """Pairs of items of different bodies that meet in the plane at some time: they need different heights."""
-        found = []
-        for j, second in enumerate(self.items):
-            for i, first in enumerate(self.items[:j]):
-                if self._may_meet(first, second) and self.gap(first, second)[0] < self.sizes.room:
+        items, found = self.items, []
+        circles = [item.shape.reach for item in items]
+        radii = np.array([radius for _, radius in circles])
+        middles = [placed(c, self.poses[item.body])[:, 0] for (c, _), item in zip(circles, items, strict=True)]
+        for j, second in enumerate(items):
+            may = [i for i, first in enumerate(items[:j]) if self._may_meet(first, second)]
+            for i in may:
+                apart = float(((middles[i] - middles[j]) ** 2).sum(axis=1).min()) ** 0.5
+                if apart - radii[i] - radii[j] < self.sizes.room and self.gap(items[i], second)[0] < self.sizes.room:
                     found.append((i, j))
         return found
+
+    def problem(self, fixed: Mapping[str, int] | None = None, hanging: frozenset[str] = frozenset()) -> Problem:
+        """What the search for layers is asked."""
+        return Problem(self.layered, self.items, self.conflicts, fixed or {}, self.together, hanging)
 
     def gap(self, first: Item, second: Item) -> tuple[float, float]:
         """Least gap in the plane (rmm), and its time (s)."""

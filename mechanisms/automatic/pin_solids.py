@@ -34,7 +34,7 @@ def moving_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> No
     boss = 0.0 if boss < 0.05 else boss
     plan.eye(holder, x, y, Eye(sizes.eye - 0.5, pivot.held, above=boss, boss=min(9.5, sizes.hardware)))
     plan.add(holder, pivot.washer_at(f"washer_{joint.name}", x, y, low + boss + fit.seat))
-    _run(joint, runners, holder, plan, heights)
+    run(joint, runners, holder, plan, heights)
     start = heights.bottom(holder) + 0.3
     head = heights.top(runners[-1]) + pivot.flange_room + fit.axial
     bolt = pin(pivot.pin, head - start, sizes.head)
@@ -54,7 +54,7 @@ def hanging_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> N
     boss = 0.0 if boss < 0.05 else boss
     plan.eye(holder, x, y, Eye(sizes.eye - 0.5, pivot.held, below=boss, boss=min(9.5, sizes.hardware)))
     plan.add(holder, pivot.washer_at(f"washer_{name}_high", x, y, high - boss - pivot.washer_room))
-    _run(joint, runners, holder, plan, heights)
+    run(joint, runners, holder, plan, heights)
     clip = heights.bottom(runners[0]) - pivot.flange_room - pivot.retainer_room
     low = clip - sizes.pin_end
     covered = _flush(joint, holder, plan, heights)
@@ -74,8 +74,8 @@ def ground_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> No
     pivot, fit = sizes.pivot, sizes.pivot.fit
     x, y = joint.places["ground"]
     height = heights.bottom(stack[0]) - pivot.flange_room - fit.axial - pivot.washer_room
-    _pedestal(joint, height, plan)
-    _run(joint, stack, "ground", plan, heights)
+    standing(name, (x, y), height, plan, dial=joint.driven)
+    run(joint, stack, "ground", plan, heights)
     clip = heights.top(stack[-1]) + pivot.flange_room + pivot.retainer_room - pivot.clip_thickness
     bolt = pin(pivot.pin, clip + pivot.clip_thickness + sizes.pin_end - 0.5, None, pivot.groove(clip - 0.5))
     plan.make("ground", f"pin_{name}", placed(bolt, x, y, 0.5), "steel", 0)
@@ -106,7 +106,7 @@ def _flush(joint: Pin, holder: str, plan: Plan, heights: Heights) -> bool:
     return any(plan.layout.is_covered(joint, half + above, heights.levels) for above in (1, 2))
 
 
-def _run(joint: Pin, runners: list[str], holder: str, plan: Plan, heights: Heights) -> None:
+def run(joint: Pin, runners: list[str], holder: str, plan: Plan, heights: Heights) -> None:
     """Bushings in every body that turns on the pin, and a sleeve between each and the next."""
     sizes = plan.layout.sizes
     pivot = sizes.pivot
@@ -123,26 +123,37 @@ def _run(joint: Pin, runners: list[str], holder: str, plan: Plan, heights: Heigh
             plan.make(holder, f"sleeve_{joint.name}_{below}", placed(tube, *at, start), "steel", 1)
 
 
-def _pedestal(joint: Pin, height: float, plan: Plan) -> None:
-    """On the base plate, with a flange and screws where there is room for them beside its neighbours."""
+def standing(
+    name: str,
+    at: tuple[float, float],
+    height: float,
+    plan: Plan,
+    label: str | None = None,
+    dial: bool = False,
+    kind: str = "pedestal",
+) -> None:
+    """A pedestal on the base plate, with a flange and screws where there is room for them beside its neighbours.
+
+    ``label`` is what is engraved beside it, by default its name.
+    """
     sizes = plan.layout.sizes
     pivot, seat = sizes.pivot, sizes.pivot.fit.seat
-    x, y = joint.places["ground"]
+    x, y = at
     room = plan.layout.room_on_base(x, y)
-    name = f"pedestal_{joint.name}"
+    label = name if label is None else label
     if room < FLANGE / 2 + 0.5 or sizes.screw == 0:
         foot = min(FOOT, 2 * room - 1.0)
         post = column(height - seat, pivot.held, min(TOP, foot), foot)
-        plan.make("ground", name, placed(post, x, y, seat), "aluminium", 1)
-        plan.feet.append(Foot(joint.name, x, y, foot / 2, dial=joint.driven))
+        plan.make("ground", f"{kind}_{name}", placed(post, x, y, seat), "aluminium", 1)
+        plan.feet.append(Foot(label, x, y, foot / 2, dial=dial))
         return
     nominal = sizes.screw / sizes.scale
     post = pedestal(height - seat, pivot.held, TOP, FOOT, FLANGE, FLANGE_THICKNESS, 3, nominal, CIRCLE)
-    plan.make("ground", name, placed(post, x, y, seat), "aluminium", 4)
+    plan.make("ground", f"{kind}_{name}", placed(post, x, y, seat), "aluminium", 4)
     bolts = [(x + u, y + v) for u, v in bolt_circle(CIRCLE, 3)]
-    plan.feet.append(Foot(joint.name, x, y, FLANGE / 2, tuple(bolts), joint.driven))
+    plan.feet.append(Foot(label, x, y, FLANGE / 2, tuple(bolts), dial))
     screw = socket_screw(sizes.screw, 11.0 * sizes.scale)
     screw = screw.newObject([screw.val().scale(1 / sizes.scale)])
     for i, (u, v) in enumerate(bolts):
-        at = placed(screw, u, v, FLANGE_THICKNESS + 2 * seat)
-        plan.add("ground", Solid(f"screw_{joint.name}_{i + 1}", at, "steel", 0))
+        at_screw = placed(screw, u, v, FLANGE_THICKNESS + 2 * seat)
+        plan.add("ground", Solid(f"screw_{name}_{i + 1}", at_screw, "steel", 0))

@@ -1,7 +1,7 @@
 """Revolute joints: links that turn about a common axis on one pin, with bushings, washers and circlip.
 
 Joints that share a place on a body share their pin. The lowest body holds it and its head is on top, or the highest
-holds it and it hangs down, kept by a circlip; on ground a pedestal holds it."""
+holds it and it hangs down, kept by a circlip; on ground a pedestal holds it, or a bridge (bridges.py)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from mechanisms.automatic.features import Anchor, Feature, Need, kind
-from mechanisms.automatic.items import BASE, Item, PinReach, Reach
+from mechanisms.automatic.items import BASE, Item, PinReach, PivotReach
 from mechanisms.automatic.pin_solids import ground_pin, hanging_pin, moving_pin
 from mechanisms.automatic.planar import disc
 
@@ -48,11 +48,11 @@ class Pin:
     @property
     def what(self) -> str:
         """What its item is called."""
-        return f"the pedestal and pin of {self.name}" if self.on_ground else f"the pin of {self.name}"
+        return f"the pivot {self.name} on ground" if self.on_ground else f"the pin of {self.name}"
 
     @property
     def on_ground(self) -> bool:
-        """Whether a pedestal holds it."""
+        """Whether a pedestal or a bridge holds it."""
         return "ground" in self.places
 
     @property
@@ -62,7 +62,7 @@ class Pin:
 
     @property
     def choice(self) -> str:
-        """The choice whether its lowest body holds it (0) or its highest (1)."""
+        """Whether its lowest body holds it (0) or its highest (1); on ground: the base (0) or a bridge (1)."""
         return f"pin {self.name}"
 
     @property
@@ -79,7 +79,9 @@ class Pin:
     def items(self, layout: Layout) -> Iterable[Item]:
         """All heights that pin and pedestal take."""
         x, y = self.places[self.home]
-        reach = Reach(self.movers, 1, 1, base=True) if self.on_ground else PinReach(self.movers, self.choice)
+        reach = PinReach(self.movers, self.choice)
+        if self.on_ground:
+            reach = PivotReach(self.movers, self.choice, self.driven)
         return [Item(self.what, self.home, disc(x, y, layout.sizes.hardware), reach, frozenset(self.places), self)]
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
@@ -87,23 +89,27 @@ class Pin:
         sizes, pivot = layout.sizes, layout.sizes.pivot
         running = pivot.fit.axial + pivot.flange_room
         stack = sorted(levels[body] for body in self.movers)
-        hangs = not self.on_ground and levels[self.choice] == 1
+        hangs = levels[self.choice] == 1
         for k, (low, high) in enumerate(pairwise(stack)):
             if high == low + 1:
                 held = not self.on_ground and k == (len(stack) - 2 if hangs else 0)
                 yield Need(low, pivot.washer_room + running * (1 if held else 2))
         top = stack[-1]
         if hangs:
+            if self.on_ground:
+                yield Need(top, pivot.washer_room + running)
             if stack[0] == 0 or layout.is_covered(self, 2 * (stack[0] - 1), levels):
                 yield Need(stack[0] - 1, sizes.clip_room)
         elif layout.is_covered(self, 2 * (top + 1), levels):
             yield Need(top, sizes.clip_room if self.on_ground else sizes.end_room)
-        if self.on_ground and stack[0] == 0:
+        if self.on_ground and not hangs and stack[0] == 0:
             yield Need(BASE, sizes.pedestal + pivot.washer_room + running)
 
     def build(self, plan: Plan, heights: Heights) -> None:
         """Eyes and hardware."""
         stack = sorted(self.movers, key=lambda body: heights.bottom(body))
+        if self.on_ground and heights.levels[self.choice] == 1:
+            return  # its bridge builds it
         if self.on_ground:
             ground_pin(self, stack, plan, heights)
         elif heights.levels[self.choice] == 1:

@@ -72,15 +72,15 @@ def least_gap(
     """
     centre, radius = first.reach
     other, beside = second.reach
-    apart = np.linalg.norm(_placed(centre, poses[0]) - _placed(other, poses[1]), axis=2)[:, 0]
+    apart = np.linalg.norm(placed(centre, poses[0]) - placed(other, poses[1]), axis=2)[:, 0]
     gaps = apart - radius - beside
     near = np.flatnonzero(gaps <= enough)
     if not len(near):
         at = int(np.argmin(gaps))
         return float(gaps[at]), at
     for chosen in (near[::COARSE], near):
-        a = _placed(first.core_at(chosen), poses[0][chosen])
-        b = _placed(second.core_at(chosen), poses[1][chosen])
+        a = placed(first.core_at(chosen), poses[0][chosen])
+        b = placed(second.core_at(chosen), poses[1][chosen])
         found = core_gaps(a, b) - first.radius - second.radius
         at = int(np.argmin(found))
         if found[at] <= enough:
@@ -136,7 +136,7 @@ def _cross(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
-def _placed(points: np.ndarray, pose: np.ndarray) -> np.ndarray:
+def placed(points: np.ndarray, pose: np.ndarray) -> np.ndarray:
     """(T, n, 2): points (n, 2) or (T, n, 2) of a body in the world at poses (T, 3)."""
     c, s = np.cos(pose[:, 2:]), np.sin(pose[:, 2:])
     x = pose[:, :1] + c * points[..., 0] - s * points[..., 1]

@@ -2,36 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from mechanisms.automatic.layers import find_layers
+from mechanisms.automatic.bridges import may_hang
+from mechanisms.automatic.layers import blocking
 
 if TYPE_CHECKING:
     from mechanisms.automatic.layout import Layout
 
-TRIES = 4_000
-"""Choices that are tried to see whether one pair of bodies more can be left out."""
 TOLD = 4
 """So many meetings are told."""
 
 
-def refusal(layout: Layout) -> str:
-    """A sentence or two. Pairs of bodies are left out one after the other as long as there is still no order."""
+def refusal(layout: Layout, fixed: Mapping[str, int]) -> str:
+    """A sentence or two, of meetings that together leave no order: without any one of them there would be one."""
     items, moving = layout.items, layout.layered
-    kept = list(layout.conflicts)
-    pairs = list(dict.fromkeys(_pair(layout, rule) for rule in kept))
-    for pair in pairs:
-        fewer = [rule for rule in kept if _pair(layout, rule) != pair]
-        if find_layers(moving, items, fewer, tries=TRIES, together=layout.together) is None:
-            kept = fewer
+    problem = layout.problem(fixed, may_hang(layout))
+    pairs = set(blocking(problem, [_pair(layout, rule) for rule in layout.conflicts]))
+    kept = [rule for rule in layout.conflicts if _pair(layout, rule) in pairs]
     bodies = sorted({body for rule in kept for k in rule for body in items[k].reach.bodies}, key=moving.index)
     pins = [rule for rule in kept if any(items[k].source is not None for k in rule)] or kept
     meetings = [_meeting(layout, rule) for rule in _first_of_each(layout, pins)[:TOLD]]
     return (
-        f"{layout.m.name}: no order of layers lets {_listed(bodies)} pass each other: {'; '.join(meetings)}. "
-        "Make links shorter or move joints apart so that one stays clear of the other, make pins thinner "
-        "(automatic(m, pin=...)), or shape them by hand in parts.py"
+        f"{layout.m.name}: no order of layers lets {_listed(bodies)} pass each other with pins of "
+        f"{layout.sizes.pin:g} mm, on the base or on bridges: {'; '.join(meetings)}. Make links shorter or move joints "
+        "apart so that one stays clear of the other, make pins thinner still (automatic(m, pin=...)), or shape them by "
+        "hand in parts.py"
     )
 
 

@@ -53,6 +53,9 @@ LEAST_LINK = 2.75
 OVERALL = 20.0
 """The longer side of what the joints sweep, in diameters of a pin."""
 
+THINNEST = 0.5
+"""Of the pins that are tried, in pins of the wished size."""
+
 
 @dataclass(frozen=True)
 class Sizes:
@@ -106,10 +109,13 @@ class Sizes:
         return nearest if nearest <= THICKEST_SCREW * self.scale else 0.0
 
 
-def sizes(shortest: float, overall: float) -> Sizes:
-    """From the shortest distance of two joints of one body and the longer side of what all joints sweep (m)."""
-    wish = min(mm(shortest) / LEAST_LINK, mm(overall) / OVERALL)
-    return of_pin(standard(wish))
+def sizes(shortest: float, overall: float) -> list[Sizes]:
+    """From the shortest distance of two joints of one body and the longer side of what all joints sweep (m); then
+    with thinner pins.
+    """
+    pin = standard(min(mm(shortest) / LEAST_LINK, mm(overall) / OVERALL))
+    thinner = [d for d in reversed(STANDARD) if THINNEST * pin <= d < pin]
+    return [of_pin(d) for d in (pin, *thinner)]
 
 
 def of_pin(diameter: float) -> Sizes:

@@ -1,4 +1,4 @@
-"""How the tests are spread over processes: a file is a group, a folder of mechanisms/ is one, the long ones come first."""
+"""How tests are spread over processes: a file is a group, so is a folder of mechanisms/; the long ones come first."""
 
 from __future__ import annotations
 

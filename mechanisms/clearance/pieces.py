@@ -76,7 +76,7 @@ class MeshPiece:
         import manifold3d
 
         corners, index = np.unique(self.triangles.reshape(-1, 3), axis=0, return_inverse=True)
-        solid = manifold3d.Manifold(manifold3d.Mesh(corners.astype(np.float32), index.reshape(-1, 3).astype(np.uint32)))
+        solid = manifold3d.Manifold(manifold3d.Mesh64(corners, index.reshape(-1, 3).astype(np.uint64)))
         if solid.status() != manifold3d.Error.NoError:
             raise UserError(f"{self.body}: {self.name}: its STL is not a closed surface ({solid.status()})")
         return solid

@@ -24,7 +24,7 @@ import numpy as np
 from mechanisms.clearance.facets import nearest, normals, separation
 from mechanisms.clearance.path import RelativePath
 from mechanisms.clearance.spans import Spans
-from mechanisms.clearance.tree import FacetTree
+from mechanisms.clearance.tree import Tree
 
 RESOLUTION = 0.005
 """The proven gap is at most this (mm) below one that was measured, apart from the error between samples."""
@@ -51,10 +51,15 @@ class Least:
 class Search:
     """Branch and bound for one pair; a candidate is a row (node of the still piece, node of the mover, span)."""
 
-    def __init__(self, still: FacetTree, mover: FacetTree, path: RelativePath, offset: np.ndarray) -> None:
+    resolution = RESOLUTION
+
+    def __init__(self, still: Tree, mover: Tree, path: RelativePath, offset: np.ndarray) -> None:
         """``offset`` (2,): the origin of ``still`` in its body's frame (mm); that of ``mover`` is ``path.centre``."""
         self.a, self.b = still, mover
         self.offset = np.append(offset, 0.0)
+        to_plane = np.array([1.0, 1j])
+        self._centre_a, self._centre_b = (still.centre + offset) @ to_plane, mover.centre @ to_plane
+        self._box_a, self._box_b = (still.box_centre + offset) @ to_plane, mover.box_centre @ to_plane
         self.spans = Spans(path)
         self.best = self.time = self.proven = self.off = 0.0
         self.looked = 0
@@ -115,7 +120,7 @@ class Search:
 
     def _sought(self, span: np.ndarray) -> np.ndarray:
         """(n,): what is proven to be this far apart (mm) in these spans is of no more interest."""
-        return self.best - RESOLUTION + np.minimum(self.spans.off[span], FARTHEST_OFF)
+        return self.best - self.resolution + np.minimum(self.spans.off[span], FARTHEST_OFF)
 
     def _settle(self, rows: np.ndarray, low: np.ndarray) -> None:
         """Candidates that are done: the gap is never below their bounds less the error of the motion."""
@@ -131,61 +136,81 @@ class Search:
     def _apart(self, rows: np.ndarray) -> np.ndarray:
         """(n,): the gap (mm) of the two groups' cylinders at the middle of the span."""
         a, b, span = rows.T
-        x, y, theta = self.spans.ends[span, 1].T
-        c, s = np.cos(theta), np.sin(theta)
-        bx, by = self.b.centre[b].T
-        ax, ay = self.a.centre[a].T + self.offset[:2, None]
-        plane = np.hypot(x + c * bx - s * by - ax, y + s * bx + c * by - ay) - self.a.radius[a] - self.b.radius[b]
-        height = np.maximum(self.a.low[a] - self.b.high[b], self.b.low[b] - self.a.high[a])
-        return np.hypot(np.maximum(plane, 0.0), np.maximum(height, 0.0))
+        way = self.spans.place[span, 1] + self.spans.turned[span, 1] * self._centre_b[b] - self._centre_a[a]
+        return np.hypot(np.maximum(np.abs(way) - self.a.radius[a] - self.b.radius[b], 0.0), self._height(a, b))
 
     def _boxes_apart(self, rows: np.ndarray) -> np.ndarray:
-        """(n,): how far (mm) the two groups' boxes stay apart over the whole span, along a side of either."""
+        """(n,): how far (mm) the two groups' boxes stay apart over the whole span, along a side of either.
+
+        A side's direction is that of the still box, or that of the mover's at the middle of the span; along it the
+        boxes are apart by the least of what they are at start and end.
+        """
         a, b, span = rows.T
-        poses = self.spans.ends[span]
-        centre, half = self.a.box_centre[a] + self.offset[:2], self.a.box_half[a]
-        c, s = np.cos(poses[:, :, 2]), np.sin(poses[:, :, 2])
-        turn = np.moveaxis(np.array([[c, -s], [s, c]]), (0, 1), (2, 3))
-        """(n, 3, 2, 2) at start, middle and end."""
-        gap = poses[:, :, :2] + np.einsum("nkij,nj->nki", turn, self.b.box_centre[b]) - centre[:, None]
-        axes = np.einsum("nkij,xj->nkxi", turn, self.b.axes)
-        plane = np.full(len(rows), -np.inf)
-        for direction in (*np.broadcast_to(self.a.axes[:, None], (2, len(rows), 2)), axes[:, 1, 0], axes[:, 1, 1]):
-            wide = (np.abs(direction @ self.a.axes.T) * half).sum(axis=1)[:, None]
-            wide = wide + (np.abs(np.einsum("nkxi,ni->nkx", axes, direction)) * self.b.box_half[b][:, None]).sum(axis=2)
-            along = np.einsum("nki,ni->nk", gap, direction)
-            for side in (along - wide, -along - wide):
-                plane = np.maximum(plane, np.minimum(side[:, 0], side[:, 2]))
-        plane -= self.spans.push[span] + self.b.reach[b] * self.spans.spin[span]
-        height = np.maximum(self.a.low[a] - self.b.high[b], self.b.low[b] - self.a.high[a])
-        return np.hypot(np.maximum(plane, 0.0), np.maximum(height, 0.0))
+        along_a, across_a = self.a.box_half[a].T
+        along_b, across_b = self.b.box_half[b].T
+        turned, centre = self.spans.turned[span] * self.b.axis, self._box_b[b] / self.b.axis
+        box_a = self._box_a[a]
+        lean = turned[:, 1] / self.a.axis
+        c, s = np.abs(lean.real), np.abs(lean.imag)
+        wide = c * along_a + s * across_a, s * along_a + c * across_a
+        """Half the widths of the still box along and across the mover's."""
+        plane = None
+        for k in (0, 2):
+            way = self.spans.place[span, k] + turned[:, k] * centre - box_a
+            lean, seen = turned[:, k] / self.a.axis, way / self.a.axis
+            c, s = np.abs(lean.real), np.abs(lean.imag)
+            sides = [
+                (seen.real, along_a + c * along_b + s * across_b),
+                (seen.imag, across_a + s * along_b + c * across_b),
+            ]
+            lean, seen = turned[:, k] * turned[:, 1].conj(), way * turned[:, 1].conj()
+            c, s = np.abs(lean.real), np.abs(lean.imag)
+            sides += [
+                (seen.real, wide[0] + c * along_b + s * across_b),
+                (seen.imag, wide[1] + s * along_b + c * across_b),
+            ]
+            gaps = [gap for away, half in sides for gap in (away - half, -away - half)]
+            plane = gaps if plane is None else [np.minimum(x, y) for x, y in zip(plane, gaps, strict=True)]
+        most = np.maximum.reduce(plane or [])
+        most -= self.spans.push[span] + self.b.reach[b] * self.spans.spin[span]
+        return np.hypot(np.maximum(most, 0.0), self._height(a, b))
+
+    def _height(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        """(n,): the height (mm) between two groups, 0 where they share some."""
+        return np.maximum(np.maximum(self.a.low[a] - self.b.high[b], self.b.low[b] - self.a.high[a]), 0.0)
 
     def _measured(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Pairs of facets: the gap at the middle, the bound over the span, and the halves of spans that need them."""
         if not len(rows):
             return rows, np.empty(0)
         a, b, span = rows.T
-        p = self.a.facets[a - self.a.leaves] + self.offset
-        q = self.b.facets[b - self.b.leaves]
-        first, middle, last = (_placed(q, self.spans.ends[span, k]) for k in range(3))
-        gap, way = nearest(p, middle)
-        straight = way / np.maximum(gap, 1e-12)[:, None]
-        gap = np.where(separation(straight, p, middle) > 0.0, gap, 0.0)  # else they pierce each other
+        gap, low = self._bounded(a - self.a.leaves, b - self.b.leaves, span)
         nearest_one = int(gap.argmin())
         if gap[nearest_one] < self.best:
             self.best, self.time = (
                 float(gap[nearest_one]),
                 float(self.spans.middle(span[nearest_one : nearest_one + 1])[0]),
             )
-        low = np.full(len(rows), -np.inf)
-        for direction in (straight, _facing(normals(p), way), _facing(normals(middle), way)):
-            ends = np.minimum(separation(direction, p, first), separation(direction, p, last))
-            low = np.maximum(low, np.where((direction != 0).any(axis=1), ends, -np.inf))
         low -= self.spans.push[span] + self.b.reach[b] * self.spans.spin[span]
-        enough = gap - RESOLUTION - 0.1 * self.spans.off[span]
+        enough = gap - self.resolution - 0.1 * self.spans.off[span]
         open_ = low < np.minimum(self._sought(span), enough)
         self._settle(rows[~open_], low[~open_])
         return self._halved_spans(rows[open_], np.maximum(low[open_], 0.0))
+
+    def _bounded(self, a: np.ndarray, b: np.ndarray, span: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(n,) each, of pairs of single facets: the gap (mm) at the middle of the span; what the best direction
+        separates them by at both its ends.
+        """
+        p, q = self.a.facets[a] + self.offset, self.b.facets[b]
+        first, middle, last = (_placed(q, self.spans.ends[span, k]) for k in range(3))
+        gap, way = nearest(p, middle)
+        straight = way / np.maximum(gap, 1e-12)[:, None]
+        gap = np.where(separation(straight, p, middle) > 0.0, gap, 0.0)  # else they pierce each other
+        low = np.full(len(p), -np.inf)
+        for direction in (straight, _facing(normals(p), way), _facing(normals(middle), way)):
+            ends = np.minimum(separation(direction, p, first), separation(direction, p, last))
+            low = np.maximum(low, np.where((direction != 0).any(axis=1), ends, -np.inf))
+        return gap, low
 
     def _halved_spans(self, rows: np.ndarray, low: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         if not len(rows):

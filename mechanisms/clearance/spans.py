@@ -14,7 +14,8 @@ class Spans:
     """A table that grows. Each span knows where the mover is at its ends and middle, and how far it strays between.
 
     ``first`` and ``last`` are the intervals it lies in; ``off`` (mm) is what the true motion may be off there.
-    ``ends`` (n, 3, 3): at start, middle and end the centre's x, y (mm) and the angle (rad). ``push`` (mm) and ``spin``
+    ``ends`` (n, 3, 3): at start, middle and end the centre's x, y (mm) and the angle (rad); ``place`` and ``turned``
+    (n, 3) are the same as x + i y and e^(i angle). ``push`` (mm) and ``spin``
     (mm a mm from the centre) are how far points stray from the straight lines between their ends. ``travel`` (mm) and
     ``turn`` (rad) are how far centre and angle are from the middle's at most.
     """
@@ -31,6 +32,7 @@ class Spans:
         self.first, self.last = np.empty(0, int), np.empty(0, int)
         self.start, self.end = np.empty(0), np.empty(0)
         self.ends = np.empty((0, 3, 3))
+        self.place, self.turned = np.empty((0, 3), complex), np.empty((0, 3), complex)
         self.push, self.spin, self.travel, self.turn, self.off = (np.empty(0) for _ in range(5))
         self._half = np.empty(0, int)
         self._add(firsts, lasts, start[firsts], start[lasts] + width[lasts])
@@ -75,6 +77,8 @@ class Spans:
             "start": start,
             "end": end,
             "ends": ends,
+            "place": ends[:, :, 0] + 1j * ends[:, :, 1],
+            "turned": np.exp(1j * ends[:, :, 2]),
             "push": push,
             "spin": spin,
             "travel": np.hypot(off[:, :, 0], off[:, :, 1]).max(axis=1) + push,

@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from mechanisms.clearance.outline_search import least_by_outlines
 from mechanisms.clearance.path import BodyPath, RelativePath, relative
 from mechanisms.clearance.pieces import MeshPiece, height_between
 from mechanisms.clearance.search import RESOLUTION, Least, Search
 from mechanisms.clearance.spans import Spans
-from mechanisms.clearance.tree import FacetTree
+from mechanisms.clearance.tree import Tree
 
 FIRST = 9
 """Poses at which the whole pieces are compared before the search."""
@@ -61,13 +62,16 @@ class Sweep:
         best = min(gaps, key=gaps.__getitem__)
         if gaps[best] <= 0:
             return Least(0.0, best, 0.0, len(gaps))
+        told = least_by_outlines(self, gaps[best], best, len(gaps))
+        if told is not None:
+            return told
         found = self._search(self.still.sides, self.mover.sides, gaps[best], best, len(gaps))
         height = height_between(self.still, self.mover)
         if height >= found.gap - RESOLUTION:
             return replace(found, proven=min(found.proven, height))
         return self._search(self.still.tree, self.mover.tree, found.gap, found.time, found.poses)
 
-    def _search(self, still: FacetTree, mover: FacetTree, gap: float, time: float, poses: int) -> Least:
+    def _search(self, still: Tree, mover: Tree, gap: float, time: float, poses: int) -> Least:
         return Search(still, mover, self.path, self.still.centre).run(gap, time, poses)
 
     def overlap(self, around: float, count: int = 120) -> Overlap:

@@ -15,18 +15,17 @@ SHORTEST = 1.0
 """No facet is halved below this length in the plane (mm)."""
 
 
-class FacetTree:
-    """See the file. Places are (mm) in the frame of ``triangles`` less ``centre``."""
+class Tree:
+    """See the file. Facets may be triangles, or segments of an outline; places are in mm."""
 
-    def __init__(self, triangles: np.ndarray, centre: np.ndarray, radius: float) -> None:
-        """``triangles`` (n, 3, 3); ``centre`` (2,) and ``radius``: the circle that holds them in the plane."""
-        facets = _halved(triangles - np.append(centre, 0.0), max(2 * radius / SIDES, SHORTEST))
+    def __init__(self, facets: np.ndarray, walls: np.ndarray) -> None:
+        """``facets`` (n, corners, 3); ``walls`` (n,): their normals in the plane, x + i y, as long as they matter."""
         self.leaves = 1 << max(len(facets) - 1, 0).bit_length()
         """Number of leaves; the first of them is the node of this number."""
-        padded = np.full((self.leaves, 3, 3), np.nan)
+        padded = np.full((self.leaves, *facets.shape[1:]), np.nan)
         padded[: len(facets)] = facets
         self.facets = padded[_order(padded.mean(axis=1))]
-        """(leaves, 3, 3): by leaf; those beyond the last are not a number, and so near to nothing."""
+        """(leaves, corners, 3): by leaf; those beyond the last are not a number, and so near to nothing."""
         self.centre = np.full((2 * self.leaves, 2), np.nan)
         self.radius = np.full(2 * self.leaves, np.nan)
         self.low = np.full(2 * self.leaves, np.nan)
@@ -41,24 +40,38 @@ class FacetTree:
             self.low[nodes], self.high[nodes] = low[:, 2], high[:, 2]
         self.reach = np.hypot(*self.centre.T) + self.radius
         """By node: how far its facets reach from the origin (mm)."""
-        self.axes = _axes_of_walls(facets)
-        """(2, 2): the unit directions of the boxes, one a row."""
-        along = self.facets[:, :, :2] @ self.axes.T
+        self.axis = _axis_of_walls(walls)
+        """The unit direction of the boxes' first side, x + i y; the second one is across it."""
+        c, s = self.axis.real, self.axis.imag
+        axes = np.array([[c, s], [-s, c]])
+        along = self.facets[:, :, :2] @ axes.T
         least, most = np.full((2 * self.leaves, 2), np.nan), np.full((2 * self.leaves, 2), np.nan)
         for level in range(self.leaves.bit_length()):
             nodes, corners = slice(1 << level, 2 << level), along.reshape(1 << level, -1, 2)
             least[nodes], most[nodes] = np.fmin.reduce(corners, axis=1), np.fmax.reduce(corners, axis=1)
-        self.box_centre, self.box_half = (least + most) / 2 @ self.axes, (most - least) / 2
+        self.box_centre, self.box_half = (least + most) / 2 @ axes, (most - least) / 2
         """(nodes, 2): the centre of each box (mm), and half its widths along the axes."""
 
 
-def _axes_of_walls(facets: np.ndarray) -> np.ndarray:
-    """(2, 2): the direction, up to quarter turns, of the normals of most upright area, and the one across it."""
-    wall = np.cross(facets[:, 1] - facets[:, 0], facets[:, 2] - facets[:, 0])[:, :2] @ np.array([1.0, 1j])
-    turned = np.sum(np.abs(wall) * np.exp(4j * np.angle(wall)))
-    angle = float(np.angle(turned)) / 4
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, s], [-s, c]])
+class FacetTree(Tree):
+    """The triangles of a mesh, in its frame less ``centre``."""
+
+    def __init__(self, triangles: np.ndarray, centre: np.ndarray, radius: float) -> None:
+        """``triangles`` (n, 3, 3); ``centre`` (2,) and ``radius``: the circle that holds them in the plane."""
+        facets = _halved(triangles - np.append(centre, 0.0), longest_in(radius))
+        walls = np.cross(facets[:, 1] - facets[:, 0], facets[:, 2] - facets[:, 0])[:, :2] @ np.array([1.0, 1j])
+        super().__init__(facets, walls)
+
+
+def longest_in(radius: float) -> float:
+    """How long (mm) facets of a piece may be that a circle of this radius holds."""
+    return max(2 * radius / SIDES, SHORTEST)
+
+
+def _axis_of_walls(walls: np.ndarray) -> complex:
+    """The direction, up to quarter turns, of the longest normals together."""
+    turned = np.sum(np.abs(walls) * np.exp(4j * np.angle(walls)))
+    return complex(np.exp(1j * float(np.angle(turned)) / 4))
 
 
 def _order(centres: np.ndarray) -> np.ndarray:

@@ -114,3 +114,19 @@ def test_profiles_of_tyres_reach_as_far_as_the_wheel() -> None:
     assert road.path[-1, 0] > places[:, 0].max() + part.radius
     assert made.layout.pressing == {frozenset(("ground", "wheel"))}
     assert made.solids().touching == {("ground", "wheel")}
+
+
+def test_planks_of_a_bowl_end_where_they_meet() -> None:
+    m = Mechanism("bowl", gravity=(0.0, -9.81))
+    wheel = m.body("wheel", mass=0.2, inertia=4e-5)
+    angles, places = np.radians([-40.0, -20.0, 0.0, 20.0, 40.0]), [np.zeros(2)]
+    for k, angle in enumerate(angles):
+        m.rigid_contact(f"plank{k}", m.ground.at(*places[-1], angle), wheel.origin, 0.03, friction=0.9)
+        places.append(places[-1] + 0.15 * np.array([math.cos(angle), math.sin(angle)]))
+    m.start_near(wheel=(0.06, 0.06, 0))
+    made, (part,), planks = _made(m, 1.0)
+    assert part.look == "wheel"
+    for k in (1, 2, 3):
+        found = planks[k].path / made.sizes.of_metres(1.0)
+        np.testing.assert_allclose(found, places[k : k + 2], atol=1e-9)
+        np.testing.assert_allclose(planks[k].feet[0], planks[k + 1].feet[1], atol=1e-6)

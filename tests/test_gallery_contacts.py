@@ -6,8 +6,10 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
 from mechanisms.reflective_wall import mechanism as wall
+from mechanisms.terrain_wheel import mechanism as terrain
 
 
 def _folded(way: np.ndarray, low: float, high: float) -> np.ndarray:
@@ -54,3 +56,65 @@ def test_soft_floor_is_pressed_in_as_hertz_says() -> None:
     depth = p.radius - sol.body("ball").y.min()
     stored = p.stiffness * depth**2.5 / 2.5
     assert stored == pytest.approx(p.mass * p.gravity * (p.height + depth), rel=1e-3)
+
+
+def test_wheel_that_rolls_keeps_its_energy_and_its_time() -> None:
+    """From rest: (1 + k) v^2 / 2 = g (y_0 - y) of its centre, k = gyration^2; the time is the integral of ds / v."""
+    p = terrain.Params()
+    sol = terrain.build(p).simulate(terrain.DURATION, 480, tolerance=1e-10)
+    wheel, k = sol.body("wheel"), p.gyration**2
+    speed = np.hypot(wheel.vx, wheel.vy)
+    y0 = terrain.first_place(p)[1]
+    np.testing.assert_allclose(speed**2, 2 * p.gravity * (y0 - wheel.y) / (1 + k), atol=1e-5)
+    np.testing.assert_allclose(np.abs(wheel.omega) * p.radius, speed, atol=1e-6)  # it does not slip
+
+    # The way of the centre: the hills' parallel curve, by the place x where the wheel touches; v is 0 at its ends.
+    def rate(angle: float) -> float:
+        x = p.start * math.cos(angle)  # from the start to the same height on the other side; smooth at the ends
+        s = terrain.slope(p, x)
+        bend = 8 * p.hill / p.dales**2 * (3 * (2 * x / p.dales) ** 2 - 1) * 2
+        y = float(terrain.height(p, np.array(x))) + p.radius / math.hypot(1, s)
+        way = math.hypot(1, s) - p.radius * bend / (1 + s * s)
+        return way * abs(p.start) * math.sin(angle) / math.sqrt(2 * p.gravity * max(y0 - y, 1e-300) / (1 + k))
+
+    there = quad(rate, 1e-9, math.pi - 1e-9, limit=200)[0]
+    first = float(np.interp(0.0, -wheel.vx[100:200], sol.t[100:200]))
+    assert there == pytest.approx(first, rel=1e-5)
+    assert 4 * there == pytest.approx(terrain.DURATION, abs=0.02)
+
+
+def test_every_corner_of_the_planks_takes_its_part() -> None:
+    """Angular momentum about the new place of contact: v+ / v- = (k + cos of the corner) / (1 + k)."""
+    p = terrain.Params(**terrain.VARIANTS["polygonal"])
+    sol = terrain.build(p).simulate(terrain.DURATION, 480, tolerance=1e-10, event_rows=True)
+    wheel, k = sol.body("wheel"), p.gyration**2
+    slopes = {f"plank{n + 1}": math.radians(angle) for n, (_, angle) in enumerate(p.planks)}
+    at = "plank1"
+    hits = [event for event in sol.events if event.what == "impact" and event.energy < -1e-9]
+    assert len(hits) > 10
+    for hit in hits:
+        row = int(np.searchsorted(sol.t, hit.time))
+        before, after = (math.hypot(wheel.vx[r], wheel.vy[r]) for r in (row, row + 1))
+        corner = slopes[hit.name] - slopes[at]
+        assert after / before == pytest.approx((k + math.cos(corner)) / (1 + k), rel=1e-6)
+        at = hit.name
+
+
+def test_dropped_wheel_is_spun_by_the_slope() -> None:
+    """It sticks while it is hit: across v+ = -e v-, along v+ = v- / (1 + k), and it turns with what it has left."""
+    p = terrain.Params(**terrain.VARIANTS["bouncing"])
+    sol = terrain.build(p).simulate(0.3, 120, tolerance=1e-11, event_rows=True)
+    wheel, k = sol.body("wheel"), p.gyration**2
+    row = int(np.searchsorted(sol.t, sol.events[0].time))
+    # Where it touches: the place of the hills nearest to its centre.
+    x = np.linspace(p.start - p.radius, p.start + p.radius, 200001)
+    nearest = x[np.argmin(np.hypot(x - wheel.x[row], terrain.height(p, x) - wheel.y[row]))]
+    slope = math.atan(terrain.slope(p, float(nearest)))
+    c, s = math.cos(slope), math.sin(slope)
+    fall = -wheel.vy[row]
+    along, across = -fall * s, -fall * c
+    assert c * wheel.vx[row + 1] + s * wheel.vy[row + 1] == pytest.approx(along / (1 + k), rel=1e-4)
+    assert c * wheel.vy[row + 1] - s * wheel.vx[row + 1] == pytest.approx(-p.restitution * across, rel=1e-4)
+    assert -p.radius * wheel.omega[row + 1] == pytest.approx(along / (1 + k), rel=1e-4)
+    lost = p.mass / 2 * ((1 - p.restitution**2) * across**2 + k / (1 + k) * along**2)
+    assert sol.events[0].energy == pytest.approx(-lost, rel=1e-4)

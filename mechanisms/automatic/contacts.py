@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
     type Touch = Force | Joint
 
-LEAST = 12.0
-"""Least radius of a ball or wheel (rmm)."""
+BALL, WHEEL = 12.0, 22.0
+"""Least radii (rmm)."""
 YIELDS = 0.3
 """Bodies that press further into each other (rmm) do so in the film, too."""
 BEYOND = 1.2
@@ -144,4 +144,5 @@ def _normals(path: np.ndarray) -> np.ndarray:
 def extent_of(touch: Touch, solution: Solution) -> Extent:
     """What touches."""
     radius = touch.params["radius"]
-    return Extent(((touch.j, radius),), ((radius, LEAST),) if radius > 0 else ())
+    least = WHEEL if touch.kind.name == "tyre" or touch.params.get("friction", 0.0) > 0.0 else BALL
+    return Extent(((touch.j, radius),), ((radius, least),) if radius > 0 else ())

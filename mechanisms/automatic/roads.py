@@ -14,6 +14,8 @@ from mechanisms.automatic.features import Anchor, Need
 from mechanisms.automatic.items import Item, Reach
 from mechanisms.automatic.plan import Foot
 from mechanisms.automatic.planar import around
+from mechanisms.automatic.profiles import simplified
+from shared.shapes.build import extruded
 
 if TYPE_CHECKING:
     from mechanisms.automatic.heights import Heights
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
 
 THICK = 10.0
 """Of a road under its surface, and of a wall (rmm)."""
+CHORD = 0.006
+"""How far the facets of a surface may stray from it (rmm)."""
 PIECES = 48
 """Of a road in the plane."""
 
@@ -70,21 +74,17 @@ class Road:
         """The wall; the base plate goes on beside it, under what it carries."""
         seat = plan.layout.sizes.pivot.fit.seat
         top = max(part.top(heights) for part in self.rounds)
-        solid = self._wall(top - seat).translate(cq.Vector(0, 0, seat))
-        plan.make("ground", f"road_{self.name}", cq.Workplane(obj=solid), "aluminium", 0)
+        plan.make("ground", f"road_{self.name}", self._wall(seat, top), "aluminium", 0)
         under = _behind(self.path[-1] - self.path[0])
         widest = max(part.radius for part in self.rounds)
         ends = [*self.path[[0, -1]], *self.feet, *(self.path[[0, -1]] - widest * under)]
         plan.feet += [Foot("", float(u), float(v), THICK) for u, v in ends]
 
-    def _wall(self, height: float) -> cq.Solid:
-        """One side is the surface, smooth where that is a curve; the others are straight."""
-        points = [cq.Vector(float(u), float(v), 0.0) for u, v in (*self.path, *self.feet)]
-        count = len(self.path)
-        surface = cq.Edge.makeSpline(points[:count]) if count > 2 else cq.Edge.makeLine(points[0], points[1])
-        corners = [points[count - 1], points[count], points[count + 1], points[0]]
-        sides = [cq.Edge.makeLine(a, b) for a, b in pairwise(corners)]
-        return cq.Solid.extrudeLinear(cq.Wire.assembleEdges([surface, *sides]), [], cq.Vector(0, 0, height))
+    def _wall(self, low: float, high: float) -> cq.Workplane:
+        """Of flat facets as long as its bends allow: of a spline's many short ones the proof of clearance is long."""
+        corners = [*simplified(self.path, CHORD), *self.feet]
+        outline = cq.Wire.makePolygon([cq.Vector(float(u), float(v), 0.0) for u, v in corners], close=True)
+        return extruded(outline, high - low, low)
 
 
 def along(name: str, rounds: Sequence[Round], path: np.ndarray, thick: float = THICK) -> Road:

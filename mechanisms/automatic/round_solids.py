@@ -20,22 +20,22 @@ TYRE = 0.16
 POLE = 0.04
 """Radius of the flats at the poles of a ball, in its own."""
 HOLES = 5
-WIDE = 32.0
-"""A wheel with this radius, and with nothing but its axle on it, has round holes."""
+WIDE = 9.0
+"""A wheel with so much between hub and tyre (rmm), and with nothing but its axle on it, has round holes."""
 
 
 def tyred_wheel(wheel: Round, plan: Plan, heights: Heights) -> None:
     """A disc with holes becomes its body's plate, with a tyre round it."""
-    fit, (x, y), eye = plan.layout.sizes.pivot.fit, wheel.at, plan.layout.sizes.eye
+    fit, (x, y), hub = plan.layout.sizes.pivot.fit, wheel.at, wheel.hub(plan.layout)
     tyre = min(TYRE * wheel.made, 5.0)
     rim = wheel.made - tyre - fit.seat
     shape = extruded(circle(0, 0, rim), heights.thickness).faces("|Z").edges().chamfer(0.4)
     alone = all(math.hypot(a.x - x, a.y - y) < 0.01 for a in plan.layout.anchors[wheel.body])
-    holes = HOLES if alone and rim > WIDE - 5.0 else 0
+    holes = HOLES if alone and rim - hub > WIDE else 0
     for k in range(holes):
-        tool = extruded(circle((eye + rim) / 2, 0, 0.3 * (rim - eye)), heights.thickness + 2.0, -1.0)
+        tool = extruded(circle((hub + rim) / 2, 0, 0.3 * (rim - hub)), heights.thickness + 2.0, -1.0)
         shape = shape.cut(placed(tool, turn=360.0 * k / holes))
-    plan.plate(wheel.body, placed(shape, x, y), (x, y, eye + 0.1 if holes else rim - 0.5), holes)
+    plan.plate(wheel.body, placed(shape, x, y), (x, y, hub + 0.1 if holes else rim - 0.5), holes)
     band = washer(2 * (rim + fit.seat), 2 * wheel.made, heights.thickness, chamfer=0.25 * tyre)
     plan.make(wheel.body, f"tyre_{wheel.name}", placed(band, x, y, heights.bottom(wheel.body)), "rubber", 1)
 

@@ -5,6 +5,7 @@ They are made with the clearance of a cam and its roller from what they touch.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 
 type Look = Literal["ball", "wheel", "disc"]
 
+HUB = 0.3
+"""Radius of the hub of a wheel without an axle, in its own."""
 OVER = 0.4
 """How far a wall reaches above the middle of a ball, in its radii."""
 
@@ -37,6 +40,8 @@ class Round:
     radius: float
     short: float
     look: Look
+    pinned: bool = True
+    """Whether a pin goes through its middle."""
 
     @property
     def made(self) -> float:
@@ -45,8 +50,13 @@ class Round:
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """The middle."""
-        radius = layout.sizes.eye if self.look == "wheel" else self.made
-        return [Anchor(self.body, *self.at, min(radius, self.made))]
+        return [Anchor(self.body, *self.at, min(self.hub(layout), self.made))]
+
+    def hub(self, layout: Layout) -> float:
+        """What is solid in the middle."""
+        if self.look == "wheel":
+            return layout.sizes.eye if self.pinned else HUB * self.made
+        return self.made
 
     def items(self, layout: Layout) -> Iterable[Item]:
         """The circle at the height of its body; a ball is higher than that."""
@@ -81,7 +91,9 @@ def round_at(
     short = CLEAR * layout.sizes.pivot.fit.running + pressed
     key = (body, round(at[0], 3), round(at[1], 3))
     if key not in layout.rounds:
-        layout.rounds[key] = Round(name, body, at, radius, short, look)
+        ends = [marker for joint in layout.m.joints.values() for marker in (joint.i, joint.j)]
+        pinned = any(marker.body.name == body and math.dist(layout.place(marker), at) < 0.01 for marker in ends)
+        layout.rounds[key] = Round(name, body, at, radius, short, look, pinned)
         return layout.rounds[key], True
     there = layout.rounds[key]
     least = min(there.made, radius - short)

@@ -21,6 +21,8 @@ CORNER = 3.0
 """A wall that ends nearer than this to another one (radii) goes on to it."""
 SHARPEST = math.radians(20.0)
 """Walls at a smaller angle have no mitred corner."""
+PARALLEL = 1e-3
+"""Walls at a smaller angle (rad) do not meet."""
 NOSE = 4.0
 """The least radius of what touches (rmm); the wall of a smaller one lies back by the difference."""
 
@@ -60,16 +62,16 @@ def roads(lines: Sequence[Line]) -> list[Road]:
         shared = [other for other in lines if other is not line and {*other.rounds} & {*line.rounds}]
         reach = CORNER * max(part.radius for part in line.rounds)
         behind = [THICK * -line.free] * 2  # of the last and of the first place
+        first, last = low - reach, high + reach
         for other in shared:
             turn = float(line.way @ other.free)  # sine of the angle between them; below 0: it ends here
-            if abs(turn) < math.sin(SHARPEST) / 4:
+            if abs(turn) < PARALLEL:
                 continue
             at = float((other.start - line.start) @ other.free) / turn
-            corner = _mitre(line, other)
-            if turn < 0 and at < high + reach:
-                high, behind[0] = at, corner
-            elif turn > 0 and at > low - reach:
-                low, behind[1] = at, corner
+            if turn < 0 and at < last:
+                high, behind[0], last = at, _mitre(line, other), at
+            elif turn > 0 and at > first:
+                low, behind[1], first = at, _mitre(line, other), at
         path = np.array([line.start + low * line.way, line.start + high * line.way])
         found.append(Road(line.name, line.rounds, path, np.array([path[1] + behind[0], path[0] + behind[1]])))
     return found

@@ -9,6 +9,8 @@ KIND ?=
 VIEW ?=
 SHOW ?=
 SPECTRA ?=
+BED ?=
+GAP ?=
 N ?=
 SEED ?= 1
 PYTEST ?= -n 2 --dist loadgroup --no-loadscope-reorder
@@ -22,10 +24,12 @@ override KIND := $(value KIND)
 override VIEW := $(value VIEW)
 override SHOW := $(value SHOW)
 override SPECTRA := $(value SPECTRA)
+override BED := $(value BED)
+override GAP := $(value GAP)
 override N := $(value N)
 override SEED := $(value SEED)
 override MECHANISM = $(subst -,_,$*)
-export PRESET SHEET_PRESET FRAME NAME KIND VIEW SHOW SPECTRA MECHANISM N SEED
+export PRESET SHEET_PRESET FRAME NAME KIND VIEW SHOW SPECTRA BED GAP MECHANISM N SEED
 
 PRESETS := draft preview production final
 ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
@@ -87,6 +91,10 @@ all: run-all ## the same: what one starts overnight, e.g. make all PRESET=final
 
 parts-%: install always ## the solids: out/<name>/parts/ (STL, STEP, parts.json)
 	@$(STAGE) parts "$$MECHANISM"
+
+print-%: install always ## plates to print (3MF, STL), outlines to cut (DXF), lists; BED=220x220 GAP=5 in mm
+	@$(STAGE) parts "$$MECHANISM"
+	@$(STAGE) print "$$MECHANISM" --bed="$$BED" --gap="$$GAP"
 
 solve-%: install always ## the motion: out/<name>/data.json
 	$(upto_bare_motion)

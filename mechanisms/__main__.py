@@ -13,6 +13,7 @@ STAGES = {
     "solve": ("mechanisms.solve_stage", "solve the motion: data.json"),
     "animate": ("mechanisms.animate_stage", "the moving skeleton with its arrows: animation.mp4, animation.gif"),
     "clearance": ("mechanisms.clearance_stage", "prove that no two parts touch over the motion: clearance.json"),
+    "print": ("mechanisms.print_stage", "lay out what is to be printed, cut and bought: 3MF, STL, DXF, lists"),
     "shot": ("mechanisms.shot_stage", "check the scene's description: shot.json"),
 }
 
@@ -26,6 +27,9 @@ def main() -> int | None:
         sub.add_argument("name", help="mechanism; four-bar and four_bar are one")
         if command == "animate":
             sub.add_argument("--view", default="", help="what is shown, such as reactions,velocities; all if not given")
+        if command == "print":
+            sub.add_argument("--bed", default="", help="size of a plate in mm, 220x220 if not given")
+            sub.add_argument("--gap", default="", help="what pieces keep apart in mm, 5 if not given")
         if command == "parts":
             sub.add_argument("--or-none", action="store_true", help="go on where there are no parts by themselves")
     fresh = commands.add_parser("new", help="a new mechanism that already runs")
@@ -41,6 +45,8 @@ def main() -> int | None:
         name, stage = known_name(arguments.name), importlib.import_module(STAGES[arguments.command][0])
         if arguments.command == "animate":
             return stage.run(name, view=arguments.view)
+        if arguments.command == "print":
+            return stage.run(name, bed=arguments.bed, gap=arguments.gap)
         return stage.run_or_none(name) if getattr(arguments, "or_none", False) else stage.run(name)
     if arguments.command == "variants":
         owner = owner_of(arguments.name)

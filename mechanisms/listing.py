@@ -51,6 +51,8 @@ def _made(name: str) -> list[str]:
     out = Out(name)
     files = {"parts": out.parts, "motion": out.motion, "clearance": out.clearance, "shot": out.shot}
     made = [word for word, path in files.items() if path.is_file()]
+    if (out.print_folder / "pieces.md").is_file():
+        made.append("print")
     if out.animation("", ".mp4").is_file():
         made.append("animation")
     if any(out.plots.glob("*.png")):

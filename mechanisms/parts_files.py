@@ -41,6 +41,12 @@ def stl_bytes(solid: Any) -> bytes:
     turn = (lowest[:, None] + np.arange(3)) % 3  # same winding, lowest corner first
     corners = np.take_along_axis(corners, turn[:, :, None], axis=1)
     corners = corners[np.lexsort(corners.reshape(-1, 9).T[::-1])]
+    return binary_stl(corners)
+
+
+def binary_stl(corners: np.ndarray) -> bytes:
+    """Binary STL of triangles, (n, 3, 3) as float32, in their order."""
+    triangles = np.zeros(len(corners), dtype=_TRIANGLE)
     triangles["corners"] = corners
     triangles["normal"] = _normals(corners.astype(float))
     return b"mbsd".ljust(80) + len(triangles).to_bytes(4, "little") + triangles.tobytes()

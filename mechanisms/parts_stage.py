@@ -197,6 +197,7 @@ def _piece(name: str, body: str, solid: Any, files: dict[str, bytes]) -> Piece:
         triangles=len(mesh.faces),
         stl_sha256=hashlib.sha256(stl).hexdigest(),
         holds={hold.force: Held(z=metres(hold.z), radius=metres(hold.radius)) for hold in solid.holds},
+        buy=solid.buy,
     )
 
 

@@ -40,6 +40,8 @@ class Piece(Strict, kw_only=True):
     stl_sha256: str
     holds: dict[str, Held] = {}
     """By the names of forces: springs, dampers and actuators that have an end here."""
+    buy: str = ""
+    """What to buy, such as "circlip 8x0.8 DIN 471"; empty if the piece is to be made."""
 
 
 class BodyParts(Strict, kw_only=True):

@@ -166,6 +166,7 @@ class Out:
         self.parts_folder = self.folder / "parts"
         self.parts = self.parts_folder / "parts.json"
         self.clearance = self.folder / "clearance.json"
+        self.print_folder = self.folder / "print"
         self.shot = self.folder / "shot.json"
         self.plots = self.folder / "plots"
         self.compare = self.folder / "compare"
@@ -180,7 +181,8 @@ class Out:
 
     def refuse_links(self) -> None:
         """Raise UserError if a folder of this mechanism's results is a link."""
-        for folder in (self.parts_folder, self.plots, self.compare, self.stills, self.stamps, self.all_frames):
+        folders = self.parts_folder, self.print_folder, self.plots, self.compare, self.stills, self.stamps
+        for folder in (*folders, self.all_frames):
             refuse_links(folder)
 
     def frames(self, preset: str) -> Path:

@@ -31,16 +31,18 @@ if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
     from mechanisms.automatic.plan import Plan
     from shared.shapes.bodies import Bodies
+    from shared.shapes.fit import Fit
     from shared.shapes.solid import Solid
 
 
 class Automatic:
     """Parts by themselves, and what one may want otherwise. Lengths that are given are mm."""
 
-    def __init__(self, m: Mechanism, solution: Solution, pin: float | None = None) -> None:
+    def __init__(self, m: Mechanism, solution: Solution, pin: float | None = None, fit: Fit | None = None) -> None:
         self.m = m
         self.solution = solution
-        self._pin = pin
+        self._pin, self._fit = pin, fit
+        _refuse_sizes(m.name, pin, fit)
         self._materials: dict[str, str] = {}
         self._layers: dict[str, int] = {}
         self._replaced: dict[str, list[Solid]] = {}
@@ -173,8 +175,8 @@ class Automatic:
     def wishes(self) -> list[Sizes]:
         """Sizes of pins and all that goes with them, the most wanted first."""
         if self._pin is not None:
-            return [of_pin(self._pin)]
-        return sizes(*extents(self.m, self.solution, self._left_out))
+            return [of_pin(self._pin, self._fit)]
+        return sizes(*extents(self.m, self.solution, self._left_out), self._fit)
 
     def _layout(self, size: Sizes, springs: Springs, tall: bool = False) -> Layout:
         poses = poses_of(self.solution, size.of_metres(1.0))
@@ -202,13 +204,24 @@ class Automatic:
             )
 
 
-def automatic(m: Mechanism, pin: float | None = None, solution: Solution | None = None) -> Automatic:
+def _refuse_sizes(name: str, pin: float | None, fit: Fit | None) -> None:
+    """Raise UserError for sizes that are none."""
+    given = {"pin": pin} | ({f"fit.{field}": value for field, value in vars(fit).items()} if fit else {})
+    for what, value in given.items():
+        if value is not None and not 0 < value < float("inf"):
+            raise UserError(f"{name}: {what} is {value} mm; give a positive number")
+
+
+def automatic(
+    m: Mechanism, pin: float | None = None, solution: Solution | None = None, fit: Fit | None = None
+) -> Automatic:
     """Parts of ``m``, planned from ``solution``; by default from the motion of the mechanism's folder.
 
-    ``pin``: diameter (mm) of its pins; by default it follows from the links. Raises UserError where it cannot move.
+    ``pin``: diameter (mm) of its pins; by default it follows from the links. ``fit``: clearances (mm), such as
+    ``Fit(running=0.3)`` for printed parts; by default they follow from the pins. Raises UserError where it cannot move.
     """
     if solution is None:
         from mechanisms.bare_motion import bare_solution
 
         solution = bare_solution(m.name)
-    return Automatic(m, solution, pin)
+    return Automatic(m, solution, pin, fit)

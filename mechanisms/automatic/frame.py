@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechanisms.automatic.plan import BOLT_HOLE
 from shared.shapes.base import base_plate, foot
 from shared.shapes.engraving import LETTERS, dial, engraved, rule, text
-from shared.shapes.screw import socket_screw
+from shared.shapes.screw import SOCKET, head_diameter, socket_screw
 from shared.shapes.solid import Solid, placed
+from shared.shapes.standards import screw_length, screw_name
 
 if TYPE_CHECKING:
     import cadquery as cq
@@ -33,18 +36,43 @@ def base(plan: Plan) -> list[Solid]:
     x0, y0, x1, y1 = _extent(plan)
     corners = [(x, y) for x in (x0 + INSET, x1 - INSET) for y in (y0 + INSET, y1 - INSET)]
     hole = plan.layout.sizes.screw / plan.layout.sizes.scale + 0.4
-    bolts = [(x, y, hole, 9.0) for stand in plan.feet for x, y in stand.holes]
-    plate = base_plate((x0, y0, x1, y1), PLATE, 12.0, corners, tapped=bolts)
+    bolts = [(x, y, hole, BOLT_HOLE) for stand in plan.feet for x, y in stand.holes]
+    screw = _corner_screw(plan.layout.sizes)
+    plate = base_plate((x0, y0, x1, y1), PLATE, 12.0, corners, screw.diameter, screw.room, bolts)
     plate = engraved(plate, _marks(plan, (x0, y0, x1, y1)), 0.0)
     seat = plan.layout.sizes.pivot.fit.seat
     solids = [Solid("base_plate", plate, "aluminium_black", len(corners))]
-    screw, under = socket_screw(5.0, 8.5), foot(18.0, FOOT_HEIGHT, 5.4)
+    under = foot(18.0, FOOT_HEIGHT, screw.diameter + 0.4)
     for i, (x, y) in enumerate(corners):
         solids += [
-            Solid(f"corner_screw_{i + 1}", placed(screw, x, y, -5.4 + seat), "steel", 0),
+            Solid(f"corner_screw_{i + 1}", placed(screw.shape, x, y, seat - screw.room[1]), "steel", 0, buy=screw.buy),
             Solid(f"foot_{i + 1}", placed(under, x, y, -PLATE - seat), "rubber", 1),
         ]
     return solids
+
+
+@dataclass(frozen=True)
+class _Screw:
+    """Of a corner (rmm): it goes through the plate and its foot. ``room``: diameter and depth of its counterbore."""
+
+    shape: cq.Workplane
+    diameter: float
+    room: tuple[float, float]
+    buy: str = ""
+
+
+def _corner_screw(sizes: Sizes) -> _Screw:
+    """The standard screw next to 5 rmm; of 5 rmm where none is near."""
+    nominal = min(SOCKET, key=lambda size: abs(size - 5.0 * sizes.scale))
+    diameter = nominal / sizes.scale
+    room = head_diameter(nominal) / sizes.scale + 0.5, diameter + 0.4
+    longest = PLATE + FOOT_HEIGHT - room[1] - 0.4
+    length = screw_length(nominal, longest * sizes.scale)
+    if length is None or not 4.0 < diameter < 6.25:
+        return _Screw(socket_screw(5.0, 8.5), 5.0, (9.0, 5.4))
+    shape = socket_screw(nominal, length)
+    shape = shape.newObject([shape.val().scale(1 / sizes.scale)])
+    return _Screw(shape, diameter, room, screw_name(nominal, length))
 
 
 def _extent(plan: Plan) -> tuple[float, float, float, float]:

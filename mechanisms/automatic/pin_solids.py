@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mechanisms.automatic.plan import Foot
+from mechanisms.automatic.plan import BOLT_HOLE, Foot
 from shared.shapes.base import bolt_circle, column, pedestal
 from shared.shapes.link import Eye
 from shared.shapes.pin import pin, washer
 from shared.shapes.screw import socket_screw
 from shared.shapes.solid import Solid, placed
+from shared.shapes.standards import screw_length, screw_name
 
 if TYPE_CHECKING:
     from mechanisms.automatic.heights import Heights
@@ -152,8 +153,10 @@ def standing(
     plan.make("ground", f"{kind}_{name}", placed(post, x, y, seat), "aluminium", 4)
     bolts = [(x + u, y + v) for u, v in bolt_circle(CIRCLE, 3)]
     plan.feet.append(Foot(label, x, y, FLANGE / 2, tuple(bolts), dial))
-    screw = socket_screw(sizes.screw, 11.0 * sizes.scale)
-    screw = screw.newObject([screw.val().scale(1 / sizes.scale)])
+    longest = (FLANGE_THICKNESS + BOLT_HOLE - 0.5) * sizes.scale
+    length = screw_length(sizes.screw, longest) or longest
+    screw = socket_screw(sizes.screw, length)
+    screw, bought = screw.newObject([screw.val().scale(1 / sizes.scale)]), screw_name(sizes.screw, length)
     for i, (u, v) in enumerate(bolts):
         at_screw = placed(screw, u, v, FLANGE_THICKNESS + 2 * seat)
-        plan.add("ground", Solid(f"screw_{name}_{i + 1}", at_screw, "steel", 0))
+        plan.add("ground", Solid(f"screw_{name}_{i + 1}", at_screw, "steel", 0, buy=bought))

@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from shared.shapes.outline import Circle
 
 
+BOLT_HOLE = 9.0
+"""Depth of the holes in the base for the screws of its feet (rmm)."""
+
+
 @dataclass(frozen=True)
 class Foot:
     """Something that stands on the base plate (rmm)."""
@@ -73,9 +77,9 @@ class Plan:
         kept = self.solids.setdefault(body, [])
         kept += [replace(s, name=self.named(s.name)) for s in solids]
 
-    def make(self, body: str, name: str, shape: cq.Workplane, material: str, through_holes: int) -> None:
+    def make(self, body: str, name: str, shape: cq.Workplane, material: str, through_holes: int, buy: str = "") -> None:
         """One solid."""
-        self.add(body, Solid(name, shape, material, through_holes))
+        self.add(body, Solid(name, shape, material, through_holes, buy=buy))
 
     def reserve(self, bodies: list[str]) -> None:
         """Main pieces are called like their bodies."""

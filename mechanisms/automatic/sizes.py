@@ -6,12 +6,13 @@ So a 20 mm clockwork and a 3 m excavator have the same proportions, chamfers inc
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from shared.shapes.fit import Fit
 from shared.shapes.pin import Head
 from shared.shapes.pivot import Pivot
 from shared.shapes.screw import SOCKET
+from shared.shapes.standards import CIRCLIPS, shim_ring
 from shared.shapes.units import mm
 
 PIN = 8.0
@@ -109,22 +110,40 @@ class Sizes:
         return nearest if nearest <= THICKEST_SCREW * self.scale else 0.0
 
 
-def sizes(shortest: float, overall: float) -> list[Sizes]:
+def sizes(shortest: float, overall: float, fit: Fit | None = None) -> list[Sizes]:
     """From the shortest distance of two joints of one body and the longer side of what all joints sweep (m); then
     with thinner pins.
     """
     pin = standard(min(mm(shortest) / LEAST_LINK, mm(overall) / OVERALL))
     thinner = [d for d in reversed(STANDARD) if THINNEST * pin <= d < pin]
-    return [of_pin(d) for d in (pin, *thinner)]
+    return [of_pin(d, fit) for d in (pin, *thinner)]
 
 
-def of_pin(diameter: float) -> Sizes:
-    """Sizes that go with pins of this diameter (mm). Fits keep to what a workshop can make, small or large."""
+def of_pin(diameter: float, fit: Fit | None = None) -> Sizes:
+    """Sizes that go with pins of this diameter (mm), with washers and circlips that one can buy where there are any.
+
+    ``fit`` in mm; by default what a workshop can make, small or large.
+    """
     scale = diameter / PIN
-    running = min(max(0.2 * scale, 0.16), 0.6)
-    axial = min(max(0.4 * scale, 0.16), 2.0)
-    fit = Fit(running=running / scale, axial=axial / scale)
-    return Sizes(scale, Pivot(fit=fit))
+    if fit is None:
+        running = min(max(0.2 * scale, 0.16), 0.6)
+        axial = min(max(0.4 * scale, 0.16), 2.0)
+        fit = Fit(running, Fit.press * scale, axial, Fit.seat * scale)
+    of_reference = Fit(fit.running / scale, fit.press / scale, fit.axial / scale, fit.seat / scale)
+    return Sizes(scale, _bought(Pivot(fit=of_reference), diameter, scale))
+
+
+def _bought(pivot: Pivot, diameter: float, scale: float) -> Pivot:
+    """With the sizes of standard washers and circlips."""
+    ring, clip = shim_ring(diameter, pivot.washer_thickness * scale), CIRCLIPS.get(diameter)
+    if ring:
+        washer, thickness = ring.outer / scale, ring.thickness / scale
+        pivot = replace(pivot, washer=washer, washer_thickness=thickness, washer_buy=ring.name)
+    if clip:
+        depth = (clip.shaft - clip.groove) / 2 / scale
+        pivot = replace(pivot, clip_thickness=clip.thickness / scale, groove_depth=depth, clip_buy=clip.name)
+        pivot = replace(pivot, groove_width=clip.width / scale)
+    return pivot
 
 
 def standard(wish: float) -> float:

@@ -15,7 +15,9 @@ from shared.shapes.solid import Solid, placed
 
 @dataclass(frozen=True)
 class Pivot:
-    """Sizes of one joint's hardware: diameters and thicknesses in mm."""
+    """Sizes of one joint's hardware: diameters and thicknesses in mm. Washer and circlip are those of a pin of 8 mm
+    after DIN 988 and DIN 471.
+    """
 
     pin: float = 8.0
     bushing: float = 11.0
@@ -23,9 +25,13 @@ class Pivot:
     flange_thickness: float = 1.2
     washer: float = 14.0
     washer_thickness: float = 1.0
-    clip_thickness: float = 1.0
-    groove_depth: float = 0.45
+    clip_thickness: float = 0.8
+    groove_depth: float = 0.2
+    groove_width: float = 0.9
     fit: Fit = Fit()
+    washer_buy: str = ""
+    """What to buy for a washer and for a circlip; empty if these sizes are no standard's."""
+    clip_buy: str = ""
 
     @property
     def held(self) -> float:
@@ -67,13 +73,13 @@ class Pivot:
     def washer_at(self, name: str, x: float, y: float, z: float, material: str = "steel") -> Solid:
         """A washer from z up, on the pin at (x, y)."""
         shape = washer(self.pin + self.fit.running, self.washer, self.washer_thickness)
-        return Solid(name, placed(shape, x, y, z), material, 1)
+        return Solid(name, placed(shape, x, y, z), material, 1, buy=self.washer_buy)
 
     def groove(self, z: float) -> Groove:
         """The groove of a circlip that sits from z up (measured from the pin's lower end)."""
-        return Groove(z - self.fit.seat, self.clip_thickness + 2 * self.fit.seat, self.groove_depth)
+        return Groove(z - (self.groove_width - self.clip_thickness) / 2, self.groove_width, self.groove_depth)
 
     def clip_at(self, name: str, x: float, y: float, z: float, turn: float = 0.0) -> Solid:
         """A circlip from z up, its gap at ``turn`` degrees."""
         shape = circlip(self.pin - 2 * self.groove_depth + 2 * self.fit.seat, self.clip_thickness)
-        return Solid(name, placed(shape, x, y, z, turn), "steel", 2)
+        return Solid(name, placed(shape, x, y, z, turn), "steel", 2, buy=self.clip_buy)

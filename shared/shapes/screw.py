@@ -8,13 +8,14 @@ import cadquery as cq
 
 from shared.shapes.build import turned
 
-SOCKET = {2: 1.5, 2.5: 2.0, 3: 2.5, 4: 3.0, 5: 4.0, 6: 5.0, 8: 6.0}
+SOCKET = {1.6: 1.5, 2: 1.5, 2.5: 2.0, 3: 2.5, 4: 3.0, 5: 4.0, 6: 5.0, 8: 6.0}
+SOCKET |= {10: 8.0, 12: 10.0, 16: 14.0, 20: 17.0, 24: 19.0}
 """Nominal diameter (mm) to width of the hexagon socket."""
 
 
 def head_diameter(nominal: float) -> float:
     """Diameter of the head (mm)."""
-    return {2: 3.8, 2.5: 4.5, 3: 5.5}.get(nominal, 1.5 * nominal + 1.0)
+    return {1.6: 3.0, 2: 3.8, 2.5: 4.5, 3: 5.5}.get(nominal, 1.5 * nominal + (1.0 if nominal < 12 else 0.0))
 
 
 def socket_screw(nominal: float, length: float) -> cq.Workplane:

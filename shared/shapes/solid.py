@@ -26,7 +26,8 @@ class Solid:
     ``shape`` is in millimetres, in the frame of the body it moves with, at its height in the assembly (z = 0 is
     the top of the base plate). ``material`` is a key of ``shared.materials.MATERIALS``. ``through_holes`` is the
     number of holes that go right through: the Euler number of the closed surface is 2 - 2 * through_holes. ``holds``
-    says which springs are fixed to it, so that the film adds no pins of its own.
+    says which springs are fixed to it, so that the film adds no pins of its own. ``buy`` says what to ask for in a
+    shop where the piece has a standard's sizes, such as "circlip 8x0.8 DIN 471"; a piece without it is to be made.
     """
 
     name: str
@@ -34,6 +35,7 @@ class Solid:
     material: str
     through_holes: int
     holds: tuple[Hold, ...] = ()
+    buy: str = ""
 
 
 def placed(shape: cq.Workplane, x: float = 0.0, y: float = 0.0, z: float = 0.0, turn: float = 0.0) -> cq.Workplane:

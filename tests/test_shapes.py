@@ -120,7 +120,7 @@ def test_socket_screw(nominal: float) -> None:
 
 
 def test_an_unknown_screw_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"no socket screw M7; there is M2, M2\.5"):
+    with pytest.raises(ValueError, match=r"no socket screw M7; there is M1\.6, M2, M2\.5"):
         socket_screw(7.0, 20.0)
 
 

@@ -1,7 +1,7 @@
 """Pieces that are equal but for where they are: made several times, drawn and listed once.
 
-Two pieces are equal if a turn on the bed brings each corner of one mesh to a corner of the other. Mirror images are
-not equal unless they are also turned images of each other.
+Two pieces are equal if a turn on the bed brings each corner of one mesh to a corner of the other, as it lies or turned
+over. Mirror images are not equal unless they are also turned images of each other.
 """
 
 from __future__ import annotations
@@ -38,13 +38,17 @@ def groups(pieces: Sequence[tuple[str, Laid]]) -> list[list[int]]:
 
 
 def is_equal(piece: Laid, other: Laid) -> bool:
-    """Whether a turn about the vertical and a shift bring the corners of one onto those of the other."""
-    if max(abs(a - b) for a, b in zip(_upright(piece), _upright(other), strict=True)) > NEAR:
+    """Whether a turn, as it lies or turned over, and a shift bring the corners of one onto those of the other."""
+    if abs(piece.size[2] - other.size[2]) > NEAR or len(piece.vertices) != len(other.vertices):
         return False
     first, second = _centred(piece), _centred(other)
-    if len(first) != len(second):
-        return False
+    over = first * [1.0, -1.0, -1.0] + [0.0, 0.0, piece.size[2]]
     tree = KDTree(second)
+    return any(_falls_on(corners, second, tree) for corners in (first, over))
+
+
+def _falls_on(first: np.ndarray, second: np.ndarray, tree: KDTree) -> bool:
+    """Whether a turn about the vertical brings each corner onto one of the others."""
     reach = np.hypot(first[:, 0], first[:, 1])
     far = int(np.argmax(reach))
     same = np.abs(np.hypot(second[:, 0], second[:, 1]) - reach[far]) < NEAR
@@ -64,11 +68,6 @@ def volume_of(piece: Laid) -> float:
     """Of the closed mesh (mm^3)."""
     corners = piece.triangles
     return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
-
-
-def _upright(piece: Laid) -> tuple[float, float]:
-    """Height of the piece, and of the middle of its corners."""
-    return piece.size[2], float(piece.vertices[:, 2].mean())
 
 
 def _centred(piece: Laid) -> np.ndarray:

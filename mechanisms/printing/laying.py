@@ -6,13 +6,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-
-from mechanisms.automatic.planar import convex_hull
+from scipy.spatial import ConvexHull
 
 FLAT = 2e-3
 """What counts as in a plane (mm)."""
-PLANES = 300
-"""Faces that are tried, from the largest triangle down; those of a round surface are many."""
+PLANES = 60
+"""Faces of the convex hull that are tried, from the largest down; those of a round surface are many."""
 STEEP = math.cos(math.radians(45.0))
 """A face that looks down steeper than this needs support."""
 SUPPORT = 0.5
@@ -79,25 +78,29 @@ def best_face(corners: np.ndarray, faces: np.ndarray) -> np.ndarray:
     )
     twice = np.linalg.norm(across, axis=1)
     normals = across / np.where(twice > 0, twice, 1.0)[:, None]
-    left = twice > 0
     found: list[tuple[float, bool, tuple[float, ...]]] = []
-    for _ in range(PLANES):
-        if not left.any():
-            break
-        largest = int(np.argmax(np.where(left, twice, -1.0)))
-        normal = _exact(normals[largest])
+    for normal in _resting(corners):
         heights = corners @ normal
-        level = float(heights[faces[largest]].mean())
-        inside = (np.abs(heights[faces] - level) < FLAT).all(axis=1) & (normals @ normal > 0.9)
-        inside[largest] = True
-        left &= ~inside
-        if heights.max() > level + FLAT:
-            continue
+        level = float(heights.max())
         towards = normals @ normal
+        inside = (heights[faces] > level - FLAT).all(axis=1) & (towards > 0.9)
+        if not inside.any():
+            continue
         hanging = (towards > STEEP) & ~inside
-        score = float(twice[inside].sum() - SUPPORT * (twice * towards)[hanging].sum()) / 2
-        found.append((-round(2 * score / float(twice.sum()), 4), normal[2] != -1.0, tuple(float(n) for n in normal)))
+        score = float(twice[inside].sum() - SUPPORT * (twice * towards)[hanging].sum())
+        found.append((-round(score / float(twice.sum()), 4), normal[2] != -1.0, tuple(float(n) for n in normal)))
     return np.array(min(found)[2]) if found else np.array([0.0, 0.0, -1.0])
+
+
+def _resting(corners: np.ndarray) -> list[np.ndarray]:
+    """Normals of the largest faces of the convex hull: what has a flat face there can stand on it."""
+    hull = ConvexHull(corners)
+    p, q, r = (corners[hull.simplices[:, k]] for k in range(3))
+    areas = np.linalg.norm(np.cross(q - p, r - p), axis=1) / 2
+    _, plane = np.unique(np.round(hull.equations, 4) + 0.0, axis=0, return_inverse=True)
+    whole = np.round(np.bincount(plane, areas), 4)
+    largest = np.lexsort((-areas, plane))[np.searchsorted(np.sort(plane), np.arange(len(whole)))]
+    return [_exact(hull.equations[largest[k], :3]) for k in np.argsort(-whole, kind="stable")[:PLANES]]
 
 
 def _exact(normal: np.ndarray) -> np.ndarray:
@@ -117,7 +120,7 @@ def _to_bed(normal: np.ndarray) -> np.ndarray:
 
 def _least_rectangle(vertices: np.ndarray) -> float:
     """The angle (rad) by which a piece is turned so that its rectangle is least, a long side along x."""
-    hull = np.array(convex_hull(vertices[:, :2]))
+    hull = vertices[ConvexHull(vertices[:, :2]).vertices, :2]
     edges = np.roll(hull, -1, axis=0) - hull
     best, least = 0.0, np.inf
     for angle in [0.0, *(-np.arctan2(edges[:, 1], edges[:, 0])).tolist()]:

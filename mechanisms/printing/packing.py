@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-ORDERS = 40
+ORDERS = 20
 """In which rectangles are tried, for each plate."""
 DISTINCT = 1e-7
 """Rectangles get sizes that differ by this (mm): how equal ones are sorted would depend on the processor."""

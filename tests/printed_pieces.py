@@ -46,7 +46,7 @@ def solids(bar: float = 150.0) -> dict[str, list[Solid]]:
     return {
         "ground": [
             Solid("plate", placed(plate(), 5.0, -3.0, -8.0), "aluminium", 2),
-            *(Solid(f"screw_{k}", placed(bolt, 20.0 * k), "steel", 0, SCREW) for k in range(3)),
+            *(Solid(f"screw_{k}", placed(bolt, 20.0 * k), "steel", 0, buy=SCREW) for k in range(3)),
         ],
         "crank": [
             Solid("crank", placed(arm(), 10.0, 0.0, 4.0, 30.0), "aluminium_orange", 2),

@@ -82,6 +82,8 @@ def test_a_still_takes_its_frame() -> None:
 
 def test_each_target_runs_what_it_stands_on() -> None:
     assert [line.split()[0] for line in planned("parts-x")] == ["parts"]
+    assert planned("print-four-bar", "BED=180x180")[-1] == "print four_bar --bed=180x180 --gap="
+    assert [line.split()[0] for line in planned("print-x")] == ["parts", "print"]
     assert [line.split()[0] for line in planned("solve-x")] == ["parts", "solve"]
     assert [line.split()[0] for line in planned("clearance-x")] == ["parts", "solve", "clearance"]
     assert [line.split()[0] for line in planned("plot-x")] == ["parts", "solve", "plots"]

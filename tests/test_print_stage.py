@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections import Counter
 from pathlib import Path
+from typing import Any
 
 import lib3mf
 import numpy as np
@@ -93,7 +94,7 @@ def test_plates_hold_closed_meshes_that_stand_on_the_bed_and_keep_apart(press: P
 def test_a_3mf_is_valid_and_names_every_piece(press: Press, tmp_path: Path) -> None:
     files = press.run()
     assert [name for name in files if name.endswith(".3mf")] == ["plate_1.3mf"]
-    model = lib3mf.get_wrapper().CreateModel()
+    model: Any = lib3mf.get_wrapper().CreateModel()
     reader = model.QueryReader("3mf")
     reader.SetStrictModeActive(True)
     reader.ReadFromBuffer(files["plate_1.3mf"])
@@ -115,7 +116,7 @@ def test_a_3mf_is_valid_and_names_every_piece(press: Press, tmp_path: Path) -> N
 
 def test_the_3mf_and_the_stl_are_the_same_plate(press: Press) -> None:
     files = press.run()
-    model = lib3mf.get_wrapper().CreateModel()
+    model: Any = lib3mf.get_wrapper().CreateModel()
     model.QueryReader("3mf").ReadFromBuffer(files["plate_1.3mf"])
     corners, items = [], model.GetBuildItems()
     while items.MoveNext():

@@ -11,6 +11,7 @@ import cadquery as cq
 import ezdxf.path
 import numpy as np
 import pytest
+from ezdxf.filemanagement import read
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from hypothesis.strategies import floats, integers, lists, tuples
@@ -182,7 +183,7 @@ def outline_of(shape: cq.Workplane, angle: float, over: bool) -> bytes:
         path = Path(folder) / "piece.step"
         path.write_bytes(step_bytes(shape.val(), "piece"))
         content = dxf(section(path, piece, sheet.thickness / 2), sheet.thickness)
-    entities = list(ezdxf.read(io.StringIO(content.decode())).modelspace())
+    entities = list(read(io.StringIO(content.decode())).modelspace())
     assert {entity.dxf.layer for entity in entities} == {layer_of(sheet.thickness)}
     size = ezdxf.path.bbox([ezdxf.path.make_path(entity) for entity in entities])
     assert tuple(size.extmin) == pytest.approx((0.0, 0.0, 0.0), abs=0.05)
@@ -192,7 +193,7 @@ def outline_of(shape: cq.Workplane, angle: float, over: bool) -> bytes:
 
 def loops_of(content: bytes) -> list[float]:
     """Areas (mm^2) of the closed loops in a DXF; each end of a line, arc or spline meets exactly one other."""
-    document = ezdxf.read(io.StringIO(content.decode()))
+    document = read(io.StringIO(content.decode()))
     assert document.units == 4  # millimetres
     lines = [np.array([(p.x, p.y) for p in path_of(entity)]) for entity in document.modelspace()]
     areas = []

@@ -18,7 +18,7 @@ from mechanisms.plain_values import plain_text
 from mechanisms.recording import recording
 from mechanisms.traced_params import fields_of, traced
 from shared.console import say, warn
-from shared.contract import BodyParts, Held, Parts, Piece, Provenance, write_parts
+from shared.contract import BodyParts, Held, Parts, Piece, Provenance, Rolling, write_parts
 from shared.errors import UserError
 from shared.files import sources_hash, write_bytes
 from shared.inputs import Inputs, observed
@@ -196,9 +196,17 @@ def _piece(name: str, body: str, solid: Any, files: dict[str, bytes]) -> Piece:
         z_range=(metres(float(mesh.bounds[0][2])), metres(float(mesh.bounds[1][2]))),
         triangles=len(mesh.faces),
         stl_sha256=hashlib.sha256(stl).hexdigest(),
+        rolls=_rolling(solid.rolls),
         holds={hold.force: Held(z=metres(hold.z), radius=metres(hold.radius)) for hold in solid.holds},
         buy=solid.buy,
     )
+
+
+def _rolling(roll: Any) -> Rolling | None:
+    if roll is None:
+        return None
+    x, y, radius = (metres(length) for length in (roll.x, roll.y, roll.radius))
+    return Rolling(joint=roll.joint, x=x, y=y, radius=radius, marks=roll.marks)
 
 
 def _write(out: Out, files: dict[str, bytes], document: Parts) -> int:

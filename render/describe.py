@@ -18,6 +18,7 @@ from render.framing import CameraPose
 from render.heights import Heights, trail_heights
 from render.pieces import piece_specs, refuse_mismatch
 from render.poses import Poses
+from render.rollers import Rollers
 from render.scene import LabelSpec, Scene, State, StudioSpec, Writing
 from render.stretched import Stretched, stretched
 from render.swept import SweptSpace
@@ -45,6 +46,7 @@ class Film:
         paths = trail_heights(motion, parts, trails_of(motion, shot))
         self.space = SweptSpace(self.poses, parts, folder, paths)
         self.trails = Trails(self.poses, self.clock, shot, paths, self.space.size)
+        self.rollers = Rollers(self.poses, parts)
         self.heights = Heights(self.poses, parts, self.space, self.clock)
         self.number = writing.number(motion, shot)
 
@@ -76,7 +78,7 @@ class Film:
         at = self.clock.moment(frame)
         arrows, arcs = self._arrow_heights
         return State(
-            bodies={name: self.poses.body(name, at) for name in self.parts.bodies},
+            bodies={name: self.poses.body(name, at) for name in self.parts.bodies} | self.rollers.poses(at),
             trails=self.trails.paths(frame),
             labels=[self.heights.label(label.at, at) for label in self.shot.labels],
             camera=self.camera(frame),

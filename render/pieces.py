@@ -22,6 +22,7 @@ def piece_specs(parts: Parts, shot: Shot, folder: Path) -> list[PieceSpec]:
             stl=str((folder / piece.stl).resolve()),
             sha256=piece.stl_sha256,
             surface=_surface(parts.mechanism, shot, body, name, piece),
+            turns_about=(piece.rolls.x, piece.rolls.y) if piece.rolls else None,
         )
         for body, name, piece in _pieces(parts)
     ]

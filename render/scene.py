@@ -29,6 +29,8 @@ class PieceSpec(msgspec.Struct, kw_only=True, frozen=True):
     stl: str
     sha256: str
     surface: SurfaceSpec
+    turns_about: tuple[float, float] | None = None
+    """x, y of the axis (m) about which it turns against its body; the States have its pose as ``body/name``."""
 
 
 class TrailSpec(msgspec.Struct, kw_only=True, frozen=True):

@@ -21,7 +21,7 @@ from shared.contract_motion import (
     Motion,
     PointMotion,
 )
-from shared.contract_parts import PARTS_UNITS, BodyParts, Held, Mass, Parts, Piece
+from shared.contract_parts import PARTS_UNITS, BodyParts, Held, Mass, Parts, Piece, Rolling
 from shared.errors import UserError
 
 __all__ = [
@@ -45,6 +45,7 @@ __all__ = [
     "Piece",
     "PointMotion",
     "Provenance",
+    "Rolling",
     "Shape",
     "State",
     "read_motion",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 import msgspec
 
@@ -27,6 +27,17 @@ class Held(Strict, kw_only=True):
     radius: Positive
 
 
+class Rolling(Strict, kw_only=True):
+    """A roller that turns about (x, y) of its body's frame (m) as it rolls without slip in a joint."""
+
+    joint: str
+    x: float
+    y: float
+    radius: Positive
+    marks: Annotated[int, msgspec.Meta(ge=1)]
+    """It looks the same after a turn by one of so many."""
+
+
 class Piece(Strict, kw_only=True):
     """One printable solid of a body, in the body's frame; its files stand beside parts.json (millimetres)."""
 
@@ -42,6 +53,8 @@ class Piece(Strict, kw_only=True):
     """By the names of forces: springs, dampers and actuators that have an end here."""
     buy: str = ""
     """What to buy, such as "circlip 8x0.8 DIN 471"; empty if the piece is to be made."""
+    rolls: Rolling | None = None
+    """Null of what does not turn against its body."""
 
 
 class BodyParts(Strict, kw_only=True):

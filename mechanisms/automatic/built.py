@@ -90,4 +90,7 @@ def _scaled(solid: Solid, scale: float) -> Solid:
         return solid
     shape = cq.Workplane(obj=solid.shape.val().scale(scale))
     holds = tuple(replace(hold, z=hold.z * scale, radius=hold.radius * scale) for hold in solid.holds)
-    return replace(solid, shape=shape, holds=holds)
+    roll = solid.rolls
+    if roll is not None:
+        roll = replace(roll, x=roll.x * scale, y=roll.y * scale, radius=roll.radius * scale)
+    return replace(solid, shape=shape, holds=holds, rolls=roll)

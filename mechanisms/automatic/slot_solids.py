@@ -7,13 +7,20 @@ from typing import TYPE_CHECKING
 from shared.shapes import outline
 from shared.shapes.build import extruded
 from shared.shapes.link import Eye
-from shared.shapes.pin import pin, washer
-from shared.shapes.solid import placed
+from shared.shapes.pin import grooved, pin, washer
+from shared.shapes.solid import Roll, Solid, placed
 
 if TYPE_CHECKING:
     from mechanisms.automatic.heights import Heights
     from mechanisms.automatic.plan import Plan
     from mechanisms.automatic.slots import Slot
+
+GROOVES, GROOVE, GROOVE_DEPTH = 6, 2.6, 1.6
+"""Grooves for oil in the face of a roller, by which one sees it turn: how many, width and depth (rmm)."""
+RIM = 1.0
+"""Between grooves and the roller's rim (rmm)."""
+SEEN = 2.0
+"""How far the face of a roller with grooves reaches beyond the head of its pin (rmm)."""
 
 
 def slotted(slot: Slot, plan: Plan, heights: Heights) -> None:
@@ -32,8 +39,12 @@ def slot_pin(slot: Slot, plan: Plan, heights: Heights, roller_diameter: float | 
     x, y = slot.pin_at
     outer = roller_diameter or sizes.roller
     low, high = heights.bottom(slot.slot), heights.top(slot.slot)
-    roller = washer(pivot.pin + fit.running, outer, heights.thickness - 0.4, chamfer=0.4)
-    plan.make(slot.pin, f"roller_{slot.name}", placed(roller, x, y, low + 0.2), "bronze", 1)
+    roller, roll = washer(pivot.pin + fit.running, outer, heights.thickness - 0.4, chamfer=0.4), None
+    if roller_diameter is not None and outer > sizes.head.diameter + 2 * SEEN:
+        roller = grooved(roller, GROOVES, outer / 2 - RIM, GROOVE, GROOVE_DEPTH)
+        roll = Roll(slot.name, x, y, outer / 2, GROOVES)
+    bronze = Solid(f"roller_{slot.name}", placed(roller, x, y, low + 0.2), "bronze", 1, rolls=roll)
+    plan.add(slot.pin, bronze)
     if heights.bottom(slot.pin) < low:
         boss = max(low - fit.axial - pivot.washer_room - heights.top(slot.pin), 0.0)
         boss = 0.0 if boss < 0.05 else boss

@@ -16,17 +16,24 @@ SHARP = math.radians(32)
 
 
 def build(scene: Any, pieces: list[PieceSpec], only_flat: dict[str, Colour] | None = None) -> dict[str, Any]:
-    """Load every piece; returns the empty of each body. With ``only_flat`` just those pieces, in one flat colour."""
+    """Load every piece; returns the empties that carry them: of bodies, and of pieces that turn against theirs.
+
+    With ``only_flat`` just those pieces, in one flat colour.
+    """
     bodies: dict[str, Any] = {}
     paints: dict[SurfaceSpec, Any] = {}
     for piece in pieces:
         name = f"{piece.body}/{piece.name}"
-        if piece.body not in bodies:
-            bodies[piece.body] = _empty(scene, piece.body)
+        carrier = piece.body if piece.turns_about is None else name
+        if carrier not in bodies:
+            bodies[carrier] = _empty(scene, carrier)
         if only_flat is not None and name not in only_flat:
             continue
         solid = _load(piece.stl, name)
-        solid.parent = bodies[piece.body]
+        solid.parent = bodies[carrier]
+        if piece.turns_about is not None:
+            x, y = piece.turns_about
+            solid.data.transform(((1, 0, 0, -x), (0, 1, 0, -y), (0, 0, 1, 0), (0, 0, 0, 1)))
         if only_flat is not None:
             paint = flat(only_flat[name], name)
         else:

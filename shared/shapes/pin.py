@@ -59,6 +59,15 @@ def washer(inner: float, outer: float, thickness: float, chamfer: float = 0.15) 
     return turned([(a, 0), (b - c, 0), (b, c), (b, t - c), (b - c, t), (a, t)])
 
 
+def grooved(ring: cq.Workplane, count: int, reach: float, width: float, depth: float) -> cq.Workplane:
+    """A ring about z with ``count`` straight grooves in its upper face from the middle out to ``reach`` (mm)."""
+    box = ring.val().BoundingBox()
+    for k in range(count):
+        tool = cq.Workplane().box(reach, width, 2 * depth).translate((reach / 2, 0, box.zmax))
+        ring = ring.cut(tool.rotate((0, 0, 0), (0, 0, 1), 360.0 * k / count))
+    return ring
+
+
 def bushing(inner: float, outer: float, flange: float, flange_thickness: float, length: float) -> cq.Workplane:
     """A flanged bushing (diameters in mm): flange from z = 0 up, barrel down to z = -length. One through hole."""
     a, b, f, t, c = inner / 2, outer / 2, flange / 2, flange_thickness, 0.25

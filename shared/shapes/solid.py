@@ -20,6 +20,19 @@ class Hold:
 
 
 @dataclass(frozen=True)
+class Roll:
+    """A roller: it turns about (x, y) of its body's frame (mm), as it rolls in a joint."""
+
+    joint: str
+    """Its name in mechanism.py."""
+    x: float
+    y: float
+    radius: float
+    marks: int
+    """It looks the same after a turn by one of so many."""
+
+
+@dataclass(frozen=True)
 class Solid:
     """One piece of a body.
 
@@ -28,6 +41,7 @@ class Solid:
     number of holes that go right through: the Euler number of the closed surface is 2 - 2 * through_holes. ``holds``
     says which springs are fixed to it, so that the film adds no pins of its own. ``buy`` says what to ask for in a
     shop where the piece has a standard's sizes, such as "circlip 8x0.8 DIN 471"; a piece without it is to be made.
+    ``rolls`` says how it turns in the film.
     """
 
     name: str
@@ -36,6 +50,7 @@ class Solid:
     through_holes: int
     holds: tuple[Hold, ...] = ()
     buy: str = ""
+    rolls: Roll | None = None
 
 
 def placed(shape: cq.Workplane, x: float = 0.0, y: float = 0.0, z: float = 0.0, turn: float = 0.0) -> cq.Workplane:

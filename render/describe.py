@@ -20,6 +20,7 @@ from render.pieces import piece_specs, refuse_mismatch
 from render.poses import Poses
 from render.rollers import Rollers
 from render.scene import LabelSpec, Scene, State, StudioSpec, Writing
+from render.spirals import Spiral, spirals
 from render.stretched import Stretched, stretched
 from render.swept import SweptSpace
 from render.torques import rounding, torques
@@ -67,7 +68,7 @@ class Film:
                 floor=float(self.space.all[:, 2].min()),
                 azimuth=math.radians(self.shot.camera.azimuth),
             ),
-            tubes=[spec for one in self.stretched for spec, _ in one.tubes],
+            tubes=[spec for one in (*self.stretched, *self.spirals) for spec in one.specs],
             arrows=self.arrows.specs(),
             arcs=self.arcs.specs(),
             writing=self._writing(),
@@ -82,7 +83,7 @@ class Film:
             trails=self.trails.paths(frame),
             labels=[self.heights.label(label.at, at) for label in self.shot.labels],
             camera=self.camera(frame),
-            tubes=[path for one in self.stretched for path in one.paths(self.poses, at)],
+            tubes=[path for one in (*self.stretched, *self.spirals) for path in one.paths(self.poses, at)],
             arrows=self.arrows.at(at.time, arrows),
             arcs=self.arcs.at(at.time, arcs),
             number=self.number(at.time),
@@ -116,6 +117,11 @@ class Film:
         return list(stretched(self.motion, self.space.size, self.heights.spring, held))
 
     @cached_property
+    def spirals(self) -> list[Spiral]:
+        """Torsion springs."""
+        return list(spirals(self.motion, self.space.size, self.heights.site))
+
+    @cached_property
     def _arrow_heights(self) -> tuple[list[float], list[float]]:
         """Of each straight and each curved arrow (m)."""
         straight, curved = (
@@ -135,7 +141,8 @@ class Film:
         """It holds everything that is seen."""
         frames = range(0, self.clock.frames, max(1, self.clock.frames // LOOKED))
         moments = [self.clock.moment(frame) for frame in frames]
-        paths = [path for one in self.stretched for at in moments for path in one.paths(self.poses, at)]
+        drawn = (*self.stretched, *self.spirals)
+        paths = [path for one in drawn for at in moments for path in one.paths(self.poses, at)]
         filmed = np.concatenate([self.space.all, *self._drawn, *map(np.asarray, paths)])
         return FilmCamera(self.shot.camera, self.clock, filmed, self.space.moving)
 

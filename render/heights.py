@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from render.clock import Clock
 from render.poses import Moment, Poses
 from render.scene import Point
+from render.spirals import Site
 from render.stretched import placed
 from render.swept import SweptSpace
 from shared.contract import Motion, Parts, Shape
@@ -38,6 +41,17 @@ def trail_heights(motion: Motion, parts: Parts, trails: Iterable[Trail]) -> dict
     return out
 
 
+DIRECTIONS = 72
+"""In which a stud may stand beside a pin."""
+PASSING = 24
+"""Moments at which is looked what passes over a pin."""
+Array = NDArray[np.float64]
+
+
+def _cos(eighths: int) -> float:
+    return math.cos(math.tau * eighths / 8)
+
+
 class Heights:
     """Of what floats over the bodies of one film."""
 
@@ -61,6 +75,36 @@ class Heights:
             floor = float(self.space.all[:, 2].min())
             found.append(max(self.space.tops_at(body, *place, at) or beside or [floor]))
         return max(found) + LIES * radius, (found[0], found[1])
+
+    def site(self, bodies: tuple[str, str], places: Array, radius: float) -> Site | None:
+        """Room for a spiral of that radius (m) over the pin of two bodies, whose places (T, 2) are given.
+
+        The stud is on the body that is higher, where it is solid so far from the pin; None where neither is.
+        """
+        at, (u, v) = self.clock.moment(0), (float(value) for value in places[0])
+        found = []
+        for body in bodies:
+            theta = self.poses.body(body, at)[2]
+            for k in range(DIRECTIONS):
+                angle = math.tau * k / DIRECTIONS
+                x, y = u + radius * math.cos(theta + angle), v + radius * math.sin(theta + angle)
+                found += [(top, body != "ground", -k, body, angle) for top in self.space.tops_at(body, x, y, at)]
+        if not found:
+            return None
+        base, _, _, outer, direction = max(found)
+        hub = max([base, *(top for body in bodies for top in self.space.tops_at(body, u, v, at))])
+        return Site(outer, direction, base, hub, max(hub, self._passing(places, radius)))
+
+    def _passing(self, places: Array, radius: float) -> float:
+        """The highest piece that is ever over a disc that is at these places (T, 2) of the motion."""
+        time = self.poses.time
+        over = []
+        for k in np.linspace(0, len(time) - 1, PASSING).round().astype(int):
+            at = Moment(float(time[k]), 0)
+            for turn in (None, *range(8)):
+                x, y = places[k] if turn is None else places[k] + radius * np.array([_cos(turn), _cos(turn - 2)])
+                over += [top for body in self.parts.bodies for top in self.space.tops_at(body, x, y, at)]
+        return max(over, default=0.0)
 
     def label(self, name: str, at: Moment) -> Point:
         """Place of a label: just over the highest piece that its joint or point goes through."""

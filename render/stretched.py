@@ -45,6 +45,11 @@ class Stretched:
     z: float
     tubes: list[tuple[TubeSpec, Path]]
 
+    @property
+    def specs(self) -> list[TubeSpec]:
+        """Of each tube."""
+        return [spec for spec, _ in self.tubes]
+
     def ends(self, poses: Poses, at: Moment) -> tuple[Array, Array]:
         """Where it is fixed (3,) at that moment (m)."""
         first, second = (

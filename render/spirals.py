@@ -72,6 +72,16 @@ class Spiral:
         return self.site.over + 2.0 * self.wire
 
     @property
+    def rim(self) -> float:
+        """Distance of the stud from the pin."""
+        return RIM * self.size
+
+    @property
+    def top(self) -> float:
+        """Of hub and stud."""
+        return self.z + 1.6 * self.wire
+
+    @property
     def specs(self) -> list[TubeSpec]:
         """Spiral, hub and stud."""
         shapes = {"": (self.wire, self.points), " hub": (HUB * self.size, 2), " stud": (STUD * self.size, 2)}
@@ -84,21 +94,21 @@ class Spiral:
         """Of the three tubes at that moment."""
         pose = poses.body(self.outer, at)
         x, y = placed(pose, self.at)
-        turned = poses.body(self.inner, at)[2] - pose[2]
-        start = pose[2] + self.at[2]
-        rim, hub = RIM * self.size, HUB * self.size
-        part = np.linspace(0, 1, self.points)
-        radius = rim + (hub - rim) * part
-        angle = start + (turned + math.tau * self.turns) * part
-        spiral = np.stack(
-            [x + radius * np.cos(angle), y + radius * np.sin(angle), np.full(self.points, self.z)], axis=1
-        )
-        u, v, top = x + rim * math.cos(start), y + rim * math.sin(start), self.z + 1.6 * self.wire
+        c, s = math.cos(pose[2] + self.at[2]), math.sin(pose[2] + self.at[2])
+        spiral = self.curve(poses.body(self.inner, at)[2] - pose[2])
+        u, v = x + self.rim * c, y + self.rim * s
         return [
-            [(float(a), float(b), float(c)) for a, b, c in spiral],
-            [(x, y, self.site.hub), (x, y, top)],
-            [(u, v, self.site.base), (u, v, top)],
+            [(float(x + c * a - s * b), float(y + s * a + c * b), float(h)) for a, b, h in spiral],
+            [(x, y, self.site.hub), (x, y, self.top)],
+            [(u, v, self.site.base), (u, v, self.top)],
         ]
+
+    def curve(self, turned: float) -> Array:
+        """Points (n, 3) of the wire about its pin, its stud on the x axis; ``turned``: inner against outer (rad)."""
+        part = np.linspace(0, 1, self.points)
+        radius = self.rim + (HUB * self.size - self.rim) * part
+        angle = (turned + math.tau * self.turns) * part
+        return np.stack([radius * np.cos(angle), radius * np.sin(angle), np.full(self.points, self.z)], axis=1)
 
 
 def spirals(

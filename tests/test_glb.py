@@ -62,11 +62,15 @@ class Read:
             sampler = animation["samplers"][channel["sampler"]]
             assert sampler["interpolation"] == "LINEAR"
             times, values = self.array(sampler["input"])[:, 0], self.array(sampler["output"])
+            if channel["target"]["path"] == "weights":
+                values = values.reshape(len(times), -1)
             assert (np.diff(times) > 0).all()
             k = int(np.clip(np.searchsorted(times, t, side="right") - 1, 0, len(times) - 2))
             part = min(max((t - times[k]) / (times[k + 1] - times[k]), 0.0), 1.0)
             target = channel["target"]
+            assert np.isfinite(values).all()
             local[target["node"]][target["path"]] = _between(values[k], values[k + 1], part, target["path"])
+        self.weights = {node["name"]: node.get("weights", []) for node in local.values()}
         out: dict[str, np.ndarray] = {}
 
         def walk(k: int, above: np.ndarray) -> None:
@@ -82,12 +86,13 @@ class Read:
 
 def _between(a: np.ndarray, b: np.ndarray, part: float, path: str) -> np.ndarray:
     a, b = a.astype(float), b.astype(float)
-    if path == "translation":
+    if path != "rotation":
         return a + part * (b - a)
     dot = float(a @ b)
     angle = math.acos(min(abs(dot), 1.0))
-    if angle < 1e-9:
-        return a
+    if angle < 1e-3:  # straight, as viewers do; the angle of nearly equal ones is rounding
+        blend = a + part * (math.copysign(1, dot) * b - a)
+        return blend / np.linalg.norm(blend)
     return (math.sin((1 - part) * angle) * a + math.copysign(1, dot) * math.sin(part * angle) * b) / math.sin(angle)
 
 
@@ -99,6 +104,7 @@ def _matrix(node: dict[str, Any]) -> np.ndarray:
         [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
         [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
     ]
+    out[:3, :3] *= node.get("scale", (1, 1, 1))
     out[:3, 3] = node.get("translation", (0, 0, 0))
     return out
 

@@ -15,7 +15,7 @@ def run(name: str) -> None:
     """Write out/<name>/<name>.glb, if the parts, the motion or the shot have changed. Raises UserError."""
     out = Out(name)
     refuse_missing(out)
-    sources = sorted((ROOT / "render").glob("*.py"))
+    sources = [*sorted((ROOT / "render").glob("*.py")), ROOT / "render" / "blender" / "tubes.py"]
     shared = [ROOT / "shared" / f"{file}.py" for file in SHARED] + sorted((ROOT / "shared").glob("contract_*.py"))
     key = key_of(
         out.motion, out.parts, out.shot, sources_hash(Path(__file__).parent, *sources, *shared), versions("numpy")

@@ -4,12 +4,28 @@ from __future__ import annotations
 
 from typing import Any
 
+from render.glb.document import Document
 from render.scene import SurfaceSpec
 
 CLEARCOAT = "KHR_materials_clearcoat"
 METALLIC = {"anodised": 1.0, "brushed": 1.0, "polished": 1.0, "satin": 0.35, "plastic": 0.0, "rubber": 0.0}
 TONE = {"anodised": 0.8, "brushed": 0.68}
 """Of the colour."""
+
+
+class Paints:
+    """The materials of a document, each once."""
+
+    def __init__(self, document: Document) -> None:
+        self._document = document
+        self._known: dict[SurfaceSpec, int] = {}
+
+    def of(self, surface: SurfaceSpec) -> int:
+        """The number of a surface's material."""
+        if surface not in self._known:
+            made = material(surface, f"{surface.finish} {len(self._known)}")
+            self._known[surface] = self._document.add("materials", made)
+        return self._known[surface]
 
 
 def material(surface: SurfaceSpec, name: str) -> dict[str, Any]:

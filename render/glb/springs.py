@@ -1,0 +1,167 @@
+"""What changes its shape, as nodes of a glTF scene.
+
+straight   a tube along x from its first end: moved, turned, and longer or shorter by its scale along x
+coil       the same with the coil of its mean length
+rope       LINKS straight tubes end to end
+spiral     moved and turned as its stud; shapes at several windings, blended (morph targets)
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from render.blender.tubes import SIDES, vertices
+from render.glb.animation import Animation
+from render.glb.document import INDICES, VERTICES, Document
+from render.glb.materials import Paints
+from render.markers import moved
+from render.scene import TubeSpec
+from render.spirals import Spiral
+from render.stretched import Path, Stretched
+from shared.contract import Motion
+
+Array = NDArray[np.float64]
+Tube = tuple[Array, Array, NDArray[np.signedinteger]]
+"""Positions and normals (n, 3), corners (m,)."""
+LINKS = 24
+"""Of a rope."""
+WINDING = 0.35
+"""Angle (rad) between two shapes of a spiral, at most, as long as there are no more than SHAPES."""
+SHAPES = 32
+
+
+class Springs:
+    """Adds them to a document; ``nodes`` are those that stand at its root."""
+
+    def __init__(self, document: Document, animation: Animation, paints: Paints, motion: Motion) -> None:
+        self._document, self._animation, self._paints, self._motion = document, animation, paints, motion
+        self.nodes: list[int] = []
+
+    def stretched(self, one: Stretched) -> None:
+        """A spring, damper or rope."""
+        a, b = (
+            self._ends(body, marker, one.z) for body, marker in zip(one.shape.bodies, one.shape.markers, strict=True)
+        )
+        for spec, path in one.tubes:
+            if spec.points == 2:
+                lines = np.array([path(*ends) for ends in zip(a, b, strict=True)])
+                self._straight(spec, spec.name, lines)
+            elif one.name in self._motion.contacts:
+                ropes = np.array([path(*ends) for ends in zip(a, b, strict=True)])
+                cuts = np.linspace(0, spec.points - 1, LINKS + 1).round().astype(int)
+                for k, (first, last) in enumerate(pairwise(cuts)):
+                    self._straight(spec, f"{spec.name} {k + 1}", ropes[:, [first, last]])
+            else:
+                self._coil(spec, path, a, b)
+
+    def spiral(self, one: Spiral) -> None:
+        """A torsion spring."""
+        wire, hub, stud = one.specs
+        fewer = self._animation.fewer
+        place, start = (values[fewer] for values in moved(self._motion, one.outer, one.at))
+        inner = moved(self._motion, one.inner, (0.0, 0.0, 0.0))[1][fewer]
+        turned = inner - (start - one.at[2])
+        least, most = float(turned.min()), float(turned.max())
+        shapes = np.linspace(least, most, min(SHAPES, max(2, math.ceil((most - least) / WINDING) + 1)))
+        tubes = [_tube(one.curve(angle), wire.radius) for angle in shapes]
+        node = self._node(wire, wire.name, tubes)
+        self._animation.place(node, _flat(place), start)
+        if most > least:
+            weights = np.maximum(0.0, 1 - np.abs(turned[:, None] - shapes) / (shapes[1] - shapes[0]))[:, 1:]
+            self._animation.add(node, "weights", weights)
+            self._document.json["nodes"][node]["weights"] = weights[0].astype(np.float32).tolist()
+        rim = place + one.rim * np.stack([np.cos(start), np.sin(start)], axis=1)
+        for spec, places, low in ((hub, place, one.site.hub), (stud, rim, one.site.base)):
+            self._upright(spec, spec.name, places, low, one.top)
+
+    def _ends(self, body: str, marker: tuple[float, float, float], z: float) -> Array:
+        """(T, 3) of a marker, at the height of what hangs on it."""
+        place = moved(self._motion, body, marker)[0][self._animation.fewer]
+        return np.column_stack([place, np.full(len(place), z)])
+
+    def _straight(self, spec: TubeSpec, name: str, lines: Array) -> None:
+        """Between two points (T, 2, 3) that move."""
+        way = lines[:, 1] - lines[:, 0]
+        if not way[:, :2].any():
+            low, high = (float(z) for z in lines[0, :, 2])
+            self._upright(spec, name, lines[:, 0, :2], low, high)
+            return
+        length = np.hypot(way[:, 0], way[:, 1])
+        mean = float(length.mean())
+        node = self._node(spec, name, [_tube(np.array([[0.0, 0, 0], [mean, 0, 0]]), spec.radius)])
+        self._between(node, lines[:, 0], way, length / mean)
+
+    def _upright(self, spec: TubeSpec, name: str, places: Array, low: float, high: float) -> None:
+        """From one height to another (m) at places (T, 2)."""
+        node = self._node(spec, name, [_tube(np.array([[0.0, 0, low], [0.0, 0, high]]), spec.radius)])
+        self._animation.place(node, _flat(places), np.zeros(len(places)))
+
+    def _coil(self, spec: TubeSpec, path: Path, a: Array, b: Array) -> None:
+        length = np.hypot(*(b - a)[:, :2].T)
+        mean = float(length.mean())
+        node = self._node(spec, spec.name, [_tube(path(np.zeros(3), np.array([mean, 0.0, 0.0])), spec.radius)])
+        self._between(node, a, b - a, length / mean)
+
+    def _between(self, node: int, start: Array, way: Array, longer: Array) -> None:
+        """Lay a node from (T, 3) along ways (T, 3), stretched by factors (T,)."""
+        angle = np.unwrap(np.arctan2(way[:, 1], way[:, 0]))
+        self._animation.place(node, start, angle)
+        scale = np.column_stack([longer, np.ones((len(longer), 2))])
+        self._animation.add(node, "scale", scale)
+        self._document.json["nodes"][node]["scale"] = scale[0].astype(np.float32).tolist()
+
+    def _node(self, spec: TubeSpec, name: str, tubes: list[Tube]) -> int:
+        """A node with a tube as its mesh; tubes beyond the first are shapes that it may be blended to."""
+        add = self._document.array
+        (positions, normals, corners), *others = tubes
+        primitive = {
+            "attributes": {
+                "POSITION": add(positions.astype(np.float32), VERTICES, bounds=True),
+                "NORMAL": add(normals.astype(np.float32), VERTICES),
+            },
+            "indices": add(corners.astype(np.uint16 if len(positions) < 65535 else np.uint32), INDICES),
+            "material": self._paints.of(spec.surface),
+        }
+        if others:
+            primitive["targets"] = [
+                {
+                    "POSITION": add((p - positions).astype(np.float32), VERTICES, bounds=True),
+                    "NORMAL": add((n - normals).astype(np.float32), VERTICES),
+                }
+                for p, n, _ in others
+            ]
+        mesh = {"name": name, "primitives": [primitive]}
+        if others:
+            mesh["weights"] = [0.0] * len(others)
+        self.nodes.append(self._document.add("nodes", {"name": name, "mesh": self._document.add("meshes", mesh)}))
+        return self.nodes[-1]
+
+
+def _flat(places: Array) -> Array:
+    """(n, 3) of places (n, 2), at height 0."""
+    return np.column_stack([places, np.zeros(len(places))])
+
+
+def _tube(path: Array, radius: float) -> Tube:
+    """Positions and normals (n, 3) and corners (m,) of a tube along a path (k, 3) with flat ends."""
+    line = [(float(x), float(y), float(z)) for x, y, z in path]
+    rings = vertices(line, radius).astype(float).reshape(-1, SIDES, 3)
+    middles = np.asarray(path)[:, None]
+    outwards = (rings - middles) / radius
+    ends = [(path[0] - path[1]), (path[-1] - path[-2])]
+    faces = [np.tile(end / np.linalg.norm(end), (SIDES, 1)) for end in ends]
+    positions = np.concatenate([rings.reshape(-1, 3), rings[0], rings[-1]])
+    normals = np.concatenate([outwards.reshape(-1, 3), *faces])
+    side, following = np.arange(SIDES), (np.arange(SIDES) + 1) % SIDES
+    quads = []
+    for ring in range(len(path) - 1):
+        a, b = ring * SIDES + side, ring * SIDES + following
+        quads += [np.stack([a, b, b + SIDES], axis=1), np.stack([a, b + SIDES, a + SIDES], axis=1)]
+    first, last = len(path) * SIDES, (len(path) + 1) * SIDES
+    fan = np.stack([np.zeros(SIDES - 2, int), np.arange(1, SIDES - 1), np.arange(2, SIDES)], axis=1)
+    corners = np.concatenate([*quads, first + fan[:, ::-1], last + fan])
+    return positions, normals, corners.reshape(-1)

@@ -39,6 +39,8 @@ class Body:
     inertia: float = 0.0
     length: float | None = None
     """Of a bar (m); None for other bodies."""
+    mass_given: bool = False
+    """Whether its mass was given when it was added; one of 0 makes it massless on purpose."""
 
     def __setattr__(self, name: str, value: object) -> None:
         super().__setattr__(name, self._checked(name, value))

@@ -77,10 +77,17 @@ class MechanismBase:
         """The frame that does not move."""
         return self.bodies["ground"]
 
-    def body(self, name: str, mass: float = 0.0, com: Sequence[float] = (0.0, 0.0), inertia: float = 0.0) -> Body:
-        """Add a body. Raises ModelError on a name already used or an impossible mass."""
+    def body(
+        self, name: str, mass: float | None = None, com: Sequence[float] = (0.0, 0.0), inertia: float = 0.0
+    ) -> Body:
+        """Add a body. Without a mass it has none here; in a mechanism's folder it then gets that of its parts.
+
+        Raises ModelError on a name already used or an impossible mass.
+        """
         self._new_name(name, "body", self.bodies)
-        body = self.bodies[name] = Body(name, self.name, mass, com, inertia)  # pyright: ignore[reportArgumentType]
+        known = 0.0 if mass is None else mass
+        body = self.bodies[name] = Body(name, self.name, known, com, inertia)  # pyright: ignore[reportArgumentType]
+        body.mass_given = mass is not None
         body.belong(self)
         return body
 
@@ -88,7 +95,7 @@ class MechanismBase:
         self,
         name: str,
         length: float,
-        mass: float = 0.0,
+        mass: float | None = None,
         com: Sequence[float] | None = None,
         inertia: float | None = None,
     ) -> Body:
@@ -98,8 +105,8 @@ class MechanismBase:
         """
         length = self._length(f"bar '{name}' has length", length)
         com = (length / 2, 0.0) if com is None else com
-        mass = self._number(f"mass of body '{name}'", mass)
-        inertia = mass * length**2 / 12 if inertia is None else inertia
+        mass = None if mass is None else self._number(f"mass of body '{name}'", mass)
+        inertia = (mass or 0.0) * length**2 / 12 if inertia is None else inertia
         body = self.body(name, mass, com, inertia)
         body.length = length
         return body

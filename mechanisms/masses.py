@@ -25,7 +25,7 @@ def give_masses(m: Mechanism, parts: Parts | None) -> tuple[dict[str, Source], l
     """
     if parts is not None:
         _refuse_other_bodies(m, parts)
-    given = [name for name, body in m.bodies.items() if body.mass > 0 or body.inertia > 0]
+    given = [name for name, body in m.bodies.items() if body.mass_given or body.mass > 0 or body.inertia > 0]
     solids = parts.bodies if parts is not None else {}
     source: dict[str, Source] = {}
     for name in m.bodies:

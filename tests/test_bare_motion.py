@@ -13,6 +13,7 @@ from mbsd import Mechanism, constant_rate
 from mechanisms import loading, solve_stage
 from mechanisms.bare_motion import bare_solution
 from mechanisms.estimated_masses import HALF_WIDTH, THICKNESS, estimated_masses
+from mechanisms.masses import give_masses
 from shared.contract import read_motion
 from shared.errors import UserError
 from shared.paths import Out
@@ -214,3 +215,14 @@ def test_impacts_without_rows_of_their_own_are_told(
     _Author(monkeypatch, build, DURATION=0.25)
     bare_solution("arm")
     assert capsys.readouterr().err == ""
+
+
+def test_a_mass_of_zero_is_massless_on_purpose() -> None:
+    m = Mechanism("light")
+    rod, arm, ring = m.bar("rod", 0.2, mass=0), m.bar("arm", 0.2), m.body("ring", mass=0, inertia=0.1)
+    sources, sentences = give_masses(m, None)
+    assert sources == {"rod": "mechanism", "arm": "estimate", "ring": "mechanism"}
+    assert (rod.mass, rod.inertia, ring.mass, ring.inertia) == (0.0, 0.0, 0.0, 0.1)
+    assert arm.mass > 0
+    assert len(sentences) == 1
+    assert "rod" not in sentences[0]

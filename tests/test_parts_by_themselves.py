@@ -20,7 +20,7 @@ class _Author:
 
     DURATION = 0.05
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch, mass: float = 0.0, driven: bool = False) -> None:
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, mass: float | None = None, driven: bool = False) -> None:
         self.mass, self.driven = mass, driven
         monkeypatch.setattr(loading, "load", lambda *_: self)
         monkeypatch.setattr(loading, "params", lambda _: None)

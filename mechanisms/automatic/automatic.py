@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from mechanisms.automatic.decided import decided
 from mechanisms.automatic.extents import extents
 from mechanisms.automatic.features import Need
+from mechanisms.automatic.free_bodies import free_bodies
 from mechanisms.automatic.gathered import gathered
 from mechanisms.automatic.heights import Heights, heights
 from mechanisms.automatic.layout import Layout, Springs
@@ -184,8 +185,10 @@ class Automatic:
         layout.apart = frozenset(self._left_out)
         layout.touching = frozenset(map(frozenset, self._touching))
         layout.features = gathered(layout)
+        layout.features += free_bodies(layout)
+        layout.features += weights(layout, heavy=True)
         layout.features += styluses(layout, tall)
-        layout.features += weights(layout)
+        layout.features += weights(layout, heavy=False)
         return layout
 
     def _plan_anew(self) -> None:

@@ -76,7 +76,10 @@ def extents(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) ->
             for marker in (force.i, force.j):
                 places.setdefault(marker.body.name, []).append((marker.x, marker.y))
                 studs.setdefault(marker.body.name, []).append((marker.x, marker.y))
+    jointed = {name for joint in m.joints.values() for name in joint.bodies}
     for name, body in m.bodies.items():
+        if name not in (*jointed, *left_out, "ground"):
+            places.setdefault(name, []).append(body.com)
         if body.length is not None and name not in left_out:
             places.setdefault(name, []).extend([(0.0, 0.0), (body.length, 0.0)])
     seen = np.concatenate([[[0.0, 0.0]], *[_swept(solution, body, np.array(at)) for body, at in places.items()]])

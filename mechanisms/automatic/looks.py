@@ -9,6 +9,7 @@ if TYPE_CHECKING:
 
 DRIVEN = "aluminium_orange"
 ON_GROUND = ("aluminium_blue", "aluminium_red", "aluminium_green", "aluminium_violet")
+FREE = ("aluminium_gold", "aluminium_blue", "aluminium_red", "aluminium_green", "aluminium_violet", "aluminium")
 BETWEEN = ("aluminium", "aluminium_gold")
 FREE = "aluminium_orange"
 
@@ -18,12 +19,16 @@ def materials(m: Mechanism) -> dict[str, str]:
     held = {name for joint in m.joints.values() for name in joint.bodies}
     driven = {name for driver in m.drivers.values() for name in driver.bodies} - {"ground"}
     grounded = {name for joint in m.joints.values() if "ground" in joint.bodies for name in joint.bodies} - {"ground"}
+    jointed = {name for joint in m.joints.values() for name in joint.bodies}
     found: dict[str, str] = {}
-    turns = {"ground": 0, "between": 0}
+    turns = {"ground": 0, "between": 0, "free": 0}
     for name in m.bodies:
         if name == "ground":
             continue
-        if name in driven and name in grounded:
+        if name not in jointed:
+            found[name] = FREE[turns["free"] % len(FREE)]
+            turns["free"] += 1
+        elif name in driven and name in grounded:
             found[name] = DRIVEN
         elif name not in held:
             found[name] = FREE

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mechanisms.automatic.features import Anchor, Feature, Need
+from mechanisms.automatic.free_bodies import FreeBody
 from mechanisms.automatic.items import Item, Reach
 from mechanisms.automatic.planar import disc
 from shared.shapes.link import Eye
@@ -108,32 +109,44 @@ class Weight:
 
 
 def styluses(layout: Layout, tall: bool) -> list[Feature]:
-    """One for every traced point of a moving body, except where a joint's eye is."""
+    """One for every traced point of a moving body, except where a joint's eye or a weight is, and on balls."""
     found: list[Feature] = []
+    balls = {feature.body for feature in layout.features if isinstance(feature, FreeBody) and feature.is_ball}
     taken = [a for feature in layout.features for a in feature.anchors(layout)]
     for name, marker in layout.m.traces.items():
         body, (x, y) = marker.body.name, layout.place(marker)
         near = layout.sizes.eye + layout.sizes.stylus_eye
-        if body not in layout.moving or any(a.body == body and math.hypot(a.x - x, a.y - y) < near for a in taken):
+        if (
+            body not in layout.moving
+            or body in balls
+            or any(a.body == body and math.hypot(a.x - x, a.y - y) < near for a in taken)
+        ):
             continue
         found.append(Stylus(name, body, x, y, tall))
     return found
 
 
-def weights(layout: Layout) -> list[Feature]:
-    """For bars with a free end, and for bodies with one joint whose centre of mass is elsewhere."""
+def weights(layout: Layout, heavy: bool) -> list[Feature]:
+    """For bars with a free end, and for bodies with one joint whose centre of mass is elsewhere.
+
+    ``heavy``: only for ends of bars where their centre of mass is, even if they are traced.
+    """
     found: list[Feature] = []
+    free = {feature.body for feature in layout.features if isinstance(feature, FreeBody)}
     taken = [a for feature in layout.features for a in feature.anchors(layout)]
     for name in layout.moving:
         body = layout.m.bodies[name]
         here = [a for a in taken if a.body == name]
+        centre = (layout.sizes.of_metres(body.com[0]), layout.sizes.of_metres(body.com[1]))
         if body.length is not None:
             ends = [(0.0, 0.0), (layout.sizes.of_metres(body.length), 0.0)]
-        elif len(here) < 2:
-            ends = [(layout.sizes.of_metres(body.com[0]), layout.sizes.of_metres(body.com[1]))]
+        elif len(here) < 2 and name not in free:
+            ends = [centre]
         else:
             continue
         for x, y in ends:
+            if heavy and (body.length is None or math.dist((x, y), centre) > layout.sizes.eye):
+                continue
             if all(math.hypot(a.x - x, a.y - y) > 2 * layout.sizes.eye for a in here):
                 found.append(Weight(name, x, y))
     return found

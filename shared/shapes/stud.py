@@ -11,8 +11,8 @@ import cadquery as cq
 
 from shared.shapes.build import turned
 
-TIP = 0.35
-"""Radius of the flat on the last ball, in its own."""
+TIP, FLAT = 0.35, 0.06
+"""Radii of the flat on a stud's last ball, and on a loose one, in that of the ball."""
 
 
 @dataclass(frozen=True)
@@ -59,3 +59,9 @@ def ball_stud(
     if points[-1][0] > 0:
         points += [(r, end - 0.3), (r - 0.3, end), (0.0, end)]
     return turned(points)
+
+
+def ball(radius: float) -> cq.Workplane:
+    """A ball about the origin (mm), with small flats at its poles, since a mesh may tear at an apex."""
+    flat, rise = FLAT * radius, radius * math.sqrt(1 - FLAT**2)
+    return turned([(0.0, -rise), (flat, -rise), (radius, 0.0, flat, rise), (0.0, rise)])

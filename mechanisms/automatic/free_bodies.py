@@ -19,6 +19,7 @@ import numpy as np
 from mechanisms.automatic.features import Anchor, Feature, Need
 from mechanisms.automatic.items import Item, Reach
 from mechanisms.automatic.planar import disc
+from mechanisms.automatic.studs import Stud
 from shared.materials import MATERIALS
 from shared.shapes.build import eased, extruded
 from shared.shapes.outline import circle
@@ -79,11 +80,12 @@ class FreeBody:
 
 
 def free_bodies(layout: Layout) -> list[Feature]:
-    """One for each body without a joint."""
+    """One for each body without a joint or a shape of its own."""
     m = layout.m
-    jointed = {body for joint in m.joints.values() for body in joint.bodies}
-    jointed |= {body for contact in m.contacts.values() for body in contact.bodies}
-    names = [name for name in layout.moving if name not in jointed]
+    shaped = {body for joint in m.joints.values() for body in joint.bodies}
+    others = [feature for feature in layout.features if not isinstance(feature, Stud)]
+    shaped |= {item.body for feature in others for item in feature.items(layout)}
+    names = [name for name in layout.moving if name not in shaped]
     if not names:
         return []
     held = {a.body for feature in layout.features for a in feature.anchors(layout)}

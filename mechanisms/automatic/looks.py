@@ -9,9 +9,8 @@ if TYPE_CHECKING:
 
 DRIVEN = "aluminium_orange"
 ON_GROUND = ("aluminium_blue", "aluminium_red", "aluminium_green", "aluminium_violet")
-FREE = ("aluminium_gold", "aluminium_blue", "aluminium_red", "aluminium_green", "aluminium_violet", "aluminium")
 BETWEEN = ("aluminium", "aluminium_gold")
-FREE = "aluminium_orange"
+FREE = ("aluminium_orange", "aluminium_blue", "aluminium_gold", "aluminium_green", "aluminium_red", "aluminium_violet")
 
 
 def materials(m: Mechanism) -> dict[str, str]:
@@ -19,19 +18,16 @@ def materials(m: Mechanism) -> dict[str, str]:
     held = {name for joint in m.joints.values() for name in joint.bodies}
     driven = {name for driver in m.drivers.values() for name in driver.bodies} - {"ground"}
     grounded = {name for joint in m.joints.values() if "ground" in joint.bodies for name in joint.bodies} - {"ground"}
-    jointed = {name for joint in m.joints.values() for name in joint.bodies}
     found: dict[str, str] = {}
     turns = {"ground": 0, "between": 0, "free": 0}
     for name in m.bodies:
         if name == "ground":
             continue
-        if name not in jointed:
+        if name not in held:
             found[name] = FREE[turns["free"] % len(FREE)]
             turns["free"] += 1
         elif name in driven and name in grounded:
             found[name] = DRIVEN
-        elif name not in held:
-            found[name] = FREE
         elif name in grounded:
             found[name] = ON_GROUND[turns["ground"] % len(ON_GROUND)]
             turns["ground"] += 1

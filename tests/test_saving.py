@@ -132,6 +132,17 @@ def test_random_models_come_back_number_for_number(lengths: Any, masses: Any, tu
     assert document(build(json.loads(json.dumps(written)))) == written
 
 
+def test_a_mass_that_was_not_given_stays_so() -> None:
+    m = Mechanism("masses")
+    m.body("none")
+    m.body("zero", mass=0)
+    m.bar("some", 0.1, mass=0.3)
+    written = document(m)
+    jsonschema.validate(written, schema())
+    assert [written["bodies"][name]["mass"] for name in ("none", "zero", "some")] == [None, 0.0, 0.3]
+    assert [body.mass_given for body in build(written).bodies.values()] == [False, False, True, True]
+
+
 def test_a_loaded_model_moves_as_the_first(tmp_path: Path) -> None:
     m = four_bars.model((4.0, 1.0, 3.5, 3.0), 2.0)
     a, b = m.sweep(steps=12), _back(m, tmp_path).sweep(steps=12)
@@ -141,7 +152,12 @@ def test_a_loaded_model_moves_as_the_first(tmp_path: Path) -> None:
 
 def test_all_that_a_model_holds_is_in_its_file() -> None:
     assert {field.name for field in fields(Mechanism)} <= set(schema()["properties"])
-    assert {field.name for field in fields(Body)} == {"name", "owner", *schema()["$defs"]["body"]["properties"]}
+    assert {field.name for field in fields(Body)} == {
+        "name",
+        "owner",
+        "mass_given",
+        *schema()["$defs"]["body"]["properties"],
+    }
 
 
 def test_the_published_schema_is_current() -> None:

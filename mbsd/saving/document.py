@@ -90,7 +90,8 @@ def _write(m: Mechanism) -> dict[str, Any]:
 
 
 def _body(body: Body) -> dict[str, Any]:
-    return {"mass": body.mass, "com": list(body.com), "inertia": body.inertia, "length": body.length}
+    mass = body.mass if body.mass_given or body.mass > 0 else None
+    return {"mass": mass, "com": list(body.com), "inertia": body.inertia, "length": body.length}
 
 
 def _joint(m: Mechanism, joint: Joint, part: str = "joint") -> dict[str, Any]:
@@ -127,7 +128,8 @@ def _refuse_other_version(top: Entry) -> None:
 
 
 def _read_body(m: Mechanism, name: str, entry: Entry) -> None:
-    mass, inertia, com = entry.number("mass"), entry.number("inertia"), entry.numbers("com", 2)
+    mass = entry.number_or_none("mass")
+    inertia, com = entry.number("inertia"), entry.numbers("com", 2)
     entry.refuse_others("mass", "com", "inertia", "length")
     if entry.get("length") is None:
         entry.within(lambda: m.body(name, mass, com, inertia))

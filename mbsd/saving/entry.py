@@ -28,6 +28,11 @@ class Entry:
         """A finite number."""
         return _number(self._needed(key), f"{self.where}.{key}")
 
+    def number_or_none(self, key: str) -> float | None:
+        """A finite number, or null."""
+        value = self._needed(key)
+        return None if value is None else _number(value, f"{self.where}.{key}")
+
     def numbers(self, key: str, count: int) -> tuple[Any, ...]:
         """A list of ``count`` finite numbers."""
         values = self._needed(key)

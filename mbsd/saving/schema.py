@@ -38,7 +38,7 @@ def schema() -> dict[str, Any]:
     marker = _object({"body": {"type": "string"}, "x": NUMBER, "y": NUMBER, "angle": NUMBER})
     body = _object(
         {
-            "mass": {"type": "number", "minimum": 0},
+            "mass": {"type": ["number", "null"], "minimum": 0},
             "com": PAIR,
             "inertia": {"type": "number", "minimum": 0},
             "length": {"type": ["number", "null"], "exclusiveMinimum": 0},

@@ -9,9 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbsd import Mechanism
+from mbsd import Mechanism, constant_rate
 from mbsd.curves import curve
 from mechanisms.automatic.automatic import Automatic
+from mechanisms.automatic.cams import Cam
 from mechanisms.automatic.profiles import distances
 from mechanisms.automatic.roads import Road
 from mechanisms.automatic.rounds import Round
@@ -130,3 +131,24 @@ def test_planks_of_a_bowl_end_where_they_meet() -> None:
         found = planks[k].path / made.sizes.of_metres(1.0)
         np.testing.assert_allclose(found, places[k : k + 2], atol=1e-9)
         np.testing.assert_allclose(planks[k].feet[0], planks[k + 1].feet[1], atol=1e-6)
+
+
+def test_a_closed_curve_that_pushes_is_a_cam_with_a_roller() -> None:
+    m = Mechanism("valve")
+    disc, valve = m.body("disc", mass=0.2, inertia=1e-4), m.body("valve", mass=0.1, inertia=1e-5)
+    m.revolute("shaft", m.ground.origin, disc.origin)
+    m.prismatic("guide", m.ground.at(0, 0.12, math.pi / 2), valve.at(0, 0.075, math.pi / 2))
+    angle = np.linspace(0, -2 * math.pi, 60, endpoint=False)
+    eccentric = [(0.03 * math.cos(a), 0.006 + 0.03 * math.sin(a)) for a in angle]
+    m.rigid_terrain("push", disc.origin, valve.origin, eccentric, 0.012, closed=True)
+    m.spring("spring", m.ground.at(0, 0.2), valve.at(0, 0.1), 2000.0, free_length=0.1)
+    m.drive_angle("motor", disc, constant_rate(20.0))
+    m.start_near(valve=(0, 0.048, 0))
+    made, _, _ = _made(m, 0.4)
+    (found,) = [f for f in made.layout.features if isinstance(f, Cam)]
+    scale = made.sizes.of_metres(1.0)
+    assert found.roller == pytest.approx(0.012 * scale - found.clear)
+    assert found.base == pytest.approx(0.024 * scale, rel=1e-3)
+    assert made.levels["disc"] != made.levels["valve"]
+    names = {solid.name for solid in made.plan().solids["valve"]}
+    assert {"roller_push", "pin_push"} <= names

@@ -7,7 +7,10 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.optimize import brentq
 
+from mbsd.solution import Solution
+from mechanisms.cam_follower import mechanism as cam
 from mechanisms.reflective_wall import mechanism as wall
 from mechanisms.terrain_wheel import mechanism as terrain
 
@@ -118,3 +121,37 @@ def test_dropped_wheel_is_spun_by_the_slope() -> None:
     assert -p.radius * wheel.omega[row + 1] == pytest.approx(along / (1 + k), rel=1e-4)
     lost = p.mass / 2 * ((1 - p.restitution**2) * across**2 + k / (1 + k) * along**2)
     assert sol.events[0].energy == pytest.approx(-lost, rel=1e-4)
+
+
+def _valve(speed: float) -> tuple[cam.Params, Solution]:
+    p = cam.Params(follower="valve", speed=speed)
+    m = cam.build(p)
+    m.bodies["cam"].mass, m.bodies["cam"].inertia = 0.3, 3e-4
+    return p, m.simulate(4 * math.pi / speed, 1440, tolerance=1e-10, event_rows=True)
+
+
+@pytest.mark.parametrize("part", [0.995, 1.005, 1.2])
+def test_valve_floats_above_the_speed_at_which_its_spring_is_too_weak(part: float) -> None:
+    """m (g + omega^2 s'') + k (preload + s) is the push: at the float speed its least value is zero."""
+    critical = cam.float_speed(cam.Params())
+    p, sol = _valve(part * critical)
+    assert critical * 30 / math.pi == pytest.approx(1605.8, abs=0.1)  # rpm
+    opens = [event.time for event in sol.events if event.what == "opens"]
+    lift = cam.lift_law(p)
+    turn = p.speed * sol.t
+    if part < 1:
+        assert not opens
+        np.testing.assert_allclose(sol.body("follower").y - p.base - p.roller, lift(turn)[:, 0], atol=1e-7)
+        return
+
+    def push(angle: float) -> float:
+        s, _, bend, _ = lift(np.array([angle]))[0]
+        return p.stiffness * (p.preload + s) + p.valve * (p.gravity + p.speed**2 * bend)
+
+    fine = np.linspace(0.0, p.rise, 2001)
+    first = fine[int(np.argmax([push(angle) < 0 for angle in fine]))]
+    assert p.speed * opens[0] == pytest.approx(brentq(push, first - 0.01, first), abs=1e-3)
+    falls = sol.contact("contact").gap.max()
+    assert falls > (1e-3 if part > 1.1 else 0.0)
+    assert sol.contact("contact").gap.min() > -1e-9
+    assert sum(event.energy for event in sol.events) < 0

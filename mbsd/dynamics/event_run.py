@@ -139,10 +139,10 @@ class EventRun:
             self._note_rows()
             if watch.stops:
                 self._make_valid()
-                self.rows.append(self._row())
+                before_it, told = self._row(), len(self.happenings)
                 self._happen(watch)
-                if not self.ended:
-                    self.rows.append(self._row())
+                if len(self.happenings) > told:  # a gap that only rounding closes is no event
+                    self.rows += [before_it] if self.ended else [before_it, self._row()]
             else:
                 self._turn_side(watch)
                 self._restart()

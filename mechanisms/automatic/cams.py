@@ -19,6 +19,7 @@ from mechanisms.automatic.features import Anchor, Feature, Need, kind
 from mechanisms.automatic.items import Item, Reach
 from mechanisms.automatic.own_plates import refuse_ground
 from mechanisms.automatic.planar import Rounded, around, disc
+from mechanisms.automatic.profiles import curve_path, on_body
 from mechanisms.automatic.slots import Slot
 from shared.errors import UserError
 from shared.shapes.cam import evenly
@@ -26,6 +27,7 @@ from shared.shapes.cam import evenly
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
     from mbsd.cams import CamProfile
+    from mbsd.force import Force
     from mbsd.joint import Joint
     from mechanisms.automatic.heights import Heights
     from mechanisms.automatic.items import Levels
@@ -131,6 +133,31 @@ def _cam(m: Mechanism, joint: Joint, layout: Layout) -> Cam:
         roller = sizes.of_metres(profile.sizes["roller_radius"]) - clear
     base = sizes.of_metres(profile.sizes["base_radius"])
     return Cam(joint.name, *names, outline, centre, base, at, roller, face, clear)
+
+
+def pushing_cam(touch: Joint, layout: Layout) -> list[Feature]:
+    """The cam of a contact whose closed curve pushes a disc that may leave it; none if the disc runs inside."""
+    outline = on_body(curve_path(touch.params["points"], True), touch.i, layout)
+    if _area(outline) > 0:
+        return []
+    centre, clear = layout.place(touch.i), CLEAR * layout.sizes.pivot.fit.running
+    base = float(np.hypot(*(outline - centre).T).min())
+    at = (*layout.place(touch.j), touch.j.angle)
+    roller = layout.sizes.of_metres(touch.params["radius"]) - clear
+    return [Cam(touch.name, touch.i.body.name, touch.j.body.name, outline, centre, base, at, roller, (0.0, 0.0), clear)]
+
+
+def pushing_extent(touch: Joint | Force) -> Extent:
+    """As :func:`roller_extent`, of a contact with a closed curve."""
+    away, roller = np.hypot(*np.array(touch.params["points"], dtype=float).T), touch.params["radius"]
+    least = ((float(away.min()), BASE), (roller, ROLLER)) if roller > 0 else ()
+    return Extent(((touch.i, float(away.max())), (touch.j, roller)), least)
+
+
+def _area(outline: np.ndarray) -> float:
+    """Twice the signed area: below 0 where the outside is on the left."""
+    x, y = outline.T
+    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
 
 
 def _touched(

@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.curves import Curve
+from mechanisms.automatic.cams import pushing_cam, pushing_extent
 from mechanisms.automatic.extents import Extent, extent
 from mechanisms.automatic.features import Feature, contact_kind, force_kind
-from mechanisms.automatic.profiles import curve_path, distances, on_ground, profile_path
+from mechanisms.automatic.profiles import curve_path, distances, on_body, profile_path
 from mechanisms.automatic.roads import along
 from mechanisms.automatic.rounds import Look, Round, round_at
 from mechanisms.automatic.walls import NOSE, Line, roads
@@ -58,11 +59,14 @@ def yielding(m: Mechanism, touches: list[Force], layout: Layout) -> list[Feature
 
 @contact_kind("rigid_terrain")
 def terrains(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature]:
-    """Roads and what touches them; closed curves have none."""
+    """Roads and what touches them; a closed curve of a moving body is a cam that pushes a roller."""
     found: list[Feature] = []
     for touch in touches:
-        if _is_on_ground(touch) and not touch.params["closed"]:
+        closed = touch.params["closed"]
+        if _is_on_ground(touch) and not closed:
             found += _on_road(m, touch, curve_path(touch.params["points"], False), layout)
+        elif closed and touch.params["radius"] > 0 and "ground" not in touch.bodies:
+            found += pushing_cam(touch, layout)
     return found
 
 
@@ -96,7 +100,7 @@ def _on_profile(m: Mechanism, touch: Force, profile: Curve, layout: Layout) -> l
 
 
 def _on_road(m: Mechanism, touch: Touch, path: np.ndarray, layout: Layout) -> list[Feature]:
-    path = on_ground(path, touch.i, layout)
+    path = on_body(path, touch.i, layout)
     gap = distances(_places(touch, layout), path) - layout.sizes.of_metres(touch.params["radius"])
     part, new = _round(m, touch, layout, float(gap.min()))
     path = path - _set_back(touch, layout) * _normals(path)
@@ -144,5 +148,7 @@ def _normals(path: np.ndarray) -> np.ndarray:
 def extent_of(touch: Touch, solution: Solution) -> Extent:
     """What touches."""
     radius = touch.params["radius"]
+    if touch.params.get("closed", False):
+        return pushing_extent(touch)
     least = WHEEL if touch.kind.name == "tyre" or touch.params.get("friction", 0.0) > 0.0 else BALL
     return Extent(((touch.j, radius),), ((radius, least),) if radius > 0 else ())

@@ -34,7 +34,7 @@ def profile_path(profile: Curve, first: float, last: float) -> np.ndarray:
     return np.stack([x, profile(x)[:, 0]], axis=1)
 
 
-def on_ground(path: np.ndarray, marker: Marker, layout: Layout) -> np.ndarray:
+def on_body(path: np.ndarray, marker: Marker, layout: Layout) -> np.ndarray:
     """Places (n, 2) in the axes of a marker (m) in those of its body (rmm)."""
     c, s = math.cos(marker.angle), math.sin(marker.angle)
     return layout.sizes.of_metres(1.0) * path @ np.array([[c, s], [-s, c]]) + layout.place(marker)

@@ -12,7 +12,7 @@ import numpy as np
 
 from mechanisms.automatic.extents import Extent, extent
 from mechanisms.automatic.features import Feature, kind
-from mechanisms.automatic.profiles import curve_path, on_ground
+from mechanisms.automatic.profiles import curve_path, on_body
 from mechanisms.automatic.roads import along
 from mechanisms.automatic.rounds import round_at
 from shared.errors import UserError
@@ -54,7 +54,7 @@ def on_curves(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature
                 f"{m.name}: joint '{joint.name}' rolls on a closed curve, which has no parts by itself yet; "
                 f"write mechanisms/{m.name}/parts.py"
             )
-        path = on_ground(curve_path(joint.params["points"], False), joint.i, layout)
+        path = on_body(curve_path(joint.params["points"], False), joint.i, layout)
         found += _rolling(joint, path, layout)
     return found
 

@@ -1,17 +1,30 @@
-"""Cam and follower: a disc cam lifts a valve through a law without jumps of acceleration. SI units."""
+"""Cam and follower: a disc cam lifts a valve through a law without jumps of acceleration.
+A cam that only pushes needs a spring behind the valve; where it turns too fast for the spring (a variant) the valve
+floats: it leaves the cam while it should slow down, and comes down hard.
+"""
 
 from dataclasses import dataclass
-from math import pi
+from math import pi, sqrt
+
+import numpy as np
 
 from mbsd import Mechanism, constant_rate
 from mbsd.cams import Lift, flat_cam, oscillating_roller_cam, roller_cam
 
+VARIANTS = {
+    "flat": {"follower": "flat"},
+    "oscillating": {"follower": "oscillating"},
+    "valve": {"follower": "valve", "speed": 150.0, "DURATION": 0.126},
+    "floating": {"follower": "valve", "speed": 210.0, "DURATION": 0.09},
+}
+
 
 @dataclass(frozen=True)
 class Params:
-    """Sizes (m), angles of the cam over which it lifts and lowers (rad), the cam's speed (rad/s).
+    """Sizes (m), angles of the cam over which it lifts and lowers (rad), the cam's speed (rad/s), weight (m/s^2).
 
-    ``follower`` is roller, flat or oscillating; an oscillating one is lifted by an angle, ``lift`` over its arm.
+    ``follower`` is roller, flat, oscillating or valve; an oscillating one is lifted by an angle, ``lift`` over its arm.
+    A valve (kg) is pushed on the cam by a spring (N/m) that is pressed in by ``preload`` (m) when it is closed.
     """
 
     follower: str = "roller"
@@ -22,12 +35,11 @@ class Params:
     arm: float = 0.080
     law: str = "cycloidal"
     speed: float = 2 * pi
-
-
-VARIANTS = {
-    "flat": {"follower": "flat"},
-    "oscillating": {"follower": "oscillating"},
-}
+    valve: float = 0.20
+    stiffness: float = 5000.0
+    preload: float = 0.014
+    restitution: float = 0.2
+    gravity: float = 9.81
 
 
 def lift_law(p: Params) -> Lift:
@@ -37,9 +49,17 @@ def lift_law(p: Params) -> Lift:
     return Lift.of((p.rise, height, p.law), (pi / 3, height), (p.rise, 0.0, p.law), (rest, 0.0))
 
 
+def float_speed(p: Params) -> float:
+    """Of the cam (rad/s), at which the spring and its weight no longer keep the valve on it."""
+    lift = lift_law(p)(np.linspace(0, 2 * pi, 14401))
+    falls = lift[:, 2] < 0
+    push = p.stiffness * (p.preload + lift[falls, 0]) + p.valve * p.gravity
+    return sqrt(float((push / (-p.valve * lift[falls, 2])).min()))
+
+
 def build(p: Params) -> Mechanism:
     """The cam at the origin turns counter-clockwise; the follower above it moves up and down, or swings."""
-    m = Mechanism("cam_follower")
+    m = Mechanism("cam_follower", gravity=(0.0, -p.gravity))
     cam, follower = m.body("cam"), m.body("follower")
     m.revolute("O", m.ground.at(0, 0), cam.origin)
     m.drive_angle("motor", cam, constant_rate(p.speed))
@@ -49,12 +69,33 @@ def build(p: Params) -> Mechanism:
         m.cam_roller("contact", cam.origin, follower.at(p.arm, 0), profile)
         m.start_near(follower=145)
         return m
-    start = p.base + (p.roller if p.follower == "roller" else 0.0)
+    start = p.base + (0.0 if p.follower == "flat" else p.roller)
     guide = start + 0.075
     m.prismatic("guide", m.ground.at(0, guide, pi / 2), follower.at(0, guide - start, pi / 2))
     if p.follower == "flat":
         m.cam_flat("contact", cam.origin, follower.at(0, 0), flat_cam(lift_law(p), p.base))
+    elif p.follower == "valve":
+        _push(m, p, start)
     else:
         m.cam_roller("contact", cam.origin, follower.at(0, 0), roller_cam(lift_law(p), p.base, p.roller))
     m.start_near(follower=(0, start, 0))
     return m
+
+
+def _push(m: Mechanism, p: Params, start: float) -> None:
+    """The cam only pushes: its roller is free to leave it, and a spring pushes it back."""
+    cam, valve = m.bodies["cam"], m.bodies["follower"]
+    valve.mass, valve.inertia = p.valve, 1e-4
+    outline = roller_cam(lift_law(p), p.base, p.roller).outline
+    around = np.linspace(0, len(outline), 241)[:-1].astype(int)
+    m.rigid_terrain(
+        "contact", cam.origin, valve.origin, outline[around].tolist(), p.roller, closed=True, restitution=p.restitution
+    )
+    seat, length = 0.105, 0.080  # on the valve; of the spring when it is pressed in by the preload
+    m.spring(
+        "spring",
+        m.ground.at(0, start + seat + length),
+        valve.at(0, seat),
+        p.stiffness,
+        free_length=length + p.preload,
+    )

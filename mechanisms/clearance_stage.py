@@ -7,7 +7,8 @@ Every pair of pieces of two bodies is settled by the first of these that suffice
 3. Turn. Bodies with a revolute joint between them turn about one axis: the gap at every angle at once (turn.py).
    This also covers a pin in its hole with 0.1 mm of room.
 4. Motion. The gap of the two meshes over the whole motion, found and proven by branch and bound: of their outlines in
-   the plane (outline_search.py), and where these do not tell it, of their facets (search.py).
+   the plane (outline_search.py), and where these do not tell it, of their facets (search.py). Of gears,
+   over one pitch of their teeth (meshing.py).
 
 What is proven: at every moment of the motion, which between the samples of data.json is the quintic that the film
 shows, the meshes are apart by the ``proven`` gap of clearance.json. It is at most ``resolution`` below the gap that was
@@ -77,6 +78,7 @@ def check(
     parts: Parts, motion: Motion, pieces: list[MeshPiece], key: str, limit: float = LIMIT, reach: float = REACH
 ) -> Clearance:
     """Check every pair of ``pieces`` of different bodies; ``limit`` and ``reach`` in mm. Raises as :func:`run`."""
+    from mechanisms.clearance.meshing import least_in_mesh, meshes
     from mechanisms.clearance.path import paths
     from mechanisms.clearance.search import RESOLUTION
     from mechanisms.clearance.sweep import Sweep
@@ -89,7 +91,7 @@ def check(
             "use the names of mechanism.py in parts()"
         )
     where = paths(motion)
-    axes = _axes(motion, where)
+    axes, in_mesh = _axes(motion, where), meshes(motion, pieces)
     pairs: list[PairClearance] = []
     refused: list[tuple[Sweep, Least]] = []
     apart, error = 0, 0.0
@@ -111,7 +113,7 @@ def check(
             continue
         found = _turn(first, second, axes, sweep, limit, reach)
         if found is None:
-            least = sweep.least(reach)
+            least = least_in_mesh(sweep, in_mesh, where) or sweep.least(reach)
             if least.gap < limit or least.proven < limit / 2:
                 refused.append((sweep, least))
                 continue

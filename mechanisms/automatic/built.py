@@ -56,9 +56,11 @@ def _plate(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
 
 def _geared(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
     """The plate of a body with teeth: a wheel that carries its eyes, or a wheel and a plate round its eyes."""
-    eyes = plan.eyes.get(body, [])
-    x, y, wheel, holes = plan.wheels[body]
-    wheel = placed(wheel, x, y)
+    eyes, one = plan.eyes.get(body, []), plan.wheels[body]
+    wheel, holes = one.shape(thickness, [(x - one.x, y - one.y, eye) for x, y, eye in eyes])
+    wheel = placed(wheel, one.x, one.y)
+    for plate in plan.plates.get(body, []):
+        wheel, holes = wheel.union(plate.shape), holes + plate.through_holes
     if not plan.layout.anchors[body]:
         return wheel, holes
     arm = [*eyes, *_blanks(plan, body, eyes)]

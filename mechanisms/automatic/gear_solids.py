@@ -1,4 +1,4 @@
-"""The solids of wheels (rmm): a toothed disc with a milled-out web, a ring, and what holds them on ground."""
+"""The solids of wheels (rmm): a toothed disc with a milled-out web, a ring or a cup, and what holds them."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 import cadquery as cq
+import numpy as np
 
 from mechanisms.automatic.plan import Foot
 from shared.shapes.build import extruded, turned
@@ -15,39 +16,103 @@ from shared.shapes.outline import circle
 from shared.shapes.solid import placed
 
 if TYPE_CHECKING:
-    from mechanisms.automatic.gears import Wheel
     from mechanisms.automatic.heights import Heights
     from mechanisms.automatic.plan import Plan
+    from mechanisms.automatic.wheels import Wheel
 
 WEB = 2.0
 """Depth to which a web is milled out on both faces."""
 HUB = 14.0
 """Radius of a hub that stays."""
 RIM_WALL = 4.0
+WINDOWS = 5
+"""In the bottom of a cup."""
+BESIDE = 36.0
+"""How far inside of a cup's rim the base plate counts it as standing."""
 
 
 def build_wheel(wheel: Wheel, plan: Plan, heights: Heights) -> None:
-    """Give the plan the wheel as its body's plate, or make it a piece of the ground."""
-    thickness = heights.thickness
-    if wheel.body != "ground":
-        eyes = [(x - wheel.x, y - wheel.y, eye) for x, y, eye in plan.eyes.get(wheel.body, [])]
-        plan.wheels[wheel.body] = (wheel.x, wheel.y, *wheel_shape(wheel, thickness, eyes))
-        return
-    seat = plan.layout.sizes.pivot.fit.seat
-    z = heights.bottoms[heights.levels[wheel.layer]]
-    shape, holes = wheel_shape(wheel, thickness, [])
+    """Give the plan the wheel as its body's plate, on its body's plate, or as a piece of the ground."""
+    if wheel.body == "ground":
+        _on_ground(wheel, plan, heights)
+    elif wheel.ring:
+        _cup(wheel, plan, heights)
+    elif wheel.shares:
+        plan.wheels[wheel.body] = wheel
+    else:
+        _on_tube(wheel, plan, heights)
+
+
+def _on_ground(wheel: Wheel, plan: Plan, heights: Heights) -> None:
+    thickness, seat = heights.thickness, plan.layout.sizes.pivot.fit.seat
+    z = heights.bottom(wheel.layer)
+    shape, holes = wheel.shape(thickness, [])
     if not wheel.ring:
         bore = plan.layout.sizes.pivot.bushing + 1.0
         shape = shape.cut(extruded(circle(0, 0, bore / 2), thickness + 2, -1.0))
         post = extruded(circle(0, 0, wheel.root - 1.5), z - 2 * seat, seat, [circle(0, 0, bore / 2)])
         plan.make("ground", f"post_{wheel.name}", placed(post, wheel.x, wheel.y), "aluminium", 1)
         plan.feet.append(Foot("", wheel.x, wheel.y, wheel.root))
-        holes = 1
+        holes += 1
     for k, (x, y) in enumerate(wheel.posts() if wheel.ring else []):
         post = extruded(circle(0, 0, 4.0), z - 2 * seat, seat)
         plan.make("ground", f"post_{wheel.name}_{k + 1}", placed(post, x, y), "steel", 0)
         plan.feet.append(Foot("", x, y, 6.0))
     plan.make("ground", f"gear_{wheel.name}", placed(shape, wheel.x, wheel.y, z), "aluminium", holes)
+
+
+def _on_tube(wheel: Wheel, plan: Plan, heights: Heights) -> None:
+    """A wheel in a layer of its own: one piece with the tube that reaches to its body's plate."""
+    from mechanisms.automatic.wheels import TUBE
+
+    inner, outer = TUBE
+    thickness = heights.thickness
+    shape, _ = wheel.shape(thickness, [(0.0, 0.0, Eye(outer, 0.0))])
+    low, high = _to_plate(wheel, plan, heights)
+    z = heights.bottom(wheel.layer)
+    if high > low:
+        tube = extruded(circle(0, 0, outer), high - low + 1.0, low - z - (1.0 if low > z else 0.0))
+        shape = shape.union(tube)
+    shape = shape.cut(extruded(circle(0, 0, inner), high - low + thickness + 4.0, min(low - z, 0.0) - 2.0))
+    plan.make(wheel.body, f"gear_{wheel.name}", placed(shape, wheel.x, wheel.y, z), "aluminium", 1)
+
+
+def _cup(wheel: Wheel, plan: Plan, heights: Heights) -> None:
+    """A ring that turns: rim and wall are a piece, the bottom is the body's plate."""
+    thickness = heights.thickness
+    shape, holes = wheel.shape(thickness, [])
+    low, high = _to_plate(wheel, plan, heights)
+    z = heights.bottom(wheel.layer)
+    if high > low:
+        wall = extruded(circle(0, 0, wheel.outside), high - low, low - z, [circle(0, 0, wheel.root)])
+        shape = shape.union(wall)
+    plan.make(wheel.body, f"ring_{wheel.name}", placed(shape, wheel.x, wheel.y, z), "aluminium", holes)
+    bottom = extruded(circle(0, 0, wheel.outside), thickness).faces("|Z").edges().chamfer(0.4)
+    alone = all(math.hypot(a.x - wheel.x, a.y - wheel.y) < 0.01 for a in plan.layout.anchors[wheel.body])
+    eye = plan.layout.sizes.eye
+    room = wheel.root - eye - 4.0
+    windows = WINDOWS if alone and room > 16.0 else 0
+    for k in range(windows):
+        at = (wheel.root + eye) / 2 - 1.0
+        radius = min(0.38 * room, 0.8 * at * math.sin(math.pi / WINDOWS))
+        tool = extruded(circle(at, 0, radius), thickness + 2.0, -1.0)
+        bottom = bottom.cut(placed(tool, turn=360.0 * k / WINDOWS))
+    holds = (wheel.x, wheel.y, eye + 0.1 if windows else wheel.outside - 0.5)
+    plan.plate(wheel.body, placed(bottom, wheel.x, wheel.y), holds, windows)
+    way = plan.layout.seen(wheel.body, (wheel.x, wheel.y), "ground")
+    if np.ptp(way, axis=0).max() < 0.01:  # the base plate goes on under it
+        aside = wheel.outside - BESIDE
+        plan.feet += [
+            Foot("", float(way[0, 0]) + u, float(way[0, 1]) + v, 1.0) for u in (-aside, aside) for v in (-aside, aside)
+        ]
+
+
+def _to_plate(wheel: Wheel, plan: Plan, heights: Heights) -> tuple[float, float]:
+    """From where to where something between the wheel and its body's plate reaches."""
+    seat = plan.layout.sizes.pivot.fit.seat
+    if heights.bottom(wheel.body) < heights.bottom(wheel.layer):
+        return heights.top(wheel.body) + seat, heights.bottom(wheel.layer)
+    return heights.top(wheel.layer), heights.bottom(wheel.body) - seat
 
 
 def wheel_shape(wheel: Wheel, thickness: float, eyes: list[tuple[float, float, Eye]]) -> tuple[cq.Workplane, int]:
@@ -58,11 +123,17 @@ def wheel_shape(wheel: Wheel, thickness: float, eyes: list[tuple[float, float, E
         hole = toothed(wheel.teeth, wheel.module, wheel.root, wheel.tip, -wheel.play / 2, space)
         return extruded(circle(0, 0, wheel.outside), thickness, holes=[wire(hole)]), 1
     outline = toothed(wheel.teeth, wheel.module, wheel.tip, wheel.root, wheel.play / 2, phase)
-    shape = extruded(wire(outline), thickness)
+    return with_hub(extruded(wire(outline), thickness), wheel.root, thickness, eyes)
+
+
+def with_hub(
+    shape: cq.Workplane, root: float, thickness: float, eyes: list[tuple[float, float, Eye]]
+) -> tuple[cq.Workplane, int]:
+    """A disc of that root radius with a milled-out web and its eyes, and its number of through holes."""
     alone = all(math.hypot(x, y) < 0.01 for x, y, _ in eyes)
     holes = 0
-    if alone and wheel.root - RIM_WALL > HUB + 5.0:
-        shape, holes = _milled(shape, wheel.root - RIM_WALL, thickness)
+    if alone and root - RIM_WALL > HUB + 5.0:
+        shape, holes = _milled(shape, root - RIM_WALL, thickness)
     for x, y, eye in eyes:
         if eye.above > 0:
             boss = extruded(circle(x, y, eye.boss_radius), eye.above + 1.0, thickness - 1.0)

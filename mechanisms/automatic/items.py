@@ -100,6 +100,8 @@ class Item:
     """Names of items that it touches by design."""
     only: frozenset[str] = frozenset()
     """Names of the items that it keeps away, where it is no thing but a rule; empty: all."""
+    spared: bool = True
+    """Whether items that spare its body spare it, too."""
 
 
 def choice_of(reach: AnyReach) -> str | None:

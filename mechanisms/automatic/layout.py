@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
     from mbsd import Marker, Mechanism
     from mechanisms.automatic.features import Anchor, Feature
-    from mechanisms.automatic.gears import Wheel
     from mechanisms.automatic.items import Levels
     from mechanisms.automatic.rounds import Round
     from mechanisms.automatic.sizes import Sizes
+    from mechanisms.automatic.wheels import Wheel
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Layout:
     wheels: dict[str, list[Wheel]] = field(default_factory=dict)
     """By body; set before outlines are asked for."""
     extra: list[str] = field(default_factory=list)
-    """Layers that are no body's: wheels on ground."""
+    """Layers that are no body's: wheels on ground, further wheels of a body, racks."""
     together: list[tuple[str, str]] = field(default_factory=list)
     """Pairs that share a layer."""
     features: list[Feature] = field(default_factory=list)
@@ -91,9 +91,9 @@ class Layout:
         return {body: [a for a in places if not self._on_wheel(a)] for body, places in found.items()}
 
     def _on_wheel(self, anchor: Anchor) -> bool:
-        """Whether a wheel of its body carries it."""
+        """Whether the wheel in its body's layer carries it."""
         reach = min(anchor.radius, self.sizes.hardware)
-        wheels = [wheel for wheel in self.wheels.get(anchor.body, []) if not wheel.ring]
+        wheels = [wheel for wheel in self.wheels.get(anchor.body, []) if wheel.shares and not wheel.ring]
         return any(math.hypot(anchor.x - w.x, anchor.y - w.y) + reach <= w.root for w in wheels)
 
     @property
@@ -149,8 +149,8 @@ class Layout:
             or first.what in second.meshes
             or (first.only and second.what not in first.only)
             or (second.only and first.what not in second.only)
-            or first.body in second.spares
-            or second.body in first.spares
+            or (first.spared and first.body in second.spares)
+            or (second.spared and second.body in first.spares)
             or frozenset((first.body, second.body)) in self.touching
         )
 

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     import cadquery as cq
 
     from mechanisms.automatic.layout import Layout
+    from mechanisms.automatic.wheels import Wheel
     from shared.shapes.outline import Circle
 
 
@@ -53,8 +54,8 @@ class Plan:
     feet: list[Foot] = field(default_factory=list)
     solids: dict[str, list[Solid]] = field(default_factory=dict)
     cuts: dict[str, list[tuple[cq.Workplane, int]]] = field(default_factory=dict)
-    wheels: dict[str, tuple[float, float, cq.Workplane, int]] = field(default_factory=dict)
-    """By body: place, shape and through holes of a wheel that is its plate, or a part of it."""
+    wheels: dict[str, Wheel] = field(default_factory=dict)
+    """By body: a wheel that is its plate, or a part of it."""
     plates: dict[str, list[Plate]] = field(default_factory=dict)
     names: set[str] = field(default_factory=set)
     main: dict[str, str] = field(default_factory=dict)

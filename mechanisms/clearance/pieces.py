@@ -17,6 +17,8 @@ from shared.errors import UserError
 
 LEVEL = 1e-6
 """A facet whose corners differ less in height is horizontal (mm)."""
+UPRIGHT = 1e-4
+"""A wall that leans by less (rad) faces neither up nor down: rounded corners of an STL lean it so much."""
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,12 @@ class MeshPiece:
         return p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
 
     @cached_property
+    def size(self) -> np.ndarray:
+        """(n,): twice the area of each facet (mm^2)."""
+        p, q = (self.triangles[:, k] - self.triangles[:, 0] for k in (1, 2))
+        return np.linalg.norm(np.cross(p, q), axis=1)
+
+    @cached_property
     def manifold(self) -> Any:
         """The ``manifold3d.Manifold`` of the mesh."""
         import manifold3d
@@ -92,7 +100,7 @@ def height_between(first: MeshPiece, second: MeshPiece) -> float:
     for a, b in ((first, second), (second, first)):
         for sign in (1.0, -1.0):
             faces = np.unique(sign * a.triangles[a.level & (sign * a.upward > 0), 0, 2])
-            above = np.unique(sign * b.triangles[sign * b.upward < 0][:, :, 2])
+            above = np.unique(sign * b.triangles[sign * b.upward < -UPRIGHT * b.size][:, :, 2])
             at = np.searchsorted(above, faces - LEVEL)
             found = at < len(above)
             least = min(least, float((above[at[found]] - faces[found]).min(initial=np.inf)))

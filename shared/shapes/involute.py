@@ -37,6 +37,30 @@ def shortest_tip(ring: float, mate: float) -> float:
     return math.hypot(ring * math.cos(PRESSURE), (ring - mate) * math.sin(PRESSURE))
 
 
+def longest_rack_tip(pinion: float) -> float:
+    """Greatest height of a rack's teeth above the pitch line that meet the pinion's flanks above its base circle."""
+    return pinion * math.sin(PRESSURE) ** 2
+
+
+def rack_outline(
+    teeth: int, module: float, tip: float, root: float, back: float, play: float, first: float = 0.0
+) -> np.ndarray:
+    """(4 teeth + 4, 2): the outline of a rack, counter-clockwise; its pitch line is the x axis, its teeth point to +y.
+
+    ``tip`` and ``root`` are heights, the root's below zero; ``back`` is what the bar has below the root. The first
+    tooth is at x = ``first``; the bar begins and ends in the middle of a space.
+    """
+    pitch = math.pi * module
+    half = pitch / 4 - play / 2
+    flank = [(-half + root * math.tan(PRESSURE), root), (-half + tip * math.tan(PRESSURE), tip)]
+    tooth = np.array([*flank, *((-x, y) for x, y in reversed(flank))])
+    places = first + pitch * np.arange(teeth)
+    top = np.concatenate([tooth + np.array([x, 0.0]) for x in places])
+    low, high = places[0] - pitch / 2, places[-1] + pitch / 2
+    ends = np.array([[high, root], [high, root - back], [low, root - back], [low, root]])
+    return np.concatenate([top, ends])[::-1]
+
+
 def toothed(teeth: int, module: float, tip: float, root: float, play: float, phase: float = 0.0) -> np.ndarray:
     """(n, 2): the outline of a wheel, counter-clockwise; a tooth points to the angle ``phase`` (rad).
 

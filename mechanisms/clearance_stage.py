@@ -7,8 +7,8 @@ Every pair of pieces of two bodies is settled by the first of these that suffice
 3. Turn. Bodies with a revolute joint between them turn about one axis: the gap at every angle at once (turn.py).
    This also covers a pin in its hole with 0.1 mm of room.
 4. Motion. The gap of the two meshes over the whole motion, found and proven by branch and bound: of their outlines in
-   the plane (outline_search.py), and where these do not tell it, of their facets (search.py). Of gears,
-   over one pitch of their teeth (meshing.py).
+   the plane (outline_search.py), and where these do not tell it, of their facets (search.py). Of gears, over one pitch
+   of their teeth (meshing.py).
 
 What is proven: at every moment of the motion, which between the samples of data.json is the quintic that the film
 shows, the meshes are apart by the ``proven`` gap of clearance.json. It is at most ``resolution`` below the gap that was

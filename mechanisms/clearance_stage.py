@@ -46,7 +46,7 @@ LIMIT = 0.05
 """Smaller gaps between two bodies are refused (mm)."""
 REACH = 5.0
 """Larger gaps are not measured (mm)."""
-PACKAGES = ("manifold3d", "numpy", "scipy")
+PACKAGES = ("manifold3d", "numpy")
 SOURCES = [
     *(ROOT / "mechanisms" / name for name in ("clearance", "clearance_stage.py", "parts_files.py")),
     *sorted((ROOT / "shared").glob("contract*.py")),

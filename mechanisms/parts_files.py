@@ -37,7 +37,8 @@ def stl_bytes(solid: Any) -> bytes:
         if abs(_volume(triangles["corners"].astype(float)) / volume - 1) < VOLUME_GOAL:
             break
     corners = triangles["corners"] + np.float32(0)  # -0 becomes 0
-    lowest = np.array([min(range(3), key=lambda i: tuple(corner[i])) for corner in corners.tolist()], dtype=int)
+    lowest = np.where(_before(corners[:, 1], corners[:, 0]), 1, 0)
+    lowest = np.where(_before(corners[:, 2], corners[np.arange(len(corners)), lowest]), 2, lowest)
     turn = (lowest[:, None] + np.arange(3)) % 3  # same winding, lowest corner first
     corners = np.take_along_axis(corners, turn[:, :, None], axis=1)
     corners = corners[np.lexsort(corners.reshape(-1, 9).T[::-1])]
@@ -50,6 +51,12 @@ def binary_stl(corners: np.ndarray) -> bytes:
     triangles["corners"] = corners
     triangles["normal"] = _normals(corners.astype(float))
     return b"mbsd".ljust(80) + len(triangles).to_bytes(4, "little") + triangles.tobytes()
+
+
+def _before(p: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """(n,): whether points p (n, 3) come before q: by x, of equal ones by y, then by z."""
+    (px, py, pz), (qx, qy, qz) = p.T, q.T
+    return (px < qx) | ((px == qx) & ((py < qy) | ((py == qy) & (pz < qz))))
 
 
 def _mesh(solid: Any, tolerance: float, angle: float) -> np.ndarray:

@@ -8,7 +8,6 @@ itself; and there are fewer segments than facets, and they are simpler.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -81,26 +80,32 @@ def least_by_outlines(sweep: Sweep, gap: float, time: float, poses: int) -> Leas
     ``gap`` (mm) of the pieces was measured at ``time``, after ``poses`` measurements. What is near in height depends on
     the least gap, so that is looked for in the common heights alone before.
     """
-    found, before, beyond = None, None, 0.0
-    for first in (True, False):
-        beyond = 0.0 if first else max(gap - OutlineSearch.resolution, 0.0)
-        both = _outlines(sweep, beyond)
-        if both is None:
+    found, before = None, _outlines(sweep, 0.0)
+    if before is not None:
+        found = OutlineSearch(*before, sweep.path, sweep.still.centre).run(gap, time, poses)
+        gap, time, poses = _measured(sweep, found, gap, time)
+        if found.gap < gap - ALIKE:
             return None
-        if before is None or not _same(before, both):
-            search = OutlineSearch(*both, sweep.path, sweep.still.centre)
-            found = search.run(gap, time, poses)
-            poses = found.poses
-            if found.gap < gap:
-                measured = sweep.gap_at(found.time, gap)
-                gap, time = (measured, found.time) if measured < gap else (gap, time)
-        before = both
-        if found is None or found.gap < gap - ALIKE:
-            return None
-    if found is None:
+    beyond = max(gap - OutlineSearch.resolution, 0.0)
+    both = _outlines(sweep, beyond)
+    if both is None:
         return None
+    if found is None or before is None or not _same(before, both):
+        found = OutlineSearch(*both, sweep.path, sweep.still.centre).run(gap, time, poses)
+        gap, time, poses = _measured(sweep, found, gap, time)
+        if found.gap < gap - ALIKE:
+            return None
     slack = 4 * ROUNDING * (sweep.still.radius + sweep.mover.radius)
-    return replace(found, gap=gap, time=time, proven=min(max(found.proven - slack, 0.0), beyond), poses=poses)
+    return Least(gap, time, min(max(found.proven - slack, 0.0), beyond, gap), poses, found.error)
+
+
+def _measured(sweep: Sweep, found: Least, gap: float, time: float) -> tuple[float, float, int]:
+    """The least gap that is known of the pieces, its time, and how many poses were measured."""
+    if found.gap < gap:
+        measured = sweep.gap_at(found.time, gap)
+        if measured < gap:
+            return measured, found.time, found.poses + 1
+    return gap, time, found.poses
 
 
 def _outlines(sweep: Sweep, beyond: float) -> tuple[Outline, Outline] | None:

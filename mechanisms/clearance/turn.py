@@ -15,6 +15,8 @@ RESOLUTION = 0.004
 ROUNDS = 14
 ROUNDING = 1e-4
 """Boxes are widened to multiples of this (mm), so that those of a turned part coincide."""
+FEW = 1500
+"""Points of a surface that are compared with those of another; of more, some are left out, evenly."""
 
 
 def turn_gap(first: np.ndarray, second: np.ndarray, reach: float, limit: float = 0.0) -> tuple[float, float]:
@@ -106,15 +108,21 @@ def _bounds(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _reached(a: np.ndarray, b: np.ndarray) -> float:
     """The least distance between some points of the two surfaces in (r, z): an upper bound."""
-    from scipy.spatial import cKDTree
-
-    return float(cKDTree(_samples(a)).query(_samples(b))[0].min())
+    first, second = (some[:: -(-len(some) // FEW)] for some in (_samples(a), _samples(b)))
+    r, z = (first[:, None, k] - second[None, :, k] for k in (0, 1))
+    return float(np.sqrt((r * r + z * z).min()))
 
 
 def _samples(t: np.ndarray) -> np.ndarray:
-    """(n, 2) in (r, z): the corners of the triangles, and the points of their edges nearest to the axis."""
+    """(n, 2) in (r, z): the corners of the triangles, and the points of their edges nearest to the axis.
+
+    Of those within :data:`ROUNDING` of each other, as corners of a turned part are, one stands for all.
+    """
     corners = np.column_stack([np.hypot(t[:, :, 0], t[:, :, 1]).ravel(), t[:, :, 2].ravel()])
-    return np.concatenate([corners, _least_radius(t)[1]])
+    points = np.concatenate([corners, _least_radius(t)[1]])
+    r, z = np.round(points / ROUNDING).astype(np.int64).T
+    _, first = np.unique((r << 32) + z, return_index=True)
+    return points[first]
 
 
 def _split(t: np.ndarray) -> np.ndarray:

@@ -9,6 +9,7 @@ import cadquery as cq
 
 from shared.shapes import outline
 from shared.shapes.build import bore, eased, extruded, turned
+from shared.shapes.once import built_once
 from shared.shapes.solid import placed
 
 
@@ -48,6 +49,7 @@ def base_plate(
     return shape
 
 
+@built_once
 def pedestal(
     height: float,
     hole: float,
@@ -107,6 +109,7 @@ def column(height: float, hole: float, top: float, foot: float) -> cq.Workplane:
     )
 
 
+@built_once
 def foot(diameter: float, height: float, hole: float) -> cq.Workplane:
     """A round foot below z = 0, tapered, with a hole for its screw: one through hole."""
     r, a = diameter / 2, hole / 2

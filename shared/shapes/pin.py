@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import cadquery as cq
 
 from shared.shapes.build import extruded, turned
+from shared.shapes.once import built_once
 from shared.shapes.outline import circle
 
 
@@ -30,6 +31,7 @@ class Groove:
     depth: float
 
 
+@built_once
 def pin(
     diameter: float, length: float, head: Head | None = None, groove: Groove | None = None, chamfer: float = 0.6
 ) -> cq.Workplane:
@@ -53,6 +55,7 @@ def pin(
     return turned(profile)
 
 
+@built_once
 def washer(inner: float, outer: float, thickness: float, chamfer: float = 0.15) -> cq.Workplane:
     """A flat washer (diameters in mm) from z = 0: one through hole."""
     a, b, c, t = inner / 2, outer / 2, chamfer, thickness
@@ -68,6 +71,7 @@ def grooved(ring: cq.Workplane, count: int, reach: float, width: float, depth: f
     return ring
 
 
+@built_once
 def bushing(inner: float, outer: float, flange: float, flange_thickness: float, length: float) -> cq.Workplane:
     """A flanged bushing (diameters in mm): flange from z = 0 up, barrel down to z = -length. One through hole."""
     a, b, f, t, c = inner / 2, outer / 2, flange / 2, flange_thickness, 0.25
@@ -88,6 +92,7 @@ def bushing(inner: float, outer: float, flange: float, flange_thickness: float, 
     )
 
 
+@built_once
 def circlip(inner: float, thickness: float, band: float = 0.0) -> cq.Workplane:
     """An external circlip round a groove of diameter ``inner`` (mm), z = 0 up, its gap at +x.
 

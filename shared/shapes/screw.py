@@ -7,6 +7,7 @@ import math
 import cadquery as cq
 
 from shared.shapes.build import turned
+from shared.shapes.once import built_once
 
 SOCKET = {1.6: 1.5, 2: 1.5, 2.5: 2.0, 3: 2.5, 4: 3.0, 5: 4.0, 6: 5.0, 8: 6.0}
 SOCKET |= {10: 8.0, 12: 10.0, 16: 14.0, 20: 17.0, 24: 19.0}
@@ -18,6 +19,7 @@ def head_diameter(nominal: float) -> float:
     return {1.6: 3.0, 2: 3.8, 2.5: 4.5, 3: 5.5}.get(nominal, 1.5 * nominal + (1.0 if nominal < 12 else 0.0))
 
 
+@built_once
 def socket_screw(nominal: float, length: float) -> cq.Workplane:
     """A screw whose shank goes down to z = -length; head from z = 0 to z = nominal. No through hole.
 

@@ -1,0 +1,22 @@
+"""Screws, washers and bushings come many times over: what a builder made of the same numbers is kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache, wraps
+
+import cadquery as cq
+
+
+def built_once[**P](builder: Callable[P, cq.Workplane]) -> Callable[P, cq.Workplane]:
+    """Build the solid of ``builder`` once for the same arguments; each call returns a Workplane of its own."""
+
+    @cache
+    def solid(*args: P.args, **kwargs: P.kwargs) -> cq.Shape:
+        return builder(*args, **kwargs).val()  # pyright: ignore[reportReturnType]  (a builder's value is a shape)
+
+    @wraps(builder)
+    def made(*args: P.args, **kwargs: P.kwargs) -> cq.Workplane:
+        return cq.Workplane(obj=solid(*args, **kwargs))
+
+    return made

@@ -1,4 +1,4 @@
-"""Every folder of mechanisms/, without being told: it solves, closes, has its solids, fits its shot, never touches."""
+"""Every folder of mechanisms/, without being told: it solves, closes, has solids, a shot and a GLB, never touches."""
 
 from __future__ import annotations
 
@@ -11,9 +11,13 @@ import numpy as np
 import pytest
 
 from mechanisms import loading
+from mechanisms.mesh_check import VOLUME_TOLERANCE
+from mechanisms.parts_files import read_mesh
+from render import glb
 from shared import contract
 from shared.paths import ROOT, Out, mechanism_names
 from shared.shot import Names, read_shot, refuse_unknown
+from tests.glb_file import GlbFile
 
 
 def _stage(name: str, stage: str, root: Path) -> subprocess.CompletedProcess[str]:
@@ -107,6 +111,36 @@ def test_solids_and_bodies_have_the_same_names_and_masses(out: Out) -> None:
             parts.bodies[name].mass.com,
             parts.bodies[name].mass.inertia,
         )
+
+
+def test_solids_are_closed_and_of_the_size_that_is_told(out: Out) -> None:
+    parts = contract.read_parts(out.parts)
+    for body in parts.bodies.values():
+        for piece in body.pieces.values():
+            mesh = read_mesh((out.parts_folder / piece.stl).read_bytes())
+            assert mesh.is_watertight
+            assert mesh.volume * 1e-9 == pytest.approx(piece.mass.volume, rel=VOLUME_TOLERANCE)
+            assert mesh.bounds[:, 2] / 1000 == pytest.approx(np.array(piece.z_range), abs=1e-6)
+            assert len(mesh.faces) == piece.triangles
+
+
+def test_the_glb_moves_as_data_json_has_it(out: Out) -> None:
+    """Corners of the box round all pieces of a body, at samples all over the motion, to 0.01 mm."""
+    glb.run(out.name)
+    motion, parts = contract.read_motion(out.motion), contract.read_parts(out.parts)
+    found = GlbFile(out.glb.read_bytes())
+    boxes = {body: found.box_of(body) for body in parts.bodies}
+    assert set(boxes) == {name for name in found.nodes if name in {"ground", *motion.bodies}}
+    start, time = motion.time[0], np.array(motion.time)
+    for t in found.clock[:: max(1, len(found.clock) // 12)]:
+        k = int(np.abs(time - start - t).argmin())
+        matrices = found.matrices(float(t))
+        for body, corners in boxes.items():
+            pose = motion.bodies.get(body)
+            x, y, angle = (pose.x[k], pose.y[k], pose.theta[k]) if pose else (0.0, 0.0, 0.0)
+            place = (corners[:, 0] + 1j * corners[:, 1]) * np.exp(1j * angle) + complex(x, y)
+            upright = np.column_stack([place.real, corners[:, 2], -place.imag])  # glTF's y is up
+            np.testing.assert_allclose((corners @ matrices[body][:3, :3].T) + matrices[body][:3, 3], upright, atol=1e-5)
 
 
 def test_the_shot_names_what_there_is(out: Out) -> None:

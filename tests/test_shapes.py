@@ -221,3 +221,15 @@ def test_units_convert_both_ways() -> None:
     assert metres(mm(0.12)) == pytest.approx(0.12)
     assert cubic_metres(1e9) == pytest.approx(1.0)
     assert inertia_metres(1e15) == pytest.approx(1.0)
+
+
+def test_the_same_hardware_is_built_once_and_nobody_changes_it_for_others() -> None:
+    first, second, longer = socket_screw(3.0, 8.0), socket_screw(3.0, 8.0), socket_screw(3.0, 9.0)
+    assert first.val() is second.val()
+    assert first is not second
+    assert longer.val().Volume() > first.val().Volume()
+    volume = second.val().Volume()
+    first.add(longer)
+    assert placed(first, 5.0).val().Center().x == pytest.approx(5.0)
+    assert len(socket_screw(3.0, 8.0).vals()) == 1
+    assert socket_screw(3.0, 8.0).val().Volume() == volume

@@ -35,5 +35,7 @@ MATERIALS: dict[str, Material] = {
     "pla_white": Material(1240.0, (0.75, 0.75, 0.73), "plastic", 0.45),
     "pla_black": Material(1240.0, (0.02, 0.02, 0.02), "plastic", 0.45),
     "pla_orange": Material(1240.0, (0.80, 0.20, 0.03), "plastic", 0.45),
+    "beech": Material(720.0, (0.42, 0.21, 0.085), "satin", 0.50),
+    "leather": Material(950.0, (0.13, 0.045, 0.018), "satin", 0.55),
     "rubber": Material(1150.0, (0.02, 0.02, 0.02), "rubber", 0.8),
 }

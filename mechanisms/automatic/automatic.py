@@ -29,10 +29,14 @@ from shared.materials import MATERIALS
 from shared.suggestions import did_you_mean
 
 if TYPE_CHECKING:
+    import cadquery as cq
+
     from mbsd import Mechanism, Solution
+    from mechanisms.automatic.joined import Joined
     from mechanisms.automatic.plan import Plan
     from shared.shapes.bodies import Bodies
     from shared.shapes.fit import Fit
+    from shared.shapes.outline import Point
     from shared.shapes.solid import Solid
 
 
@@ -47,6 +51,7 @@ class Automatic:
         self._materials: dict[str, str] = {}
         self._layers: dict[str, int] = {}
         self._replaced: dict[str, list[Solid]] = {}
+        self._joined: list[Joined] = []
         self._left_out: set[str] = set()
         self._touching: set[tuple[str, str]] = set()
 
@@ -78,6 +83,20 @@ class Automatic:
         """
         self._known(body)
         self._replaced[body] = list(solids)
+
+    def join(
+        self, body: str, outline: cq.Wire, at: Point = (0.0, 0.0), holes: Sequence[cq.Wire] = (), sharp: bool = False
+    ) -> None:
+        """Make a closed outline (mm, the body's frame, z = 0) a part of its plate; others keep clear of its hull.
+
+        ``at`` is the place of the joint whose eye it carries; joints that no outline carries are linked as usual.
+        ``sharp`` leaves its edges as they are.
+        """
+        from mechanisms.automatic.joined import Joined
+
+        self._known(body)
+        self._joined.append(Joined(body, outline, at, tuple(holes), sharp))
+        self._plan_anew()
 
     def leave_out(self, body: str) -> None:
         """Build nothing of ``body``. Where a joint would hold it, other bodies keep an eye without a pin.
@@ -189,6 +208,7 @@ class Automatic:
         layout.features += weights(layout, heavy=True)
         layout.features += styluses(layout, tall)
         layout.features += weights(layout, heavy=False)
+        layout.features += self._joined
         return layout
 
     def _plan_anew(self) -> None:

@@ -63,10 +63,10 @@ def _bar(ends: list[PlacedEye], inner: list[PlacedEye], thickness: float) -> cq.
         for fillet, pocket in [(12.0, pocket) for pocket in pockets] + [(7.0, 0.0), (3.0, 0.0)]:
             ways.append(partial(link, length, thickness, start, end, widths, fillet, pocket=pocket, inner=beside))
     ways += [partial(plate_link, straight, thickness, inner=beside, edge=edge) for edge in EDGES]
-    return placed(_first_made(ways), x0, y0, turn=math.degrees(turn))
+    return placed(first_made(ways), x0, y0, turn=math.degrees(turn))
 
 
-def _first_made(ways: Sequence[Callable[[], cq.Workplane]]) -> cq.Workplane:
+def first_made(ways: Sequence[Callable[[], cq.Workplane]]) -> cq.Workplane:
     """The first shape that has room and that the CAD kernel can make; the last one must."""
     for way in ways[:-1]:
         try:
@@ -87,11 +87,11 @@ def _plate(corners: list[PlacedEye], inner: list[PlacedEye], thickness: float) -
     away = points[None] - points[:, None]
     heights = np.abs(sides[:, None, 0] * away[:, :, 1] - sides[:, None, 1] * away[:, :, 0]).max(axis=1) / lengths
     if inner or heights.min() < SLIM * max(eye.radius for _, _, eye in corners):
-        return _first_made([partial(plate_link, corners, thickness, inner=inner, edge=edge) for edge in EDGES]), 0
+        return first_made([partial(plate_link, corners, thickness, inner=inner, edge=edge) for edge in EDGES]), 0
     waist = 2.0 * float(lengths.max())
     rims = _rims(corners, points, lengths, waist)
     ways = [partial(plate_link, corners, thickness, waist=waist, rims=rims, edge=edge) for edge in EDGES]
-    return _first_made(ways), 0 if rims is None else 1
+    return first_made(ways), 0 if rims is None else 1
 
 
 def _rims(corners: list[PlacedEye], points: np.ndarray, lengths: np.ndarray, waist: float) -> list[float] | None:

@@ -17,6 +17,7 @@ class Params:
     shank: float = 0.440  # the coupler, from pedal to knee
     thigh: float = 0.400  # the rocker, from hip to knee
     hip: float = 0.618  # from bottom bracket to hip: the ground link
+    calf: tuple[float, float] = (0.220, 0.073)  # a point of the shank, from the pedal towards the knee and backwards
     slope: float = 73.0
     cadence: float = 60.0
 
@@ -31,6 +32,6 @@ def build(p: Params) -> Mechanism:
     m.revolute("knee", shank.end, thigh.end)
     m.revolute("hip", hip, thigh.start)
     m.drive_angle("cadence", crank, constant_rate(-2 * pi * p.cadence / 60, start=pi / 2))
-    m.trace("calf", shank.at(p.shank / 2, 0))
+    m.trace("calf", shank.at(*p.calf))
     m.start_near(shank=90, thigh=-20)
     return m

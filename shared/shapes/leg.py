@@ -1,0 +1,142 @@
+"""A leg on a bicycle in side view: outlines of thigh, calf and foot, chainring and saddle (mm), the rider faces right.
+
+The thigh lies along x from hip to knee with its front up; the shank along x from the pedal's axle to the knee with the
+calf up, the ankle stiff.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import cadquery as cq
+import numpy as np
+
+from shared.shapes.build import eased, extruded
+from shared.shapes.outline import Point, circle, hull
+from shared.shapes.solid import Solid
+
+THIGH = (
+    (-78, 18), (-40, 74), (60, 84), (180, 79), (300, 65), (375, 53), (422, 36), (442, 2), (428, -34), (375, -47),
+    (280, -60), (170, -78), (80, -96), (0, -104), (-62, -78), (-88, -28),
+)  # fmt: skip
+"""Of a thigh of 400 mm."""
+CALF = (
+    (-36, 2), (-26, -40), (18, -54), (85, -44), (180, -38), (290, -32), (370, -34), (418, -30), (440, 2), (422, 34),
+    (370, 36), (300, 48), (215, 70), (140, 78), (75, 68), (20, 48), (-22, 36),
+)  # fmt: skip
+"""From the knee at the origin to the ankle at (405, 0), its muscle up."""
+FOOT = (
+    (-34, 0), (-22, -36), (8, -70), (22, -96), (44, -98), (58, -70), (76, -24), (104, 22), (134, 58), (142, 104),
+    (120, 146), (84, 178), (52, 190), (32, 178), (26, 130), (16, 70), (-4, 40), (-24, 26),
+)  # fmt: skip
+"""With a shoe, on the pedal at the origin."""
+ANKLE = (110.0, 112.0)
+"""Of the foot."""
+TOOTH = ((-0.32, 0.0), (-0.12, 1.0), (0.12, 1.0), (0.32, 0.0))
+"""Corners of a tooth: pitches, and heights."""
+LEVEL = math.radians(22.0)
+"""The foot is level where the shank leans forward by this."""
+SADDLE = ((-98.0, 6.0, 34.0), (20.0, -8.0, 18.0), (118.0, 4.0, 10.0))
+"""Round these circles (x, y, radius)."""
+
+
+def smooth(points: Sequence[Point], scale: float = 1.0) -> cq.Wire:
+    """A closed curve of tangent arcs through points: two between each and the next (biarcs), all directions met."""
+    at = scale * np.array(points, dtype=float)
+    ways = np.roll(at, -1, axis=0) - at
+    lengths = np.linalg.norm(ways, axis=1)[:, None]
+    units = ways / lengths
+    before, shorter = np.roll(units, 1, axis=0), np.roll(lengths, 1, axis=0)
+    tangents = before * lengths + units * shorter  # the nearer neighbour counts more
+    tangents /= np.linalg.norm(tangents, axis=1)[:, None]
+    edges: list[cq.Edge] = []
+    for k, (first, way) in enumerate(zip(at, ways, strict=True)):
+        next_one = (k + 1) % len(at)
+        edges += _biarc(first, tangents[k], way, at[next_one], tangents[next_one])
+    return cq.Wire.assembleEdges(edges)
+
+
+def _biarc(a: np.ndarray, u: np.ndarray, way: np.ndarray, b: np.ndarray, v: np.ndarray) -> list[cq.Edge]:
+    """From a, leaving along u, to b, arriving along v, with equal tangent lengths."""
+    bend, along = 2 * (1 - float(u @ v)), float(way @ (u + v))
+    square = float(way @ way)
+    reach = square / (2 * along) if bend < 1e-9 else (math.sqrt(along**2 + bend * square) - along) / bend
+    middle = (a + reach * u + b - reach * v) / 2
+    first = cq.Edge.makeTangentArc(cq.Vector(*a, 0), cq.Vector(*u, 0), cq.Vector(*middle, 0))
+    second = cq.Edge.makeTangentArc(cq.Vector(*b, 0), cq.Vector(*-v, 0), cq.Vector(*middle, 0))
+    return [first, second]
+
+
+def thigh(length: float) -> cq.Wire:
+    """From the hip at the origin to the knee at (length, 0)."""
+    return smooth(THIGH, length / 400)
+
+
+def calf(length: float) -> cq.Wire:
+    """From the knee at (length, 0) to the ankle."""
+    scale = length / 440
+    x, y = _turned(ANKLE, LEVEL)
+    along = np.array([x - 440, y]) / math.hypot(x - 440, y)
+    across = np.array([along[1], -along[0]])
+    points = [np.array([440, 0]) + u * along + v * across for u, v in CALF]
+    return smooth([(float(u), float(v)) for u, v in points], scale)
+
+
+def foot(length: float) -> cq.Wire:
+    """On the pedal at the origin, of a shank of this length."""
+    return smooth([_turned(point, LEVEL) for point in FOOT], length / 440)
+
+
+def _turned(point: Point, angle: float) -> Point:
+    c, s = math.cos(angle), math.sin(angle)
+    return c * point[0] - s * point[1], s * point[0] + c * point[1]
+
+
+def chainring(radius: float, teeth: int, arms: int, eye: float) -> tuple[cq.Wire, list[cq.Wire]]:
+    """A wheel with teeth about the origin, and the windows between its arms; ``eye``: radius of its hub."""
+    depth, pitch = 0.06 * radius, 2 * math.pi / teeth
+    corners = [((k + part) * pitch, radius - depth * (1 - up)) for k in range(teeth) for part, up in TOOTH]
+    rim = cq.Wire.makePolygon([cq.Vector(r * math.cos(a), r * math.sin(a), 0) for a, r in corners], close=True)
+    middle, room = (eye + 0.84 * radius) / 2, (0.84 * radius - eye) / 2
+    width = math.pi * middle / arms - 0.11 * radius
+    windows = []
+    for k in range(arms):
+        angle = 2 * math.pi * (k + 0.5) / arms
+        windows.append(_slot(middle, angle, min(room, width), width))
+    return rim, windows
+
+
+def _slot(middle: float, angle: float, radius: float, half: float) -> cq.Wire:
+    """A window along the arc of radius ``middle``, or a hole where it is no longer than wide."""
+    if half - radius < 1.0:
+        return circle(middle * math.cos(angle), middle * math.sin(angle), radius)
+    turn = (half - radius) / middle
+    low, high = middle - radius, middle + radius
+
+    def at(r: float, a: float) -> cq.Vector:
+        return cq.Vector(r * math.cos(a), r * math.sin(a), 0)
+
+    def end(a: float, outward: float) -> cq.Vector:
+        return at(middle, a) + cq.Vector(-math.sin(a), math.cos(a), 0) * (outward * radius)
+
+    first, last = angle - turn, angle + turn
+    return cq.Wire.assembleEdges(
+        [
+            cq.Edge.makeThreePointArc(at(high, first), at(high, angle), at(high, last)),
+            cq.Edge.makeThreePointArc(at(high, last), end(last, 1.0), at(low, last)),
+            cq.Edge.makeThreePointArc(at(low, last), at(low, angle), at(low, first)),
+            cq.Edge.makeThreePointArc(at(low, first), end(first, -1.0), at(high, first)),
+        ]
+    )
+
+
+def seat(hip: Point, z: float = 0.05) -> list[Solid]:
+    """Seat tube and saddle, flat on a base plate, between the bracket at the origin and the hip."""
+    x, y = hip
+    far = math.hypot(x, y)
+    near = min(0.12 * far, 80.0), max(far - 150.0, 0.5 * far)
+    ends = [(x / far * part, y / far * part, 15.0) for part in near]
+    tube = eased(extruded(hull(ends), 8.0, z), 1.5, ">Z")
+    top = eased(extruded(hull([(x + 38.0 + u, y - 138.0 + v, r) for u, v, r in SADDLE]), 11.0, z + 8.05), 2.0, ">Z")
+    return [Solid("seat_tube", tube, "aluminium_red", 0), Solid("saddle", top, "leather", 0)]

@@ -45,7 +45,8 @@ class Joined:
 
     def items(self, layout: Layout) -> Iterable[Item]:
         """Its convex hull at the height of the plate."""
-        points = np.array([self.outline.positionAt(k / SAMPLES).toTuple()[:2] for k in range(SAMPLES)])
+        places = [self.outline.positionAt(k / SAMPLES) for k in range(SAMPLES)]
+        points = np.array([(place.x, place.y) for place in places])
         shape = Rounded(convex_hull(points / layout.sizes.scale), 0.0)
         return [Item(f"the outline of {self.body}", self.body, shape, Reach((self.body,)), source=self)]
 

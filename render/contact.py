@@ -51,9 +51,13 @@ def run(name: str, preset: Preset, show: str = "") -> None:
 
 
 def frames_of(film: Film) -> list[int]:
-    """Twelve frames in equal steps: of a motion that repeats over one period, of another until it ends."""
+    """Twelve frames in equal steps: of a motion that repeats over one period, of another until it ends.
+
+    Where a period has several turns of the drivers, each step is a little longer, so that no turn is shown as another.
+    """
     count, number = film.clock.moving, COLUMNS * ROWS
     if film.clock.repeats:
+        count = count * (number + 1) / number if film.clock.turns > 1 else count
         return [int(frame) for frame in np.arange(number) * count / number]
     return [int(frame) for frame in np.linspace(0, count, number).round()]
 

@@ -6,6 +6,7 @@ import io
 from pathlib import Path
 
 import msgspec
+import numpy as np
 import pytest
 from PIL import Image
 
@@ -17,6 +18,7 @@ from render.store import FrameStore
 from shared.paths import Out
 from shared.shot import Shot
 from tests import film_fixture
+from tests.motions import four_bar_motion
 
 TINY = Preset("tiny", 96, 54, 1)
 
@@ -24,6 +26,18 @@ TINY = Preset("tiny", 96, 54, 1)
 def test_a_motion_that_repeats_is_shown_over_one_turn(out_root: Path) -> None:
     film = read_film(film_fixture.write(Shot(seconds_per_turn=4.0)))
     assert contact.frames_of(film) == list(range(0, 120, 10))
+
+
+@pytest.mark.parametrize("turns", [2, 3, 4, 6])
+def test_a_period_of_several_turns_shows_no_turn_as_another(out_root: Path, turns: int) -> None:
+    whole = read_film(film_fixture.write())
+    film = Film(four_bar_motion(turns=turns), whole.parts, Shot(seconds_per_turn=4.0), whole.folder)
+    times = np.array([film.clock.moment(frame).time for frame in contact.frames_of(film)])
+    assert (np.diff(times) > 0).all()
+    assert times[-1] < turns
+    assert times[-1] > 0.95 * turns
+    phases = np.sort(times % 1.0)
+    assert np.diff(phases).min() > 0.01
 
 
 def test_another_is_shown_from_its_start_to_its_end(out_root: Path) -> None:

@@ -10,6 +10,7 @@ import cadquery as cq
 
 from mechanisms.automatic.body_shape import PlacedEye, body_shape
 from mechanisms.automatic.frame import base
+from mechanisms.automatic.yoke_shape import yoke_shape
 from shared.shapes.build import extruded
 from shared.shapes.link import Eye, with_eyes
 from shared.shapes.outline import circle
@@ -42,7 +43,9 @@ def _plate(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
     eyes = [*eyes, *_blanks(plan, body, eyes)]
     plates = plan.plates.get(body, [])
     if not plates:
-        return body_shape(eyes, thickness)
+        slots = plan.slots.get(body, [])
+        yoke = yoke_shape(eyes, slots[0], thickness) if len(slots) == 1 else None
+        return (yoke, sum(eye.bore > 0 for _, _, eye in eyes)) if yoke else body_shape(eyes, thickness)
     beside = [eye for eye in eyes if not any(_is_held(eye, plate.holds) for plate in plates)]
     shape, holes = plates[0].shape, sum(plate.through_holes for plate in plates)
     for plate in plates[1:]:

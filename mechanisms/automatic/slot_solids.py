@@ -29,6 +29,7 @@ def slotted(slot: Slot, plan: Plan, heights: Heights) -> None:
     half = (sizes.roller + sizes.pivot.fit.running) / 2
     tool = extruded(outline.hull([(*end, half) for end in slot.ends()]), heights.thickness + 2.0, -1.0)
     plan.cut(slot.slot, tool, 1)
+    plan.slots.setdefault(slot.slot, []).append(slot.ends())
     slot_pin(slot, plan, heights)
 
 

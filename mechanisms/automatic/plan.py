@@ -58,8 +58,6 @@ class Plan:
     """By body: a wheel that is its plate, or a part of it."""
     slots: dict[str, list[list[tuple[float, float]]]] = field(default_factory=dict)
     """By body: middles of the two ends of each of its slots; a wall is round them."""
-    wheels: dict[str, tuple[float, float, cq.Workplane, int]] = field(default_factory=dict)
-    """By body: place, shape and through holes of a wheel that is its plate, or a part of it."""
     plates: dict[str, list[Plate]] = field(default_factory=dict)
     names: set[str] = field(default_factory=set)
     main: dict[str, str] = field(default_factory=dict)

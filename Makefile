@@ -84,8 +84,8 @@ run-%: install always ## everything of one mechanism: parts, motion, clearance, 
 	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 	@$(PICTURE) film "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 
-run-all: install ## run-<name> for every mechanism; goes on after a failure, with a summary at the end
-	@sh tools/run_all.sh "$(MAKE)" "$$PRESET"
+run-all: install ## run-<name> for every mechanism; goes on after a failure, with a table of all at the end
+	@sh tools/run_all.sh "$(MAKE)" "$$PRESET" "$(PYTHON)"
 
 all: run-all ## the same: what one starts overnight, e.g. make all PRESET=final
 

@@ -43,7 +43,12 @@ def main() -> int | None:
         if command == "still":
             sub.add_argument("--frame", type=int, default=0, help="number of the frame, from 0")
     commands.add_parser("gallery", help="docs/gallery/: every mechanism that has a poster")
+    commands.add_parser("overview", help="a table of the runs that its standard input tells of")
     arguments = parser.parse_args()
+    if arguments.command == "overview":
+        from render import overview
+
+        return overview.run()
     if arguments.command == "gallery":
         from render import gallery
 

@@ -1,8 +1,9 @@
 #!/bin/sh
-# run_all.sh MAKE PRESET: make run-<name> for every mechanism, a summary at the end; non-zero if one failed.
+# run_all.sh MAKE PRESET [PYTHON]: make run-<name> for every mechanism, a table and a summary at the end; non-zero if
+# one failed. Variants are mechanisms of their own, run by their own names.
 set -u
 cd "$(dirname "$0")/.."
-done=0 failed=
+done=0 failed='' rows=''
 for file in mechanisms/*/mechanism.py; do
     [ -f "$file" ] || continue
     folder=${file%/mechanism.py}
@@ -16,12 +17,19 @@ for file in mechanisms/*/mechanism.py; do
         ;;
     esac
     echo "run-all: $name"
+    start=$(date +%s) outcome=done
     if "$1" --no-print-directory "run-$name" PRESET="$2"; then
         done=$((done + 1))
     else
         failed="$failed $name"
+        outcome=failed
     fi
+    rows="$rows$name $(($(date +%s) - start)) $outcome
+"
 done
+if [ -n "${3:-}" ] && [ -n "$rows" ]; then
+    printf %s "$rows" | "$3" -m render overview
+fi
 if [ -n "$failed" ]; then
     echo "run-all: $done done, failed:$failed; their errors stand above, make run-<name> tries one again" >&2
     exit 1

@@ -8,7 +8,10 @@ from render.report.loads import SLIDES
 from render.report.transmission import loops
 from render.report.written import counted, degrees, moment, speed, written
 from shared.clearance import Clearance
-from shared.contract import Motion, Parts
+from shared.contract import BodyMotion, Motion, Parts
+
+STILL = 1e-9
+"""What is slower (m/s) stands still but for rounding."""
 
 
 def facts(motion: Motion, parts: Parts | None, clearance: Clearance | None) -> list[str]:
@@ -16,12 +19,9 @@ def facts(motion: Motion, parts: Parts | None, clearance: Clearance | None) -> l
     span = motion.time[-1] - motion.time[0]
     out = [f"{counted(motion.diagnostics.dof, 'degree')} of freedom"]
     out.append(f"repeats after {moment(motion.period)}" if motion.period else f"{moment(span)} of motion")
-    speeds = {name: float(np.hypot(body.vx, body.vy).max()) for name, body in motion.bodies.items()}
-    speeds |= {name: float(np.hypot(point.vx, point.vy).max()) for name, point in motion.points.items()}
-    speeds |= {name: v for name, v in _joint_speeds(motion).items() if name not in speeds}
-    fastest = max(speeds, key=lambda name: speeds[name])
-    if speeds[fastest] > 0:
-        out.append(f"{fastest} reaches {speed(speeds[fastest])}")
+    name, most = fastest(motion)
+    if most > STILL:
+        out.append(f"{name} reaches {speed(most)}")
     for name, driver in motion.drivers.items():
         effort = float(np.abs(driver.effort).max())
         if effort > 0:
@@ -38,6 +38,23 @@ def facts(motion: Motion, parts: Parts | None, clearance: Clearance | None) -> l
     if clearance is not None and clearance.pairs:
         out.append(f"parts stay {written(min(pair.gap for pair in clearance.pairs), 'm')} apart")
     return out
+
+
+def fastest(motion: Motion) -> tuple[str, float]:
+    """The traced point, joint or body (by its centre of mass) that is the fastest at any time, and its speed (m/s)."""
+    speeds = {name: _speed_of(body) for name, body in motion.bodies.items()}
+    speeds |= {name: float(np.hypot(point.vx, point.vy).max()) for name, point in motion.points.items()}
+    speeds |= {name: v for name, v in _joint_speeds(motion).items() if name not in speeds}
+    name = max(speeds, key=lambda one: speeds[one])
+    return name, speeds[name]
+
+
+def _speed_of(body: BodyMotion) -> float:
+    """Of its centre of mass (m/s)."""
+    (x, y), omega, theta = body.com, np.array(body.omega), np.array(body.theta)
+    vx = np.array(body.vx) - omega * (np.sin(theta) * x + np.cos(theta) * y)
+    vy = np.array(body.vy) + omega * (np.cos(theta) * x - np.sin(theta) * y)
+    return float(np.hypot(vx, vy).max())
 
 
 def _joint_speeds(motion: Motion) -> dict[str, float]:

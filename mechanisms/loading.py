@@ -9,6 +9,7 @@ import sys
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from importlib.machinery import EXTENSION_SUFFIXES, SOURCE_SUFFIXES, ExtensionFileLoader, FileFinder, SourceFileLoader
 from pathlib import Path
 from types import CodeType, ModuleType
@@ -20,6 +21,8 @@ from shared.errors import UserError
 from shared.paths import MECHANISMS, ROOT, mechanism_folder, mechanism_name, owner_of
 
 File = Literal["mechanism", "parts", "shot"]
+_RUNNING: ContextVar[str | None] = ContextVar("running", default=None)
+"""The mechanism or variant whose author's code runs."""
 
 REQUIRED: dict[File, dict[str, str]] = {
     "mechanism": {"Params": "a frozen dataclass of the lengths", "build": "def build(p: Params) -> Mechanism"},
@@ -83,6 +86,7 @@ def author_code(name: str) -> Iterator[None]:
     is a fault of ours and passes too; ``MBSD_TRACEBACK=1`` shows the traceback of either (shared/console.py).
     """
     folder = MECHANISMS / owner_of(mechanism_name(name))
+    token = _RUNNING.set(name)
     try:
         yield
     except UserError:
@@ -99,6 +103,14 @@ def author_code(name: str) -> Iterator[None]:
         if not lines:
             raise
         raise UserError(worded(error, lines, _shown)) from error
+    finally:
+        _RUNNING.reset(token)
+
+
+def running(folder: str) -> str:
+    """The name of a folder's mechanism, or of its variant whose files are running just now."""
+    name = _RUNNING.get()
+    return name if name is not None and owner_of(name) == folder else folder
 
 
 class _SourceOnly(SourceFileLoader):

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from shared.contract import Parts
 
 Source = Literal["mechanism", "parts", "estimate"]
+TOLD = 8
+"""So many masses are told in a line."""
 ALIKE = 1e-9
 """Masses of mechanism.py and of the parts that differ by less, relatively, are one."""
 
@@ -44,7 +46,7 @@ def give_masses(m: Mechanism, parts: Parts | None) -> tuple[dict[str, Source], l
         if source[name] == "mechanism" and name in solids and _differ(m.bodies[name].mass, solids[name].mass.mass)
     ]
     if differing:
-        sentences.append(f"masses of mechanism.py count, not those of the parts: {', '.join(differing)}")
+        sentences.append(f"masses of mechanism.py count, not those of the parts: {_some(differing)}")
     return source, sentences
 
 
@@ -57,9 +59,15 @@ def _estimate(m: Mechanism, names: list[str], left_out: bool) -> list[str]:
     estimates = estimated_masses(m)
     for name in names:
         m.set_mass(name, estimates[name].mass, estimates[name].com, estimates[name].inertia)
-    masses = ", ".join(f"{name} {estimates[name].mass:.3g} kg" for name in names)
+    masses = _some([f"{name} {estimates[name].mass:.3g} kg" for name in names])
     why = "bodies without solids" if left_out else "no parts yet, so masses"
     return [f"{why} are estimated as aluminium bars and plates through the markers: {masses}"]
+
+
+def _some(told: list[str]) -> str:
+    """The first of them, and how many others there are."""
+    more = len(told) - TOLD
+    return ", ".join(told) if more <= 1 else f"{', '.join(told[:TOLD])} and {more} others"
 
 
 def _differ(one: float, other: float) -> bool:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from mechanisms import clearance_stage, parts_stage, shot_stage, solve_stage
+from mechanisms import bare_motion, clearance_stage, parts_stage, shot_stage, solve_stage
+from mechanisms.bare_motion import bare_solution
 from shared.contract import read_parts
 from shared.errors import UserError
 from shared.paths import ROOT, Out
@@ -70,6 +72,23 @@ def test_a_short_parts_file_changes_what_it_likes(project: Project) -> None:
     assert arm["stick"].material == "pla_orange"
     assert bodies["ground"].pieces["pin_A"].z_range[1] > arm["stick"].z_range[1]
     assert arm["stick"].z_range[0] > 0.008  # above its pedestal
+
+
+def test_parts_of_a_variant_follow_from_the_motion_of_the_variant(
+    project: Project, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[str] = []
+
+    def solved(name: str) -> Any:
+        asked.append(name)
+        return bare_solution(name)
+
+    monkeypatch.setattr(bare_motion, "bare_solution", solved)
+    (project.folder / "mechanism.py").write_text(ARM + 'VARIANTS = {"long": {"length": 0.2}}\n')
+    (project.folder / "parts.py").write_text(CHANGED)
+    project.run()
+    parts_stage.run("arm-long")
+    assert asked == ["arm", "arm-long"]
 
 
 ARM = """

@@ -226,3 +226,12 @@ def test_a_mass_of_zero_is_massless_on_purpose() -> None:
     assert arm.mass > 0
     assert len(sentences) == 1
     assert "rod" not in sentences[0]
+
+
+def test_of_many_masses_the_first_are_told() -> None:
+    m = Mechanism("many")
+    for k in range(20):
+        m.bar(f"bar{k}", 0.1)
+    _, (sentence,) = give_masses(m, None)
+    assert "bar7 " in sentence
+    assert sentence.endswith(" and 12 others")

@@ -238,13 +238,15 @@ def _refuse_sizes(name: str, pin: float | None, fit: Fit | None) -> None:
 def automatic(
     m: Mechanism, pin: float | None = None, solution: Solution | None = None, fit: Fit | None = None
 ) -> Automatic:
-    """Parts of ``m``, planned from ``solution``; by default from the motion of the mechanism's folder.
+    """Parts of ``m``, planned from ``solution``; by default from the motion of the mechanism's folder,
+    or of its variant that is made.
 
     ``pin``: diameter (mm) of its pins; by default it follows from the links. ``fit``: clearances (mm), such as
     ``Fit(running=0.3)`` for printed parts; by default they follow from the pins. Raises UserError where it cannot move.
     """
     if solution is None:
         from mechanisms.bare_motion import bare_solution
+        from mechanisms.loading import running
 
-        solution = bare_solution(m.name)
+        solution = bare_solution(running(m.name))
     return Automatic(m, solution, pin, fit)

@@ -6,11 +6,12 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
 from mbsd.solution import Solution
 from mechanisms.cam_follower import mechanism as cam
+from mechanisms.quarter_car import mechanism as car
 from mechanisms.reflective_wall import mechanism as wall
 from mechanisms.terrain_wheel import mechanism as terrain
 
@@ -155,3 +156,55 @@ def test_valve_floats_above_the_speed_at_which_its_spring_is_too_weak(part: floa
     assert falls > (1e-3 if part > 1.1 else 0.0)
     assert sol.contact("contact").gap.min() > -1e-9
     assert sum(event.energy for event in sol.events) < 0
+
+
+def test_quarter_car_swings_and_hops_in_its_two_modes() -> None:
+    """Undamped, from det(K - w^2 M) = 0 of body and wheel on strut and tyre; a car that stands rests in the start."""
+    p = car.Params(damping=0.0, tyre_damping=0.0, speed=0.0)
+    m = car.build(p)
+    low, high = (mode.frequency for mode in m.modes() if 0.1 < mode.frequency < 100)  # the spin creeps
+    mass = np.diag([p.sprung, p.unsprung + p.wheel])
+    stiffness = np.array([[p.stiffness, -p.stiffness], [-p.stiffness, p.stiffness + p.tyre]])
+    wanted = np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real)) / (2 * math.pi)
+    np.testing.assert_allclose([low, high], wanted, rtol=1e-4)
+    assert 1.0 < low < 2.0  # Hz, as of cars
+    assert 8.0 < high < 15.0
+    at_rest = m.simulate(0.5, 50).body("body").y
+    np.testing.assert_allclose(at_rest, at_rest[0], atol=1e-9)
+
+
+@pytest.mark.parametrize("variant", [{}, car.VARIANTS["worn"], {"speed": 5.0}])
+def test_quarter_car_on_a_bump_is_the_oscillator_of_two_masses(variant: dict[str, float]) -> None:
+    """Body and wheel by themselves: m_s y_s'' = -k s - c s', and the tyre at the next place of the road."""
+    p = car.Params(**variant)
+    profile, spring = car.road(p), car.sag(p)[0]
+    x = np.linspace(0.0, p.before + p.bump[1] + 2.0, 4001)
+    y = profile(x)[:, 0]
+
+    def tyre(t: float, hub: float, rise: float) -> float:
+        near = np.abs(x - p.speed * t) < p.radius
+        away = np.hypot(x[near] - p.speed * t, y[near] - hub)
+        k = int(np.argmin(away))
+        up = (hub - y[near][k]) / away[k]  # of the normal
+        sideways = math.sqrt(max(1 - up**2, 0.0)) * np.sign(p.speed * t - x[near][k])
+        rate = -up * rise - sideways * p.speed
+        return up * max(p.tyre * (p.radius - away[k]) + p.tyre_damping * rate, 0.0)
+
+    def rates(t: float, state: np.ndarray) -> list[float]:
+        body, hub, climb, rise = state
+        strut = p.stiffness * (p.hub + spring - (body - hub)) - p.damping * (climb - rise)
+        carried = p.unsprung + p.wheel
+        return [
+            climb,
+            rise,
+            strut / p.sprung - p.gravity,
+            (tyre(t, hub, rise) - strut) / carried - p.gravity,
+        ]
+
+    sol = car.build(p).simulate(1.8 / p.speed, 180)
+    body, hub = sol.body("body"), sol.body("wheel")
+    start = [body.y[0], hub.y[0], 0.0, 0.0]
+    wanted = solve_ivp(rates, (0.0, sol.t[-1]), start, t_eval=sol.t, rtol=1e-6, atol=1e-8, max_step=2e-3).y
+    assert np.ptp(body.y) > 0.01
+    np.testing.assert_allclose(body.y, wanted[0], atol=0.02 * np.ptp(body.y))
+    np.testing.assert_allclose(hub.y, wanted[1], atol=0.02 * np.ptp(hub.y))

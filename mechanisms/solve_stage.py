@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from mechanisms import loading, solving
 from mechanisms.recording import recording
 from shared import console, contract
+from shared.contract_loads import ACTUATORS
 from shared.files import sources_hash
 from shared.inputs import Inputs, observed, sources_state
 from shared.paths import ROOT, Out, mechanism_folder
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
     from mbsd import Solution
     from mechanisms.masses import Source
 
-ACTUATORS = ("torque", "force", "actuator")
-"""Kinds of forces that may move a mechanism in place of its drivers."""
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite")
 _MOTION = ("solving", "variants", "refined_times", "masses", "estimated_masses")
 _STAGE = ("solve_stage", *_MOTION, "motion_file", "shapes", "skeleton_file")

@@ -13,6 +13,7 @@ from render.framing import CameraPose, project
 from render.presets import ASPECT
 from render.vectors import at_time
 from shared.contract import Motion
+from shared.contract_loads import ACTUATORS
 from shared.shot import Shot
 
 Array = NDArray[np.float64]
@@ -20,8 +21,6 @@ CORNERS = {"lower left": (0.0, 0.78), "lower right": (0.66, 0.78), "upper right"
 """Left and upper edge of where a legend may be, as parts of the picture; the first one that is emptiest is taken."""
 CORNER = 0.34, 0.22
 """Width and height of such a place."""
-ACTUATORS = ("torque", "force", "actuator")
-"""Kinds of forces that may move a mechanism in place of its drivers."""
 
 
 def emptiest(camera: CameraPose, moving: Array, standing: Array) -> str:

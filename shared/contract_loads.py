@@ -7,6 +7,8 @@ from typing import Literal
 from shared.contract_base import NonNegative, Positive, Series, Strict
 
 State = Literal["open", "closed", "slides", "sticks"]
+ACTUATORS = ("torque", "force", "actuator")
+"""Kinds of forces that may move a mechanism in place of its drivers."""
 
 
 class Shape(Strict, kw_only=True):

@@ -7,7 +7,10 @@ import math
 import numpy as np
 
 from mbsd import table
+from mechanisms import solve_stage
 from mechanisms.inverse_slider_crank import mechanism as inverse
+from mechanisms.motion_file import to_motion
+from render.report.loads import load_section
 
 
 def test_inverse_slider_crank_torque_makes_the_wished_motion() -> None:
@@ -24,3 +27,17 @@ def test_inverse_slider_crank_torque_makes_the_wished_motion() -> None:
     forward.start_near(crank=math.degrees(crank.theta[0]), slider=(slider.x[0], 0, 0))
     again = forward.simulate(p.time, 360, tolerance=1e-10)
     assert np.abs(again.body("slider").x - slider.x).max() < 2e-3 * (p.far - p.near)
+
+
+def test_the_line_and_the_report_tell_the_torque_and_not_the_driver_that_gives_nothing() -> None:
+    p = inverse.Params()
+    m = inverse.build(p)
+    sol = inverse.motion(m, p)
+    said = solve_stage._summary(sol)
+    assert "wish" not in said
+    assert said.endswith(f"motor up to {abs(sol.force('motor').effort).max():.3g} N m")
+    given = dict.fromkeys(("crank", "rod", "slider"), "mechanism")
+    motion = to_motion(sol, None, "0" * 64, {}, given)  # pyright: ignore[reportArgumentType]
+    lines = "\n".join(load_section(motion))
+    assert "### Drivers" not in lines
+    assert "| motor (torque) |" in lines

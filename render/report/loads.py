@@ -8,6 +8,7 @@ import numpy as np
 
 from render.report.written import first_peak, moment, table, written
 from shared.contract import Motion
+from shared.contract_loads import ACTUATORS
 
 NOTHING = 1e-12
 """Of the largest in a table: no number."""
@@ -37,10 +38,12 @@ def load_section(motion: Motion) -> list[str]:
             ])  # fmt: skip
         lines += ["### Reactions", ""]
         lines += [*table(["joint", "bodies", "peak force", "at", "peak torque"], rows), ""]
-    if motion.drivers:
+    acting = any(force.kind in ACTUATORS and any(force.effort or ()) for force in motion.forces.values())
+    drivers = {name: driver for name, driver in motion.drivers.items() if any(driver.effort) or not acting}
+    if drivers:  # of a motion that forces were asked for, the drivers give nothing
         lines += ["### Drivers", ""]
         rows = []
-        for name, driver in motion.drivers.items():
+        for name, driver in drivers.items():
             unit = "N" if driver.kind in SLIDES else "N m"
             effort, power = np.array(driver.effort), np.array(driver.power)
             k = first_peak(np.abs(effort))

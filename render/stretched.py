@@ -72,20 +72,23 @@ def stretched(
 ) -> Iterator[Stretched]:
     """All springs, dampers, cylinders and ropes between two points that move apart or together.
 
-    ``held`` are those whose ends have parts, by name. Of the others ``height(shape, radius)`` says where one of that
-    radius lies (m), and how far down the pin at each end reaches.
+    ``held`` are those whose ends have parts, by name; what acts along an axis (gas) is drawn only if it is held. Of
+    the others ``height(shape, radius)`` says where one of that radius lies (m), and how far down the pin at each end
+    reaches.
     """
     gravity = np.array([*motion.gravity, 0.0])
     strength = float(np.linalg.norm(gravity))
     down = gravity / strength if strength > 0 else np.zeros(3)
     for name, force in motion.forces.items():
-        if force.shape is None or force.measures != "length" or not force.value or min(force.value) <= 0:
+        own = held.get(name)
+        if force.shape is None or not force.value or not (own or force.measures == "length"):
             continue
-        least, most = min(force.value), max(force.value)
+        least, most = min(map(abs, force.value)), max(map(abs, force.value))
+        if least <= 0:
+            continue
         coil = force.kind in COILS and any(force.potential)
         if not coil and force.kind not in (*COILS, *CYLINDERS):
             continue
-        own = held.get(name)
         radius = own.radius if own else min(COIL * size, BROAD * least)
         tubes = _coil(name, radius, least, most) if coil else _cylinder(name, 0.6 * radius, least, most)
         if own:

@@ -126,6 +126,20 @@ def test_a_spring_without_room_is_left_out_and_told(capsys: pytest.CaptureFixtur
     assert "sprung: no order of layers leaves room for pull beside the others" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(("aside", "held"), [(0.0, True), (0.02, False)])
+def test_gas_has_a_cylinder_where_its_piston_is_on_its_axis(aside: float, held: bool) -> None:
+    m = Mechanism("shock")
+    block = m.body("block", 1.0)
+    m.prismatic("rail", m.ground.at(0, 0, 0.4), block.at(0, 0, 0.4))
+    m.gas("gas", m.ground.at(-0.2 * math.cos(0.4), -0.2 * math.sin(0.4), 0.4), block.at(0, aside), 1e-3, 1.1e5, 0.2)
+    m.start_near(block=(0.0, 0.0, 0.0))
+    made = Automatic(m, m.simulate(0.2, 60))
+    assert set(springs(made)) == ({"gas"} if held else set())
+    if held:
+        one = springs(made)["gas"]
+        assert one.outer == pytest.approx(0.6 * one.radius)
+
+
 def test_a_moving_core_is_looked_at_pose_by_pose() -> None:
     """A line that grows from 1 to 5 touches a disc at 6 only at the end."""
     still = np.zeros((9, 3))

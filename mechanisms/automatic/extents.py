@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 LINK, STUD = 22.0, 18.0
 """Least distances of two pins of one body, and of a spring's stud and a pin or stud beside it (rmm)."""
-STRETCHING = ("spring", "spring_law", "curve_of_length", "actuator")
-"""Kinds of forces that act along the line of two points."""
+STRETCHING = ("spring", "spring_law", "curve_of_length", "actuator", "gas")
+"""Kinds of forces that act along the line of two points, or along an axis on which both may be."""
 NEAR = 0.02
 """Studs that are nearer to each other, as a part of the whole, are on one place, or do not decide the scale."""
 

@@ -37,6 +37,8 @@ WIRE, CYLINDER = 0.2, 0.6
 """Radius of the wire, and of a cylinder, in radii of a coil."""
 HOOK = 0.1
 """Part of the way at either end where there is no barrel yet."""
+ASIDE = 0.05
+"""How far a point may leave the axis along which gas or an actuator pushes it (rmm)."""
 LEAST = 4.0
 """Lengths of the balls at its ends that what stretches has at least; what gets shorter has no studs."""
 
@@ -118,16 +120,26 @@ def _core(one: Stretching) -> str:
 
 def _stretching(force: Force, layout: Layout) -> Stretching | None:
     """None where it acts along no line, or its ends are on one place at some time, or nearly so."""
-    if force.params.get("along_axis") or force.name in layout.springs.left_out:
+    if force.name in layout.springs.left_out:
         return None
     ends = [(marker.body.name, *layout.place(marker)) for marker in (force.i, force.j)]
     path = np.stack([layout.seen(body, (x, y), "ground") for body, x, y in ends], axis=1)
+    along_axis = force.kind.name == "gas" or force.params.get("along_axis")
+    if along_axis and _aside(force, path, layout) > ASIDE:
+        return None
     least = float(np.linalg.norm(path[:, 1] - path[:, 0], axis=1).min())
     if least < LEAST * BALL:
         return None
     radius = min(RADIUS, BROAD * least)
     outer = radius * (1 + WIRE) if _is_coil(force) else radius * CYLINDER
     return Stretching(force.name, radius, outer, (ends[0], ends[1]), path)
+
+
+def _aside(force: Force, path: np.ndarray, layout: Layout) -> float:
+    """How far its second point leaves the x axis of its first marker at most (rmm)."""
+    angle = layout.poses[force.i.body.name][:, 2] + force.i.angle
+    away = path[:, 1] - path[:, 0]
+    return float(np.abs(away[:, 1] * np.cos(angle) - away[:, 0] * np.sin(angle)).max())
 
 
 def _is_coil(force: Force) -> bool:
@@ -141,6 +153,7 @@ def _is_coil(force: Force) -> bool:
 @force_kind("spring_law")
 @force_kind("curve_of_length")
 @force_kind("actuator")
+@force_kind("gas")
 def gather(m: Mechanism, forces: list[Force], layout: Layout) -> list[Feature]:
     """Those of all kinds at the first of them, since they share studs: studs first, then what they hold."""
     between = [f for f in m.forces.values() if f.kind.name in STRETCHING and not layout.apart.intersection(f.bodies)]

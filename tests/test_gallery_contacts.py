@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from scipy.optimize import brentq
 
 from mbsd.solution import Solution
 from mechanisms.cam_follower import mechanism as cam
+from mechanisms.cam_follower_angular import mechanism as angular
 from mechanisms.quarter_car import mechanism as car
 from mechanisms.reflective_wall import mechanism as wall
 from mechanisms.terrain_wheel import mechanism as terrain
@@ -208,3 +210,27 @@ def test_quarter_car_on_a_bump_is_the_oscillator_of_two_masses(variant: dict[str
     assert np.ptp(body.y) > 0.01
     np.testing.assert_allclose(body.y, wanted[0], atol=0.02 * np.ptp(body.y))
     np.testing.assert_allclose(hub.y, wanted[1], atol=0.02 * np.ptp(hub.y))
+
+
+@pytest.mark.parametrize("variant", [{}, *angular.VARIANTS.values()])
+def test_arm_on_a_cam_swings_as_its_law_says_and_is_never_pulled(variant: dict[str, Any]) -> None:
+    """Modified sine (Norton, ch. 8): peaks 1.760 h / b omega and 5.528 h / b^2 omega^2; power."""
+    p = angular.Params(**variant)
+    sol = angular.build(p).sweep(steps=1440)
+    arm, top = sol.body("arm"), math.radians(p.swing)
+    assert np.ptp(arm.theta) == pytest.approx(top, rel=1e-9)
+    assert -arm.omega.min() == pytest.approx(1.760 * top / p.rise * p.speed, rel=1e-3)
+    assert arm.omega.max() == pytest.approx(1.760 * top / p.fall * p.speed, rel=1e-3)
+    assert np.abs(arm.alpha).max() == pytest.approx(5.528 * top / min(p.rise, p.fall) ** 2 * p.speed**2, rel=1e-3)
+    # Power of the motor: of the arm's inertia about its pivot, the spring from its place, and the weight.
+    lift = angular.lift_law(p)(p.speed * sol.t)
+    rest = sol.body("arm").theta[0]
+    turn, rate, second = rest - lift[:, 0], -p.speed * lift[:, 1], -(p.speed**2) * lift[:, 2]
+    tip = np.stack([p.pivot + p.tip * np.cos(turn), p.tip * np.sin(turn)], axis=1)
+    moves = p.tip * rate[:, None] * np.stack([-np.sin(turn), np.cos(turn)], axis=1)
+    way = tip - (tip[0] - [0.0, 0.09])
+    length = np.hypot(*way.T)
+    pulled = p.stiffness * (length - (0.09 - p.preload)) * (way * moves).sum(axis=1) / length
+    power = p.mass * p.tip**2 / 3 * second * rate + pulled + p.mass * 9.80665 * moves[:, 1] / 2
+    np.testing.assert_allclose(sol.driver("motor").torque * p.speed, power, atol=1e-6 * np.abs(power).max())
+    assert sol.joint("contact").fy.min() > 0

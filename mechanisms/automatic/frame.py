@@ -117,7 +117,7 @@ def _ruler(sizes: Sizes, reach: float, x: float, y0: float) -> list[cq.Face]:
     short = step / sizes.scale
     marks = rule(reach, x, y0 + 3.4, step=short)
     count = math.floor(reach / short + 1e-9)
-    every = next(n for n in (2, 4, 10, 20, 40, 100) if n * short >= 16.0 + 2.0 * len(f"{count * step:g}"))
+    every = next(n for n in (2, 4, 10, 20, 40, 100) if n * short >= 14.0 + 2.0 * len(f"{count * step:g}"))
     for i in range(0, count + 1, every):
         label = f"{i * step:g}"
         if all(letter in LETTERS for letter in label):

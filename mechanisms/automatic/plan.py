@@ -44,6 +44,16 @@ class Plate:
     through_holes: int
 
 
+@dataclass(frozen=True)
+class Mark:
+    """A word that is engraved, its middle at (x, y) in the frame of its body (rmm)."""
+
+    word: str
+    x: float
+    y: float
+    height: float
+
+
 @dataclass(eq=False)
 class Plan:
     """Filled by the features, read by those who build bodies and base."""
@@ -59,6 +69,8 @@ class Plan:
     slots: dict[str, list[list[tuple[float, float]]]] = field(default_factory=dict)
     """By body: middles of the two ends of each of its slots; a wall is round them."""
     plates: dict[str, list[Plate]] = field(default_factory=dict)
+    marks: dict[str, list[Mark]] = field(default_factory=dict)
+    """Words on the upper face of a body's plate."""
     names: set[str] = field(default_factory=set)
     main: dict[str, str] = field(default_factory=dict)
     """Names of the main pieces."""

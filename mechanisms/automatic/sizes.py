@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from shared.errors import UserError
 from shared.shapes.fit import Fit
 from shared.shapes.pin import Head
 from shared.shapes.pivot import Pivot
@@ -151,3 +152,11 @@ def standard(wish: float) -> float:
     if wish >= STANDARD[-1] + 50:
         return 50.0 * (wish // 50)
     return max((d for d in STANDARD if d <= wish * (1 + 1e-9)), default=STANDARD[0])
+
+
+def refuse_sizes(name: str, pin: float | None, fit: Fit | None) -> None:
+    """Raise UserError for sizes that are none."""
+    given = {"pin": pin} | ({f"fit.{field}": value for field, value in vars(fit).items()} if fit else {})
+    for what, value in given.items():
+        if value is not None and not 0 < value < float("inf"):
+            raise UserError(f"{name}: {what} is {value} mm; give a positive number")

@@ -11,7 +11,7 @@ In this order, a file each:
     decided.py   which thickness of pins, which layers; pivots that must hang get bridges (bridges.py)
     heights.py   layers become heights
     plan.py      features give bodies their eyes, and add hardware
-    built.py     plates (body_shape.py, words: marks.py), base (frame.py) and hardware become solids, scaled to millimetres
+    built.py     plates (body_shape.py, marks.py), base (frame.py) and hardware become solids, scaled to millimetres
     automatic.py the face
 
 How a kind of joint is added: a module with a class that has the four methods of :class:`features.Feature`

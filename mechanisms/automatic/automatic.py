@@ -21,13 +21,12 @@ from mechanisms.automatic.gathered import gathered
 from mechanisms.automatic.heights import Heights, heights
 from mechanisms.automatic.layout import Layout, Springs
 from mechanisms.automatic.looks import materials
-from mechanisms.automatic.marks import refuse_letters
+from mechanisms.automatic.marks import Wish, place, refuse_letters
 from mechanisms.automatic.motion import poses_of, times_of
 from mechanisms.automatic.points import styluses, weights
 from mechanisms.automatic.sizes import Sizes, of_pin, refuse_sizes, sizes
+from mechanisms.automatic.wished_names import refuse_material, refuse_unknown
 from shared.errors import UserError
-from shared.materials import MATERIALS
-from shared.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     import cadquery as cq
@@ -55,18 +54,14 @@ class Automatic:
         self._joined: list[Joined] = []
         self._left_out: set[str] = set()
         self._touching: set[tuple[str, str]] = set()
-        self._marks: list[tuple[str, str, tuple[float, float], float | None]] = []
+        self._marks: list[Wish] = []
 
     # -- wishes -------------------------------------------------------------------------------------------------
 
     def material(self, body: str, name: str) -> None:
         """Make the plate of ``body`` of another material."""
         self._known(body)
-        if name not in MATERIALS:
-            raise UserError(
-                f"{self.m.name}: material of '{body}': there is no '{name}'; there is {', '.join(MATERIALS)}"
-                f"{did_you_mean(name, MATERIALS)}"
-            )
+        refuse_material(self.m, body, name)
         self._materials[body] = name
 
     def layer(self, body: str, number: int) -> None:
@@ -84,7 +79,7 @@ class Automatic:
         height. Pins, bushings and washers that it would have carried are part of what is replaced.
         """
         self._known(body)
-        if any(body == marked for marked, *_ in self._marks):
+        if any(body == mark.body for mark in self._marks):
             raise UserError(f"{self.m.name}: '{body}' is engraved; engrave its solids (shared/shapes/engraving.py)")
         self._replaced[body] = list(solids)
 
@@ -112,7 +107,7 @@ class Automatic:
         refuse_letters(self.m.name, word)
         if body in self._replaced:
             raise UserError(f"{self.m.name}: '{body}' is replaced; engrave its solids (shared/shapes/engraving.py)")
-        self._marks.append((body, word, at, height))
+        self._marks.append(Wish(body, word, at, height))
 
     def leave_out(self, body: str) -> None:
         """Build nothing of ``body``. Where a joint would hold it, other bodies keep an eye without a pin.
@@ -120,7 +115,7 @@ class Automatic:
         Where mechanism.py gives it no mass, that is estimated. Raises UserError for the last body that moves.
         """
         self._known(body)
-        wished = [self._materials, self._layers, self._replaced, {marked for marked, *_ in self._marks}]
+        wished = [self._materials, self._layers, self._replaced, {mark.body for mark in self._marks}]
         if any(body in wishes for wishes in wished):
             raise UserError(
                 f"{self.m.name}: '{body}' has a material, a layer, a word or solids, so it cannot be left out too"
@@ -198,16 +193,13 @@ class Automatic:
 
     def plan(self) -> Plan:
         """Eyes, feet and hardware, before plates and base are built."""
-        from mechanisms.automatic.plan import Mark, Plan
+        from mechanisms.automatic.plan import Plan
 
         plan = Plan(self.layout, materials(self.m) | self._materials)
         plan.reserve([*self.m.bodies, "base_plate"])
         for feature in self.layout.features:
             feature.build(plan, self.heights)
-        for body, word, (x, y), height in self._marks:
-            scale = self.sizes.scale
-            mark = Mark(word, x / scale, y / scale, height / scale if height else self.sizes.eye / 2)
-            plan.marks.setdefault(body, []).append(mark)
+        place(self._marks, plan)
         return plan
 
     @cached_property
@@ -239,14 +231,7 @@ class Automatic:
             self.__dict__.pop(name, None)
 
     def _known(self, body: str, ground: bool = False) -> None:
-        if body in self._left_out:
-            raise UserError(f"{self.m.name}: '{body}' is left out, so there is nothing of it to shape")
-        names = [name for name in self.m.bodies if ground or name != "ground"]
-        if body not in names:
-            raise UserError(
-                f"{self.m.name}: there is no body '{body}' to shape; there is: {', '.join(names)}"
-                f"{did_you_mean(body, names)}"
-            )
+        refuse_unknown(self.m, body, self._left_out, ground)
 
 
 def automatic(

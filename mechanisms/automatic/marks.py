@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from shared.errors import UserError
@@ -16,6 +18,27 @@ WIDTH = 0.2
 """Of a stroke, in heights of the letters."""
 LEAST = 0.99
 """How much of a word must be on the plate."""
+
+
+@dataclass(frozen=True)
+class Wish:
+    """A word that is asked for, its middle ``at`` (x, y) in the frame of its body (mm)."""
+
+    body: str
+    word: str
+    at: tuple[float, float]
+    height: float | None
+
+
+def place(wishes: Iterable[Wish], plan: Plan) -> None:
+    """Enter the words; letters are half as high as an eye's radius where nobody says."""
+    from mechanisms.automatic.plan import Mark
+
+    sizes = plan.layout.sizes
+    for wish in wishes:
+        x, y = (length / sizes.scale for length in wish.at)
+        height = wish.height / sizes.scale if wish.height else sizes.eye / 2
+        plan.marks.setdefault(wish.body, []).append(Mark(wish.word, x, y, height))
 
 
 def refuse_letters(name: str, word: str) -> None:

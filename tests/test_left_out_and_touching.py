@@ -197,7 +197,7 @@ def test_bodies_that_may_touch_may_cross() -> None:
 def test_wishes_that_contradict_are_refused() -> None:
     made = _planned(four_bar(0.12, 0.04, 0.12, 0.09))
     made.layer("crank", 0)
-    with pytest.raises(UserError, match="'crank' has a material, a layer or solids"):
+    with pytest.raises(UserError, match="'crank' has a material, a layer, a word or solids"):
         made.leave_out("crank")
     made.leave_out("rocker")
     with pytest.raises(UserError, match="'rocker' is left out"):

@@ -9,6 +9,7 @@ import time
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ from mbsd.forces.kind import FORCE_KINDS
 from mbsd.joints.kind import KINDS
 from mbsd.motions.examples import EXAMPLES
 from tests.four_bars import angles, model
-from tools.hunt import case
+from tools.hunt import case, pool
 from tools.hunt.__main__ import hunt
 from tools.hunt.agreement import SAME, Growth, Words, compare_driven, compare_free
 from tools.hunt.checks import driven_problems, odd_steps, one_assembly, smooth
@@ -83,6 +84,26 @@ def test_what_hangs_or_dies_is_counted_and_the_rest_goes_on() -> None:
     assert found[3].state == WRONG
     assert "broken" in found[3].reason
     assert all(found[k].state == AGREED for k in (0, 4, 5))
+
+
+def slow_kernels(seed: int) -> CaseResult:
+    """A case for which numba compiles three times, and reads a kernel from its cache in between."""
+    from numba.core.event import trigger_event
+
+    for seconds in (0.3, 0.01, 0.3, 0.01, 0.3):
+        with trigger_event("numba:compile", data={"dispatcher": SimpleNamespace(py_func=slow_kernels)}):
+            time.sleep(seconds)
+    return CaseResult(seed, "fine", [Outcome(BASE, AGREED)])
+
+
+@pytest.mark.parametrize(("patience", "words"), [(0.5, 1), (1000.0, 0)])
+def test_who_waits_for_kernels_is_told_once(patience: float, words: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pool, "KERNEL", 0.25)
+    monkeypatch.setattr(pool, "PATIENCE", patience)
+    said: list[bool] = []
+    found = list(results(range(2), slow_kernels, jobs=1, notice=lambda: said.append(True)))
+    assert [result.outcomes[-1].state for result in found] == [AGREED, AGREED]
+    assert len(said) == words
 
 
 def test_what_is_wrong_ends_in_an_exit_code(out_root: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -54,7 +54,7 @@ def hunt(n: int, seed: int, jobs: int, limit: float = LIMIT, kind: str | None = 
     seeds, path, written = range(seed * SEEDS, seed * SEEDS + n), out_root() / "hunt.json", time.monotonic()
     try:
         with progress("hunt", n, "case") as shown:
-            for result in results(seeds, partial(case.run, name=kind), jobs, limit):
+            for result in results(seeds, partial(case.run, name=kind), jobs, limit, _compiling):
                 for outcome in tally.add(result):
                     warn("hunt", f"{outcome.state}: case {result.seed} ({result.family}), {outcome.variation}")
                 shown.advance(1, f"{len(tally.findings)} found" if tally.findings else "")
@@ -70,6 +70,10 @@ def hunt(n: int, seed: int, jobs: int, limit: float = LIMIT, kind: str | None = 
     if stopped:
         raise KeyboardInterrupt
     return 1 if tally.count(WRONG) or tally.count(HUNG) else 0
+
+
+def _compiling() -> None:
+    say("hunt", "compiling for this machine, which is done once for each kind of mechanism and takes minutes in all")
 
 
 def one_case(seed: int, kind: str | None) -> int:

@@ -16,6 +16,10 @@ from tools.hunt.outcome import BASE, HUNG, WRONG, CaseResult, Outcome
 
 LIMIT = 60.0
 """s of one case without compiling, some hundred times the usual."""
+KERNEL = 1.0
+"""s from which on a kernel was compiled, and not read from the cache."""
+PATIENCE = 5.0
+"""s of compiling in one process before a word is said."""
 Runner = Callable[[int], CaseResult]
 BEGINS, COMPILES, COMPILED = "begins", "compiles", "compiled"
 
@@ -69,6 +73,7 @@ class _Worker:
         theirs.close()
         self.seed: int | None = None
         self.spent, self.since, self.waiting = 0.0, time.monotonic(), True
+        self.compiles, self.compiled = False, 0.0
 
     def begin(self, seed: int) -> None:
         """Hand out a case."""
@@ -84,7 +89,15 @@ class _Worker:
         now = time.monotonic()
         if word == COMPILES:
             self.spent += now - self.since
-        self.waiting, self.since = word == COMPILES, now
+        if word == COMPILED:
+            self.compiled = self.compiling()
+        self.waiting = self.compiles = word == COMPILES
+        self.since = now
+
+    def compiling(self) -> float:
+        """Seconds that kernels have taken so far."""
+        lasted = time.monotonic() - self.since if self.compiles else 0.0
+        return self.compiled + (lasted if lasted > KERNEL else 0.0)
 
     def kill(self) -> None:
         """At once."""
@@ -93,8 +106,17 @@ class _Worker:
         self.connection.close()
 
 
-def results(seeds: Iterable[int], run: Runner, jobs: int | None = None, limit: float = LIMIT) -> Iterator[CaseResult]:
-    """The result of every case, in the order in which they end. ``run`` is a function of a module."""
+def results(
+    seeds: Iterable[int],
+    run: Runner,
+    jobs: int | None = None,
+    limit: float = LIMIT,
+    notice: Callable[[], None] | None = None,
+) -> Iterator[CaseResult]:
+    """The result of every case, in the order in which they end. ``run`` is a function of a module.
+
+    ``notice`` is called once, where a process has compiled for longer than :data:`PATIENCE`.
+    """
     left = iter(seeds)
     first = [seed for _, seed in zip(range(jobs or os.cpu_count() or 1), left, strict=False)]
     workers: list[_Worker] = []
@@ -104,6 +126,9 @@ def results(seeds: Iterable[int], run: Runner, jobs: int | None = None, limit: f
             workers[-1].begin(seed)
         while workers:
             ready = wait([worker.connection for worker in workers], timeout=0.5)
+            if notice is not None and any(worker.compiling() > PATIENCE for worker in workers):
+                notice()
+                notice = None
             for worker in list(workers):
                 result = _heard(worker) if worker.connection in ready else _overdue(worker, limit)
                 if result is None:

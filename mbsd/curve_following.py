@@ -32,6 +32,8 @@ LOOKS = 64
 """Parameters from which the branches near a point are looked for."""
 SHORTEST = 1e-9
 """A step may be divided down to this part of itself."""
+AHEAD = 2.0
+"""Last steps within which wheels that meet are why another one fails."""
 
 
 class CurveFollowing:
@@ -96,16 +98,19 @@ class CurveFollowing:
     def through(self, advance: Callable[..., int], arrays: Any, scratch: Any, state: State, *rest: Any) -> int:
         """``advance`` of an Integrator, a step at a time, with the branches followed."""
         out, settings, end, steps = rest
+        last = 0.0
         while True:
             before, target = copied(state), end
             while True:
                 status = advance(arrays, scratch, state, out, settings, target, 1)
                 if status not in (REACHED, PAUSED):
+                    self.wheels.refuse_meeting(float(before.clock[TIME]), before.y, AHEAD * last)
                     return status
                 feet, farthest = self.moved(state.y[0])
                 taken = float(state.clock[TIME] - before.clock[TIME])
                 farthest = max(farthest, self.wheels.approach(before.y, state.y, taken))
                 if farthest <= 1.0 or taken <= SHORTEST * settings.longest:
+                    last = taken
                     break
                 for part, source in zip(state, before, strict=True):
                     part[...] = source

@@ -19,6 +19,7 @@ from mbsd.specials import AT
 from mbsd.teeth import with_radii
 
 if TYPE_CHECKING:
+    from mbsd.joint import Joint
     from mbsd.packing import Packed
 
 MET = 1e-3
@@ -51,9 +52,8 @@ class FreeWheels:
             line, later = self._line(before[0], i, j), self._line(after[0], i, j)
             way, apart = later - line, math.hypot(*line)
             part = min(max(-float(line @ way) / max(float(way @ way), 1e-300), 0.0), 1.0)
-            rate = relative_velocity(self.packed, before[:1], before[1:], None, j)[0]
-            rate -= relative_velocity(self.packed, before[:1], before[1:], None, i)[0]
-            nearer = max(apart - math.hypot(*(line + part * way)), -h * float(line @ rate) / apart)
+            rate = float(line @ self._rate(before, i, j))
+            nearer = max(apart - math.hypot(*(line + part * way)), -h * rate / apart)
             most = max(most, nearer / (HALF * apart))
         return most
 
@@ -62,11 +62,30 @@ class FreeWheels:
         for joint, i, j in self.pairs:
             apart, sized = math.hypot(*self._line(q, i, j)), with_radii(joint.params)
             if apart < MET * (sized["radius_i"] + sized["radius_j"]):
-                raise SimulationError(
-                    f"{self.packed.name}: the centres of {joint.kind.name} '{joint.name}' meet at t = {time:.6g} s: "
-                    f"they are {apart:.2g} m apart, and their line is about to have no direction. Hold them apart, "
-                    "with pins on a common body or m.distance(...)."
-                )
+                raise self._met(joint, time, apart)
+
+    def refuse_meeting(self, time: float, state: np.ndarray, h: float) -> None:
+        """Raise SimulationError where centres meet within h (s) of a state (2, 3 nb), at the speed that they have.
+
+        Of methods whose equations of a step have no solution there.
+        """
+        for joint, i, j in self.pairs:
+            line = self._line(state[0], i, j)
+            apart, nearer = math.hypot(*line), -float(line @ self._rate(state, i, j))
+            if nearer * h > apart * apart:
+                raise self._met(joint, time + apart * apart / nearer, apart)
+
+    def _met(self, joint: Joint, time: float, apart: float) -> SimulationError:
+        return SimulationError(
+            f"{self.packed.name}: the centres of {joint.kind.name} '{joint.name}' meet at t = {time:.6g} s: "
+            f"they are {apart:.2g} m apart, and their line is about to have no direction. Hold them apart, "
+            "with pins on a common body or m.distance(...)."
+        )
+
+    def _rate(self, state: np.ndarray, i: int, j: int) -> np.ndarray:
+        """How the line of centres changes (m/s)."""
+        ends = (relative_velocity(self.packed, state[:1], state[1:], None, k)[0] for k in (j, i))
+        return next(ends) - next(ends)
 
     def _line(self, q: np.ndarray, i: int, j: int) -> np.ndarray:
         return (marker_places(self.packed, q[None], j) - marker_places(self.packed, q[None], i))[0]

@@ -265,7 +265,8 @@ def test_a_rack_and_a_toothed_belt_by_teeth(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("method", "options"),
-    [("dop853", {"tolerance": 1e-3}), ("dop853", {"tolerance": 1e-9}), ("radau", {}), ("rk4", {"step": 0.01})],
+    [("dop853", {"tolerance": 1e-3}), ("dop853", {"tolerance": 1e-9}), ("radau", {}), ("rk4", {"step": 0.01})]
+    + [(method, {"step": 0.01}) for method in ("rattle", "symplectic", "generalized_alpha")],
 )
 @pytest.mark.parametrize(("stiffness", "when"), [(0.0, "(0.99|1)"), (3.0, "1.8")])
 def test_centres_that_meet_end_the_motion(method: str, options: dict, stiffness: float, when: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from pathlib import Path
 
+import msgspec
 import numpy as np
 import pytest
 from PIL import Image
@@ -14,7 +15,7 @@ from render.gallery.page import sentences
 from render.gallery.posters import LARGEST, small_poster, strip
 from render.report.facts import facts
 from render.report.written import speed
-from shared.contract import write_motion
+from shared.contract import Action, ForceMotion, write_motion
 from shared.errors import UserError
 from shared.paths import Out, mechanism_names
 from tests.motions import bouncing_ball, four_bar_motion
@@ -69,6 +70,22 @@ def test_facts_are_those_of_the_motion() -> None:
     assert "motor up to 54 mN m" in said
     assert "transmission angle from 41.8°" in said
     assert facts(bouncing_ball(), None, None)[1:3] == ["0.903 s of motion", "ball reaches 4.43 m/s (15.9 km/h)"]
+
+
+def test_where_no_driver_works_facts_tell_the_force_that_does() -> None:
+    motion = four_bar_motion()
+    idle = msgspec.structs.replace(motion.drivers["motor"], effort=[0.0] * 361, power=[0.0] * 361)
+    zeros = [0.0] * 361
+    action = Action(body="crank", x=zeros, y=zeros, fx=zeros, fy=zeros, torque=[0.02] * 361)
+    torque = ForceMotion(
+        kind="torque", actions=[action], several=False, measures="angle", value=None, rate=None, effort=[0.02] * 361,
+        normal=None, power=[0.1] * 361, potential=zeros, shape=None,
+    )  # fmt: skip
+    load = msgspec.structs.replace(torque, effort=[-0.5] * 361, power=[-1.0] * 361)
+    driven = msgspec.structs.replace(motion, drivers={"wish": idle}, forces={"load": load, "hand": torque})
+    said = facts(driven, None, None)
+    assert "hand up to 20 mN m" in said
+    assert not [fact for fact in said if "load" in fact or "wish" in fact]
 
 
 def test_the_page_shows_who_has_a_poster(out_root: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -24,16 +24,18 @@ from tests.motions import bouncing_ball, four_bar_motion
 MOTION = four_bar_motion()
 
 
-def slider_crank(crank: float = 0.05, rod: float = 0.15, mass: float = 0.5) -> Motion:
+def slider_crank(
+    crank: float = 0.05, rod: float = 0.15, mass: float = 0.5, start: float = 0.3, steps: int = 360
+) -> Motion:
     m = Mechanism("slider_crank")
     one, two, three = m.bar("crank", crank), m.bar("rod", rod), m.body("slider", mass)
     m.revolute("O", m.ground.at(0, 0), one.start)
     m.revolute("A", one.end, two.start)
     m.revolute("B", two.end, three.origin)
     m.prismatic("guide", m.ground.at(0, 0), three.origin)
-    m.drive_angle("motor", one, constant_rate(100.0, 0.3))
-    m.start_near(crank=17, rod=-5)
-    return to_motion(m.sweep(), None, "0" * 64, {}, dict.fromkeys(("crank", "rod", "slider"), "mechanism"))
+    m.drive_angle("motor", one, constant_rate(100.0, start))
+    m.start_near(crank=math.degrees(start), rod=-math.degrees(math.asin(crank / rod * math.sin(start))))
+    return to_motion(m.sweep(steps=steps), None, "0" * 64, {}, dict.fromkeys(("crank", "rod", "slider"), "mechanism"))
 
 
 # -- transmission ----------------------------------------------------------------------------------------------------
@@ -64,6 +66,18 @@ def test_a_slider_cranks_dead_points_are_its_dead_centres() -> None:
     angles = sorted(angle % (2 * math.pi) for _, angle in loop.dead_points(np.array(motion.time)))
     assert min(abs(math.sin(angle)) for angle in angles) < 1e-6
     assert len(angles) == 2
+
+
+@pytest.mark.parametrize(("start", "steps"), [(0.0, 360), (0.0, 7), (math.pi, 36), (1e-4, 36), (math.pi / 2, 4)])
+def test_dead_centres_on_the_seam_of_a_period_count_once(start: float, steps: int) -> None:
+    motion = slider_crank(start=start, steps=steps)
+    [loop] = loops(motion)
+    found = sorted(angle for _, angle in loop.dead_points(np.array(motion.time)))
+    assert len(found) == 2
+    away = [min(abs(math.remainder(angle - dead, 2 * math.pi)) for dead in (0.0, math.pi)) for angle in found]
+    assert max(away) < 1e-6 + 0.6 / steps**2
+    if steps > 30:
+        assert "Both ways take equally long." in report.report(motion, None, None)
 
 
 def test_a_linkage_that_nothing_turns_has_no_driven_loop() -> None:
@@ -186,3 +200,16 @@ def test_it_is_written_once(out_root: Path, capsys: pytest.CaptureFixture[str]) 
 def test_without_a_motion_it_says_so(out_root: Path) -> None:
     with pytest.raises(UserError, match=r"data\.json"):
         report.run("four_bar")
+
+
+def test_powers_that_are_rounding_are_nothing() -> None:
+    motor = MOTION.drivers["motor"]
+    power = np.maximum(motor.power, 0.0)
+    power[5] = -1e-13
+    said = report.report(
+        msgspec.structs.replace(MOTION, drivers={"motor": msgspec.structs.replace(motor, power=power.tolist())}),
+        None,
+        None,
+    )
+    [row] = [line for line in said.splitlines() if line.startswith("| motor |")]
+    assert row.split("|")[6].strip() == "0 W"

@@ -26,6 +26,8 @@ def facts(motion: Motion, parts: Parts | None, clearance: Clearance | None) -> l
         effort = float(np.abs(driver.effort).max())
         if effort > 0:
             out.append(f"{name} up to {written(effort, 'N' if driver.kind in SLIDES else 'N m')}")
+    if not any(np.any(driver.effort) for driver in motion.drivers.values()):
+        out += [f"{name} up to {size}" for name, size in _efforts(motion)[:2]]
     forces = {name: float(np.hypot(joint.fx, joint.fy).max()) for name, joint in motion.joints.items()}
     if forces and max(forces.values()) > 0:
         most = max(forces, key=lambda name: forces[name])
@@ -55,6 +57,20 @@ def _speed_of(body: BodyMotion) -> float:
     vx = np.array(body.vx) - omega * (np.sin(theta) * x + np.cos(theta) * y)
     vy = np.array(body.vy) + omega * (np.cos(theta) * x - np.sin(theta) * y)
     return float(np.hypot(vx, vy).max())
+
+
+GIVING = ("torque", "curve_of_angle", "actuator", "force")
+"""Kinds of forces that move machines: motors, cylinders, loads."""
+
+
+def _efforts(motion: Motion) -> list[tuple[str, str]]:
+    """Peak efforts of what moves the mechanism where no driver does, those that give most power first."""
+    found = []
+    for name, force in motion.forces.items():
+        if force.kind in GIVING and force.effort is not None and np.any(force.effort) and max(force.power) > 0:
+            unit = "N m" if force.measures == "angle" else "N"
+            found.append((max(force.power), name, written(float(np.abs(force.effort).max()), unit)))
+    return [(name, size) for _, name, size in sorted(found, key=lambda one: -one[0])]
 
 
 def _joint_speeds(motion: Motion) -> dict[str, float]:

@@ -49,8 +49,7 @@ def load_section(motion: Motion) -> list[str]:
             k = first_peak(np.abs(effort))
             rows.append([
                 name, written(float(effort[k]), unit), moment(time[k]), written(_rms(effort, time), unit),
-                written(float(power.max()), "W"), written(float(power.min()), "W"),
-                _work(power, time),
+                *_powers(power), _work(power, time),
             ])  # fmt: skip
         head = ["driver", "peak effort", "at", "effort, root mean square", "highest power", "lowest power", "work"]
         lines += [*table(head, rows), ""]
@@ -65,8 +64,7 @@ def load_section(motion: Motion) -> list[str]:
             rows.append([
                 f"{name} ({force.kind.replace('_', ' ')})", written(float(size.max()), "N") if size.any() else "",
                 written(float(twist.max()), "N m") if twist.any() else "", moment(time[k]),
-                written(float(power.max()), "W"), written(float(power.min()), "W"),
-                _work(power, time),
+                *_powers(power), _work(power, time),
             ])  # fmt: skip
         head = ["force", "peak force", "peak torque", "at", "gives at most", "takes at most", "work"]
         lines += [*table(head, rows), ""]
@@ -94,6 +92,13 @@ def _contacts(motion: Motion, time: np.ndarray) -> list[str]:
 
 def _rms(values: np.ndarray, time: np.ndarray) -> float:
     return math.sqrt(float(np.trapezoid(values**2, time)) / float(time[-1] - time[0]))
+
+
+def _powers(power: np.ndarray) -> tuple[str, str]:
+    """The highest and the lowest; rounding beside the larger one is nothing."""
+    floor = ROUNDING * float(np.abs(power).max(initial=0.0))
+    most, least = (written(value if abs(value) > floor else 0.0, "W") for value in (power.max(), power.min()))
+    return most, least
 
 
 def _work(power: np.ndarray, time: np.ndarray) -> str:

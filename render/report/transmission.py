@@ -10,6 +10,7 @@ mu near 90 degrees passes the force on best; 40 degrees is a usual limit (VDI 21
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -18,6 +19,10 @@ from shared.contract import Motion
 
 LEAST = np.radians(40.0)
 """Transmission angle that is usually asked for."""
+
+
+ON_LINE = 1e-9
+"""Of the largest: pins A, B, C are in line."""
 
 
 @dataclass(frozen=True)
@@ -43,16 +48,25 @@ class Loop:
         return np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
 
     def dead_points(self, time: np.ndarray) -> list[tuple[float, float]]:
-        """Time (s) and angle of the crank (rad, 0 .. 2 pi) at each."""
+        """Time (s) and angle of the crank (rad, 0 .. 2 pi) at each; one on the seam of a period once, at its start."""
         a, b, c = (self.pins[:, k] for k in (0, 1, 2))
         first, second = b - a, c - b
         turn = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+        turn = np.where(np.abs(turn) > ON_LINE * np.abs(turn).max(), turn, 0.0)
         out: list[tuple[float, float]] = []
-        for k in np.flatnonzero((turn[:-1] > 0) != (turn[1:] > 0)):
-            part = turn[k] / (turn[k] - turn[k + 1]) if turn[k] != turn[k + 1] else 0.0
-            at = time[k] + part * (time[k + 1] - time[k])
-            angle = self.angle[k] + part * (self.angle[k + 1] - self.angle[k])
+        beside = np.flatnonzero(turn)
+        for k, after in pairwise(beside):
+            if (turn[k] > 0) == (turn[after] > 0):
+                continue
+            part = turn[k] / (turn[k] - turn[after])
+            if after > k + 1:  # rows on the line itself
+                part = float(time[(k + after) // 2] - time[k]) / float(time[after] - time[k])
+            at = time[k] + part * (time[after] - time[k])
+            angle = self.angle[k] + part * (self.angle[after] - self.angle[k])
             out.append((float(at), float(angle % (2 * np.pi))))
+        repeats = np.abs(self.pins[0] - self.pins[-1]).max() < ON_LINE * np.ptp(self.pins)
+        if repeats and turn[0] == 0.0 and len(beside) and (turn[beside[0]] > 0) != (turn[beside[-1]] > 0):
+            out.insert(0, (float(time[0]), float(self.angle[0] % (2 * np.pi))))
         return out
 
     @property

@@ -20,6 +20,8 @@ class Params:
 
     crank: float = 0.040
     guide: float = 0.140  # from the slot to the block in the guide
+    beyond: float = 0.060  # from there to the spring
+    rest: float = 0.120  # free length of the spring
     mass: float = 0.5
     speed: float = 2 * pi
     flywheel: float = 1.0e-3  # inertia of the balanced crank where nothing drives it (kg m^2)
@@ -41,8 +43,7 @@ def build(p: Params) -> Mechanism:
     else:
         m.start_moving(crank=p.speed)
     if p.tuned:
-        wall = 2 * p.guide
-        stiffness = p.tune * p.mass * p.speed**2
-        m.spring("spring", m.ground.at(wall, 0), yoke.origin, stiffness, free_length=wall)
+        end, stiffness = p.guide + p.beyond, p.tune * p.mass * p.speed**2
+        m.spring("spring", m.ground.at(end + p.rest, 0), yoke.at(end, 0), stiffness, free_length=p.rest)
     m.start_near(crank=0, yoke=0)
     return m

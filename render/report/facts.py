@@ -9,6 +9,7 @@ from render.report.transmission import loops
 from render.report.written import counted, degrees, moment, speed, written
 from shared.clearance import Clearance
 from shared.contract import BodyMotion, Motion, Parts
+from shared.contract_loads import ACTUATORS
 
 STILL = 1e-9
 """What is slower (m/s) stands still but for rounding."""
@@ -59,7 +60,7 @@ def _speed_of(body: BodyMotion) -> float:
     return float(np.hypot(vx, vy).max())
 
 
-GIVING = ("torque", "curve_of_angle", "actuator", "force")
+GIVING = (*ACTUATORS, "curve_of_angle")
 """Kinds of forces that move machines: motors, cylinders, loads."""
 
 

@@ -45,9 +45,12 @@ class Trails:
         out = []
         for trail, rings in zip(self.trails, self._rings, strict=True):
             times = self.clock.trail_times(frame, trail.tail, rings)
+            step = float(np.abs(np.diff(times)).min())  # where a period begins anew, it is more
             for event in self.poses.motion.events:
-                if times[-1] < event.time < times[0]:
-                    times[int(np.abs(times - event.time).argmin())] = event.time
+                away = np.abs(times[1:] - event.time)
+                nearest = int(away.argmin())
+                if away[nearest] <= 0.5 * step * (1 + 1e-6):
+                    times[1 + nearest] = event.time
             z = self.heights[trail.point]
             out.append([(float(x), float(y), z) for x, y in self.poses.point(trail.point, times)])
         return out

@@ -15,8 +15,9 @@ from render.blender.trail import CAP, SIDES, vertices
 from render.clock import LONGEST, SHORTEST, Clock, natural_rate, speed, turns_of
 from render.describe import Film
 from render.frames import Pictures
+from render.poses import Poses
 from render.presets import PRESETS
-from render.trails import MOST_RINGS, STRAY
+from render.trails import MOST_RINGS, STRAY, Trails
 from shared.contract import Motion, read_motion, read_parts
 from shared.errors import UserError
 from shared.paths import Out
@@ -203,3 +204,20 @@ def test_the_film_of_a_four_bar_is_as_before(out_root: Path) -> None:
     assert (film.clock.frames, film.clock.showings, film.clock.total) == (120, 3, 360)
     assert film.scene.trails[0].rings == 160
     assert film.clock.frame_at(0.3) == 36
+
+
+def test_a_trail_turns_sharply_at_an_impact_also_where_it_goes_back_beyond_the_start_of_a_period():
+    ball = bouncing_ball(restitution=1.0)
+    ball = msgspec.structs.replace(ball, period=ball.time[-1])
+    shot = Shot(trails=(Trail(point="P", tail=0.6),))
+    poses, clock = Poses(ball), Clock(ball, shot)
+    trails = Trails(poses, clock, shot, {"P": 0.0}, 1.0)
+    strike, seen = ball.events[0].time, 0
+    for frame in range(clock.frames):
+        [path] = trails.paths(frame)
+        now = clock.moment(frame).time
+        assert path[0][:2] == pytest.approx(poses.point("P", np.array([now]))[0])
+        if (now - strike) % ball.time[-1] < 0.59 * ball.time[-1]:
+            seen += 1
+            assert min(y for _, y, _ in path) == pytest.approx(0.0, abs=1e-9), frame
+    assert seen > clock.frames / 2

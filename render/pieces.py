@@ -11,6 +11,7 @@ from shared.errors import UserError
 from shared.files import file_hash
 from shared.materials import MATERIALS
 from shared.shot import Shot, Surface
+from shared.suggestions import did_you_mean
 
 
 def piece_specs(parts: Parts, shot: Shot, folder: Path) -> list[PieceSpec]:
@@ -41,7 +42,12 @@ def refuse_mismatch(motion: Motion, parts: Parts, folder: Path) -> None:
         )
     if not any(True for _ in _pieces(parts)):
         raise UserError(f"{name}: parts.json has no solids, so there is nothing to see; make the parts again")
-    for _, _, piece in _pieces(parts):
+    for body, piece_name, piece in _pieces(parts):
+        if piece.rolls is not None and piece.rolls.joint not in motion.joints:
+            raise UserError(
+                f"{name}: piece {body}/{piece_name} rolls in joint '{piece.rolls.joint}', which data.json has not; "
+                f"it has: {', '.join(motion.joints) or 'none'}{did_you_mean(piece.rolls.joint, motion.joints)}"
+            )
         if file_hash(folder / piece.stl) != piece.stl_sha256:
             raise UserError(f"{name}: {piece.stl} is not the file parts.json describes; make the parts again")
 

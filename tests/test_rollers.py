@@ -18,6 +18,7 @@ from render.describe import Film
 from render.glb.build import glb
 from render.rollers import turned
 from shared.contract import BodyMotion, JointMotion, Motion, Rolling, Shape, read_motion, read_parts, write_parts
+from shared.errors import UserError
 from shared.shot import Shot
 from tests import film_fixture
 from tests.motions import bouncing_ball
@@ -148,3 +149,11 @@ def test_in_the_glb_it_turns_about_its_axis_below_its_body(film: Film):
         document["meshes"][nodes[number]["mesh"]]["primitives"][0]["attributes"]["POSITION"]
     ]
     assert np.add(positions["min"], positions["max"])[:2] == pytest.approx([0.0, 0.0], abs=1e-6)
+
+
+def test_a_roller_in_a_joint_that_is_not_there_is_refused(film: Film):
+    rolls = film.parts.bodies["coupler"].pieces["end"].rolls
+    assert rolls is not None
+    film.parts.bodies["coupler"].pieces["end"].rolls = msgspec.structs.replace(rolls, joint="c")
+    with pytest.raises(UserError, match=r"coupler/end rolls in joint 'c', which data.json has not; it has: A, B, C, D"):
+        Film(film.motion, film.parts, Shot(), film.folder)

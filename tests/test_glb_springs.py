@@ -16,13 +16,13 @@ from render.scene import TubeSpec
 from shared.contract import read_motion, read_parts
 from shared.shot import Shot
 from tests import film_fixture, test_spirals, test_stretched
-from tests.test_glb import Read
+from tests.glb_file import GlbFile
 
 UPRIGHT = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
 """From z up to y up."""
 
 
-def middles(read: Read, node: str, matrices: dict[str, np.ndarray]) -> np.ndarray:
+def middles(read: GlbFile, node: str, matrices: dict[str, np.ndarray]) -> np.ndarray:
     """Middles (n, 3) of the rings of a tube, world axes of the mechanism (z up)."""
     [primitive] = read.json["meshes"][read.nodes[node]["mesh"]]["primitives"]
     points = read.array(primitive["attributes"]["POSITION"]).astype(float)
@@ -42,7 +42,7 @@ def film_paths(film: Film, time: float) -> list[tuple[TubeSpec, np.ndarray]]:
 @pytest.mark.parametrize("stiff", [True, False])
 def test_coils_and_cylinders_are_where_the_film_has_them(out_root: Path, stiff: bool):
     film = test_stretched.film(stiff=stiff)
-    read = Read(glb(film))
+    read = GlbFile(glb(film))
     for k in (0, 77, 180, 359):
         time = film.motion.time[k]
         matrices = read.matrices(time)
@@ -52,7 +52,7 @@ def test_coils_and_cylinders_are_where_the_film_has_them(out_root: Path, stiff: 
 
 def test_a_rope_is_links_along_its_path(out_root: Path):
     film = test_stretched.film(rope=0.6)
-    read = Read(glb(film))
+    read = GlbFile(glb(film))
     links = sorted((name for name in read.nodes if name.startswith("rope ") and name.split()[1].isdigit()), key=len)
     assert len(links) == 24
     for k in (0, 120, 300):
@@ -71,7 +71,7 @@ def test_a_torsion_spring_winds_as_in_the_film(out_root: Path):
     motion = test_spirals.with_spring(read_motion(out.motion))
     film = Film(motion, read_parts(out.parts), Shot(), out.parts_folder)
     [spring] = film.spirals
-    read = Read(glb(film))
+    read = GlbFile(glb(film))
     for k in (0, 111, 250):
         matrices = read.matrices(motion.time[k])
         for spec, path in film_paths(film, motion.time[k]):
@@ -94,7 +94,7 @@ def test_a_spring_that_nothing_moves_and_a_long_simulation(out_root: Path):
         motion, period=None, time=np.linspace(0, 9, count).tolist(), bodies=bodies, forces=forces, points={}
     )
     seen = Film(still, film.parts, Shot(trails=()), film.folder)
-    read = Read(glb(seen))
+    read = GlbFile(glb(seen))
     clocks = {read.array(one["input"]).size for one in read.json["animations"][0]["samplers"]}
     assert clocks == {count, 1440}
     matrices = read.matrices(5.0)

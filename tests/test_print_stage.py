@@ -58,7 +58,7 @@ def test_every_piece_is_made_or_bought_once(press: Press) -> None:
         assert float(row["mass_g"]) == pytest.approx(1000 * pieces[name].mass.mass, rel=1e-3)
     text = files["pieces.md"].decode()
     assert f"| {SCREW} | 3 | screw_0, screw_1, screw_2 |" in text
-    assert "[plate_8.00mm.dxf](plate_8.00mm.dxf)" in text
+    assert "[plate_8mm.dxf](plate_8mm.dxf)" in text
 
 
 def test_equal_pieces_are_one_kind_and_mirror_images_are_two(press: Press) -> None:
@@ -254,4 +254,4 @@ def test_where_all_pieces_are_too_large_the_lists_are_there(out_root: Path, monk
     press.parts = lambda: {"ground": solids()["ground"][:1]}
     press.make()
     files = press.run(bed="20x20")
-    assert sorted(files) == ["pieces.csv", "pieces.md", "plate_8.00mm.dxf"]
+    assert sorted(files) == ["pieces.csv", "pieces.md", "plate_8mm.dxf"]

@@ -70,12 +70,12 @@ def _upper_faces(piece: Laid) -> list[float]:
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     up = across[:, 2] > 0.9999 * np.linalg.norm(across, axis=1)
     levels, areas = corners[up][:, :, 2].mean(axis=1), across[up, 2] / 2
-    found: dict[float, float] = {}
-    for level, area in zip(levels.tolist(), areas.tolist(), strict=True):
-        key = round(level / FLAT) * FLAT
-        found[key] = found.get(key, 0.0) + area
+    order = np.argsort(levels, kind="stable")
+    levels, areas = levels[order], areas[order]
+    faces = np.split(np.arange(len(levels)), np.flatnonzero(np.diff(levels) > FLAT) + 1)
     x, y, _ = piece.size
-    return sorted((level for level, area in found.items() if area > LARGE * x * y / 2), reverse=True)
+    large = [face for face in faces if areas[face].sum() > LARGE * x * y / 2]
+    return [round(float(np.average(levels[face], weights=areas[face])), 3) for face in reversed(large)]
 
 
 def _filled(section: Any) -> float:

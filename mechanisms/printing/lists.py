@@ -79,7 +79,7 @@ def table(made: Sequence[Made], bought: Sequence[Bought]) -> str:
     writer.writerow(HEADER)
     for one in made:
         size = [f"{length:.2f}" for length in one.piece.size]
-        sheet = (f"{one.sheet.thickness:.2f}", f"{one.sheet.above:.2f}") if one.sheet else ("", "")
+        sheet = (f"{one.sheet.thickness:g}", f"{one.sheet.above:.2f}") if one.sheet else ("", "")
         plates = " ".join(str(plate) for plate in one.plates)
         row = ["make", one.name, len(one.names), one.material, *size, _grams(one.mass), plates, one.bed, one.outline]
         writer.writerow([*row, *sheet, " ".join(one.names)])

@@ -50,9 +50,9 @@ def dxf(cut: Any, thickness: float) -> bytes:
 
 def layer_of(thickness: float) -> str:
     """The layer of what is cut from a sheet of this thickness (mm)."""
-    return f"{LAYER}_{thickness:.2f}MM"
+    return f"{LAYER}_{thickness:g}MM"
 
 
 def file_of(name: str, thickness: float) -> str:
     """The name of a piece's outline."""
-    return f"{name}_{thickness:.2f}mm.dxf"
+    return f"{name}_{thickness:g}mm.dxf"

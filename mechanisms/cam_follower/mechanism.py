@@ -17,6 +17,10 @@ VARIANTS = {
     "valve": {"follower": "valve", "speed": 150.0, "DURATION": 0.126},
     "floating": {"follower": "valve", "speed": 210.0, "DURATION": 0.09},
 }
+RETAINER = (0.034, 0.105)
+"""Where the springs push on the valve: aside of its axis, and over the roller (m)."""
+SPRING = 0.065
+"""Length of a spring while the valve is closed (m)."""
 
 
 @dataclass(frozen=True)
@@ -24,7 +28,7 @@ class Params:
     """Sizes (m), angles of the cam over which it lifts and lowers (rad), the cam's speed (rad/s), weight (m/s^2).
 
     ``follower`` is roller, flat, oscillating or valve; an oscillating one is lifted by an angle, ``lift`` over its arm.
-    A valve (kg) is pushed on the cam by a spring (N/m) that is pressed in by ``preload`` (m) when it is closed.
+    A valve (kg) is pushed on the cam by springs (N/m) that are pressed in by ``preload`` (m) when it is closed.
     """
 
     follower: str = "roller"
@@ -83,7 +87,7 @@ def build(p: Params) -> Mechanism:
 
 
 def _push(m: Mechanism, p: Params, start: float) -> None:
-    """The cam only pushes: its roller is free to leave it, and a spring pushes it back."""
+    """The cam only pushes: its roller is free to leave it, and two springs beside the stem push it back."""
     cam, valve = m.bodies["cam"], m.bodies["follower"]
     valve.mass, valve.inertia = p.valve, 1e-4
     outline = roller_cam(lift_law(p), p.base, p.roller).outline
@@ -91,11 +95,7 @@ def _push(m: Mechanism, p: Params, start: float) -> None:
     m.rigid_terrain(
         "contact", cam.origin, valve.origin, outline[around].tolist(), p.roller, closed=True, restitution=p.restitution
     )
-    seat, length = 0.105, 0.080  # on the valve; of the spring when it is pressed in by the preload
-    m.spring(
-        "spring",
-        m.ground.at(0, start + seat + length),
-        valve.at(0, seat),
-        p.stiffness,
-        free_length=length + p.preload,
-    )
+    aside, seat = RETAINER
+    for side in (-1, 1):
+        fixed, moved = m.ground.at(side * aside, start + seat + SPRING), valve.at(side * aside, seat)
+        m.spring(f"spring{(side + 3) // 2}", fixed, moved, p.stiffness / 2, free_length=SPRING + p.preload)

@@ -179,6 +179,16 @@ def test_many_bodies_and_joints_stay_readable() -> None:
     assert len([axes for axes in figure("hodographs", motion).axes if axes.get_visible()]) == 12
 
 
+def test_long_names_stay_on_the_page() -> None:
+    names = ("a", "coupler_of_the_first_loop", "crank_of_the_engine")
+    motion = msgspec.structs.replace(MOTION, bodies=dict.fromkeys(names, MOTION.bodies["rocker"]))
+    drawn = figure("bodies", motion)
+    drawn.canvas.draw()
+    boxes = [text.get_window_extent() for axes in drawn.axes for text in axes.texts if text.get_text() in names]
+    assert len(boxes) == 3 * len(names)
+    assert max(box.x1 for box in boxes) < drawn.bbox.x1
+
+
 def test_a_motion_without_drivers_or_joints_is_drawn() -> None:
     motion = msgspec.structs.replace(MOTION, drivers={}, joints={}, points={}, period=None)
     assert plots.plots_of(motion) == ["path", "bodies", "energy"]

@@ -54,6 +54,8 @@ RC: dict[Any, Any] = {
 }
 
 
+LONGEST = 12
+"""Letters of a label that has room at the right; longer ones are smaller."""
 HALO = [withStroke(linewidth=3, foreground="white")]
 """Keeps text readable over lines."""
 
@@ -100,9 +102,10 @@ def label_ends(axes: Axes, x: float, lines: Sequence[tuple[str, float, str]], ga
     wanted = np.array([(y - low) / (high - low) * height for _, y, _ in lines])
     placed = spread(wanted, gap, height)
     beside = blended_transform_factory(axes.transAxes, axes.transAxes)
+    size = 9.5 * min(1.0, LONGEST / max(len(text) for text, _, _ in lines))
     for (text, _, ink), from_y, to_y in zip(lines, wanted / height, placed / height, strict=True):
         axes.plot([1.002, 1.014], [from_y, to_y], transform=beside, color=ink, linewidth=0.8, clip_on=False)
-        axes.text(1.018, to_y, text, transform=beside, color=ink, va="center", fontsize=9.5)
+        axes.text(1.018, to_y, text, transform=beside, color=ink, va="center", fontsize=size)
 
 
 def spread(wanted: np.ndarray, gap: float, height: float) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 Every pair of pieces of two bodies is settled by the first of these that suffices:
 
-1. Circles. Pieces whose circles in the plane stay apart do not meet.
+1. Circles. Pieces whose circles in the plane stay apart do not meet, nor do those of bodies far apart (far.py).
 2. Layers. The motion is planar, so pieces at different heights stay apart, whatever the motion.
 3. Turn. Bodies with a revolute joint between them turn about one axis: the gap at every angle at once (turn.py).
    This also covers a pin in its hole with 0.1 mm of room.
@@ -78,6 +78,7 @@ def check(
     parts: Parts, motion: Motion, pieces: list[MeshPiece], key: str, limit: float = LIMIT, reach: float = REACH
 ) -> Clearance:
     """Check every pair of ``pieces`` of different bodies; ``limit`` and ``reach`` in mm. Raises as :func:`run`."""
+    from mechanisms.clearance import far as bodies
     from mechanisms.clearance.meshing import least_in_mesh, meshes
     from mechanisms.clearance.path import paths
     from mechanisms.clearance.search import RESOLUTION
@@ -91,6 +92,7 @@ def check(
             "use the names of mechanism.py in parts()"
         )
     where = paths(motion)
+    far = bodies.far_bodies(pieces, where, reach)
     axes, in_mesh = _axes(motion, where), meshes(motion, pieces)
     pairs: list[PairClearance] = []
     refused: list[tuple[Sweep, Least]] = []
@@ -100,8 +102,9 @@ def check(
         if frozenset((first.body, second.body)) in alike:
             continue
         height = _height_gap(first, second)
-        if height >= reach:
-            apart += 1
+        is_far = frozenset((first.body, second.body)) in far
+        if height >= reach or is_far:
+            error, apart = max(error, bodies.error_of(first, second, where) if height < reach else 0.0), apart + 1
             continue
         sweep = Sweep(first, second, where[first.body], where[second.body])
         error = max(error, float(sweep.error.max(initial=0.0)))

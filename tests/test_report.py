@@ -13,6 +13,7 @@ import pytest
 from mbsd import Mechanism, constant_rate
 from mechanisms.motion_file import to_motion
 from render import report
+from render.report.facts import facts
 from render.report.transmission import loops
 from render.report.written import degrees, speed, turning, written
 from shared.clearance import Clearance, PairClearance
@@ -213,3 +214,14 @@ def test_powers_that_are_rounding_are_nothing() -> None:
     )
     [row] = [line for line in said.splitlines() if line.startswith("| motor |")]
     assert row.split("|")[6].strip() == "0 W"
+
+
+def test_an_effort_that_is_rounding_beside_the_reactions_is_nothing() -> None:
+    motor = MOTION.drivers["motor"]
+    tuned = msgspec.structs.replace(
+        motor, effort=list(1e-16 * np.array(motor.effort)), power=[1e-18] * len(MOTION.time)
+    )
+    motion = msgspec.structs.replace(MOTION, drivers={"motor": tuned})
+    [row] = [line for line in report.report(motion, None, None).splitlines() if line.startswith("| motor |")]
+    assert row == "| motor | 0 N m | 0 s | 0 N m | 0 W | 0 W | 0 J |"
+    assert not [fact for fact in facts(motion, None, None) if fact.startswith("motor")]

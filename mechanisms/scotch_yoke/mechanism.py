@@ -31,8 +31,8 @@ class Params:
 
 
 def build(p: Params) -> Mechanism:
-    """The yoke slides along x; its slot stands along y."""
-    m = Mechanism("scotch_yoke")
+    """It lies flat, so weights do not count. The yoke slides along x; its slot stands along y."""
+    m = Mechanism("scotch_yoke", gravity=None)
     yoke = m.body("yoke", mass=p.mass)
     crank = m.bar("crank", p.crank) if p.driven else m.bar("crank", p.crank, 0.5, com=(0, 0), inertia=p.flywheel)
     m.revolute("O", m.ground.at(0, 0), crank.start)

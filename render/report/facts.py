@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from render.report.loads import SLIDES
+from render.report.loads import NOTHING, SLIDES
 from render.report.transmission import loops
 from render.report.written import counted, degrees, moment, speed, written
 from shared.clearance import Clearance
@@ -23,16 +23,17 @@ def facts(motion: Motion, parts: Parts | None, clearance: Clearance | None) -> l
     name, most = fastest(motion)
     if most > STILL:
         out.append(f"{name} reaches {speed(most)}")
+    forces = {name: float(np.hypot(joint.fx, joint.fy).max()) for name, joint in motion.joints.items()}
+    largest = max(forces.values(), default=0.0)
     for name, driver in motion.drivers.items():
         effort = float(np.abs(driver.effort).max())
-        if effort > 0:
+        if effort > NOTHING * largest:
             out.append(f"{name} up to {written(effort, 'N' if driver.kind in SLIDES else 'N m')}")
     if not any(np.any(driver.effort) for driver in motion.drivers.values()):
         out += [f"{name} up to {size}" for name, size in _efforts(motion)[:2]]
-    forces = {name: float(np.hypot(joint.fx, joint.fy).max()) for name, joint in motion.joints.items()}
-    if forces and max(forces.values()) > 0:
+    if largest > 0:
         most = max(forces, key=lambda name: forces[name])
-        out.append(f"largest reaction {written(forces[most], 'N')} at {most}")
+        out.append(f"largest reaction {written(largest, 'N')} at {most}")
     out += [f"transmission angle from {degrees(float(loop.transmission.min()))}" for loop in loops(motion)[:1]]
     moving = sum(body.mass for body in motion.bodies.values())
     if parts is not None:

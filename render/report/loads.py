@@ -46,6 +46,8 @@ def load_section(motion: Motion) -> list[str]:
         for name, driver in drivers.items():
             unit = "N" if driver.kind in SLIDES else "N m"
             effort, power = np.array(driver.effort), np.array(driver.power)
+            if np.abs(effort).max() <= NOTHING * most:  # weights or springs do its work
+                effort, power = 0.0 * effort, 0.0 * power
             k = first_peak(np.abs(effort))
             rows.append([
                 name, written(float(effort[k]), unit), moment(time[k]), written(_rms(effort, time), unit),

@@ -152,3 +152,31 @@ def test_a_closed_curve_that_pushes_is_a_cam_with_a_roller() -> None:
     assert made.levels["disc"] != made.levels["valve"]
     names = {solid.name for solid in made.plan().solids["valve"]}
     assert {"roller_push", "pin_push"} <= names
+
+
+def test_balls_that_meet_share_a_layer_and_never_touch() -> None:
+    m = Mechanism("billiards", gravity=None)
+    cue, ball = (m.body(name, mass=0.2, inertia=1e-5) for name in ("cue", "ball"))
+    m.rigid_discs("hit", cue.origin, ball.origin, 0.02, 0.03, restitution=0.9)
+    m.start_near(cue=(-0.2, 0, 0), ball=(0, 0.01, 0))
+    m.start_moving(cue=(1.0, 0, 0))
+    made, rounds, _ = _made(m, 0.4)
+    assert [part.look for part in rounds] == ["ball", "ball"]
+    assert made.levels["cue"] == made.levels["ball"]
+    apart = np.linalg.norm(made.layout.seen("cue", (0, 0), "ball"), axis=1).min()
+    assert 0.05 < (apart - sum(part.made for part in rounds)) * made.sizes.scale < 1.0  # mm
+    assert set(made.solids()) == {"ground", "cue", "ball"}
+
+
+def test_a_cradle_of_bars_with_discs_has_one_layer() -> None:
+    m = Mechanism("cradle")
+    bars = [m.bar(f"bar{k}", 0.15, mass=0.1) for k in range(3)]
+    for k, bar in enumerate(bars):
+        m.revolute(f"pin{k}", m.ground.at(0.05 * k, 0), bar.start)
+        m.start_near(**{bar.name: -120 if k == 0 else -90})
+    for k in (0, 1):
+        m.rigid_discs(f"hit{k}", bars[k].end, bars[k + 1].end, 0.025, 0.025, restitution=1.0)
+    made, rounds, _ = _made(m, 0.5)
+    assert [part.look for part in rounds] == ["disc"] * 3
+    assert len({made.levels[bar.name] for bar in bars}) == 1
+    assert all(solid.shape.val().isValid() for solids in made.solids().values() for solid in solids)

@@ -1,4 +1,4 @@
-"""Contacts of discs with surfaces of ground: walls and roads, and the balls, wheels and discs that touch them.
+"""Contacts of discs with surfaces of ground and with each other: walls, roads, balls, wheels and discs.
 
 A surface is where the model has it. What touches is smaller by a clearance (cams.py), and where a contact hardly yields
 also by as much as it presses in; where one sees that, the two may touch by design. A body without joints is a ball, or
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     type Touch = Force | Joint
 
-BALL, WHEEL = 12.0, 22.0
+BALL, DISC, WHEEL = 12.0, 18.0, 22.0
 """Least radii (rmm)."""
 YIELDS = 0.3
 """Bodies that press further into each other (rmm) do so in the film, too."""
@@ -67,6 +67,23 @@ def terrains(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature
             found += _on_road(m, touch, curve_path(touch.params["points"], False), layout)
         elif closed and touch.params["radius"] > 0 and "ground" not in touch.bodies:
             found += pushing_cam(touch, layout)
+    return found
+
+
+@contact_kind("rigid_discs")
+def discs(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature]:
+    """Two balls or discs of moving bodies, on one layer; a disc in a ring, or on ground, has none."""
+    found: list[Feature] = []
+    for touch in touches:
+        if touch.params["inside"] or "ground" in touch.bodies:
+            continue
+        for marker, other, radius in ((touch.i, touch.j, "radius_i"), (touch.j, touch.i, "radius_j")):
+            body, long = marker.body.name, max(layout.sizes.of_metres(touch.params[radius]), NOSE)
+            look = _look(m, body, touch.params["friction"] > 0.0)
+            part, new = round_at(layout, touch.name, body, layout.place(marker), long, look)
+            part.meets.add(other.body.name)
+            found += [part] if new else []
+        layout.together.append(touch.bodies)
     return found
 
 
@@ -110,9 +127,8 @@ def _on_road(m: Mechanism, touch: Touch, path: np.ndarray, layout: Layout) -> li
 def _round(m: Mechanism, touch: Touch, layout: Layout, gap: float) -> tuple[Round, bool]:
     """What touches; ``gap`` is the least one (rmm), below 0 where it presses in."""
     body = touch.j.body.name
-    free = not any(body in joint.bodies for joint in m.joints.values())
-    turned = touch.kind.name == "tyre" or (free and touch.params.get("friction", 0.0) > 0.0)
-    look: Look = "wheel" if turned else "ball" if free else "disc"
+    turned = touch.params.get("friction", 0.0) > 0.0
+    look: Look = "wheel" if touch.kind.name == "tyre" else _look(m, body, turned)
     pressed, pair = max(0.0, -gap), frozenset(touch.bodies)
     if pressed > YIELDS:
         layout.pressing.add(pair)
@@ -120,6 +136,13 @@ def _round(m: Mechanism, touch: Touch, layout: Layout, gap: float) -> tuple[Roun
         pressed = 0.0
     radius = max(layout.sizes.of_metres(touch.params["radius"]), NOSE)
     return round_at(layout, touch.name, body, layout.place(touch.j), radius, look, pressed)
+
+
+def _look(m: Mechanism, body: str, turned: bool) -> Look:
+    """Of what touches without being a tyre."""
+    if any(body in joint.bodies for joint in m.joints.values()):
+        return "disc"
+    return "wheel" if turned else "ball"
 
 
 def _set_back(touch: Touch, layout: Layout) -> float:
@@ -139,6 +162,13 @@ def _normals(path: np.ndarray) -> np.ndarray:
     """(n, 2) unit vectors to the left of a path."""
     way = np.gradient(path, axis=0)
     return np.stack([-way[:, 1], way[:, 0]], axis=1) / np.hypot(*way.T)[:, None]
+
+
+@extent("rigid_discs")
+def extent_of_discs(touch: Joint, solution: Solution) -> Extent:
+    """Both discs."""
+    radii = ((touch.i, touch.params["radius_i"]), (touch.j, touch.params["radius_j"]))
+    return Extent(radii, tuple((radius, DISC) for _, radius in radii if radius > 0))
 
 
 @extent("rigid_contact")

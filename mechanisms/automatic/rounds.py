@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from mechanisms.automatic.cams import CLEAR
@@ -26,6 +26,8 @@ type Look = Literal["ball", "wheel", "disc"]
 
 HUB = 0.3
 """Radius of the hub of a wheel without an axle, in its own."""
+WITHIN = 0.8
+"""Radius of the end of a plate within a disc, in the disc's."""
 OVER = 0.4
 """How far a wall reaches above the middle of a ball, in its radii."""
 
@@ -42,6 +44,8 @@ class Round:
     look: Look
     pinned: bool = True
     """Whether a pin goes through its middle."""
+    meets: set[str] = field(default_factory=set)
+    """Bodies with discs that touch it."""
 
     @property
     def made(self) -> float:
@@ -49,19 +53,21 @@ class Round:
         return self.radius - self.short
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """The middle."""
+        """The middle, within what touches."""
         return [Anchor(self.body, *self.at, min(self.hub(layout), self.made))]
 
     def hub(self, layout: Layout) -> float:
         """What is solid in the middle."""
         if self.look == "wheel":
             return layout.sizes.eye if self.pinned else HUB * self.made
-        return self.made
+        return min(layout.sizes.eye, WITHIN * self.made)
 
     def items(self, layout: Layout) -> Iterable[Item]:
         """The circle at the height of its body; a ball is higher than that."""
         reach = Reach((self.body,), -1, 1) if self.look == "ball" else Reach((self.body,))
-        yield Item(f"the {self.look} of {self.name}", self.body, disc(*self.at, self.made), reach, source=self)
+        yield Item(
+            f"the {self.look} of {self.name}", self.body, disc(*self.at, self.made), reach, frozenset(self.meets), self
+        )
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """A ball needs room below and above the layer."""

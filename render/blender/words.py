@@ -100,6 +100,7 @@ def _arc(draw: Any, x: float, y: float, radius: float, row: LegendRow) -> None:
     """The reference arc about (x, y), flat; it reaches as far round as those in the picture do."""
     ink, half, shaft = tuple(round(255 * c) for c in row.colour), 0.27 * radius, 0.085 * radius
     head = min(0.55, 0.6 * row.sweep)
+    y -= radius * (1 + math.cos(min(row.sweep / 2, math.pi))) / 2  # its middle stands in the row's
     start, end = math.pi / 2 + row.sweep / 2, math.pi / 2 - row.sweep / 2  # y goes down: counter-clockwise falls
 
     def at(angle: float, r: float) -> tuple[float, float]:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from render import writing
 from render.arcs import Arcs
 from render.arrows import Arrows
+from render.belts import Belt, belts
 from render.camera import FilmCamera, point
 from render.clock import Clock
 from render.framing import CameraPose
@@ -26,7 +27,7 @@ from render.swept import SweptSpace
 from render.torques import rounding, torques
 from render.trails import Trails, trails_of
 from render.vectors import vectors
-from shared.contract import Motion, Parts
+from shared.contract import Held, Motion, Parts
 from shared.shot import Names, Shot, refuse_unknown
 
 Array = NDArray[np.float64]
@@ -68,7 +69,7 @@ class Film:
                 floor=float(self.space.all[:, 2].min()),
                 azimuth=math.radians(self.shot.camera.azimuth),
             ),
-            tubes=[spec for one in (*self.stretched, *self.spirals) for spec in one.specs],
+            tubes=[spec for one in self.drawn for spec in one.specs],
             arrows=self.arrows.specs(),
             arcs=self.arcs.specs(),
             writing=self._writing(),
@@ -83,7 +84,7 @@ class Film:
             trails=self.trails.paths(frame),
             labels=[self.heights.label(label.at, at) for label in self.shot.labels],
             camera=self.camera(frame),
-            tubes=[path for one in (*self.stretched, *self.spirals) for path in one.paths(self.poses, at)],
+            tubes=[path for one in self.drawn for path in one.paths(self.poses, at)],
             arrows=self.arrows.at(at.time, arrows),
             arcs=self.arcs.at(at.time, arcs),
             number=self.number(at.time),
@@ -106,15 +107,20 @@ class Film:
         return Arcs(self.poses.time, torques(self.motion, self.shot.show), self.space.size, least)
 
     @cached_property
+    def drawn(self) -> list[Stretched | Spiral | Belt]:
+        """All that is laid anew in every frame."""
+        return [*self.stretched, *self.spirals, *belts(self.motion, self._held)]
+
+    @cached_property
     def stretched(self) -> list[Stretched]:
         """Springs, dampers and ropes."""
-        held = {
-            force: end
-            for body in self.parts.bodies.values()
-            for piece in body.pieces.values()
-            for force, end in piece.holds.items()
-        }
-        return list(stretched(self.motion, self.space.size, self.heights.spring, held))
+        return list(stretched(self.motion, self.space.size, self.heights.spring, self._held))
+
+    @cached_property
+    def _held(self) -> dict[str, Held]:
+        """By the names of forces and belts: where parts say that the film draws them."""
+        pieces = [piece for body in self.parts.bodies.values() for piece in body.pieces.values()]
+        return {name: end for piece in pieces for name, end in piece.holds.items()}
 
     @cached_property
     def spirals(self) -> list[Spiral]:
@@ -141,8 +147,7 @@ class Film:
         """It holds everything that is seen."""
         frames = range(0, self.clock.frames, max(1, self.clock.frames // LOOKED))
         moments = [self.clock.moment(frame) for frame in frames]
-        drawn = (*self.stretched, *self.spirals)
-        paths = [path for one in drawn for at in moments for path in one.paths(self.poses, at)]
+        paths = [path for one in self.drawn for at in moments for path in one.paths(self.poses, at)]
         filmed = np.concatenate([self.space.all, *self._drawn, *map(np.asarray, paths)])
         return FilmCamera(self.shot.camera, self.clock, filmed, self.space.moving)
 

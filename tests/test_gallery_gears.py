@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mechanisms.belt_drive import mechanism as belt
 from mechanisms.planetary_gear import mechanism as planetary
 from mechanisms.rack_steering import mechanism as steering
+from shared.belt_path import BeltPath
 
 
 @settings(max_examples=8, deadline=None)
@@ -76,3 +79,15 @@ def test_rack_steering_is_near_ackermann() -> None:
     off = np.degrees(np.abs(outer - ideal))
     assert 0.3 < off.max() < 0.5
     assert np.degrees(inner - outer)[-1] > 7.0
+
+
+@pytest.mark.parametrize("variant", [{}, {"crossed": True}, {"teeth": 16}])
+def test_belt_drive_halves_the_speed(variant: dict[str, Any]) -> None:
+    """r1 w1 = r2 w2, and of a crossed belt -r2 w2. The chain's length is a whole number of its pitch."""
+    p = replace(belt.Params(), **variant)
+    sol = belt.build(p).sweep()
+    assert sol.t[-1] == pytest.approx(2.0)
+    ratio = (-1 if p.crossed else 1) / p.ratio
+    np.testing.assert_allclose(sol.body("large").theta, ratio * sol.body("small").theta, atol=1e-13)
+    links = BeltPath(p.radius, p.ratio * p.radius, p.distance).length / (2 * math.pi * p.radius / 16)
+    assert links == pytest.approx(56, abs=1e-4)

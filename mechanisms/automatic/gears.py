@@ -1,4 +1,4 @@
-"""Gear pairs, racks and pinions: wheels and racks of all joints that mesh, in phase, on common layers.
+"""Gear pairs, racks, belts: the wheels, racks and pulleys of all such joints, in phase, on common layers.
 
 Wheels that mesh share a layer. A wheel that is given by radii gets a standard module if that gives whole numbers of
 teeth. A wheel that several joints name is one.
@@ -7,12 +7,15 @@ teeth. A wheel that several joints name is one.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from mbsd.teeth import with_radii
 from mechanisms.automatic import racks, wheels
+from mechanisms.automatic.belts import BELTS, belts
 from mechanisms.automatic.extents import Extent, extent
 from mechanisms.automatic.features import Feature, kind
+from mechanisms.automatic.pulleys import Pulley
 from mechanisms.automatic.racks import Rack, add_way
 from mechanisms.automatic.trains import Mesh, in_phase
 from mechanisms.automatic.wheels import Wheel
@@ -44,10 +47,11 @@ def extent_of_rack(joint: Joint, solution: Solution) -> Extent:
     return Extent(((joint.j, radius),), ((radius, racks.LEAST),))
 
 
+@kind(BELTS)
 @kind(RACKS)
 @kind(GEARS)
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """All wheels and racks of the mechanism, in phase, when the first of the two kinds is asked for."""
+    """All wheels, racks and pulleys of the mechanism, in phase, when the first of these kinds is asked for."""
     if any(layout.wheels.values()):
         return []
     found: list[Wheel] = []
@@ -67,11 +71,15 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
         second.mates.append(first)
         meshes.append(Mesh(first, second, joint))
     in_phase(m, [*found, *bars], meshes, layout)
-    settle(found, layout)
+    bands = belts(m, layout)
+    pairs: list[tuple[Wheel | Rack, Wheel]] = [belt.pulleys for belt in bands]
+    pulleys = [pulley for belt in bands for pulley in belt.pulleys]
+    settle([*found, *pulleys], layout)
     for rack in bars:
         layout.extra.append(rack.layer)
-    layout.together += [(mesh.first.layer, mesh.second.layer) for mesh in meshes]
-    return [*found, *bars]
+    pairs += [(mesh.first, mesh.second) for mesh in meshes]
+    layout.together += [(one.layer, mate.layer) for one, mate in pairs]
+    return [*found, *bars, *pulleys, *bands]
 
 
 def wheel_at(found: list[Wheel], name: str, marker: Marker, radius: float, ring: bool, layout: Layout) -> Wheel:
@@ -85,16 +93,25 @@ def wheel_at(found: list[Wheel], name: str, marker: Marker, radius: float, ring:
     return found[-1]
 
 
-def settle(found: list[Wheel], layout: Layout) -> None:
-    """Enter the wheels; of each body the largest lies in its layer, unless a ring's bottom does."""
+def settle(found: Sequence[Wheel], layout: Layout) -> None:
+    """Enter the wheels; of each body the largest lies in its layer, unless a ring's bottom or, of pulleys, an arm does:
+    a belt would run through that.
+    """
     for wheel in found:
         layout.wheels.setdefault(wheel.body, []).append(wheel)
     for here in layout.wheels.values():
         outer = [wheel for wheel in here if not wheel.ring]
         largest = max(outer, key=lambda wheel: wheel.radius, default=None)
         for wheel in here:
-            wheel.shares = wheel is largest and len(outer) == len(here)
+            wheel.shares = wheel is largest and len(outer) == len(here) and not _has_arm(wheel, layout)
     layout.extra += [wheel.layer for wheel in found if wheel.body == "ground" or not wheel.shares]
+
+
+def _has_arm(wheel: Wheel, layout: Layout) -> bool:
+    """Whether a joint is on a pulley's body beyond the pulley."""
+    ends = [end for joint in layout.m.joints.values() for end in (joint.i, joint.j) if end.body.name == wheel.body]
+    away = [math.dist(layout.place(end), (wheel.x, wheel.y)) for end in ends]
+    return isinstance(wheel, Pulley) and max(away, default=0.0) + layout.sizes.hardware > wheel.root
 
 
 def _rack(bars: list[Rack], name: str, marker: Marker, layout: Layout) -> Rack:
@@ -111,7 +128,7 @@ def _least(marker: Marker, radius: float, m: Mechanism) -> float:
     """Least pitch radius (rmm) of a wheel: on a tube it is larger."""
     others = []
     for joint in m.joints.values():
-        sized = with_radii(joint.params) if joint.kind.name in (GEARS, RACKS) else {}
+        sized = with_radii(joint.params) if joint.kind.name in (GEARS, RACKS, BELTS) else {}
         ends = ((joint.i, "radius_i"), (joint.j, "radius_j"), (joint.j, "radius"))
         others += [sized[key] for end, key in ends if key in sized and end.body.name == marker.body.name]
     return wheels.LEAST_ON_TUBE if marker.body.name != "ground" and radius < max(others) * (1 - 1e-9) else wheels.LEAST

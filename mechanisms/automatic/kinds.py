@@ -3,7 +3,7 @@
 from mechanisms.automatic import (  # noqa: F401
     cams,  # cam and roller, cam and flat face
     contacts,  # discs on walls and roads, tyres
-    gears,  # gear pair, rack and pinion
+    gears,  # gear pair, rack and pinion, belt
     geneva,  # Geneva
     pins,  # revolute
     rolling,  # discs on lines and terrains

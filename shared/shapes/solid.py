@@ -9,7 +9,7 @@ import cadquery as cq
 
 @dataclass(frozen=True)
 class Hold:
-    """An end of what stretches, such as a spring: where the film draws it (mm)."""
+    """An end of what stretches, such as a spring, or a pulley of a belt: where the film draws it (mm)."""
 
     force: str
     """Its name in mechanism.py."""

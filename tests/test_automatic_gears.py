@@ -128,3 +128,17 @@ def test_wheels_are_sound_solids() -> None:
     shape, holes = wheel_shape(ring, 7.0, [])
     _, mesh = checked(shape, holes)
     assert np.linalg.norm(mesh.vertices[:, :2], axis=1).min() > 57.0
+
+
+def test_posts_of_a_ring_stay_under_its_rim() -> None:
+    """Planets pass at the height where posts end, so these must not reach under the teeth."""
+    m = planetary(3)
+    made = Automatic(m, m.sweep(1.0, steps=20))
+    ring = next(wheel for wheel in _wheels(made) if wheel.ring)
+    plan = made.plan()
+    posts = [solid for solid in plan.solids["ground"] if solid.name.startswith("post_")]
+    assert len(posts) == 4
+    for post in posts:
+        box = post.shape.val().BoundingBox()
+        centre = np.array([box.center.x, box.center.y])
+        assert np.linalg.norm(centre - [ring.x, ring.y]) - box.xlen / 2 > ring.root + 0.2

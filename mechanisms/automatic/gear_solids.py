@@ -25,6 +25,8 @@ WEB = 2.0
 HUB = 14.0
 """Radius of a hub that stays."""
 RIM_WALL = 4.0
+POST = 3.2
+"""Radius of a post under a ring: it stays under the rim, out of the way of planets that are as high as its top."""
 WINDOWS = 5
 """In the bottom of a cup."""
 BESIDE = 36.0
@@ -55,7 +57,7 @@ def _on_ground(wheel: Wheel, plan: Plan, heights: Heights) -> None:
         plan.feet.append(Foot("", wheel.x, wheel.y, wheel.root))
         holes += 1
     for k, (x, y) in enumerate(wheel.posts() if wheel.ring else []):
-        post = extruded(circle(0, 0, 4.0), z - 2 * seat, seat)
+        post = extruded(circle(0, 0, POST), z - 2 * seat, seat)
         plan.make("ground", f"post_{wheel.name}_{k + 1}", placed(post, x, y), "steel", 0)
         plan.feet.append(Foot("", x, y, 6.0))
     plan.make("ground", f"gear_{wheel.name}", placed(shape, wheel.x, wheel.y, z), "aluminium", holes)

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 SECTORS = 36
 """Pieces of an annulus in the plane."""
-RIM = 6.0
+RIM = 7.0
 """Of a ring gear outside its teeth (rmm)."""
 TUBE = (10.2, 13.2)
 """Inner and outer radius of what carries a wheel in a layer of its own: inside is room for a pin's hardware."""

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from shared.shapes.build import extruded, turned
+from shared.shapes.build import extruded
 from shared.shapes.outline import circle
 from shared.shapes.pin import washer
 from shared.shapes.solid import placed
+from shared.shapes.stud import ball as sphere
 
 if TYPE_CHECKING:
     from mechanisms.automatic.heights import Heights
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
 
 TYRE = 0.16
 """Of the wheel's radius; 5 rmm at most."""
-POLE = 0.04
-"""Radius of the flats at the poles of a ball, in its own."""
 HOLES = 5
 WIDE = 9.0
 """A wheel with so much between hub and tyre (rmm), and with nothing but its axle on it, has round holes."""
@@ -43,9 +42,7 @@ def tyred_wheel(wheel: Round, plan: Plan, heights: Heights) -> None:
 def ball(ball: Round, plan: Plan, heights: Heights) -> None:
     """A ball is its body, its middle in the middle of the layer."""
     (x, y), z = ball.at, heights.thickness / 2
-    flat, radius = POLE * ball.made, ball.made
-    height = math.sqrt(radius**2 - flat**2)  # a mesh closes over a small flat, not over a pole
-    shape = turned([(0, -height), (flat, -height), (radius, 0, flat, height), (0, height)])
+    shape = sphere(ball.made)
     plan.plate(ball.body, placed(shape, x, y, z), (x, y, ball.made + 0.1))
 
 

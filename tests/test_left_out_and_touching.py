@@ -24,7 +24,7 @@ from shared.shapes.bodies import Bodies
 from shared.shapes.solid import Solid
 from shared.shot import read_shot
 from tests.author_project import Project
-from tests.linkages import drag_link, four_bar, slider_crank
+from tests.linkages import four_bar, hands, slider_crank
 
 MECHANISM = """\
 from dataclasses import dataclass
@@ -175,23 +175,16 @@ def test_a_body_left_out_of_parts_by_themselves_leaves_its_eyes() -> None:
 
 
 def test_bodies_that_may_touch_may_cross() -> None:
-    """Crank and rocker of a drag link pass through each other's pivots, so no order of layers keeps them apart."""
-    made = _planned(drag_link())
+    """Three hands on pivots that all of them sweep: no order of layers keeps them apart."""
+    made = _planned(hands())
     with pytest.raises(UserError, match="no order of layers lets"):
         _ = made.levels
-    for pair in (("crank", "rocker"), ("crank", "ground"), ("rocker", "ground"), ("coupler", "ground")):
+    pairs = [("hand0", "hand1"), ("hand0", "hand2"), ("hand1", "hand2"), *((f"hand{k}", "ground") for k in range(3))]
+    for pair in pairs:
         made.may_touch(*pair)
     assert made.levels
-    assert made.layout.touching == {
-        frozenset(pair)
-        for pair in (
-            ("crank", "rocker"),
-            ("crank", "ground"),
-            ("rocker", "ground"),
-            ("coupler", "ground"),
-        )
-    }
-    assert ("crank", "rocker") in made.solids().touching
+    assert made.layout.touching == set(map(frozenset, pairs))
+    assert ("hand0", "hand1") in made.solids().touching
 
 
 def test_wishes_that_contradict_are_refused() -> None:

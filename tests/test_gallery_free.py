@@ -70,7 +70,7 @@ def test_chain_of_six_ends_as_published() -> None:
     np.testing.assert_allclose(found, answer[:6], atol=1e-5)
 
 
-@pytest.mark.parametrize("links", [3, 10, 100])
+@pytest.mark.parametrize("links", [3, 10, 24])
 def test_chain_swings_at_the_roots_of_laguerre(links: int) -> None:
     """Small swings of n beads on a string: w^2 = x g / l, where Laguerre's polynomial L_n(x) is zero."""
     p = chain.Params(links=links, damping=0.0, rate=0.0)

@@ -66,7 +66,7 @@ class Cam:
     @property
     def pin(self) -> Slot:
         """The pin of the roller, as one that runs at the height of the cam."""
-        return Slot(self.name, self.cam, self.follower, (*self.centre, 0.0), self.at[:2], (0.0, 0.0))
+        return Slot(self.name, self.cam, self.follower, np.array([self.centre]), self.at[:2])
 
     def shoe(self) -> list[tuple[float, float]]:
         """Middles of the shoe's round ends, in the follower's frame."""

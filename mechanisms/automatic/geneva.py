@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from mechanisms.automatic.extents import Extent, distance, extent
 from mechanisms.automatic.features import Anchor, Feature, Need, kind
 from mechanisms.automatic.geneva_solids import geneva_solids
@@ -48,7 +50,7 @@ class GenevaDrive:
         """The pin in a slot, as far as its hardware goes; the wheel has its slots already."""
         x, y, angle = self.crank_at
         at = x + self.shape.radius * math.cos(angle), y + self.shape.radius * math.sin(angle)
-        return Slot(self.name, self.wheel, self.crank, self.wheel_at, at, (0.0, 0.0))
+        return Slot(self.name, self.wheel, self.crank, np.array([self.wheel_at[:2]]), at)
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """Eyes for the axes, and one that holds the pin."""

@@ -12,6 +12,8 @@ from mechanisms.automatic.planar import Rounded
 
 BASE = -1
 TOP = 10**6
+PIVOT = "pivot"
+"""What pivots on ground are, which may stand beside each other."""
 
 type Levels = Mapping[str, int]
 """The layer of each body, as far as it is decided; and the choices (0 or 1) of items that have one."""
@@ -102,6 +104,8 @@ class Item:
     """Names of the items that it keeps away, where it is no thing but a rule; empty: all."""
     spared: bool = True
     """Whether items that spare its body spare it, too."""
+    stands: str = ""
+    """Of what stands on ground: a word; what has another such word must keep clear of it."""
 
 
 def choice_of(reach: AnyReach) -> str | None:

@@ -3,6 +3,7 @@
 from mechanisms.automatic import (  # noqa: F401
     cams,  # cam and roller, cam and flat face
     contacts,  # discs on walls and roads, tyres
+    curved_slots,  # point on a curve
     gears,  # gear pair, rack and pinion, belt
     geneva,  # Geneva
     pins,  # revolute
@@ -10,4 +11,5 @@ from mechanisms.automatic import (  # noqa: F401
     slides,  # prismatic
     slots,  # pin in slot
     springs,  # springs, dampers and actuators between points
+    welds,  # weld
 )

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.automatic.items import Item, Reach, spans_meet
+from mechanisms.automatic.items import PIVOT, Item, Reach, spans_meet
 from mechanisms.automatic.layers import Problem
-from mechanisms.automatic.planar import Rounded, around, least_gap, placed
+from mechanisms.automatic.planar import Rounded, around, core_gaps, least_gap, placed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -144,6 +144,8 @@ class Layout:
         return gap, float(self.times[at])
 
     def _may_meet(self, first: Item, second: Item) -> bool:
+        if first.body == second.body == "ground":
+            return bool(first.stands and second.stands) and first.stands != second.stands
         return not (
             first.body == second.body
             or first.what in second.meshes
@@ -164,4 +166,8 @@ class Layout:
         """Half of the distance (rmm) from a place on ground to the next place where something stands there."""
         places = [a for feature in self.features for a in feature.anchors(self) if a.body == "ground"]
         away = [math.hypot(a.x - x, a.y - y) for a in places]
-        return min((d for d in away if d > 0.01), default=math.inf) / 2
+        half = min((d for d in away if d > 0.01), default=math.inf) / 2
+        wide = [item.shape for item in self.items if item.stands and item.stands != PIVOT and item.body == "ground"]
+        here = np.array([[[x, y]]])
+        gaps = [float(core_gaps(here, shape.core[None])[0]) - shape.radius for shape in wide if len(shape.core) > 1]
+        return min([half, *(gap for gap in gaps if gap > 0)])

@@ -12,7 +12,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from mechanisms.automatic.features import Anchor, Feature, Need, kind
-from mechanisms.automatic.items import BASE, Item, PinReach, PivotReach
+from mechanisms.automatic.items import BASE, PIVOT, Item, PinReach, PivotReach
 from mechanisms.automatic.pin_solids import ground_pin, hanging_pin, moving_pin
 from mechanisms.automatic.planar import disc
 
@@ -79,10 +79,11 @@ class Pin:
     def items(self, layout: Layout) -> Iterable[Item]:
         """All heights that pin and pedestal take."""
         x, y = self.places[self.home]
-        reach = PinReach(self.movers, self.choice)
+        shape, on_it = disc(x, y, layout.sizes.hardware), frozenset(self.places)
         if self.on_ground:
             reach = PivotReach(self.movers, self.choice, self.driven)
-        return [Item(self.what, self.home, disc(x, y, layout.sizes.hardware), reach, frozenset(self.places), self)]
+            return [Item(self.what, self.home, shape, reach, on_it, self, stands=PIVOT)]
+        return [Item(self.what, self.home, shape, PinReach(self.movers, self.choice), on_it, self)]
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """Room for washers and flanges between neighbours on the pin, and for its head or circlip on top."""

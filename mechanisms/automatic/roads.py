@@ -55,7 +55,7 @@ class Road:
         reach, spares = Reach(bodies, high=high, base=True), frozenset(bodies)
         for corners in self.pieces():
             piece = around([(float(x), float(y)) for x, y in corners], 0.2)
-            yield Item(f"the road of {self.name}", "ground", piece, reach, spares, self)
+            yield Item(f"the road of {self.name}", "ground", piece, reach, spares, self, stands="road")
 
     def pieces(self) -> Iterable[np.ndarray]:
         """(4, 2) corners of convex pieces."""

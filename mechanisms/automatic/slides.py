@@ -69,13 +69,14 @@ class Slide:
         if self.rail == "ground":
             below = Reach((self.block,), -1, -1)
             posts = Reach((self.block,), -1, -1, base=True)
-            yield Item(what, "ground", rail, below, both, self)
+            yield Item(what, "ground", rail, below, both, self, stands=what)
             for x, y in self.rail_ends():
-                yield Item(what, "ground", disc(x, y, RAIL / 2 + 1.0), posts, both, self)
+                yield Item(what, "ground", disc(x, y, RAIL / 2 + 1.0), posts, both, self, stands=what)
             yield Item(gibs, self.block, block, below, frozenset(), self)
         elif self.block == "ground":
             yield Item(what, self.rail, rail, Reach((self.rail,), -1, -1), both, self)
-            yield Item(gibs, "ground", block, Reach((self.rail,), -1, -1, base=True), both, self)
+            reach = Reach((self.rail,), -1, -1, base=True)
+            yield Item(gibs, "ground", block, reach, both, self, stands=what)
         else:
             between = Reach((self.rail, self.block), 1, -1)
             yield Item(what, self.rail, rail, between, both, self)

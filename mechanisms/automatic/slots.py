@@ -1,4 +1,8 @@
-"""Pin in slot: a pin of one body with a roller that runs in a slot of another."""
+"""Pin in slot: a pin of one body with a roller that runs in a slot of another.
+
+Either may be ground: a slot on ground is in a plate on two posts, which has a layer of its own; a pin on ground stands
+on a pedestal.
+"""
 
 from __future__ import annotations
 
@@ -10,9 +14,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechanisms.automatic.features import Anchor, Feature, Need, kind
-from mechanisms.automatic.items import Item, Reach
-from mechanisms.automatic.planar import disc
-from mechanisms.automatic.slot_solids import slotted
+from mechanisms.automatic.items import BASE, Item, Reach
+from mechanisms.automatic.planar import around, disc
+from mechanisms.automatic.slot_solids import POST, slotted
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
@@ -28,41 +32,74 @@ WALL = 7.0
 
 @dataclass(frozen=True, eq=False)
 class Slot:
-    """Places (rmm) of the pin on its body, and of the slot and its direction (rad) on the other; the pin's travel in
-    it.
-    """
+    """Places (rmm) of the pin on its body, and of the slot on the other: the way of the pin's middle in it."""
 
     name: str
     slot: str
     pin: str
-    slot_at: tuple[float, float, float]
+    path: np.ndarray
+    """(n, 2) in the frame of the slot's body; two places: a straight slot."""
     pin_at: tuple[float, float]
-    travel: tuple[float, float]
 
-    def ends(self) -> list[tuple[float, float]]:
-        """Middles of the slot's round ends, in its body's frame."""
-        (x, y, angle), (low, high) = self.slot_at, self.travel
-        return [(x + s * math.cos(angle), y + s * math.sin(angle)) for s in (low - 1.0, high + 1.0)]
+    @property
+    def layer(self) -> str:
+        """What decides the layer of the slot: its body, or its plate where that is ground."""
+        return self.slot if self.slot != "ground" else f"slot {self.name}"
+
+    @property
+    def layers(self) -> tuple[str, ...]:
+        """Of slot and pin, as far as these have one."""
+        return (self.layer,) if self.pin == "ground" else (self.pin, self.layer)
+
+    def radius(self, layout: Layout) -> float:
+        """Of the plate round the slot's ends."""
+        return layout.sizes.roller / 2 + WALL
+
+    def posts(self, layout: Layout) -> list[tuple[float, float]]:
+        """Of a plate on ground: middles, beyond the two ends of the slot."""
+        found = []
+        for end, other in ((self.path[0], self.path[-1]), (self.path[-1], self.path[0])):
+            way = (end - other) / max(float(np.hypot(*(end - other))), 1e-9)
+            x, y = end + (layout.sizes.roller / 2 + WALL + POST / 2) * way
+            found.append((float(x), float(y)))
+        return found
+
+    def outline(self, layout: Layout) -> list[tuple[float, float, float]]:
+        """Circles that a plate on ground goes round."""
+        ends = [(x, y, POST / 2 + 2.0) for x, y in self.posts(layout)]
+        return [*((float(x), float(y), self.radius(layout)) for x, y in self.path), *ends]
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """A wall round the slot, and an eye that holds the pin."""
-        radius = layout.sizes.roller / 2 + WALL
-        return [
-            *(Anchor(self.slot, x, y, radius) for x, y in self.ends()),
-            Anchor(self.pin, *self.pin_at, layout.sizes.eye),
-        ]
+        if self.slot == "ground":
+            places = [Anchor("ground", x, y, POST / 2) for x, y in self.posts(layout)]
+        else:
+            places = [Anchor(self.slot, float(x), float(y), self.radius(layout)) for x, y in self.path]
+        return [*places, Anchor(self.pin, *self.pin_at, layout.sizes.eye)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """The pin from its body through the slot, and its head."""
-        shape = disc(*self.pin_at, layout.sizes.hardware)
+        """The pin from its body, or the base, through the slot, and its head; a plate on ground, with its posts."""
+        shape, what = disc(*self.pin_at, layout.sizes.hardware), f"the pin of {self.name}"
         both = frozenset((self.slot, self.pin))
-        return [Item(f"the pin of {self.name}", self.pin, shape, Reach((self.pin, self.slot), 1, 1), both, self)]
+        reach = Reach(self.layers, 1, 1) if self.pin != "ground" else Reach(self.layers, high=1, base=True)
+        spares = both - {"ground"} if self.slot == "ground" else both
+        yield Item(what, self.pin, shape, reach, spares, self, stands=what if self.pin == "ground" else "")
+        if self.slot == "ground":
+            plate, wide = f"the slotted plate of {self.name}", self.radius(layout)
+            shape = around([(x, y) for x, y, _ in self.outline(layout)], wide)
+            meshes = frozenset((what,))
+            yield Item(plate, "ground", shape, Reach((self.layer,)), source=self, meshes=meshes, stands=plate)
+            for x, y in self.posts(layout):
+                post = Reach((self.layer,), -1, -1, base=True)
+                yield Item(f"a post of {plate}", "ground", disc(x, y, POST / 2 + 1.0), post, source=self, stands=plate)
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """Room for a washer between the plates, and for the head above where the pin comes from below."""
         fit, pivot = layout.sizes.pivot.fit, layout.sizes.pivot
-        low, high = sorted((levels[self.pin], levels[self.slot]))
-        if high == low + 1:
+        low, high = min(levels[name] for name in self.layers), max(levels[name] for name in self.layers)
+        if self.pin == "ground" and low == 0:
+            yield Need(BASE, layout.sizes.pedestal + pivot.washer_room + fit.axial)
+        elif high == low + 1:
             yield Need(low, pivot.washer_room + fit.axial)
         if layout.is_covered(self, 2 * (high + 1), levels):
             yield Need(high, layout.sizes.head.height + 2 * fit.axial)
@@ -74,13 +111,19 @@ class Slot:
 
 @kind("pin_in_slot")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """One for each joint whose slot moves."""
+    """One for each joint."""
     found: list[Feature] = []
     for joint in joints:
         slot, pin = joint.i.body.name, joint.j.body.name
-        x, y = layout.place(joint.i)
-        along = layout.seen(pin, layout.place(joint.j), slot) - np.array([x, y])
-        place = along @ np.array([math.cos(joint.i.angle), math.sin(joint.i.angle)])
-        travel = float(place.min()), float(place.max())
-        found.append(Slot(joint.name, slot, pin, (x, y, joint.i.angle), layout.place(joint.j), travel))
+        (x, y), way = layout.place(joint.i), np.array([math.cos(joint.i.angle), math.sin(joint.i.angle)])
+        place = (layout.seen(pin, layout.place(joint.j), slot) - np.array([x, y])) @ way
+        ends = np.array([x, y]) + np.outer([place.min() - 1.0, place.max() + 1.0], way)
+        found.append(entered(Slot(joint.name, slot, pin, ends, layout.place(joint.j)), layout))
     return found
+
+
+def entered(slot: Slot, layout: Layout) -> Slot:
+    """With a layer of its own for a plate on ground."""
+    if slot.slot == "ground":
+        layout.extra.append(slot.layer)
+    return slot

@@ -1,0 +1,147 @@
+"""One case: a random mechanism of the hunt, its motion, its parts by themselves, and the proof that none touch."""
+
+from __future__ import annotations
+
+import time
+import warnings
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.errors import MechanismError
+from shared.errors import UserError
+from tools.hunt.case import drawn
+from tools.hunt.outcome import BASE, CaseResult, Outcome
+from tools.hunt_parts.outcome import BUILT, COLLIDES, ERROR, REFUSED, STUCK, UNSOUND, reason
+
+if TYPE_CHECKING:
+    from mbsd import Mechanism
+    from mbsd.solution import Solution
+    from mechanisms.automatic.automatic import Automatic
+    from mechanisms.clearance.pieces import MeshPiece
+    from shared.shapes.bodies import Bodies
+    from tools.hunt.subject import Subject
+
+STEPS = 360
+MOST = 4.0
+"""Turns of a motion that are looked at."""
+OVERLAP = 2e-3
+"""Part of a piece that may lie in another piece of its body: meshes of a pin in its hole."""
+
+
+def run(seed: int, name: str | None = None, solids: bool = True) -> CaseResult:
+    """The parts of a case; without ``solids`` as far as layers and heights."""
+    began = time.perf_counter()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        family, subject, _ = drawn(seed, name)
+        outcome = _outcome(subject, solids)
+    return CaseResult(seed, family.name, [outcome], time.perf_counter() - began)
+
+
+def _outcome(subject: Subject, solids: bool) -> Outcome:
+    try:
+        solution = moved(subject)
+    except MechanismError as error:
+        return Outcome(BASE, STUCK, type(error).__name__, str(error))
+    try:
+        return parts_of(subject.m, solution, solids)
+    except Exception as error:
+        import traceback
+
+        where = traceback.extract_tb(error.__traceback__)[-1]
+        text = f"{type(error).__name__}: {error} ({where.filename.rpartition('/')[2]}:{where.lineno})"
+        return Outcome(BASE, ERROR, type(error).__name__, text)
+
+
+def moved(subject: Subject, steps: int = STEPS) -> Solution:
+    """The motion, a few turns of it at most. Raises MechanismError where it cannot move so."""
+    duration = min(subject.duration, MOST * (subject.turn or subject.duration))
+    if subject.driven:
+        return subject.m.sweep(times=np.linspace(0.0, duration, steps + 1))
+    return subject.m.simulate(duration, steps=steps, event_rows=True)
+
+
+def parts_of(m: Mechanism, solution: Solution, solids: bool = True) -> Outcome:
+    """Plan and build the parts, and prove that none touch."""
+    from mechanisms.automatic.automatic import Automatic
+
+    made = Automatic(m, solution)
+    try:
+        made.plan()
+        found = f"{max(made.levels.values(), default=-1) + 1} layers, pins of {made.sizes.pin:g} mm, {_bridges(made)}"
+        if not solids:
+            return Outcome(BASE, BUILT, _bridges(made), found)
+        bodies = made.solids()
+    except UserError as error:
+        return Outcome(BASE, REFUSED, reason(str(error)), str(error))
+    try:
+        pieces = meshed(bodies)
+    except UserError as error:
+        return Outcome(BASE, UNSOUND, "not a sound solid", str(error))
+    inside = overlapping(pieces)
+    if inside:
+        return Outcome(BASE, UNSOUND, "pieces of one body overlap", inside)
+    try:
+        proof = proven(m, solution, bodies, pieces)
+    except UserError as error:
+        return Outcome(BASE, COLLIDES, "", str(error))
+    return Outcome(BASE, BUILT, _bridges(made), f"{found}; {proof}")
+
+
+def _bridges(made: Automatic) -> str:
+    from mechanisms.automatic.bridges import Bridge
+
+    count = sum(isinstance(feature, Bridge) for feature in made.layout.features)
+    return "without bridges" if count == 0 else "with bridges"
+
+
+def meshed(bodies: Bodies) -> list[MeshPiece]:
+    """The pieces as the clearance stage sees them. Raises UserError for what is no sound solid."""
+    from mechanisms.clearance.pieces import MeshPiece
+    from mechanisms.mesh_check import check_mesh, only_solid
+    from mechanisms.parts_files import read_mesh, read_triangles, stl_bytes
+
+    pieces = []
+    for body, solids in bodies.items():
+        for solid in solids:
+            where = f"{body}: {solid.name}"
+            shape = only_solid(solid.shape, where)
+            stl = stl_bytes(shape)
+            check_mesh(read_mesh(stl), shape.Volume(), solid.through_holes, where)
+            pieces.append(MeshPiece(body, solid.name, read_triangles(stl)))
+    return pieces
+
+
+def overlapping(pieces: list[MeshPiece]) -> str:
+    """The worst of the pairs of pieces of one body that overlap; empty if there is none."""
+    worst, text = OVERLAP, ""
+    boxes = [(p.triangles.min(axis=(0, 1)), p.triangles.max(axis=(0, 1))) for p in pieces]
+    for (first, (low, high)), (second, (under, over)) in combinations(zip(pieces, boxes, strict=True), 2):
+        if first.body != second.body or (low >= over).any() or (under >= high).any():
+            continue
+        inside = (first.manifold ^ second.manifold).volume()
+        part = inside / min(first.manifold.volume(), second.manifold.volume())
+        if part > worst:
+            worst, text = part, f"{first.body}: {first.name} and {second.name} share {inside:.3g} mm^3 ({part:.1%})"
+    return text
+
+
+def proven(m: Mechanism, solution: Solution, bodies: Bodies, pieces: list[MeshPiece]) -> str:
+    """The nearest pair. Raises UserError if two pieces of different bodies come too near."""
+    from mechanisms.clearance_stage import check
+    from mechanisms.motion_file import to_motion
+    from shared.contract import BodyParts, Mass, Parts, Provenance
+
+    nothing = Mass(mass=0.0, com=(0.0, 0.0), inertia=0.0, volume=0.0)
+    parts = Parts(
+        mechanism=m.name,
+        provenance=Provenance(inputs="0" * 64, versions={}),
+        bodies={body: BodyParts(pieces={}, mass=nothing, z=0.0) for body in bodies},
+        may_touch=sorted(bodies.touching),
+    )
+    found = check(parts, to_motion(solution, None, "0" * 64, {}), pieces, "0" * 64)
+    if not found.pairs:
+        return f"{len(pieces)} pieces, nothing near"
+    return f"{len(pieces)} pieces, nearest {1e3 * found.pairs[0].gap:.3f} mm"

@@ -49,7 +49,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install check list run-all all gallery new test lint format bench hunt torture schema docs integrators lock clean clean-all always
+.PHONY: help install check list run-all all gallery new test lint format bench hunt hunt-parts torture schema docs integrators lock clean clean-all always
 
 # A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
 define upto_motion
@@ -188,6 +188,9 @@ bench: install ## the solver beside its peers: a table, and out/bench.json
 
 hunt: install ## N random mechanisms (1000), each solved again in other words; SEED=1 says which: out/hunt.json
 	@$(PYTHON) -m tools.hunt --n "$${N:-1000}" --seed "$$SEED"
+
+hunt-parts: install ## parts of N random mechanisms (1000), and the proof that none touch; SEED=1: out/hunt_parts.json
+	@$(PYTHON) -m tools.hunt_parts --n "$${N:-1000}" --seed "$$SEED"
 
 torture: install ## N films of a postage stamp (20), killed and damaged while they are made; SEED=1: out/torture.json
 	@$(PYTHON) -m tools.torture --n "$${N:-20}" --seed "$$SEED"

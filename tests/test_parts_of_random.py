@@ -11,10 +11,9 @@ import pytest
 
 from mbsd.errors import MechanismError
 from mechanisms.automatic.automatic import Automatic
-from mechanisms.automatic.items import spans_meet
-from mechanisms.automatic.planar import core_gaps, placed
 from shared.errors import UserError
 from tests.four_bars import angles, model
+from tests.layouts import meets
 from tools.hunt.case import drawn
 from tools.hunt.outcome import CaseResult
 from tools.hunt_parts import case
@@ -37,25 +36,6 @@ KINDS = (
 REASONS = ("no order of layers lets", "has no parts by itself", "bends with a radius")
 
 
-def _meets(made: Automatic) -> list[str]:
-    """Pairs of items at one height that come nearer than none: seen anew at some poses, without circles or coarse
-    looks.
-    """
-    layout, found = made.layout, []
-    at = np.linspace(0, len(layout.times) - 1, 60).astype(int)
-    spans = [item.reach.span(made.decided) for item in layout.items]
-    seen = [placed(item.shape.core_at(at), layout.poses[item.body][at]) for item in layout.items]
-    for j, second in enumerate(layout.items):
-        for i, first in enumerate(layout.items[:j]):
-            by_design = first.body == second.body or first.body in second.spares or second.body in first.spares
-            by_design = by_design or first.what in second.meshes or second.what in first.meshes
-            if by_design or first.only or second.only or not spans_meet(spans[i], spans[j]):
-                continue
-            if (core_gaps(seen[i], seen[j]) < first.shape.radius + second.shape.radius).any():
-                found.append(f"{first.what} meets {second.what}")
-    return found
-
-
 def test_a_hundred_random_mechanisms_get_layers_or_a_reason() -> None:
     came: Counter[str] = Counter()
     for k in range(100):
@@ -72,7 +52,7 @@ def test_a_hundred_random_mechanisms_get_layers_or_a_reason() -> None:
             told = next((words for words in REASONS if words in str(error)), f"case {SEED + k}: {error}")
             came[told] += 1
             continue
-        assert not _meets(made), f"case {SEED + k}"
+        assert not meets(made), f"case {SEED + k}"
         came[BUILT] += 1
     assert set(came) <= {BUILT, STUCK, *REASONS}, came
     assert came[BUILT] >= 65
@@ -92,7 +72,7 @@ def test_every_four_bar_whose_crank_turns_gets_an_order() -> None:
         m = model(lengths)
         made = Automatic(m, m.sweep(times=np.linspace(0, 2 * np.pi, 121)))
         assert set(made.levels) == {"crank", "coupler", "rocker"}
-        assert not _meets(made)
+        assert not meets(made)
         counted += 1
 
 

@@ -16,7 +16,7 @@ from mechanisms.automatic.extents import Extent, extent
 from mechanisms.automatic.features import Anchor, Feature, Need, kind
 from mechanisms.automatic.items import Item, Reach
 from mechanisms.automatic.planar import convex_hull, disc
-from mechanisms.automatic.profiles import curve_path, on_ground
+from mechanisms.automatic.profiles import curve_path, on_body
 from mechanisms.automatic.slot_solids import channelled
 from mechanisms.automatic.slots import Slot, entered
 from shared.errors import UserError
@@ -93,7 +93,7 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
 
 def _slot(m: Mechanism, joint: Joint, layout: Layout) -> CurvedSlot:
     slot, pin, pin_at = joint.i.body.name, joint.j.body.name, layout.place(joint.j)
-    whole = on_ground(_offset(joint), joint.i, layout)
+    whole = on_body(_offset(joint), joint.i, layout)
     path, closed = _run_through(whole, bool(joint.params["closed"]), layout.seen(pin, pin_at, slot), layout)
     bend, least = sharpest(path), BEND * layout.sizes.roller / 2
     if bend < least:

@@ -82,6 +82,7 @@ def _clear(made: Automatic) -> None:
 
     for first, second in combinations(layout.items, 2):
         designed = first.body == second.body or first.body in second.spares or second.body in first.spares
+        designed = designed or first.what in second.meshes or second.what in first.meshes
         if designed or not spans_meet(first.reach.span(levels), second.reach.span(levels)):
             continue
         a, b = clouds(first), clouds(second)

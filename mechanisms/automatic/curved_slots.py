@@ -7,7 +7,7 @@ Where the point keeps a distance from the curve, the slot is at that distance.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -69,7 +69,7 @@ class CurvedSlot(Slot):
                 base = self.pin == "ground"
                 reach = Reach(self.layers, high=-1, base=True) if base else Reach(self.layers, 1, -1)
                 shape = disc(*self.pin_at, layout.sizes.hardware)
-                yield Item(item.what, item.body, shape, reach, item.spares, self)
+                yield replace(item, shape=shape, reach=reach)
             else:
                 yield item
 

@@ -149,6 +149,7 @@ class Layout:
         return not (
             first.body == second.body
             or first.what in second.meshes
+            or second.what in first.meshes
             or (first.only and second.what not in first.only)
             or (second.only and first.what not in second.only)
             or (first.spared and first.body in second.spares)

@@ -65,22 +65,23 @@ class Slide:
         rail = Rounded(np.array(self.rail_ends()), RAIL / 2 + 1.0)
         block = Rounded(np.array(self.block_ends(layout.sizes.eye)), layout.sizes.eye)
         what, gibs = f"the rail of {self.name}", f"the block of {self.name}"
-        both = frozenset((self.rail, self.block))
+        sliding = frozenset((self.block, gibs))  # nothing else of the block's body passes through the rail
         if self.rail == "ground":
             below = Reach((self.block,), -1, -1)
             posts = Reach((self.block,), -1, -1, base=True)
-            yield Item(what, "ground", rail, below, both, self, stands=what)
+            yield Item(what, "ground", rail, below, source=self, meshes=sliding, stands=what)
             for x, y in self.rail_ends():
-                yield Item(what, "ground", disc(x, y, RAIL / 2 + 1.0), posts, both, self, stands=what)
-            yield Item(gibs, self.block, block, below, frozenset(), self)
+                post = disc(x, y, RAIL / 2 + 1.0)
+                yield Item(what, "ground", post, posts, source=self, meshes=sliding, stands=what)
+            yield Item(gibs, self.block, block, below, source=self, meshes=frozenset((what,)))
         elif self.block == "ground":
-            yield Item(what, self.rail, rail, Reach((self.rail,), -1, -1), both, self)
             reach = Reach((self.rail,), -1, -1, base=True)
-            yield Item(gibs, "ground", block, reach, both, self, stands=what)
+            yield Item(what, self.rail, rail, Reach((self.rail,), -1, -1), source=self, meshes=sliding)
+            yield Item(gibs, "ground", block, reach, source=self, meshes=frozenset((what, self.rail)), stands=what)
         else:
             between = Reach((self.rail, self.block), 1, -1)
-            yield Item(what, self.rail, rail, between, both, self)
-            yield Item(gibs, self.block, block, between, both, self)
+            yield Item(what, self.rail, rail, between, source=self, meshes=sliding)
+            yield Item(gibs, self.block, block, between, source=self, meshes=frozenset((what, self.rail)))
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """Room for the rail under, or between, the plates."""

@@ -80,12 +80,13 @@ class Slot:
     def items(self, layout: Layout) -> Iterable[Item]:
         """The pin from its body, or the base, through the slot, and its head; a plate on ground, with its posts."""
         shape, what = disc(*self.pin_at, layout.sizes.hardware), f"the pin of {self.name}"
-        both = frozenset((self.slot, self.pin))
+        plate = f"the slotted plate of {self.name}"
+        through = frozenset((self.slot, plate))
         reach = Reach(self.layers, 1, 1) if self.pin != "ground" else Reach(self.layers, high=1, base=True)
-        spares = both - {"ground"} if self.slot == "ground" else both
-        yield Item(what, self.pin, shape, reach, spares, self, stands=what if self.pin == "ground" else "")
+        stands = what if self.pin == "ground" else ""
+        yield Item(what, self.pin, shape, reach, source=self, meshes=through, stands=stands)
         if self.slot == "ground":
-            plate, wide = f"the slotted plate of {self.name}", self.radius(layout)
+            wide = self.radius(layout)
             shape = around([(x, y) for x, y, _ in self.outline(layout)], wide)
             meshes = frozenset((what,))
             yield Item(plate, "ground", shape, Reach((self.layer,)), source=self, meshes=meshes, stands=plate)

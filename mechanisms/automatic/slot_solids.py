@@ -137,5 +137,6 @@ def slot_pin(
         under = heights.bottom(slot.pin) - boss - pivot.washer_room
         plan.add(slot.pin, pivot.washer_at(f"washer_{slot.name}", x, y, under))
         start = low + 0.1 if depth is None else high - depth + 0.4
-        shape = pin(pivot.pin, heights.top(slot.pin) + fit.seat - start, sizes.head)
+        top = heights.top(slot.pin) + (fit.seat if depth is None else -0.3)
+        shape = pin(pivot.pin, top - start, head)
     plan.make(slot.pin, f"pin_{slot.name}", placed(shape, x, y, start), "brass", 0)

@@ -55,8 +55,8 @@ def test_a_hundred_random_mechanisms_get_layers_or_a_reason() -> None:
         assert not meets(made), f"case {SEED + k}"
         came[BUILT] += 1
     assert set(came) <= {BUILT, STUCK, *REASONS}, came
-    assert came[BUILT] >= 65
-    assert came["no order of layers lets"] <= 10, came
+    assert came[BUILT] >= 70, came
+    assert came["no order of layers lets"] <= 20, came
 
 
 def test_every_four_bar_whose_crank_turns_gets_an_order() -> None:

@@ -1,73 +1,96 @@
-"""The one decorator for compiled kernels, and where their machine code is kept.
+"""The one decorator for compiled kernels.
 
-numba's disk cache does not notice an edit in an *imported* file (numba issue 9483): a caller would silently keep
-the old numbers. So the cache lives in a folder named after a hash of all sources of this package.
+    kernel      called from Python and from kernels
+    internal    called by kernels alone: without a wrapper for Python it compiles in half the time
+    inlined     copied into the caller: passing a System by value costs more than the work
+    threaded    runs in several threads at once, each with scratch of its own
+    at_address  called through its machine address
+
+What they compile is the same machine code on every processor of a kind (kernel_target.py), kept by what it is made of
+(kernel_cache.py). Settings of numba in the user's process are neither read nor changed, but for DISABLE_JIT.
 """
 
 from __future__ import annotations
 
-import hashlib
-import os
-import shutil
-import tempfile
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
-_PACKAGE = Path(__file__).parent
+import numba
+from numba.core import sigutils
+from numba.core.ccallback import CFunc
+from numba.core.dispatcher import Dispatcher
+from numba.core.registry import CPUDispatcher
 
-
-def _cache_folder() -> Path:
-    digest = hashlib.sha256()
-    for source in sorted(_PACKAGE.rglob("*.py")):
-        digest.update(source.relative_to(_PACKAGE).as_posix().encode())
-        digest.update(source.read_bytes())
-    name = f"numba-{digest.hexdigest()[:16]}"
-    user_cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "mbsd"
-    for parent in (_PACKAGE / "__pycache__", user_cache, Path(tempfile.gettempdir()) / "mbsd"):
-        folder = parent / name
-        try:
-            if not folder.is_dir():
-                folder.mkdir(parents=True)
-                for stale in parent.glob("numba-*"):
-                    if stale != folder:
-                        shutil.rmtree(stale, ignore_errors=True)
-            if os.access(folder, os.W_OK):
-                return folder
-        except OSError:
-            continue
-    raise OSError("no folder is writable for compiled code; set XDG_CACHE_HOME to one that is")
-
-
-os.environ.setdefault("NUMBA_CACHE_DIR", str(_cache_folder()))
-os.environ.setdefault("NUMBA_CPU_NAME", "generic")  # one code for all machines, and faster on loops this short
-
-import numba  # noqa: E402  (the folder must be set first)
-from numba.core.dispatcher import Dispatcher  # noqa: E402
-
-from mbsd.compile_notice import give_notice  # noqa: E402
+from mbsd.compile_notice import give_notice
+from mbsd.kernel_cache import KernelCache
+from mbsd.kernel_target import GENERIC
 
 give_notice()
-numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]  # in case numba was imported before us: it read other words
-numba.config.CPU_NAME = os.environ["NUMBA_CPU_NAME"]
-if numba.config.CPU_NAME == "generic":
-    numba.config.CPU_FEATURES = os.environ.get("NUMBA_CPU_FEATURES", "")
 
-_OPTIONS = {"cache": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True, "no_rewrites": True}
+COMPILED = not numba.config.DISABLE_JIT  # pyright: ignore[reportPrivateImportUsage]
+
+
+class _Kernel(CPUDispatcher):
+    """numba's dispatcher for our target and cache."""
+
+    targetdescr = GENERIC
+
+    def enable_caching(self) -> None:
+        """Keep what is compiled."""
+        self._cache = KernelCache(self.py_func)
+
+
+class _AtAddress(CFunc):
+    """numba's function at an address for our target and cache."""
+
+    _targetdescr = GENERIC
+
+    def enable_caching(self) -> None:
+        """Keep what is compiled."""
+        self._cache = KernelCache(self._pyfunc)
+
+
+_OPTIONS = {"nopython": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True, "no_rewrites": True}
 # _nrt off: kernels allocate nothing, and without it numba counts references to every array of a tuple (2x slower)
 
-kernel = numba.njit(**_OPTIONS)
+
+def _compiled(**more: Any) -> Callable[[Callable[..., Any]], Any]:
+    def decorate(function: Callable[..., Any]) -> Any:
+        if not COMPILED:
+            return function
+        made = _Kernel(py_func=function, locals={}, targetoptions={**_OPTIONS, **more})
+        made.enable_caching()
+        return made
+
+    return decorate
+
+
+kernel = _compiled()
 """Compile for float64 arrays; IEEE division, no re-association, so the numbers do not depend on the compiler.
 Kernels may not allocate: scratch comes in from outside."""
 
-internal = numba.njit(**_OPTIONS, no_cpython_wrapper=True)  # pyright: ignore[reportCallIssue]
-"""The same for kernels that only kernels call: without a wrapper for Python they compile in half the time."""
+internal = _compiled(no_cpython_wrapper=True)
+"""The same for kernels that only kernels call."""
 
-inlined = numba.njit(**_OPTIONS, inline="always")
-"""The same for kernels whose body is copied into the caller: passing a System by value costs more than the work."""
+inlined = _compiled(inline="always")
+"""The same for kernels whose body is copied into the caller."""
 
-threaded = numba.njit(**_OPTIONS, nogil=True)
+threaded = _compiled(nogil=True)
 """The same for kernels that run in several threads at once, each with scratch of its own."""
+
+
+def at_address(signature: Any) -> Callable[[Callable[..., Any]], Any]:
+    """The same for functions that are called through ``.address``; without the compiler the function itself."""
+
+    def decorate(function: Callable[..., Any]) -> Any:
+        if not COMPILED:
+            return function
+        made = _AtAddress(function, sigutils.normalize_signature(signature), {}, {"error_model": "numpy"})
+        made.enable_caching()
+        made.compile()
+        return made
+
+    return decorate
 
 
 OFTEN = 20

@@ -124,8 +124,8 @@ class Recorder:
             return False
         if place.startswith(SYSTEM) and not place.startswith(str(ROOT) + os.sep):
             return False
-        cache = os.environ.get("NUMBA_CACHE_DIR")
-        if cache and Path(place).is_relative_to(os.path.abspath(cache)):
+        kernels = sys.modules.get("mbsd.kernel_cache")  # only once the solver compiles
+        if kernels is not None and Path(place).is_relative_to(kernels.cache_root()):
             return False
         return place not in self._made and not any(str(parent) in self._made for parent in Path(place).parents)
 

@@ -16,10 +16,11 @@ import importlib
 from collections.abc import Callable
 from typing import Any
 
-import numba
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
+
+from mbsd.jit import COMPILED, at_address
 
 X, Y, A, TURN = 0, 1, 2, 3
 """Of ``relative``. TURN: how far the arm that carries both centres is turned against body i (rad)."""
@@ -31,7 +32,6 @@ the line of centres against the arm; 1 where no arm tells whole turns; the first
 
 POINTER = types.CPointer(types.float64)
 SIGNATURE = types.void(POINTER, POINTER, POINTER)
-COMPILED = not numba.config.DISABLE_JIT  # pyright: ignore[reportPrivateImportUsage]
 _PYTHON: list[Callable] = []
 """Without the compiler an address is a place in this list."""
 
@@ -39,7 +39,7 @@ _PYTHON: list[Callable] = []
 def equation(function: Callable) -> Any:
     """Decorator: an equation at an address."""
     if COMPILED:
-        return numba.cfunc(SIGNATURE, cache=True, error_model="numpy")(function)
+        return at_address(SIGNATURE)(function)
     _PYTHON.append(function)
     return function
 

@@ -22,10 +22,10 @@ import numpy as np
 from mbsd.dynamics.arrays import Dynamics, scratch_for
 from mbsd.dynamics.initial import Initial, given_coordinates, given_velocities, nearest_turn, tell_coordinates
 from mbsd.dynamics.projection import project
-from mbsd.dynamics.schur import factor_schur, plan_schur
+from mbsd.dynamics.row_strength import factor_at
+from mbsd.dynamics.schur import plan_schur
 from mbsd.dynamics.sliding import sliding_for
 from mbsd.errors import AssemblyError
-from mbsd.jit import kernel
 from mbsd.laws import pack_laws
 from mbsd.loads import pack_loads
 from mbsd.mobility import Mobility
@@ -178,13 +178,6 @@ def _velocities(
     return state[1]
 
 
-@kernel
-def _factor(dyn, scratch, t, state):
-    """Factor at the pose of a state; the part of each row that is new stays in factors.low[k, 1:3]."""
-    project(dyn, scratch, t, state, 1)
-    factor_schur(dyn.schur, dyn.metric, scratch.ws.jac, scratch.factors, 0.0)
-
-
 def independent_large(packed: Packed, time: float, q: np.ndarray) -> tuple[list[int], Mobility]:
     """Independent rows at a closed pose q (3 nb,), and the mobility they leave."""
     size = np.concatenate([np.zeros(3), packed.column_scale()])
@@ -193,7 +186,7 @@ def independent_large(packed: Packed, time: float, q: np.ndarray) -> tuple[list[
     rows = projector.schur.rows
     dropped: list[int] = []
     while True:
-        _factor(projector, scratch, time, np.stack([q, np.zeros_like(q)]))
+        factor_at(projector, scratch, time, np.stack([q, np.zeros_like(q)]))
         new = scratch.factors.low[: len(rows), 1:3]
         weak = np.argwhere(~(new > DEPENDENT) & (rows >= 0))
         if not len(weak):

@@ -13,7 +13,8 @@ from __future__ import annotations
 
 import importlib
 
-from mbsd.constraints.equation import _PYTHON, COMPILED, OWN, A, X, Y, equation
+from mbsd.constraints.equation import _PYTHON, OWN, A, X, Y, equation
+from mbsd.jit import COMPILED
 
 VX, VY, OMEGA, TIME, LAW, LAW_RATE = 14, 15, 16, 17, 18, 19
 """Of ``state`` beside X, Y, A: rates (m/s, m/s, rad/s), time (s), value and rate of the law of time, 0 without one."""

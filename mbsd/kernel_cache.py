@@ -1,0 +1,185 @@
+"""Where machine code is kept between runs: in folders named after what a kernel is made of.
+
+numba's own cache does not notice an edit in an *imported* file (numba issue 9483): a caller would silently keep the
+old numbers. So each kernel's folder is named after a hash of its file and of all that this file imports at its top,
+files of installed packages left out. An edit that no kernel is made of compiles nothing anew; going back to
+an earlier source finds its code again.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from functools import cache, cached_property, lru_cache
+from pathlib import Path
+from typing import Any
+
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, _Cache, _CacheLocator
+
+_PACKAGE = Path(__file__).parent
+_HERE = _PACKAGE.parent
+KEPT = 4
+"""So many versions of one file's kernels are kept."""
+
+_IMPORT = re.compile(r"^(?:from\s+([\w.]+)\s+import\s+(\([^)]*\)|[^\n]*)|import\s+([^\n]*))", re.MULTILINE)
+
+
+@lru_cache(maxsize=1)
+def cache_root() -> Path:
+    """The first folder that is writable: numba's NUMBA_CACHE_DIR if it is set, beside the package, the user's cache."""
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    user_cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    parents = [_PACKAGE / "__pycache__", user_cache / "mbsd", Path(tempfile.gettempdir()) / "mbsd"]
+    for parent in [Path(given), *parents] if given else parents:
+        folder = parent / "kernels"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            tempfile.TemporaryFile(dir=folder).close()
+            return folder
+        except OSError:
+            continue
+    raise OSError("no folder is writable for compiled code; set XDG_CACHE_HOME to one that is")
+
+
+@cache
+def _read(path: str) -> tuple[bytes, tuple[tuple[str, tuple[str, ...]], ...]]:
+    """Hash of a source file; the modules that it imports at its top, each with the names that it takes from there."""
+    source = Path(path).read_bytes()
+    found: list[tuple[str, tuple[str, ...]]] = []
+    for match in _IMPORT.finditer(source.decode()):
+        base, members, plain = match.groups()
+        if base:
+            found.append((base, tuple(re.findall(r"\w+", re.sub(r"\bas\s+\w+|#.*", "", members)))))
+        else:
+            found += [(name.split()[0], ()) for name in plain.split(",") if name.split()]
+    return hashlib.sha256(source).digest(), tuple(found)
+
+
+def _sources(path: str) -> Iterator[str]:
+    """The file of a kernel and, over and over, what it imports: of this package and from beside that file."""
+    waiting, seen, within = [path], {path}, (str(_PACKAGE) + os.sep, str(Path(path).parent) + os.sep)
+    while waiting:
+        current = waiting.pop()
+        yield current
+        for base, members in _read(current)[1]:
+            modules = [f"{base}.{name}" for name in members if f"{base}.{name}" in sys.modules]
+            if len(modules) < max(1, len(members)):  # a package that only modules are taken from gives no value itself
+                modules.append(base)
+            for name in modules:
+                found = getattr(sys.modules.get(name), "__file__", None)
+                if found and found not in seen and found.startswith(within):
+                    seen.add(found)
+                    waiting.append(found)
+
+
+@cache
+def made_of(path: str) -> str:
+    """A hash of all sources that the kernels of a file are made of."""
+    digest = hashlib.sha256()
+    for source in sorted(_sources(path), key=_name):
+        digest.update(_name(source).encode() + b"\0" + _read(source)[0])
+    return digest.hexdigest()[:16]
+
+
+def _name(path: str) -> str:
+    """A path that is the same on every machine, for files of the package."""
+    return Path(path).relative_to(_HERE).as_posix() if path.startswith(str(_PACKAGE) + os.sep) else path
+
+
+class _Locator(_CacheLocator):
+    """Says where numba keeps the code of one function."""
+
+    def __init__(self, py_func: Callable[..., Any], py_file: str) -> None:
+        self._line = py_func.__code__.co_firstlineno
+        self._stamp = made_of(py_file)
+        name = _name(py_file).removesuffix(".py").strip(os.sep).replace(os.sep, ".").replace("/", ".")
+        folder = cache_root() / f"{name[-80:]}-{self._stamp}"
+        if not folder.is_dir():
+            folder.mkdir(parents=True, exist_ok=True)
+            _forget_old(folder)
+        self._path = str(folder)
+
+    def get_cache_path(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
+        """The folder."""
+        return self._path
+
+    def get_source_stamp(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
+        """What the code is made of."""
+        return self._stamp
+
+    def get_disambiguator(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
+        """Functions of one name in one file differ by their line."""
+        return str(self._line)
+
+    @classmethod
+    def from_function(cls, py_func: Callable[..., Any], py_file: str) -> _Locator | None:
+        """None for functions without a file, such as those of a notebook."""
+        return cls(py_func, py_file) if os.path.isfile(py_file) else None
+
+
+def _forget_old(folder: Path) -> None:
+    """Remove all but the newest versions of what is kept in ``folder``."""
+    same = [one for one in folder.parent.glob(f"{folder.name[:-16]}*") if len(one.name) == len(folder.name)]
+    times = []
+    for one in same:
+        try:
+            times.append((one.stat().st_mtime, one))
+        except OSError:
+            continue
+    for _, old in sorted(times, reverse=True)[KEPT:]:
+        shutil.rmtree(old, ignore_errors=True)
+
+
+class _Results(CompileResultCacheImpl):
+    _locator_classes = [_Locator, *CompileResultCacheImpl._locator_classes[-2:]]  # numba's for notebooks and archives
+
+
+class _Files(FunctionCache):
+    _impl_class = _Results
+
+
+class KernelCache(_Cache):
+    """numba's cache of one function, opened when the function is first compiled: by then all it imports is loaded."""
+
+    def __init__(self, py_func: Callable[..., Any]) -> None:
+        self._py_func = py_func
+        self._enabled = True
+
+    @cached_property
+    def _files(self) -> _Files | None:
+        try:
+            return _Files(self._py_func)
+        except (RuntimeError, OSError):  # no place for it: compiled in every process
+            return None
+
+    @property
+    def cache_path(self) -> str | None:  # pyright: ignore[reportIncompatibleMethodOverride, reportIncompatibleVariableOverride]
+        """The folder, if there is one."""
+        return None if self._files is None else self._files.cache_path
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """The compiled function, or None."""
+        return self._files.load_overload(sig, target_context) if self._enabled and self._files is not None else None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep a compiled function."""
+        if self._enabled and self._files is not None:
+            self._files.save_overload(sig, data)
+
+    def enable(self) -> None:
+        """Use it."""
+        self._enabled = True
+
+    def disable(self) -> None:
+        """Compile in every process."""
+        self._enabled = False
+
+    def flush(self) -> None:
+        """Forget all."""
+        if self._files is not None:
+            self._files.flush()

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Protocol
 
 import cadquery as cq
 import numpy as np
@@ -35,6 +36,8 @@ ANKLE = (110.0, 112.0)
 """Of the foot."""
 TOOTH = ((-0.32, 0.0), (-0.12, 1.0), (0.12, 1.0), (0.32, 0.0))
 """Corners of a tooth: pitches, and heights."""
+RING = (95.0, 44, 5, 36.0)
+"""Radius, teeth, arms and hub of the chainring."""
 LEVEL = math.radians(22.0)
 """The foot is level where the shank leans forward by this."""
 SADDLE = ((-98.0, 6.0, 34.0), (20.0, -8.0, 18.0), (118.0, 4.0, 10.0))
@@ -140,3 +143,29 @@ def seat(hip: Point, z: float = 0.05) -> list[Solid]:
     tube = eased(extruded(hull(ends), 8.0, z), 1.5, ">Z")
     top = eased(extruded(hull([(x + 38.0 + u, y - 138.0 + v, r) for u, v, r in SADDLE]), 11.0, z + 8.05), 2.0, ">Z")
     return [Solid("seat_tube", tube, "aluminium_red", 0), Solid("saddle", top, "leather", 0)]
+
+
+class Shaped(Protocol):
+    """Parts by themselves, which take outlines and materials for their bodies."""
+
+    def join(
+        self, body: str, outline: cq.Wire, at: Point = ..., holes: Sequence[cq.Wire] = ..., sharp: bool = ...
+    ) -> None:
+        """Make an outline a part of a body's plate."""
+        ...
+
+    def material(self, body: str, name: str) -> None:
+        """Make a body's plate of a material."""
+        ...
+
+
+def dress(made: Shaped, thigh_length: float, shank_length: float, pen: Point) -> None:
+    """Give bodies "thigh", "shank" and "crank" their outlines; ``pen``: a place of the shank that carries a stylus."""
+    made.join("thigh", thigh(thigh_length))
+    made.join("shank", calf(shank_length), at=(shank_length, 0.0))
+    made.join("shank", foot(shank_length))
+    made.join("shank", circle(*pen, 20.0), at=pen)
+    ring, windows = chainring(*RING)
+    made.join("crank", ring, holes=windows, sharp=True)
+    for body, material in (("thigh", "beech"), ("shank", "beech"), ("crank", "aluminium")):
+        made.material(body, material)

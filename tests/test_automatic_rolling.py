@@ -35,7 +35,8 @@ def _cart(curve: bool) -> Mechanism:
 def _made(m: Mechanism) -> tuple[Automatic, Round, np.ndarray]:
     made = Automatic(m, m.sweep(1.0, 200))
     features = made.layout.features
-    (wheel,), (road,) = ([f for f in features if isinstance(f, kind)] for kind in (Round, Road))
+    [wheel] = [feature for feature in features if isinstance(feature, Round)]
+    [road] = [feature for feature in features if isinstance(feature, Road)]
     assert road.rounds == [wheel]
     return made, wheel, road.path
 

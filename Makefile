@@ -49,7 +49,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install check list run-all all gallery new test lint format bench hunt hunt-parts torture schema docs integrators lock clean clean-all always
+.PHONY: help install check list run-all all gallery new test lint format bench bench-start hunt hunt-parts torture schema docs integrators lock clean clean-all always
 
 # A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
 define upto_motion
@@ -185,6 +185,9 @@ format: install ## format the sources and cure what ruff can
 bench: install ## the solver beside its peers: a table, and out/bench.json
 	@sh tools/install.sh bench
 	@$(PYTHON) -m benchmarks
+
+bench-start: install ## how long one waits for a first result and for calls as users make them
+	@$(PYTHON) -m benchmarks start
 
 hunt: install ## N random mechanisms (1000), each solved again in other words; SEED=1 says which: out/hunt.json
 	@$(PYTHON) -m tools.hunt --n "$${N:-1000}" --seed "$$SEED"

@@ -2,6 +2,7 @@
 
 python -m benchmarks                  all of it
 python -m benchmarks dynamics         the dynamics problems alone, only shown
+python -m benchmarks start            the table of start-up (make bench-start)
 python -m benchmarks table            the tables again from the last run
 python -m benchmarks tune [names]     the sweeps for the best settings, of some codes or problems
 """
@@ -20,6 +21,7 @@ from benchmarks.dynamics import scaling
 from benchmarks.dynamics.settings import tune_all
 from benchmarks.four_bar import STEPS
 from benchmarks.rows import Bar, Row
+from benchmarks.start import measure as start
 from shared.console import run_cli, say
 from shared.errors import UserError
 from shared.paths import ROOT
@@ -40,12 +42,16 @@ def main() -> int:
             found, bars = dynamics.measured()
             rows.show_all(found)
             return _tell(bars)
+        case ["start"]:
+            return start.measured()
         case ["table"]:
             table.write(*rows.read())
         case ["tune", *names]:
             tune_all(names)
         case other:
-            raise UserError(f"bench: {' '.join(other)}? There is: dynamics, table, tune [names], or nothing for all")
+            raise UserError(
+                f"bench: {' '.join(other)}? There is: dynamics, start, table, tune [names], or nothing for all"
+            )
     return 0
 
 

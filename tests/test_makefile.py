@@ -42,7 +42,7 @@ def test_help_is_the_default_and_has_a_line_for_every_target() -> None:
     assert listed == [target for target in targets if target != "always"]
     wanted = "help check install list run-<name> solve-<name> parts-<name> clearance-<name> plot-<name> still-<name> "
     wanted += "poster-<name> frames-<name> film-<name> scene-<name> scene-ui-<name> run-all all new test lint bench "
-    wanted += "animate-<name> report-<name> glb-<name> contact-<name> gallery clean clean-all"
+    wanted += "bench-start animate-<name> report-<name> glb-<name> contact-<name> gallery clean clean-all"
     assert set(wanted.split()) <= set(listed)
     assert max(map(len, done.stdout.splitlines())) <= 120
 

@@ -229,7 +229,7 @@ def tree(tmp_path: Path) -> Tree:
 def test_install_makes_the_environment_once(tree: Tree) -> None:
     first = tree.install()
     assert first.returncode == 0, first.stderr
-    assert tree.calls == ["venv --quiet", "pip sync"]
+    assert tree.calls == ["venv --quiet", "pip sync", "pip install"]
     assert "--require-hashes requirements.lock" in tree.asked.read_text()
     assert "mbsd compile" in first.stdout
     again = tree.install()
@@ -243,7 +243,7 @@ def test_install_follows_the_content_of_the_lock(tree: Tree) -> None:
     assert tree.calls == []
     tree.lock.write_text("numpy==2.5.6\n")
     tree.install()
-    assert tree.calls == ["pip sync"]
+    assert tree.calls == ["pip sync", "pip install"]
 
 
 def test_a_failed_install_is_told_and_tried_again(tree: Tree) -> None:
@@ -254,7 +254,22 @@ def test_a_failed_install_is_told_and_tried_again(tree: Tree) -> None:
     assert "error: the packages of requirements.lock could not be installed" in failed.stderr
     tree.uv("exit 0")
     assert tree.install().returncode == 0
-    assert tree.calls == ["pip sync"]
+    assert tree.calls == ["pip sync", "pip install"]
+
+
+def test_the_solver_is_there_for_scripts_in_any_folder(tree: Tree, tmp_path: Path) -> None:
+    """Also where the environment stands already, and again after the packages changed."""
+    tree.install()
+    assert "--editable ." in tree.asked.read_text()
+    (tree.folder / ".venv" / "solver-installed").unlink()
+    tree.install()
+    assert tree.calls == ["pip install"]
+    code = "import mbsd; print(mbsd.__file__)"
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    told = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path / "bin", env=environment, capture_output=True, text=True
+    )
+    assert Path(told.stdout.strip()).name == "__init__.py", told.stderr
 
 
 def test_a_failed_compilation_fails_the_install(tree: Tree) -> None:
@@ -268,7 +283,7 @@ def test_an_environment_whose_python_is_gone_is_made_again(tree: Tree) -> None:
     tree.install()
     (tree.folder / ".venv" / "bin" / "python").unlink()
     tree.install()
-    assert tree.calls == ["venv --quiet", "pip sync"]
+    assert tree.calls == ["venv --quiet", "pip sync", "pip install"]
 
 
 def test_a_missing_system_library_is_named_with_its_cure_until_it_is_there(tree: Tree) -> None:

@@ -34,7 +34,7 @@ make_environment() {
             exit 1
         }
     fi
-    rm -f .venv/requirements.lock .venv/requirements-bench.lock
+    rm -f .venv/requirements.lock .venv/requirements-bench.lock .venv/solver-installed
     echo "install: packages of requirements.lock (3 GB when all are new)"
     "$uv" pip sync --quiet --python $python --compile-bytecode --require-hashes requirements.lock || {
         echo "error: the packages of requirements.lock could not be installed; uv says why above." \
@@ -48,6 +48,16 @@ make_environment() {
 
 if ! { [ -x $python ] && cmp -s requirements.lock .venv/requirements.lock; }; then
     make_environment
+fi
+
+# The solver itself, from this folder: `.venv/bin/python my_script.py` works from anywhere.
+if [ ! -f .venv/solver-installed ]; then
+    uv=$(sh tools/find_uv.sh)
+    "$uv" pip install --quiet --python $python --no-deps --no-build-isolation --editable . || {
+        echo "error: mbsd could not be installed into .venv; uv says why above. The same command tries again" >&2
+        exit 1
+    }
+    touch .venv/solver-installed
 fi
 
 # Asked again until nothing is missing; the solver runs without these libraries, parts and pictures do not.

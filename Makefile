@@ -13,7 +13,7 @@ BED ?=
 GAP ?=
 N ?=
 SEED ?= 1
-PYTEST ?= -n 2 --dist loadgroup --no-loadscope-reorder
+PYTEST ?= -n 2 --dist loadscope --no-loadscope-reorder
 
 # Words of the user are taken as they are: make expands nothing in them, and commands get them through the environment,
 # where no shell reads them. Python refuses what is no name (shared/paths.py).

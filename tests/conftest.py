@@ -6,6 +6,7 @@ import os
 import signal
 from collections import Counter
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import settings
@@ -21,17 +22,34 @@ if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Tests that share what a fixture made run in one process (``--dist loadgroup``), the long groups first.
+FOLDERS = "test_mechanisms.py"
+"""Its tests share what is made of one folder of mechanisms/, which takes long."""
 
-    These are the tests of a file, unless the fixture's values are groups by marks of their own, which are long.
-    """
-    own = {item for item in items if item.get_closest_marker("xdist_group")}
-    counts = Counter(item.path for item in items if item not in own)
-    for item in items:
-        if item not in own:
-            item.add_marker(pytest.mark.xdist_group(item.path.stem))
-    items.sort(key=lambda item: (item not in own, 0 if item in own else -counts[item.path]))
+
+def group_of(nodeid: str) -> str:
+    """Tests of one group run in one process, as they share what a fixture made: those of a folder, else of a file."""
+    file, _, test = nodeid.partition("::")
+    if file.endswith(FOLDERS) and "[" in test:
+        return f"{file}[{test.rpartition('[')[2]}"
+    return file
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """The long groups first: folders, then files by their number of tests."""
+    counts = Counter(item.path for item in items)
+    items.sort(key=lambda item: (item.path.name != FOLDERS, 0 if item.path.name == FOLDERS else -counts[item.path]))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Spread groups over the processes, in the order of collection."""
+    from xdist.scheduler import LoadScopeScheduling
+
+    class Groups(LoadScopeScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            return group_of(nodeid)
+
+    return Groups(config, log) if config.getvalue("dist") == "loadscope" else None
 
 
 @pytest.fixture

@@ -31,10 +31,7 @@ def _stage(name: str, stage: str, root: Path) -> subprocess.CompletedProcess[str
     )
 
 
-FOLDERS = [pytest.param(name, marks=pytest.mark.xdist_group(f"mechanisms/{name}")) for name in mechanism_names()]
-
-
-@pytest.fixture(scope="module", params=FOLDERS)
+@pytest.fixture(scope="module", params=mechanism_names())
 def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
     """All stages before the pictures, run as a user runs them."""
     root = tmp_path_factory.mktemp(request.param)

@@ -15,7 +15,7 @@ from shared.stages import key_of
 if TYPE_CHECKING:
     from render.describe import Film
 
-SHARED = ("contract", "materials", "shot")
+SHARED = ("belt_path", "contract", "materials", "shot")
 """Files of shared/ that decide what is seen; the others say, write and check."""
 STAGE_OF = {"motion": "solve", "parts": "parts", "shot": "run"}
 

@@ -36,6 +36,7 @@ class Project:
             (root / "mechanisms" / name / "mechanism.py").write_text("LENGTH = 1\n")
         self.folder = root / "mechanisms" / "arm"
         (root / "mbsd").symlink_to(ROOT / "mbsd")
+        self._forget()  # what a project of another test left
 
     def _count(self, owner: ModuleType) -> None:
         plain = owner.load
@@ -52,13 +53,16 @@ class Project:
 
     def run(self) -> bool:
         """Run the stage as a new process would; whether it loaded the author's file."""
+        self._forget()
+        before = self.loads
+        self.stage.run("arm")
+        return self.loads > before
+
+    def _forget(self) -> None:
         for name, module in list(sys.modules.items()):
             own = str(getattr(module, "__file__", None) or "").startswith(str(self.root))
             if own or name.startswith(("mechanisms.arm", "mechanisms.other")):
                 del sys.modules[name]
-        before = self.loads
-        self.stage.run("arm")
-        return self.loads > before
 
 
 def put(path: str, text: str) -> Callable[[Project], None]:

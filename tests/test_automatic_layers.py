@@ -176,13 +176,14 @@ def test_pins_are_thinner_where_thick_ones_leave_no_order() -> None:
 
 
 def test_a_kind_without_parts_is_refused_by_name() -> None:
-    m = Mechanism("belted")
+    m = Mechanism("rodded")
     a, b = m.bar("a", 0.05), m.bar("b", 0.05)
     m.revolute("A", m.ground.at(0, 0), a.start)
     m.revolute("B", m.ground.at(0.2, 0), b.start)
-    m.belt("loop", a.start, b.start, radius_i=0.02, radius_j=0.03)
-    m.drive_angle("motor", a, lambda t: t)
-    with pytest.raises(UserError, match="joint 'loop' is a belt, which has no parts by itself yet"):
+    m.distance("rod", a.end, b.end, length=0.2)
+    m.start_near(a=90, b=90)
+    m.drive_angle("motor", a, lambda t: math.pi / 2 + 0.1 * t)
+    with pytest.raises(UserError, match="joint 'rod' is a distance, which has no parts by itself yet"):
         _ = Automatic(m, m.sweep(1.0)).levels
 
 

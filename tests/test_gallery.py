@@ -51,6 +51,18 @@ def test_all_posters_in_one(count: int, size: tuple[int, int]) -> None:
     assert min(abs(last[0] - 40 * k) for k in range(count)) < 6
 
 
+def test_of_many_posters_some_are_on_the_strip() -> None:
+    posters = []
+    for k in range(33):
+        buffer = io.BytesIO()
+        Image.new("RGB", (960, 540), (7 * k, 90, 200)).save(buffer, format="JPEG", quality=95)
+        posters.append(buffer.getvalue())
+    with Image.open(io.BytesIO(strip(posters))) as sheet:
+        assert sheet.size == (1280, 720)
+        reds = np.asarray(sheet)[90, 160::320, 0]
+    assert reds.tolist() == pytest.approx([0, 14, 28, 42], abs=6)
+
+
 @pytest.mark.parametrize(
     ("docstring", "said"),
     [

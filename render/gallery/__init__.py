@@ -21,7 +21,7 @@ STRIP = "strip.jpg"
 
 
 def run(folder: Path = FOLDER) -> int:
-    """Write README.md, a poster of each mechanism and all of them in one; posters of mechanisms that are gone go.
+    """Write README.md, a poster of each mechanism and some of them in one; posters of mechanisms that are gone go.
 
     Returns 1 if a mechanism is left out, because it has no poster. Raises UserError if none has one.
     """

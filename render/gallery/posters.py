@@ -15,6 +15,7 @@ TILE = 320, 180
 """Pixels of a picture in the strip."""
 BESIDE = 4
 """Pictures in a row of it."""
+ON_STRIP = 16
 
 
 def small_poster(path: Path) -> bytes:
@@ -39,9 +40,14 @@ def small_poster(path: Path) -> bytes:
 
 
 def strip(posters: Sequence[bytes]) -> bytes:
-    """All small posters in rows, as one JPEG; the last row is filled from its middle."""
+    """Small posters in rows, as one JPEG; the last row is filled from its middle.
+
+    More than ``ON_STRIP`` are too many for one look: some are taken, at equal distances.
+    """
     from PIL import Image, ImageOps
 
+    if len(posters) > ON_STRIP:
+        posters = [posters[k * len(posters) // ON_STRIP] for k in range(ON_STRIP)]
     wide, high = TILE
     rows = math.ceil(len(posters) / BESIDE)
     tiles = [ImageOps.fit(Image.open(io.BytesIO(poster)), TILE, Image.Resampling.LANCZOS) for poster in posters]

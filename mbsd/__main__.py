@@ -6,6 +6,7 @@ cores. What two parts share is compiled by whoever comes first.
 
 from __future__ import annotations
 
+import logging
 import os
 import subprocess
 import sys
@@ -69,11 +70,13 @@ def main() -> int:
     match sys.argv[1:]:
         case ["compile"]:
             started = time.perf_counter()
+            print("mbsd: compiling for this machine, which is done once and takes a minute or more", flush=True)
             if not _all_at_once(os.cpu_count() or 1):
                 print("mbsd: error: kernels could not be compiled; the reason stands above", file=sys.stderr)
                 return 1
             print(f"mbsd: kernels ready in {time.perf_counter() - started:.1f} s")
         case ["compile", part] if part in PARTS:
+            logging.getLogger("mbsd").setLevel(logging.ERROR)  # one word for all parts is enough
             PARTS[part]()
         case _:
             print("usage: python -m mbsd compile", file=sys.stderr)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.markers import moved
-from render.vectors import TOUCHING, Vector
+from render.vectors import TOUCHING, Acting, Vector
 from shared.contract import DriverMotion, Motion
 from shared.shot import Quantity
 
@@ -20,15 +20,9 @@ NOTHING = 1e-9
 
 
 @dataclass(frozen=True)
-class Torque:
-    """One torque over the times of data.json."""
+class Torque(Acting):
+    """One torque."""
 
-    quantity: Quantity
-    name: str
-    bodies: tuple[str, ...]
-    """Between which, or on which it acts."""
-    place: Array
-    """(T, 2) about which it is drawn (m)."""
     value: Array
     """(T,) N m, positive counter-clockwise."""
 

@@ -22,15 +22,21 @@ TOUCHING = {
 
 
 @dataclass(frozen=True)
-class Vector:
-    """One vector over the times of data.json, world axes."""
+class Acting:
+    """What acts over the times of data.json, at a place."""
 
     quantity: Quantity
     name: str
     bodies: tuple[str, ...]
     """Between which, or on which it acts."""
     place: Array
-    """(T, 2) where it begins (m)."""
+    """(T, 2) where an arrow begins, about which an arc is drawn (m)."""
+
+
+@dataclass(frozen=True)
+class Vector(Acting):
+    """One vector, world axes."""
+
     value: Array
     """(T, 2) in the unit of its quantity."""
 

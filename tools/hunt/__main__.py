@@ -9,40 +9,22 @@ Exit code 1 if anything was wrong or hung. The report is also in out/hunt.json.
 
 from __future__ import annotations
 
-import argparse
-import math
-import os
-import time
 from functools import partial
 
-from shared.console import progress, run_cli, say, warn
-from shared.errors import UserError
+from shared.console import run_cli, say
 from shared.paths import out_root
 from tools.hunt import case
-from tools.hunt.outcome import HUNG, WRONG
+from tools.hunt.asked import parser, refuse_unknown
+from tools.hunt.loop import follow, seeds
+from tools.hunt.outcome import HUNG, WRONG, CaseResult
 from tools.hunt.pool import LIMIT, results
 from tools.hunt.report import Tally
-
-SEEDS = 1_000_000
-"""Cases of one --seed have numbers from seed * SEEDS on."""
-EACH = 30.0
-"""s after which the report is written again, so that a hunt that is killed has not been in vain."""
 
 
 def main() -> int:
     """Hunt, report, and say by the exit code whether anything was found."""
-    parser = argparse.ArgumentParser(
-        prog="python -m tools.hunt", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--n", type=_positive, default=1000)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--jobs", type=_positive, default=os.cpu_count() or 1)
-    parser.add_argument("--kind")
-    parser.add_argument("--limit", type=float, default=LIMIT, help="seconds of one case")
-    parser.add_argument("--case", type=int)
-    asked = parser.parse_args()
-    if asked.kind is not None:
-        _refuse_unknown(asked.kind)
+    asked = parser("tools.hunt", __doc__).parse_args()
+    refuse_unknown(asked.kind)
     if asked.case is not None:
         return one_case(asked.case, asked.kind)
     return hunt(asked.n, asked.seed, asked.jobs, asked.limit, asked.kind)
@@ -50,25 +32,13 @@ def main() -> int:
 
 def hunt(n: int, seed: int, jobs: int, limit: float = LIMIT, kind: str | None = None) -> int:
     """n cases, of one kind if it is given; 0 if none was wrong or hung."""
-    tally, began, stopped = Tally(), time.monotonic(), False
-    seeds, path, written = range(seed * SEEDS, seed * SEEDS + n), out_root() / "hunt.json", time.monotonic()
-    try:
-        with progress("hunt", n, "case") as shown:
-            for result in results(seeds, partial(case.run, name=kind), jobs, limit, _compiling):
-                for outcome in tally.add(result):
-                    warn("hunt", f"{outcome.state}: case {result.seed} ({result.family}), {outcome.variation}")
-                shown.advance(1, f"{len(tally.findings)} found" if tally.findings else "")
-                if time.monotonic() - written > EACH:
-                    tally.write(path, seed, n, time.monotonic() - began)
-                    written = time.monotonic()
-    except KeyboardInterrupt:
-        stopped = True
-    seconds = time.monotonic() - began
-    tally.write(path, seed, n, seconds)
-    tally.show(seconds)
-    say("hunt", f"{path}; one case in detail: python -m tools.hunt --case NUMBER")
-    if stopped:
-        raise KeyboardInterrupt
+    tally = Tally()
+
+    def add(result: CaseResult) -> list[str]:
+        return [f"{o.state}: case {result.seed} ({result.family}), {o.variation}" for o in tally.add(result)]
+
+    found = results(seeds(seed, n), partial(case.run, name=kind), jobs, limit, _compiling)
+    follow("tools.hunt", tally, out_root() / "hunt.json", seed, n, found, add)
     return 1 if tally.count(WRONG) or tally.count(HUNG) else 0
 
 
@@ -97,21 +67,6 @@ def one_case(seed: int, kind: str | None) -> int:
         print(f"{outcome.state:>12}  {outcome.variation}: {outcome.reason} {outcome.detail}".rstrip(" :"))
     print(f"{result.seconds:.2f} s")
     return 1 if any(outcome.state == WRONG for outcome in result.outcomes) else 0
-
-
-def _positive(text: str) -> int:
-    number = int(text)
-    if not 0 < number < math.inf:
-        raise argparse.ArgumentTypeError(f"{text} is not above zero")
-    return number
-
-
-def _refuse_unknown(kind: str) -> None:
-    from tools.hunt.subject import all_families
-
-    names = list(all_families())
-    if kind not in names:
-        raise UserError(f"there is no kind of mechanism '{kind}'; there is: {', '.join(names)}")
 
 
 if __name__ == "__main__":

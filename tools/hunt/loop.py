@@ -1,0 +1,69 @@
+"""The cases of a hunt as they come in: told, counted, and written now and then, so that nothing is in vain."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any, Protocol
+
+from shared.console import progress, say, warn
+from tools.hunt.outcome import CaseResult
+
+SEEDS = 1_000_000
+"""Cases of one --seed have numbers from seed * SEEDS on."""
+EACH = 30.0
+"""s after which the report is written again, so that a hunt that is killed has not been in vain."""
+
+
+class Report(Protocol):
+    """What a hunt counts."""
+
+    @property
+    def findings(self) -> Any:
+        """What was found, as a sized thing."""
+        ...
+
+    def write(self, path: Path, seed: int, n: int, seconds: float) -> None:
+        """Write the report."""
+        ...
+
+    def show(self, seconds: float) -> None:
+        """Show it."""
+        ...
+
+
+def seeds(seed: int, n: int) -> range:
+    """The numbers of the cases of one --seed."""
+    return range(seed * SEEDS, seed * SEEDS + n)
+
+
+def follow(
+    program: str,
+    tally: Report,
+    path: Path,
+    seed: int,
+    n: int,
+    found: Iterable[CaseResult],
+    add: Callable[[CaseResult], list[str]],
+) -> None:
+    """Take in n results; ``add`` counts one and gives what is to be told of it. Ctrl-C ends it with the report."""
+    began = written = time.monotonic()
+    name, stopped = program.rpartition(".")[2].replace("_", "-"), False
+    try:
+        with progress(name, n, "case") as shown:
+            for result in found:
+                for line in add(result):
+                    warn(name, line)
+                shown.advance(1, f"{len(tally.findings)} found" if tally.findings else "")
+                if time.monotonic() - written > EACH:
+                    tally.write(path, seed, n, time.monotonic() - began)
+                    written = time.monotonic()
+    except KeyboardInterrupt:
+        stopped = True
+    seconds = time.monotonic() - began
+    tally.write(path, seed, n, seconds)
+    tally.show(seconds)
+    say(name, f"{path}; one case in detail: python -m {program} --case NUMBER")
+    if stopped:
+        raise KeyboardInterrupt

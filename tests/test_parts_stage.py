@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -173,6 +174,8 @@ def test_a_computed_parameter_makes_the_text_of_its_file_count(
     (folder / "mechanism.py").write_text("class Params: ...\n")
     (folder / "parts.py").write_text("from .mechanism import Params\ndef parts(p: Params): ...\n")
     monkeypatch.setattr(parts_stage, "mechanism_folder", lambda _: folder)
+    for module in [module for module in sys.modules if module.startswith("mechanisms.four_bar")]:
+        monkeypatch.delitem(sys.modules, module)  # the real one, which an earlier test may have loaded
     nothing = Inputs()
     plain = parts_stage._key(Params(), ["crank"], nothing)
     assert parts_stage._key(Params(speed=1.0), ["crank"], nothing) == plain

@@ -12,6 +12,7 @@ SPECTRA ?=
 BED ?=
 GAP ?=
 N ?=
+ONLY ?=
 SEED ?= 1
 PYTEST ?= -n 2 --dist loadscope --no-loadscope-reorder
 
@@ -27,9 +28,10 @@ override SPECTRA := $(value SPECTRA)
 override BED := $(value BED)
 override GAP := $(value GAP)
 override N := $(value N)
+override ONLY := $(value ONLY)
 override SEED := $(value SEED)
 override MECHANISM = $(subst -,_,$*)
-export PRESET SHEET_PRESET FRAME NAME KIND VIEW SHOW SPECTRA BED GAP MECHANISM N SEED
+export PRESET SHEET_PRESET FRAME NAME KIND VIEW SHOW SPECTRA BED GAP MECHANISM N ONLY SEED
 
 PRESETS := draft preview production final
 ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
@@ -49,7 +51,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install check list run-all all gallery new test lint format bench bench-start hunt hunt-parts torture schema docs integrators lock clean clean-all always
+.PHONY: help install check list run-all all gallery new test lint format bench bench-start hunt hunt-parts torture check-numbers record-numbers schema docs integrators lock clean clean-all always
 
 # A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
 define upto_motion
@@ -188,6 +190,12 @@ bench: install ## the solver beside its peers: a table, and out/bench.json
 
 bench-start: install ## how long one waits for a first result and for calls as users make them
 	@$(PYTHON) -m benchmarks start
+
+check-numbers: install ## raw bytes of 210 runs against those recorded, all or ONLY="gallery four_bar"
+	@$(PYTHON) -m tools.numbers check "$$ONLY"
+
+record-numbers: install ## record them anew, where a change of numbers is meant
+	@$(PYTHON) -m tools.numbers record
 
 hunt: install ## N random mechanisms (1000), each solved again in other words; SEED=1 says which: out/hunt.json
 	@$(PYTHON) -m tools.hunt --n "$${N:-1000}" --seed "$$SEED"

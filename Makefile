@@ -14,6 +14,8 @@ GAP ?=
 N ?=
 ONLY ?=
 SEED ?= 1
+# Set by tools/run_all.sh: names of SPECTRA that a mechanism has not are left out.
+EVERY ?=
 PYTEST ?= -n 2 --dist loadscope --no-loadscope-reorder
 
 # Words of the user are taken as they are: make expands nothing in them, and commands get them through the environment,
@@ -30,8 +32,9 @@ override GAP := $(value GAP)
 override N := $(value N)
 override ONLY := $(value ONLY)
 override SEED := $(value SEED)
+override EVERY := $(value EVERY)
 override MECHANISM = $(subst -,_,$*)
-export PRESET SHEET_PRESET FRAME NAME KIND VIEW SHOW SPECTRA BED GAP MECHANISM N ONLY SEED
+export PRESET SHEET_PRESET FRAME NAME KIND VIEW SHOW SPECTRA BED GAP MECHANISM N ONLY SEED EVERY
 
 PRESETS := draft preview production final
 ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
@@ -67,10 +70,12 @@ define upto_shot
 $(upto_motion)
 @$(STAGE) shot "$$MECHANISM"
 endef
+SPECTRA_IF_ANY = $${SPECTRA:+--spectra="$$SPECTRA" $${EVERY:+--every}}
 
 help: ## this list
 	@echo "make <target>, with PRESET=draft|preview|production|final on every picture target (preview by default)."
 	@echo "SHOW=reactions,forces,velocities,accelerations,title on these targets: arrows and words in the picture."
+	@echo "SPECTRA=\"shaking force,motor\" on run-, plot- and compare-<name>, run-all and all: spectra of these."
 	@echo "A mechanism's name takes hyphens or underscores: run-four-bar, run-four_bar."
 	@echo
 	@sed -n 's/^\([a-z][a-z-]*\)-%:[^#]*## /\1-<name>|/p; s/^\([a-z][a-z-]*\):[^#]*## /\1|/p' Makefile \
@@ -81,7 +86,7 @@ run-%: install always ## everything of one mechanism: parts, motion, clearance, 
 	@$(STAGE) clearance "$$MECHANISM"
 	@$(STAGE) shot "$$MECHANISM"
 	@$(PICTURE) report "$$MECHANISM"
-	@$(PICTURE) plots "$$MECHANISM"
+	@$(PICTURE) plots "$$MECHANISM" $(SPECTRA_IF_ANY)
 	@$(PICTURE) glb "$$MECHANISM"
 	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 	@$(PICTURE) film "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
@@ -110,7 +115,7 @@ clearance-%: install always ## proof that no two parts touch over the whole moti
 
 plot-%: install always ## the plots, SPECTRA="shaking force,motor" with spectra of these: out/<name>/plots/
 	$(upto_bare_motion)
-	@$(PICTURE) plots "$$MECHANISM" $${SPECTRA:+--spectra="$$SPECTRA"}
+	@$(PICTURE) plots "$$MECHANISM" $(SPECTRA_IF_ANY)
 
 report-%: install always ## what was found, in sentences and tables: out/<name>/report.md
 	$(upto_bare_motion)
@@ -119,7 +124,7 @@ report-%: install always ## what was found, in sentences and tables: out/<name>/
 compare-%: install always ## the motions of all its variants on the same pages: out/<name>/compare/
 	@names=$$($(STAGE) variants "$$MECHANISM") || exit; for one in $$names; do \
 	$(STAGE) parts "$$one" --or-none && $(STAGE) solve "$$one" || exit; done
-	@$(PICTURE) compare "$$MECHANISM"
+	@$(PICTURE) compare "$$MECHANISM" $(SPECTRA_IF_ANY)
 
 glb-%: install always ## the parts with their motion in one file for any glTF viewer: out/<name>/<name>.glb
 	$(upto_shot)

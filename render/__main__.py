@@ -36,9 +36,14 @@ def main() -> int | None:
             sub.add_argument(
                 "--show", default="", help="what to show: reactions,velocities,title; as shot.py says if not given"
             )
-        if command == "plots":
+        if command in ("plots", "compare"):
             sub.add_argument(
                 "--spectra", default="", help="'shaking force', joints, ...; as mechanism.py says if not given"
+            )
+            sub.add_argument(
+                "--every",
+                action="store_true",
+                help="one of every mechanism: leave out spectra of what this one has not",
             )
         if command == "still":
             sub.add_argument("--frame", type=int, default=0, help="number of the frame, from 0")
@@ -57,11 +62,11 @@ def main() -> int | None:
     if command == "plots":
         from render import plots
 
-        return plots.run(name, arguments.spectra)
+        return plots.run(name, arguments.spectra, arguments.every)
     if command == "compare":
         from render.plots import compare
 
-        return compare.run(name)
+        return compare.run(name, arguments.spectra, arguments.every)
     if command == "report":
         from render import report
 

@@ -43,10 +43,11 @@ def refuse_mismatch(motion: Motion, parts: Parts, folder: Path) -> None:
     if not any(True for _ in _pieces(parts)):
         raise UserError(f"{name}: parts.json has no solids, so there is nothing to see; make the parts again")
     for body, piece_name, piece in _pieces(parts):
-        if piece.rolls is not None and piece.rolls.joint not in motion.joints:
+        known = [*motion.joints, *motion.contacts]
+        if piece.rolls is not None and piece.rolls.joint not in known:
             raise UserError(
                 f"{name}: piece {body}/{piece_name} rolls in joint '{piece.rolls.joint}', which data.json has not; "
-                f"it has: {', '.join(motion.joints) or 'none'}{did_you_mean(piece.rolls.joint, motion.joints)}"
+                f"it has: {', '.join(known) or 'none'}{did_you_mean(piece.rolls.joint, known)}"
             )
         if file_hash(folder / piece.stl) != piece.stl_sha256:
             raise UserError(f"{name}: {piece.stl} is not the file parts.json describes; make the parts again")

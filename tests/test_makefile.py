@@ -71,6 +71,17 @@ def test_picture_targets_take_what_to_show(target: str) -> None:
     assert planned(f"{target}-four-bar", "SHOW=reactions,title")[-1].endswith(" --show=reactions,title")
 
 
+@pytest.mark.parametrize("target", ["run", "plot", "compare"])
+def test_what_draws_plots_takes_the_spectra(target: str) -> None:
+    stage = "compare" if target == "compare" else "plots"
+    [plain] = [line for line in planned(f"{target}-four-bar") if line.startswith(stage)]
+    assert "--spectra" not in plain
+    [asked] = [line for line in planned(f"{target}-four-bar", "SPECTRA=shaking force,motor") if line.startswith(stage)]
+    assert asked == f"{stage} four_bar --spectra=shaking force,motor"
+    [one] = [line for line in planned(f"{target}-four-bar", "SPECTRA=motor", "EVERY=1") if line.startswith(stage)]
+    assert one == f"{stage} four_bar --spectra=motor --every"
+
+
 def test_a_contact_sheet_is_of_drafts_unless_asked_otherwise() -> None:
     assert planned("contact-four-bar")[-1] == "contact four_bar --preset draft"
     assert planned("contact-four-bar", "PRESET=preview")[-1] == "contact four_bar --preset preview"
@@ -325,7 +336,9 @@ def test_without_uv_and_without_a_network_the_remedy_is_told(tree: Tree) -> None
 def fake_make(folder: Path, *failing: str) -> Path:
     """Stands for make in run_all.sh: fails for the named targets."""
     script = folder / "make"
-    script.write_text(f'#!/bin/sh\necho "made $2 $3"\ncase " {" ".join(failing)} " in *" $2 "*) exit 1;; esac\n')
+    script.write_text(
+        f'#!/bin/sh\necho "made $2 $3 EVERY=$EVERY"\ncase " {" ".join(failing)} " in *" $2 "*) exit 1;; esac\n'
+    )
     script.chmod(0o755)
     return script
 
@@ -338,7 +351,7 @@ def test_run_all_goes_on_after_a_failure_and_sums_up(tmp_path: Path) -> None:
     (tmp_path / "mechanisms" / "not_one").mkdir()
     done = run("sh", "tools/run_all.sh", str(fake_make(tmp_path)), "draft", cwd=tmp_path)
     assert done.returncode == 0
-    assert done.stdout.count("PRESET=draft") == 3
+    assert done.stdout.count("PRESET=draft EVERY=1") == 3  # what one of them lacks is no failure
     assert done.stdout.endswith("run-all: 3 done\n")
     done = run("sh", "tools/run_all.sh", str(fake_make(tmp_path, "run-b_linkage")), "final", cwd=tmp_path)
     assert done.returncode == 1

@@ -14,10 +14,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mechanisms.geneva_drive.mechanism import Params, build
+from mechanisms.motion_file import to_motion
 from render.describe import Film
 from render.glb.build import glb
 from render.rollers import turned
-from shared.contract import BodyMotion, JointMotion, Motion, Rolling, Shape, read_motion, read_parts, write_parts
+from shared.contract import (
+    BodyMotion,
+    ContactMotion,
+    JointMotion,
+    Motion,
+    Rolling,
+    Shape,
+    read_motion,
+    read_parts,
+    write_parts,
+)
 from shared.errors import UserError
 from shared.shot import Shot
 from tests import film_fixture
@@ -95,8 +107,66 @@ def test_in_a_slot_it_rolls_on_the_wall_that_pushes_it():
     rate = np.gradient(made, TIME)
     assert rate[5:95] == pytest.approx(-3.0)  # like a wheel on a floor
     assert rate[105:195] == pytest.approx(3.0)
-    idle = turned(motion({"slider": body(x, ZERO, ZERO)}, joint("pin_in_slot", bodies)), "slider", rolling(0.01))
-    assert np.abs(np.gradient(idle, TIME)) == pytest.approx(3.0)
+    late = joint("pin_in_slot", bodies, fy=np.where(TIME < 1.0, 0.0, push))
+    waits = np.gradient(turned(motion({"slider": body(x, ZERO, ZERO)}, late), "slider", rolling(0.01)), TIME)
+    assert not waits[:95].any()  # no reaction yet: nothing tells a wall
+    assert waits[105:195] == pytest.approx(3.0)
+
+
+def test_without_a_reaction_a_roller_rests_on_its_body():
+    for kind, shape in (("pin_in_slot", {}), ("geneva", {"slots": 4, "pin_radius": 0.03}), ("revolute", {})):
+        idle = joint(kind, ("ground", "slider"), **shape)
+        assert not turned(motion({"slider": body(0.03 * TIME, ZERO, TIME)}, idle), "slider", rolling(0.01)).any()
+
+
+@given(st.floats(0.1, 0.5), st.sampled_from([-1.0, 1.0]))
+def test_on_a_bent_slot_it_rolls_on_the_side_that_pushes_it(speed: float, side: float):
+    """A pin on an arm runs in a circular slot of ground: on its outer wall, or on its inner one."""
+    way, roller, turn = 0.05, 0.01, speed * TIME
+    circle = [(way * math.cos(a), way * math.sin(a)) for a in np.linspace(0, math.tau, 721)[:-1]]
+    curve = joint("point_on_curve", ("ground", "arm"), outline=circle, outline_closed=True)
+    push = msgspec.structs.replace(
+        curve, fx=(-side * np.cos(turn)).tolist(), fy=(-side * np.sin(turn)).tolist()
+    )  # from the outer wall: towards the middle
+    made = turned(motion({"arm": body(ZERO, ZERO, turn)}, push), "arm", rolling(roller, x=way))
+    outer = -side * (way + side * roller) / roller
+    assert made == pytest.approx((outer - 0.0) * turn, abs=2e-2 * speed)
+
+
+def test_a_geneva_pin_rolls_on_the_flank_it_pushes_and_rests_while_the_wheel_is_locked():
+    m = build(Params())
+    for one in (m.bodies["crank"], m.bodies["wheel"]):
+        one.mass, one.inertia = 1.0, 1e-3
+    seen = to_motion(m.sweep(steps=1440), None, "", {}, {})
+    told, crank, wheel = seen.joints["index"], seen.bodies["crank"], seen.bodies["wheel"]
+    assert told.shape is not None
+    radius, roller = told.shape.pin_radius, 0.008
+    assert radius is not None
+    made = turned(seen, "crank", Rolling(joint="index", x=radius, y=0.0, radius=roller, marks=720))
+    turn, time = np.asarray(crank.theta), np.asarray(seen.time)
+    rate, late = np.gradient(made, time), np.cos(turn) - math.cos(math.pi / 4)  # above zero while the pin is in a slot
+    assert np.abs(rate[late < -5e-2]).max() < 1e-9
+    slides = np.gradient(np.hypot(radius * np.cos(turn) - Params().distance, radius * np.sin(turn)), time)
+    flank = np.sign(told.torque)  # 1: the pin pushes to its left, seen from the wheel
+    expected = flank * slides / roller + np.asarray(wheel.omega) - np.asarray(crank.omega)
+    inner = (late > 5e-2) & (np.gradient(flank) == 0)
+    assert inner.sum() > 120
+    assert rate[inner] == pytest.approx(expected[inner], abs=1e-2 * np.abs(expected).max())
+
+
+def test_a_roller_that_has_left_its_cam_turns_on():
+    """A round cam under a roller that stands still: they touch from 0.5 s to 1 s."""
+    seen = round_cam(2.0, 0.04, 0.02, 0.0)
+    state = ["closed" if 0.5 <= t <= 1.0 else "open" for t in TIME]
+    was = seen.joints["contact"]
+    assert was.shape is not None
+    series = {name: ZERO.tolist() for name in ("x", "y", "fx", "fy", "torque", "gap", "rate", "normal", "friction")}
+    touch = ContactMotion(kind="rigid_terrain", bodies=was.bodies, state=state, shape=was.shape, **series)  # pyright: ignore[reportArgumentType]
+    free = msgspec.structs.replace(seen, joints={}, contacts={"contact": touch})
+    rate = np.gradient(turned(free, "follower", rolling(0.02)), TIME)
+    assert not rate[:48].any()
+    assert rate[52:98] == pytest.approx(-4.0, rel=1e-3)
+    assert rate[102:] == pytest.approx(-4.0, rel=1e-3)
 
 
 def test_a_period_ends_with_the_roller_as_it_was_and_other_joints_turn_nothing():

@@ -16,7 +16,7 @@ from mbsd import Mechanism, constant_rate
 from mechanisms.motion_file import to_motion
 from render import plots
 from render.crank import crank_of
-from render.plots import figures
+from render.plots import compare, figures
 from render.plots.asked import spectra_asked
 from render.plots.beside_spectra import spectra_figure
 from render.plots.horizon import horizon
@@ -230,6 +230,27 @@ def test_other_words_are_refused(mechanism_py: Path, written: str, said: str) ->
     mechanism_py.write_text(f"{written}\n")
     with pytest.raises(UserError, match=said):
         plots.run("four_bar")
+
+
+def test_what_every_mechanism_is_asked_for_is_left_out_where_it_is_not(mechanism_py: Path) -> None:
+    with pytest.raises(UserError, match="SPECTRA asks for 'valve'"):
+        plots.run("four_bar", "valve,motor")
+    plots.run("four_bar", "valve,motor", every=True)
+    assert spectra_of(Out("four_bar")) == ["spectrum-motor"]
+    mechanism_py.write_text("SPECTRA = ('shaking forc',)\n")
+    with pytest.raises(UserError, match="SPECTRA asks for 'shaking forc'"):
+        plots.run("four_bar", every=True)
+
+
+def test_variants_are_compared_in_the_spectra_that_are_asked_for(mechanism_py: Path) -> None:
+    compare.run("four_bar")
+    out = Out("four_bar")
+    assert not (out.compare / "spectra.png").exists()
+    compare.run("four_bar", "motor")
+    assert (out.compare / "spectra.png").is_file()
+    with pytest.raises(UserError, match="SPECTRA asks for 'valve'"):
+        compare.run("four_bar", "motor,valve")
+    compare.run("four_bar", "motor,valve", every=True)
 
 
 def test_a_file_that_does_not_parse_asks_for_nothing(mechanism_py: Path) -> None:

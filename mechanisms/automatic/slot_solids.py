@@ -14,7 +14,7 @@ from shared.shapes import outline
 from shared.shapes.band import band, loop
 from shared.shapes.build import eased, extruded
 from shared.shapes.link import Eye
-from shared.shapes.pin import grooved, pin, washer
+from shared.shapes.pin import Head, grooved, pin, washer
 from shared.shapes.solid import Roll, Solid, placed
 
 if TYPE_CHECKING:
@@ -27,9 +27,13 @@ if TYPE_CHECKING:
 GROOVES, GROOVE, GROOVE_DEPTH = 6, 2.6, 1.6
 """Grooves for oil in the face of a roller, by which one sees it turn: how many, width and depth (rmm)."""
 RIM = 1.0
-"""Between grooves and the roller's rim (rmm)."""
+"""Between grooves and the rim of a large roller (rmm); in a small one they go through."""
 SEEN = 2.0
-"""How far the face of a roller with grooves reaches beyond the head of its pin (rmm)."""
+"""How far the face of a large roller reaches beyond the head of its pin (rmm)."""
+SMALL = Head(10.4, 3.2, 1.0)
+"""Of the pin of a small roller, whose face shows round it (rmm)."""
+SMALL_GROOVE = 1.7
+"""Width of the grooves of a small roller (rmm)."""
 PIECES = 24
 """About so many straight pieces stand for a curved slot."""
 CHANNEL = 4.6
@@ -108,13 +112,15 @@ def slot_pin(
     low, high = heights.bottom(slot.layer), heights.top(slot.layer)
     below = slot.pin == "ground" or heights.bottom(slot.pin) < low
     thick = (heights.thickness if depth is None else depth - 0.4) - 0.4
-    roller, roll = washer(pivot.pin + fit.running, outer, thick, chamfer=0.4), None
-    if roller_diameter is not None and outer > sizes.head.diameter + 2 * SEEN:
-        roller = grooved(roller, GROOVES, outer / 2 - RIM, GROOVE, GROOVE_DEPTH)
-        roll = Roll(slot.name, x, y, outer / 2, GROOVES)
+    large = outer > sizes.head.diameter + 2 * SEEN
+    reach, width = (outer / 2 - RIM, GROOVE) if large else (outer, SMALL_GROOVE)
+    roller = washer(pivot.pin + fit.running, outer, thick, chamfer=0.4)
+    roller = grooved(roller, GROOVES, reach, width, GROOVE_DEPTH)
+    roll = Roll(slot.name, x, y, outer / 2, GROOVES)
     at = low + 0.2 if below else high - 0.2 - thick
     plan.add(slot.pin, Solid(f"roller_{slot.name}", placed(roller, x, y, at), "bronze", 1, rolls=roll))
-    end, head = (high + fit.axial, sizes.head) if depth is None else (low + depth - 0.4, None)
+    head = None if depth is not None else SMALL if below and not large else sizes.head
+    end = high + fit.axial if depth is None else low + depth - 0.4
     if slot.pin == "ground":
         height = low - fit.axial - pivot.washer_room
         standing(slot.name, (x, y), height, plan)

@@ -21,11 +21,12 @@ READ = [
 ]
 
 
-def run(name: str, spectra: str = "") -> None:
+def run(name: str, spectra: str = "", every: bool = False) -> None:
     """Draw every plot of one mechanism, if the motion or the drawing code changed; same motion, same bytes.
 
     ``spectra``: names of quantities, commas between them, instead of those of mechanism.py. Raises UserError if
-    data.json is missing or does not hold together, and for a spectrum of what there is not.
+    data.json is missing or does not hold together, and for a spectrum of what there is not, unless ``every``
+    mechanism is asked for the same.
     """
     out = Out(name)
     motion, skeleton = read_motion(out.motion, out.name), read_skeleton(out.skeleton)
@@ -34,7 +35,7 @@ def run(name: str, spectra: str = "") -> None:
             f"{out.name}: {out.skeleton} is of another motion than {out.motion.name}; "
             f"run make solve-{out.name.replace('_', '-')}"
         )
-    names = [*plots_of(motion), *_spectra(motion, out.name, spectra)]
+    names = [*plots_of(motion), *_spectra(motion, out.name, spectra, every)]
     outputs = {plot: out.plots / f"{plot}.png" for plot in names}
     sources = sources_hash(Path(__file__).parent, *READ)
     key = key_of(out.motion, out.skeleton, sources, names, versions("matplotlib", "numpy", "scipy"))
@@ -70,14 +71,14 @@ def plots_of(motion: Motion) -> list[str]:
     return names + [f"slider-{name}" for name, body in motion.bodies.items() if _only_slides(body.theta)]
 
 
-def _spectra(motion: Motion, name: str, words: str) -> list[str]:
+def _spectra(motion: Motion, name: str, words: str, every: bool) -> list[str]:
     """Plots of the spectra that are asked for; a variant may lack what mechanism.py names."""
     asked = spectra_asked(name, words)
     if not asked:
         return []
     from render.plots.quantities import known_names, refuse_unknown
 
-    if words or variant_of(name) is None:
+    if not (every and words) and (words or variant_of(name) is None):
         refuse_unknown(motion, asked)
     known = known_names(motion)
     return [f"spectrum-{one.replace(' ', '-')}" for one in asked if one in known]

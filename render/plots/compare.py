@@ -17,10 +17,11 @@ from shared.paths import Out, compared, owner_of
 from shared.stages import Stage, key_of, versions
 
 
-def run(name: str) -> None:
+def run(name: str, spectra: str = "", every: bool = False) -> None:
     """Draw what the variants of a mechanism do beside each other, if a motion or the drawing code changed.
 
-    Raises UserError for a mechanism without variants, and where one is not solved yet.
+    ``spectra`` as in :func:`render.plots.run`. Raises UserError for a mechanism without variants, where one is not
+    solved yet, and for a spectrum of what none of them has, unless ``every`` mechanism is asked for the same.
     """
     owner = owner_of(name)
     out = Out(owner)
@@ -29,7 +30,7 @@ def run(name: str) -> None:
         if not file.is_file():
             target = owner.replace("_", "-")
             raise UserError(f"{owner}: {file} of '{variant}' is missing; run make compare-{target}")
-    asked = spectra_asked(owner)
+    asked = spectra_asked(owner, spectra)
     key = key_of(
         asked,
         *files,
@@ -43,11 +44,14 @@ def run(name: str) -> None:
         return
     from render.plots.beside import figures
     from render.plots.beside_spectra import spectra_figure
+    from render.plots.quantities import refuse_unknown_in_all
 
     motions: dict[str, Motion] = {variant: read_motion(file) for variant, file in files.items()}
+    if spectra and not every:
+        refuse_unknown_in_all(list(motions.values()), asked)
     drawn = figures(owner, motions)
-    if (spectra := spectra_figure(owner, motions, asked)) is not None:
-        drawn["spectra"] = spectra
+    if (harmonics := spectra_figure(owner, motions, asked)) is not None:
+        drawn["spectra"] = harmonics
     outputs = {plot: out.compare / f"{plot}.png" for plot in drawn}
     for plot, path in outputs.items():
         with whole_file(path) as temporary:

@@ -53,6 +53,12 @@ def refuse_unknown(motion: Motion, names: Sequence[str]) -> None:
             )
 
 
+def refuse_unknown_in_all(motions: Sequence[Motion], names: Sequence[str]) -> None:
+    """Raise UserError for a name that is no quantity of any of the motions."""
+    known = {name for motion in motions for name in known_names(motion)}
+    refuse_unknown(motions[0], [name for name in names if name not in known])
+
+
 def known_names(motion: Motion) -> list[str]:
     """All names of quantities."""
     own = [motion.joints, motion.drivers, motion.forces, motion.points, motion.bodies]

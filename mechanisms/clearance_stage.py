@@ -50,7 +50,7 @@ PACKAGES = ("manifold3d", "numpy")
 SOURCES = [
     *(ROOT / "mechanisms" / name for name in ("clearance", "clearance_stage.py", "parts_files.py")),
     *sorted((ROOT / "shared").glob("contract*.py")),
-    *(ROOT / "shared" / f"{name}.py" for name in ("clearance", "jsonfile")),
+    *(ROOT / "shared" / f"{name}.py" for name in ("clearance", "jsonfile", "spanning")),
 ]
 
 
@@ -83,8 +83,9 @@ def check(
     from mechanisms.clearance.path import paths
     from mechanisms.clearance.search import RESOLUTION
     from mechanisms.clearance.sweep import Sweep
+    from shared.spanning import with_rods
 
-    name = parts.mechanism
+    name, motion = parts.mechanism, with_rods(motion, parts)
     lost = sorted({piece.body for piece in pieces} - {"ground"} - set(motion.bodies))
     if lost:
         raise UserError(
@@ -93,7 +94,7 @@ def check(
         )
     where = paths(motion)
     far = bodies.far_bodies(pieces, where, reach)
-    axes, in_mesh = _axes(motion, where), meshes(motion, pieces)
+    axes, in_mesh = _axes(motion, parts, where), meshes(motion, pieces)
     pairs: list[PairClearance] = []
     refused: list[tuple[Sweep, Least]] = []
     apart, error = 0, 0.0
@@ -139,11 +140,11 @@ def check(
     )
 
 
-def _axes(motion: Motion, where: dict[str, BodyPath]) -> Axes:
-    """For bodies that revolute joints connect: the axis as a point (mm) in the frame of either."""
+def _axes(motion: Motion, parts: Parts, where: dict[str, BodyPath]) -> Axes:
+    """For bodies that a revolute joint or a rod's end connects: the axis as a point (mm) in the frame of either."""
     import numpy as np
 
-    from mechanisms.clearance.path import relative
+    from mechanisms.clearance.path import points, relative
 
     found: Axes = {}
     for joint in motion.joints.values():
@@ -153,6 +154,13 @@ def _axes(motion: Motion, where: dict[str, BodyPath]) -> Axes:
         seen = {body: relative(at, where[body].pose)[:, :2] for body in joint.bodies}
         if all(np.ptp(point, axis=0).max() < 1e-4 for point in seen.values()):
             found[frozenset(joint.bodies)] = {body: point.mean(axis=0) for body, point in seen.items()}
+    for rod, described in parts.bodies.items():
+        for end in described.spans or ():
+            own = np.array([end.x, end.y]) * mm(1)
+            at = points(where[end.body].pose, own)
+            point = relative(np.column_stack([at, np.zeros(len(at))]), where[rod].pose)[:, :2]
+            if np.ptp(point, axis=0).max() < 1e-4:
+                found[frozenset((rod, end.body))] = {rod: point.mean(axis=0), end.body: own}
     return _with_common_pins(found)
 
 

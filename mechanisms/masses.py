@@ -9,7 +9,7 @@ from shared.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
-    from shared.contract import Parts
+    from shared.contract import BodyParts, Parts
 
 Source = Literal["mechanism", "parts", "estimate"]
 TOLD = 8
@@ -28,7 +28,7 @@ def give_masses(m: Mechanism, parts: Parts | None) -> tuple[dict[str, Source], l
     if parts is not None:
         _refuse_other_bodies(m, parts)
     given = [name for name, body in m.bodies.items() if body.mass_given or body.mass > 0 or body.inertia > 0]
-    solids = parts.bodies if parts is not None else {}
+    solids = bodies_of(parts) if parts is not None else {}
     source: dict[str, Source] = {}
     for name in m.bodies:
         if name != "ground":
@@ -38,16 +38,24 @@ def give_masses(m: Mechanism, parts: Parts | None) -> tuple[dict[str, Source], l
         return source, sentences
     for name in source:
         if source[name] == "parts":
-            mass = parts.bodies[name].mass
+            mass = solids[name].mass
             m.set_mass(name, mass.mass, mass.com, mass.inertia)
     differing = [
-        f"{name} {m.bodies[name].mass:.4g} kg (parts {parts.bodies[name].mass.mass:.4g} kg)"
+        f"{name} {m.bodies[name].mass:.4g} kg (parts {solids[name].mass.mass:.4g} kg)"
         for name in source
         if source[name] == "mechanism" and name in solids and _differ(m.bodies[name].mass, solids[name].mass.mass)
     ]
     if differing:
         sentences.append(f"masses of mechanism.py count, not those of the parts: {_some(differing)}")
+    rods = [f"{name} {one.mass.mass:.4g} kg" for name, one in parts.bodies.items() if name not in solids]
+    if rods:
+        sentences.append(f"rods have no mass in the motion, because distance joints have none: {_some(rods)}")
     return source, sentences
+
+
+def bodies_of(parts: Parts) -> dict[str, BodyParts]:
+    """The bodies of parts.json without its rods, which are none of mechanism.py."""
+    return {name: one for name, one in parts.bodies.items() if one.spans is None}
 
 
 def _estimate(m: Mechanism, names: list[str], left_out: bool) -> list[str]:
@@ -76,7 +84,7 @@ def _differ(one: float, other: float) -> bool:
 
 def _refuse_other_bodies(m: Mechanism, parts: Parts) -> None:
     bodies = set(m.bodies) - {"ground"}
-    solids = {*parts.bodies, *parts.without_solids} - {"ground"}
+    solids = {*bodies_of(parts), *parts.without_solids} - {"ground"}
     for missing, where, there in ((bodies - solids, "parts.py", solids), (solids - bodies, "mechanism.py", bodies)):
         if missing:
             raise UserError(

@@ -11,14 +11,14 @@ from __future__ import annotations
 import hashlib
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mechanisms.loading import author_code, has, load, package_of, params
 from mechanisms.plain_values import plain_text
 from mechanisms.recording import recording
 from mechanisms.traced_params import fields_of, traced
 from shared.console import say, warn
-from shared.contract import BodyParts, Held, Parts, Piece, Provenance, Rolling, write_parts
+from shared.contract import BodyParts, End, Held, Parts, Piece, Provenance, Rolling, write_parts
 from shared.errors import UserError
 from shared.files import sources_hash, write_bytes
 from shared.inputs import Inputs, observed
@@ -26,6 +26,9 @@ from shared.materials import MATERIALS
 from shared.paths import ROOT, Out, mechanism_folder
 from shared.shapes.units import metres
 from shared.stages import Stage, key_of, versions
+
+if TYPE_CHECKING:
+    from shared.shapes.bodies import Place
 
 _STAGE = ("parts_stage", "parts_files", "returned_parts", "mass_properties", "mesh_check", "traced_params")
 _SHARED = ("contract", "contract_base", "contract_parts", "jsonfile")
@@ -62,7 +65,8 @@ def run(name: str) -> None:
         inputs = inputs.joined(mechanism).joined(recorder.inputs())
     key = _key(given, reads, inputs, by_itself)
     files: dict[str, bytes] = {}
-    described = {body: _body(out.name, body, solids, files) for body, solids in bodies.items()}
+    rods = getattr(bodies, "rods", {})
+    described = {body: _body(out.name, body, solids, files, rods.get(body)) for body, solids in bodies.items()}
     document = Parts(
         mechanism=out.name,
         provenance=Provenance(inputs=key, versions=versions(*PACKAGES)),
@@ -152,12 +156,21 @@ def _build(name: str, given: Any) -> tuple[dict[str, list[Any]], list[str], Inpu
     return bodies, sorted(seen), loaded.joined(recorder.inputs())
 
 
-def _body(name: str, body: str, solids: list[Any], files: dict[str, bytes]) -> BodyParts:
+def _body(
+    name: str, body: str, solids: list[Any], files: dict[str, bytes], places: tuple[Place, Place] | None
+) -> BodyParts:
     from mechanisms.mass_properties import combined
 
     pieces = {solid.name: _piece(name, body, solid, files) for solid in solids}
     main = pieces[solids[0].name]
-    return BodyParts(pieces=pieces, mass=combined(piece.mass for piece in pieces.values()), z=(sum(main.z_range)) / 2)
+    mass = combined(piece.mass for piece in pieces.values())
+    return BodyParts(pieces=pieces, mass=mass, z=(sum(main.z_range)) / 2, spans=places and spans(places))
+
+
+def spans(places: tuple[Place, Place]) -> tuple[End, End]:
+    """The places (mm) that a rod joins, as parts.json has them."""
+    first, second = (End(body=body, x=metres(x), y=metres(y)) for body, x, y in places)
+    return first, second
 
 
 def _piece(name: str, body: str, solid: Any, files: dict[str, bytes]) -> Piece:

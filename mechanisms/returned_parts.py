@@ -54,3 +54,9 @@ def _refuse_unknown(name: str, bodies: Bodies) -> None:
                     f"{name}: may_touch{pair} names '{body}', which has no solids; there is: {', '.join(bodies)}"
                     f"{did_you_mean(body, bodies)}"
                 )
+    for rod in sorted(bodies.rods):
+        if rod not in bodies:
+            raise UserError(
+                f"{name}: join_places names '{rod}', which has no solids; there is: {', '.join(bodies)}"
+                f"{did_you_mean(rod, bodies)}"
+            )

@@ -15,7 +15,7 @@ from shared.stages import key_of
 if TYPE_CHECKING:
     from render.describe import Film
 
-SHARED = ("belt_path", "contract", "materials", "shot")
+SHARED = ("belt_path", "contract", "materials", "shot", "spanning")
 """Files of shared/ that decide what is seen; the others say, write and check."""
 STAGE_OF = {"motion": "solve", "parts": "parts", "shot": "run"}
 
@@ -69,7 +69,9 @@ def read_film(out: Out, show: str = "") -> Film:
     from render.describe import Film
     from shared.contract import read_motion, read_parts
     from shared.shot import read_shot, shown
+    from shared.spanning import with_rods
 
     refuse_missing(out)
     shot = shown(read_shot(out.shot), show)
-    return Film(read_motion(out.motion, out.name), read_parts(out.parts, out.name), shot, out.parts_folder)
+    parts = read_parts(out.parts, out.name)
+    return Film(with_rods(read_motion(out.motion, out.name), parts), parts, shot, out.parts_folder)

@@ -1,4 +1,6 @@
-"""What changes its shape as it moves: coils of springs, cylinder and rod of dampers, ropes. As tubes along paths."""
+"""What changes its shape as it moves: coils of springs, cylinder and rod of dampers and linear drivers, ropes. As
+tubes along paths.
+"""
 
 from __future__ import annotations
 
@@ -72,9 +74,9 @@ def stretched(
 ) -> Iterator[Stretched]:
     """All springs, dampers, cylinders and ropes between two points that move apart or together.
 
-    ``held`` are those whose ends have parts, by name; what acts along an axis (gas) is drawn only if it is held. Of
-    the others ``height(shape, radius)`` says where one of that radius lies (m), and how far down the pin at each end
-    reaches.
+    ``held`` are those whose ends have parts, by name; what acts along an axis (gas) and drivers of a distance are drawn
+    only if they are held. Of the others ``height(shape, radius)`` says where one of that radius lies (m), and how far
+    down the pin at each end reaches.
     """
     gravity = np.array([*motion.gravity, 0.0])
     strength = float(np.linalg.norm(gravity))
@@ -96,15 +98,22 @@ def stretched(
             continue
         z, feet = height(force.shape, radius)
         yield Stretched(name, force.shape, z, [*tubes, *_pins(name, force.shape, PIN * WIRE * radius, z, feet)])
+    for name, driver in motion.drivers.items():
+        own = held.get(name)
+        if own and driver.kind == "distance" and driver.shape is not None and min(driver.value) > 0:
+            tubes = _cylinder(name, 0.6 * own.radius, min(driver.value), max(driver.value))
+            yield Stretched(name, driver.shape, own.z, tubes)
     for name, contact in motion.contacts.items():
         if contact.kind == "rope" and contact.shape.length:
-            z, feet = height(contact.shape, ROPE * size)
-            rope = _tube(name, FIBRE, ROPE * size, ROPE_POINTS)
-            length = contact.shape.length
+            own, length = held.get(name), contact.shape.length
+            radius = own.radius if own else ROPE * size
             path: Path = lambda a, b, length=length: sagging(a, b, length, down)  # noqa: E731
-            yield Stretched(
-                name, contact.shape, z, [(rope, path), *_pins(name, contact.shape, PIN * ROPE * size, z, feet)]
-            )
+            rope = _tube(name, FIBRE, radius, ROPE_POINTS), path
+            if own:
+                yield Stretched(name, contact.shape, own.z, [rope])
+                continue
+            z, feet = height(contact.shape, radius)
+            yield Stretched(name, contact.shape, z, [rope, *_pins(name, contact.shape, PIN * radius, z, feet)])
 
 
 def helix(a: Array, b: Array, radius: float, turns: int, hook: float = HOOK) -> Array:

@@ -21,7 +21,7 @@ from shared.contract_motion import (
     Motion,
     PointMotion,
 )
-from shared.contract_parts import PARTS_UNITS, BodyParts, Held, Mass, Parts, Piece, Rolling
+from shared.contract_parts import PARTS_UNITS, BodyParts, End, Held, Mass, Parts, Piece, Rolling
 from shared.errors import UserError
 
 __all__ = [
@@ -34,6 +34,7 @@ __all__ = [
     "ContactMotion",
     "Diagnostics",
     "DriverMotion",
+    "End",
     "Energy",
     "EventMark",
     "ForceMotion",

@@ -57,6 +57,14 @@ class Piece(Strict, kw_only=True):
     """Null of what does not turn against its body."""
 
 
+class End(Strict, kw_only=True):
+    """A place (m) of a body of data.json, or of ground, in its frame: where a rod has its eye."""
+
+    body: str
+    x: float
+    y: float
+
+
 class BodyParts(Strict, kw_only=True):
     """All pieces that move with one body, and their mass together. ``ground`` is the frame."""
 
@@ -64,6 +72,9 @@ class BodyParts(Strict, kw_only=True):
     mass: Mass
     z: float
     """Middle height of the body's main piece (m)."""
+    spans: tuple[End, End] | None = None
+    """Of a rod, which is no body of data.json: the places of two bodies that it joins. Its frame is at the first, its x
+    axis goes to the second (shared/spanning.py). Null of bodies."""
 
 
 class Parts(Strict, kw_only=True):

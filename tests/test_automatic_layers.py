@@ -11,6 +11,7 @@ import pytest
 from mbsd import Mechanism, MechanismError
 from mechanisms.automatic.automatic import Automatic
 from mechanisms.automatic.bridges import Bridge
+from mechanisms.automatic.features import KINDS
 from mechanisms.automatic.items import Item, Reach, spans_meet
 from mechanisms.automatic.planar import Rounded, around, convex_hull, core_gaps, disc, least_gap
 from mechanisms.automatic.sizes import sizes, standard
@@ -175,7 +176,8 @@ def test_pins_are_thinner_where_thick_ones_leave_no_order() -> None:
         assert not any(isinstance(feature, Bridge) for feature in made.layout.features)
 
 
-def test_a_kind_without_parts_is_refused_by_name() -> None:
+def test_a_kind_without_parts_is_refused_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(KINDS, "distance")
     m = Mechanism("rodded")
     a, b = m.bar("a", 0.05), m.bar("b", 0.05)
     m.revolute("A", m.ground.at(0, 0), a.start)

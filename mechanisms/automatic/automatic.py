@@ -20,10 +20,11 @@ from mechanisms.automatic.free_bodies import free_bodies
 from mechanisms.automatic.gathered import gathered
 from mechanisms.automatic.heights import Heights, heights
 from mechanisms.automatic.layout import Layout, Springs
-from mechanisms.automatic.looks import materials
+from mechanisms.automatic.looks import ROD, materials
 from mechanisms.automatic.marks import Wish, place, refuse_letters
 from mechanisms.automatic.motion import poses_of, times_of
 from mechanisms.automatic.points import styluses, weights
+from mechanisms.automatic.rods import add_poses, places
 from mechanisms.automatic.sizes import Sizes, of_pin, refuse_sizes, sizes
 from mechanisms.automatic.wished_names import refuse_material, refuse_unknown
 from shared.errors import UserError
@@ -120,7 +121,7 @@ class Automatic:
             raise UserError(
                 f"{self.m.name}: '{body}' has a material, a layer, a word or solids, so it cannot be left out too"
             )
-        if len(self._left_out) + 2 == len(self.m.bodies):
+        if body in self.m.bodies and len(self._left_out & self.m.bodies.keys()) + 2 == len(self.m.bodies):
             raise UserError(f"{self.m.name}: without '{body}' nothing that moves is left; keep one body")
         self._left_out.add(body)
         self._plan_anew()
@@ -178,8 +179,10 @@ class Automatic:
         from shared.shapes.bodies import Bodies
 
         made = Bodies(built(self.plan(), self.heights) | self._replaced)
-        for body in self.layout.apart:
+        for body in self.layout.apart.intersection(self.m.bodies):
             made.leave_out(body)
+        for rod, joint in self.layout.rods.items():
+            made.join_places(rod, *places(joint))
         for first, second in map(tuple, self.layout.touching | self.layout.pressing):
             if first in made and second in made:
                 made.may_touch(first, second)
@@ -195,8 +198,9 @@ class Automatic:
         """Eyes, feet and hardware, before plates and base are built."""
         from mechanisms.automatic.plan import Plan
 
-        plan = Plan(self.layout, materials(self.m) | self._materials)
-        plan.reserve([*self.m.bodies, "base_plate"])
+        rods = dict.fromkeys(self.layout.rods, ROD)
+        plan = Plan(self.layout, materials(self.m) | rods | self._materials)
+        plan.reserve([*self.m.bodies, *rods, "base_plate"])
         for feature in self.layout.features:
             feature.build(plan, self.heights)
         place(self._marks, plan)
@@ -217,6 +221,7 @@ class Automatic:
         layout = Layout(self.m, size, poses, times_of(self.solution), springs)
         layout.apart = frozenset(self._left_out)
         layout.touching = frozenset(map(frozenset, self._touching))
+        add_poses(layout)
         layout.features = gathered(layout)
         layout.features += free_bodies(layout)
         layout.features += weights(layout, heavy=True)

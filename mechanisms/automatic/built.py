@@ -11,6 +11,7 @@ import cadquery as cq
 from mechanisms.automatic.body_shape import PlacedEye, body_shape
 from mechanisms.automatic.frame import base
 from mechanisms.automatic.marks import marked
+from mechanisms.automatic.rods import rod_shape
 from mechanisms.automatic.yoke_shape import yoke_shape
 from shared.shapes.build import extruded
 from shared.shapes.link import Eye, with_eyes
@@ -42,6 +43,8 @@ def _plate(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
     if body in plan.wheels:
         return _geared(plan, body, thickness)
     eyes = plan.eyes.get(body, [])
+    if body in plan.layout.rods:
+        return rod_shape(eyes, thickness)
     eyes = [*eyes, *_blanks(plan, body, eyes)]
     plates = plan.plates.get(body, [])
     if not plates:

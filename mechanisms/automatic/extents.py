@@ -12,12 +12,17 @@ import numpy as np
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
     from mbsd.body import Marker
+    from mbsd.force import Force
     from mbsd.joint import Joint
 
 LINK, STUD = 22.0, 18.0
 """Least distances of two pins of one body, and of a spring's stud and a pin or stud beside it (rmm)."""
+PINNED = ("revolute", "distance")
+"""Kinds of joints with a pin on either body."""
 STRETCHING = ("spring", "spring_law", "curve_of_length", "actuator", "gas")
 """Kinds of forces that act along the line of two points, or along an axis on which both may be."""
+ROPE, LINEAR = "rope", "drive_distance"
+"""The kinds of contact and of driver that do."""
 NEAR = 0.02
 """Studs that are nearer to each other, as a part of the whole, are on one place, or do not decide the scale."""
 
@@ -62,7 +67,7 @@ def extents(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) ->
             if marker.body.name in left_out:
                 continue
             places.setdefault(marker.body.name, []).append((marker.x, marker.y))
-            if joint.kind.name == "revolute" or (joint.kind.name == "pin_in_slot" and marker is joint.j):
+            if joint.kind.name in PINNED or (joint.kind.name == "pin_in_slot" and marker is joint.j):
                 pinned.setdefault(marker.body.name, []).append((marker.x, marker.y))
     for thing in (*m.joints.values(), *m.contacts.values(), *m.forces.values()):
         if thing.kind.name in EXTENTS and not any(body in left_out for body in thing.bodies):
@@ -71,11 +76,10 @@ def extents(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) ->
             for marker, radius in own.radii:
                 round_it = [(marker.x + radius * u, marker.y + radius * v) for u, v in _ROUND]
                 places.setdefault(marker.body.name, []).extend(round_it)
-    for force in m.forces.values():
-        if force.kind.name in STRETCHING and not any(body in left_out for body in force.bodies):
-            for marker in (force.i, force.j):
-                places.setdefault(marker.body.name, []).append((marker.x, marker.y))
-                studs.setdefault(marker.body.name, []).append((marker.x, marker.y))
+    for one in stretching(m, left_out):
+        for marker in (one.i, one.j):
+            places.setdefault(marker.body.name, []).append((marker.x, marker.y))
+            studs.setdefault(marker.body.name, []).append((marker.x, marker.y))
     jointed = {name for joint in m.joints.values() for name in joint.bodies}
     for name, body in m.bodies.items():
         if name not in (*jointed, *left_out, "ground"):
@@ -91,6 +95,14 @@ def extents(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) ->
         beside = [math.dist(a, b) for i, a in enumerate(at) for b in [*at[:i], *pinned.get(body, [])]]
         least += [d * LINK / STUD for d in beside if d > NEAR * overall]
     return min((d for d in [*apart, *least] if d > 1e-3 * overall), default=overall), overall
+
+
+def stretching(m: Mechanism, left_out: Collection[str] = ()) -> list[Force | Joint]:
+    """Forces, ropes and drivers between two points that have parts at both ends."""
+    found: list[Force | Joint] = [force for force in m.forces.values() if force.kind.name in STRETCHING]
+    found += [contact for contact in m.contacts.values() if contact.kind.name == ROPE]
+    found += [driver for driver in m.drivers.values() if driver.kind.name == LINEAR]
+    return [one for one in found if not any(body in left_out for body in one.bodies)]
 
 
 _ROUND = [(np.cos(a), np.sin(a)) for a in np.linspace(0.0, 2 * np.pi, 16, endpoint=False)]

@@ -65,6 +65,10 @@ CONTACT_KINDS: dict[str, Gather[Joint]] = {}
 """By the name of a contact's kind. A contact whose kind is not here needs no part."""
 
 
+DRIVER_KINDS: dict[str, Gather[Joint]] = {}
+"""By the name of a driver's kind. A driver whose kind is not here needs no part: it is what turns a pin, or pushes."""
+
+
 def kind(name: str) -> Callable[[Gather[Joint]], Gather[Joint]]:
     """Enter the features of a kind of joint."""
     return _enter(KINDS, name)
@@ -78,6 +82,11 @@ def force_kind(name: str) -> Callable[[Gather[Force]], Gather[Force]]:
 def contact_kind(name: str) -> Callable[[Gather[Joint]], Gather[Joint]]:
     """Enter the features of a kind of contact."""
     return _enter(CONTACT_KINDS, name)
+
+
+def driver_kind(name: str) -> Callable[[Gather[Joint]], Gather[Joint]]:
+    """Enter the features of a kind of driver."""
+    return _enter(DRIVER_KINDS, name)
 
 
 def _enter[Thing](kinds: dict[str, Gather[Thing]], name: str) -> Callable[[Gather[Thing]], Gather[Thing]]:

@@ -85,7 +85,7 @@ def free_bodies(layout: Layout) -> list[Feature]:
     shaped = {body for joint in m.joints.values() for body in joint.bodies}
     others = [feature for feature in layout.features if not isinstance(feature, Stud)]
     shaped |= {item.body for feature in others for item in feature.items(layout)}
-    names = [name for name in layout.moving if name not in shaped]
+    names = [name for name in layout.bodies if name not in shaped]
     if not names:
         return []
     held = {a.body for feature in layout.features for a in feature.anchors(layout)}

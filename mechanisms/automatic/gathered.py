@@ -1,4 +1,6 @@
-"""The features of a mechanism: of its joints, forces and contacts by their kinds, and eyes where a body is left out."""
+"""The features of a mechanism: of its joints, forces, contacts and drivers by their kinds; eyes where a body is left
+out.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import mechanisms.automatic.kinds  # noqa: F401  (enters them)
-from mechanisms.automatic.features import CONTACT_KINDS, FORCE_KINDS, KINDS, Anchor, Feature, Need
+from mechanisms.automatic.features import CONTACT_KINDS, DRIVER_KINDS, FORCE_KINDS, KINDS, Anchor, Feature, Need
+from mechanisms.automatic.rods import KIND as ROD
 from shared.errors import UserError
 from shared.shapes.link import Eye
 
@@ -54,7 +57,7 @@ class LooseEye:
 
 
 def gathered(layout: Layout) -> list[Feature]:
-    """All features of joints, forces and contacts. Raises UserError for a kind of joint that has no parts."""
+    """All features of joints, forces, contacts and drivers. Raises UserError for a kind of joint that has no parts."""
     m = layout.m
     by_kind: dict[str, list[Joint]] = {}
     loose: list[Joint] = []
@@ -62,7 +65,7 @@ def gathered(layout: Layout) -> list[Feature]:
         kind = joint.kind.name
         if kind in SHAPELESS:
             continue
-        if layout.apart.intersection(joint.bodies):
+        if layout.apart.intersection(joint.bodies) or (kind == ROD and joint not in layout.rods.values()):
             loose.append(joint)
         elif kind not in KINDS:
             raise UserError(
@@ -76,13 +79,14 @@ def gathered(layout: Layout) -> list[Feature]:
     layout.features = list(features)  # springs look for pins that hold them
     features += _of(FORCE_KINDS, m, m.forces.values(), layout)
     features += _of(CONTACT_KINDS, m, m.contacts.values(), layout)
+    features += _of(DRIVER_KINDS, m, m.drivers.values(), layout)
     return features + _loose_eyes(loose, features, layout)
 
 
 def _of[Thing: (Force, Joint)](
     kinds: Mapping[str, Gather[Thing]], m: Mechanism, things: Iterable[Thing], layout: Layout
 ) -> list[Feature]:
-    """Of forces, or contacts, whose kinds have parts; the others need none."""
+    """Of forces, contacts or drivers whose kinds have parts; the others need none."""
     by_kind: dict[str, list[Thing]] = {}
     for thing in things:
         if thing.kind.name in kinds and not layout.apart.intersection(thing.bodies):
@@ -100,5 +104,5 @@ def _loose_eyes(joints: list[Joint], features: list[Feature], layout: Layout) ->
             beside = [*(a for a in taken if a.body == body), *(eye for eye in eyes if eye.body == body)]
             free = all(abs(other.x - x) > 0.02 or abs(other.y - y) > 0.02 for other in beside)
             if body in layout.moving and free:
-                eyes.append(LooseEye(body, x, y, joint.kind.name == "revolute"))
+                eyes.append(LooseEye(body, x, y, joint.kind.name in ("revolute", ROD)))
     return list(eyes)

@@ -12,11 +12,13 @@ import numpy as np
 from mechanisms.automatic.items import PIVOT, Item, Reach, spans_meet
 from mechanisms.automatic.layers import Problem
 from mechanisms.automatic.planar import Rounded, around, core_gaps, least_gap, placed
+from mechanisms.automatic.rods import rods_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from mbsd import Marker, Mechanism
+    from mbsd.joint import Joint
     from mechanisms.automatic.features import Anchor, Feature
     from mechanisms.automatic.items import Levels
     from mechanisms.automatic.rounds import Round
@@ -102,9 +104,19 @@ class Layout:
         return [*self.moving, *self.extra]
 
     @cached_property
-    def moving(self) -> list[str]:
-        """The bodies that need a layer."""
+    def rods(self) -> dict[str, Joint]:
+        """Joints that are rods, by the names of these; they move as bodies do."""
+        return rods_of(self.m, self.apart)
+
+    @cached_property
+    def bodies(self) -> list[str]:
+        """Those of the model that move and are not left out."""
         return [name for name in self.m.bodies if name != "ground" and name not in self.apart]
+
+    @cached_property
+    def moving(self) -> list[str]:
+        """The bodies and rods that need a layer."""
+        return [*self.bodies, *self.rods]
 
     def outline(self, body: str) -> Rounded:
         """The shape that holds a body's plate."""

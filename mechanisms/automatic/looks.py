@@ -9,6 +9,7 @@ if TYPE_CHECKING:
 
 DRIVEN = "aluminium_orange"
 ON_GROUND = ("aluminium_blue", "aluminium_red", "aluminium_green", "aluminium_violet")
+ROD = "steel"
 BETWEEN = ("aluminium", "aluminium_gold")
 FREE = ("aluminium_orange", "aluminium_blue", "aluminium_gold", "aluminium_green", "aluminium_red", "aluminium_violet")
 

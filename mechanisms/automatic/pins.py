@@ -1,4 +1,5 @@
-"""Revolute joints: links that turn about a common axis on one pin, with bushings, washers and circlip.
+"""Revolute joints: links that turn about a common axis on one pin, with bushings, washers and circlip. Rods (rods.py)
+turn about a pin at either end.
 
 Joints that share a place on a body share their pin. The lowest body holds it and its head is on top, or the highest
 holds it and it hangs down, kept by a circlip; on ground a pedestal holds it, or a bridge (bridges.py)."""
@@ -15,6 +16,8 @@ from mechanisms.automatic.features import Anchor, Feature, Need, kind
 from mechanisms.automatic.items import BASE, PIVOT, Item, PinReach, PivotReach
 from mechanisms.automatic.pin_solids import ground_pin, hanging_pin, moving_pin
 from mechanisms.automatic.planar import disc
+from mechanisms.automatic.rods import KIND as ROD
+from mechanisms.automatic.rods import ends as rod_ends
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
@@ -32,13 +35,10 @@ SAME = 0.02
 class Pin:
     """One axis: the place on each body that turns about it (rmm)."""
 
-    joints: tuple[Joint, ...]
+    name: str
+    """Of its first joint; of a rod alone its name and that of the end, 1 or 2."""
+    m: Mechanism
     places: dict[str, tuple[float, float]]
-
-    @property
-    def name(self) -> str:
-        """Of its first joint."""
-        return self.joints[0].name
 
     @cached_property
     def movers(self) -> tuple[str, ...]:
@@ -68,8 +68,7 @@ class Pin:
     @property
     def driven(self) -> bool:
         """Whether a driver turns what is on it against ground."""
-        m = self.joints[0].i.body.mechanism
-        drivers = m.drivers.values() if m else ()
+        drivers = self.m.drivers.values()
         return self.on_ground and any(d.kind.angular and set(d.bodies) <= set(self.places) for d in drivers)
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
@@ -122,19 +121,41 @@ class Pin:
 @kind("revolute")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
     """Joints by their pins: those with a common place on a body are one."""
-    ends = [{marker.body.name: layout.place(marker) for marker in (joint.i, joint.j)} for joint in joints]
-    group = list(range(len(joints)))
-    for j in range(len(joints)):
+    found = [(joint.name, {k.body.name: layout.place(k) for k in (joint.i, joint.j)}) for joint in joints]
+    return _pins(m, [*found, *_rod_ends(layout)])
+
+
+@kind(ROD)
+def gather_rods(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
+    """Their pins are those of the revolute joints, unless there is none of these."""
+    revolute = [j for j in m.joints.values() if j.kind.name == "revolute" and not layout.apart.intersection(j.bodies)]
+    return [] if revolute else _pins(m, _rod_ends(layout))
+
+
+def _rod_ends(layout: Layout) -> list[tuple[str, dict[str, tuple[float, float]]]]:
+    """Named, with the place on the rod and that on the body which it is pinned to."""
+    return [
+        (f"{rod}_{number}", {rod: own, body: place})
+        for rod, joint in layout.rods.items()
+        for number, (own, body, place) in enumerate(rod_ends(joint, layout), start=1)
+    ]
+
+
+def _pins(m: Mechanism, found: list[tuple[str, dict[str, tuple[float, float]]]]) -> list[Feature]:
+    """Of named joints with a place on two bodies each: those with a common place are one pin."""
+    ends = [at for _, at in found]
+    group = list(range(len(found)))
+    for j in range(len(found)):
         for i in range(j):
             shared = ends[i].keys() & ends[j].keys()
             if group[i] != group[j] and any(_same(ends[i][body], ends[j][body]) for body in shared):
                 old, new = group[j], group[i]
                 group = [new if g == old else g for g in group]
-    pins = []
+    pins: list[Feature] = []
     for g in dict.fromkeys(group):
-        members = [k for k in range(len(joints)) if group[k] == g]
+        members = [k for k in range(len(found)) if group[k] == g]
         places = {body: place for k in members for body, place in ends[k].items()}
-        pins.append(Pin(tuple(joints[k] for k in members), places))
+        pins.append(Pin(found[members[0]][0], m, places))
     return pins
 
 

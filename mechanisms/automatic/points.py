@@ -134,7 +134,7 @@ def weights(layout: Layout, heavy: bool) -> list[Feature]:
     found: list[Feature] = []
     free = {feature.body for feature in layout.features if isinstance(feature, FreeBody)}
     taken = [a for feature in layout.features for a in feature.anchors(layout)]
-    for name in layout.moving:
+    for name in layout.bodies:
         body = layout.m.bodies[name]
         here = [a for a in taken if a.body == name]
         centre = (layout.sizes.of_metres(body.com[0]), layout.sizes.of_metres(body.com[1]))

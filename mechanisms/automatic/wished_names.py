@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
+from mechanisms.automatic.rods import rods_of
 from shared.errors import UserError
 from shared.materials import MATERIALS
 from shared.suggestions import did_you_mean
@@ -14,10 +15,10 @@ if TYPE_CHECKING:
 
 
 def refuse_unknown(m: Mechanism, body: str, left_out: Collection[str], ground: bool = False) -> None:
-    """Raise UserError unless ``body`` is one that moves (or ground, where that may be) and is not left out."""
+    """Raise UserError unless ``body`` is one that moves, a rod (or ground, where that may be) and is not left out."""
     if body in left_out:
         raise UserError(f"{m.name}: '{body}' is left out, so there is nothing of it to shape")
-    names = [name for name in m.bodies if ground or name != "ground"]
+    names = [*(name for name in m.bodies if ground or name != "ground"), *rods_of(m)]
     if body not in names:
         raise UserError(
             f"{m.name}: there is no body '{body}' to shape; there is: {', '.join(names)}{did_you_mean(body, names)}"

@@ -7,6 +7,9 @@ from collections.abc import Mapping
 from shared.errors import UserError
 from shared.shapes.solid import Solid
 
+type Place = tuple[str, float, float]
+"""A body, x, y (mm) in its frame."""
+
 
 class Bodies(dict[str, list[Solid]]):
     """Solids by body, as a dict; the first of each list is the body's main piece.
@@ -16,6 +19,7 @@ class Bodies(dict[str, list[Solid]]):
         made = Bodies(ground=[...], cam=[...], follower=[...])
         made.may_touch("cam", "follower")
         made.leave_out("string")
+        made.join_places("rod", ("cam", 10.0, 0.0), ("follower", 0.0, -5.0))  # made["rod"] is between them
         return made
 
     ``made | {...}`` keeps what was said.
@@ -25,6 +29,7 @@ class Bodies(dict[str, list[Solid]]):
         super().__init__(*args, **bodies)
         self._touching: set[tuple[str, str]] = set()
         self._left_out: set[str] = set()
+        self._rods: dict[str, tuple[Place, Place]] = {}
 
     def may_touch(self, first: str, second: str) -> None:
         """Solids of these two bodies touch by design: the clearance stage does not compare them with each other.
@@ -36,6 +41,21 @@ class Bodies(dict[str, list[Solid]]):
     def leave_out(self, body: str) -> None:
         """``body`` of mechanism.py has no solids; where mechanism.py gives it no mass, that is estimated."""
         self._left_out.add(body)
+
+    def join_places(self, rod: str, first: Place, second: Place) -> None:
+        """``rod`` is no body of mechanism.py: its solids join two places (body, x, y in mm in its frame).
+
+        They are drawn with their origin on the first place and the x axis towards the second. Raises UserError where
+        both are one.
+        """
+        if first == second:
+            raise UserError(f"join_places('{rod}'): both ends are {first}; name two places")
+        self._rods[rod] = first, second
+
+    @property
+    def rods(self) -> dict[str, tuple[Place, Place]]:
+        """By name: the two places that each joins."""
+        return dict(self._rods)
 
     @property
     def touching(self) -> frozenset[tuple[str, str]]:
@@ -54,6 +74,7 @@ class Bodies(dict[str, list[Solid]]):
             if isinstance(one, Bodies):
                 joined._touching |= one.touching
                 joined._left_out |= one.left_out
+                joined._rods |= one.rods
         return joined
 
     def __ror__(self, other: Mapping[str, list[Solid]]) -> Bodies:  # pyright: ignore[reportIncompatibleMethodOverride]

@@ -132,13 +132,19 @@ def proven(m: Mechanism, solution: Solution, bodies: Bodies, pieces: list[MeshPi
     """The nearest pair. Raises UserError if two pieces of different bodies come too near."""
     from mechanisms.clearance_stage import check
     from mechanisms.motion_file import to_motion
+    from mechanisms.parts_stage import spans
     from shared.contract import BodyParts, Mass, Parts, Provenance
 
     nothing = Mass(mass=0.0, com=(0.0, 0.0), inertia=0.0, volume=0.0)
     parts = Parts(
         mechanism=m.name,
         provenance=Provenance(inputs="0" * 64, versions={}),
-        bodies={body: BodyParts(pieces={}, mass=nothing, z=0.0) for body in bodies},
+        bodies={
+            body: BodyParts(
+                pieces={}, mass=nothing, z=0.0, spans=spans(bodies.rods[body]) if body in bodies.rods else None
+            )
+            for body in bodies
+        },
         may_touch=sorted(bodies.touching),
     )
     found = check(parts, to_motion(solution, None, "0" * 64, {}), pieces, "0" * 64)

@@ -19,7 +19,7 @@ EVERY ?=
 PYTEST ?= -n 2 --dist loadscope --no-loadscope-reorder
 
 # Words of the user are taken as they are: make expands nothing in them, and commands get them through the environment,
-# where no shell reads them. Python refuses what is no name (shared/paths.py).
+# where no shell reads them. Python refuses what is no name (shared/stage/paths.py).
 override PRESET := $(value PRESET)
 override FRAME := $(value FRAME)
 override NAME := $(value NAME)
@@ -48,7 +48,7 @@ PICTURE = $(PYTHON) -m render
 # pyright comes whole in its wheel; without this it asks the network whether it is the newest.
 export PYRIGHT_PYTHON_IGNORE_WARNINGS := 1
 
-# The outermost make: a stage ends with it, also when make was killed and could not tell (shared/lineage.py).
+# The outermost make: a stage ends with it, also when make was killed and could not tell (shared/stage/lineage.py).
 ifndef MBSD_MAKE
 export MBSD_MAKE := $(shell echo $$PPID)
 endif
@@ -170,8 +170,8 @@ list: install ## the mechanisms and what is made of them
 	@$(STAGE) list
 
 check: install ## versions, system libraries, render device, disk space
-	@$(PYTHON) -m shared.check
-	@$(PYTHON) -m render.device_check
+	@$(PYTHON) -m tools.check
+	@$(PYTHON) -m tools.device_check
 
 install: ## uv, Python 3.13, every package at its locked version, compiled kernels
 	@sh tools/install.sh
@@ -211,8 +211,8 @@ hunt-parts: install ## parts of N random mechanisms (1000), and the proof that n
 torture: install ## N films of a postage stamp (20), killed and damaged while they are made; SEED=1: out/torture.json
 	@$(PYTHON) -m tools.torture --n "$${N:-20}" --seed "$$SEED"
 
-schema: install ## write docs/schema/ from shared/contract.py, shared/shot.py and the solver's joints and laws
-	@$(PYTHON) -m shared.schema
+schema: install ## write docs/schema/ from shared/contract/ and the solver's joints and laws
+	@$(PYTHON) -m tools.schema
 	@$(PYTHON) -m mbsd.saving.schema docs/schema/model.schema.json
 
 docs: install ## write docs/theory.md from the docstrings of the solver, and draw the pictures of docs/

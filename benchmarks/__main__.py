@@ -22,9 +22,9 @@ from benchmarks.dynamics.settings import tune_all
 from benchmarks.four_bar import STEPS
 from benchmarks.rows import Bar, Row
 from benchmarks.start import measure as start
-from shared.console import run_cli, say
-from shared.errors import UserError
-from shared.paths import ROOT
+from shared.stage.console import run_cli, say
+from shared.stage.errors import UserError
+from shared.stage.paths import ROOT
 
 CODES = ("mbsd", "numpy", "exudyn", "pylinkage")
 ROUNDS = 8

@@ -6,11 +6,11 @@ from importlib import metadata
 from pathlib import Path
 
 from benchmarks.rows import Row
-from render.store import Timing
-from shared import jsonfile
-from shared.console import say, warn
-from shared.errors import UserError
-from shared.paths import out_root
+from render.frames.store import Timing
+from shared.stage import jsonfile
+from shared.stage.console import say, warn
+from shared.stage.errors import UserError
+from shared.stage.paths import out_root
 
 LARGEST_OVERHEAD = 1.10
 FEWEST_FRAMES = 10

@@ -6,9 +6,9 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 
-from shared.errors import UserError
-from shared.files import write_bytes
-from shared.paths import out_root
+from shared.stage.errors import UserError
+from shared.stage.files import write_bytes
+from shared.stage.paths import out_root
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from benchmarks.rows import Bar, Row
-from shared.files import write_bytes
-from shared.paths import ROOT
+from shared.stage.files import write_bytes
+from shared.stage.paths import ROOT
 
 PAGE = ROOT / "docs" / "benchmarks.md"
 BEGIN, END = "<!-- rows of make bench -->", "<!-- end of rows -->"

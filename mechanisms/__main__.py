@@ -5,16 +5,16 @@ from __future__ import annotations
 import argparse
 import importlib
 
-from shared.console import run_cli
-from shared.paths import compared, known_name, mechanism_folder, owner_of, variants_in
+from shared.stage.console import run_cli
+from shared.stage.paths import compared, known_name, mechanism_folder, owner_of, variants_in
 
 STAGES = {
-    "parts": ("mechanisms.parts_stage", "make the solids: STL, STEP and parts.json"),
-    "solve": ("mechanisms.solve_stage", "solve the motion: data.json"),
-    "animate": ("mechanisms.animate_stage", "the moving skeleton with its arrows: animation.mp4, animation.gif"),
-    "clearance": ("mechanisms.clearance_stage", "prove that no two parts touch over the motion: clearance.json"),
-    "print": ("mechanisms.print_stage", "lay out what is to be printed, cut and bought: 3MF, STL, DXF, lists"),
-    "shot": ("mechanisms.shot_stage", "check the scene's description: shot.json"),
+    "parts": ("mechanisms.stages.parts.stage", "make the solids: STL, STEP and parts.json"),
+    "solve": ("mechanisms.stages.solve.stage", "solve the motion: data.json"),
+    "animate": ("mechanisms.stages.animate.stage", "the moving skeleton with its arrows: animation.mp4, animation.gif"),
+    "clearance": ("mechanisms.stages.clearance.stage", "prove that no two parts touch over the motion: clearance.json"),
+    "print": ("mechanisms.stages.print.stage", "lay out what is to be printed, cut and bought: 3MF, STL, DXF, lists"),
+    "shot": ("mechanisms.stages.shot.stage", "check the scene's description: shot.json"),
 }
 
 
@@ -51,16 +51,16 @@ def main() -> int | None:
     if arguments.command == "variants":
         owner = owner_of(arguments.name)
         if not variants_in(mechanism_folder(owner) / "mechanism.py"):
-            from mechanisms import loading
+            from mechanisms.stages.loading import loading
 
             loading.load(owner, "mechanism")  # where it cannot be read, that is told
         print(owner, *(f"{owner}-{variant}" for variant in compared(owner)), sep="\n")
         return None
     if arguments.command == "new":
-        from mechanisms import new
+        from mechanisms.stages.new import new
 
         return new.run(arguments.name, arguments.kind)
-    from mechanisms import listing
+    from mechanisms.stages import listing
 
     return listing.run()
 

@@ -6,8 +6,8 @@ import argparse
 
 from render.presets import PRESETS, Preset, preset_named
 from render.shown import show_words
-from shared.console import run_cli
-from shared.paths import mechanism_name
+from shared.stage.console import run_cli
+from shared.stage.paths import mechanism_name
 
 COMMANDS = {
     "plots": "plots of the motion, its forces and its energy",
@@ -51,7 +51,7 @@ def main() -> int | None:
     commands.add_parser("overview", help="a table of the runs that its standard input tells of")
     arguments = parser.parse_args()
     if arguments.command == "overview":
-        from render import overview
+        from render.report import overview
 
         return overview.run()
     if arguments.command == "gallery":
@@ -81,27 +81,27 @@ def main() -> int | None:
 def _picture(command: str, name: str, preset: Preset, arguments: argparse.Namespace) -> None:
     show = show_words(arguments.show)
     if command == "film":
-        from render import film
+        from render.frames import film
 
         film.run(name, preset, show)
     elif command == "frames":
-        from render import frames
+        from render.frames import frames
 
         frames.run(name, preset, show)
     elif command == "still":
-        from render import still
+        from render.frames import still
 
         still.still(name, preset, arguments.frame, show)
     elif command == "contact":
-        from render import contact
+        from render.frames import contact
 
         contact.run(name, preset, show)
     elif command == "poster":
-        from render import still
+        from render.frames import still
 
         still.poster(name, preset, show)
     else:
-        from render import blend
+        from render.frames import blend
 
         (blend.save if command == "scene" else blend.open_in_blender)(name, preset, show)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from shared.errors import UserError
+from shared.stage.errors import UserError
 
 
 @dataclass(frozen=True)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from shared.errors import UserError
-from shared.suggestions import did_you_mean
+from shared.stage.errors import UserError
+from shared.stage.suggestions import did_you_mean
 
 WORDS = ("velocities", "accelerations", "forces", "reactions", "title")
 """In the order in which they stand in the names of files."""

@@ -62,7 +62,7 @@ fi
 
 # Asked again until nothing is missing; the solver runs without these libraries, parts and pictures do not.
 if [ ! -f .venv/libraries-found ]; then
-    if $python -m shared.system_libraries; then
+    if $python -m tools.system_libraries; then
         touch .venv/libraries-found
     fi
 fi

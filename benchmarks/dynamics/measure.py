@@ -9,9 +9,9 @@ from benchmarks.dynamics import CODES
 from benchmarks.dynamics.cases import BESIDE_PEERS, case
 from benchmarks.dynamics.settings import found_in, load, words
 from benchmarks.rows import Bar, Row
-from shared.console import say
-from shared.errors import UserError
-from shared.paths import ROOT
+from shared.stage.console import say
+from shared.stage.errors import UserError
+from shared.stage.paths import ROOT
 
 ROUNDS = 3
 

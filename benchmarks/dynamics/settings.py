@@ -11,8 +11,8 @@ from typing import Any
 
 from benchmarks.dynamics import CODES
 from benchmarks.dynamics.cases import BESIDE_PEERS
-from shared.console import say
-from shared.errors import UserError
+from shared.stage.console import say
+from shared.stage.errors import UserError
 
 FILE = Path(__file__).parent / "settings.json"
 LONGEST = 1800.0

@@ -12,10 +12,10 @@ import time
 from pathlib import Path
 
 from benchmarks.start import user
-from shared.console import say
-from shared.errors import UserError
-from shared.files import write_bytes
-from shared.paths import ROOT
+from shared.stage.console import say
+from shared.stage.errors import UserError
+from shared.stage.files import write_bytes
+from shared.stage.paths import ROOT
 
 PAGE = ROOT / "docs" / "benchmarks.md"
 BEGIN, END = "<!-- rows of make bench-start -->", "<!-- end of bench-start -->"

@@ -1,6 +1,6 @@
 """Slender links: with thinner pins than parts have by themselves, every other link can share a layer."""
 
-from mechanisms.automatic.automatic import automatic
+from mechanisms.automatic import automatic
 from mechanisms.chain.mechanism import Params, build
 from shared.shapes.solid import Solid
 from shared.shapes.units import mm

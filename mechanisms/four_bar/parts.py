@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mechanisms.automatic.automatic import automatic
+from mechanisms.automatic import automatic
 from mechanisms.four_bar.mechanism import Params, build
 from shared.shapes.solid import Solid
 from shared.shapes.units import mm

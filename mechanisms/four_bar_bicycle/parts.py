@@ -2,7 +2,7 @@
 
 from math import cos, radians, sin
 
-from mechanisms.automatic.automatic import automatic
+from mechanisms.automatic import automatic
 from mechanisms.four_bar_bicycle.mechanism import Params, build
 from shared.shapes.bodies import Bodies
 from shared.shapes.leg import dress, seat

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mechanisms.automatic.automatic import automatic
+from mechanisms.automatic import automatic
 from mechanisms.planetary_gear.mechanism import Params, build
 from shared.shapes.solid import Solid
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cadquery as cq
 
-from mechanisms.automatic.automatic import automatic
+from mechanisms.automatic import automatic
 from mechanisms.quarter_car.mechanism import Params, build
 from shared.shapes.bodies import Bodies
 from shared.shapes.build import extruded

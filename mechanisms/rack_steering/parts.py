@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import cadquery as cq
 
-from mechanisms.automatic.automatic import Automatic, automatic
-from mechanisms.automatic.wheels import TUBE
+from mechanisms.automatic import TUBE, Automatic, automatic
 from mechanisms.rack_steering.mechanism import Params, build
 from shared.shapes.build import extruded, turned
 from shared.shapes.outline import circle

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-from render.scene import Scene, State
+from render.film.scene import Scene, State
 
 
 class Picture(msgspec.Struct, kw_only=True, frozen=True):

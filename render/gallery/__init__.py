@@ -8,12 +8,12 @@ from render.gallery.page import Entry, page, sentences
 from render.gallery.posters import small_poster, strip
 from render.report import description
 from render.report.facts import facts
-from shared.clearance import read_clearance
-from shared.console import say, warn
 from shared.contract import read_motion, read_parts
-from shared.errors import UserError
-from shared.files import write_bytes
-from shared.paths import ROOT, Out, mechanism_names
+from shared.contract.clearance import read_clearance
+from shared.stage.console import say, warn
+from shared.stage.errors import UserError
+from shared.stage.files import write_bytes
+from shared.stage.paths import ROOT, Out, mechanism_names
 
 FOLDER = ROOT / "docs" / "gallery"
 STRIP = "strip.jpg"

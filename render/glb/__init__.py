@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from render.inputs import SHARED, read_film, refuse_missing
-from shared.console import say
-from shared.files import sources_hash, write_bytes
-from shared.paths import ROOT, Out
-from shared.stages import Stage, key_of, versions
+from render.film.inputs import SHARED, read_film, refuse_missing
+from shared.stage.console import say
+from shared.stage.files import sources_hash, write_bytes
+from shared.stage.paths import ROOT, Out
+from shared.stage.stages import Stage, contract_sources, key_of, versions
 
 
 def run(name: str) -> None:
     """Write out/<name>/<name>.glb, if the parts, the motion or the shot have changed. Raises UserError."""
     out = Out(name)
     refuse_missing(out)
-    sources = [*sorted((ROOT / "render").glob("*.py")), ROOT / "render" / "blender" / "tubes.py"]
-    shared = [ROOT / "shared" / f"{file}.py" for file in SHARED] + sorted((ROOT / "shared").glob("contract_*.py"))
+    sources = [ROOT / "render" / name for name in ("presets.py", "film", "blender/scene/tubes.py")]
+    shared = contract_sources(*SHARED)
     key = key_of(
         out.motion, out.parts, out.shot, sources_hash(Path(__file__).parent, *sources, *shared), versions("numpy")
     )

@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from render.describe import Film
+from render.film.film import Film
+from render.film.scene import PieceSpec
+from render.film.solids import read_triangles
 from render.glb.animation import Animation, about_z
 from render.glb.document import INDICES, VERTICES, Document
 from render.glb.materials import CLEARCOAT, Paints
 from render.glb.mesh import smooth
 from render.glb.springs import Springs
-from render.scene import PieceSpec
-from render.solids import read_triangles
 
 UPRIGHT = (-(0.5**0.5), 0.0, 0.0, 0.5**0.5)
 """Quaternion x, y, z, w of a quarter turn about x, backwards: z becomes y."""

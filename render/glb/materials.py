@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from render.film.scene import SurfaceSpec
 from render.glb.document import Document
-from render.scene import SurfaceSpec
 
 CLEARCOAT = "KHR_materials_clearcoat"
 METALLIC = {"anodised": 1.0, "brushed": 1.0, "polished": 1.0, "satin": 0.35, "plastic": 0.0, "rubber": 0.0}

@@ -14,14 +14,14 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from render.blender.tubes import SIDES, vertices
+from render.blender.scene.tubes import SIDES, vertices
+from render.film.markers import moved
+from render.film.scene import TubeSpec
+from render.film.tubes.spirals import Spiral
+from render.film.tubes.stretched import Path, Stretched
 from render.glb.animation import Animation
 from render.glb.document import INDICES, VERTICES, Document
 from render.glb.materials import Paints
-from render.markers import moved
-from render.scene import TubeSpec
-from render.spirals import Spiral
-from render.stretched import Path, Stretched
 from shared.contract import Motion
 
 Array = NDArray[np.float64]

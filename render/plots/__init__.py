@@ -5,17 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 
 from render.plots.asked import spectra_asked
-from shared.console import say
 from shared.contract import Motion, read_motion
-from shared.errors import UserError
-from shared.files import sources_hash, whole_file
-from shared.paths import ROOT, Out, variant_of
-from shared.skeleton import read_skeleton
-from shared.stages import Stage, key_of, versions
+from shared.contract.skeleton import read_skeleton
+from shared.stage.console import say
+from shared.stage.errors import UserError
+from shared.stage.files import sources_hash, whole_file
+from shared.stage.paths import ROOT, Out, variant_of
+from shared.stage.stages import Stage, contract_sources, key_of, versions
 
 READ = [
-    *sorted((ROOT / "shared").glob("contract*.py")),
-    ROOT / "shared" / "skeleton.py",
+    *contract_sources("skeleton"),
     ROOT / "render" / "crank.py",
     *(ROOT / "render" / "report" / f"{name}.py" for name in ("transmission", "written")),
 ]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import ast
 
-from shared.errors import UserError
-from shared.paths import mechanism_folder
+from shared.stage.errors import UserError
+from shared.stage.paths import mechanism_folder
 
 FORM = 'write names in quotes: SPECTRA = ("shaking force", "motor")'
 

@@ -9,12 +9,12 @@ from pathlib import Path
 
 from render.plots import READ
 from render.plots.asked import spectra_asked
-from shared.console import say
 from shared.contract import Motion, read_motion
-from shared.errors import UserError
-from shared.files import sources_hash, whole_file
-from shared.paths import Out, compared, owner_of
-from shared.stages import Stage, key_of, versions
+from shared.stage.console import say
+from shared.stage.errors import UserError
+from shared.stage.files import sources_hash, whole_file
+from shared.stage.paths import Out, compared, owner_of
+from shared.stage.stages import Stage, key_of, versions
 
 
 def run(name: str, spectra: str = "", every: bool = False) -> None:
@@ -42,8 +42,8 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
     if stage.is_fresh():
         say("compare", f"{owner}: nothing to do")
         return
-    from render.plots.beside import figures
-    from render.plots.beside_spectra import spectra_figure
+    from render.plots.pages.beside import figures
+    from render.plots.pages.beside_spectra import spectra_figure
     from render.plots.quantities import refuse_unknown_in_all
 
     motions: dict[str, Motion] = {variant: read_motion(file) for variant, file in files.items()}

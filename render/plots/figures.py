@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from render.plots.energy import energy
-from render.plots.loads import forces, hodographs, reactions
-from render.plots.path import path
+from render.plots.pages.energy import energy
+from render.plots.pages.loads import forces, hodographs, reactions
+from render.plots.pages.path import path
+from render.plots.pages.rates import bodies, point, slider
+from render.plots.pages.spectra import spectrum_page
+from render.plots.pages.turns import turns
 from render.plots.quantities import known_names
-from render.plots.rates import bodies, point, slider
-from render.plots.spectra import spectrum_page
 from render.plots.style import house_style
-from render.plots.turns import turns
 from shared.contract import Motion
-from shared.skeleton import Skeleton
+from shared.contract.skeleton import Skeleton
 
 
 def spectrum_of(motion: Motion, name: str) -> Figure:

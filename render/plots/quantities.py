@@ -14,8 +14,8 @@ import numpy as np
 from render.crank import crank_of
 from render.plots.magnitudes import NOISE, centre_of_mass, force_scale, speed_scale, torque_scale, without_noise
 from shared.contract import Motion
-from shared.errors import UserError
-from shared.suggestions import did_you_mean
+from shared.stage.errors import UserError
+from shared.stage.suggestions import did_you_mean
 
 SHAKING = ("shaking force", "shaking moment")
 TURNING, PUSHING = ("torque", "N m"), ("force", "N")

@@ -8,14 +8,14 @@ from pathlib import Path
 from render.report import sections
 from render.report.loads import load_section
 from render.report.transmission_words import transmission_section
-from shared.clearance import Clearance, read_clearance
-from shared.console import say
 from shared.contract import Motion, Parts, read_motion, read_parts
-from shared.files import sources_hash, write_bytes
-from shared.paths import ROOT, Out, mechanism_folder
-from shared.stages import Stage, key_of, versions
+from shared.contract.clearance import Clearance, read_clearance
+from shared.stage.console import say
+from shared.stage.files import sources_hash, write_bytes
+from shared.stage.paths import ROOT, Out, mechanism_folder
+from shared.stage.stages import Stage, contract_sources, key_of, versions
 
-READ = [*sorted((ROOT / "shared").glob("contract*.py")), ROOT / "shared" / "clearance.py", ROOT / "render" / "crank.py"]
+READ = [*contract_sources("clearance"), ROOT / "render" / "crank.py"]
 
 
 def run(name: str) -> None:

@@ -7,9 +7,9 @@ import numpy as np
 from render.report.loads import NOTHING, SLIDES
 from render.report.transmission import loops
 from render.report.written import counted, degrees, moment, speed, written
-from shared.clearance import Clearance
 from shared.contract import BodyMotion, Motion, Parts
-from shared.contract_loads import ACTUATORS
+from shared.contract.clearance import Clearance
+from shared.contract.loads import ACTUATORS
 
 STILL = 1e-9
 """What is slower (m/s) stands still but for rounding."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from render.report.written import first_peak, moment, table, written
 from shared.contract import Motion
-from shared.contract_loads import ACTUATORS
+from shared.contract.loads import ACTUATORS
 
 NOTHING = 1e-12
 """Of the largest in a table: no number."""

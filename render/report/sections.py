@@ -6,8 +6,8 @@ import numpy as np
 
 from render.crank import crank_of, driven_bodies
 from render.report.written import counted, first_peak, listed, moment, speed, table, turning, written
-from shared.clearance import Clearance
 from shared.contract import Motion, Parts
+from shared.contract.clearance import Clearance
 
 G = 9.80665
 ROUNDING = 1e-9

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from shared.errors import UserError
 from shared.shapes.solid import Solid
+from shared.stage.errors import UserError
 
 type Place = tuple[str, float, float]
 """A body, x, y (mm) in its frame."""

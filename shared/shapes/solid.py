@@ -37,10 +37,10 @@ class Solid:
     """One piece of a body.
 
     ``shape`` is in millimetres, in the frame of the body it moves with, at its height in the assembly (z = 0 is
-    the top of the base plate). ``material`` is a key of ``shared.materials.MATERIALS``. ``through_holes`` is the
-    number of holes that go right through: the Euler number of the closed surface is 2 - 2 * through_holes. ``holds``
-    says which springs are fixed to it, so that the film adds no pins of its own. ``buy`` says what to ask for in a
-    shop where the piece has a standard's sizes, such as "circlip 8x0.8 DIN 471"; a piece without it is to be made.
+    the top of the base plate). ``material`` is a key of ``MATERIALS`` (shared/contract/materials.py). ``through_holes``
+    is the number of holes that go right through: the Euler number of the closed surface is 2 - 2 * through_holes.
+    ``holds`` says which springs are fixed to it, so that the film adds no pins of its own. ``buy`` says what to ask for
+    in a shop where the piece has a standard's sizes, such as "circlip 8x0.8 DIN 471"; a piece without it is to be made.
     ``rolls`` says how it turns in the film.
     """
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 from functools import partial
 
-from shared.console import run_cli, say
-from shared.paths import out_root
+from shared.stage.console import run_cli, say
+from shared.stage.paths import out_root
 from tools.hunt import case
 from tools.hunt.asked import parser, refuse_unknown
 from tools.hunt.loop import follow, seeds

@@ -6,7 +6,7 @@ import argparse
 import math
 import os
 
-from shared.errors import UserError
+from shared.stage.errors import UserError
 from tools.hunt.pool import LIMIT
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, Protocol
 
-from shared.console import progress, say, warn
+from shared.stage.console import progress, say, warn
 from tools.hunt.outcome import CaseResult
 
 SEEDS = 1_000_000

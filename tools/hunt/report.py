@@ -8,8 +8,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from shared.console import duration
-from shared.files import write_bytes
+from shared.stage.console import duration
+from shared.stage.files import write_bytes
 from tools.hunt.outcome import HUNG, REFUSED, STATES, UNCLEAR, WRONG, CaseResult, Outcome
 
 SHOWN = 20

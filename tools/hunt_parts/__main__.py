@@ -12,8 +12,8 @@ from __future__ import annotations
 
 from functools import partial
 
-from shared.console import run_cli
-from shared.paths import out_root
+from shared.stage.console import run_cli
+from shared.stage.paths import out_root
 from tools.hunt.asked import parser, refuse_unknown
 from tools.hunt.loop import follow, seeds
 from tools.hunt.outcome import CaseResult

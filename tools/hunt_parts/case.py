@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.errors import MechanismError
-from shared.errors import UserError
+from shared.stage.errors import UserError
 from tools.hunt.case import drawn
 from tools.hunt.outcome import BASE, CaseResult, Outcome
 from tools.hunt_parts.outcome import BUILT, COLLIDES, ERROR, REFUSED, STUCK, UNSOUND, reason
@@ -18,8 +18,8 @@ from tools.hunt_parts.outcome import BUILT, COLLIDES, ERROR, REFUSED, STUCK, UNS
 if TYPE_CHECKING:
     from mbsd import Mechanism
     from mbsd.solution import Solution
-    from mechanisms.automatic.automatic import Automatic
-    from mechanisms.clearance.pieces import MeshPiece
+    from mechanisms.stages.automatic.automatic import Automatic
+    from mechanisms.stages.clearance.pieces import MeshPiece
     from shared.shapes.bodies import Bodies
     from tools.hunt.subject import Subject
 
@@ -65,7 +65,7 @@ def moved(subject: Subject, steps: int = STEPS) -> Solution:
 
 def parts_of(m: Mechanism, solution: Solution, solids: bool = True) -> Outcome:
     """Plan and build the parts, and prove that none touch."""
-    from mechanisms.automatic.automatic import Automatic
+    from mechanisms.stages.automatic.automatic import Automatic
 
     made = Automatic(m, solution)
     try:
@@ -91,7 +91,7 @@ def parts_of(m: Mechanism, solution: Solution, solids: bool = True) -> Outcome:
 
 
 def _bridges(made: Automatic) -> str:
-    from mechanisms.automatic.bridges import Bridge
+    from mechanisms.stages.automatic.pins.bridges import Bridge
 
     count = sum(isinstance(feature, Bridge) for feature in made.layout.features)
     return "without bridges" if count == 0 else "with bridges"
@@ -99,9 +99,9 @@ def _bridges(made: Automatic) -> str:
 
 def meshed(bodies: Bodies) -> list[MeshPiece]:
     """The pieces as the clearance stage sees them. Raises UserError for what is no sound solid."""
-    from mechanisms.clearance.pieces import MeshPiece
-    from mechanisms.mesh_check import check_mesh, only_solid
-    from mechanisms.parts_files import read_mesh, read_triangles, stl_bytes
+    from mechanisms.stages.clearance.pieces import MeshPiece
+    from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
+    from mechanisms.stages.parts.parts_files import read_mesh, read_triangles, stl_bytes
 
     pieces = []
     for body, solids in bodies.items():
@@ -130,9 +130,9 @@ def overlapping(pieces: list[MeshPiece]) -> str:
 
 def proven(m: Mechanism, solution: Solution, bodies: Bodies, pieces: list[MeshPiece]) -> str:
     """The nearest pair. Raises UserError if two pieces of different bodies come too near."""
-    from mechanisms.clearance_stage import check
-    from mechanisms.motion_file import to_motion
-    from mechanisms.parts_stage import spans
+    from mechanisms.stages.clearance.stage import check
+    from mechanisms.stages.parts.stage import spans
+    from mechanisms.stages.solve.motion_file import to_motion
     from shared.contract import BodyParts, Mass, Parts, Provenance
 
     nothing = Mass(mass=0.0, com=(0.0, 0.0), inertia=0.0, volume=0.0)

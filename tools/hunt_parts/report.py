@@ -7,8 +7,8 @@ from collections import Counter, defaultdict
 from pathlib import Path
 from typing import Any
 
-from shared.console import duration
-from shared.files import write_bytes
+from shared.stage.console import duration
+from shared.stage.files import write_bytes
 from tools.hunt.outcome import CaseResult, Outcome
 from tools.hunt_parts.outcome import BUILT, REFUSED, STATES, WRONG
 

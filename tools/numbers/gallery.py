@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
-from mechanisms import loading, solving
-from shared.paths import mechanism_names
+from mechanisms.stages.loading import loading
+from mechanisms.stages.solve import solving
+from shared.stage.paths import mechanism_names
 
 
 def runs() -> Iterator[tuple[str, Callable[[], Any]]]:

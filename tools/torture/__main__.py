@@ -19,10 +19,10 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from shared.console import run_cli, say, warn
-from shared.errors import UserError
-from shared.files import write_bytes
-from shared.paths import out_root
+from shared.stage.console import run_cli, say, warn
+from shared.stage.errors import UserError
+from shared.stage.files import write_bytes
+from shared.stage.paths import out_root
 from tools.torture.faults import FAULTS, FULL, Fault
 from tools.torture.project import Project
 from tools.torture.rounds import Outcome, play

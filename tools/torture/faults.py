@@ -186,7 +186,7 @@ def gone(content: bytes, chance: random.Random) -> None:
     """Remove it."""
 
 
-STAGE, FILM, BLENDER = "tools.torture.stage", "tools.torture.stage film", "render.blender.worker"
+STAGE, FILM, BLENDER = "tools.torture.stage", "tools.torture.stage film", "render.blender.worker.worker"
 SHELL, MAKE = "tools/run_all.sh", "make run-all"
 TERM, INT, HUP, KILL = signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL
 STOP, SEGV = signal.SIGSTOP, signal.SIGSEGV

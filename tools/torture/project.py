@@ -11,9 +11,9 @@ import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from render.store import FrameStore
-from shared.paths import ROOT, Out
-from shared.shot import Shot
+from render.frames.store import FrameStore
+from shared.contract.shot import Shot
+from shared.stage.paths import ROOT, Out
 from tools.torture.processes import Process, processes
 
 NAME = "four_bar"
@@ -64,7 +64,7 @@ class Project:
 
     def build(self) -> None:
         """Write everything, and mount the disk where that is allowed."""
-        from tests import film_fixture
+        from tests.render import film_fixture
 
         os.environ["MBSD_OUT"] = str(self.disk / "out")
         self.disk.mkdir(parents=True)

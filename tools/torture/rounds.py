@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from render.picture_file import is_as_named
+from render.blender.picture_file import is_as_named
 from tools.torture.faults import BLENDER, FILM, MAKE, STAGE, Fault
 from tools.torture.project import Project
 

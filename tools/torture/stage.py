@@ -5,12 +5,12 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from render import film
+from render.frames import film
 from render.presets import Preset
-from shared.console import run_cli, say
-from shared.files import write_bytes
-from shared.paths import Out
-from shared.stages import Stage, key_of
+from shared.stage.console import run_cli, say
+from shared.stage.files import write_bytes
+from shared.stage.paths import Out
+from shared.stage.stages import Stage, key_of
 
 STAMP = Preset("draft", 64, 36, 1)
 """The picture's size: a postage stamp, rendered in milliseconds."""

@@ -10,8 +10,8 @@ import numpy as np
 from mbsd import Mechanism, constant_rate, harmonic
 from mbsd.cams import RISES, Lift, flat_cam, oscillating_flat_cam, oscillating_roller_cam, roller_cam
 from mbsd.solution import Solution
-from tests.assur_models import MODELS
-from tests.random_linkages import linkage
+from tests.models.assur_models import MODELS
+from tests.models.random_linkages import linkage
 from tools.hunt.described import seen_from
 from tools.hunt.laws import swinging, turning
 from tools.hunt.mechanisms.machines import _at_start, driven_crank, solid

@@ -10,8 +10,8 @@ from scipy.integrate import solve_ivp
 from mbsd import Mechanism, constant_rate, curve, harmonic
 from mbsd.body import Body
 from mbsd.solution import Solution
-from tests.assur_models import MODELS
-from tests.random_linkages import linkage
+from tests.models.assur_models import MODELS
+from tests.models.random_linkages import linkage
 from tools.hunt.mechanisms.machines import solid
 from tools.hunt.subject import Subject, family
 

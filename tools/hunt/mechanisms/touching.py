@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from mbsd import Mechanism, curve
-from tests.contact_models import ball, box, disc
+from tests.models.contact_models import ball, box, disc
 from tools.hunt.mechanisms.machines import solid
 from tools.hunt.subject import Subject, family
 

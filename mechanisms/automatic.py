@@ -1,0 +1,6 @@
+"""The door of ``parts.py`` to parts by themselves: what it may import of them."""
+
+from mechanisms.stages.automatic.automatic import Automatic, automatic
+from mechanisms.stages.automatic.wheels.wheels import TUBE
+
+__all__ = ["TUBE", "Automatic", "automatic"]

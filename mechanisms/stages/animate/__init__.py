@@ -1,0 +1,1 @@
+"""Draws the moving skeleton from mechanism.py alone. It imports loading and solve."""

@@ -1,0 +1,256 @@
+"""Parts from the model and its motion: ``automatic(m)`` plans them, ``solids()`` builds them.
+
+def parts(p: Params) -> dict[str, list[Solid]]:
+    made = automatic(build(p))
+    made.material("crank", "steel")
+    made.layer("rocker", 2)
+    return made.solids()
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from mechanisms.stages.automatic.assembly.looks import ROD, materials
+from mechanisms.stages.automatic.assembly.marks import Wish, place, refuse_letters
+from mechanisms.stages.automatic.decided import decided
+from mechanisms.stages.automatic.gathered import gathered
+from mechanisms.stages.automatic.layout.extents import extents
+from mechanisms.stages.automatic.layout.features import Need
+from mechanisms.stages.automatic.layout.heights import Heights, heights
+from mechanisms.stages.automatic.layout.layout import Layout, Springs
+from mechanisms.stages.automatic.layout.motion import poses_of, times_of
+from mechanisms.stages.automatic.layout.sizes import Sizes, of_pin, refuse_sizes, sizes
+from mechanisms.stages.automatic.pins.free_bodies import free_bodies
+from mechanisms.stages.automatic.pins.points import styluses, weights
+from mechanisms.stages.automatic.pins.rods import add_poses, places
+from mechanisms.stages.automatic.wished_names import refuse_material, refuse_unknown
+from shared.stage.errors import UserError
+
+if TYPE_CHECKING:
+    import cadquery as cq
+
+    from mbsd import Mechanism, Solution
+    from mechanisms.stages.automatic.assembly.joined import Joined
+    from mechanisms.stages.automatic.layout.plan import Plan
+    from shared.shapes.bodies import Bodies
+    from shared.shapes.fit import Fit
+    from shared.shapes.outline import Point
+    from shared.shapes.solid import Solid
+
+
+class Automatic:
+    """Parts by themselves, and what one may want otherwise. Lengths that are given are mm."""
+
+    def __init__(self, m: Mechanism, solution: Solution, pin: float | None = None, fit: Fit | None = None) -> None:
+        self.m = m
+        self.solution = solution
+        self._pin, self._fit = pin, fit
+        refuse_sizes(m.name, pin, fit)
+        self._materials: dict[str, str] = {}
+        self._layers: dict[str, int] = {}
+        self._replaced: dict[str, list[Solid]] = {}
+        self._joined: list[Joined] = []
+        self._left_out: set[str] = set()
+        self._touching: set[tuple[str, str]] = set()
+        self._marks: list[Wish] = []
+
+    # -- wishes -------------------------------------------------------------------------------------------------
+
+    def material(self, body: str, name: str) -> None:
+        """Make the plate of ``body`` of another material."""
+        self._known(body)
+        refuse_material(self.m, body, name)
+        self._materials[body] = name
+
+    def layer(self, body: str, number: int) -> None:
+        """Put ``body`` on a layer, counted from 0 above the base; the others are found around it."""
+        self._known(body)
+        if number < 0:
+            raise UserError(f"{self.m.name}: layer of '{body}' is {number}; the lowest one is 0")
+        self._layers[body] = number
+        self._plan_anew()
+
+    def replace(self, body: str, solids: Sequence[Solid]) -> None:
+        """Build ``body`` of these solids (mm, its frame, at its height) instead: the first is its main piece.
+
+        It keeps its layer, and the others keep clear of the outline that it would have had; :meth:`span` gives its
+        height. Pins, bushings and washers that it would have carried are part of what is replaced.
+        """
+        self._known(body)
+        if any(body == mark.body for mark in self._marks):
+            raise UserError(f"{self.m.name}: '{body}' is engraved; engrave its solids (shared/shapes/engraving.py)")
+        self._replaced[body] = list(solids)
+
+    def join(
+        self, body: str, outline: cq.Wire, at: Point = (0.0, 0.0), holes: Sequence[cq.Wire] = (), sharp: bool = False
+    ) -> None:
+        """Make a closed outline (mm, the body's frame, z = 0) a part of its plate; others keep clear of its hull.
+
+        ``at`` is the place of the joint whose eye it carries; joints that no outline carries are linked as usual.
+        ``sharp`` leaves its edges as they are.
+        """
+        from mechanisms.stages.automatic.assembly.joined import Joined
+
+        self._known(body)
+        self._joined.append(Joined(body, outline, at, tuple(holes), sharp))
+        self._plan_anew()
+
+    def engrave(self, body: str, word: str, at: tuple[float, float], height: float | None = None) -> None:
+        """Engrave ``word`` into the upper face of a plate, its middle ``at`` (x, y) in the frame of ``body`` (mm).
+
+        ``height`` of the letters (mm); by default they go with the eyes. Raises UserError for letters that there are
+        not, and when it is built where the word is not all on the plate.
+        """
+        self._known(body)
+        refuse_letters(self.m.name, word)
+        if body in self._replaced:
+            raise UserError(f"{self.m.name}: '{body}' is replaced; engrave its solids (shared/shapes/engraving.py)")
+        self._marks.append(Wish(body, word, at, height))
+
+    def leave_out(self, body: str) -> None:
+        """Build nothing of ``body``. Where a joint would hold it, other bodies keep an eye without a pin.
+
+        Where mechanism.py gives it no mass, that is estimated. Raises UserError for the last body that moves.
+        """
+        self._known(body)
+        wished = [self._materials, self._layers, self._replaced, {mark.body for mark in self._marks}]
+        if any(body in wishes for wishes in wished):
+            raise UserError(
+                f"{self.m.name}: '{body}' has a material, a layer, a word or solids, so it cannot be left out too"
+            )
+        if body in self.m.bodies and len(self._left_out & self.m.bodies.keys()) + 2 == len(self.m.bodies):
+            raise UserError(f"{self.m.name}: without '{body}' nothing that moves is left; keep one body")
+        self._left_out.add(body)
+        self._plan_anew()
+
+    def may_touch(self, first: str, second: str) -> None:
+        """Let two bodies (one may be ground) share room: they touch by design.
+
+        Neither the order of layers nor the clearance stage keeps them apart.
+        """
+        from shared.shapes.bodies import pair_of
+
+        for body in (first, second):
+            self._known(body, ground=True)
+        self._touching.add(pair_of(first, second))
+        self._plan_anew()
+
+    # -- results ------------------------------------------------------------------------------------------------
+
+    @property
+    def sizes(self) -> Sizes:
+        """Proportions and the scale."""
+        return self.layout.sizes
+
+    @cached_property
+    def layout(self) -> Layout:
+        """What is to be built, with styluses as tall as the layers allow. Raises UserError where there are none."""
+        return self._found[0]
+
+    @cached_property
+    def levels(self) -> dict[str, int]:
+        """The layer of each moving body, from 0 up."""
+        return {body: self.decided[body] for body in self.layout.moving}
+
+    @property
+    def decided(self) -> dict[str, int]:
+        """The layers, and the choices of items that have one (0 or 1)."""
+        return self._found[1]
+
+    @cached_property
+    def heights(self) -> Heights:
+        """Heights (rmm) of the layers."""
+        layout = self.layout
+        needs = [need for feature in layout.features for need in feature.needs(self.decided, layout)]
+        pivot = self.sizes.pivot
+        heights_of = heights(self.decided, layout.layered, self.sizes.thickness, needs, 2 * pivot.fit.axial)
+        floor = 4.0 + self.sizes.screw / self.sizes.scale + 2 * pivot.fit.axial
+        if heights_of.bottoms and heights_of.bottoms[0] < floor:
+            needs.append(Need(-1, floor))
+            heights_of = heights(self.decided, layout.layered, self.sizes.thickness, needs, 2 * pivot.fit.axial)
+        return heights_of
+
+    def solids(self) -> Bodies:
+        """Every piece by the body it moves with, in mm; the first of each list is the body's main piece."""
+        from mechanisms.stages.automatic.assembly.built import built
+        from shared.shapes.bodies import Bodies
+
+        made = Bodies(built(self.plan(), self.heights) | self._replaced)
+        for body in self.layout.apart.intersection(self.m.bodies):
+            made.leave_out(body)
+        for rod, joint in self.layout.rods.items():
+            made.join_places(rod, *places(joint))
+        for first, second in map(tuple, self.layout.touching | self.layout.pressing):
+            if first in made and second in made:
+                made.may_touch(first, second)
+        return made
+
+    def span(self, body: str) -> tuple[float, float]:
+        """Lower and upper face (mm) of the plate of ``body``."""
+        self._known(body)
+        scale = self.sizes.scale
+        return self.heights.bottom(body) * scale, self.heights.top(body) * scale
+
+    def plan(self) -> Plan:
+        """Eyes, feet and hardware, before plates and base are built."""
+        from mechanisms.stages.automatic.layout.plan import Plan
+
+        rods = dict.fromkeys(self.layout.rods, ROD)
+        plan = Plan(self.layout, materials(self.m) | rods | self._materials)
+        plan.reserve([*self.m.bodies, *rods, "base_plate"])
+        for feature in self.layout.features:
+            feature.build(plan, self.heights)
+        place(self._marks, plan)
+        return plan
+
+    @cached_property
+    def _found(self) -> tuple[Layout, dict[str, int]]:
+        return decided(self._layout, self.wishes(), self._layers)
+
+    def wishes(self) -> list[Sizes]:
+        """Sizes of pins and all that goes with them, the most wanted first."""
+        if self._pin is not None:
+            return [of_pin(self._pin, self._fit)]
+        return sizes(*extents(self.m, self.solution, self._left_out), self._fit)
+
+    def _layout(self, size: Sizes, springs: Springs, tall: bool = False) -> Layout:
+        poses = poses_of(self.solution, size.of_metres(1.0))
+        layout = Layout(self.m, size, poses, times_of(self.solution), springs)
+        layout.apart = frozenset(self._left_out)
+        layout.touching = frozenset(map(frozenset, self._touching))
+        add_poses(layout)
+        layout.features = gathered(layout)
+        layout.features += free_bodies(layout)
+        layout.features += weights(layout, heavy=True)
+        layout.features += styluses(layout, tall)
+        layout.features += weights(layout, heavy=False)
+        layout.features += self._joined
+        return layout
+
+    def _plan_anew(self) -> None:
+        """Forget what was found before a wish."""
+        for name in ("sizes", "layout", "levels", "heights", "_found"):
+            self.__dict__.pop(name, None)
+
+    def _known(self, body: str, ground: bool = False) -> None:
+        refuse_unknown(self.m, body, self._left_out, ground)
+
+
+def automatic(
+    m: Mechanism, pin: float | None = None, solution: Solution | None = None, fit: Fit | None = None
+) -> Automatic:
+    """Parts of ``m``, planned from ``solution``; by default from the motion of the mechanism's folder,
+    or of its variant that is made.
+
+    ``pin``: diameter (mm) of its pins; by default it follows from the links. ``fit``: clearances (mm), such as
+    ``Fit(running=0.3)`` for printed parts; by default they follow from the pins. Raises UserError where it cannot move.
+    """
+    if solution is None:
+        from mechanisms.stages.loading.loading import running
+        from mechanisms.stages.solve.bare_motion import bare_solution
+
+        solution = bare_solution(running(m.name))
+    return Automatic(m, solution, pin, fit)

@@ -1,0 +1,1 @@
+"""Cams and Geneva drives: features and their solids."""

@@ -1,0 +1,196 @@
+"""Cams: the disc has the computed profile; a roller on a pin runs on it, or a shoe with a flat face.
+
+Disc and roller roll on each other by design. They are made with a clearance, so that they are two things that never
+touch: :data:`CLEAR`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechanisms.stages.automatic.cams.cam_solids import SHOE, cam_solids
+from mechanisms.stages.automatic.cams.own_plates import refuse_ground
+from mechanisms.stages.automatic.layout.extents import Extent, extent
+from mechanisms.stages.automatic.layout.features import Anchor, Feature, Need, kind
+from mechanisms.stages.automatic.layout.items import Item, Reach
+from mechanisms.stages.automatic.layout.planar import Rounded, around, disc
+from mechanisms.stages.automatic.layout.profiles import curve_path, on_body
+from mechanisms.stages.automatic.slides.slots import Slot
+from shared.shapes.cam import evenly
+from shared.stage.errors import UserError
+
+if TYPE_CHECKING:
+    from mbsd import Mechanism, Solution
+    from mbsd.cams import CamProfile
+    from mbsd.force import Force
+    from mbsd.joint import Joint
+    from mechanisms.stages.automatic.layout.heights import Heights
+    from mechanisms.stages.automatic.layout.items import Levels
+    from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.plan import Plan
+
+CLEAR = 0.6
+"""Between cam and roller or face, in running fits."""
+HULL = 60
+"""Points of a cam's outline in the plane."""
+BASE, ROLLER = 15.0, 6.5
+"""Least radii (rmm) of base circle and roller."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cam:
+    """A disc and its follower: places and directions in their frames (rmm, rad)."""
+
+    name: str
+    cam: str
+    follower: str
+    outline: np.ndarray
+    """(n, 2) in the frame of the cam's body."""
+    centre: tuple[float, float]
+    """Of the cam."""
+    base: float
+    """Radius of its base circle."""
+    at: tuple[float, float, float]
+    """The roller's centre, or a place of the face and its direction."""
+    roller: float | None
+    """Radius as it is made; None where a face touches."""
+    face: tuple[float, float]
+    """Where the cam touches the face, from ``at`` along it."""
+    clear: float
+
+    @property
+    def pin(self) -> Slot:
+        """The pin of the roller, as one that runs at the height of the cam."""
+        return Slot(self.name, self.cam, self.follower, np.array([self.centre]), self.at[:2])
+
+    def shoe(self) -> list[tuple[float, float]]:
+        """Middles of the shoe's round ends, in the follower's frame."""
+        x, y, angle = self.at
+        along, up = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
+        ends = [np.array([x, y]) + s * along + (self.clear + SHOE) * up for s in self.face]
+        return [(float(end[0]), float(end[1])) for end in ends]
+
+    def anchors(self, layout: Layout) -> Iterable[Anchor]:
+        """The cam's hub; an eye that holds the roller's pin, or a plate behind the shoe."""
+        eye = layout.sizes.eye
+        found = [Anchor(self.cam, *self.centre, eye)]
+        if self.roller is not None:
+            return [*found, Anchor(self.follower, *self.at[:2], eye)]
+        return [*found, *(Anchor(self.follower, x, y, SHOE + 1.0) for x, y in self.shoe())]
+
+    def items(self, layout: Layout) -> Iterable[Item]:
+        """The cam, and what touches it at its height."""
+        both = frozenset((self.cam, self.follower))
+        hull = around([(x, y) for x, y in evenly(self.outline, HULL)], 0.3)
+        yield Item(f"the cam of {self.name}", self.cam, hull, Reach((self.cam,)), source=self)
+        if self.roller is not None:
+            shape, what = disc(*self.at[:2], self.roller), f"the roller of {self.name}"
+        else:
+            shape, what = Rounded(np.array(self.shoe()), SHOE), f"the shoe of {self.name}"
+        yield Item(what, self.follower, shape, Reach((self.follower,)), source=self)  # never on the cam's layer
+        yield Item(what, self.follower, shape, Reach((self.follower, self.cam)), both, self)
+
+    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
+        """As a pin in a slot."""
+        return self.pin.needs(levels, layout) if self.roller is not None else []
+
+    def build(self, plan: Plan, heights: Heights) -> None:
+        """Disc, and roller or shoe."""
+        cam_solids(self, plan, heights)
+
+
+@kind("cam_roller")
+def rollers(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
+    """One for each joint."""
+    return [_cam(m, joint, layout) for joint in joints]
+
+
+@kind("cam_flat")
+def faces(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
+    """One for each joint."""
+    return [_cam(m, joint, layout) for joint in joints]
+
+
+def _cam(m: Mechanism, joint: Joint, layout: Layout) -> Cam:
+    refuse_ground(m, joint, joint.i.body.name, joint.j.body.name)
+    profile, sizes = _profile(joint), layout.sizes
+    if profile.undercut:
+        raise UserError(f"{m.name}: cam of joint '{joint.name}' cannot be cut: {profile.problems[0]}")
+    c, s = math.cos(joint.i.angle), math.sin(joint.i.angle)
+    centre, clear = layout.place(joint.i), CLEAR * sizes.pivot.fit.running
+    outline = sizes.of_metres(1.0) * profile.outline @ np.array([[c, s], [-s, c]]) + centre
+    at = (*layout.place(joint.j), joint.j.angle)
+    names = joint.i.body.name, joint.j.body.name
+    roller, face = None, (0.0, 0.0)
+    if profile.flat:
+        face = _touched(outline, at, names, layout)
+    else:
+        roller = sizes.of_metres(profile.sizes["roller_radius"]) - clear
+    base = sizes.of_metres(profile.sizes["base_radius"])
+    return Cam(joint.name, *names, outline, centre, base, at, roller, face, clear)
+
+
+def pushing_cam(touch: Joint, layout: Layout) -> list[Feature]:
+    """The cam of a contact whose closed curve pushes a disc that may leave it; none if the disc runs inside."""
+    outline = on_body(curve_path(touch.params["points"], True), touch.i, layout)
+    if _area(outline) > 0:
+        return []
+    centre, clear = layout.place(touch.i), CLEAR * layout.sizes.pivot.fit.running
+    base = float(np.hypot(*(outline - centre).T).min())
+    at = (*layout.place(touch.j), touch.j.angle)
+    roller = layout.sizes.of_metres(touch.params["radius"]) - clear
+    return [Cam(touch.name, touch.i.body.name, touch.j.body.name, outline, centre, base, at, roller, (0.0, 0.0), clear)]
+
+
+def pushing_extent(touch: Joint | Force) -> Extent:
+    """As :func:`roller_extent`, of a contact with a closed curve."""
+    away, roller = np.hypot(*np.array(touch.params["points"], dtype=float).T), touch.params["radius"]
+    least = ((float(away.min()), BASE), (roller, ROLLER)) if roller > 0 else ()
+    return Extent(((touch.i, float(away.max())), (touch.j, roller)), least)
+
+
+def _area(outline: np.ndarray) -> float:
+    """Twice the signed area: below 0 where the outside is on the left."""
+    x, y = outline.T
+    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+
+
+def _touched(
+    outline: np.ndarray, at: tuple[float, float, float], names: tuple[str, str], layout: Layout
+) -> tuple[float, float]:
+    """From where to where a cam touches a face, along it from the face's marker."""
+    x, y, angle = at
+    along, up = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
+    points = evenly(outline, 4 * HULL)
+    seen = np.stack([layout.seen(names[0], (u, v), names[1]) for u, v in points], axis=1) - [x, y]
+    nearest = np.argmax(seen @ up, axis=1)
+    where = np.take_along_axis(seen @ along, nearest[:, None], axis=1)
+    return float(where.min()), float(where.max())
+
+
+def _profile(joint: Joint) -> CamProfile:
+    from mbsd.cams import cam_from
+
+    return cam_from(joint.params["profile"])
+
+
+@extent("cam_roller")
+def roller_extent(joint: Joint, solution: Solution) -> Extent:
+    """Disc and roller; a hub in the base circle, a pin in the roller."""
+    profile = _profile(joint)
+    base, roller = profile.sizes["base_radius"], profile.sizes["roller_radius"]
+    farthest = float(np.hypot(*profile.outline.T).max())
+    return Extent(((joint.i, farthest), (joint.j, roller)), ((base, BASE), (roller, ROLLER)))
+
+
+@extent("cam_flat")
+def face_extent(joint: Joint, solution: Solution) -> Extent:
+    """The disc; a hub in its base circle."""
+    profile = _profile(joint)
+    farthest = float(np.hypot(*profile.outline.T).max())
+    return Extent(((joint.i, farthest),), ((profile.sizes["base_radius"], BASE),))

@@ -1,0 +1,99 @@
+"""What a kind of joint, force or contact puts on its bodies, and the registries; the package's docstring tells how."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from mbsd import Mechanism
+    from mbsd.force import Force
+    from mbsd.joint import Joint
+    from mechanisms.stages.automatic.layout.heights import Heights
+    from mechanisms.stages.automatic.layout.items import Item, Levels
+    from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.plan import Plan
+
+
+@dataclass(frozen=True)
+class Anchor:
+    """A place (rmm, body frame) that the outline of ``body`` goes round with ``radius``."""
+
+    body: str
+    x: float
+    y: float
+    radius: float
+
+
+@dataclass(frozen=True)
+class Need:
+    """The gap above layer ``gap`` (-1: above the base) is at least ``height`` rmm."""
+
+    gap: int
+    height: float
+
+
+class Feature(Protocol):
+    """One joint, or several that are one thing such as links on a common pin."""
+
+    def anchors(self, layout: Layout) -> Iterable[Anchor]:
+        """Where outlines of bodies must reach."""
+        ...
+
+    def items(self, layout: Layout) -> Iterable[Item]:
+        """What takes room besides the bodies' own plates."""
+        ...
+
+    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
+        """How high gaps must be, once the layers are known."""
+        ...
+
+    def build(self, plan: Plan, heights: Heights) -> None:
+        """Give eyes to the bodies and solids to the plan."""
+        ...
+
+
+type Gather[Thing] = Callable[[Mechanism, list[Thing], Layout], Sequence[Feature]]
+"""The features of all joints (forces, contacts) of one kind."""
+
+KINDS: dict[str, Gather[Joint]] = {}
+"""By the name of a joint's kind. A joint whose kind is not here has no parts by itself."""
+FORCE_KINDS: dict[str, Gather[Force]] = {}
+"""By the name of a force's kind. A force whose kind is not here needs no part."""
+CONTACT_KINDS: dict[str, Gather[Joint]] = {}
+"""By the name of a contact's kind. A contact whose kind is not here needs no part."""
+
+
+DRIVER_KINDS: dict[str, Gather[Joint]] = {}
+"""By the name of a driver's kind. A driver whose kind is not here needs no part: it is what turns a pin, or pushes."""
+
+
+def kind(name: str) -> Callable[[Gather[Joint]], Gather[Joint]]:
+    """Enter the features of a kind of joint."""
+    return _enter(KINDS, name)
+
+
+def force_kind(name: str) -> Callable[[Gather[Force]], Gather[Force]]:
+    """Enter the features of a kind of force."""
+    return _enter(FORCE_KINDS, name)
+
+
+def contact_kind(name: str) -> Callable[[Gather[Joint]], Gather[Joint]]:
+    """Enter the features of a kind of contact."""
+    return _enter(CONTACT_KINDS, name)
+
+
+def driver_kind(name: str) -> Callable[[Gather[Joint]], Gather[Joint]]:
+    """Enter the features of a kind of driver."""
+    return _enter(DRIVER_KINDS, name)
+
+
+def _enter[Thing](kinds: dict[str, Gather[Thing]], name: str) -> Callable[[Gather[Thing]], Gather[Thing]]:
+    def enter(gather: Gather[Thing]) -> Gather[Thing]:
+        if name in kinds:
+            raise ValueError(f"{name}: registered twice")
+        kinds[name] = gather
+        return gather
+
+    return enter

@@ -1,0 +1,135 @@
+"""What takes room: a shape in the plane that moves with a body, and the heights it reaches through.
+
+Heights are counted in half layers: layer k of plates is 2 k, the gap above it 2 k + 1; -1 is the gap above the base.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from mechanisms.stages.automatic.layout.planar import Rounded
+
+BASE = -1
+TOP = 10**6
+PIVOT = "pivot"
+"""What pivots on ground are, which may stand beside each other."""
+
+type Levels = Mapping[str, int]
+"""The layer of each body, as far as it is decided; and the choices (0 or 1) of items that have one."""
+type Ends = tuple[int | None, int | None]
+"""Half layers from the lowest layer of some bodies to an item's lower end (None: it is the base), and from the highest
+to its upper one (None: it goes up through all).
+"""
+
+
+@dataclass(frozen=True)
+class Reach:
+    """From the lowest layer of ``bodies`` plus ``low`` half layers to the highest plus ``high``.
+
+    ``base``: from the base plate up; ``top``: up through all that is above.
+    """
+
+    bodies: tuple[str, ...]
+    low: int = 0
+    high: int = 0
+    base: bool = False
+    top: bool = False
+
+    @property
+    def ends(self) -> dict[str | None, tuple[Ends, ...]]:
+        """By the choice that decides between them."""
+        return {None: ((None if self.base else self.low, None if self.top else self.high),)}
+
+    def span(self, levels: Levels) -> tuple[int, int] | None:
+        """Lowest and highest half layer, as far as layers are decided: more decided ones only make it longer."""
+        return _span(self, levels)
+
+
+@dataclass(frozen=True)
+class PinReach:
+    """A pin between the plates of ``bodies``, with an end above the highest (``choice`` 0) or under the lowest (1)."""
+
+    bodies: tuple[str, ...]
+    choice: str
+
+    @property
+    def ends(self) -> dict[str | None, tuple[Ends, ...]]:
+        """As :attr:`Reach.ends`."""
+        return {self.choice: ((1, 1), (-1, -1))}
+
+    def span(self, levels: Levels) -> tuple[int, int] | None:
+        """As :meth:`Reach.span`; while the choice is open, without an end."""
+        return _span(self, levels)
+
+
+@dataclass(frozen=True)
+class PivotReach:
+    """A pin on ground that stands on the base (``choice`` 0), or hangs from a bridge above all layers (1).
+
+    Of pivots that may do either, one that is ``driven`` stands.
+    """
+
+    bodies: tuple[str, ...]
+    choice: str
+    driven: bool = False
+
+    @property
+    def ends(self) -> dict[str | None, tuple[Ends, ...]]:
+        """As :attr:`Reach.ends`."""
+        return {self.choice: ((None, 1), (-1, None))}
+
+    def span(self, levels: Levels) -> tuple[int, int] | None:
+        """As :meth:`Reach.span`; while the choice is open, what both have in common."""
+        return _span(self, levels)
+
+
+type AnyReach = Reach | PinReach | PivotReach
+
+
+@dataclass(frozen=True, eq=False)
+class Item:
+    """One thing that takes room. ``what`` names it in messages; bodies in ``spares`` may pass through it by design."""
+
+    what: str
+    body: str
+    shape: Rounded
+    reach: AnyReach
+    spares: frozenset[str] = frozenset()
+    source: object = None
+    """The feature that it belongs to."""
+    meshes: frozenset[str] = frozenset()
+    """Names of items that it touches by design."""
+    only: frozenset[str] = frozenset()
+    """Names of the items that it keeps away, where it is no thing but a rule; empty: all."""
+    spared: bool = True
+    """Whether items that spare its body spare it, too."""
+    stands: str = ""
+    """Of what stands on ground: a word; what has another such word must keep clear of it."""
+
+
+def choice_of(reach: AnyReach) -> str | None:
+    """The choice that an item's heights depend on, if there is one."""
+    return next(iter(reach.ends))
+
+
+def spans_meet(a: tuple[int, int] | None, b: tuple[int, int] | None) -> bool:
+    """Whether two spans share a half layer."""
+    return a is not None and b is not None and a[0] <= b[1] and b[0] <= a[1]
+
+
+def _span(reach: AnyReach, levels: Levels) -> tuple[int, int] | None:
+    ((choice, ends),) = reach.ends.items()
+    chosen = levels.get(choice) if choice is not None else 0
+    known = [2 * levels[body] for body in reach.bodies if body in levels]
+    spans = [_placed(low, high, known) for low, high in (ends if chosen is None else ends[chosen : chosen + 1])]
+    if any(span is None for span in spans):
+        return None
+    low, high = max(span[0] for span in spans if span), min(span[1] for span in spans if span)
+    return (low, high) if low <= high else None
+
+
+def _placed(low: int | None, high: int | None, known: list[int]) -> tuple[int, int] | None:
+    if not known:
+        return (BASE, BASE) if low is None else None
+    return BASE if low is None else min(known) + low, TOP if high is None else max(known) + high

@@ -1,0 +1,186 @@
+"""What is to be built before anything is: places and outlines of all bodies in the plane, and what takes room."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechanisms.stages.automatic.layout.items import PIVOT, Item, Reach, spans_meet
+from mechanisms.stages.automatic.layout.layers import Problem
+from mechanisms.stages.automatic.layout.planar import Rounded, around, core_gaps, least_gap, placed
+from mechanisms.stages.automatic.pins.rods import rods_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from mbsd import Marker, Mechanism
+    from mbsd.joint import Joint
+    from mechanisms.stages.automatic.layout.features import Anchor, Feature
+    from mechanisms.stages.automatic.layout.items import Levels
+    from mechanisms.stages.automatic.layout.sizes import Sizes
+    from mechanisms.stages.automatic.rolling.rounds import Round
+    from mechanisms.stages.automatic.wheels.wheels import Wheel
+
+
+@dataclass(frozen=True)
+class Springs:
+    """Which springs get parts, and where."""
+
+    above: bool = True
+    """Whether they have to lie over both of their bodies."""
+    left_out: frozenset[str] = frozenset()
+    found: list[str] = field(default_factory=list, compare=False)
+    """Names of the others, once features are gathered."""
+
+
+@dataclass(eq=False)
+class Layout:
+    """A mechanism in reference millimetres: poses over the motion, features, outlines and what takes room."""
+
+    m: Mechanism
+    sizes: Sizes
+    poses: dict[str, np.ndarray]
+    """By body, (T, 3): x, y (rmm) and theta (rad)."""
+    times: np.ndarray
+    springs: Springs = field(default_factory=lambda: Springs())
+    wheels: dict[str, list[Wheel]] = field(default_factory=dict)
+    """By body; set before outlines are asked for."""
+    extra: list[str] = field(default_factory=list)
+    """Layers that are no body's: wheels on ground, further wheels of a body, racks."""
+    together: list[tuple[str, str]] = field(default_factory=list)
+    """Pairs that share a layer."""
+    features: list[Feature] = field(default_factory=list)
+    apart: frozenset[str] = frozenset()
+    """Bodies that get no solids from here."""
+    touching: frozenset[frozenset[str]] = frozenset()
+    """Pairs of bodies that may touch by design; a feature adds those of its own when it is gathered."""
+    pressing: set[frozenset[str]] = field(default_factory=set)
+    """Such pairs whose contact yields: the order of layers keeps all else of them apart."""
+    rounds: dict[tuple[str, float, float], Round] = field(default_factory=dict)
+    """By body and place: balls, wheels and discs, which several contacts may share."""
+
+    def place(self, marker: Marker) -> tuple[float, float]:
+        """A marker in its body's frame (rmm)."""
+        return self.sizes.of_metres(marker.x), self.sizes.of_metres(marker.y)
+
+    def seen(self, body: str, place: tuple[float, float], other: str) -> np.ndarray:
+        """(T, 2): a place of ``body`` in the frame of another body over the motion (rmm)."""
+        pose, frame = self.poses[body], self.poses[other]
+        c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
+        x = pose[:, 0] + c * place[0] - s * place[1] - frame[:, 0]
+        y = pose[:, 1] + s * place[0] + c * place[1] - frame[:, 1]
+        c, s = np.cos(frame[:, 2]), np.sin(frame[:, 2])
+        return np.stack([c * x + s * y, c * y - s * x], axis=1)
+
+    @cached_property
+    def anchors(self) -> dict[str, list[Anchor]]:
+        """By moving body, without repeats; the largest radius where two are at one place."""
+        found: dict[str, list[Anchor]] = {name: [] for name in self.moving}
+        for feature in self.features:
+            for anchor in feature.anchors(self):
+                places = found.get(anchor.body)
+                if places is None:
+                    continue
+                same = [i for i, a in enumerate(places) if np.hypot(a.x - anchor.x, a.y - anchor.y) < 0.01]
+                if not same:
+                    places.append(anchor)
+                elif anchor.radius > places[same[0]].radius:
+                    places[same[0]] = anchor
+        return {body: [a for a in places if not self._on_wheel(a)] for body, places in found.items()}
+
+    def _on_wheel(self, anchor: Anchor) -> bool:
+        """Whether the wheel in its body's layer carries it."""
+        reach = min(anchor.radius, self.sizes.hardware)
+        wheels = [wheel for wheel in self.wheels.get(anchor.body, []) if wheel.shares and not wheel.ring]
+        return any(math.hypot(anchor.x - w.x, anchor.y - w.y) + reach <= w.root for w in wheels)
+
+    @property
+    def layered(self) -> list[str]:
+        """All that gets a layer."""
+        return [*self.moving, *self.extra]
+
+    @cached_property
+    def rods(self) -> dict[str, Joint]:
+        """Joints that are rods, by the names of these; they move as bodies do."""
+        return rods_of(self.m, self.apart)
+
+    @cached_property
+    def bodies(self) -> list[str]:
+        """Those of the model that move and are not left out."""
+        return [name for name in self.m.bodies if name != "ground" and name not in self.apart]
+
+    @cached_property
+    def moving(self) -> list[str]:
+        """The bodies and rods that need a layer."""
+        return [*self.bodies, *self.rods]
+
+    def outline(self, body: str) -> Rounded:
+        """The shape that holds a body's plate."""
+        anchors = self.anchors[body]
+        radius = max(anchor.radius for anchor in anchors)
+        return around([(anchor.x, anchor.y) for anchor in anchors], radius)
+
+    @cached_property
+    def items(self) -> list[Item]:
+        """Plates of the bodies first, in their order, then all that features add."""
+        plates = [Item(name, name, self.outline(name), Reach((name,))) for name in self.moving if self.anchors[name]]
+        return plates + [item for feature in self.features for item in feature.items(self)]
+
+    @cached_property
+    def conflicts(self) -> list[tuple[int, int]]:
+        """Pairs of items of different bodies that meet in the plane at some time: they need different heights."""
+        items, found = self.items, []
+        circles = [item.shape.reach for item in items]
+        radii = np.array([radius for _, radius in circles])
+        middles = [placed(c, self.poses[item.body])[:, 0] for (c, _), item in zip(circles, items, strict=True)]
+        for j, second in enumerate(items):
+            may = [i for i, first in enumerate(items[:j]) if self._may_meet(first, second)]
+            for i in may:
+                apart = float(((middles[i] - middles[j]) ** 2).sum(axis=1).min()) ** 0.5
+                if apart - radii[i] - radii[j] < self.sizes.room and self.gap(items[i], second)[0] < self.sizes.room:
+                    found.append((i, j))
+        return found
+
+    def problem(self, fixed: Mapping[str, int] | None = None, hanging: frozenset[str] = frozenset()) -> Problem:
+        """What the search for layers is asked."""
+        return Problem(self.layered, self.items, self.conflicts, fixed or {}, self.together, hanging)
+
+    def gap(self, first: Item, second: Item) -> tuple[float, float]:
+        """Least gap in the plane (rmm), and its time (s)."""
+        poses = self.poses[first.body], self.poses[second.body]
+        gap, at = least_gap(first.shape, second.shape, poses, self.sizes.room)
+        return gap, float(self.times[at])
+
+    def _may_meet(self, first: Item, second: Item) -> bool:
+        if first.body == second.body == "ground":
+            return bool(first.stands and second.stands) and first.stands != second.stands
+        return not (
+            first.body == second.body
+            or first.what in second.meshes
+            or second.what in first.meshes
+            or (first.only and second.what not in first.only)
+            or (second.only and first.what not in second.only)
+            or (first.spared and first.body in second.spares)
+            or (second.spared and second.body in first.spares)
+            or frozenset((first.body, second.body)) in self.touching
+        )
+
+    def is_covered(self, source: object, half_layer: int, levels: Levels) -> bool:
+        """Whether something that meets an item of the feature ``source`` in the plane is at a half layer."""
+        mine = {k for k, item in enumerate(self.items) if item.source is source}
+        others = {j if i in mine else i for i, j in self.conflicts if (i in mine) != (j in mine)}
+        return any(spans_meet(self.items[k].reach.span(levels), (half_layer, half_layer)) for k in others)
+
+    def room_on_base(self, x: float, y: float) -> float:
+        """Half of the distance (rmm) from a place on ground to the next place where something stands there."""
+        places = [a for feature in self.features for a in feature.anchors(self) if a.body == "ground"]
+        away = [math.hypot(a.x - x, a.y - y) for a in places]
+        half = min((d for d in away if d > 0.01), default=math.inf) / 2
+        wide = [item.shape for item in self.items if item.stands and item.stands != PIVOT and item.body == "ground"]
+        here = np.array([[[x, y]]])
+        gaps = [float(core_gaps(here, shape.core[None])[0]) - shape.radius for shape in wide if len(shape.core) > 1]
+        return min([half, *(gap for gap in gaps if gap > 0)])

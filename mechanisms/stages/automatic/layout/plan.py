@@ -1,0 +1,114 @@
+"""What the features agreed on: eyes of every body, feet on the base, and solids, each with a name of its own."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from shared.shapes.link import Eye
+from shared.shapes.solid import Solid
+
+if TYPE_CHECKING:
+    import cadquery as cq
+
+    from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.wheels.wheels import Wheel
+    from shared.shapes.outline import Circle
+
+
+BOLT_HOLE = 9.0
+"""Depth of the holes in the base for the screws of its feet (rmm)."""
+
+
+@dataclass(frozen=True)
+class Foot:
+    """Something that stands on the base plate (rmm)."""
+
+    label: str
+    x: float
+    y: float
+    radius: float
+    holes: tuple[tuple[float, float], ...] = ()
+    """Places of its screws."""
+    dial: bool = False
+
+
+@dataclass(frozen=True)
+class Plate:
+    """A wheel, a cam, a shoe: part of a body's plate (rmm)."""
+
+    shape: cq.Workplane
+    holds: Circle
+    """x, y, radius of a circle that is solid."""
+    through_holes: int
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A word that is engraved, its middle at (x, y) in the frame of its body (rmm)."""
+
+    word: str
+    x: float
+    y: float
+    height: float
+
+
+@dataclass(eq=False)
+class Plan:
+    """Filled by the features, read by those who build bodies and base."""
+
+    layout: Layout
+    materials: dict[str, str]
+    eyes: dict[str, list[tuple[float, float, Eye]]] = field(default_factory=dict)
+    feet: list[Foot] = field(default_factory=list)
+    solids: dict[str, list[Solid]] = field(default_factory=dict)
+    cuts: dict[str, list[tuple[cq.Workplane, int]]] = field(default_factory=dict)
+    wheels: dict[str, Wheel] = field(default_factory=dict)
+    """By body: a wheel that is its plate, or a part of it."""
+    slots: dict[str, list[list[tuple[float, float]]]] = field(default_factory=dict)
+    """By body: middles of the two ends of each of its slots; a wall is round them."""
+    plates: dict[str, list[Plate]] = field(default_factory=dict)
+    marks: dict[str, list[Mark]] = field(default_factory=dict)
+    """Words on the upper face of a body's plate."""
+    names: set[str] = field(default_factory=set)
+    main: dict[str, str] = field(default_factory=dict)
+    """Names of the main pieces."""
+
+    def eye(self, body: str, x: float, y: float, eye: Eye) -> None:
+        """An eye of a body's plate at (x, y) in its frame."""
+        self.eyes.setdefault(body, []).append((x, y, eye))
+
+    def plate(self, body: str, shape: cq.Workplane, holds: Circle, through_holes: int = 0) -> None:
+        """Join ``shape`` (z = 0 is the underside) to a body's plate; eyes within the circle ``holds`` need no link."""
+        self.plates.setdefault(body, []).append(Plate(shape, holds, through_holes))
+
+    def cut(self, body: str, tool: cq.Workplane, through_holes: int) -> None:
+        """Take ``tool`` (z = 0 is the plate's underside) out of a body's plate."""
+        self.cuts.setdefault(body, []).append((tool, through_holes))
+
+    def add(self, body: str, *solids: Solid) -> None:
+        """Solids that move with ``body``."""
+        kept = self.solids.setdefault(body, [])
+        kept += [replace(s, name=self.named(s.name)) for s in solids]
+
+    def make(self, body: str, name: str, shape: cq.Workplane, material: str, through_holes: int, buy: str = "") -> None:
+        """One solid."""
+        self.add(body, Solid(name, shape, material, through_holes, buy=buy))
+
+    def reserve(self, bodies: list[str]) -> None:
+        """Main pieces are called like their bodies."""
+        for body in bodies:
+            self.main[body] = self.named(body)
+
+    def named(self, wish: str) -> str:
+        """A name that no other solid has, of letters, digits and _; some disks take upper and lower case for one."""
+        name = re.sub(r"\W", "_", wish, flags=re.ASCII)
+        if not name[:1].isalpha():
+            name = f"part_{name}"
+        found, number = name, 1
+        while found.lower() in self.names:
+            number += 1
+            found = f"{name}_{number}"
+        self.names.add(found.lower())
+        return found

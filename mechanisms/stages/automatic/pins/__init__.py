@@ -1,0 +1,1 @@
+"""Revolute joints, welds, springs and bodies without joints: features and their solids."""

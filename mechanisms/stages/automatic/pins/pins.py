@@ -1,0 +1,163 @@
+"""Revolute joints: links that turn about a common axis on one pin, with bushings, washers and circlip. Rods (rods.py)
+turn about a pin at either end.
+
+Joints that share a place on a body share their pin. The lowest body holds it and its head is on top, or the highest
+holds it and it hangs down, kept by a circlip; on ground a pedestal holds it, or a bridge (bridges.py)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from mechanisms.stages.automatic.layout.features import Anchor, Feature, Need, kind
+from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Item, PinReach, PivotReach
+from mechanisms.stages.automatic.layout.planar import disc
+from mechanisms.stages.automatic.pins.pin_solids import ground_pin, hanging_pin, moving_pin
+from mechanisms.stages.automatic.pins.rods import KIND as ROD
+from mechanisms.stages.automatic.pins.rods import ends as rod_ends
+
+if TYPE_CHECKING:
+    from mbsd import Mechanism
+    from mbsd.joint import Joint
+    from mechanisms.stages.automatic.layout.heights import Heights
+    from mechanisms.stages.automatic.layout.items import Levels
+    from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.plan import Plan
+
+SAME = 0.02
+"""Places on a body that are nearer than this (rmm) are one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pin:
+    """One axis: the place on each body that turns about it (rmm)."""
+
+    name: str
+    """Of its first joint; of a rod alone its name and that of the end, 1 or 2."""
+    m: Mechanism
+    places: dict[str, tuple[float, float]]
+
+    @cached_property
+    def movers(self) -> tuple[str, ...]:
+        """The bodies on it that move."""
+        return tuple(body for body in self.places if body != "ground")
+
+    @property
+    def what(self) -> str:
+        """What its item is called."""
+        return f"the pivot {self.name} on ground" if self.on_ground else f"the pin of {self.name}"
+
+    @property
+    def on_ground(self) -> bool:
+        """Whether a pedestal or a bridge holds it."""
+        return "ground" in self.places
+
+    @property
+    def home(self) -> str:
+        """The body whose motion its axis is given in."""
+        return "ground" if self.on_ground else self.movers[0]
+
+    @property
+    def choice(self) -> str:
+        """Whether its lowest body holds it (0) or its highest (1); on ground: the base (0) or a bridge (1)."""
+        return f"pin {self.name}"
+
+    @property
+    def driven(self) -> bool:
+        """Whether a driver turns what is on it against ground."""
+        drivers = self.m.drivers.values()
+        return self.on_ground and any(d.kind.angular and set(d.bodies) <= set(self.places) for d in drivers)
+
+    def anchors(self, layout: Layout) -> Iterable[Anchor]:
+        """An eye on every body."""
+        return [Anchor(body, x, y, layout.sizes.eye) for body, (x, y) in self.places.items()]
+
+    def items(self, layout: Layout) -> Iterable[Item]:
+        """All heights that pin and pedestal take."""
+        x, y = self.places[self.home]
+        shape, on_it = disc(x, y, layout.sizes.hardware), frozenset(self.places)
+        if self.on_ground:
+            reach = PivotReach(self.movers, self.choice, self.driven)
+            return [Item(self.what, self.home, shape, reach, on_it, self, stands=PIVOT)]
+        return [Item(self.what, self.home, shape, PinReach(self.movers, self.choice), on_it, self)]
+
+    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
+        """Room for washers and flanges between neighbours on the pin, and for its head or circlip on top."""
+        sizes, pivot = layout.sizes, layout.sizes.pivot
+        running = pivot.fit.axial + pivot.flange_room
+        stack = sorted(levels[body] for body in self.movers)
+        hangs = levels[self.choice] == 1
+        for k, (low, high) in enumerate(pairwise(stack)):
+            if high == low + 1:
+                held = not self.on_ground and k == (len(stack) - 2 if hangs else 0)
+                yield Need(low, pivot.washer_room + running * (1 if held else 2))
+        top = stack[-1]
+        if hangs:
+            if self.on_ground:
+                yield Need(top, pivot.washer_room + running)
+            if stack[0] == 0 or layout.is_covered(self, 2 * (stack[0] - 1), levels):
+                yield Need(stack[0] - 1, sizes.clip_room)
+        elif layout.is_covered(self, 2 * (top + 1), levels):
+            yield Need(top, sizes.clip_room if self.on_ground else sizes.end_room)
+        if self.on_ground and not hangs and stack[0] == 0:
+            yield Need(BASE, sizes.pedestal + pivot.washer_room + running)
+
+    def build(self, plan: Plan, heights: Heights) -> None:
+        """Eyes and hardware."""
+        stack = sorted(self.movers, key=lambda body: heights.bottom(body))
+        if self.on_ground and heights.levels[self.choice] == 1:
+            return  # its bridge builds it
+        if self.on_ground:
+            ground_pin(self, stack, plan, heights)
+        elif heights.levels[self.choice] == 1:
+            hanging_pin(self, stack, plan, heights)
+        else:
+            moving_pin(self, stack, plan, heights)
+
+
+@kind("revolute")
+def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
+    """Joints by their pins: those with a common place on a body are one."""
+    found = [(joint.name, {k.body.name: layout.place(k) for k in (joint.i, joint.j)}) for joint in joints]
+    return _pins(m, [*found, *_rod_ends(layout)])
+
+
+@kind(ROD)
+def gather_rods(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
+    """Their pins are those of the revolute joints, unless there is none of these."""
+    revolute = [j for j in m.joints.values() if j.kind.name == "revolute" and not layout.apart.intersection(j.bodies)]
+    return [] if revolute else _pins(m, _rod_ends(layout))
+
+
+def _rod_ends(layout: Layout) -> list[tuple[str, dict[str, tuple[float, float]]]]:
+    """Named, with the place on the rod and that on the body which it is pinned to."""
+    return [
+        (f"{rod}_{number}", {rod: own, body: place})
+        for rod, joint in layout.rods.items()
+        for number, (own, body, place) in enumerate(rod_ends(joint, layout), start=1)
+    ]
+
+
+def _pins(m: Mechanism, found: list[tuple[str, dict[str, tuple[float, float]]]]) -> list[Feature]:
+    """Of named joints with a place on two bodies each: those with a common place are one pin."""
+    ends = [at for _, at in found]
+    group = list(range(len(found)))
+    for j in range(len(found)):
+        for i in range(j):
+            shared = ends[i].keys() & ends[j].keys()
+            if group[i] != group[j] and any(_same(ends[i][body], ends[j][body]) for body in shared):
+                old, new = group[j], group[i]
+                group = [new if g == old else g for g in group]
+    pins: list[Feature] = []
+    for g in dict.fromkeys(group):
+        members = [k for k in range(len(found)) if group[k] == g]
+        places = {body: place for k in members for body, place in ends[k].items()}
+        pins.append(Pin(found[members[0]][0], m, places))
+    return pins
+
+
+def _same(a: tuple[float, float], b: tuple[float, float]) -> bool:
+    return abs(a[0] - b[0]) < SAME and abs(a[1] - b[1]) < SAME

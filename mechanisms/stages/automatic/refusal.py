@@ -1,0 +1,54 @@
+"""Why there is no order of layers: the fewest bodies that cannot pass each other, and what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from mechanisms.stages.automatic.layout.layers import blocking
+from mechanisms.stages.automatic.pins.bridges import may_hang
+
+if TYPE_CHECKING:
+    from mechanisms.stages.automatic.layout.layout import Layout
+
+TOLD = 4
+"""So many meetings are told."""
+
+
+def refusal(layout: Layout, fixed: Mapping[str, int]) -> str:
+    """A sentence or two, of meetings that together leave no order: without any one of them there would be one."""
+    items, moving = layout.items, layout.layered
+    problem = layout.problem(fixed, may_hang(layout))
+    pairs = set(blocking(problem, [_pair(layout, rule) for rule in layout.conflicts]))
+    kept = [rule for rule in layout.conflicts if _pair(layout, rule) in pairs]
+    bodies = sorted({body for rule in kept for k in rule for body in items[k].reach.bodies}, key=moving.index)
+    pins = [rule for rule in kept if any(items[k].source is not None for k in rule)] or kept
+    meetings = [_meeting(layout, rule) for rule in _first_of_each(layout, pins)[:TOLD]]
+    return (
+        f"{layout.m.name}: no order of layers lets {_listed(bodies)} pass each other with pins of "
+        f"{layout.sizes.pin:g} mm, on the base or on bridges: {'; '.join(meetings)}. Make links shorter or move joints "
+        "apart so that one stays clear of the other, make pins thinner still (automatic(m, pin=...)), or shape them by "
+        "hand in parts.py"
+    )
+
+
+def _pair(layout: Layout, rule: tuple[int, int]) -> frozenset[str]:
+    return frozenset(layout.items[k].what for k in rule)
+
+
+def _first_of_each(layout: Layout, rules: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
+    found: dict[frozenset[str], tuple[int, int]] = {}
+    for rule in rules:
+        found.setdefault(_pair(layout, rule), rule)
+    return list(found.values())
+
+
+def _meeting(layout: Layout, rule: tuple[int, int]) -> str:
+    first, second = (layout.items[k] for k in rule)
+    gap, time = layout.gap(first, second)
+    near = "meets" if gap < 0 else f"comes within {gap * layout.sizes.scale:.2g} mm of"
+    return f"{second.what} {near} {first.what} at t={time:.3g} s"
+
+
+def _listed(names: Sequence[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -1,0 +1,1 @@
+"""Discs, balls and tyres, and what they touch: features and their solids."""

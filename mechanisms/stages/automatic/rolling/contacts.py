@@ -1,0 +1,184 @@
+"""Contacts of discs with surfaces of ground and with each other: walls, roads, balls, wheels and discs.
+
+A surface is where the model has it. What touches is smaller by a clearance (cams.py), and where a contact hardly yields
+also by as much as it presses in; where one sees that, the two may touch by design. A body without joints is a ball, or
+where there is friction, which turns it, a wheel with a tyre; a body with joints gets a disc. Other contacts have no
+parts.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.curves import Curve
+from mechanisms.stages.automatic.cams.cams import pushing_cam, pushing_extent
+from mechanisms.stages.automatic.layout.extents import Extent, extent
+from mechanisms.stages.automatic.layout.features import Feature, contact_kind, force_kind
+from mechanisms.stages.automatic.layout.profiles import curve_path, distances, on_body, profile_path
+from mechanisms.stages.automatic.rolling.roads import along
+from mechanisms.stages.automatic.rolling.rounds import Look, Round, round_at
+from mechanisms.stages.automatic.rolling.walls import NOSE, Line, roads
+
+if TYPE_CHECKING:
+    from mbsd import Mechanism, Solution
+    from mbsd.force import Force
+    from mbsd.joint import Joint
+    from mechanisms.stages.automatic.layout.layout import Layout
+
+    type Touch = Force | Joint
+
+BALL, DISC, WHEEL = 12.0, 18.0, 22.0
+"""Least radii (rmm)."""
+YIELDS = 0.3
+"""Bodies that press further into each other (rmm) do so in the film, too."""
+BEYOND = 1.2
+"""How far a road goes on beyond the way of its wheel, in the wheel's radii."""
+
+
+@contact_kind("rigid_contact")
+def rigid_lines(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature]:
+    """Walls, and what touches them."""
+    return _on_lines(m, touches, layout)
+
+
+@force_kind("contact")
+@force_kind("tyre")
+def yielding(m: Mechanism, touches: list[Force], layout: Layout) -> list[Feature]:
+    """Walls and roads, and what presses on them."""
+    found = _on_lines(m, [touch for touch in touches if "profile" not in touch.laws], layout)
+    for touch in touches:
+        profile = touch.laws.get("profile")
+        if isinstance(profile, Curve) and _is_on_ground(touch):
+            found += _on_profile(m, touch, profile, layout)
+    return found
+
+
+@contact_kind("rigid_terrain")
+def terrains(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature]:
+    """Roads and what touches them; a closed curve of a moving body is a cam that pushes a roller."""
+    found: list[Feature] = []
+    for touch in touches:
+        closed = touch.params["closed"]
+        if _is_on_ground(touch) and not closed:
+            found += _on_road(m, touch, curve_path(touch.params["points"], False), layout)
+        elif closed and touch.params["radius"] > 0 and "ground" not in touch.bodies:
+            found += pushing_cam(touch, layout)
+    return found
+
+
+@contact_kind("rigid_discs")
+def discs(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature]:
+    """Two balls or discs of moving bodies, on one layer; a disc in a ring, or on ground, has none."""
+    found: list[Feature] = []
+    for touch in touches:
+        if touch.params["inside"] or "ground" in touch.bodies:
+            continue
+        for marker, other, radius in ((touch.i, touch.j, "radius_i"), (touch.j, touch.i, "radius_j")):
+            body, long = marker.body.name, max(layout.sizes.of_metres(touch.params[radius]), NOSE)
+            look = _look(m, body, touch.params["friction"] > 0.0)
+            part, new = round_at(layout, touch.name, body, layout.place(marker), long, look)
+            part.meets.add(other.body.name)
+            found += [part] if new else []
+        layout.together.append(touch.bodies)
+    return found
+
+
+def _on_lines(m: Mechanism, touches: Sequence[Touch], layout: Layout) -> list[Feature]:
+    found: list[Feature] = []
+    lines: list[Line] = []
+    for touch in touches:
+        if not _is_on_ground(touch):
+            continue
+        places = _places(touch, layout)
+        way = np.array([math.cos(touch.i.angle), math.sin(touch.i.angle)])
+        line = Line(touch.name, np.array(layout.place(touch.i)), way)
+        gap = (places - line.start) @ line.free - layout.sizes.of_metres(touch.params["radius"])
+        part, new = _round(m, touch, layout, float(gap.min()))
+        line.start = line.start - _set_back(touch, layout) * line.free
+        found += [part] if new else []
+        line = next((other for other in lines if other.is_same(line)), line)
+        lines += [] if line in lines else [line]
+        line.carry(part, places)
+    return [*found, *roads(lines)]
+
+
+def _on_profile(m: Mechanism, touch: Force, profile: Curve, layout: Layout) -> list[Feature]:
+    """A road as long as the profile's points, and as the way of what runs on it."""
+    start = np.array(layout.place(touch.i))
+    way = np.array([math.cos(touch.i.angle), math.sin(touch.i.angle)])
+    run = (_places(touch, layout) - start) @ way / layout.sizes.of_metres(1.0)
+    beyond = BEYOND * touch.params["radius"]
+    first, last = min(profile.x[0], run.min() - beyond), max(profile.x[-1], run.max() + beyond)
+    return _on_road(m, touch, profile_path(profile, float(first), float(last)), layout)
+
+
+def _on_road(m: Mechanism, touch: Touch, path: np.ndarray, layout: Layout) -> list[Feature]:
+    path = on_body(path, touch.i, layout)
+    gap = distances(_places(touch, layout), path) - layout.sizes.of_metres(touch.params["radius"])
+    part, new = _round(m, touch, layout, float(gap.min()))
+    path = path - _set_back(touch, layout) * _normals(path)
+    return [*([part] if new else []), along(touch.name, [part], path)]
+
+
+def _round(m: Mechanism, touch: Touch, layout: Layout, gap: float) -> tuple[Round, bool]:
+    """What touches; ``gap`` is the least one (rmm), below 0 where it presses in."""
+    body = touch.j.body.name
+    turned = touch.params.get("friction", 0.0) > 0.0
+    look: Look = "wheel" if touch.kind.name == "tyre" else _look(m, body, turned)
+    pressed, pair = max(0.0, -gap), frozenset(touch.bodies)
+    if pressed > YIELDS:
+        layout.pressing.add(pair)
+    if pair in layout.touching | layout.pressing:
+        pressed = 0.0
+    radius = max(layout.sizes.of_metres(touch.params["radius"]), NOSE)
+    return round_at(layout, touch.name, body, layout.place(touch.j), radius, look, pressed)
+
+
+def _look(m: Mechanism, body: str, turned: bool) -> Look:
+    """Of what touches without being a tyre."""
+    if any(body in joint.bodies for joint in m.joints.values()):
+        return "disc"
+    return "wheel" if turned else "ball"
+
+
+def _set_back(touch: Touch, layout: Layout) -> float:
+    """How far the surface lies behind that of the model (rmm), because what touches is larger than there."""
+    return max(0.0, NOSE - layout.sizes.of_metres(touch.params["radius"]))
+
+
+def _places(touch: Touch, layout: Layout) -> np.ndarray:
+    return layout.seen(touch.j.body.name, layout.place(touch.j), "ground")
+
+
+def _is_on_ground(touch: Touch) -> bool:
+    return touch.i.body.name == "ground" and touch.j.body.name != "ground"
+
+
+def _normals(path: np.ndarray) -> np.ndarray:
+    """(n, 2) unit vectors to the left of a path."""
+    way = np.gradient(path, axis=0)
+    return np.stack([-way[:, 1], way[:, 0]], axis=1) / np.hypot(*way.T)[:, None]
+
+
+@extent("rigid_discs")
+def extent_of_discs(touch: Joint, solution: Solution) -> Extent:
+    """Both discs."""
+    radii = ((touch.i, touch.params["radius_i"]), (touch.j, touch.params["radius_j"]))
+    return Extent(radii, tuple((radius, DISC) for _, radius in radii if radius > 0))
+
+
+@extent("rigid_contact")
+@extent("rigid_terrain")
+@extent("contact")
+@extent("tyre")
+def extent_of(touch: Touch, solution: Solution) -> Extent:
+    """What touches."""
+    radius = touch.params["radius"]
+    if touch.params.get("closed", False):
+        return pushing_extent(touch)
+    least = WHEEL if touch.kind.name == "tyre" or touch.params.get("friction", 0.0) > 0.0 else BALL
+    return Extent(((touch.j, radius),), ((radius, least),) if radius > 0 else ())

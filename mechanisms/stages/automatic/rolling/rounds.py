@@ -1,0 +1,109 @@
+"""Round parts that touch something: a ball that is free, a wheel with a tyre, a disc on a body that has joints.
+
+They are made with the clearance of a cam and its roller from what they touch.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+from mechanisms.stages.automatic.cams.cams import CLEAR
+from mechanisms.stages.automatic.layout.features import Anchor, Need
+from mechanisms.stages.automatic.layout.items import Item, Reach
+from mechanisms.stages.automatic.layout.planar import disc
+from mechanisms.stages.automatic.rolling.round_solids import ball, plain_disc, tyred_wheel
+
+if TYPE_CHECKING:
+    from mechanisms.stages.automatic.layout.heights import Heights
+    from mechanisms.stages.automatic.layout.items import Levels
+    from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.plan import Plan
+
+type Look = Literal["ball", "wheel", "disc"]
+
+HUB = 0.3
+"""Radius of the hub of a wheel without an axle, in its own."""
+WITHIN = 0.8
+"""Radius of the end of a plate within a disc, in the disc's."""
+OVER = 0.4
+"""How far a wall reaches above the middle of a ball, in its radii."""
+
+
+@dataclass(eq=False)
+class Round:
+    """A circle about a place of a body (rmm). ``radius`` is that of the model, ``short`` what is left off."""
+
+    name: str
+    body: str
+    at: tuple[float, float]
+    radius: float
+    short: float
+    look: Look
+    pinned: bool = True
+    """Whether a pin goes through its middle."""
+    meets: set[str] = field(default_factory=set)
+    """Bodies with discs that touch it."""
+
+    @property
+    def made(self) -> float:
+        """The radius as it is made."""
+        return self.radius - self.short
+
+    def anchors(self, layout: Layout) -> Iterable[Anchor]:
+        """The middle, within what touches."""
+        return [Anchor(self.body, *self.at, min(self.hub(layout), self.made))]
+
+    def hub(self, layout: Layout) -> float:
+        """What is solid in the middle."""
+        if self.look == "wheel":
+            return layout.sizes.eye if self.pinned else HUB * self.made
+        return min(layout.sizes.eye, WITHIN * self.made)
+
+    def items(self, layout: Layout) -> Iterable[Item]:
+        """The circle at the height of its body; a ball is higher than that."""
+        reach = Reach((self.body,), -1, 1) if self.look == "ball" else Reach((self.body,))
+        yield Item(
+            f"the {self.look} of {self.name}", self.body, disc(*self.at, self.made), reach, frozenset(self.meets), self
+        )
+
+    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
+        """A ball needs room below and above the layer."""
+        if self.look == "ball":
+            level, beyond = levels[self.body], self.made - layout.sizes.thickness / 2 + layout.sizes.pivot.fit.axial
+            yield Need(level - 1, beyond)
+            yield Need(level, beyond)
+
+    def build(self, plan: Plan, heights: Heights) -> None:
+        """Its solids."""
+        {"ball": ball, "wheel": tyred_wheel, "disc": plain_disc}[self.look](self, plan, heights)
+
+    def top(self, heights: Heights) -> float:
+        """How high what it touches must reach (rmm)."""
+        if self.look == "ball":
+            return max(heights.top(self.body), heights.bottom(self.body) + heights.thickness / 2 + OVER * self.made)
+        return heights.top(self.body)
+
+
+def round_at(
+    layout: Layout, name: str, body: str, at: tuple[float, float], radius: float, look: Look, pressed: float = 0.0
+) -> tuple[Round, bool]:
+    """The round part at a place of a body, and whether it is a new one; ``radius`` and ``pressed`` in rmm.
+
+    Where there is one already, it becomes as small as all that it touches ask for, and a wheel if one of them does.
+    """
+    short = CLEAR * layout.sizes.pivot.fit.running + pressed
+    key = (body, round(at[0], 3), round(at[1], 3))
+    if key not in layout.rounds:
+        ends = [marker for joint in layout.m.joints.values() for marker in (joint.i, joint.j)]
+        pinned = any(marker.body.name == body and math.dist(layout.place(marker), at) < 0.01 for marker in ends)
+        layout.rounds[key] = Round(name, body, at, radius, short, look, pinned)
+        return layout.rounds[key], True
+    there = layout.rounds[key]
+    least = min(there.made, radius - short)
+    there.radius = min(there.radius, radius)
+    there.short = there.radius - least
+    there.look = "wheel" if "wheel" in (there.look, look) else there.look
+    return there, False

@@ -1,0 +1,1 @@
+"""Prismatic joints, pins in slots and along curves: features and their solids."""

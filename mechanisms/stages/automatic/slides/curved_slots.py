@@ -1,0 +1,159 @@
+"""Point on a curve: a slot along the part of the curve that the pin's roller runs through, or a groove all round.
+
+A closed curve that is run all round would cut its plate in two, so it is a groove in the face that the pin comes from.
+Where the point keeps a distance from the curve, the slot is at that distance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechanisms.stages.automatic.layout.extents import Extent, extent
+from mechanisms.stages.automatic.layout.features import Anchor, Feature, Need, kind
+from mechanisms.stages.automatic.layout.items import Item, Reach
+from mechanisms.stages.automatic.layout.planar import convex_hull, disc
+from mechanisms.stages.automatic.layout.profiles import curve_path, on_body
+from mechanisms.stages.automatic.slides.slot_solids import channelled
+from mechanisms.stages.automatic.slides.slots import Slot, entered
+from shared.shapes.band import normals, sharpest
+from shared.stage.errors import UserError
+
+if TYPE_CHECKING:
+    from mbsd import Mechanism, Solution
+    from mbsd.joint import Joint
+    from mechanisms.stages.automatic.layout.heights import Heights
+    from mechanisms.stages.automatic.layout.items import Levels
+    from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.plan import Plan
+
+STEP, MOST = 2.0, 240
+"""Between places of a slot (rmm), and how many there are at most."""
+BEYOND = 1.0
+"""The slot's way beyond the pin's, at either end (rmm)."""
+BEND = 1.25
+"""Least radius of curvature, in radii of the roller."""
+LEAST = 9.0
+"""The same, in rmm."""
+
+
+@dataclass(frozen=True, eq=False)
+class CurvedSlot(Slot):
+    """``path`` is at even steps; closed: its last place is its first."""
+
+    closed: bool
+
+    def posts(self, layout: Layout) -> list[tuple[float, float]]:
+        """Of a plate on ground: beyond the two places that are farthest from each other."""
+        hull = convex_hull(self.path)
+        apart = np.linalg.norm(hull[:, None] - hull[None], axis=2)
+        a, b = np.unravel_index(int(np.argmax(apart)), apart.shape)
+        return Slot.posts(Slot(self.name, self.slot, self.pin, hull[[a, b]], self.pin_at), layout)
+
+    def anchors(self, layout: Layout) -> Iterable[Anchor]:
+        """A wall round the slot, whole in its middle; an eye that holds the pin."""
+        if self.slot == "ground":
+            return Slot.anchors(self, layout)
+        thinned = self.path[:: max(1, len(self.path) // 24)]
+        hull, radius = convex_hull(np.vstack([thinned, self.path[-1:]])), self.radius(layout)
+        places = [Anchor(self.slot, float(x), float(y), radius) for x, y in [*hull, hull.mean(axis=0)]]
+        return [*places, Anchor(self.pin, *self.pin_at, layout.sizes.eye)]
+
+    def items(self, layout: Layout) -> Iterable[Item]:
+        """As those of a straight slot; in a groove the pin ends."""
+        for item in Slot.items(self, layout):
+            if self.closed and item.body == self.pin and isinstance(item.reach, Reach) and item.reach.high == 1:
+                base = self.pin == "ground"
+                reach = Reach(self.layers, high=-1, base=True) if base else Reach(self.layers, 1, -1)
+                shape = disc(*self.pin_at, layout.sizes.hardware)
+                yield replace(item, shape=shape, reach=reach)
+            else:
+                yield item
+
+    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
+        """As a straight slot."""
+        return Slot.needs(self, levels, layout)
+
+    def build(self, plan: Plan, heights: Heights) -> None:
+        """Slot or groove, pin and roller."""
+        if self.closed:
+            channelled(self, plan, heights)
+        else:
+            Slot.build(self, plan, heights)
+
+
+@kind("point_on_curve")
+def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
+    """One for each joint. Raises UserError where the curve bends too sharply for a roller."""
+    return [entered(_slot(m, joint, layout), layout) for joint in joints]
+
+
+def _slot(m: Mechanism, joint: Joint, layout: Layout) -> CurvedSlot:
+    slot, pin, pin_at = joint.i.body.name, joint.j.body.name, layout.place(joint.j)
+    whole = on_body(_offset(joint), joint.i, layout)
+    path, closed = _run_through(whole, bool(joint.params["closed"]), layout.seen(pin, pin_at, slot), layout)
+    bend, least = sharpest(path), BEND * layout.sizes.roller / 2
+    if bend < least:
+        scale = layout.sizes.scale
+        raise UserError(
+            f"{m.name}: the curve of joint '{joint.name}' bends with a radius of {bend * scale:.3g} mm where its pin "
+            f"runs, and a slot for a roller of {layout.sizes.roller * scale:.3g} mm needs {least * scale:.3g} mm; make "
+            "the curve smoother or pins thinner (automatic(m, pin=...))"
+        )
+    return CurvedSlot(joint.name, slot, pin, path, pin_at, closed)
+
+
+def _offset(joint: Joint) -> np.ndarray:
+    """(n, 2) places (m) at the joint's distance from its curve, in the axes of the curve's marker."""
+    path = curve_path(joint.params["points"], bool(joint.params["closed"]))
+    if joint.params["closed"]:
+        path = np.vstack([path, path[:1]])
+    path = _evenly(path, 4 * len(path))
+    return path + joint.params["distance"] * normals(path)
+
+
+def _evenly(path: np.ndarray, count: int) -> np.ndarray:
+    """(count, 2) places along a path with the same way from each to the next."""
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+    at = np.linspace(0.0, way[-1], count)
+    return np.stack([np.interp(at, way, path[:, k]) for k in (0, 1)], axis=1)
+
+
+def _run_through(whole: np.ndarray, closed: bool, seen: np.ndarray, layout: Layout) -> tuple[np.ndarray, bool]:
+    """The part of a path where the pin comes, with a little more at its ends; and whether that is all of a loop."""
+    step = float(np.hypot(*np.diff(whole, axis=0).T).max())
+    ahead = 0
+    if not closed:  # beyond its ends a curve goes on straight
+        apart = np.linalg.norm(seen[:, None] - whole[[0, -1]], axis=2).max()
+        ahead = int(apart / step) + 2
+        way = np.arange(ahead, 0, -1)[:, None]
+        whole = np.vstack(
+            [whole[0] + way * (whole[0] - whole[1]), whole, whole[-1] + way[::-1] * (whole[-1] - whole[-2])]
+        )
+    nearest = np.array([int(np.argmin(((whole - place) ** 2).sum(axis=1))) for place in seen])
+    more = int(BEYOND / step) + 1
+    if not closed:
+        low, high = max(0, nearest.min() - more), min(len(whole) - 1, nearest.max() + more)
+        return _stepped(whole[low : high + 1]), False
+    count = len(whole) - 1
+    turns = np.unwrap(nearest % count * (2 * np.pi / count)) * count / (2 * np.pi)
+    low, high = round(turns.min()) - more, round(turns.max()) + more
+    between = (count - (high - low)) * step
+    if between < layout.sizes.roller + 7.0:
+        return _stepped(whole), True
+    return _stepped(whole[np.arange(low, high + 1) % count]), False
+
+
+def _stepped(path: np.ndarray) -> np.ndarray:
+    length = float(np.hypot(*np.diff(path, axis=0).T).sum())
+    return _evenly(path, min(MOST, max(8, int(length / STEP))))
+
+
+@extent("point_on_curve")
+def extent_of(joint: Joint, solution: Solution) -> Extent:
+    """Room for a roller where the curve bends."""
+    bend = sharpest(_offset(joint))
+    return Extent((), ((bend, LEAST),) if np.isfinite(bend) else ())

@@ -1,0 +1,130 @@
+"""Prismatic joints: a block with two gibs on a rail, which is on the body of the first marker.
+
+On ground the rail stands on the base, or on two posts where the block is high. Between moving bodies the rail is
+screwed to its body's plate on the side of the block. Where the second marker is on ground, the block stands there,
+and the rail hangs under its body."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechanisms.stages.automatic.layout.features import Anchor, Feature, Need, kind
+from mechanisms.stages.automatic.layout.items import Item, Reach
+from mechanisms.stages.automatic.layout.planar import Rounded, disc
+from mechanisms.stages.automatic.slides.slide_solids import (
+    BEAM,
+    HALF_LENGTH,
+    RAIL,
+    RAIL_HEIGHT,
+    fixed_block,
+    fixed_rail,
+    moving_rail,
+)
+
+if TYPE_CHECKING:
+    from mbsd import Mechanism
+    from mbsd.joint import Joint
+    from mechanisms.stages.automatic.layout.heights import Heights
+    from mechanisms.stages.automatic.layout.items import Levels
+    from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.plan import Plan
+
+WALL = 3.0
+"""Of a rail's plate beside the rail (rmm)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Slide:
+    """A rail on one body and a block on another: places and directions (rmm, rad) in their frames, and the travel."""
+
+    name: str
+    rail: str
+    block: str
+    rail_at: tuple[float, float, float]
+    block_at: tuple[float, float, float]
+    travel: tuple[float, float]
+    """Of the block's middle along the rail, from its marker."""
+
+    def rail_ends(self) -> list[tuple[float, float]]:
+        """Middles of the rail's round ends, in its body's frame: the block never leaves it."""
+        first, last = self.travel[0] - HALF_LENGTH, self.travel[1] + HALF_LENGTH
+        return [_along(self.rail_at, first), _along(self.rail_at, last)]
+
+    def block_ends(self, radius: float) -> list[tuple[float, float]]:
+        """Middles of the block's round ends, in its body's frame."""
+        reach = HALF_LENGTH - radius
+        return [_along(self.block_at, -reach), _along(self.block_at, reach)]
+
+    def anchors(self, layout: Layout) -> Iterable[Anchor]:
+        """The block's plate, and a plate under the rail."""
+        eye = layout.sizes.eye
+        found = [Anchor(self.block, x, y, eye) for x, y in self.block_ends(eye)]
+        if self.rail != "ground":
+            found += [Anchor(self.rail, x, y, RAIL / 2 + WALL) for x, y in self.rail_ends()]
+        return found
+
+    def items(self, layout: Layout) -> Iterable[Item]:
+        """Rail, its posts, and the gibs of the block."""
+        rail = Rounded(np.array(self.rail_ends()), RAIL / 2 + 1.0)
+        block = Rounded(np.array(self.block_ends(layout.sizes.eye)), layout.sizes.eye)
+        what, gibs = f"the rail of {self.name}", f"the block of {self.name}"
+        sliding = frozenset((self.block, gibs))  # nothing else of the block's body passes through the rail
+        if self.rail == "ground":
+            below = Reach((self.block,), -1, -1)
+            posts = Reach((self.block,), -1, -1, base=True)
+            yield Item(what, "ground", rail, below, source=self, meshes=sliding, stands=what)
+            for x, y in self.rail_ends():
+                post = disc(x, y, RAIL / 2 + 1.0)
+                yield Item(what, "ground", post, posts, source=self, meshes=sliding, stands=what)
+            yield Item(gibs, self.block, block, below, source=self, meshes=frozenset((what,)))
+        elif self.block == "ground":
+            reach = Reach((self.rail,), -1, -1, base=True)
+            yield Item(what, self.rail, rail, Reach((self.rail,), -1, -1), source=self, meshes=sliding)
+            yield Item(gibs, "ground", block, reach, source=self, meshes=frozenset((what, self.rail)), stands=what)
+        else:
+            between = Reach((self.rail, self.block), 1, -1)
+            yield Item(what, self.rail, rail, between, source=self, meshes=sliding)
+            yield Item(gibs, self.block, block, between, source=self, meshes=frozenset((what, self.rail)))
+
+    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
+        """Room for the rail under, or between, the plates."""
+        axial = layout.sizes.pivot.fit.axial
+        if self.rail == "ground":
+            yield Need(levels[self.block] - 1, BEAM + 2 * axial)
+        elif self.block == "ground":
+            yield Need(levels[self.rail] - 1, RAIL_HEIGHT + 2 * axial + 2.0)
+        else:
+            low = min(levels[self.rail], levels[self.block])
+            if abs(levels[self.rail] - levels[self.block]) == 1:
+                yield Need(low, RAIL_HEIGHT + 2 * axial)
+
+    def build(self, plan: Plan, heights: Heights) -> None:
+        """Rail, gibs and what carries them."""
+        if self.rail == "ground":
+            fixed_rail(self, plan, heights)
+        elif self.block == "ground":
+            fixed_block(self, plan, heights)
+        else:
+            moving_rail(self, plan, heights)
+
+
+@kind("prismatic")
+def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
+    """One for each joint."""
+    found: list[Feature] = []
+    for joint in joints:
+        rail_at, block_at = (*layout.place(joint.i), joint.i.angle), (*layout.place(joint.j), joint.j.angle)
+        along = layout.seen(joint.j.body.name, block_at[:2], joint.i.body.name) - np.array(rail_at[:2])
+        place = along @ np.array([math.cos(joint.i.angle), math.sin(joint.i.angle)])
+        travel = float(place.min()), float(place.max())
+        found.append(Slide(joint.name, joint.i.body.name, joint.j.body.name, rail_at, block_at, travel))
+    return found
+
+
+def _along(at: tuple[float, float, float], distance: float) -> tuple[float, float]:
+    return at[0] + distance * math.cos(at[2]), at[1] + distance * math.sin(at[2])

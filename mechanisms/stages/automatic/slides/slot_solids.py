@@ -1,0 +1,148 @@
+"""The solids of a pin in a slot (rmm): the slot, its plate where that is on ground, the pin, its roller and washer."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechanisms.stages.automatic.layout.plan import Foot
+from mechanisms.stages.automatic.layout.planar import convex_hull
+from mechanisms.stages.automatic.pins.pin_solids import standing
+from shared.shapes import outline
+from shared.shapes.band import band, loop
+from shared.shapes.build import eased, extruded
+from shared.shapes.link import Eye
+from shared.shapes.pin import Head, grooved, pin, washer
+from shared.shapes.solid import Roll, Solid, placed
+
+if TYPE_CHECKING:
+    import cadquery as cq
+
+    from mechanisms.stages.automatic.layout.heights import Heights
+    from mechanisms.stages.automatic.layout.plan import Plan
+    from mechanisms.stages.automatic.slides.slots import Slot
+
+GROOVES, GROOVE, GROOVE_DEPTH = 6, 2.6, 1.6
+"""Grooves for oil in the face of a roller, by which one sees it turn: how many, width and depth (rmm)."""
+RIM = 1.0
+"""Between grooves and the rim of a large roller (rmm); in a small one they go through."""
+SEEN = 2.0
+"""How far the face of a large roller reaches beyond the head of its pin (rmm)."""
+SMALL = Head(10.4, 3.2, 1.0)
+"""Of the pin of a small roller, whose face shows round it (rmm)."""
+SMALL_GROOVE = 1.7
+"""Width of the grooves of a small roller (rmm)."""
+PIECES = 24
+"""About so many straight pieces stand for a curved slot."""
+CHANNEL = 4.6
+"""Depth of a slot that does not go through (rmm)."""
+POST = 10.0
+"""Diameter of the posts of a plate on ground (rmm)."""
+
+
+def slotted(slot: Slot, plan: Plan, heights: Heights) -> None:
+    """Cut the slot, and put a pin with a roller through it: from below with its head on top, from above hanging."""
+    sizes = plan.layout.sizes
+    tool = _tool(slot.path, (sizes.roller + sizes.pivot.fit.running) / 2, heights.thickness + 2.0).translate((0, 0, -1))
+    if slot.slot == "ground":
+        _plate(slot, tool, plan, heights)
+    else:
+        plan.cut(slot.slot, tool, 1)
+        _keep_free(slot, plan)
+    slot_pin(slot, plan, heights)
+
+
+def _keep_free(slot: Slot, plan: Plan) -> None:
+    """Tell the plate where its slot is, as straight pieces of it."""
+    places = [(float(x), float(y)) for x, y in slot.path[:: max(1, len(slot.path) // PIECES)]]
+    last = (float(slot.path[-1][0]), float(slot.path[-1][1]))
+    kept = plan.slots.setdefault(slot.slot, [])
+    kept += [[a, b] for a, b in pairwise([*places, last]) if a != b]
+
+
+def _tool(path: np.ndarray, half: float, height: float) -> cq.Workplane:
+    if len(path) == 2:
+        return extruded(outline.hull([(float(x), float(y), half) for x, y in path]), height)
+    return extruded(band(path, half), height)
+
+
+def channelled(slot: Slot, plan: Plan, heights: Heights) -> None:
+    """Cut a channel all round into the face where the pin comes from, and put a pin with a roller into it."""
+    sizes = plan.layout.sizes
+    half, low = (sizes.roller + sizes.pivot.fit.running) / 2, heights.bottom(slot.layer)
+    below = slot.pin == "ground" or heights.bottom(slot.pin) < low
+    tool = extruded(loop(slot.path, half), CHANNEL + 1.0, -1.0 if below else heights.thickness - CHANNEL)
+    inner = extruded(loop(slot.path, -half), CHANNEL + 3.0, -2.0 if below else heights.thickness - CHANNEL - 1.0)
+    tool = tool.cut(inner)
+    if slot.slot == "ground":
+        _plate(slot, tool, plan, heights, 0)
+    else:
+        plan.cut(slot.slot, tool, 0)
+        _keep_free(slot, plan)
+    slot_pin(slot, plan, heights, depth=CHANNEL)
+
+
+def _plate(slot: Slot, tool: cq.Workplane, plan: Plan, heights: Heights, holes: int = 1) -> None:
+    """On posts on the base."""
+    seat, low = plan.layout.sizes.pivot.fit.seat, heights.bottom(slot.layer)
+    wide = slot.radius(plan.layout)
+    hull = convex_hull(np.array([(x, y) for x, y, _ in slot.outline(plan.layout)]), 1e-4)
+    shape = extruded(outline.hull([(float(x), float(y), wide) for x, y in hull]), heights.thickness)
+    shape = eased(shape, 0.6, ">Z", chamfer=True).cut(tool)
+    plan.make("ground", f"slot_{slot.name}", placed(shape, z=low), "aluminium", holes)
+    for k, (x, y) in enumerate(slot.posts(plan.layout), start=1):
+        post = extruded(outline.circle(x, y, POST / 2), low - 2 * seat, seat)
+        plan.make("ground", f"post_{slot.name}_{k}", post, "steel", 0)
+        plan.feet.append(Foot("", x, y, POST / 2 + 2.0))
+
+
+def slot_pin(
+    slot: Slot, plan: Plan, heights: Heights, roller_diameter: float | None = None, depth: float | None = None
+) -> None:
+    """A pin with a roller at the height of the slot, on the pin's body: from below its head is on top.
+
+    In a groove of a ``depth`` the pin ends.
+    """
+    sizes = plan.layout.sizes
+    pivot, fit = sizes.pivot, sizes.pivot.fit
+    x, y = slot.pin_at
+    outer = roller_diameter or sizes.roller
+    low, high = heights.bottom(slot.layer), heights.top(slot.layer)
+    below = slot.pin == "ground" or heights.bottom(slot.pin) < low
+    thick = (heights.thickness if depth is None else depth - 0.4) - 0.4
+    large = outer > sizes.head.diameter + 2 * SEEN
+    reach, width = (outer / 2 - RIM, GROOVE) if large else (outer, SMALL_GROOVE)
+    roller = washer(pivot.pin + fit.running, outer, thick, chamfer=0.4)
+    roller = grooved(roller, GROOVES, reach, width, GROOVE_DEPTH)
+    roll = Roll(slot.name, x, y, outer / 2, GROOVES)
+    at = low + 0.2 if below else high - 0.2 - thick
+    plan.add(slot.pin, Solid(f"roller_{slot.name}", placed(roller, x, y, at), "bronze", 1, rolls=roll))
+    head = None if depth is not None else SMALL if below and not large else sizes.head
+    end = high + fit.axial if depth is None else low + depth - 0.4
+    if slot.pin == "ground":
+        height = low - fit.axial - pivot.washer_room
+        standing(slot.name, (x, y), height, plan)
+        plan.add("ground", pivot.washer_at(f"washer_{slot.name}", x, y, height + fit.seat))
+        start = 0.5
+        shape = pin(pivot.pin, end - start, head)
+    elif below:
+        boss = max(low - fit.axial - pivot.washer_room - heights.top(slot.pin), 0.0)
+        boss = 0.0 if boss < 0.05 else boss
+        eye = Eye(sizes.eye - 0.5, pivot.held, above=boss, boss=min(9.5, sizes.hardware))
+        plan.eye(slot.pin, x, y, eye)
+        plan.add(slot.pin, pivot.washer_at(f"washer_{slot.name}", x, y, heights.top(slot.pin) + boss + fit.seat))
+        start = heights.bottom(slot.pin) + 0.3
+        shape = pin(pivot.pin, end - start, head)
+    else:
+        boss = max(heights.bottom(slot.pin) - high - fit.axial - pivot.washer_room, 0.0)
+        boss = 0.0 if boss < 0.05 else boss
+        eye = Eye(sizes.eye - 0.5, pivot.held, below=boss, boss=min(9.5, sizes.hardware))
+        plan.eye(slot.pin, x, y, eye)
+        under = heights.bottom(slot.pin) - boss - pivot.washer_room
+        plan.add(slot.pin, pivot.washer_at(f"washer_{slot.name}", x, y, under))
+        start = low + 0.1 if depth is None else high - depth + 0.4
+        top = heights.top(slot.pin) + (fit.seat if depth is None else -0.3)
+        shape = pin(pivot.pin, top - start, head)
+    plan.make(slot.pin, f"pin_{slot.name}", placed(shape, x, y, start), "brass", 0)

@@ -1,0 +1,148 @@
+"""What meshes with each other: one module, whole teeth, and phases so that a tooth stands in a space everywhere."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from mechanisms.stages.automatic.wheels.racks import Rack
+from mechanisms.stages.automatic.wheels.teeth import module_of
+from mechanisms.stages.automatic.wheels.wheels import Wheel
+from shared.shapes.involute import ADDENDUM, longest_rack_tip, longest_tip, shortest_tip
+from shared.shapes.units import mm
+from shared.stage.errors import UserError
+
+if TYPE_CHECKING:
+    from mbsd import Mechanism
+    from mbsd.joint import Joint
+    from mechanisms.stages.automatic.layout.layout import Layout
+
+type Toothed = Wheel | Rack
+
+RING_TIP = 0.9
+"""Height of a ring's teeth inside the pitch circle, in modules."""
+MISS = 0.02
+"""Part of a pitch by which teeth may miss each other."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Two that mesh: of a ring or a rack it is the first."""
+
+    first: Toothed
+    second: Wheel
+    joint: Joint
+
+
+def in_phase(m: Mechanism, toothed: Sequence[Toothed], meshes: Sequence[Mesh], layout: Layout) -> None:
+    """Give all their teeth. Raises UserError where there are no whole ones, or where they miss each other."""
+    for train in _trains(toothed):
+        _count(m, train, [mesh for mesh in meshes if mesh.second in train], layout)
+        _mesh(m, train, meshes, layout)
+
+
+def _trains(toothed: Sequence[Toothed]) -> list[list[Toothed]]:
+    """Those that mesh with each other, directly or through others; a wheel comes first."""
+    found: list[list[Toothed]] = []
+    seen: set[int] = set()
+    for start in sorted(toothed, key=lambda one: isinstance(one, Rack)):
+        train: list[Toothed] = []
+        waiting: list[Toothed] = [start]
+        while waiting:
+            one = waiting.pop(0)
+            if id(one) not in seen:
+                seen.add(id(one))
+                train.append(one)
+                waiting += one.mates
+        if train:
+            found.append(train)
+    return found
+
+
+def _count(m: Mechanism, train: list[Toothed], meshes: Sequence[Mesh], layout: Layout) -> None:
+    """Module, teeth, play and tips of a train."""
+    scale = layout.sizes.scale
+    wheels = [one for one in train if isinstance(one, Wheel)]
+    given = [mesh.joint.params["module"] for mesh in meshes if mesh.joint.params.get("teeth") is not None]
+    module = mm(given[0]) if given else module_of([wheel.radius * scale for wheel in wheels])
+    if module is None:
+        radii = ", ".join(f"{wheel.body} {wheel.radius * scale:.4g} mm" for wheel in wheels)
+        raise UserError(
+            f"{m.name}: gears with pitch radii {radii} have no whole numbers of teeth with one module; choose radii in "
+            "a ratio of small whole numbers, or give teeth= and module="
+        )
+    play = max(0.22, 0.06 * module)
+    for one in train:
+        one.module, one.play = module / scale, play / scale
+    for wheel in wheels:
+        wheel.teeth = round(2 * wheel.radius / wheel.module)
+    for one in train:
+        one.tip = _tip(one)
+
+
+def _tip(one: Toothed) -> float:
+    """Tip radius of a wheel, tip height of a rack: teeth are shorter where they would reach below a base circle."""
+    if isinstance(one, Rack):
+        return min(ADDENDUM * one.module, *(longest_rack_tip(pinion.radius) for pinion in one.mates))
+    wheels = [mate for mate in one.mates if isinstance(mate, Wheel)]
+    if one.ring:
+        return max(one.radius - RING_TIP * one.module, *(shortest_tip(one.radius, mate.radius) for mate in wheels))
+    longest = [longest_tip(one.radius, mate.radius) for mate in wheels if not mate.ring]
+    return min([one.radius + ADDENDUM * one.module, *longest])
+
+
+def _mesh(m: Mechanism, train: list[Toothed], meshes: Sequence[Mesh], layout: Layout) -> None:
+    """Phases from one to the next: where two touch, a tooth of one stands in a space of the other at the start."""
+    train[0].phase = 0.0
+    waiting = [train[0]]
+    while waiting:
+        one = waiting.pop(0)
+        for mesh in meshes:
+            if one is not mesh.first and one is not mesh.second:
+                continue
+            mate = mesh.second if one is mesh.first else mesh.first
+            phase = _phase_of(one, mate, layout)
+            if mate.phase is None:
+                mate.phase = phase
+                waiting.append(mate)
+                continue
+            pitch = mate.pitch
+            off = abs((mate.phase - phase + pitch / 2) % pitch - pitch / 2)
+            if off > MISS * pitch:
+                raise UserError(
+                    f"{m.name}: {mesh.joint.kind.name} '{mesh.joint.name}': the teeth of {mate.body} and {one.body} "
+                    f"miss each other by {100 * off / pitch:.0f} % of a pitch where the others mesh; space equal "
+                    "planets so that the teeth of sun and ring together divide by their number, or change the numbers "
+                    "of teeth"
+                )
+
+
+def _phase_of(one: Toothed, mate: Toothed, layout: Layout) -> float:
+    """Angle of a tooth of ``mate`` in its body's frame (place along a rack), from that of the other."""
+    if isinstance(mate, Rack) and isinstance(one, Wheel):
+        along, turn = mate.sees(one, layout)
+        return along + one.radius * ((one.phase or 0.0) + turn + math.pi / 2) + math.pi * one.module / 2
+    if isinstance(one, Rack) and isinstance(mate, Wheel):
+        along, turn = one.sees(mate, layout)
+        return ((one.phase or 0.0) - math.pi * one.module / 2 - along) / mate.radius - math.pi / 2 - turn
+    if isinstance(one, Rack) or isinstance(mate, Rack):
+        raise TypeError("racks mesh with wheels")
+    return _phase_of_wheel(one, mate, layout)
+
+
+def _phase_of_wheel(wheel: Wheel, mate: Wheel, layout: Layout) -> float:
+    centres, turns = [], []
+    for one in (wheel, mate):
+        x, y, turn = layout.poses[one.body][0]
+        c, s = math.cos(turn), math.sin(turn)
+        centres.append((x + c * one.x - s * one.y, y + s * one.x + c * one.y))
+        turns.append(turn)
+    to_mate = math.atan2(centres[1][1] - centres[0][1], centres[1][0] - centres[0][0])
+    # direction of the point of contact from either centre
+    own = to_mate + (math.pi if mate.ring else 0.0)
+    other = own if wheel.ring or mate.ring else to_mate + math.pi
+    way = (wheel.phase or 0.0) + turns[0] - own
+    sign = 1.0 if wheel.ring or mate.ring else -1.0
+    return (sign * way * wheel.radius + math.pi * wheel.module / 2) / mate.radius + other - turns[1]

@@ -1,0 +1,257 @@
+"""The ``clearance`` stage: proves that no two pieces of different bodies touch over the motion in data.json.
+
+Every pair of pieces of two bodies is settled by the first of these that suffices:
+
+1. Circles. Pieces whose circles in the plane stay apart do not meet, nor do those of bodies far apart (far.py).
+2. Layers. The motion is planar, so pieces at different heights stay apart, whatever the motion.
+3. Turn. Bodies with a revolute joint between them turn about one axis: the gap at every angle at once (turn.py).
+   This also covers a pin in its hole with 0.1 mm of room.
+4. Motion. The gap of the two meshes over the whole motion, found and proven by branch and bound: of their outlines in
+   the plane (outline_search.py), and where these do not tell it, of their facets (search.py). Of gears, over one pitch
+   of their teeth (meshing.py).
+
+What is proven: at every moment of the motion, which between the samples of data.json is the quintic that the film
+shows, the meshes are apart by the ``proven`` gap of clearance.json. It is at most ``resolution`` below the gap that was
+measured, and less what the true motion may be off between two samples there (path.py). Meshes lie within
+``parts_files.TOLERANCE`` of the solids. Pieces of one body are not compared with each other, nor are pieces of two
+bodies that parts.json says may touch by design; clearance.json names these pairs.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+from shared.contract import Motion, Parts, Provenance, read_motion, read_parts
+from shared.contract.clearance import Clearance, PairClearance, Proof, write_clearance
+from shared.shapes.units import metres, mm
+from shared.stage.console import say
+from shared.stage.errors import UserError
+from shared.stage.files import sources_hash
+from shared.stage.paths import ROOT, Out
+from shared.stage.stages import Stage, contract_sources, key_of, versions
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from mechanisms.stages.clearance.path import BodyPath
+    from mechanisms.stages.clearance.pieces import MeshPiece
+    from mechanisms.stages.clearance.search.search import Least
+    from mechanisms.stages.clearance.search.sweep import Sweep
+
+type Axes = dict[frozenset[str], dict[str, np.ndarray]]
+"""By pair of bodies: the axis of their joint, as a point (mm) in the frame of either."""
+
+LIMIT = 0.05
+"""Smaller gaps between two bodies are refused (mm)."""
+REACH = 5.0
+"""Larger gaps are not measured (mm)."""
+PACKAGES = ("manifold3d", "numpy")
+SOURCES = [
+    *(ROOT / "mechanisms" / "stages" / name for name in ("clearance", "parts/parts_files.py")),
+    *contract_sources("clearance", "spanning"),
+]
+
+
+def run(name: str) -> None:
+    """Check mechanism ``name`` and write clearance.json, unless motion and parts are those of the last check.
+
+    Raises UserError naming both pieces, the time, the depth or gap, and the remedy, if two pieces come too near.
+    """
+    out = Out(name)
+    parts, motion = read_parts(out.parts, out.name), read_motion(out.motion, out.name)
+    key = key_of(out.parts, out.motion, sources_hash(*SOURCES), versions(*PACKAGES), LIMIT, REACH)
+    stage = Stage(out, "clearance", key, [out.clearance])
+    if stage.is_fresh():
+        say("clearance", f"{out.name}: nothing to do")
+        return
+    from mechanisms.stages.clearance.pieces import read_pieces
+
+    found = check(parts, motion, read_pieces(parts, out.parts_folder), key)
+    write_clearance(out.clearance, found)
+    stage.done()
+    say("clearance", _summary(found))
+
+
+def check(
+    parts: Parts, motion: Motion, pieces: list[MeshPiece], key: str, limit: float = LIMIT, reach: float = REACH
+) -> Clearance:
+    """Check every pair of ``pieces`` of different bodies; ``limit`` and ``reach`` in mm. Raises as :func:`run`."""
+    from mechanisms.stages.clearance import far as bodies
+    from mechanisms.stages.clearance.meshing import least_in_mesh, meshes
+    from mechanisms.stages.clearance.path import paths
+    from mechanisms.stages.clearance.search.search import RESOLUTION
+    from mechanisms.stages.clearance.search.sweep import Sweep
+    from shared.contract.spanning import with_rods
+
+    name, motion = parts.mechanism, with_rods(motion, parts)
+    lost = sorted({piece.body for piece in pieces} - {"ground"} - set(motion.bodies))
+    if lost:
+        raise UserError(
+            f"{name}: parts.json has a body '{lost[0]}' that data.json does not move; "
+            "use the names of mechanism.py in parts()"
+        )
+    where = paths(motion)
+    far = bodies.far_bodies(pieces, where, reach)
+    axes, in_mesh = _axes(motion, parts, where), meshes(motion, pieces)
+    pairs: list[PairClearance] = []
+    refused: list[tuple[Sweep, Least]] = []
+    apart, error = 0, 0.0
+    alike = {frozenset(pair) for pair in parts.may_touch} | {frozenset((piece.body,)) for piece in pieces}
+    for first, second in combinations(pieces, 2):
+        if frozenset((first.body, second.body)) in alike:
+            continue
+        height = _height_gap(first, second)
+        is_far = frozenset((first.body, second.body)) in far
+        if height >= reach or is_far:
+            error, apart = max(error, bodies.error_of(first, second, where) if height < reach else 0.0), apart + 1
+            continue
+        sweep = Sweep(first, second, where[first.body], where[second.body])
+        error = max(error, float(sweep.error.max(initial=0.0)))
+        if sweep.is_apart(reach):
+            apart += 1
+            continue
+        if height >= limit:
+            pairs.append(_pair(first, second, height, height, None, "layers", 0))
+            continue
+        found = _turn(first, second, axes, sweep, limit, reach)
+        if found is None:
+            least = least_in_mesh(sweep, in_mesh, where) or sweep.least(reach)
+            if least.gap < limit or least.proven < limit / 2:
+                refused.append((sweep, least))
+                continue
+            found = _pair(first, second, least.gap, least.proven, least.time, "motion", least.poses)
+        if min(found.gap, found.proven + metres(RESOLUTION)) < metres(reach):
+            pairs.append(found)
+        else:
+            apart += 1
+    if refused:
+        raise UserError(_refusal(name, refused, limit))
+    return Clearance(
+        mechanism=name,
+        provenance=Provenance(inputs=key, versions=versions(*PACKAGES)),
+        limit=metres(limit),
+        resolution=metres(RESOLUTION),
+        interpolation_error=metres(error),
+        pairs=sorted(pairs, key=lambda pair: (pair.gap, pair.pieces)),
+        apart=apart,
+        may_touch=parts.may_touch,
+    )
+
+
+def _axes(motion: Motion, parts: Parts, where: dict[str, BodyPath]) -> Axes:
+    """For bodies that a revolute joint or a rod's end connects: the axis as a point (mm) in the frame of either."""
+    import numpy as np
+
+    from mechanisms.stages.clearance.path import points, relative
+
+    found: Axes = {}
+    for joint in motion.joints.values():
+        if joint.kind != "revolute":
+            continue
+        at = np.column_stack([np.array(joint.x) * mm(1), np.array(joint.y) * mm(1), np.zeros(len(joint.x))])
+        seen = {body: relative(at, where[body].pose)[:, :2] for body in joint.bodies}
+        if all(np.ptp(point, axis=0).max() < 1e-4 for point in seen.values()):
+            found[frozenset(joint.bodies)] = {body: point.mean(axis=0) for body, point in seen.items()}
+    for rod, described in parts.bodies.items():
+        for end in described.spans or ():
+            own = np.array([end.x, end.y]) * mm(1)
+            at = points(where[end.body].pose, own)
+            point = relative(np.column_stack([at, np.zeros(len(at))]), where[rod].pose)[:, :2]
+            if np.ptp(point, axis=0).max() < 1e-4:
+                found[frozenset((rod, end.body))] = {rod: point.mean(axis=0), end.body: own}
+    return _with_common_pins(found)
+
+
+def _with_common_pins(axes: Axes) -> Axes:
+    """Also bodies that turn on a common pin without a joint between the two of them."""
+    import numpy as np
+
+    waiting = list(axes.items())
+    while waiting:
+        pair, at = waiting.pop()
+        for other, there in list(axes.items()):
+            for body in pair & other:
+                ends = pair ^ other
+                if len(ends) == 2 and ends not in axes and np.abs(at[body] - there[body]).max() < 1e-4:
+                    axes[ends] = {end: (at | there)[end] for end in ends}
+                    waiting.append((ends, axes[ends]))
+    return axes
+
+
+def _turn(
+    first: MeshPiece, second: MeshPiece, axes: Axes, sweep: Sweep, limit: float, reach: float
+) -> PairClearance | None:
+    """The pair's gap at every angle of the joint between its bodies; None if there is none, or that is not enough."""
+    from mechanisms.stages.clearance.turn import turn_gap
+
+    axis = axes.get(frozenset((first.body, second.body)))
+    if axis is None:
+        return None
+    about = [piece.triangles - [axis[piece.body][0], axis[piece.body][1], 0.0] for piece in (first, second)]
+    if sweep.gap_at(float(sweep.times[0]), reach) < limit:
+        return None
+    gap, proven = turn_gap(about[0], about[1], reach, limit)
+    if proven < limit:
+        return None
+    return _pair(first, second, gap, proven, None, "turn", 1)
+
+
+def _height_gap(first: MeshPiece, second: MeshPiece) -> float:
+    return max(first.z_range[0] - second.z_range[1], second.z_range[0] - first.z_range[1])
+
+
+def _pair(
+    first: MeshPiece, second: MeshPiece, gap: float, proven: float, time: float | None, proof: Proof, poses: int
+) -> PairClearance:
+    return PairClearance(
+        bodies=(first.body, second.body),
+        pieces=(first.name, second.name),
+        gap=metres(gap),
+        proven=metres(proven),
+        time=time,
+        proof=proof,
+        poses=poses,
+    )
+
+
+def _refusal(name: str, refused: list[tuple[Sweep, Least]], limit: float) -> str:
+    """One sentence on the worst pair, a word on the others."""
+    refused = sorted(refused, key=lambda item: (-item[0].depth_at(item[1].time), item[1].gap))
+    sweep, least = refused[0]
+    pair = f"{sweep.mover.body}: {sweep.mover.name} and {sweep.still.body}: {sweep.still.name}"
+    remedy = (
+        "move one to another layer, make it smaller, or cut it out where the other passes (parts.py; there may_touch "
+        "names bodies that touch by design)"
+    )
+    if least.gap >= limit:
+        text = (
+            f"{name}: {pair} come as near as {least.gap:.3g} mm, and between two samples of data.json they may be "
+            f"{least.error:.3g} mm from where they are taken to be, so no more than {least.proven:.3g} mm is proven, "
+            f"required {limit / 2:g} mm; solve with more steps, or with event_rows=True if there are impacts"
+        )
+    elif (overlap := sweep.overlap(least.time)).depth > 0:
+        text = (
+            f"{name}: {pair} collide: deepest at t={overlap.time:.4g} s by {overlap.depth:.3g} mm, "
+            f"touching between t={overlap.first:.4g} s and t={overlap.last:.4g} s; {remedy}"
+        )
+    else:
+        near = f"as near as {least.gap:.3g} mm at t={least.time:.4g} s"
+        text = f"{name}: {pair} come {near}, required {limit:g} mm; {remedy}"
+    others = [f"{s.mover.name} and {s.still.name}" for s, _ in refused[1:]]
+    if others:
+        more = f" and {len(others) - 5} more" if len(others) > 5 else ""
+        text += f". Also too near: {', '.join(others[:5])}{more}"
+    return text
+
+
+def _summary(found: Clearance) -> str:
+    count = len(found.pairs) + found.apart
+    text = f"{found.mechanism}: {count} pairs of pieces, none touch"
+    if found.pairs:
+        nearest = found.pairs[0]
+        when = "at every angle" if nearest.time is None else f"at t={nearest.time:.3g} s"
+        text += f"; nearest {nearest.pieces[0]} and {nearest.pieces[1]}: {mm(nearest.gap):.3f} mm {when}"
+    if found.may_touch:
+        text += f"; not compared, as they may touch: {', '.join(' and '.join(pair) for pair in found.may_touch)}"
+    return text

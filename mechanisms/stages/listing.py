@@ -1,0 +1,63 @@
+"""``make list``: every mechanism, what it is and what is made of it."""
+
+from __future__ import annotations
+
+import ast
+
+import msgspec
+
+from shared.stage.console import warn
+from shared.stage.paths import NAME_RULE, Out, mechanism_folder, mechanism_names, out_root, unfit_folders, variants_in
+
+
+class _Diagnostics(msgspec.Struct):
+    dof: int
+
+
+class _Solved(msgspec.Struct):
+    diagnostics: _Diagnostics
+
+
+def run() -> None:
+    """Print a line for each mechanism: name, degrees of freedom (once solved), first line of its docstring, files."""
+    for name in mechanism_names():
+        made = ", ".join(_made(name)) or "nothing yet"
+        print(f"{name.replace('_', '-'):<24} {_title(name)}\n{'':<24} {_freedom(name)}made: {made}")
+        for variant in variants_in(mechanism_folder(name) / "mechanism.py"):
+            made = ", ".join(_made(f"{name}-{variant}")) or "nothing yet"
+            print(f"{'':<24} {name}-{variant}: made: {made}".replace("_", "-"))
+    for folder in unfit_folders():
+        warn("list", f"mechanisms/{folder!r} is left out, because that cannot name a mechanism: {NAME_RULE}")
+
+
+def _title(name: str) -> str:
+    """First line of mechanism.py's docstring, read without running the file."""
+    try:
+        docstring = ast.get_docstring(ast.parse((mechanism_folder(name) / "mechanism.py").read_text()))
+    except SyntaxError as error:
+        return f"(mechanism.py does not parse: line {error.lineno}: {error.msg})"
+    return (docstring or "(no docstring)").splitlines()[0]
+
+
+def _freedom(name: str) -> str:
+    try:
+        dof = msgspec.json.decode(Out(name).motion.read_bytes(), type=_Solved).diagnostics.dof
+    except (OSError, msgspec.DecodeError):
+        return ""
+    return f"{dof} degree{'' if dof == 1 else 's'} of freedom; "
+
+
+def _made(name: str) -> list[str]:
+    out = Out(name)
+    files = {"parts": out.parts, "motion": out.motion, "clearance": out.clearance, "shot": out.shot}
+    made = [word for word, path in files.items() if path.is_file()]
+    if (out.print_folder / "pieces.md").is_file():
+        made.append("print")
+    if out.animation("", ".mp4").is_file():
+        made.append("animation")
+    if any(out.plots.glob("*.png")):
+        made.append("plots")
+    if out.poster.is_file():
+        made.append("poster")
+    presets = [film.stem.removeprefix(f"{name}-") for film in sorted((out_root() / "films").glob(f"{name}-*.mp4"))]
+    return made + [f"film ({preset})" for preset in presets if "-" not in preset]  # else a variant's

@@ -1,0 +1,1 @@
+"""Makes a new mechanism from templates. It imports no other stage."""

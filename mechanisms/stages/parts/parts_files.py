@@ -1,0 +1,121 @@
+"""The bytes of a solid's files: the same for the same solid, whenever and wherever they are made."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from shared.stage.errors import UserError
+
+TOLERANCE = 0.018
+"""Largest distance of the mesh from the true surface (mm)."""
+ANGLE = 0.3
+"""Largest angle between neighbouring facets of a curved face (rad)."""
+VOLUME_GOAL = 4.5e-3
+"""Relative difference to the solid's volume at which a mesh is fine enough."""
+
+_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+_PRODUCT = re.compile(rb"= PRODUCT\('[^']*',\s*'[^']*'")
+_TIMESTAMP = re.compile(rb"(FILE_NAME\('[^']*',)'[^']*'")
+
+
+def stl_bytes(solid: Any) -> bytes:
+    """Binary STL of a ``cadquery.Solid``, in mm, its triangles in an order of their own.
+
+    Small parts get a finer mesh than :data:`TOLERANCE` until it holds their volume to :data:`VOLUME_GOAL`.
+    The kernel gives the same triangles each time, but those of a face with many holes in another order, and
+    normals that differ in their last bits. Raises UserError if the kernel cannot write its file.
+    """
+    volume = solid.Volume()
+    for finer in (1, 2, 4):
+        triangles = _mesh(solid, TOLERANCE / finer, ANGLE / finer)
+        if abs(_volume(triangles["corners"].astype(float)) / volume - 1) < VOLUME_GOAL:
+            break
+    corners = triangles["corners"] + np.float32(0)  # -0 becomes 0
+    lowest = np.where(_before(corners[:, 1], corners[:, 0]), 1, 0)
+    lowest = np.where(_before(corners[:, 2], corners[np.arange(len(corners)), lowest]), 2, lowest)
+    turn = (lowest[:, None] + np.arange(3)) % 3  # same winding, lowest corner first
+    corners = np.take_along_axis(corners, turn[:, :, None], axis=1)
+    corners = corners[np.lexsort(corners.reshape(-1, 9).T[::-1])]
+    return binary_stl(corners)
+
+
+def binary_stl(corners: np.ndarray) -> bytes:
+    """Binary STL of triangles, (n, 3, 3) as float32, in their order."""
+    triangles = np.zeros(len(corners), dtype=_TRIANGLE)
+    triangles["corners"] = corners
+    triangles["normal"] = _normals(corners.astype(float))
+    return b"mbsd".ljust(80) + len(triangles).to_bytes(4, "little") + triangles.tobytes()
+
+
+def _before(p: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """(n,): whether points p (n, 3) come before q: by x, of equal ones by y, then by z."""
+    (px, py, pz), (qx, qy, qz) = p.T, q.T
+    return (px < qx) | ((px == qx) & ((py < qy) | ((py == qy) & (pz < qz))))
+
+
+def _mesh(solid: Any, tolerance: float, angle: float) -> np.ndarray:
+    from OCP.BRepTools import BRepTools
+
+    BRepTools.Clean_s(solid.wrapped)  # a mesh that is there already would be kept
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "solid.stl"
+        solid.exportStl(str(path), tolerance, angle, ascii=False, relative=False, parallel=False)
+        content = path.read_bytes() if path.exists() else b""
+        if len(content) < 84 or len(content) != 84 + _TRIANGLE.itemsize * int.from_bytes(content[80:84], "little"):
+            raise UserError(_cut(path, content))
+        return np.frombuffer(content, dtype=_TRIANGLE, offset=84).copy()
+
+
+def _cut(path: Path, content: bytes) -> str:
+    """Words for a file that the CAD kernel cut short; it reports no error when a disk is full."""
+    free = shutil.disk_usage(path.parent).free / 1e6
+    return (
+        f"the CAD kernel wrote {len(content)} bytes of {path.name} and no more; {free:.1f} MB are free at "
+        f"{path.parent.parent}: free some disk space or set TMPDIR to another folder"
+    )
+
+
+def _volume(corners: np.ndarray) -> float:
+    return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
+
+
+def _normals(corners: np.ndarray) -> np.ndarray:
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(across, axis=1, keepdims=True)
+    return across / np.where(length > 0, length, 1.0) + 0.0
+
+
+def step_bytes(solid: Any, name: str) -> bytes:
+    """STEP of a ``cadquery.Solid``, in mm. Its product is called ``name``; when it was written is left out.
+
+    Raises UserError if the kernel cannot write its file.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "solid.step"
+        solid.exportStep(str(path))
+        content = path.read_bytes() if path.exists() else b""
+        if not content.rstrip().endswith(b"END-ISO-10303-21;"):
+            raise UserError(_cut(path, content))
+    content = _TIMESTAMP.sub(rb"\1'1970-01-01T00:00:00'", content, count=1)
+    # by itself the kernel numbers the products of a process
+    return _PRODUCT.sub(f"= PRODUCT('{name}','{name}'".encode(), content, count=1)
+
+
+def read_triangles(stl: bytes) -> np.ndarray:
+    """(n, 3, 3): the corners (mm) of the triangles of a binary STL, as float64."""
+    return np.frombuffer(stl, dtype=_TRIANGLE, offset=84)["corners"].astype(float)
+
+
+def read_mesh(stl: bytes) -> Any:
+    """The ``trimesh.Trimesh`` of a binary STL, equal corners joined."""
+    import io
+
+    import trimesh
+
+    return trimesh.load_mesh(io.BytesIO(stl), file_type="stl")

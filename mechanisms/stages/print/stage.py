@@ -1,0 +1,122 @@
+"""The ``print`` stage: pieces of parts.json on plates to print, outlines to cut, lists of what to make and what to buy.
+
+It writes ``out/<name>/print/``: plate_1.3mf and plate_1.stl and so on, <piece>_<thickness>mm.dxf, pieces.md and
+pieces.csv. What a piece is called there is what it is called in parts.json; of equal pieces the first gives its name.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING
+
+from shared.contract import read_parts
+from shared.stage.console import say, warn
+from shared.stage.errors import UserError
+from shared.stage.files import sources_hash, write_bytes
+from shared.stage.paths import ROOT, Out
+from shared.stage.stages import Stage, key_of, versions
+
+if TYPE_CHECKING:
+    from mechanisms.stages.clearance.pieces import MeshPiece
+    from mechanisms.stages.print.lists import Bought, Made
+    from shared.contract import Parts
+
+type Bed = tuple[float, float, float]
+"""Length, width and height that a printer can use (mm); the height is infinite if it is not given."""
+
+BED, GAP = "220x220", "5"
+"""Size of a plate, and what pieces on it keep apart (mm), where nobody says."""
+PACKAGES = ("cadquery", "cadquery-ocp", "ezdxf", "lib3mf", "manifold3d", "numpy", "scipy", "trimesh")
+SOURCES = [
+    *(ROOT / "mechanisms" / "stages" / name for name in ("print", "parts/parts_files.py", "clearance/pieces.py")),
+    *(ROOT / "shared" / "contract" / f"{name}.py" for name in ("parts", "materials")),
+]
+_LENGTH = re.compile(r"[0-9]+(\.[0-9]*)?")
+
+
+def run(name: str, bed: str = "", gap: str = "") -> None:
+    """Lay out the pieces of mechanism ``name``; ``bed`` is like 220x220 or 220x220x250, ``gap`` like 5 (mm).
+
+    A piece that is larger than the bed is left out with a warning that names it and the bed it needs. Raises UserError
+    for a bed or a gap that is none, and where the files of parts.json are not those that it describes.
+    """
+    out = Out(name)
+    size, apart = bed_of(bed or BED), gap_of(gap or GAP)
+    parts = read_parts(out.parts, out.name)
+    key = key_of(out.parts, sources_hash(*SOURCES), versions(*PACKAGES), size, apart)
+    stage = Stage(out, "print", key, [out.print_folder / "pieces.md"])
+    if stage.is_fresh():
+        say("print", f"{out.name}: nothing to do")
+        return
+    from mechanisms.stages.clearance.pieces import read_pieces
+
+    files, made, bought = laid_out(out, parts, read_pieces(parts, out.parts_folder), size, apart)
+    for file, content in files.items():
+        path = out.print_folder / file
+        if not path.is_file() or path.read_bytes() != content:
+            write_bytes(path, content)
+    for path in sorted(out.print_folder.iterdir()):
+        if path.suffix in (".3mf", ".stl", ".dxf") and path.name not in files:
+            path.unlink()
+    stage.outputs = [out.print_folder / file for file in files]
+    stage.done()
+    for one in made:
+        if one.bed:
+            _tell_large(out.name, one, size)
+    say("print", _summary(out.name, files, made, bought, size))
+
+
+def laid_out(
+    out: Out, parts: Parts, meshes: list[MeshPiece], bed: Bed, gap: float
+) -> tuple[dict[str, bytes], list[Made], list[Bought]]:
+    """The files by their names, the lists last, and what is on these."""
+    from mechanisms.stages.print.lists import markdown, table
+    from mechanisms.stages.print.making import bought_of, made_of, outlined, plates_of
+
+    pieces = {name: piece for body in parts.bodies.values() for name, piece in body.pieces.items()}
+    bought = bought_of(pieces)
+    made = made_of(pieces, [mesh for mesh in meshes if not pieces[mesh.name].buy], bed)
+    made, files = outlined(out, pieces, made)
+    made, plates = plates_of(out.name, made, bed, gap)
+    shown = "x".join(f"{length:g}" for length in bed if math.isfinite(length))
+    lists = {"pieces.csv": table(made, bought), "pieces.md": markdown(out.name, shown, made, bought)}
+    return files | plates | {file: text.encode() for file, text in lists.items()}, made, bought
+
+
+def bed_of(text: str) -> Bed:
+    """A bed from words like 220x220 or 220x220x250; raises UserError if it is none."""
+    lengths = text.lower().split("x")
+    if len(lengths) not in (2, 3) or not all(_LENGTH.fullmatch(one) and float(one) > 0 for one in lengths):
+        raise UserError(f"BED={text} is no size of a bed; write its length and width in mm, such as BED=220x220")
+    x, y, *z = (float(one) for one in lengths)
+    return x, y, z[0] if z else math.inf
+
+
+def gap_of(text: str) -> float:
+    """A gap (mm); raises UserError if it is none."""
+    if not _LENGTH.fullmatch(text):
+        raise UserError(f"GAP={text} is no gap; write what pieces keep apart in mm, such as GAP=5")
+    return float(text)
+
+
+def _tell_large(name: str, one: Made, bed: Bed) -> None:
+    several = f" ({len(one.names)} of them)" if len(one.names) > 1 else ""
+    size = " x ".join(f"{length:.0f}" for length in bed if math.isfinite(length))
+    warn(
+        "print",
+        f"{name}: {one.name}{several} needs a bed of {one.bed} mm, this one has {size} mm, so it is on no plate; give "
+        f"BED={one.bed.replace(' ', '')}, or make the mechanism smaller",
+    )
+
+
+def _summary(name: str, files: dict[str, bytes], made: list[Made], bought: list[Bought], bed: Bed) -> str:
+    def count(suffix: str, word: str) -> str:
+        number = sum(file.endswith(suffix) for file in files)
+        return f"{number} {word}{'' if number == 1 else 's'}"
+
+    laid = sum(len(one.plates) for one in made)
+    return (
+        f"{name}: {laid} pieces on {count('.3mf', 'plate')} of {bed[0]:g} x {bed[1]:g} mm, "
+        f"{count('.dxf', 'outline')} to cut, {sum(len(one.names) for one in bought)} pieces to buy"
+    )

@@ -1,0 +1,95 @@
+"""shot.py becomes shot.json: what the film shows, as data. Without a shot.py it is ``Shot()``."""
+
+from __future__ import annotations
+
+import sys
+
+import msgspec
+
+from mechanisms.stages.loading.inputs import Inputs, observed
+from mechanisms.stages.loading.loading import has, load, package_of
+from mechanisms.stages.loading.recording import recording
+from shared.contract.shot import Names, Shot, refuse_unknown, write_shot
+from shared.stage.console import say
+from shared.stage.errors import UserError
+from shared.stage.files import sources_hash
+from shared.stage.paths import ROOT, Out, mechanism_folder, owner_of
+from shared.stage.stages import Stage, key_of
+
+SOURCES = [ROOT / "shared" / name for name in ("contract/shot.py", "stage/jsonfile.py")]
+
+
+def run(name: str) -> None:
+    """Check ``shot`` of a mechanism's shot.py, or take ``Shot()``, and write out/<mechanism>/shot.json.
+
+    Names in the shot are compared with motion and parts where these are made already, as the Makefile does; the
+    picture stages compare them again. Raises UserError if shot.py cannot be imported, if a field has a wrong type or
+    range, or if a name is unknown.
+    """
+    out = Out(name)
+    names = _names(out)
+    if not has(out.name, "shot"):
+        _without_file(out)
+        return
+    known = observed(Stage(out, "shot", "", []).notes().get("inputs"))
+    if known and Stage(out, "shot", _key(names, known), [out.shot]).is_fresh():
+        say("shot", f"{out.name}: nothing to do")
+        return
+    from mechanisms.stages.loading.loaded_files import loaded_inputs
+
+    before = set(sys.modules)
+    with recording() as recorder:
+        shot = load(out.name, "shot").shot
+    loaded = loaded_inputs(mechanism_folder(out.name) / "shot.py", package_of(out.name), before)
+    inputs = loaded.joined(recorder.inputs())
+    if not isinstance(shot, Shot):
+        file = f"mechanisms/{owner_of(out.name)}/shot.py"
+        raise UserError(f"{out.name}: {file}: 'shot' is a {type(shot).__name__}; write shot = Shot(...)")
+    if names:
+        refuse_unknown(shot, names)
+    write_shot(out.shot, shot)
+    Stage(out, "shot", _key(names, inputs), [out.shot]).done(inputs=inputs.names())
+    say("shot", f"{out.name}: {shot.turns} turns at {shot.fps} frames a second")
+
+
+def _without_file(out: Out) -> None:
+    """Write shot.json of ``Shot()``, unless it is there."""
+    stage = Stage(out, "shot", key_of(sources_hash(*SOURCES), "no shot.py"), [out.shot])
+    if stage.is_fresh():
+        say("shot", f"{out.name}: nothing to do")
+        return
+    write_shot(out.shot, Shot())
+    stage.done()
+    say("shot", f"{out.name}: without a shot.py, {Shot().turns} turns at {Shot().fps} frames a second")
+
+
+def _key(names: Names | None, inputs: Inputs) -> str:
+    """Hash of all that shot.json follows from; ``inputs``: what shot.py is made of, and what it reads."""
+    return key_of(sources_hash(*SOURCES), names and names.listed(), inputs.digest())
+
+
+class _Motion(msgspec.Struct):
+    """The names in data.json, without its numbers."""
+
+    mechanism: str
+    joints: dict[str, msgspec.Raw]
+    points: dict[str, msgspec.Raw]
+
+
+class _Body(msgspec.Struct):
+    pieces: dict[str, msgspec.Raw]
+
+
+class _Parts(msgspec.Struct):
+    bodies: dict[str, _Body]
+
+
+def _names(out: Out) -> Names | None:
+    """What the shot may name; None until motion and parts are made and can be read."""
+    try:
+        motion = msgspec.json.decode(out.motion.read_bytes(), type=_Motion)
+        parts = msgspec.json.decode(out.parts.read_bytes(), type=_Parts)
+    except (OSError, msgspec.DecodeError, UnicodeDecodeError):
+        return None
+    pieces = {body: tuple(solids.pieces) for body, solids in parts.bodies.items()}
+    return Names(motion.mechanism, tuple(motion.joints), tuple(motion.points), pieces)

@@ -1,0 +1,1 @@
+"""Solves the motion: masses, run and data.json. It imports loading alone."""

@@ -1,0 +1,157 @@
+"""A solution as data.json has it: plain lists, author's frames."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from mechanisms.stages.solve.masses import Source
+from mechanisms.stages.solve.shapes import shape_of
+from shared import contract
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from mbsd import Solution
+    from mbsd.force_view import ForceView
+
+FRAME = ("x", "y", "theta", "vx", "vy", "omega", "ax", "ay", "alpha")
+PLACED = ("x", "y", "fx", "fy", "torque")
+
+
+def to_motion(
+    solution: Solution,
+    parts: contract.Parts | None,
+    inputs: str,
+    packages: dict[str, str],
+    sources: Mapping[str, Source] | None = None,
+) -> contract.Motion:
+    """The solution as the contract has it; bodies without solids have no height.
+
+    ``sources`` tells where the mass of each body is from; if it is not given, from the parts.
+    """
+    import mbsd
+
+    m, stats, energy = solution.mechanism, solution.stats, solution.energy
+    bodies = {
+        name: contract.BodyMotion(
+            **_lists(solution.body(name), FRAME),
+            z=parts.bodies[name].z if parts and name in parts.bodies else None,
+            mass=body.mass,
+            mass_from=sources[name] if sources else "parts",
+            com=body.com,
+            inertia=body.inertia,
+        )
+        for name, body in m.bodies.items()
+        if name != "ground"
+    }
+    return contract.Motion(
+        mechanism=m.name,
+        provenance=contract.Provenance(inputs=inputs, versions=packages | {"mbsd": mbsd.__version__}),
+        gravity=(float(m.gravity[0]), float(m.gravity[1])) if m.gravity else (0.0, 0.0),
+        analysis="sweep" if solution.work is None else "simulation",
+        period=solution.period,
+        time=solution.t.tolist(),
+        bodies=bodies,
+        joints={
+            name: contract.JointMotion(
+                kind=joint.kind.name,
+                bodies=joint.bodies,
+                **_lists(solution.joint(name), PLACED),
+                shape=shape_of(joint),
+            )
+            for name, joint in m.joints.items()
+        },
+        drivers={
+            name: contract.DriverMotion(
+                kind=driver.kind.name.removeprefix("drive_"),
+                bodies=driver.bodies,
+                shape=shape_of(driver),
+                **_lists(solution.driver(name), ("value", "effort", "power")),
+            )
+            for name, driver in m.drivers.items()
+        },
+        points={
+            name: contract.PointMotion(
+                body=marker.body.name, **_lists(solution.point(name), ("x", "y", "vx", "vy", "ax", "ay"))
+            )
+            for name, marker in m.traces.items()
+        },
+        forces={name: _force(solution, view) for name, view in solution.forces.items()},
+        contacts={name: _contact(solution, name, row) for name, row in solution.packed.contact_gaps().items()},
+        energy=contract.Energy(
+            kinetic=energy.kinetic.tolist(),
+            potential=energy.potential.tolist(),
+            work=_list(solution.work),
+            audit=_list(solution.audit),
+        ),
+        events=[
+            contract.EventMark(
+                time=event.time, name=event.name, what=event.what, energy=event.energy, impulse=event.impulse
+            )
+            for event in solution.events
+        ],
+        start_changes=list(solution.changes),
+        diagnostics=contract.Diagnostics(
+            position_residual=stats.position_residual,
+            velocity_residual=stats.velocity_residual,
+            acceleration_residual=stats.acceleration_residual,
+            power_residual=stats.power_residual,
+            dof=solution.mobility.dof,
+            redundant=list(solution.mobility.redundant),
+            singularity_margin=solution.singularity_margin.tolist(),
+        ),
+    )
+
+
+def _force(solution: Solution, view: ForceView) -> contract.ForceMotion:
+    force = solution.mechanism.forces[view.name]
+    on_no_markers = view.several or force.kind.name in ("user_force", "rotating_frame")
+    return contract.ForceMotion(
+        kind=view.kind,
+        actions=[contract.Action(body=body, **_lists(view.on(body), PLACED)) for body in view.bodies],
+        several=view.several,
+        measures=view.measures,  # pyright: ignore[reportArgumentType]  (the contract lists them)
+        value=_list(view.value),
+        rate=_list(view.rate),
+        effort=_list(view.effort),
+        normal=_list(solution.friction(view.name).normal) if force.kind.of_reactions else None,
+        power=view.power.tolist(),
+        potential=view.potential.tolist(),
+        shape=None if on_no_markers else shape_of(force),
+    )
+
+
+def _contact(solution: Solution, name: str, row: int) -> contract.ContactMotion:
+    """Of the contact whose gap is ``row`` of J; the way on which it slides is the next one."""
+    packed, view = solution.packed, solution.contact(name)
+    joint = packed.joint_of_row(row)
+    number = [one.name for one in packed.joints].index(name)
+    fx, fy, torque = solution.wrench[:, number].T
+    assert solution.held is not None, "simulations tell which rows held"
+    rubs = joint.params.get("friction", 0.0) > 0.0
+    closed = solution.held[:, row]
+    sticks = solution.held[:, row + 1] if rubs else closed
+    states: list[contract.State] = [
+        "open" if not touches else "sticks" if rubs and still else "slides" if rubs else "closed"
+        for touches, still in zip(closed.tolist(), sticks.tolist(), strict=True)
+    ]
+    return contract.ContactMotion(
+        kind=joint.kind.name,
+        bodies=joint.bodies,
+        **_lists(solution.place(joint.j), ("x", "y")),
+        fx=fx.tolist(),
+        fy=fy.tolist(),
+        torque=torque.tolist(),
+        **_lists(view, ("gap", "rate", "normal", "friction")),
+        state=states,
+        shape=shape_of(joint),
+    )
+
+
+def _lists(view: Any, fields: tuple[str, ...]) -> dict[str, list[float]]:
+    return {field: (getattr(view, field) + 0.0).tolist() for field in fields}  # -0 becomes 0
+
+
+def _list(values: np.ndarray | None) -> list[float] | None:
+    return None if values is None else values.tolist()

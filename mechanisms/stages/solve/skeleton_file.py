@@ -1,0 +1,57 @@
+"""The mechanism with the solver's symbols, in poses over its motion, as skeleton.json has it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from shared.contract import Provenance
+from shared.contract.skeleton import Name, Pose, Skeleton, Stroke
+
+if TYPE_CHECKING:
+    from mbsd import Solution
+
+POSES = 12
+"""In equal times; the end of the motion is not among them, because it often is the start again."""
+FINENESS = 1e-4
+"""Places are rounded to this part of the symbols' size."""
+
+
+def skeleton_of(solution: Solution, provenance: Provenance) -> Skeleton:
+    """The first pose whole, with its names; of the others what is elsewhere."""
+    from mbsd.drawing.strokes import moved, strokes_of
+
+    times = np.linspace(solution.t[0], solution.t[-1], POSES + 1)[:-1]
+    steps = np.unique(np.abs(solution.t[:, None] - times).argmin(axis=0))
+    drawn = strokes_of(solution, [int(step) for step in steps])
+    first = drawn[0]
+    digits = max(0, math.ceil(-math.log10(FINENESS * first.unit)))
+    poses = [Pose(time=first.time, strokes=[_stroke(stroke, digits) for stroke in first.strokes])]
+    for other in drawn[1:]:
+        strokes = [_stroke(stroke, digits) for stroke in moved(first, other)]
+        poses.append(Pose(time=other.time, strokes=strokes))
+    names = [
+        Name(
+            text=label.text,
+            at=(float(label.anchor[0]), float(label.anchor[1])),
+            clearance=label.clearance * first.unit,
+            ink=label.colour,
+        )
+        for label in first.labels
+    ]
+    return Skeleton(mechanism=solution.mechanism.name, provenance=provenance, unit=first.unit, names=names, poses=poses)
+
+
+def _stroke(stroke: Any, digits: int) -> Stroke:
+    return Stroke(
+        points=(stroke.points.round(digits) + 0.0).ravel().tolist(),  # -0 becomes 0
+        closed=stroke.closed,
+        ink=stroke.ink,
+        fill=stroke.fill,
+        alpha=stroke.alpha,
+        width=stroke.width,
+        order=stroke.order,
+        dash=list(stroke.dash),
+    )

@@ -1,0 +1,118 @@
+"""The stage ``solve``: mechanism.py and the masses of parts.json to data.json, and the skeleton to skeleton.json."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from mechanisms.stages.loading import loading
+from mechanisms.stages.loading.inputs import Inputs, observed, sources_state
+from mechanisms.stages.loading.recording import recording
+from mechanisms.stages.solve import solving
+from shared import contract
+from shared.contract.loads import ACTUATORS
+from shared.contract.skeleton import write_skeleton
+from shared.stage import console
+from shared.stage.files import sources_hash
+from shared.stage.paths import ROOT, Out, mechanism_folder
+from shared.stage.stages import Stage, contract_sources, key_of, versions
+
+if TYPE_CHECKING:
+    from mbsd import Solution
+    from mechanisms.stages.solve.masses import Source
+
+PACKAGES = ("numpy", "scipy", "numba", "llvmlite")
+_MOTION = ("solving", "refined_times", "masses", "estimated_masses")
+_STAGE = ("stage", *_MOTION, "motion_file", "shapes", "skeleton_file")
+SOURCES = [
+    *(ROOT / "mechanisms" / "stages" / "solve" / f"{name}.py" for name in _STAGE),
+    ROOT / "mechanisms" / "stages" / "loading" / "variants.py",
+    *contract_sources("skeleton"),
+]
+
+
+def run(name: str) -> None:
+    """Solve one mechanism unless its files already stand for the same inputs; parts need not be there.
+
+    Raises UserError.
+    """
+    out = Out(name)
+    parts = contract.read_parts(out.parts, out.name) if out.parts.is_file() else None
+    notes = Stage(out, "solve", "", []).notes()
+    known = observed(notes.get("inputs"))
+    if known and Stage(out, "solve", _key(parts, known), [out.motion, out.skeleton]).is_fresh():
+        console.say("solve", f"{name}: nothing to do")
+        return
+    from mechanisms.stages.loading.loaded_files import loaded_inputs
+    from mechanisms.stages.solve.motion_file import to_motion
+    from mechanisms.stages.solve.skeleton_file import skeleton_of
+
+    before = set(sys.modules)
+    with recording() as recorder:
+        solution, sources = solve(name, parts)
+        motion = to_motion(solution, parts, "", versions(*PACKAGES), sources)
+    loaded = loaded_inputs(mechanism_folder(name) / "mechanism.py", loading.package_of(name), before)
+    loaded.sources.pop("mbsd", None)  # it counts anyway
+    inputs = loaded.joined(recorder.inputs())
+    key = _key(parts, inputs)
+    motion.provenance.inputs = key
+    write_skeleton(out.skeleton, skeleton_of(solution, motion.provenance))
+    contract.write_motion(out.motion, motion)
+    Stage(out, "solve", key, [out.motion, out.skeleton]).done(inputs=inputs.names())
+    console.say("solve", f"{name}: {_summary(solution)}")
+
+
+def _key(parts: contract.Parts | None, inputs: Inputs) -> str:
+    """Hash of all that the motion follows from; ``inputs``: what mechanism.py is made of, and what it reads."""
+    masses = parts and {body: (solids.mass, solids.z) for body, solids in parts.bodies.items()}
+    return key_of(
+        sources_hash(*SOURCES),
+        sources_state("mbsd"),
+        sources_state("mbsd/drawing"),
+        masses,
+        versions(*PACKAGES),
+        inputs.digest(),
+    )
+
+
+def solve(name: str, parts: contract.Parts | None) -> tuple[Solution, dict[str, Source]]:
+    """Build the mechanism, give it masses, say where those are from, and solve its motion. Raises UserError.
+
+    Also returns where the mass of each body is from.
+    """
+    from mechanisms.stages.solve.masses import give_masses
+
+    module, p = loading.load(name, "mechanism"), loading.params(name)
+    m = solving.build(name, module, p)
+    sources, sentences = give_masses(m, parts)
+    for sentence in sentences:
+        console.say("solve", f"{name}: {sentence}")
+    return solving.motion_of(name, module, m, p), sources
+
+
+def _summary(solution: Solution) -> str:
+    efforts = {
+        name: (driver.effort, driver.angular)
+        for name in solution.mechanism.drivers
+        for driver in [solution.driver(name)]
+    }
+    acting = {
+        name: (force.effort, force.measures == "angle")
+        for name, force in solution.forces.items()
+        if force.kind in ACTUATORS and force.effort is not None
+    }
+    idle = [name for name, (effort, _) in efforts.items() if not effort.any()]
+    if idle:  # their place is taken by forces that were asked for, or nothing has mass
+        efforts = {name: one for name, one in (efforts | acting).items() if name not in idle}
+    peaks = [
+        f"{name} up to {abs(effort).max():.3g} {'N m' if angular else 'N'}"
+        for name, (effort, angular) in efforts.items()
+    ]
+    return ", ".join(
+        [
+            f"{len(solution.t)} times over {solution.t[-1] - solution.t[0]:.4g} s",
+            f"{solution.mobility.dof} degree{'s' * (solution.mobility.dof != 1)} of freedom",
+            f"closed to {solution.stats.position_residual:.0e} m",
+            *peaks,
+        ]
+    )

@@ -1,0 +1,1 @@
+"""The scene in Blender: bodies, materials, lights, arrows."""

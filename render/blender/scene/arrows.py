@@ -1,0 +1,113 @@
+"""Arrows: a thin shaft and a cone on an empty that moves and turns them; their lengths are animated by scale."""
+
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from render.blender.scene.nodes import Graph
+from render.film.scene import ArrowSpec, Colour
+
+SIDES = 32
+STOUT = 2.2
+"""Arrows shorter than so many cones shrink as a whole."""
+GONE = 1e-7
+"""Length (m) for Blender of an arrow that is not there: no matrix is singular."""
+
+
+@dataclass
+class Arrow:
+    """The empty that carries the two meshes."""
+
+    root: Any
+    shaft: Any
+    head: Any
+
+
+def sizes(spec: ArrowSpec, length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Factor of all thicknesses, and length of the shaft, for arrows of ``length`` (n,) (m); the cone is the rest."""
+    factor = np.minimum(1.0, length / (STOUT * spec.point))
+    return factor, length - factor * spec.point
+
+
+def channels(
+    arrow: Arrow, spec: ArrowSpec, tails: np.ndarray, tips: np.ndarray
+) -> list[tuple[Any, str, list[np.ndarray]]]:
+    """What is animated: an object, its property, and the values of its components, for tails and tips (n, 3)."""
+    across = tips - tails
+    length = np.hypot(across[:, 0], across[:, 1])
+    there = length > 0
+    angle = np.unwrap(np.arctan2(across[:, 1], across[:, 0]))
+    if there.any():  # what is gone keeps the direction in which it went
+        kept = np.maximum.accumulate(np.where(there, np.arange(len(there)), there.argmax()))
+        angle = angle[kept]
+    length = np.maximum(length, GONE)
+    factor, shaft = sizes(spec, length)
+    zero = np.zeros(len(length))
+    return [
+        (arrow.root, "location", list(tails.T)),
+        (arrow.root, "rotation_euler", [zero, zero, angle]),
+        (arrow.shaft, "scale", [shaft, factor * spec.shaft, factor * spec.shaft]),
+        (arrow.head, "location", [shaft, zero, zero]),
+        (arrow.head, "scale", [factor * spec.point, factor * spec.head, factor * spec.head]),
+    ]
+
+
+def build(scene: Any, spec: ArrowSpec) -> Arrow:
+    """The objects of one arrow, in ``scene``."""
+    import bpy
+
+    root = bpy.data.objects.new(f"arrow {spec.name}", None)
+    root.empty_display_size = spec.head
+    scene.collection.objects.link(root)
+    made = paint(spec.name, spec.colour)
+    things = []
+    for name, far in (("shaft", 1.0), ("head", 0.0)):
+        mesh = _turned(f"{name} {spec.name}", far)
+        mesh.materials.append(made)
+        thing = bpy.data.objects.new(mesh.name, mesh)
+        thing.parent = root
+        thing.visible_shadow = thing.visible_diffuse = thing.visible_glossy = False
+        scene.collection.objects.link(thing)
+        things.append(thing)
+    return Arrow(root, *things)
+
+
+def _turned(name: str, far: float) -> Any:
+    """A body of revolution about x from 0 to 1, of radius 1 at its start and ``far`` at its end."""
+    import bpy
+
+    turn = [math.tau * k / SIDES for k in range(SIDES)]
+    rings = [(x, r * math.cos(a), r * math.sin(a)) for x, r in ((0.0, 1.0), (1.0, max(far, 1e-3))) for a in turn]
+    faces: list[tuple[int, ...]] = [(k, (k + 1) % SIDES, SIDES + (k + 1) % SIDES, SIDES + k) for k in range(SIDES)]
+    faces.append(tuple(reversed(range(SIDES))))
+    faces.append(tuple(range(SIDES, 2 * SIDES)))
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(rings, [], faces)
+    mesh.polygons.foreach_set("use_smooth", [True] * SIDES + [False] * 2)
+    return mesh
+
+
+def paint(name: str, colour: Colour) -> Any:
+    """Its own light, darker towards the rim, so that it reads as round in any studio."""
+    import bpy
+
+    made = bpy.data.materials.new(f"arrow {name}")
+    made.use_nodes = True
+    made.cycles.emission_sampling = "NONE"
+    graph = Graph(made.node_tree).clear()
+    rim = graph.math("POWER", graph.add("LayerWeight", Blend=0.5).outputs["Facing"], 1.6)
+    strength = graph.math("SUBTRACT", 1.0, graph.math("MULTIPLY", rim, 0.72))
+    light = graph.add("Emission", Color=tuple(_linear(c) for c in colour), Strength=strength)
+    graph.add("OutputMaterial", Surface=light.outputs[0])
+    return made
+
+
+def _linear(c: float) -> float:
+    """Of a colour as the picture has it (sRGB, IEC 61966-2-1)."""
+    return c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4

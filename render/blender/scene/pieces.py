@@ -1,0 +1,67 @@
+"""Bodies and their solids: an empty per body that the motion moves, the meshes fixed to it."""
+
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from render.blender.scene.materials import flat, material
+from render.film.scene import Colour, PieceSpec, SurfaceSpec
+from render.film.solids import MILLIMETRE
+
+SHARP = math.radians(32)
+"""Edges that turn by more stay sharp; the facets of round walls are smoothed."""
+
+
+def build(scene: Any, pieces: list[PieceSpec], only_flat: dict[str, Colour] | None = None) -> dict[str, Any]:
+    """Load every piece; returns the empties that carry them: of bodies, and of pieces that turn against theirs.
+
+    With ``only_flat`` just those pieces, in one flat colour.
+    """
+    bodies: dict[str, Any] = {}
+    paints: dict[SurfaceSpec, Any] = {}
+    for piece in pieces:
+        name = f"{piece.body}/{piece.name}"
+        carrier = piece.body if piece.turns_about is None else name
+        if carrier not in bodies:
+            bodies[carrier] = _empty(scene, carrier)
+        if only_flat is not None and name not in only_flat:
+            continue
+        solid = _load(piece.stl, name)
+        solid.parent = bodies[carrier]
+        if piece.turns_about is not None:
+            x, y = piece.turns_about
+            solid.data.transform(((1, 0, 0, -x), (0, 1, 0, -y), (0, 0, 1, 0), (0, 0, 0, 1)))
+        if only_flat is not None:
+            paint = flat(only_flat[name], name)
+        else:
+            paint = paints.get(piece.surface) or material(piece.surface, name)
+            paints[piece.surface] = paint
+        solid.data.materials.clear()
+        solid.data.materials.append(paint)
+    return bodies
+
+
+def _empty(scene: Any, name: str) -> Any:
+    import bpy
+
+    thing = bpy.data.objects.new(name, None)
+    thing.empty_display_size = 0.01
+    scene.collection.objects.link(thing)
+    return thing
+
+
+def _load(path: str, name: str) -> Any:
+    import bpy
+
+    bpy.ops.wm.stl_import(filepath=path, global_scale=MILLIMETRE, use_scene_unit=False, forward_axis="Y", up_axis="Z")
+    solid = bpy.context.active_object
+    solid.name = solid.data.name = name
+    # The importer scales the object; the mesh itself shall be in metres, for textures and bevels alike.
+    solid.data.transform(solid.matrix_world)
+    solid.matrix_world.identity()
+    solid.data.polygons.foreach_set("use_smooth", [True] * len(solid.data.polygons))
+    solid.data.set_sharp_from_angle(angle=SHARP)
+    return solid

@@ -1,0 +1,193 @@
+"""The whole scene in Blender: built once, then played. Frame i of the timeline shows state i."""
+
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from render.blender.job import Job
+from render.blender.scene import arcs, arrows, labels, pieces, studio, trail, tubes
+from render.film.framing import SENSOR
+from render.film.scene import State
+
+
+@dataclass
+class Stage:
+    """The built scene and its moving things."""
+
+    job: Job
+    scene: Any
+    bodies: dict[str, Any]
+    trails: list[Any]
+    tubes: list[Any]
+    front: Any = None
+    """The scene of what is drawn over the picture: arrows, on nothing; None where there are none."""
+    arcs: list[Any] = field(default_factory=list)
+    """In that scene."""
+
+    def show(self, index: int) -> None:
+        """Go to state ``index``."""
+        self.scene.frame_set(index)
+        if self.front is not None:
+            self.front.frame_set(index)
+        for which, thing in enumerate(self.trails):
+            path = self.job.states[index].trails[which]
+            trail.place(thing, path, self.job.scene.trails[which].radius)
+        for which, thing in enumerate(self.tubes):
+            tubes.place(thing, self.job.states[index].tubes[which], self.job.scene.tubes[which].radius)
+        for which, thing in enumerate(self.arcs):
+            arcs.place(thing, self.job.scene.arcs[which], *self.job.states[index].arcs[which])
+
+
+def build(job: Job) -> Stage:
+    """An empty Blender becomes the studio with the mechanism in it, with the motion on its timeline."""
+    import bpy
+
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    scene.render.engine = "CYCLES"
+    scene.unit_settings.system = "METRIC"
+    bodies = pieces.build(scene, job.scene.pieces, job.flat)
+    camera = _camera(scene, job.states[0])
+    texts: list[Any] = []
+    trails: list[Any] = []
+    wires: list[Any] = []
+    if job.flat is None:
+        studio.build(scene, job.scene.studio)
+        trails = [trail.build(scene, spec) for spec in job.scene.trails]
+        wires = [tubes.build(scene, spec) for spec in job.scene.tubes]
+        texts = [labels.build(scene, spec) for spec in job.scene.labels]
+    else:
+        _dark(scene)
+    _animate(job, bodies, camera, texts)
+    drawn = (job.scene.arrows or job.scene.arcs) and job.flat is None
+    front = _front(job, camera) if drawn else None
+    curved = [arcs.build(front, spec) for spec in job.scene.arcs] if drawn else []
+    scene.frame_start, scene.frame_end = 0, len(job.states) - 1
+    scene.render.fps = job.scene.fps
+    return Stage(job, scene, bodies, trails, wires, front, curved)
+
+
+def _front(job: Job, camera: Any) -> Any:
+    """A scene with the arrows alone, seen by the same camera without its lens blur: nothing hides them."""
+    import bpy
+
+    front = bpy.data.scenes.new("arrows")
+    front.render.engine = "CYCLES"
+    front.render.film_transparent = True
+    front.view_settings.view_transform = "Standard"
+    eye = camera.copy()
+    eye.data = camera.data.copy()
+    eye.data.dof.use_dof = False
+    front.collection.objects.link(eye)
+    front.camera = eye
+    front.frame_start, front.frame_end = 0, len(job.states) - 1
+    made = [arrows.build(front, spec) for spec in job.scene.arrows]
+    for index, arrow in enumerate(made):
+        tails, tips = (np.array([state.arrows[index][end] for state in job.states]) for end in (0, 1))
+        for thing, path, channels in arrows.channels(arrow, job.scene.arrows[index], tails, tips):
+            _key(thing, path, channels)
+    return front
+
+
+def bake_shapes(stage: Stage) -> None:
+    """Give each trail, tube and arc a shape per frame, so that a saved scene plays them."""
+    scene, states = stage.job.scene, stage.job.states
+    for which, thing in enumerate(stage.trails):
+        radius = scene.trails[which].radius
+        _bake(thing, [trail.vertices(state.trails[which], radius) for state in states])
+    for which, thing in enumerate(stage.tubes):
+        radius = scene.tubes[which].radius
+        _bake(thing, [tubes.vertices(state.tubes[which], radius) for state in states])
+    for which, thing in enumerate(stage.arcs):
+        _bake(thing, [arcs.vertices(scene.arcs[which], *state.arcs[which]) for state in states])
+
+
+def _bake(thing: Any, shapes: list[np.ndarray]) -> None:
+    thing.data.vertices.foreach_set("co", shapes[0].ravel())
+    thing.data.update()
+    for shape in shapes:
+        block = thing.shape_key_add(from_mix=False)
+        block.interpolation = "KEY_LINEAR"
+        block.data.foreach_set("co", shape.ravel())
+    keys = thing.data.shape_keys
+    keys.use_relative = False
+    _key(keys, "eval_time", [np.array([block.frame for block in keys.key_blocks])], "OBJECT")
+
+
+def _camera(scene: Any, state: State) -> Any:
+    import bpy
+
+    pose = state.camera
+    lens = bpy.data.cameras.new("camera")
+    lens.sensor_fit, lens.sensor_width, lens.lens = "HORIZONTAL", SENSOR, pose.lens
+    lens.clip_start, lens.clip_end = pose.focus / 100, pose.focus * 100
+    lens.dof.use_dof = pose.fstop > 0
+    lens.dof.focus_distance = pose.focus
+    lens.dof.aperture_fstop = max(pose.fstop, 0.01)
+    camera = bpy.data.objects.new("camera", lens)
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    return camera
+
+
+def _dark(scene: Any) -> None:
+    """Nothing but the flat colours: no world, no lens blur, no view transform."""
+    import bpy
+
+    scene.world = bpy.data.worlds.new("dark")
+    scene.world.use_nodes = True
+    scene.world.node_tree.nodes.clear()
+    scene.camera.data.dof.use_dof = False
+    scene.view_settings.view_transform = "Raw"
+
+
+def _animate(job: Job, bodies: dict[str, Any], camera: Any, texts: list[Any]) -> None:
+    """Linear keys at every frame; angles come unwrapped, so nothing ever turns the wrong way round."""
+    states = job.states
+    for name, thing in bodies.items():
+        x, y, theta = np.array([state.bodies[name] for state in states]).T
+        zero = np.zeros(len(states))
+        _key(thing, "location", [x, y, zero])
+        _key(thing, "rotation_euler", [zero, zero, theta])
+    tilt = np.array([math.pi / 2 - state.camera.elevation for state in states])
+    turn = np.array([state.camera.azimuth for state in states])
+    facing = [tilt, np.zeros(len(states)), turn]
+    _key(camera, "location", list(np.array([state.camera.position for state in states]).T))
+    _key(camera, "rotation_euler", facing)
+    _key(camera.data, "dof.focus_distance", [np.array([state.camera.focus for state in states])], "CAMERA")
+    for index, thing in enumerate(texts):
+        _key(thing, "location", list(np.array([state.labels[index] for state in states]).T))
+        _key(thing, "rotation_euler", facing)
+
+
+def _key(thing: Any, path: str, channels: list[np.ndarray], slot: str = "OBJECT") -> None:
+    """Key a property at frames 0, 1, 2...; a channel that never changes is set and not keyed."""
+    if all(np.ptp(channel) == 0 for channel in channels):
+        owner, _, attribute = path.rpartition(".")
+        target = thing.path_resolve(owner) if owner else thing
+        first = [float(channel[0]) for channel in channels]
+        setattr(target, attribute, first if len(first) > 1 else first[0])
+        return
+    import bpy
+    from bpy_extras import anim_utils
+
+    data = thing.animation_data or thing.animation_data_create()
+    if data.action is None:
+        data.action = bpy.data.actions.new(thing.name)
+        data.action_slot = data.action.slots.new(id_type=thing.id_type, name=thing.name)
+    bag = anim_utils.action_ensure_channelbag_for_slot(data.action, data.action_slot)
+    for index, channel in enumerate(channels):
+        curve = bag.fcurves.new(path, index=index)
+        count = len(channel)
+        curve.keyframe_points.add(count)
+        curve.keyframe_points.foreach_set("co", np.column_stack([np.arange(count), channel]).ravel())
+        linear = bpy.types.Keyframe.bl_rna.properties["interpolation"].enum_items["LINEAR"].value
+        curve.keyframe_points.foreach_set("interpolation", [linear] * count)
+        curve.extrapolation = "CONSTANT"
+        curve.update()

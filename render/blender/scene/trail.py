@@ -1,0 +1,94 @@
+"""The trail: a thin tube of light, thick and bright at the point, thin and gone at the end of its tail."""
+
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from render.blender.scene.nodes import Graph
+from render.film.scene import Point, TrailSpec
+
+SIDES = 10
+CAP = 4
+"""Rings of the round end at the point."""
+BRIGHTNESS = 2.9
+
+
+def build(scene: Any, trail: TrailSpec) -> Any:
+    """The tube as a mesh object whose vertices :func:`place` moves."""
+    import bpy
+
+    mesh = bpy.data.meshes.new(f"trail {trail.name}")
+    faces = []
+    rings = trail.rings + CAP
+    for ring in range(rings - 1):
+        for side in range(SIDES):
+            a, b = ring * SIDES + side, ring * SIDES + (side + 1) % SIDES
+            faces.append((a, b, b + SIDES, a + SIDES))
+    faces.append(tuple(reversed(range(SIDES))))
+    mesh.from_pydata([(0.0, 0.0, 0.0)] * (rings * SIDES), [], faces)
+    mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
+    fade = mesh.attributes.new("fade", "FLOAT", "POINT")
+    values = np.concatenate([np.ones(CAP), _fade(trail.rings)])
+    fade.data.foreach_set("value", np.repeat(values, SIDES).astype(np.float32))
+    mesh.materials.append(_light(trail))
+    thing = bpy.data.objects.new(mesh.name, mesh)
+    thing.visible_shadow = False
+    thing.visible_diffuse = False
+    scene.collection.objects.link(thing)
+    return thing
+
+
+def vertices(path: list[Point], radius: float) -> np.ndarray:
+    """Vertices ((CAP + rings) * SIDES, 3), float32, of the tube along ``path``, from the point backwards."""
+    line = np.asarray(path)
+    along = np.gradient(line[:, :2], axis=0)
+    length = np.linalg.norm(along, axis=1, keepdims=True)
+    moving = np.flatnonzero(length[:, 0] > 1e-12)
+    if len(moving):  # where the point stood still, the tube goes on as it did beside
+        nearest = moving[np.abs(np.arange(len(line))[:, None] - moving).argmin(axis=1)]
+        along = along[nearest] / length[nearest]
+    else:
+        along = np.tile([1.0, 0.0], (len(line), 1))
+    across = np.column_stack([-along[:, 1], along[:, 0], np.zeros(len(line))])
+    up = np.array([0.0, 0.0, 1.0])
+    angle = np.arange(SIDES) * 2 * np.pi / SIDES
+    rim = np.cos(angle)[None, :, None] * across[:, None, :] + np.sin(angle)[None, :, None] * up
+    thickness = radius * (0.30 + 0.70 * _fade(len(line)) ** 0.8)
+    tube = line[:, None, :] + rim * thickness[:, None, None]
+    angle = np.linspace(0.1, 1.0, CAP, endpoint=False)[:, None, None] * np.pi / 2
+    ahead = np.append(-along[0], 0.0)
+    cap = line[0] + radius * (np.cos(angle) * ahead + np.sin(angle) * rim[0])
+    return np.concatenate([cap, tube]).reshape(-1, 3).astype(np.float32)
+
+
+def place(thing: Any, path: list[Point], radius: float) -> None:
+    """Lay the tube along ``path``."""
+    thing.data.vertices.foreach_set("co", vertices(path, radius).ravel())
+    thing.data.update()
+
+
+def _fade(rings: int) -> np.ndarray:
+    """1 at the point, 0 at the end of the tail."""
+    return (1 - np.linspace(0, 1, rings)) ** 1.5
+
+
+def _light(trail: TrailSpec) -> Any:
+    import bpy
+
+    made = bpy.data.materials.new(f"trail {trail.name}")
+    made.use_nodes = True
+    made.cycles.emission_sampling = "NONE"  # a thin light sampled at random is all noise
+    graph = Graph(made.node_tree).clear()
+    fade = graph.add("Attribute", {"attribute_name": "fade"}).outputs["Fac"]
+    strength = graph.math("MULTIPLY", graph.math("ADD", 0.25, graph.math("MULTIPLY", fade, 0.75)), BRIGHTNESS)
+    light = graph.add("Emission", Color=trail.colour, Strength=strength).outputs[0]
+    gone = graph.add("BsdfTransparent").outputs[0]
+    mix = graph.add("MixShader", Fac=graph.math("MINIMUM", 1.0, graph.math("MULTIPLY", fade, 4.0)))
+    graph.set(mix, 1, gone)
+    graph.set(mix, 2, light)
+    graph.add("OutputMaterial", Surface=mix.outputs[0])
+    return made

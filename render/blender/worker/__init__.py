@@ -1,0 +1,1 @@
+"""The process that renders: everything here runs inside Blender."""

@@ -1,0 +1,87 @@
+"""The Blender process: ``python -m render.blender.worker.worker JOB.json``. Answers in JSON lines.
+
+It ends by itself when its standard input closes, so that it never outlives the process that started it.
+"""
+
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from render.blender.job import Answer, Job
+from render.blender.worker.libraries import missing_library
+from render.blender.worker.parent import die_with_parent
+from shared.stage.errors import UserError
+
+
+def main() -> int:
+    """Do the job named on the command line."""
+    answers = os.fdopen(os.dup(1), "w", buffering=1)
+    os.dup2(2, 1)  # Blender chats on stdout; the parent keeps stderr for the case of a failure
+
+    def answer(**fields: Any) -> None:
+        answers.write(msgspec.json.encode(Answer(**fields)).decode() + "\n")
+        answers.flush()
+
+    die_with_parent()
+    job = msgspec.json.decode(Path(sys.argv[1]).read_bytes(), type=Job)
+    answer(doing="loads Blender")
+    try:
+        import bpy  # noqa: F401  # first, so that a missing system library is told as such
+    except ImportError as error:
+        answer(error=missing_library(str(error)))
+        return 1
+    try:
+        _work(job, answer)
+    except UserError as error:
+        answer(error=str(error))
+        return 1
+    return 0
+
+
+def _work(job: Job, answer: Callable[..., None]) -> None:
+    """Build the scene and make what the job asks for."""
+    import bpy
+
+    from render.blender.scene import set as stage
+    from render.blender.worker import device
+    from render.blender.worker.picture import render, save_picture, signs_of_life
+    from render.blender.worker.scene_file import save_scene
+    from render.blender.worker.settings import front_settings, picture_settings
+
+    answer(doing="builds the scene")
+    built = stage.build(job)
+    answer(device=device.choose(built.scene))
+    if job.blend is not None:
+        answer(doing="saves the scene")
+        save_scene(built, Path(job.blend))
+        answer(path=job.blend)
+        return
+    picture_settings(built.scene, job)
+    if built.front is not None:
+        front_settings(built.front, built.scene, job)
+    for picture in job.pictures:
+        built.show(picture.state)
+        over = None
+        with signs_of_life(lambda doing, name=picture.name: answer(doing=f"renders {name}: {doing}")):
+            seconds = 0.0
+            if built.front is not None:
+                over = Path(picture.folder) / f".{picture.key}.over.part.png"
+                seconds += render(built.front)
+                bpy.data.images["Render Result"].save_render(str(over), scene=built.front)
+            seconds += render(built.scene)
+        answer(doing=f"saves {picture.name}")
+        answer(path=str(save_picture(built.scene, job, picture, over)), key=picture.key, cycles=seconds)
+        if over is not None:
+            over.unlink()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,95 @@
+"""Curved arrows of a film: how far each reaches round its pivot, and the legend that tells it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from render.film.arrows.arrows import COLOURS, HEAD, POINT, SHAFT
+from render.film.arrows.scales import LONGEST, TINY, scales_of, with_unit
+from render.film.arrows.torques import UNIT, Torque
+from render.film.arrows.vectors import at_time
+from render.film.scene import ArcSpec, LegendRow, Point
+
+Array = NDArray[np.float64]
+FULL_TURN = 1.25 * math.pi
+"""Sweep (rad) of the largest torque."""
+RADIUS, APART = 0.066, 0.022
+"""Radius of an arc, and how much wider each further one about the same point is, as parts of the size."""
+WORDS = {"forces": "torques", "reactions": "torques of joints"}
+
+
+class Arcs:
+    """The curved arrows of one film, ``size`` (m) being that of its swept motion; ``least`` (N m) is rounding."""
+
+    def __init__(self, time: Array, torques: Sequence[Torque], size: float, least: float = 0.0) -> None:
+        self.time, self.size = time, size
+        self.scale = scales_of(torques, {UNIT: least}).get(UNIT)
+        self.torques = [one for one in torques if abs(self._sweeps(one)).max() >= TINY * FULL_TURN]
+        """Those that are seen at some time."""
+
+    def specs(self) -> list[ArcSpec]:
+        """Their looks, in the order of ``torques``; those about one point lie around each other."""
+        return [
+            ArcSpec(
+                name=f"{torque.quantity} {torque.name}",
+                colour=COLOURS[torque.quantity],
+                radius=self._radius(k),
+                shaft=SHAFT * self.size,
+                head=HEAD * self.size,
+                point=POINT * self.size,
+            )
+            for k, torque in enumerate(self.torques)
+        ]
+
+    def legend(self) -> list[LegendRow]:
+        """A row for each quantity, with an arc that reaches as far as that torque's does in the picture."""
+        scale = self.scale
+        if scale is None:
+            return []
+        return [
+            LegendRow(
+                number=with_unit(scale.reference, scale.unit),
+                words=f"{WORDS[quantity]}, peaks cut" if scale.cut else WORDS[quantity],
+                colour=COLOURS[quantity],
+                sweep=FULL_TURN * scale.reference / scale.largest,
+            )
+            for quantity in dict.fromkeys(torque.quantity for torque in self.torques)
+        ]
+
+    def at(self, t: float, heights: Sequence[float]) -> list[tuple[Point, float]]:
+        """Centre and sweep (rad, positive counter-clockwise) of each at time ``t``, ``heights`` (m) over the base."""
+        out = []
+        for torque, z in zip(self.torques, heights, strict=True):
+            x, y, value = (float(k) for k in at_time(self.time, np.column_stack([torque.place, torque.value]), t))
+            sweep = float(self._sweep(np.array([value]))[0])
+            out.append(((x, y, z), sweep if abs(sweep) >= TINY * FULL_TURN else 0.0))
+        return out
+
+    def rims(self, heights: Sequence[float]) -> list[Array]:
+        """Points (8 T, 3) around each over the whole motion (m)."""
+        turn = math.tau * np.arange(8) / 8
+        out = []
+        for k, (torque, z) in enumerate(zip(self.torques, heights, strict=True)):
+            reach = self._radius(k) + HEAD * self.size
+            rim = torque.place[:, None] + reach * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+            out.append(np.column_stack([rim.reshape(-1, 2), np.full(8 * len(torque.place), z)]))
+        return out
+
+    def _radius(self, k: int) -> float:
+        """Of arc number ``k`` (m): wider than those before it about the same point."""
+        mine = self.torques[k].place
+        inside = sum(np.abs(one.place - mine).max() < RADIUS * self.size / 4 for one in self.torques[:k])
+        return (RADIUS + APART * inside) * self.size
+
+    def _sweeps(self, torque: Torque) -> Array:
+        return self._sweep(torque.value)
+
+    def _sweep(self, values: Array) -> Array:
+        """(T,) rad of torques (T,) in N m."""
+        if self.scale is None:
+            return np.zeros(len(values))
+        return FULL_TURN * np.clip(values / self.scale.largest, -LONGEST, LONGEST)

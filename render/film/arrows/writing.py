@@ -1,0 +1,101 @@
+"""What is written over the picture: the legend's corner, a title, the rate of time, a number that lives."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from render.film.arrows.vectors import at_time
+from render.film.clock import Clock
+from render.film.framing import CameraPose, project
+from render.presets import ASPECT
+from shared.contract import Motion
+from shared.contract.loads import ACTUATORS
+from shared.contract.shot import Shot
+
+Array = NDArray[np.float64]
+CORNERS = {"lower left": (0.0, 0.78), "lower right": (0.66, 0.78), "upper right": (0.66, 0.0)}
+"""Left and upper edge of where a legend may be, as parts of the picture; the first one that is emptiest is taken."""
+CORNER = 0.34, 0.22
+"""Width and height of such a place."""
+
+
+def emptiest(camera: CameraPose, moving: Array, standing: Array) -> str:
+    """The corner of the picture that holds the fewest points of what moves (n, 3), then of what stands (m, 3)."""
+
+    def held(corner: str, points: Array) -> int:
+        (left, top), (wide, high) = CORNERS[corner], CORNER
+        x, y = (project(camera, points, 1600, round(1600 / ASPECT)) / (1600, 1600 / ASPECT)).T
+        return int(((x >= left) & (x <= left + wide) & (y >= top) & (y <= top + high)).sum())
+
+    return min(CORNERS, key=lambda corner: (held(corner, moving), held(corner, standing)))
+
+
+def title(motion: Motion, shot: Shot) -> str:
+    """The shot's title, or the mechanism's name in words; empty where none is asked for."""
+    if shot.title is None:
+        return ""
+    if shot.title.text is not None:
+        return shot.title.text
+    words = motion.mechanism.replace("_", " ").replace("-", ": ")
+    return words[:1].upper() + words[1:]
+
+
+def rate(clock: Clock, shot: Shot) -> str:
+    """How fast the film goes: with a title, and always where a motion that does not repeat is not in real time."""
+    real = abs(clock.rate - 1) < 0.02
+    if real:
+        return "real time" if shot.title is not None else ""
+    if shot.title is None and clock.repeats:
+        return ""
+    return f"{1 / clock.rate:.3g} times slower" if clock.rate < 1 else f"{clock.rate:.3g} times faster"
+
+
+def number(motion: Motion, shot: Shot) -> Callable[[float], str]:
+    """The number that lives, as a function of time; as many decimals as its largest value needs, so it stands still."""
+    name = shot.title.number if shot.title is not None else ""
+    if name is None:
+        name = _told(motion)
+    if not name:
+        return lambda t: ""
+    time = np.asarray(motion.time)
+    if name in motion.points:
+        point = motion.points[name]
+        speeds = np.hypot(point.vx, point.vy)[:, None]
+        slow, fast = _decimals(speeds), _decimals(3.6 * speeds)
+
+        def speed(t: float) -> str:
+            v = float(at_time(time, speeds, t)[0])
+            return f"{name}  {v:.{slow}f} m/s   {3.6 * v:.{fast}f} km/h"
+
+        return speed
+    one = motion.drivers.get(name) or motion.forces[name]
+    turning = "angle" in one.kind or getattr(one, "measures", None) == "angle"
+    efforts = np.asarray(one.effort if one.effort is not None else np.zeros(len(time)), float)[:, None]
+    digits = _decimals(efforts)
+
+    def effort(t: float) -> str:
+        value = round(float(at_time(time, efforts, t)[0]), digits) + 0.0
+        return f"{name}  {f'{value:.{digits}f}'.replace('-', '−')} {'N m' if turning else 'N'}"
+
+    return effort
+
+
+def _told(motion: Motion) -> str:
+    """The first of the drivers that give something; of those that act in their place; of the traced points."""
+    drivers = [name for name, driver in motion.drivers.items() if any(driver.effort)]
+    acting = [
+        name
+        for name, force in motion.forces.items()
+        if motion.drivers and force.kind in ACTUATORS and force.effort is not None and any(force.effort)
+    ]
+    return next(iter((*drivers, *acting, *motion.drivers, *motion.points)), "")
+
+
+def _decimals(values: Array) -> int:
+    """Three figures of the largest one, at most four decimals."""
+    top = float(np.abs(values).max())
+    return min(max(2 - math.floor(math.log10(top)), 0), 4) if top > 0 else 0

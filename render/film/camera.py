@@ -1,0 +1,65 @@
+"""The camera of a film: it stands where it holds all that is filmed, or swings about its middle."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from render.film.clock import Clock
+from render.film.framing import CameraPose, axes, depth_of_field, fit, half_width, orbit
+from render.film.scene import Point
+from shared.contract.shot import Camera
+
+Array = NDArray[np.float64]
+
+
+class FilmCamera:
+    """The camera of a shot; ``filmed`` (n, 3) is what it holds, ``sharp`` (m, 3) what is in focus (m)."""
+
+    def __init__(self, shot: Camera, clock: Clock, filmed: Array, sharp: Array) -> None:
+        self.shot, self.clock, self.filmed, self.sharp = shot, clock, filmed, sharp
+
+    def pose(self, frame: int) -> CameraPose:
+        """At a frame: it stands still, or swings about the middle once in each showing of the motion."""
+        elevation, azimuth = math.radians(self.shot.elevation), math.radians(self.shot.azimuth)
+        swing = math.radians(self.shot.orbit)
+        position, target, distance = self._stand
+        if swing:
+            azimuth += swing * math.sin(math.tau * self.clock.phase(frame))
+            position = target - axes(azimuth, elevation)[2] * distance
+        depths = (self.sharp - position) @ axes(azimuth, elevation)[2]
+        near, far = float(depths.min()), float(depths.max())
+        focus, fstop = depth_of_field(near, far, self.shot.lens, self.shot.blur)
+        return CameraPose(
+            position=point(position),
+            azimuth=azimuth,
+            elevation=elevation,
+            lens=self.shot.lens,
+            focus=focus,
+            fstop=fstop,
+        )
+
+    @property
+    def width(self) -> float:
+        """Of the picture where the machine is (m)."""
+        return 2 * half_width(self.shot.lens) * self._stand[2]
+
+    @cached_property
+    def _stand(self) -> tuple[Array, Array, float]:
+        """Camera position, the point it looks at, and their distance."""
+        elevation, azimuth = math.radians(self.shot.elevation), math.radians(self.shot.azimuth)
+        position, distance = fit(self.filmed, azimuth, elevation, self.shot.lens, self.shot.margin)
+        target = position + axes(azimuth, elevation)[2] * distance
+        if self.shot.orbit:
+            swing = azimuth + math.radians(self.shot.orbit) * np.linspace(-1, 1, 9)
+            distance = orbit(self.filmed, target, swing, elevation, self.shot.lens, self.shot.margin)
+        return position, target, distance
+
+
+def point(vector: Array) -> Point:
+    """Three floats of a vector (3,)."""
+    x, y, z = (float(value) for value in vector)
+    return x, y, z

@@ -1,0 +1,119 @@
+"""How high things lie that are drawn over the solids: trails, labels, arrows, springs (m)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from render.film.clock import Clock
+from render.film.poses import Moment, Poses
+from render.film.scene import Point
+from render.film.swept import SweptSpace
+from render.film.tubes.spirals import Site
+from render.film.tubes.stretched import placed
+from shared.contract import Motion, Parts, Shape
+from shared.contract.shot import Trail
+
+OVER = 0.001
+"""Of trails and arrows over the body that carries them (m)."""
+LABEL = 0.012
+"""Of a label over its pin, as a part of the size of the swept motion."""
+LIES = 1.25
+"""Of the middle of a spring over what is below it, in its radii."""
+
+
+def tops(parts: Parts, body: str) -> list[float]:
+    """Of all pieces of a body."""
+    solids = parts.bodies.get(body)
+    return [piece.z_range[1] for piece in solids.pieces.values()] if solids else []
+
+
+def trail_heights(motion: Motion, parts: Parts, trails: Iterable[Trail]) -> dict[str, float]:
+    """Of each trail, by its point: as the shot says, else just over the body that carries the point."""
+    moving = [top for body in motion.bodies for top in tops(parts, body)]
+    out = {}
+    for trail in trails:
+        over = tops(parts, motion.points[trail.point].body) or moving
+        out[trail.point] = max(over, default=0.0) + OVER if trail.z is None else trail.z
+    return out
+
+
+DIRECTIONS = 72
+"""In which a stud may stand beside a pin."""
+PASSING = 24
+"""Moments at which is looked what passes over a pin."""
+Array = NDArray[np.float64]
+
+
+def _cos(eighths: int) -> float:
+    return math.cos(math.tau * eighths / 8)
+
+
+class Heights:
+    """Of what floats over the bodies of one film."""
+
+    def __init__(self, poses: Poses, parts: Parts, space: SweptSpace, clock: Clock) -> None:
+        self.poses, self.parts, self.space, self.clock = poses, parts, space, clock
+
+    def arrow(self, bodies: Iterable[str], x: float, y: float) -> float:
+        """On the highest piece where it begins at the start; else over all its bodies."""
+        bodies, start = list(bodies), self.clock.moment(0)
+        found = [top for body in bodies for top in self.space.tops_at(body, x, y, start)]
+        found = found or [top for body in bodies for top in tops(self.parts, body)]
+        return max(found, default=float(self.space.moving[:, 2].max())) + OVER
+
+    def spring(self, shape: Shape, radius: float) -> tuple[float, tuple[float, float]]:
+        """Of something of that radius that lies over what is at its two ends at the start, and the tops there."""
+        at = self.clock.moment(0)
+        places = [placed(self.poses.body(b, at), marker) for b, marker in zip(shape.bodies, shape.markers, strict=True)]
+        found = []
+        for body, place in zip(shape.bodies, places, strict=True):
+            beside = tops(self.parts, body) if body != "ground" else []
+            floor = float(self.space.all[:, 2].min())
+            found.append(max(self.space.tops_at(body, *place, at) or beside or [floor]))
+        return max(found) + LIES * radius, (found[0], found[1])
+
+    def site(self, bodies: tuple[str, str], places: Array, radius: float) -> Site | None:
+        """Room for a spiral of that radius (m) over the pin of two bodies, whose places (T, 2) are given.
+
+        The stud is on the body that is higher, where it is solid so far from the pin; None where neither is.
+        """
+        at, (u, v) = self.clock.moment(0), (float(value) for value in places[0])
+        found = []
+        for body in bodies:
+            theta = self.poses.body(body, at)[2]
+            for k in range(DIRECTIONS):
+                angle = math.tau * k / DIRECTIONS
+                x, y = u + radius * math.cos(theta + angle), v + radius * math.sin(theta + angle)
+                found += [(top, body != "ground", -k, body, angle) for top in self.space.tops_at(body, x, y, at)]
+        if not found:
+            return None
+        base, _, _, outer, direction = max(found)
+        hub = max([base, *(top for body in bodies for top in self.space.tops_at(body, u, v, at))])
+        return Site(outer, direction, base, hub, max(hub, self._passing(places, radius)))
+
+    def _passing(self, places: Array, radius: float) -> float:
+        """The highest piece that is ever over a disc that is at these places (T, 2) of the motion."""
+        time = self.poses.time
+        over = []
+        for k in np.linspace(0, len(time) - 1, PASSING).round().astype(int):
+            at = Moment(float(time[k]), 0)
+            for turn in (None, *range(8)):
+                x, y = places[k] if turn is None else places[k] + radius * np.array([_cos(turn), _cos(turn - 2)])
+                over += [top for body in self.parts.bodies for top in self.space.tops_at(body, x, y, at)]
+        return max(over, default=0.0)
+
+    def label(self, name: str, at: Moment) -> Point:
+        """Place of a label: just over the highest piece that its joint or point goes through."""
+        motion = self.poses.motion
+        if name in motion.points:
+            x, y = (float(value) for value in self.poses.point(name, np.array([at.time]))[0])
+            bodies = (motion.points[name].body,)
+        else:
+            x, y = self.poses.joint(name, at)
+            bodies = motion.joints[name].bodies
+        found = [top for body in bodies for top in self.space.tops_at(body, x, y, at)]
+        return x, y, max(found, default=float(self.space.moving[:, 2].max())) + LABEL * self.space.size

@@ -1,0 +1,77 @@
+"""What the picture stages read, and the key that tells whether any of it changed. Cheap to import."""
+
+from __future__ import annotations
+
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from render.presets import Preset
+from shared.stage.errors import UserError
+from shared.stage.files import sources_hash
+from shared.stage.paths import Out, mechanism_folder
+from shared.stage.stages import contract_sources, key_of
+
+if TYPE_CHECKING:
+    from render.film.film import Film
+
+SHARED = ("belt_path", "materials", "shot", "spanning")
+"""Files of shared/contract/, beside those of motion and parts, that decide what is seen."""
+STAGE_OF = {"motion": "solve", "parts": "parts", "shot": "run"}
+
+
+def refuse_missing(out: Out) -> None:
+    """Raise UserError naming the make target if a file is not there yet."""
+    if not out.folder.is_dir():
+        mechanism_folder(out.name)
+    for attribute, target in STAGE_OF.items():
+        path = getattr(out, attribute)
+        if not path.is_file():
+            raise UserError(f"{out.name}: {path} is missing; run make {target}-{out.name.replace('_', '-')} first")
+
+
+def stage_key(out: Out, preset: Preset, *more: object) -> str:
+    """Key of a picture stage: the three files, our sources, the preset, Blender's version."""
+    refuse_missing(out)
+    return key_of(out.motion, out.parts, out.shot, picture_sources(), preset, blender_version(), *more)
+
+
+def named(path: Path, show: str) -> Path:
+    """The path of a picture that shows what SHOW asks for: ``poster-forces-title.png`` beside ``poster.png``."""
+    return path.with_stem("-".join([path.stem, *show.split(",")])) if show else path
+
+
+def encoder_version() -> str:
+    """Version of the package that brings ffmpeg; empty where the system's own is used."""
+    try:
+        return metadata.version("imageio-ffmpeg")
+    except metadata.PackageNotFoundError:
+        return ""
+
+
+def picture_sources() -> str:
+    """Hash of the sources that make pictures; the plots are not among them."""
+    room = Path(__file__).parents[1]
+    rooms = [room / name for name in ("presets.py", "film", "frames", "blender")]
+    return sources_hash(*rooms, *contract_sources(*SHARED))
+
+
+def blender_version() -> str:
+    """Version of bpy, without its two seconds of import."""
+    try:
+        return metadata.version("bpy")
+    except metadata.PackageNotFoundError:
+        raise UserError("bpy (Blender as a module) is not installed; run make install") from None
+
+
+def read_film(out: Out, show: str = "") -> Film:
+    """Read and check data.json, parts.json and shot.json; ``show`` is what SHOW asks for instead of the shot."""
+    from render.film.film import Film
+    from shared.contract import read_motion, read_parts
+    from shared.contract.shot import read_shot, shown
+    from shared.contract.spanning import with_rods
+
+    refuse_missing(out)
+    shot = shown(read_shot(out.shot), show)
+    parts = read_parts(out.parts, out.name)
+    return Film(with_rods(read_motion(out.motion, out.name), parts), parts, shot, out.parts_folder)

@@ -1,0 +1,67 @@
+"""The solids of a film: which there are, how they look, and that they are those of its motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from render.film.scene import PieceSpec, SurfaceSpec
+from shared.contract import Motion, Parts, Piece
+from shared.contract.materials import MATERIALS
+from shared.contract.shot import Shot, Surface
+from shared.stage.errors import UserError
+from shared.stage.files import file_hash
+from shared.stage.suggestions import did_you_mean
+
+
+def piece_specs(parts: Parts, shot: Shot, folder: Path) -> list[PieceSpec]:
+    """All solids, whose STL files are in ``folder``. Raises UserError for a material that is not known."""
+    return [
+        PieceSpec(
+            body=body,
+            name=name,
+            stl=str((folder / piece.stl).resolve()),
+            sha256=piece.stl_sha256,
+            surface=_surface(parts.mechanism, shot, body, name, piece),
+            turns_about=(piece.rolls.x, piece.rolls.y) if piece.rolls else None,
+        )
+        for body, name, piece in _pieces(parts)
+    ]
+
+
+def refuse_mismatch(motion: Motion, parts: Parts, folder: Path) -> None:
+    """Raise UserError unless the solids' bodies are the motion's, the ground apart, and the files those described."""
+    name = motion.mechanism
+    if parts.mechanism != name:
+        raise UserError(f"parts.json is of {parts.mechanism}, data.json of {name}; make both again")
+    unknown = [body for body in parts.bodies if body not in motion.bodies and body != "ground"]
+    if unknown:
+        raise UserError(
+            f"{name}: parts.json has solids for {', '.join(unknown)}, which do not move in data.json; "
+            f"it has: {', '.join(motion.bodies)}"
+        )
+    if not any(True for _ in _pieces(parts)):
+        raise UserError(f"{name}: parts.json has no solids, so there is nothing to see; make the parts again")
+    for body, piece_name, piece in _pieces(parts):
+        known = [*motion.joints, *motion.contacts]
+        if piece.rolls is not None and piece.rolls.joint not in known:
+            raise UserError(
+                f"{name}: piece {body}/{piece_name} rolls in joint '{piece.rolls.joint}', which data.json has not; "
+                f"it has: {', '.join(known) or 'none'}{did_you_mean(piece.rolls.joint, known)}"
+            )
+        if file_hash(folder / piece.stl) != piece.stl_sha256:
+            raise UserError(f"{name}: {piece.stl} is not the file parts.json describes; make the parts again")
+
+
+def _pieces(parts: Parts) -> Iterator[tuple[str, str, Piece]]:
+    return ((body, name, piece) for body, solids in parts.bodies.items() for name, piece in solids.pieces.items())
+
+
+def _surface(mechanism: str, shot: Shot, body: str, name: str, piece: Piece) -> SurfaceSpec:
+    chosen = shot.materials.get(f"{body}/{name}", shot.materials.get(body, piece.material))
+    if isinstance(chosen, Surface):
+        return SurfaceSpec(colour=chosen.colour, finish=chosen.finish, roughness=chosen.roughness)
+    if chosen not in MATERIALS:
+        raise UserError(f"{mechanism}: piece {body}/{name} is of '{chosen}'; known: {', '.join(MATERIALS)}")
+    material = MATERIALS[chosen]
+    return SurfaceSpec(colour=material.colour, finish=material.finish, roughness=material.roughness)

@@ -1,0 +1,1 @@
+"""How far pieces turn that roll on others."""

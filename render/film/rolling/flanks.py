@@ -1,0 +1,115 @@
+"""Where a roller touches what it rolls on, as the reactions tell: the direction from its centre, and when it touches.
+
+cam_roller, contacts    the nearest point of the outline; of a contact while it is closed
+pin_in_slot             across the slot, to the wall from which the reaction on the pin comes
+point_on_curve          across the curve, to the side from which the reaction comes
+geneva                  across the slot that the pin is in, to the flank that it pushes; none while the wheel is locked
+
+Without a reaction that is more than rounding the last flank counts that had one, and before the first nothing is
+touched.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from render.film.markers import moved
+from shared.contract import ContactMotion, JointMotion, Motion, Shape
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+ROUNDING = 1e-9
+"""Of the largest reaction: smaller ones tell no flank."""
+
+
+@dataclass(frozen=True)
+class Flank:
+    """Over the times of data.json."""
+
+    normal: Array
+    """(T, 2) unit vectors from the roller's centre to where it touches."""
+    touches: Mask
+    """(T,); elsewhere there is nothing to roll on."""
+    free: Mask
+    """(T,) whether it has left what it rolled on, with nothing to brake it."""
+
+
+def flank_of(motion: Motion, name: str, centre: Array) -> Flank | None:
+    """That of a roller whose middle is at ``centre`` (T, 2) in a joint or contact; None if nothing rolls in it."""
+    joint, contact = motion.joints.get(name), motion.contacts.get(name)
+    if joint is not None and joint.shape is not None:
+        if joint.kind == "cam_roller":
+            return _always(_nearest(motion, joint.shape, centre)[0])
+        if joint.kind == "pin_in_slot":
+            angle = moved(motion, joint.shape.bodies[0], joint.shape.markers[0])[1]
+            return _pushed(_across(angle), joint, -1.0)
+        if joint.kind == "point_on_curve":
+            along = _nearest(motion, joint.shape, centre)[1]
+            return _pushed(np.stack([-along[:, 1], along[:, 0]], axis=1), joint, -1.0)
+        if joint.kind == "geneva":
+            return _in_wheel(motion, joint, joint.shape)
+    if contact is not None and contact.shape.outline:
+        return _leaving(_nearest(motion, contact.shape, centre)[0], contact)
+    return None
+
+
+def _always(normal: Array) -> Flank:
+    every = np.ones(len(normal), bool)
+    return Flank(normal, every, ~every)
+
+
+def _leaving(normal: Array, contact: ContactMotion) -> Flank:
+    """A contact that opens: before the first time it is closed the roller does not turn, later it is free."""
+    closed = np.array([state != "open" for state in contact.state])
+    return Flank(normal, closed, ~closed & (np.cumsum(closed) > 0))
+
+
+def _pushed(across: Array, joint: JointMotion, sense: float, there: Mask | None = None) -> Flank:
+    """By the reaction on the second body, times ``sense``: left or right in a slot, while a pin is ``there``."""
+    fx, fy = np.asarray(joint.fx), np.asarray(joint.fy)
+    force = np.where(True if there is None else there, sense * (fx * across[:, 0] + fy * across[:, 1]), 0.0)
+    side = np.sign(np.where(np.abs(force) > ROUNDING * np.hypot(fx, fy).max(initial=0.0), force, 0.0))
+    last = np.maximum.accumulate(np.where(side != 0, np.arange(len(side)), -1))
+    side = np.where(last >= 0, side[np.maximum(last, 0)], 0.0)
+    touches = side != 0
+    return Flank(side[:, None] * across, touches if there is None else touches & there, np.zeros(len(side), bool))
+
+
+def _in_wheel(motion: Motion, joint: JointMotion, shape: Shape) -> Flank:
+    """The crank's pin, which pushes the wheel (the second body)."""
+    (crank, wheel), (first, second) = shape.bodies, shape.markers
+    place, turn = moved(motion, crank, first)
+    arm, middle = np.stack([np.cos(turn), np.sin(turn)], axis=1), moved(motion, wheel, second)[0]
+    radius = shape.pin_radius or 0.0
+    way = place + radius * arm - middle
+    entered = ((middle - place) * arm).sum(axis=1) > radius  # as the joint's equation has it
+    return _pushed(_across(np.arctan2(way[:, 1], way[:, 0])), joint, 1.0, entered)
+
+
+def _across(angle: Array) -> Array:
+    """(T, 2) to the left of directions (rad)."""
+    return np.stack([-np.sin(angle), np.cos(angle)], axis=1)
+
+
+def _nearest(motion: Motion, shape: Shape, centre: Array) -> tuple[Array, Array]:
+    """(T, 2) each: from the roller's centre to the nearest point of the outline, and along the outline there."""
+    place, angle = moved(motion, shape.bodies[0], shape.markers[0])
+    c, s = np.cos(angle), np.sin(angle)
+    off = centre - place
+    seen = np.stack([c * off[:, 0] + s * off[:, 1], c * off[:, 1] - s * off[:, 0]], axis=1)
+    outline = np.asarray(shape.outline)
+    starts, ways = outline, np.roll(outline, -1, axis=0) - outline
+    if not shape.outline_closed:
+        starts, ways = starts[:-1], ways[:-1]
+    part = ((seen[:, None] - starts) * ways).sum(axis=2) / np.maximum((ways**2).sum(axis=1), 1e-300)
+    feet = starts + np.clip(part, 0.0, 1.0)[..., None] * ways
+    away = feet - seen[:, None]
+    nearest = (away**2).sum(axis=2).argmin(axis=1)
+    both = np.take_along_axis(away, nearest[:, None, None], axis=1)[:, 0], ways[nearest]
+    normal, along = (way / np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-300) for way in both)
+    return tuple(  # pyright: ignore[reportReturnType]
+        np.stack([c * way[:, 0] - s * way[:, 1], s * way[:, 0] + c * way[:, 1]], axis=1) for way in (normal, along)
+    )

@@ -1,0 +1,149 @@
+"""A scene in plain data: what stands where, of what, in which light. No Blender here; render/blender/ translates it.
+
+Metres and radians. A Scene is what stays the same over the film, a State is what one frame changes.
+"""
+
+from __future__ import annotations
+
+import msgspec
+
+from render.film.framing import CameraPose
+
+Colour = tuple[float, float, float]
+Point = tuple[float, float, float]
+
+
+class SurfaceSpec(msgspec.Struct, kw_only=True, frozen=True):
+    """How a piece looks.
+
+    ``finish`` names a shader of render/blender/scene/materials.py; ``flat`` emits its colour alone.
+    """
+
+    colour: Colour
+    finish: str
+    roughness: float
+
+
+class PieceSpec(msgspec.Struct, kw_only=True, frozen=True):
+    """One solid of a body; the STL is in millimetres, in the body's frame."""
+
+    body: str
+    name: str
+    stl: str
+    sha256: str
+    surface: SurfaceSpec
+    turns_about: tuple[float, float] | None = None
+    """x, y of the axis (m) about which it turns against its body; the States have its pose as ``body/name``."""
+
+
+class TrailSpec(msgspec.Struct, kw_only=True, frozen=True):
+    """A fading tube of so many rings; its path is in every State, from the point back to the end of the tail."""
+
+    name: str
+    colour: Colour
+    radius: float
+    rings: int
+
+
+class LabelSpec(msgspec.Struct, kw_only=True, frozen=True):
+    """A text that faces the camera; its place is in every State."""
+
+    text: str
+    size: float
+    colour: Colour
+
+
+class TubeSpec(msgspec.Struct, kw_only=True, frozen=True):
+    """A round wire, rod or rope along a path of so many points, which is in every State."""
+
+    name: str
+    surface: SurfaceSpec
+    radius: float
+    points: int
+
+
+class ArrowSpec(msgspec.Struct, kw_only=True, frozen=True):
+    """A vector that changes: a thin shaft with a cone. Tail and tip are in every State; it is drawn over the parts.
+
+    ``colour`` is what the picture has (sRGB 0..1), ``shaft`` and ``head`` are radii, ``point`` the cone's length.
+    """
+
+    name: str
+    colour: Colour
+    shaft: float
+    head: float
+    point: float
+
+
+class ArcSpec(msgspec.Struct, kw_only=True, frozen=True):
+    """A torque that changes: a curved arrow about its centre, which is in every State with its sweep (rad).
+
+    ``colour`` as of an arrow; ``radius`` is that of the arc, ``shaft`` and ``head`` radii of the tube and its cone,
+    ``point`` the cone's length.
+    """
+
+    name: str
+    colour: Colour
+    radius: float
+    shaft: float
+    head: float
+    point: float
+
+
+class LegendRow(msgspec.Struct, kw_only=True, frozen=True):
+    """A reference arrow: what ``number`` is, and its tip, in parts of the picture's width; or an arc (rad)."""
+
+    number: str
+    words: str
+    colour: Colour
+    length: float = 0.0
+    point: float = 0.0
+    sweep: float = 0.0
+
+
+class Writing(msgspec.Struct, kw_only=True, frozen=True):
+    """What is written over the picture: a legend in a corner, a title at the upper left, the rate of time."""
+
+    legend: list[LegendRow] = []
+    corner: str = "lower left"
+    title: str = ""
+    rate: str = ""
+
+
+class StudioSpec(msgspec.Struct, kw_only=True, frozen=True):
+    """Backdrop and lights, sized by the swept motion: its middle, its radius, the floor's height."""
+
+    look: str
+    centre: Point
+    radius: float
+    floor: float
+    azimuth: float
+
+
+class Scene(msgspec.Struct, kw_only=True, frozen=True):
+    """What stays the same over the film."""
+
+    mechanism: str
+    fps: int
+    pieces: list[PieceSpec]
+    trails: list[TrailSpec]
+    labels: list[LabelSpec]
+    studio: StudioSpec
+    tubes: list[TubeSpec] = []
+    arrows: list[ArrowSpec] = []
+    arcs: list[ArcSpec] = []
+    writing: Writing = Writing()
+
+
+class State(msgspec.Struct, kw_only=True, frozen=True):
+    """What one frame changes: x, y, theta of every body; paths, places, arrows, the camera."""
+
+    bodies: dict[str, Point]
+    trails: list[list[Point]]
+    labels: list[Point]
+    camera: CameraPose
+    tubes: list[list[Point]] = []
+    arrows: list[tuple[Point, Point]] = []
+    arcs: list[tuple[Point, float]] = []
+    number: str = ""
+    """The number that lives, beside the title."""

@@ -1,0 +1,65 @@
+"""STL files of the parts, as far as the camera needs them: outlines, and the space they sweep."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shared.stage.errors import UserError
+
+Array = NDArray[np.float64]
+MILLIMETRE = 0.001
+"""STL files are in millimetres, everything else here is in metres."""
+_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+def read_triangles(path: Path) -> Array:
+    """Corners (n, 3, 3) in m of the triangles of a binary STL; raises UserError if the file is not whole."""
+    content = path.read_bytes()
+    count = int.from_bytes(content[80:84], "little") if len(content) >= 84 else -1
+    if len(content) != 84 + _TRIANGLE.itemsize * count or count < 1:
+        raise UserError(f"{path} is not a whole binary STL ({len(content)} bytes); make the parts again")
+    return np.frombuffer(content, _TRIANGLE, count, 84)["corners"].astype(float) * MILLIMETRE
+
+
+def read_vertices(path: Path) -> Array:
+    """Corners (n, 3) in m of a binary STL, each once; raises UserError if the file is not whole."""
+    return np.unique(read_triangles(path).reshape(-1, 3), axis=0)
+
+
+def prism(vertices: Array) -> Array:
+    """The upright prism around vertices (n, 3): the convex outline in x, y at the lowest and the highest z."""
+    outline = _convex_outline(vertices[:, :2])
+    heights = vertices[:, 2].min(), vertices[:, 2].max()
+    return np.concatenate([np.column_stack([outline, np.full(len(outline), z)]) for z in heights])
+
+
+def swept(outline: Array, poses: Array) -> Array:
+    """All places (m * n, 3) of points (n, 3) over poses (m, 3) of x, y, theta."""
+    cosine, sine = np.cos(poses[:, 2])[:, None], np.sin(poses[:, 2])[:, None]
+    x = poses[:, 0, None] + cosine * outline[:, 0] - sine * outline[:, 1]
+    y = poses[:, 1, None] + sine * outline[:, 0] + cosine * outline[:, 1]
+    z = np.broadcast_to(outline[:, 2], x.shape)
+    return np.stack([x, y, z], axis=-1).reshape(-1, 3)
+
+
+def _convex_outline(points: Array) -> Array:
+    """Corners of the convex hull of points (n, 2), by Andrew's monotone chain."""
+    ordered = np.unique(points, axis=0)
+    if len(ordered) < 3:
+        return ordered
+
+    def chain(sequence: Array) -> list[Array]:
+        kept: list[Array] = []
+        for point in sequence:
+            while len(kept) >= 2:
+                a, b = kept[-1] - kept[-2], point - kept[-2]
+                if a[0] * b[1] - a[1] * b[0] > 0:
+                    break
+                kept.pop()
+            kept.append(point)
+        return kept[:-1]
+
+    return np.array(chain(ordered) + chain(ordered[::-1]))

@@ -1,0 +1,106 @@
+"""The space a mechanism sweeps over its whole motion: what the camera must hold and the studio is sized by."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from render.film.clock import turns_of
+from render.film.poses import Moment, Poses
+from render.film.solids import prism, read_vertices, swept
+from shared.contract import Parts
+
+Array = NDArray[np.float64]
+SAMPLES, MOST = 120, 1200
+"""Poses over the motion from which the swept space is taken: of a turn or a second, and of the whole at most."""
+
+
+class SweptSpace:
+    """Points (n, 3) in m around everything that is seen, over the whole motion."""
+
+    def __init__(self, poses: Poses, parts: Parts, folder: Path, paths: dict[str, float]) -> None:
+        """``folder`` holds the STL files; ``paths`` has the height of each traced point that leaves a trail."""
+        self._poses, self._paths = poses, paths
+        self._files = {
+            body: [folder / piece.stl for piece in solids.pieces.values()] for body, solids in parts.bodies.items()
+        }
+
+    @cached_property
+    def all(self) -> Array:
+        """Everything, the ground with it."""
+        return np.concatenate([*self._bodies.values(), *self._trails])
+
+    @cached_property
+    def moving(self) -> Array:
+        """What moves, trails with it; everything if nothing does."""
+        bodies = [cloud for name, cloud in self._bodies.items() if name in self._poses.motion.bodies]
+        return np.concatenate([*bodies, *self._trails]) if bodies else self.all
+
+    @cached_property
+    def standing(self) -> Array:
+        """What stands still: corners of its pieces, and places between any two corners of one piece."""
+        between = np.linspace(0, 1, 9)[:, None, None, None]
+        inside = [
+            (between * box[None, :, None] + (1 - between) * box[None, None, :]).reshape(-1, 3)
+            for box in (box[:: max(1, len(box) // 24)] for box in self._outlines.get("ground", []))
+        ]
+        return np.concatenate(inside) if inside else np.zeros((0, 3))
+
+    @cached_property
+    def middle(self) -> Array:
+        """Middle (3,) of the box around everything."""
+        return (self.all.min(axis=0) + self.all.max(axis=0)) / 2
+
+    @cached_property
+    def size(self) -> float:
+        """Diagonal (m) of the box around everything."""
+        return float(np.linalg.norm(np.ptp(self.all, axis=0)))
+
+    def tops_at(self, body: str, x: float, y: float, at: Moment) -> list[float]:
+        """Heights of the body's pieces whose box, in the body's frame, holds the point (x, y) at that moment."""
+        x0, y0, theta = self._poses.body(body, at)
+        turned = cmath.exp(-1j * theta) * complex(x - x0, y - y0)
+        local = np.array([turned.real, turned.imag])
+        return [
+            float(box[:, 2].max())
+            for box in self._outlines.get(body, [])
+            if (box[:, :2].min(axis=0) <= local).all() and (local <= box[:, :2].max(axis=0)).all()
+        ]
+
+    @cached_property
+    def _outlines(self) -> dict[str, list[Array]]:
+        """The upright prism around each piece, in its body's frame."""
+        return {body: [prism(read_vertices(file)) for file in files] for body, files in self._files.items()}
+
+    @cached_property
+    def _moments(self) -> list[Moment]:
+        motion = self._poses.motion
+        start, end = motion.time[0], motion.time[-1]
+        if motion.period is not None:
+            count = min(SAMPLES * turns_of(motion), MOST)
+            return [Moment(start + motion.period * (i / count), 0) for i in range(count)]
+        count = min(max(SAMPLES, math.ceil(SAMPLES * (end - start))), MOST)
+        return [Moment(float(time), 0) for time in np.linspace(start, end, count + 1)]
+
+    @cached_property
+    def _bodies(self) -> dict[str, Array]:
+        """The swept points of each body."""
+        clouds: dict[str, Array] = {}
+        for body, outlines in self._outlines.items():
+            poses = np.array([self._poses.body(body, at) for at in self._moments])
+            if np.ptp(poses, axis=0).max() < 1e-12:
+                poses = poses[:1]
+            if outlines:
+                clouds[body] = swept(np.concatenate(outlines), poses)
+        return clouds
+
+    @cached_property
+    def _trails(self) -> list[Array]:
+        times = np.array([at.time for at in self._moments])
+        paths = [(self._poses.point(point, times), height) for point, height in self._paths.items()]
+        return [np.column_stack([path, np.full(len(path), height)]) for path, height in paths]

@@ -1,0 +1,1 @@
+"""Springs, ropes, belts and trails: what changes its shape along the film."""

@@ -1,0 +1,171 @@
+"""Belts and chains that run: a round belt with marks, a chain of rollers between two rows of plates. As tubes.
+
+The belt moves with the first pulley: what lies on it at the body's angle gamma is r (gamma + theta - phi - beta) along
+the path of shared/contract/belt_path.py (phi is the direction of the line of centres). Marks and rollers are evenly
+spread over the belt. Where the motion has a period, the way of the belt in it is rounded to a whole number of their
+distances, so that the film loops without a jump; of a chain whose length is a whole number of its pitch nothing is
+rounded.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from render.film.poses import Moment, Poses
+from render.film.scene import Point, SurfaceSpec, TubeSpec
+from render.film.tubes.stretched import BLACK, STEEL, placed
+from shared.contract import Held, Motion, Shape
+from shared.contract.belt_path import BeltPath
+
+Array = NDArray[np.float64]
+BELT = SurfaceSpec(colour=(0.045, 0.045, 0.05), finish="rubber", roughness=0.55)
+MARK = SurfaceSpec(colour=(0.86, 0.5, 0.06), finish="satin", roughness=0.4)
+POINTS, MARK_POINTS = 181, 5
+"""Of a belt's tube and of a mark."""
+FEWEST, MOST = 6, 14
+"""Marks on a belt."""
+LONG, PROUD = 1.6, 1.06
+"""Half of a mark's length, and its radius, in the belt's radius."""
+PLATES, PIN, PLATE = 1.5, 2.1, 0.42
+"""Of a chain, in the radius of its rollers: how far plates lie from the middle, half a pin's length, a plate's radius.
+"""
+APART = 1.1
+"""How far the strands of a crossed belt pass over and under each other, in its radius."""
+
+
+@dataclass(frozen=True)
+class Belt:
+    """One belt: its path, and how it looks."""
+
+    name: str
+    shape: Shape
+    path: BeltPath
+    z: float
+    radius: float
+    count: int
+    """Of marks or rollers."""
+    chain: bool
+    lines: tuple[float, float]
+    """Direction of the line of centres at the start and the end of the motion (rad), not wrapped."""
+    start: float
+    """The first body's angle against that line at the start (rad)."""
+    pace: float
+    """By how much the belt is shown faster than it is."""
+
+    @property
+    def specs(self) -> list[TubeSpec]:
+        """Of each tube."""
+        if not self.chain:
+            marks = [
+                TubeSpec(name=f"{self.name} mark {k + 1}", surface=MARK, radius=PROUD * self.radius, points=MARK_POINTS)
+                for k in range(self.count)
+            ]
+            return [TubeSpec(name=self.name, surface=BELT, radius=self.radius, points=POINTS), *marks]
+        plates = [
+            TubeSpec(name=f"{self.name} plates {side}", surface=BLACK, radius=PLATE * self.radius, points=POINTS)
+            for side in (1, 2)
+        ]
+        return [
+            *plates,
+            *(
+                TubeSpec(name=f"{self.name} {what} {k + 1}", surface=STEEL, radius=part * self.radius, points=2)
+                for what, part in (("roller", 0.9), ("pin", 0.35))
+                for k in range(self.count)
+            ),
+        ]
+
+    def paths(self, poses: Poses, at: Moment) -> list[list[Point]]:
+        """Of each tube at that moment."""
+        first, second = (
+            placed(poses.body(body, at), marker)
+            for body, marker in zip(self.shape.bodies, self.shape.markers, strict=True)
+        )
+        line = math.atan2(second[1] - first[1], second[0] - first[0])
+        theta = poses.body(self.shape.bodies[0], at)[2]
+        whole = round((self.lines[1] - self.lines[0]) / math.tau) if poses.motion.period is not None else 0
+        part = (at.time - poses.time[0]) / (poses.time[-1] - poses.time[0])
+        guess = self.lines[0] + part * (self.lines[1] - self.lines[0])
+        steady = line + math.tau * (round((guess - line) / math.tau) + whole * at.turns)
+        begin = self.path.first * (self.start - self.path.beta)
+        gone = begin + self.pace * self.path.first * (theta - steady - self.start)
+        every = gone + self.path.length / self.count * np.arange(self.count)
+        place = _Placing(self, first, line)
+        closed = np.linspace(0.0, self.path.length, POINTS)
+        if not self.chain:
+            reach = LONG * self.radius * np.linspace(-1.0, 1.0, MARK_POINTS)
+            return [place.points(closed), *(place.points(s + reach) for s in every)]
+        side = PLATES * self.radius
+        found = [place.points(closed, height) for height in (-side, side)]
+        for half in (0.85 * side, PIN * self.radius):
+            found += [[*place.points(np.array([s]), -half), *place.points(np.array([s]), half)] for s in every]
+        return found
+
+
+@dataclass(frozen=True)
+class _Placing:
+    """From lengths along a belt to points of the world."""
+
+    belt: Belt
+    origin: tuple[float, float]
+    line: float
+
+    def points(self, along: Array, height: float = 0.0) -> list[Point]:
+        """At these lengths, so far over the belt's middle (m)."""
+        flat, rest = self.belt.path.places(along)
+        c, s = math.cos(self.line), math.sin(self.line)
+        over = APART * self.belt.radius * np.sin(np.pi * rest) if self.belt.path.crossed else 0 * rest
+        return [
+            (self.origin[0] + c * x - s * y, self.origin[1] + s * x + c * y, self.belt.z + height + dz)
+            for (x, y), dz in zip(flat.tolist(), over.tolist(), strict=True)
+        ]
+
+
+def belts(motion: Motion, held: Mapping[str, Held]) -> Iterator[Belt]:
+    """All belts whose pulleys say where it lies (``held``, by the names of joints), if there is room for a path."""
+    time = np.asarray(motion.time)
+    for name, joint in motion.joints.items():
+        shape, own = joint.shape, held.get(name)
+        if joint.kind != "belt" or shape is None or own is None or not shape.radius_first or not shape.radius_second:
+            continue
+        places = [
+            _places(motion, body, marker, len(time)) for body, marker in zip(shape.bodies, shape.markers, strict=True)
+        ]
+        way = places[1] - places[0]
+        path = BeltPath(shape.radius_first, shape.radius_second, float(np.hypot(*way[0])), shape.crossed)
+        if not path.has_room:
+            continue
+        line = np.unwrap(np.arctan2(way[:, 1], way[:, 0]))
+        body = motion.bodies.get(shape.bodies[0])
+        theta = np.asarray(body.theta) if body else np.zeros(len(time))
+        gone = shape.radius_first * float((theta - line)[-1] - (theta - line)[0])
+        gone = gone if motion.period is not None else 0.0
+        chain = bool(shape.teeth)
+        if chain:
+            count = max(round(path.length * shape.teeth[0] / (math.tau * shape.radius_first)), 3)
+        else:
+            count = min(range(FEWEST, MOST + 1), key=lambda n: abs(_pace(gone, path.length / n) - 1))
+        yield Belt(
+            name, shape, path, own.z, own.radius, count, chain, (float(line[0]), float(line[-1])),
+            float(theta[0] - line[0]), _pace(gone, path.length / count),
+        )  # fmt: skip
+
+
+def _pace(gone: float, apart: float) -> float:
+    """What makes a way a whole number of distances; 1 where that would be none."""
+    whole = round(gone / apart)
+    return whole * apart / gone if whole else 1.0
+
+
+def _places(motion: Motion, name: str, marker: tuple[float, float, float], count: int) -> Array:
+    """(T, 2) of a marker (m)."""
+    body = motion.bodies.get(name)
+    if body is None:
+        return np.broadcast_to(np.array(marker[:2]), (count, 2))
+    c, s = np.cos(body.theta), np.sin(body.theta)
+    x, y, _ = marker
+    return np.stack([np.array(body.x) + c * x - s * y, np.array(body.y) + s * x + c * y], axis=1)

@@ -1,0 +1,72 @@
+"""Trails of traced points: how fine they are, and where they lie in each frame."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+
+import numpy as np
+
+from render.film.clock import Clock
+from render.film.poses import Poses
+from render.film.scene import Point, TrailSpec
+from shared.contract import Motion
+from shared.contract.shot import Shot, Trail
+
+RINGS, MOST_RINGS = 160, 3000
+"""Of a trail: the fewest and the most."""
+STRAY = 0.15
+"""How far a trail may stray from its point's way between two rings, in its own radii."""
+BENT = 0.995
+"""Part of the motion over which that holds; stiff contacts accelerate a point at will for a moment."""
+
+
+def trails_of(motion: Motion, shot: Shot) -> tuple[Trail, ...]:
+    """The shot's trails; every traced point gets one if the shot says nothing."""
+    return shot.trails if shot.trails is not None else tuple(Trail(point=point) for point in motion.points)
+
+
+class Trails:
+    """The trails of one film at their heights (m) by point, ``size`` (m) being that of its swept motion."""
+
+    def __init__(self, poses: Poses, clock: Clock, shot: Shot, heights: dict[str, float], size: float) -> None:
+        self.poses, self.clock, self.heights, self.size = poses, clock, heights, size
+        self.trails = trails_of(poses.motion, shot)
+
+    def specs(self) -> list[TrailSpec]:
+        """Their looks."""
+        return [
+            TrailSpec(name=trail.point, colour=trail.colour, radius=trail.radius * self.size, rings=rings)
+            for trail, rings in zip(self.trails, self._rings, strict=True)
+        ]
+
+    def paths(self, frame: int) -> list[list[Point]]:
+        """Where each point was, from now back to the end of its tail; where an impact turned it is among the places."""
+        out = []
+        for trail, rings in zip(self.trails, self._rings, strict=True):
+            times = self.clock.trail_times(frame, trail.tail, rings)
+            step = float(np.abs(np.diff(times)).min())  # where a period begins anew, it is more
+            for event in self.poses.motion.events:
+                away = np.abs(times[1:] - event.time)
+                nearest = int(away.argmin())
+                if away[nearest] <= 0.5 * step * (1 + 1e-6):
+                    times[1 + nearest] = event.time
+            z = self.heights[trail.point]
+            out.append([(float(x), float(y), z) for x, y in self.poses.point(trail.point, times)])
+        return out
+
+    @cached_property
+    def _rings(self) -> list[int]:
+        """Of each so many that the tube strays from the point's way by no more than a part of its own radius.
+
+        Between two moments h apart a chord strays by a h^2 / 8 from a way with acceleration a.
+        """
+        out = []
+        for trail in self.trails:
+            point = self.poses.motion.points[trail.point]
+            bend = float(np.quantile(np.hypot(point.ax, point.ay), BENT))
+            stray = STRAY * trail.radius * self.size
+            length = trail.tail * (self.clock.end - self.clock.start) / self.clock.turns
+            wanted = math.ceil(length * math.sqrt(bend / (8 * stray)))
+            out.append(min(max(RINGS, wanted), MOST_RINGS))
+        return out

@@ -1,0 +1,99 @@
+"""A contact sheet: twelve frames of the film, from the start of the motion to its end, on one picture."""
+
+from __future__ import annotations
+
+import io
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from render.film.inputs import named, stage_key
+from render.presets import Preset
+from shared.stage.console import say
+from shared.stage.files import write_bytes
+from shared.stage.paths import Out
+from shared.stage.stages import Stage
+
+if TYPE_CHECKING:
+    from render.film.film import Film
+
+COLUMNS, ROWS = 4, 3
+WIDTH = 480
+"""Pixels of a frame on the sheet, if the preset is not smaller."""
+GAP = 10
+HEAD = 46
+PAPER, INK = (250, 250, 251), (32, 37, 43)
+
+
+def run(name: str, preset: Preset, show: str = "") -> None:
+    """out/<mechanism>/contact.png; frames that the film has are not rendered again."""
+    out = Out(name)
+    target = named(out.contact, show)
+    stage = Stage(out, target.stem, stage_key(out, preset, show), [target])
+    if stage.is_fresh():
+        say("contact", f"{out.name}: {preset}: nothing to do")
+        return
+    from render.film.inputs import read_film
+    from render.frames import frames
+    from render.frames.store import FrameStore
+
+    film = read_film(out, show)
+    chosen = frames_of(film)
+    pictures, store = frames.Pictures(film, preset), FrameStore(out.frames(preset.name))
+    with store.locked():
+        frames.render(pictures, store, sorted(set(chosen)), "for the contact sheet", frames.Tally())
+        found = [frames.picture_of(pictures, store, frame) for frame in chosen]
+        write_bytes(target, sheet(found, _captions(film, chosen), out.name.replace("_", " ").replace("-", ": ")))
+    stage.done()
+    say("contact", f"{out.name}: {target}")
+
+
+def frames_of(film: Film) -> list[int]:
+    """Twelve frames in equal steps: of a motion that repeats over one period, of another until it ends.
+
+    Where a period has several turns of the drivers, each step is a little longer, so that no turn is shown as another.
+    """
+    count, number = film.clock.moving, COLUMNS * ROWS
+    if film.clock.repeats:
+        count = count * (number + 1) / number if film.clock.turns > 1 else count
+        return [int(frame) for frame in np.arange(number) * count / number]
+    return [int(frame) for frame in np.linspace(0, count, number).round()]
+
+
+def sheet(pictures: list[Path], captions: list[str], title: str) -> bytes:
+    """A PNG of frames in rows, each with its words at the lower left."""
+    from PIL import Image, ImageDraw, ImageFont
+
+    with Image.open(pictures[0]) as first:
+        wide = min(WIDTH, first.width)
+        high = round(wide * first.height / first.width)
+    size = (COLUMNS * (wide + GAP) + GAP, HEAD + ROWS * (high + GAP))
+    page = Image.new("RGB", size, PAPER)
+    draw = ImageDraw.Draw(page)
+    font, large = (ImageFont.load_default(points) for points in (max(9, wide // 34), 20))
+    draw.text((GAP + 4, HEAD // 2), title[:1].upper() + title[1:], fill=INK, font=large, anchor="lm")
+    for k, (path, words) in enumerate(zip(pictures, captions, strict=True)):
+        left, top = GAP + k % COLUMNS * (wide + GAP), HEAD + k // COLUMNS * (high + GAP)
+        with Image.open(path) as picture:
+            page.paste(picture.convert("RGB").resize((wide, high), Image.Resampling.LANCZOS), (left, top))
+        _caption(draw, (left + wide // 40, top + high - wide // 40), words, font)
+    return _png(page)
+
+
+def _captions(film: Film, frames: list[int]) -> list[str]:
+    """Times in as many decimals as tell the frames apart."""
+    times = [film.clock.moment(frame).time for frame in frames]
+    decimals = max(0, math.ceil(1 - math.log10(max(max(times) - min(times), 1e-9) / len(times))))
+    return [f"{time:.{min(decimals, 9)}f} s" for time in times]
+
+
+def _caption(draw: Any, at: tuple[int, int], words: str, font: Any) -> None:
+    draw.text(at, words, fill=PAPER, font=font, anchor="ld", stroke_width=1, stroke_fill=INK)
+
+
+def _png(page: Any) -> bytes:
+    buffer = io.BytesIO()
+    page.save(buffer, format="PNG", optimize=True)
+    return buffer.getvalue()

@@ -1,0 +1,210 @@
+"""Renders the pictures a film still lacks. What was seen before is not rendered again."""
+
+from __future__ import annotations
+
+import math
+import shutil
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from render.blender.child import blender
+from render.blender.job import Job, Picture
+from render.film.film import Film
+from render.film.inputs import blender_version, read_film, stage_key
+from render.film.scene import State
+from render.frames.keys import frame_key, scene_key
+from render.frames.store import FrameIndex, FrameStore, Timing
+from render.presets import Preset
+from shared.stage import jsonfile
+from shared.stage.console import duration, progress, say, warn
+from shared.stage.errors import UserError
+from shared.stage.paths import Out, out_root
+from shared.stage.stages import Stage
+
+FEWEST_SAMPLES = 500_000
+"""In one picture, for its time to say something about another size."""
+ATTEMPTS = 3
+RESERVE = 200e6
+"""Bytes left free on the disk beside the frames."""
+
+
+def run(name: str, preset: Preset, show: str = "") -> None:
+    """The stage: every frame of the film in the store, and frames.json."""
+    started = time.perf_counter()
+    out = Out(name)
+    store = FrameStore(out.frames(preset.name))
+    stage = Stage(out, f"frames-{preset.name}", stage_key(out, preset, show), [store.index])
+    if stage.is_fresh():
+        say("frames", f"{out.name}: {preset}: nothing to do")
+        return
+    film = read_film(out, show)
+    pictures = Pictures(film, preset)
+    frames = range(film.clock.frames)
+    say("frames", f"{out.name}: {film.clock.said()}")
+    with store.locked():
+        tally = Tally()
+        try:
+            for _ in range(ATTEMPTS):
+                render(pictures, store, frames, f"{film.clock.total} frames in the film", tally)
+                if all(store.find(pictures.key(frame)) for frame in frames):
+                    break  # nothing was damaged while the others were rendered
+        finally:
+            tally.write(store, preset, time.perf_counter() - started)
+        found = [picture_of(pictures, store, frame) for frame in frames]
+        index = FrameIndex(
+            mechanism=out.name,
+            preset=preset.name,
+            width=preset.width,
+            height=preset.height,
+            fps=film.shot.fps,
+            frames=[path.name for path in found] * film.clock.showings,
+        )
+        jsonfile.write(store.index, index)
+        store.prune(set(found), spare=len(set(found)))
+    stage.outputs.extend(sorted(set(found)))
+    stage.done()
+
+
+def picture_of(pictures: Pictures, store: FrameStore, frame: int) -> Path:
+    """The file of a rendered frame; raises UserError if something removed or changed it meanwhile."""
+    path = store.find(pictures.key(frame))
+    if path is None:
+        raise UserError(
+            f"{pictures.film.motion.mechanism}: the picture of frame {frame} went from {store.folder} while the others "
+            "were rendered; run the same command again"
+        )
+    return path
+
+
+@dataclass
+class Tally:
+    """What a run made, and in how many seconds of Blender's own."""
+
+    device: str = ""
+    rendered: int = 0
+    cycles: float = 0.0
+
+    def write(self, store: FrameStore, preset: Preset, wall: float) -> None:
+        """Keep it in timing.json, unless this was but the rest of a longer run: Blender's start would dominate it."""
+        longer = store.read_timing()
+        if not self.rendered or (longer is not None and self.rendered < longer.rendered / 4):
+            return
+        timing = Timing(
+            preset=preset.name,
+            device=self.device,
+            work=preset.work,
+            rendered=self.rendered,
+            wall=round(wall, 3),
+            cycles=round(self.cycles, 3),
+            overhead=round(wall / max(self.cycles, 1e-9), 4),
+        )
+        try:
+            jsonfile.write(store.timing, timing)
+        except UserError as error:  # the next forecast is all that it costs
+            warn("frames", str(error))
+
+
+@dataclass
+class Pictures:
+    """Frames of a film as keys and states, at one preset."""
+
+    film: Film
+    preset: Preset
+    _states: dict[int, State] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.scene = scene_key(self.film.scene, self.preset, blender_version())
+
+    def state(self, frame: int) -> State:
+        """The state a frame shows."""
+        if frame not in self._states:
+            self._states[frame] = self.film.state(frame)
+        return self._states[frame]
+
+    def key(self, frame: int) -> str:
+        """The name of the picture a frame shows."""
+        around = self.film.clock.around(frame) if self.preset.motion_blur else (frame,)
+        return frame_key(self.scene, [self.state(f) for f in around])
+
+    def job(self, frames: Sequence[int], store: FrameStore) -> Job:
+        """The work order for these frames; a blurred frame has its neighbours beside it on the timeline."""
+        states: list[State] = []
+        pictures = []
+        for frame in frames:
+            around = [self.state(f) for f in self.film.clock.around(frame)] if self.preset.motion_blur else []
+            at = len(states) + (1 if around else 0)
+            states += around or [self.state(frame)]
+            pictures.append(
+                Picture(state=at, folder=str(store.folder.resolve()), key=self.key(frame), name=f"frame {frame}")
+            )
+        return Job(
+            scene=self.film.scene,
+            states=states,
+            pictures=pictures,
+            width=self.preset.width,
+            height=self.preset.height,
+            samples=self.preset.samples,
+            motion_blur=self.preset.motion_blur,
+        )
+
+
+def render(pictures: Pictures, store: FrameStore, frames: Sequence[int], what: str, tally: Tally) -> None:
+    """Render those of ``frames`` that the store lacks, with a forecast before and progress meanwhile.
+
+    Interrupted, it leaves every finished picture, counted in ``tally``. Raises UserError if the disk has
+    no room for them.
+    """
+    preset, name = pictures.preset, pictures.film.motion.mechanism
+    by_key = {pictures.key(frame): frame for frame in reversed(frames)}
+    missing = sorted(frame for key, frame in by_key.items() if store.find(key) is None)
+    say("frames", f"{name}: {preset}: {len(missing)} of {len(by_key)} pictures to render, {what}")
+    if not missing:
+        return
+    _refuse_full_disk(name, preset, store, len(missing))
+    known = _forecast(preset, store)
+    if known is not None:
+        each, source = known
+        say("frames", f"{name}: forecast {duration(each * len(missing))} at {duration(each)} a frame, {source}")
+    each = known[0] if known else 0.0
+    with blender(pictures.job(missing, store), each) as answers, progress(f"{name} {preset.name}", len(missing)) as bar:
+        for answer in answers:
+            if answer.device:
+                tally.device = answer.device
+                say("frames", f"{name}: device: {answer.device}")
+                continue
+            tally.cycles += answer.cycles
+            tally.rendered += 1
+            if tally.rendered == 1 and known is None and len(missing) > 1:
+                whole = duration(answer.cycles * (len(missing) - 1))
+                say("frames", f"{name}: forecast {whole} more, from {answer.cycles:.1f} s for the first frame")
+            bar.advance()
+
+
+def _forecast(preset: Preset, store: FrameStore) -> tuple[float, str] | None:
+    """Seconds a picture, and where the number is from; None if nothing comparable was rendered here yet.
+
+    The last run of this preset counts, else the run nearest in size, scaled by samples. Below a certain size it is
+    not the samples that take the time, so postage stamps do not count.
+    """
+    own = store.read_timing()
+    if own is not None:
+        return own.cycles / own.rendered, "as measured before"
+    others = [FrameStore(path.parent).read_timing() for path in sorted(out_root().glob("*/frames/*/timing.json"))]
+    known = [timing for timing in others if timing is not None and timing.work >= FEWEST_SAMPLES]
+    if not known:
+        return None
+    nearest = min(known, key=lambda timing: abs(math.log(timing.work / preset.work)))
+    return nearest.cycles / nearest.rendered * preset.work / nearest.work, f"scaled from {nearest.preset}"
+
+
+def _refuse_full_disk(name: str, preset: Preset, store: FrameStore, count: int) -> None:
+    """A PNG of the studio takes about 1.3 bytes a pixel; three at worst."""
+    needed = 3.0 * preset.width * preset.height * count + RESERVE
+    free = shutil.disk_usage(store.folder).free
+    if free < needed:
+        raise UserError(
+            f"{name}: {count} pictures of {preset.name} may need {needed / 1e9:.1f} GB, {store.folder} has "
+            f"{free / 1e9:.1f} GB free; free some space, take a smaller PRESET or set MBSD_OUT to another disk"
+        )

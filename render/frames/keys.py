@@ -1,0 +1,56 @@
+"""The name of a picture is a hash of what it shows, so no picture is rendered twice and no wrong one is kept."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from render.film.framing import SENSOR
+from render.film.scene import Scene, State
+from render.film.solids import MILLIMETRE
+from render.presets import Preset
+from shared.stage.files import sources_hash
+
+DIGITS = 9
+"""Poses count to a nanometre and a nanoradian."""
+BLENDER = Path(__file__).parents[1] / "blender"
+BLENDER_SOURCES = ("job.py", "scene", "worker")
+"""What runs in Blender; the other files of the room start it, and decide nothing that is seen."""
+
+
+def scene_key(scene: Scene, preset: Preset, blender: str) -> str:
+    """Everything that all frames have in common; STL files count by content, not by place.
+
+    ``blender`` is the version of bpy. Of other rooms than its own, Blender's side takes these two numbers alone.
+    """
+    plain = _rounded(msgspec.to_builtins(scene))
+    for piece in plain["pieces"]:
+        del piece["stl"]
+    shown = {key: part for key, part in plain.items() if key not in ("mechanism", "fps")}
+    picture = [preset.width, preset.height, preset.samples, preset.motion_blur]
+    return _hash(
+        [shown, picture, sources_hash(*(BLENDER / name for name in BLENDER_SOURCES)), blender, SENSOR, MILLIMETRE]
+    )
+
+
+def frame_key(scene: str, states: Sequence[State]) -> str:
+    """One frame of the scene with that key: its state alone, or with both neighbours' where the shutter blurs them."""
+    return _hash([scene, [_rounded(msgspec.to_builtins(state)) for state in states]])[:32]
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, float):
+        return round(value, DIGITS) + 0.0  # -0.0 and 0.0 are one place
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_rounded(item) for item in value]
+    return value
+
+
+def _hash(value: Any) -> str:
+    return hashlib.sha256(msgspec.json.encode(value, order="sorted")).hexdigest()

@@ -1,0 +1,58 @@
+"""One frame of the film as a picture: any frame as a still, the shot's best moment as the poster."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from render.film.inputs import named, stage_key
+from render.presets import Preset
+from shared.stage.console import say
+from shared.stage.errors import UserError
+from shared.stage.files import write_bytes
+from shared.stage.paths import Out
+from shared.stage.stages import Stage
+
+
+def still(name: str, preset: Preset, frame: int, show: str = "") -> None:
+    """out/<mechanism>/stills/<preset>-<frame>.png; raises UserError if the film has no such frame."""
+    out = Out(name)
+    target = named(out.stills / f"{preset.name}-{frame:04d}.png", show)
+    stage = Stage(out, f"still-{target.stem}", stage_key(out, preset, frame, show), [target])
+    _make(out, preset, frame, target, stage, show)
+
+
+def poster(name: str, preset: Preset, show: str = "") -> None:
+    """out/<mechanism>/poster.png: the moment that ``shot.poster`` names."""
+    out = Out(name)
+    target = named(out.poster, show)
+    stage = Stage(out, target.stem, stage_key(out, preset, show), [target])
+    _make(out, preset, None, target, stage, show)
+
+
+def _make(out: Out, preset: Preset, frame: int | None, target: Path, stage: Stage, show: str) -> None:
+    """Through the store of frames: a still that the film has shows at once, and the film finds the still."""
+    word = "poster" if frame is None else "still"
+    if stage.is_fresh():
+        say(word, f"{out.name}: {preset}: nothing to do")
+        return
+    from render.film.inputs import read_film
+    from render.frames import frames
+    from render.frames.store import FrameStore
+
+    film = read_film(out, show)
+    clock = film.clock
+    if frame is None:
+        frame = clock.frame_at(film.shot.poster)
+    elif not 0 <= frame < clock.total:
+        raise UserError(
+            f"{out.name}: there is no frame {frame}; the film has frames 0 to {clock.total - 1} "
+            f"(the motion {clock.showings} times, {clock.frames} frames each)"
+        )
+    frame %= clock.frames
+    pictures = frames.Pictures(film, preset)
+    store = FrameStore(out.frames(preset.name))
+    with store.locked():
+        frames.render(pictures, store, [frame], f"frame {frame}", frames.Tally())
+        write_bytes(target, frames.picture_of(pictures, store, frame).read_bytes())
+    stage.done()
+    say(word, f"{out.name}: {target}")

@@ -1,0 +1,125 @@
+"""Energy and power: of the mechanism, of its drivers, of forces that give or take, and what impacts take at once."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.transforms import blended_transform_factory
+
+from render.plots.horizon import Horizon, horizon
+from render.plots.magnitudes import centre_of_mass, energy_floor, power_floor, without_noise
+from render.plots.pages.rates import draw
+from render.plots.style import INK, PALETTE, QUIET, page, rows
+from shared.contract import EventMark, Motion
+
+BALANCED = 2e-3
+"""The elastic energy is known at the samples alone; its rate is this good, relative to the largest power."""
+MARKED = 12
+"""Impacts that are marked with what they take; of more, those that take most."""
+
+
+def energy(motion: Motion) -> Figure:
+    """Energies (J) from their start, and the power balance (W), with what impacts take at once (J)."""
+    over = horizon(motion)
+    floor = energy_floor(motion)
+    kinetic = without_noise(np.asarray(motion.energy.kinetic), floor)
+    gained = without_noise(np.asarray(motion.energy.potential) - motion.energy.potential[0], floor)
+    given, rate = powers(motion)
+    impacts = sorted(_impacts(motion, floor), key=lambda event: event.energy)
+    figure = page(motion.mechanism, "energy and power", statement(motion))
+    upper, lower = rows(figure, 2)
+    lines = [("kinetic", kinetic, PALETTE[0]), ("Δ potential", gained, PALETTE[1])]
+    draw(upper, over, "energy (J)", [*lines, ("total", kinetic + gained, INK)], floor=floor)
+    lines = [("drivers", given, PALETTE[2])] if motion.drivers else []
+    others = rate - given
+    tolerance = _tolerance(motion, given, rate)
+    if np.abs(others).max() > tolerance:
+        lines += [("other forces", np.where(np.abs(others) > tolerance, others, 0.0), PALETTE[3])]
+    draw(lower, over, "power (W)", lines or [("none", given, PALETTE[2])], floor=power_floor(motion))
+    if motion.drivers:
+        lower.lines[0].set(linewidth=5.0, alpha=0.35)
+    lower.plot(over.values, rate, color=INK, linewidth=1.2, linestyle=(0, (5, 3)), zorder=4)
+    said = "dashed: d(kinetic + potential)/dt" + ("     wide: power of the drivers" if motion.drivers else "")
+    lower.text(0.0, 1.02, said, transform=lower.transAxes, color=QUIET, fontsize=9, va="bottom")
+    _mark(upper, over, motion, impacts[:MARKED])
+    over.dress(lower)
+    return figure
+
+
+def powers(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+    """(T,) power of all drivers, and the rate of kinetic and potential energy (W), rounding taken for zero.
+
+    Rates of the kinetic energy and of weights follow from velocities and accelerations, so they are right at either
+    side of an impact; that of elastic energy is the slope between samples, never across an event.
+    """
+    time = np.asarray(motion.time)
+    given = np.sum([driver.power for driver in motion.drivers.values()], axis=0) if motion.drivers else 0.0 * time
+    rate, weight = 0.0 * time, 0.0 * time
+    gx, gy = motion.gravity
+    for body in motion.bodies.values():
+        at = centre_of_mass(body)
+        rate = rate + body.mass * (at.vx * (at.ax - gx) + at.vy * (at.ay - gy))
+        rate = rate + body.inertia * np.multiply(body.omega, body.alpha)
+        weight = weight - body.mass * (gx * at.x + gy * at.y)
+    elastic = np.asarray(motion.energy.potential) - weight
+    if np.ptp(elastic) > energy_floor(motion):
+        rate = rate + _slope(time, elastic)
+    floor = power_floor(motion)
+    return without_noise(given, floor), without_noise(rate, floor)
+
+
+def statement(motion: Motion) -> str:
+    """What is true of this motion's balance, in a line."""
+    given, rate = powers(motion)
+    others, floor = rate - given, energy_floor(motion)
+    largest = float(np.abs(others).max())
+    if largest > _tolerance(motion, given, rate):
+        givers = "drivers and other forces" if motion.drivers else "forces without potential"
+        text = f"power of {givers} (friction, dampers, loads; up to {largest:.3g} W) is the rate of the energy"
+    elif motion.drivers:
+        text = "the drivers' power is the rate of the energy"
+    else:
+        text = "nothing gives or takes power: the energy stays"
+    impacts = _impacts(motion, floor)
+    if not impacts:
+        return text
+    taken = -sum(event.energy for event in impacts)
+    count = f"{len(impacts)} impacts that take" if len(impacts) > 1 else "an impact that takes"
+    return f"{text}, but for {count} {taken:.3g} J at once"
+
+
+def _tolerance(motion: Motion, given: np.ndarray, rate: np.ndarray) -> float:
+    """Below this the difference of the two powers (W) says nothing."""
+    largest = max(float(np.abs(given).max()), float(np.abs(rate).max()))
+    return max(BALANCED * largest, 10 * power_floor(motion), 10 * motion.diagnostics.power_residual)
+
+
+def _impacts(motion: Motion, floor: float) -> list[EventMark]:
+    """What changed the kinetic energy at once."""
+    return [event for event in motion.events if abs(event.energy) > floor]
+
+
+def _slope(time: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """(T,) derivative, piece by piece between samples that share a time."""
+    out = np.zeros(len(time))
+    for piece in np.split(np.arange(len(time)), np.flatnonzero(np.diff(time) <= 0) + 1):
+        if len(piece) > 1:
+            out[piece] = np.gradient(values[piece], time[piece], edge_order=2 if len(piece) > 2 else 1)
+    return out
+
+
+def _mark(axes: Axes, over: Horizon, motion: Motion, impacts: list[EventMark]) -> None:
+    """A line at each impact with the energy it takes; where they crowd, only the largest get their numbers."""
+    placed: list[float] = []
+    span = float(over.values[-1] - over.values[0])
+    beside = blended_transform_factory(axes.transData, axes.transAxes)
+    for event in impacts:
+        x = float(np.interp(event.time, motion.time, over.values))
+        axes.axvline(x, color=QUIET, linewidth=0.9, linestyle=(0, (1, 2)), zorder=1.5)
+        if all(abs(x - other) > 0.07 * span for other in placed):
+            placed.append(x)
+            axes.text(
+                x, 1.015, f"{event.energy:+.3g} J".replace("-", "\N{MINUS SIGN}"), transform=beside, color=QUIET,
+                fontsize=9, ha="center", va="bottom",
+            )  # fmt: skip

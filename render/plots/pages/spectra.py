@@ -1,0 +1,120 @@
+"""The page of a spectrum: what was measured over a turn, and the amplitudes of its harmonics as stems."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MultipleLocator
+
+from render.plots.horizon import horizon
+from render.plots.pages.rates import draw
+from render.plots.quantities import Quantity, quantity
+from render.plots.spectrum import Spectrum, spectrum
+from render.plots.style import INK, PALETTE, QUIET, page
+from shared.contract import Motion
+
+SEEN = 1e-3
+"""Of the largest amplitude: the highest order that reaches it is the last one shown."""
+FEWEST, MOST = 6, 24
+"""Orders on a page."""
+NUMBERED = 0.02
+"""Of the largest amplitude: smaller ones get no number."""
+NOTHING = 1e-6
+"""Of the largest amplitude: no stem."""
+ROOMY = 12
+"""Orders at most for a number at each stem."""
+
+
+def spectrum_page(motion: Motion, name: str) -> Figure:
+    """Time history and amplitudes of one quantity of :mod:`quantities`."""
+    what = quantity(motion, name)
+    found = spectrum(motion, what.rows)
+    orders = f"; orders of the {found.order_of}" if found.harmonic else ""
+    figure = page(motion.mechanism, f"spectrum of {_article(name)}{name}", f"{what.says}; over {found.over}{orders}")
+    over = horizon(motion)
+    upper, lower = figure.subplots(2, 1)
+    figure.subplots_adjust(left=0.095, right=0.885, top=0.855, bottom=0.085, hspace=0.34)
+    figure.align_ylabels([upper, lower])
+    inks = dict(zip(what.components, PALETTE if len(what.components) > 1 else (INK,), strict=False))
+    label = f"{what.symbol} ({what.unit})"
+    draw(
+        upper,
+        over,
+        label,
+        [(text, values, inks[text]) for text, values in zip(what.components, what.rows.T, strict=True)],
+    )
+    over.dress(upper)
+    return _amplitudes(figure, lower, what, found, inks)
+
+
+def _amplitudes(figure: Figure, axes: Axes, what: Quantity, found: Spectrum, inks: Mapping[str, str]) -> Figure:
+    axes.set_ylabel(f"amplitude ({what.unit})")
+    if found.harmonic:
+        stems(axes, found, found.amplitudes, list(inks.values()), list(inks))
+        axes.set_xlabel(f"order of the {found.order_of} (order 1 is {found.base:.4g} Hz)")
+    else:
+        for column, (text, ink) in enumerate(inks.items()):
+            axes.plot(found.at[1:], found.amplitudes[1:, column], color=ink, label=text)
+        last = shown_orders(found)
+        axes.set_xlim(0.0, found.at[min(last, len(found.at) - 1)])
+        axes.set_ylim(bottom=0.0)
+        axes.set_xlabel(f"frequency (Hz); resolved to {2 * found.base:.2g} Hz")
+    return figure
+
+
+def stems(axes: Axes, found: Spectrum, amplitudes: np.ndarray, inks: list[str], names: list[str]) -> None:
+    """A stem for each order above 0 and each column (K, k) of ``amplitudes``, side by side, with numbers on top."""
+    last = shown_orders(found)
+    at, shown = found.at[1 : last + 1], amplitudes[1 : last + 1]
+    step = float(at[0])
+    columns = shown.shape[1]
+    largest = float(shown.max(initial=0.0)) or 1.0
+    for column in range(columns):
+        aside = step * 0.3 * (column - (columns - 1) / 2) if columns > 1 else 0.0
+        ink, heights = inks[column], shown[:, column]
+        there = heights > NOTHING * largest
+        axes.vlines((at + aside)[there], 0.0, heights[there], color=ink, linewidth=3.0, label=names[column], zorder=3)
+        axes.plot((at + aside)[there], heights[there], "o", color=ink, markersize=5.5, zorder=4)
+        for x, height in zip(at + aside, heights, strict=True):
+            if height > NUMBERED * largest and len(at) <= ROOMY:
+                axes.annotate(
+                    f"{height:.3g}", (float(x), float(height)), (0, 5), textcoords="offset points", ha="center",
+                    fontsize=9, color=ink,
+                )  # fmt: skip
+    axes.set_xlim(at[0] - 0.7 * step, at[-1] + 0.7 * step)
+    axes.set_ylim(0.0, 1.16 * largest)
+    axes.xaxis.set_major_locator(MultipleLocator(1.0 if at[-1] <= ROOMY else 2.0))
+    axes.grid(visible=False, axis="x")
+    axes.locator_params(axis="y", nbins=5)
+    if columns > 1:
+        _legend(axes, inks, names)
+    if not shown.any():
+        axes.text(
+            0.5, 0.5, "nothing but rounding", transform=axes.transAxes, ha="center", va="center", color=QUIET,
+        )  # fmt: skip
+
+
+def _legend(axes: Axes, inks: list[str], names: list[str]) -> None:
+    for row, (ink, name) in enumerate(zip(inks, names, strict=True)):
+        axes.text(
+            0.985, 0.93 - 0.1 * row, name.replace("_", " "), transform=axes.transAxes, ha="right", va="top", color=ink,
+            fontsize=9.5,
+        )  # fmt: skip
+
+
+def shown_orders(found: Spectrum) -> int:
+    """The highest row that is shown."""
+    sizes = found.amplitudes[1:].max(axis=tuple(range(1, found.amplitudes.ndim)))
+    seen = np.flatnonzero(sizes >= SEEN * sizes.max(initial=0.0)) if sizes.max(initial=0.0) > 0 else np.array([])
+    last = int(seen[-1]) + 1 if len(seen) else 1
+    if not found.harmonic:
+        return min(max(int(1.1 * last), 8), len(found.at) - 1)
+    least, most = (int(np.searchsorted(found.at, n)) for n in (FEWEST, MOST))
+    return min(max(last, least), most, len(found.at) - 1)
+
+
+def _article(name: str) -> str:
+    return "the " if name.startswith("shaking") else ""

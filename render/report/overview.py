@@ -1,0 +1,77 @@
+"""The table at the end of ``make run-all``: ``python -m render overview`` reads who was run from its standard input."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+
+import numpy as np
+
+from render.report.facts import STILL, fastest
+from render.report.loads import SLIDES
+from render.report.written import written
+from shared.contract import Motion, read_motion, read_parts
+from shared.contract.clearance import read_clearance
+from shared.stage.console import duration
+from shared.stage.errors import UserError
+from shared.stage.paths import Out
+
+WIDTH = 120
+"""Of the table where no terminal has one (characters)."""
+COLUMNS = ("mechanism", "time", "pieces", "peak speed", "peak effort", "least gap", "outcome")
+
+
+def run(lines: Iterable[str] = sys.stdin) -> None:
+    """Print the table; each line has a mechanism's name, the seconds its run took, and ``done`` or ``failed``."""
+    from rich.box import SIMPLE
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console(width=None if sys.stdout.isatty() else WIDTH)
+    table = Table(box=SIMPLE)
+    for column in COLUMNS:
+        table.add_column(column, justify="right" if column in ("time", "pieces") else "left", overflow="fold")
+    for row in map(row_of, lines):
+        table.add_row(*row, style="red" if row[-1] == "failed" else "")
+    console.print(table)
+
+
+def row_of(line: str) -> list[str]:
+    """The words of a row. What a failed run left is not told, because it may be of an earlier one."""
+    name, seconds, outcome = line.split()
+    found = _numbers(Out(name)) if outcome == "done" else [""] * 4
+    return [name, duration(float(seconds)), *found, outcome]
+
+
+def _numbers(out: Out) -> list[str]:
+    """Pieces, peak speed, peak effort, least gap; empty where a file is missing or cannot be read."""
+    try:
+        motion = read_motion(out.motion, out.name)
+        parts = read_parts(out.parts, out.name)
+        clearance = read_clearance(out.clearance)
+    except (UserError, OSError):
+        return [""] * 4
+    name, speed = fastest(motion)
+    gap = min((pair.gap for pair in clearance.pairs), default=None)
+    return [
+        str(sum(len(solids.pieces) for solids in parts.bodies.values())),
+        f"{written(speed, 'm/s')} ({name})" if speed > STILL else "",
+        _effort(motion),
+        "" if gap is None else written(gap, "m"),
+    ]
+
+
+def _effort(motion: Motion) -> str:
+    """The largest force or torque of a driver; of forces where nothing is driven."""
+    found = {name: (driver.effort, driver.kind in SLIDES) for name, driver in motion.drivers.items()}
+    if not found:
+        found = {
+            name: (force.effort, force.measures != "angle")
+            for name, force in motion.forces.items()
+            if force.effort is not None
+        }
+    if not found:
+        return ""
+    name = max(found, key=lambda one: float(np.abs(found[one][0]).max()))
+    effort, pushes = found[name]
+    return f"{written(float(np.abs(effort).max()), 'N' if pushes else 'N m')} ({name})"

@@ -1,0 +1,112 @@
+"""The files that cross a process: data.json (the motion) and parts.json (the solids). shot.json is in shot.py.
+
+What is in them: contract_motion.py and contract_loads.py, contract_parts.py, contract_base.py.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from shared.contract import consistency
+from shared.contract.base import UNITS, Provenance
+from shared.contract.loads import Action, ContactMotion, ForceMotion, Shape, State
+from shared.contract.motion import (
+    CONVENTIONS_OF,
+    BodyMotion,
+    Diagnostics,
+    DriverMotion,
+    Energy,
+    EventMark,
+    JointMotion,
+    Motion,
+    PointMotion,
+)
+from shared.contract.parts import PARTS_UNITS, BodyParts, End, Held, Mass, Parts, Piece, Rolling
+from shared.stage import jsonfile
+from shared.stage.errors import UserError
+
+__all__ = [
+    "CONVENTIONS_OF",
+    "PARTS_UNITS",
+    "UNITS",
+    "Action",
+    "BodyMotion",
+    "BodyParts",
+    "ContactMotion",
+    "Diagnostics",
+    "DriverMotion",
+    "End",
+    "Energy",
+    "EventMark",
+    "ForceMotion",
+    "Held",
+    "JointMotion",
+    "Mass",
+    "Motion",
+    "Parts",
+    "Piece",
+    "PointMotion",
+    "Provenance",
+    "Rolling",
+    "Shape",
+    "State",
+    "read_motion",
+    "read_parts",
+    "write_motion",
+    "write_parts",
+]
+
+
+def read_motion(path: Path, mechanism: str | None = None) -> Motion:
+    """Read data.json; raises UserError if it does not hold together, or if it is of another ``mechanism``."""
+    motion = jsonfile.read(path, Motion)
+    _refuse_inconsistent(motion, path)
+    _refuse_other_mechanism(motion.mechanism, mechanism, path)
+    return motion
+
+
+def write_motion(path: Path, motion: Motion) -> None:
+    """Check and write data.json, whole."""
+    _refuse_inconsistent(motion, path)
+    jsonfile.write(path, motion)
+
+
+def read_parts(path: Path, mechanism: str | None = None) -> Parts:
+    """Read parts.json and see that its STL files stand beside it; raises UserError as :func:`read_motion`."""
+    parts = jsonfile.read(path, Parts)
+    _refuse_inconsistent(parts, path)
+    _refuse_other_mechanism(parts.mechanism, mechanism, path)
+    for body, solids in parts.bodies.items():
+        for name, piece in solids.pieces.items():
+            if not (path.parent / piece.stl).is_file():
+                raise UserError(
+                    f"{path}: bodies.{body}.pieces.{name}.stl names {piece.stl}, which is missing; "
+                    f"run make parts-{parts.mechanism.replace('_', '-')}"
+                )
+    return parts
+
+
+def write_parts(path: Path, parts: Parts) -> None:
+    """Check and write parts.json, whole."""
+    _refuse_inconsistent(parts, path)
+    jsonfile.write(path, parts)
+
+
+def _refuse_other_mechanism(found: str, expected: str | None, path: Path) -> None:
+    if expected is not None and found != expected:
+        raise UserError(
+            f"{path} is of the mechanism '{found}', but stands among the results of '{expected}'; make it again"
+        )
+
+
+def _refuse_inconsistent(document: Motion | Parts, path: Path) -> None:
+    """Raise UserError for what the types cannot say."""
+    if isinstance(document, Motion):
+        consistency.refuse_other_words("units", document.units, UNITS, path)
+        consistency.refuse_other_words(
+            "conventions", document.conventions, CONVENTIONS_OF[document.schema_version], path
+        )
+        consistency.refuse_inconsistent_motion(document, path)
+    else:
+        consistency.refuse_other_words("units", document.units, PARTS_UNITS, path)
+        consistency.refuse_inconsistent_parts(document, path)

@@ -1,0 +1,207 @@
+"""What the types of a file cannot say: its units, lengths, times, names and files fit together.
+
+Each function raises UserError naming the file and the field. ``path`` is the file's, for the message.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from shared.stage.errors import UserError
+
+if TYPE_CHECKING:
+    from shared.contract import Motion, Parts
+
+SPAN_TOLERANCE = 1e-9
+"""Largest difference between the period and the time spanned, relative."""
+RETURN_TOLERANCE = 1e-5
+"""Largest difference between the poses at both ends of a period (m or rad, relative above 1)."""
+_NO_SERIES = {"redundant", "events", "start_changes", "shape"}
+"""Fields with lists that are not of time."""
+_UNFIT = re.compile(r"[/\\\x00-\x1f\x7f]")
+"""What the name of a body, joint, driver or point cannot hold, because files are named after it."""
+
+
+def refuse_other_words(field: str, found: Mapping[str, str], expected: Mapping[str, str], path: Path | str) -> None:
+    """Refuse units (or conventions) unlike those that this program reads."""
+    for key in sorted(expected.keys() | found.keys()):
+        if found.get(key) != expected.get(key):
+            said = repr(found[key]) if key in found else "missing"
+            reads = repr(expected[key]) if key in expected else "nothing of that name"
+            raise UserError(f"{path}: {field}.{key} is {said}, this program reads {reads}; make the file again")
+
+
+def refuse_inconsistent_motion(motion: Motion, path: Path | str) -> None:
+    """Refuse ragged series, times that do not rise, a period that the times do not span, and unknown bodies."""
+    _refuse_ragged(motion, path)
+    _refuse_unfit_names(
+        {
+            "bodies": motion.bodies,
+            "joints": motion.joints,
+            "drivers": motion.drivers,
+            "points": motion.points,
+            "forces": motion.forces,
+            "contacts": motion.contacts,
+        },
+        path,
+    )
+    known = {"ground", *motion.bodies}
+    if "ground" in motion.bodies:
+        raise UserError(f"{path}: bodies has 'ground', which does not move; leave it out")
+    used = [(f"joints.{name}.bodies", body) for name, joint in motion.joints.items() for body in joint.bodies]
+    used += [(f"points.{name}.body", point.body) for name, point in motion.points.items()]
+    used += _bodies_of_loads(motion)
+    for field, body in used:
+        if body not in known:
+            raise UserError(f"{path}: {field} names '{body}', which is no body; there is: {', '.join(sorted(known))}")
+    _refuse_wrong_period(motion, path)
+    _refuse_wrong_events(motion, path)
+    if motion.schema_version == 1:
+        newer = [field for field in ("forces", "contacts", "start_changes") if getattr(motion, field)]
+        if newer:
+            raise UserError(f"{path}: schema_version is 1, which has no {newer[0]}; make the file again")
+
+
+def refuse_inconsistent_parts(parts: Parts, path: Path | str) -> None:
+    """Refuse unfit names, files that are not beside parts.json by their names, heights that are upside down, bodies
+    without solids that have some, and pairs of bodies that are not there.
+    """
+    _refuse_unfit_names({"bodies": parts.bodies, "without_solids": parts.without_solids}, path)
+    for body in parts.without_solids:
+        if body in parts.bodies:
+            raise UserError(f"{path}: without_solids names '{body}', which has solids; leave it out of one of the two")
+    for index, pair in enumerate(parts.may_touch):
+        for body in pair:
+            if body not in parts.bodies or pair[0] == pair[1]:
+                raise UserError(
+                    f"{path}: may_touch[{index}] is {' and '.join(pair)}; it must name two bodies that have solids: "
+                    f"{', '.join(parts.bodies)}"
+                )
+    seen: dict[str, str] = {}
+    for body, solids in parts.bodies.items():
+        for name, piece in solids.pieces.items():
+            field = f"bodies.{body}.pieces.{name}"
+            _refuse_unfit_names({f"bodies.{body}.pieces": [name]}, path)
+            for kind, file in (("stl", piece.stl), ("step", piece.step)):
+                if not file or _UNFIT.search(file) or file in (".", ".."):
+                    raise UserError(f"{path}: {field}.{kind} is {file!r}; it must name a file beside parts.json")
+                if file in seen:
+                    raise UserError(f"{path}: {field}.{kind} names {file}, as {seen[file]} does")
+                seen[file] = f"{field}.{kind}"
+            if piece.z_range[0] > piece.z_range[1]:
+                raise UserError(f"{path}: {field}.z_range is {list(piece.z_range)}; the lowest point comes first")
+
+
+def _bodies_of_loads(motion: Motion) -> list[tuple[str, str]]:
+    """Fields of forces, contacts and shapes that name a body, with that name."""
+    used = [(f"contacts.{name}.bodies", body) for name, one in motion.contacts.items() for body in one.bodies]
+    used += [
+        (f"drivers.{name}.bodies", body) for name, driver in motion.drivers.items() for body in driver.bodies or ()
+    ]
+    for name, force in motion.forces.items():
+        used += [(f"forces.{name}.actions[{k}].body", action.body) for k, action in enumerate(force.actions)]
+    for field in ("joints", "drivers", "forces", "contacts"):
+        for name, one in getattr(motion, field).items():
+            if one.shape is not None:
+                used += [(f"{field}.{name}.shape.bodies", body) for body in one.shape.bodies]
+    return used
+
+
+def _refuse_wrong_events(motion: Motion, path: Path | str) -> None:
+    """Events come in the order of their times, within the time that is told."""
+    first, last = motion.time[0], motion.time[-1]
+    for index, event in enumerate(motion.events):
+        before = motion.events[index - 1].time if index else first
+        if not before <= event.time <= last:
+            raise UserError(
+                f"{path}: events[{index}] '{event.name}' is at {event.time:.9g} s; events come in the order of their "
+                f"times, here within {before:.9g} .. {last:.9g} s"
+            )
+
+
+def _refuse_unfit_names(names: Mapping[str, Iterable[str]], path: Path | str) -> None:
+    for field, given in names.items():
+        for name in given:
+            if not name or _UNFIT.search(name) or name.startswith("."):
+                raise UserError(
+                    f"{path}: {field} has the name {name!r}; files are named after it, so it must not be empty, begin "
+                    "with a dot, or hold slashes, backslashes or control characters"
+                )
+
+
+def _refuse_ragged(motion: Motion, path: Path | str) -> None:
+    """Every series is as long as ``time``, which has two values or more and grows, but for both rows of an event."""
+    count = len(motion.time)
+    if count < 2:
+        raise UserError(f"{path}: time has {count} values; a motion needs two or more")
+    for field, series in _series(motion, ""):
+        if len(series) != count:
+            raise UserError(f"{path}: {field} has {len(series)} values, time has {count}")
+    if motion.time[0] == motion.time[-1]:
+        raise UserError(f"{path}: time[0] and time[-1] are both {motion.time[0]}; a motion needs two different times")
+    happened = {event.time for event in motion.events}
+    for index in range(1, count):
+        before, now = motion.time[index - 1 : index + 1]
+        if now < before or (now == before and now not in happened):
+            raise UserError(
+                f"{path}: time[{index}] = {now} does not come after the value before it, and no event has that time; "
+                "only right before and after an event may two rows share a time"
+            )
+        if now == before:
+            _refuse_leap(motion, index, path)
+
+
+def _refuse_leap(motion: Motion, index: int, path: Path | str) -> None:
+    """At an event velocities may jump, poses may not."""
+    for name, body in motion.bodies.items():
+        for field, series in (("x", body.x), ("y", body.y), ("theta", body.theta)):
+            before, now = series[index - 1 : index + 1]
+            if abs(now - before) > RETURN_TOLERANCE * max(1.0, abs(before)):
+                raise UserError(
+                    f"{path}: bodies.{name}.{field} jumps from {before:.6g} to {now:.6g} at the event of "
+                    f"{motion.time[index]:.6g} s; velocities may jump there, poses may not"
+                )
+
+
+def _refuse_wrong_period(motion: Motion, path: Path | str) -> None:
+    """A period is exactly the time spanned, and every pose returns after it (angles but for whole turns)."""
+    if motion.period is None:
+        return
+    span = motion.time[-1] - motion.time[0]
+    if abs(motion.period - span) > SPAN_TOLERANCE * span:
+        raise UserError(
+            f"{path}: period is {motion.period:.9g} s, time spans {span:.9g} s; a period is the time spanned, "
+            "or null for a motion that does not repeat"
+        )
+    for name, body in motion.bodies.items():
+        for field, series in (("x", body.x), ("y", body.y), ("theta", body.theta)):
+            gap = series[-1] - series[0]
+            if field == "theta":
+                gap = math.remainder(gap, math.tau)
+            if abs(gap) > RETURN_TOLERANCE * max(1.0, abs(series[0])):
+                raise UserError(
+                    f"{path}: bodies.{name}.{field} begins at {series[0]:.6g} and ends at {series[-1]:.6g}, though "
+                    f"period is {motion.period:.6g} s; make it null for a motion that does not repeat"
+                )
+
+
+def _series(value: Any, field: str) -> Iterator[tuple[str, list[Any]]]:
+    """All lists that have a value for each time, with their fields."""
+    if isinstance(value, msgspec.Struct):
+        for name in value.__struct_fields__:
+            if name not in _NO_SERIES:
+                yield from _series(getattr(value, name), f"{field}.{name}" if field else name)
+    elif isinstance(value, dict):
+        for name, item in value.items():
+            yield from _series(item, f"{field}.{name}")
+    elif isinstance(value, list) and field.endswith(".actions"):
+        for index, item in enumerate(value):
+            yield from _series(item, f"{field}[{index}]")
+    elif isinstance(value, list):
+        yield field, value

@@ -1,0 +1,103 @@
+"""What acts in a motion, as data.json has it: forces, rigid contacts, and how they look."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from shared.contract.base import NonNegative, Positive, Series, Strict
+
+State = Literal["open", "closed", "slides", "sticks"]
+ACTUATORS = ("torque", "force", "actuator")
+"""Kinds of forces that may move a mechanism in place of its drivers."""
+
+
+class Shape(Strict, kw_only=True):
+    """What a picture needs of a joint, force or contact and cannot know from poses: markers, wheels, curves.
+
+    Fields that do not concern the kind keep their defaults.
+    """
+
+    bodies: tuple[str, str]
+    """That carry the first and the second marker."""
+    markers: tuple[tuple[float, float, float], tuple[float, float, float]]
+    """x, y (m) and angle (rad) of both in the frames of these bodies."""
+    radius_first: Positive | None = None
+    """Of the wheel about the first marker: pitch radius of a gear or pulley (m); of a ring its inner pitch radius."""
+    radius_second: Positive | None = None
+    """The same about the second marker: also of pinions, rolling discs, rollers of cams, tyres, discs that touch."""
+    teeth: list[int] = []
+    """Of the first and second wheel, or of the pinion alone."""
+    ring: bool = False
+    """Whether the first wheel lies around the second."""
+    crossed: bool = False
+    """Of a belt."""
+    slots: int | None = None
+    """Of a Geneva wheel, about the second marker; the pin is ``pin_radius`` from the first along its x axis."""
+    pin_radius: Positive | None = None
+    length: NonNegative | None = None
+    """Of a rope or rod; of a spring where it is free, unless that is a law of time (m)."""
+    outline: list[tuple[float, float]] = []
+    """Curve, terrain or cam in the axes of the first marker (m)."""
+    outline_closed: bool = False
+
+
+class Action(Strict, kw_only=True):
+    """What a force does to one body over time: N along the world's axes, N m about the point (x, y) (m)."""
+
+    body: str
+    x: Series
+    y: Series
+    fx: Series
+    fy: Series
+    torque: Series
+
+
+class ForceMotion(Strict, kw_only=True):
+    """One force over time: spring, damper, motor, load, contact by penalty, friction, a function of the user."""
+
+    kind: str
+    actions: list[Action]
+    """On every body that feels it; of a pair the first body's and then the second's."""
+    several: bool
+    """Whether it acts on several bodies, none of which is the second (rotating frame, function of the user)."""
+    measures: Literal["length", "angle", "coordinate", "gap"] | None
+    """What ``value`` is: length (m), angle of second against first (rad), coordinate along the first marker's x axis
+    (m), gap (m, negative where pressed in); null: there is no one such value."""
+    value: Series | None
+    rate: Series | None
+    """Of the value; of a load in one direction the speed of its point that way; of friction that of its joint."""
+    effort: Series | None
+    """Its size with a sign (N or N m): positive where it makes the value grow, or acts in its direction."""
+    normal: Series | None
+    """Of friction: what presses the joint, without preload (N)."""
+    power: Series
+    """What it gives to the motion (W); negative where it takes."""
+    potential: Series
+    """Potential energy it holds (J); 0 of a force without."""
+    shape: Shape | None
+    """Null of a force between no two markers."""
+
+
+class ContactMotion(Strict, kw_only=True):
+    """One rigid contact, stop, rope or one-way clutch of a simulation over time."""
+
+    kind: str
+    bodies: tuple[str, str]
+    x: Series
+    """Where its second marker is (m)."""
+    y: Series
+    fx: Series
+    """Force on its second body, world axes (N)."""
+    fy: Series
+    torque: Series
+    """On its second body about (x, y) (N m)."""
+    gap: Series
+    """m, or rad of angles; 0 where it is closed."""
+    rate: Series
+    normal: Series
+    """What pushes the gap open (N, or N m of angles)."""
+    friction: Series
+    """Force along the sliding way (N)."""
+    state: list[State]
+    """Of a contact with friction slides or sticks instead of closed."""
+    shape: Shape

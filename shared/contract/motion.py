@@ -1,0 +1,163 @@
+"""data.json: the motion of one mechanism, as structs. shared/contract/__init__.py reads and writes them.
+
+A body's x, y, theta place the frame its author drew it in, not its centre of mass.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import msgspec
+
+from shared.contract.base import UNITS, NonNegative, Positive, Provenance, Series, Strict
+from shared.contract.loads import ContactMotion, ForceMotion, Shape
+
+_FIRST = {
+    "axes": "x right, y up, angles counter-clockwise and never wrapped",
+    "body_frame": "x, y, theta and their rates place the frame the author drew the body in",
+    "com": "centre of mass in the body frame; inertia is about it",
+    "reaction": "fx, fy, torque: what the joint does to its second body, at the second marker, world axes",
+    "effort": "generalised force of the driver along its value; power = effort * rate of value",
+    "z": "height of the body's layer above the base; the motion is planar",
+}
+CONVENTIONS_OF = {
+    1: _FIRST,
+    2: _FIRST
+    | {
+        "force": "fx, fy, torque of an action: what the force does to that body, at (x, y), world axes",
+        "contact": "normal pushes the gap open; fx, fy, torque act on its second body, at the second marker",
+        "events": "rows right before and right after an event share its time: poses agree there, rates may differ",
+    },
+}
+"""By version of the file."""
+
+
+class BodyMotion(Strict, kw_only=True):
+    """One body over time: its frame (m, rad), rates and accelerations; constants of the body."""
+
+    x: Series
+    y: Series
+    theta: Series
+    vx: Series
+    vy: Series
+    omega: Series
+    ax: Series
+    ay: Series
+    alpha: Series
+    z: float | None
+    """Height of its layer (m); null where there are no parts yet, and of bodies without solids."""
+    mass: NonNegative
+    mass_from: Literal["mechanism", "parts", "estimate"] = "parts"
+    """Where mass, com and inertia are from."""
+    com: tuple[float, float]
+    inertia: NonNegative
+
+
+class JointMotion(Strict, kw_only=True):
+    """One joint over time: where its second marker is, and the reaction on the second body."""
+
+    kind: str
+    bodies: tuple[str, str]
+    x: Series
+    y: Series
+    fx: Series
+    fy: Series
+    torque: Series
+    shape: Shape | None = None
+
+
+class DriverMotion(Strict, kw_only=True):
+    """One driver over time: its value (m or rad), effort (N or N m) and power (W)."""
+
+    kind: str
+    bodies: tuple[str, str] | None = None
+    """First and second; null in files of version 1."""
+    shape: Shape | None = None
+    """Its two markers."""
+    value: Series
+    effort: Series
+    power: Series
+
+
+class PointMotion(Strict, kw_only=True):
+    """One traced point over time."""
+
+    body: str
+    x: Series
+    y: Series
+    vx: Series
+    vy: Series
+    ax: Series
+    ay: Series
+
+
+class Energy(Strict, kw_only=True):
+    """Energy of the whole mechanism (J)."""
+
+    kinetic: Series
+    potential: Series
+    """Of weight, counted from the origin, and of all forces that hold some."""
+    work: Series | None = None
+    """Of forces and drivers since the start, weight left out; null of a sweep."""
+    audit: Series | None = None
+    """Kinetic and potential energy less the work of what holds none: in a simulation constant but for the
+    integrator's error and what impacts take; null of a sweep."""
+
+
+class EventMark(Strict, kw_only=True):
+    """Something that happened at one moment of a simulation: an impact, a contact that opens, an event of the user."""
+
+    time: float
+    name: str
+    what: str
+    """event, end, impact, closes, opens, sticks, slides."""
+    energy: float
+    """Kinetic energy after less before (J), of all that happens at this time; told with the first."""
+    impulse: float = 0.0
+    """Of an impact, normal (N s; N m s of stops of angles)."""
+
+
+class Diagnostics(Strict, kw_only=True):
+    """How good the numbers are."""
+
+    position_residual: NonNegative
+    """Largest constraint residual (m or rad) over the motion."""
+    velocity_residual: NonNegative
+    acceleration_residual: NonNegative
+    power_residual: NonNegative
+    """Largest |d(T+V)/dt - power of the drivers| (W)."""
+    dof: int
+    redundant: list[str]
+    """Joints whose rows repeat what others already hold: one removable set."""
+    singularity_margin: Series
+    """Smallest over largest singular value of the scaled Jacobian, 0 at a singular pose; per time."""
+
+
+class Motion(Strict, kw_only=True):
+    """data.json: the motion of one mechanism. Version 1 had no forces and contacts, and less of the rest."""
+
+    schema: Literal["mbsd.motion"] = "mbsd.motion"
+    schema_version: Literal[1, 2] = 2
+    mechanism: str
+    units: dict[str, str] = msgspec.field(default_factory=lambda: dict(UNITS))
+    conventions: dict[str, str] = msgspec.field(default_factory=lambda: dict(CONVENTIONS_OF[2]))
+    provenance: Provenance
+    gravity: tuple[float, float]
+    analysis: Literal["sweep", "simulation"] = "sweep"
+    """Whether drivers or forces move it."""
+    period: Positive | None
+    """Every pose repeats after this time (s), and ``time`` spans it exactly, both ends included; else null."""
+    time: Series
+    """Rises; rows right before and right after an event share its time: poses agree there, rates may differ."""
+    bodies: dict[str, BodyMotion]
+    joints: dict[str, JointMotion]
+    drivers: dict[str, DriverMotion]
+    points: dict[str, PointMotion]
+    forces: dict[str, ForceMotion] = {}
+    contacts: dict[str, ContactMotion] = {}
+    energy: Energy
+    events: list[EventMark] = []
+    """In the order of their times."""
+    start_changes: list[str] = []
+    """What was changed of the given start to make it consistent, a sentence each."""
+    diagnostics: Diagnostics

@@ -1,0 +1,92 @@
+"""parts.json: the solids of one mechanism, as structs. shared/contract/__init__.py reads and writes them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import msgspec
+
+from shared.contract.base import UNITS, Count, NonNegative, Positive, Provenance, Strict
+
+PARTS_UNITS = UNITS | {"stl, step": "mm"}
+
+
+class Mass(Strict, kw_only=True):
+    """Mass properties: kg, centre of mass (m, body frame), inertia about it (kg m^2), volume (m^3)."""
+
+    mass: NonNegative
+    com: tuple[float, float]
+    inertia: NonNegative
+    volume: NonNegative
+
+
+class Held(Strict, kw_only=True):
+    """Where the film draws a spring that is fixed to a piece (m): height of its axis, radius of its coil."""
+
+    z: float
+    radius: Positive
+
+
+class Rolling(Strict, kw_only=True):
+    """A roller that turns about (x, y) of its body's frame (m) as it rolls without slip in a joint."""
+
+    joint: str
+    x: float
+    y: float
+    radius: Positive
+    marks: Annotated[int, msgspec.Meta(ge=1)]
+    """It looks the same after a turn by one of so many."""
+
+
+class Piece(Strict, kw_only=True):
+    """One printable solid of a body, in the body's frame; its files stand beside parts.json (millimetres)."""
+
+    material: str
+    stl: str
+    step: str
+    mass: Mass
+    z_range: tuple[float, float]
+    """Lowest and highest point (m)."""
+    triangles: Count
+    stl_sha256: str
+    holds: dict[str, Held] = {}
+    """By the names of forces: springs, dampers and actuators that have an end here."""
+    buy: str = ""
+    """What to buy, such as "circlip 8x0.8 DIN 471"; empty if the piece is to be made."""
+    rolls: Rolling | None = None
+    """Null of what does not turn against its body."""
+
+
+class End(Strict, kw_only=True):
+    """A place (m) of a body of data.json, or of ground, in its frame: where a rod has its eye."""
+
+    body: str
+    x: float
+    y: float
+
+
+class BodyParts(Strict, kw_only=True):
+    """All pieces that move with one body, and their mass together. ``ground`` is the frame."""
+
+    pieces: dict[str, Piece]
+    mass: Mass
+    z: float
+    """Middle height of the body's main piece (m)."""
+    spans: tuple[End, End] | None = None
+    """Of a rod, which is no body of data.json: the places of two bodies that it joins. Its frame is at the first, its x
+    axis goes to the second (shared/contract/spanning.py). Null of bodies."""
+
+
+class Parts(Strict, kw_only=True):
+    """parts.json: the solids of one mechanism."""
+
+    schema: Literal["mbsd.parts"] = "mbsd.parts"
+    schema_version: Literal[1] = 1
+    mechanism: str
+    units: dict[str, str] = msgspec.field(default_factory=lambda: dict(PARTS_UNITS))
+    provenance: Provenance
+    bodies: dict[str, BodyParts]
+    without_solids: list[str] = []
+    """Bodies of mechanism.py that are left out here."""
+    may_touch: list[tuple[str, str]] = []
+    """Pairs of bodies that touch by design: their pieces are not compared with each other."""

@@ -1,0 +1,192 @@
+"""shot.json: how a motion is filmed. Data only; ``Shot()`` alone gives a good film.
+
+Metres and seconds; angles in degrees, because this is written by hand; colours linear RGB 0..1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Annotated, Literal, get_args
+
+import msgspec
+
+from shared.contract import Motion, Parts
+from shared.contract.materials import MATERIALS
+from shared.stage import jsonfile
+from shared.stage.errors import UserError
+from shared.stage.suggestions import did_you_mean
+
+Unit = Annotated[float, msgspec.Meta(ge=0, le=1)]
+Positive = Annotated[float, msgspec.Meta(gt=0)]
+Colour = tuple[Unit, Unit, Unit]
+
+
+class _Strict(msgspec.Struct, forbid_unknown_fields=True, kw_only=True, frozen=True):
+    """Unknown fields are refused."""
+
+
+class Camera(_Strict, frozen=True):
+    """Where the camera stands. Its distance follows from the swept motion, so that all of it is always in the frame."""
+
+    azimuth: Annotated[float, msgspec.Meta(ge=-180, le=180)] = -16.0
+    """Degrees about z; 0 looks along +y, positive walks to the right."""
+    elevation: Annotated[float, msgspec.Meta(ge=5, le=89)] = 42.0
+    """Degrees above the base."""
+    lens: Annotated[float, msgspec.Meta(ge=20, le=200)] = 55.0
+    """Focal length in mm on a 36 mm wide sensor."""
+    margin: Annotated[float, msgspec.Meta(ge=0, le=0.4)] = 0.09
+    """Empty part of the frame's width (and height) left on each side of the swept motion."""
+    blur: Annotated[float, msgspec.Meta(ge=0, le=20)] = 1.0
+    """Depth of field: blur in pixels of a 1280 wide frame at the nearest and farthest moving part; 0 is a pinhole."""
+    orbit: Annotated[float, msgspec.Meta(ge=0, le=45)] = 0.0
+    """Degrees the camera swings to each side, once a turn, so that the film still loops."""
+
+
+class Trail(_Strict, frozen=True):
+    """The path of a traced point, a thin light that fades behind it."""
+
+    point: str
+    colour: Colour = (0.90, 0.24, 0.0)
+    tail: Annotated[float, msgspec.Meta(gt=0, le=1)] = 0.92
+    """Length behind the point, in turns; of a motion without a period in parts of it."""
+    radius: Annotated[float, msgspec.Meta(gt=0, le=0.1)] = 0.0046
+    """At the point, as a part of the size of the swept motion."""
+    z: float | None = None
+    """Height (m); null is just above the body that carries the point."""
+
+
+class Label(_Strict, frozen=True):
+    """A short text that floats over a joint or a traced point and faces the camera."""
+
+    at: str
+    text: Annotated[str, msgspec.Meta(min_length=1, max_length=40)]
+    size: Annotated[float, msgspec.Meta(gt=0, le=0.2)] = 0.028
+    """Letter height, as a part of the size of the swept motion."""
+    colour: Colour = (0.86, 0.88, 0.92)
+
+
+Quantity = Literal["velocities", "accelerations", "forces", "reactions"]
+
+
+class Title(_Strict, frozen=True):
+    """Words over the picture: a name, the rate of time, and a number that lives."""
+
+    text: Annotated[str, msgspec.Meta(min_length=1, max_length=60)] | None = None
+    """null is the mechanism's name."""
+    number: str | None = None
+    """A driver or force (its torque or force) or a traced point (its speed in m/s and km/h); null is the first of the
+    drivers that give something, else of what acts in their place, else of the traced points; "" is none."""
+
+
+class Surface(_Strict, frozen=True):
+    """A surface for a piece, where none of the named materials will do."""
+
+    colour: Colour
+    finish: Literal["anodised", "brushed", "polished", "satin", "plastic", "rubber"] = "anodised"
+    roughness: Unit = 0.3
+
+
+class Shot(_Strict, frozen=True):
+    """shot.json: camera, look and film of one mechanism."""
+
+    schema: Literal["mbsd.shot"] = "mbsd.shot"
+    schema_version: Literal[1] = 1
+    camera: Camera = Camera()
+    look: Literal["studio", "daylight"] = "studio"
+    turns: Annotated[int, msgspec.Meta(ge=1, le=1000)] = 3
+    """How many turns of the drivers the film shows, whole periods of the motion; after the first they cost nothing to
+    render. A motion without a period is shown so often."""
+    seconds_per_turn: Annotated[float, msgspec.Meta(gt=0, le=600)] | None = None
+    """Film time of one turn, or of a whole motion without a period; null is 4 s a turn and 12 s at most a period, and
+    the natural rate of a motion without one."""
+    rate: Annotated[float, msgspec.Meta(gt=0)] | None = None
+    """Seconds of the motion in a second of film, instead of ``seconds_per_turn``: 1 is real time, 0.1 is slowed ten
+    times. Null plays a motion without a period in real time, or at the nearest round factor that makes it 1 .. 20 s."""
+    hold: Annotated[float, msgspec.Meta(ge=0, le=60)] = 1.0
+    """Film time for which a motion without a period stands at its end before it begins anew (s)."""
+    fps: Annotated[int, msgspec.Meta(ge=1, le=120)] = 30
+    trails: tuple[Trail, ...] | None = None
+    """null trails every traced point; () trails none."""
+    labels: tuple[Label, ...] = ()
+    show: tuple[Quantity, ...] = ()
+    """What arrows show: velocities and accelerations of traced points and centres of mass, forces (springs, loads,
+    contacts by penalty, weights), reactions (of joints and rigid contacts)."""
+    title: Title | None = None
+    """null writes nothing but the rate of a motion without a period that is not in real time."""
+    materials: dict[str, str | Surface] = {}
+    """Other surfaces for the film alone, by ``body`` or ``body/piece``: the name of a material or a Surface."""
+    poster: Unit = 0.3
+    """Which moment the poster shows, as a part of the motion."""
+
+
+def read_shot(path: Path) -> Shot:
+    """Read shot.json; raises UserError naming the field."""
+    return jsonfile.read(path, Shot)
+
+
+def write_shot(path: Path, shot: Shot) -> None:
+    """Check types, ranges and numbers, and write shot.json whole."""
+    if shot.rate is not None and shot.seconds_per_turn is not None:
+        raise UserError(f"{path}: rate and seconds_per_turn both say how fast the film goes; give one of them")
+    jsonfile.refuse_non_finite(shot, path)
+    jsonfile.write(path, jsonfile.decode(jsonfile.encode(shot), Shot, path))
+
+
+def shown(shot: Shot, words: str) -> Shot:
+    """The shot with what the ``words`` of SHOW (in order, with commas) ask for; without words as it is."""
+    asked = words.split(",")
+    if not words:
+        return shot
+    title = (shot.title or Title()) if "title" in asked else None
+    return msgspec.structs.replace(shot, show=tuple(q for q in get_args(Quantity) if q in asked), title=title)
+
+
+@dataclass(frozen=True)
+class Names:
+    """What a shot may name: joints, traced points, and the pieces of each body."""
+
+    mechanism: str
+    joints: tuple[str, ...]
+    points: tuple[str, ...]
+    pieces: dict[str, tuple[str, ...]]
+    efforts: tuple[str, ...] = ()
+    """Drivers and forces that have one."""
+
+    @classmethod
+    def of(cls, motion: Motion, parts: Parts) -> Names:
+        """The names in a motion and its parts."""
+        pieces = {body: tuple(solids.pieces) for body, solids in parts.bodies.items()}
+        forces = [name for name, force in motion.forces.items() if force.effort is not None]
+        return cls(motion.mechanism, tuple(motion.joints), tuple(motion.points), pieces, (*motion.drivers, *forces))
+
+    def listed(self) -> tuple[object, ...]:
+        """All of them, for the key of a stage."""
+        return self.mechanism, self.joints, self.points, tuple(self.pieces.items()), self.efforts
+
+
+def refuse_unknown(shot: Shot, names: Names) -> None:
+    """Raise UserError for the first name in the shot that motion and parts do not have, with the names they have."""
+    known = partial(_known, names.mechanism)
+    for index, trail in enumerate(shot.trails or ()):
+        known(f"trails[{index}].point", trail.point, names.points)
+    for index, label in enumerate(shot.labels):
+        known(f"labels[{index}].at", label.at, (*names.joints, *names.points))
+    if shot.title is not None and shot.title.number:
+        known("title.number", shot.title.number, (*names.efforts, *names.points))
+    pieces = [f"{body}/{piece}" for body, solids in names.pieces.items() for piece in solids]
+    for name, surface in shot.materials.items():
+        known("materials", name, [*names.pieces, *pieces])
+        if isinstance(surface, str):
+            known(f"materials['{name}']", surface, MATERIALS)
+
+
+def _known(mechanism: str, field: str, name: str, names: Iterable[str]) -> None:
+    known = list(names)
+    if name not in known:
+        raise UserError(
+            f"{mechanism}: shot.{field} names '{name}', which is not there; known: {', '.join(known) or 'none'}"
+            f"{did_you_mean(name, known)}"
+        )

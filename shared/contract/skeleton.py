@@ -1,0 +1,95 @@
+"""skeleton.json: the mechanism as polylines with the standard symbols, in poses over its motion. Metres and seconds.
+
+The solve stage writes it, because the symbols belong to the kinds of joints that the solver knows; plots draw it.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import msgspec
+
+from shared.contract import UNITS, Provenance
+from shared.stage import jsonfile
+from shared.stage.errors import UserError
+
+Unit = Annotated[float, msgspec.Meta(ge=0, le=1)]
+NonNegative = Annotated[float, msgspec.Meta(ge=0)]
+Positive = Annotated[float, msgspec.Meta(gt=0)]
+
+
+class _Strict(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
+    """Unknown and missing fields are refused."""
+
+
+class Stroke(_Strict, kw_only=True):
+    """A polyline, or an outline that may be filled."""
+
+    points: list[float]
+    """x and y in turn (m)."""
+    closed: bool
+    ink: str
+    """Colour of the line: ``body:<name>``, or ink, quiet, paper, faint, driver, load, wrong, x, y."""
+    fill: str | None
+    """Colour of the filling, by the same words; null: none."""
+    alpha: Unit
+    """Opacity of the filling, or of an open line."""
+    width: NonNegative
+    """Of the line (points)."""
+    order: float
+    """Higher ones cover lower ones."""
+    dash: list[Positive]
+    """Lengths of strokes and gaps in line widths; empty: solid."""
+
+
+class Name(_Strict, kw_only=True):
+    """A name and what it belongs to."""
+
+    text: str
+    at: tuple[float, float]
+    """m"""
+    clearance: NonNegative
+    """Kept free around ``at`` (m)."""
+    ink: str
+
+
+class Pose(_Strict, kw_only=True):
+    """One moment."""
+
+    time: float
+    strokes: list[Stroke]
+
+
+class Skeleton(_Strict, kw_only=True):
+    """skeleton.json."""
+
+    schema: Literal["mbsd.skeleton"] = "mbsd.skeleton"
+    schema_version: Literal[1] = 1
+    mechanism: str
+    units: dict[str, str] = msgspec.field(default_factory=lambda: {key: UNITS[key] for key in ("length", "time")})
+    provenance: Provenance
+    unit: Positive
+    """Size of the symbols (m): about the radius of a pin."""
+    names: list[Name]
+    """In the first pose."""
+    poses: Annotated[list[Pose], msgspec.Meta(min_length=1)]
+    """In equal times. The first holds everything, the others only what is elsewhere."""
+
+
+def read_skeleton(path: Path) -> Skeleton:
+    """Read skeleton.json; raises UserError on anything that does not hold together."""
+    skeleton = jsonfile.read(path, Skeleton)
+    for index, pose in enumerate(skeleton.poses):
+        for number, stroke in enumerate(pose.strokes):
+            if len(stroke.points) % 2 or len(stroke.points) < 4:
+                raise UserError(
+                    f"{path}: poses[{index}].strokes[{number}].points has {len(stroke.points)} numbers; "
+                    "x and y in turn of two points or more"
+                )
+    return skeleton
+
+
+def write_skeleton(path: Path, skeleton: Skeleton) -> None:
+    """Check and write skeleton.json, whole."""
+    jsonfile.write(path, skeleton)

@@ -1,0 +1,168 @@
+"""What a stage says: coloured and with a bar on a terminal, plain lines everywhere else."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from typing import IO, NoReturn, Protocol
+
+from shared.stage.errors import UserError
+from shared.stage.files import OF_THE_DISK, refusal
+from shared.stage.lineage import end_with_make
+from shared.stage.signals import Stopped, terminable
+
+SHORTEST, LONGEST = 5.0, 60.0
+"""Seconds between two lines of progress in a log; the gap grows with the time that has passed."""
+RED, YELLOW, CYAN = "31", "33", "36"
+
+
+class Progress(Protocol):
+    """What :func:`progress` yields."""
+
+    def advance(self, n: int = 1, note: str = "") -> None:
+        """Count ``n`` more units as done; ``note`` is a word on the newest one."""
+        ...
+
+
+def say(stage: str, text: str) -> None:
+    """Print one line, ``stage: text``."""
+    _line(stage, text, CYAN, sys.stdout)
+
+
+def warn(stage: str, text: str) -> None:
+    """Print one line of warning on stderr."""
+    _line(stage, f"warning: {text}", YELLOW, sys.stderr)
+
+
+def fail(text: str) -> None:
+    """Print one line ``error: text`` on stderr."""
+    _line("error", text, RED, sys.stderr)
+
+
+@contextmanager
+def progress(label: str, total: int, unit: str = "frame") -> Iterator[Progress]:
+    """Show how much of ``total`` is done, the seconds a unit and the time left, while the block runs."""
+    if not _is_terminal(sys.stdout):
+        yield _PlainProgress(label, total, unit)
+        return
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
+    from rich.progress import Progress as RichBar
+
+    columns = (
+        TextColumn("[bold cyan]{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[pace]}"),
+    )
+    with RichBar(*columns) as bar:
+        task = bar.add_task(label, total=total, pace="")
+
+        def show(count: int, pace: str) -> None:
+            bar.update(task, completed=count, pace=pace)
+
+        yield _TerminalProgress(total, unit, show)
+
+
+def duration(seconds: float) -> str:
+    """A time for people: ``0.4 s``, ``12 s``, ``3 min 20 s``, ``2 h 05 min``."""
+    if seconds < 9.95:
+        return f"{seconds:.1f} s"
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60:02d} s"
+    minutes = round(seconds / 60)
+    return f"{minutes // 60} h {minutes % 60:02d} min"
+
+
+def run_cli(main: Callable[[], int | None]) -> NoReturn:
+    """Run ``main`` and exit: 0 or its return value, 1 on a UserError (one sentence), 128 + number on a signal.
+
+    A disk that is full or read-only, and a folder or file that is not what it should be, are a sentence as well.
+    With ``MBSD_TRACEBACK=1`` in the environment a UserError also prints its traceback, and that of its cause.
+    """
+    try:
+        with terminable():
+            end_with_make()
+            code = main() or 0
+            sys.stdout.flush()
+    except UserError as error:
+        if os.environ.get("MBSD_TRACEBACK", "0") not in ("", "0"):
+            traceback.print_exc()
+        fail(str(error))
+        code = 1
+    except (KeyboardInterrupt, Stopped) as stop:
+        with suppress(OSError):  # the terminal may be what has gone
+            fail("stopped; what is finished is kept, the same command goes on from here")
+        code = stop.code if isinstance(stop, Stopped) else 130
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        code = 1
+    except OSError as error:
+        if error.errno not in OF_THE_DISK:
+            raise
+        fail(refusal(error.filename or "a file", error, "use"))
+        code = 1
+    sys.exit(code)
+
+
+class _Pace:
+    """Counts units and words the pace: ``8.3 s a frame, 6 min 38 s left``."""
+
+    def __init__(self, total: int, unit: str) -> None:
+        self.total = total
+        self.unit = unit
+        self.count = 0
+        self.started = time.monotonic()
+
+    def words(self, note: str) -> str:
+        each = (time.monotonic() - self.started) / max(self.count, 1)
+        each_words = f"{each:.2f} s" if each < 9.95 else duration(each)
+        left = max(self.total - self.count, 0) * each
+        words = f"{each_words} a {self.unit}, " + (f"{duration(left)} left" if self.count < self.total else "done")
+        return f"{words} ({note})" if note else words
+
+
+class _PlainProgress(_Pace):
+    """A line now and then, fit for a log; the last unit always gets one."""
+
+    def __init__(self, label: str, total: int, unit: str) -> None:
+        super().__init__(total, unit)
+        self.label = label
+        self.last_line = self.started
+
+    def advance(self, n: int = 1, note: str = "") -> None:
+        self.count += n
+        now = time.monotonic()
+        gap = min(max(SHORTEST, 0.05 * (now - self.started)), LONGEST)
+        if self.count >= self.total or now - self.last_line >= gap:
+            self.last_line = now
+            say(self.label, f"{self.count}/{self.total}, {self.words(note)}")
+
+
+class _TerminalProgress(_Pace):
+    """Hands count and pace to a bar."""
+
+    def __init__(self, total: int, unit: str, show: Callable[[int, str], None]) -> None:
+        super().__init__(total, unit)
+        self.show = show
+
+    def advance(self, n: int = 1, note: str = "") -> None:
+        self.count += n
+        self.show(self.count, self.words(note))
+
+
+def _is_terminal(stream: IO[str]) -> bool:
+    return stream.isatty() and os.environ.get("TERM") != "dumb"
+
+
+def _line(stage: str, text: str, colour: str, stream: IO[str]) -> None:
+    """One line; without rich, whose loading would double the start of a stage that has nothing to do."""
+    if _is_terminal(stream) and not os.environ.get("NO_COLOR"):
+        stage = f"\x1b[1;{colour}m{stage}\x1b[0m"
+    print(f"{stage}: {text}", file=stream, flush=True)

@@ -1,0 +1,122 @@
+"""Files are written whole: a temporary file beside the target, then a rename."""
+
+from __future__ import annotations
+
+import errno
+import glob
+import hashlib
+import os
+import shutil
+import tempfile
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from shared.stage import locks
+from shared.stage.errors import UserError
+from shared.stage.paths import refuse_links
+
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+FORBIDDEN = (errno.EACCES, errno.EPERM, errno.EROFS)
+IN_THE_WAY = (errno.EISDIR, errno.ENOTDIR, errno.EEXIST, errno.ENOTEMPTY)
+OF_THE_DISK = (*FULL, *FORBIDDEN, *IN_THE_WAY, errno.EIO, errno.ENODEV, errno.ESTALE, errno.ELOOP, errno.ENAMETOOLONG)
+"""Errors that a user causes and cures, not the program."""
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """Yield a temporary path with the target's suffix; on success it replaces ``path``, else it is removed.
+
+    A kill or a full disk therefore never leaves a part of a file under the final name.
+    Raises UserError naming the file when the disk is full, the folder cannot be written, or a folder of results is a
+    link.
+    """
+    refuse_links(path.parent)
+    temporary: Path | None = None
+    handle = -1
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        _remove_leftovers(path)
+        handle, temporary = _locked_file(path)
+        os.chmod(temporary, 0o644)
+        yield temporary
+        with temporary.open("rb") as written:
+            os.fsync(written.fileno())
+        os.replace(temporary, path)
+    except OSError as error:
+        raise UserError(refusal(path, error)) from error
+    finally:
+        if temporary is not None:
+            with suppress(OSError):
+                temporary.unlink(missing_ok=True)
+            os.close(handle)
+
+
+def refusal(path: Path | str, error: OSError, doing: str = "write") -> str:
+    """What to tell a user when a file could not be written, or be used at all: the file, the reason, the remedy."""
+    reason = error.strerror or str(error)
+    if error.errno in FULL:
+        remedy = f"free some disk space{_free(Path(path))} or set MBSD_OUT to another folder"
+    elif error.errno in FORBIDDEN:
+        remedy = "make file and folder accessible or set MBSD_OUT to another folder"
+    elif error.errno in IN_THE_WAY:
+        remedy = "remove or rename what is in its place, or set MBSD_OUT to another folder"
+    else:
+        remedy = "check the disk or set MBSD_OUT to another folder"
+    return f"cannot {doing} {path}: {reason}; {remedy}"
+
+
+def _free(path: Path) -> str:
+    """How much room the disk has, in brackets; nothing if it cannot be asked."""
+    try:
+        return f" ({shutil.disk_usage(path.parent).free / 1e6:.1f} MB are free)"
+    except OSError:
+        return ""
+
+
+def _locked_file(path: Path) -> tuple[int, Path]:
+    """A new temporary file beside ``path`` and its handle, which holds a lock for as long as it is open."""
+    while True:
+        handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
+        with suppress(OSError):  # a disk without locks: what a kill leaves there stays
+            locks.take(handle)
+        if os.fstat(handle).st_nlink:
+            return handle, Path(name)
+        os.close(handle)  # another process took it for a leftover before it was locked
+
+
+def _remove_leftovers(path: Path) -> None:
+    """Remove temporary files of ``path`` whose writer was killed, which the lock tells."""
+    for left in path.parent.glob(f".{glob.escape(path.stem)}-*{glob.escape(path.suffix)}"):
+        if locks.is_abandoned(left):
+            left.unlink(missing_ok=True)
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """Write ``content`` to ``path`` whole."""
+    with whole_file(path) as temporary:
+        temporary.write_bytes(content)
+
+
+def file_hash(path: Path) -> str:
+    """SHA-256 of a file's bytes, as hex."""
+    with path.open("rb") as handle:
+        return hashlib.file_digest(handle, "sha256").hexdigest()
+
+
+def sources_hash(*folders_or_files: Path, leave_out: Collection[Path] = ()) -> str:
+    """SHA-256 over the Python sources below the given folders (or the files themselves), by name and content.
+
+    Sources below the folders in ``leave_out`` do not count.
+    """
+    digest = hashlib.sha256()
+    for root in folders_or_files:
+        files = sorted(root.rglob("*.py")) if root.is_dir() else [root]
+        for file in files:
+            if any(file.is_relative_to(folder) for folder in leave_out):
+                continue
+            digest.update(file.relative_to(root.parent).as_posix().encode())
+            digest.update(b"\0")
+            digest.update(file.read_bytes())
+            digest.update(b"\0")
+    return digest.hexdigest()

@@ -1,0 +1,289 @@
+"""Independent against reference coordinates: every group, drivers beside freedoms, forces, singular poses."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mbsd import Mechanism, ModelError, constant_rate, harmonic
+from mbsd.assur.groups import NAMES
+from mbsd.dynamics.prepare import prepare_dynamics
+from mbsd.embedding import run as embedded_run
+from mbsd.embedding.embed import embed
+from mbsd.solution import Solution
+from tests.models.assur_models import MODELS
+
+PAIRS = ("q", "v", "a")
+
+
+def both(m: Mechanism, duration: float = 0.5, **options) -> tuple[Solution, Solution]:
+    """The same simulation in independent and in reference coordinates."""
+    options = {"steps": 40, "tolerance": 1e-10, **options}
+    one = m.simulate(duration, formulation="independent", **options)
+    other = m.simulate(duration, formulation="reference", **options)
+    assert one.stats.independent
+    assert not other.stats.independent
+    return one, other
+
+
+def agree(one: Solution, other: Solution, close: float = 1e-6) -> None:
+    """Motion, multipliers, reactions and work are the same, and fulfil all equations."""
+    for name in PAIRS:
+        a, b = getattr(one, name), getattr(other, name)
+        np.testing.assert_allclose(a, b, atol=close * max(1.0, np.abs(b).max()), err_msg=name)
+    np.testing.assert_allclose(one.wrench, other.wrench, atol=close * max(1.0, np.abs(other.wrench).max()))
+    assert one.work is not None
+    assert other.work is not None
+    np.testing.assert_allclose(one.work, other.work, atol=close * max(1.0, np.abs(other.work).max()))
+    assert one.stats.position_residual < 1e-11
+    assert one.stats.velocity_residual < 1e-9
+    assert one.stats.acceleration_residual < 1e-6
+
+
+def freed(name: str) -> Mechanism:
+    """A mechanism of the closed forms without its drivers."""
+    m = MODELS[name]()
+    m.drivers.clear()
+    m.gravity = (0.5, -9.81)
+    return m
+
+
+def with_pendulum(name: str) -> Mechanism:
+    """The same with its drivers, and a pendulum on its last body."""
+    m = MODELS[name]()
+    m.gravity = (0.5, -9.81)
+    last = list(m.bodies.values())[-1]
+    bob = m.bar("bob", 0.2, 0.5)
+    m.revolute("hang", last.at(0.05, 0.02), bob.start)
+    m.start_near(bob=-60)
+    return m
+
+
+# -- every group ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_freed_mechanisms(name: str) -> None:
+    m = freed(name)
+    ready = prepare_dynamics(m, 0.0, 0.4)
+    if ready.embedded is None:
+        assert "driven" in name or "carried" in name, "only what its drivers hold together has no plan of its own"
+        return
+    agree(*both(m, 0.4))
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_drivers_beside_a_freedom(name: str) -> None:
+    agree(*both(with_pendulum(name), 0.4))
+
+
+def test_every_group_is_tried() -> None:
+    seen = set()
+    for name in MODELS:
+        for m in (freed(name), with_pendulum(name)):
+            made = prepare_dynamics(m, 0.0, 1.0).embedded
+            if made is not None:
+                seen |= {NAMES[kind] for kind in made.arrays.group[:, 0]}
+    assert seen == set(NAMES)
+
+
+# -- several coordinates ----------------------------------------------------------------------------------------------
+
+
+def chain(lengths: list[float], slide: bool = False) -> Mechanism:
+    """Bars in a row, hung from ground or from a cart."""
+    m = Mechanism("chain")
+    at = m.ground.at(0, 0)
+    if slide:
+        cart = m.body("cart", 2.0, com=(0.05, 0.02), inertia=0.1)
+        m.prismatic("rail", m.ground.at(0.1, 0.2, 0.3), cart.at(0.02, 0.01, 0.1))
+        m.start_moving(cart=(0.5 * math.cos(0.3), 0.5 * math.sin(0.3), 0.0))
+        at = cart.at(0.1, -0.1)
+    for k, length in enumerate(lengths):
+        bar = m.bar(f"bar{k}", length, 1.0 + k, com=(0.4 * length, 0.1 * length))
+        m.revolute(f"pin{k}", at, bar.start)
+        m.start_near(**{bar.name: -80 + 35 * k})
+        at = bar.end
+    return m
+
+
+@pytest.mark.parametrize("slide", [False, True])
+@given(lengths=st.lists(st.floats(0.2, 1.0), min_size=1, max_size=4))
+@settings(max_examples=5)
+def test_open_chains(slide: bool, lengths: list[float]) -> None:
+    agree(*both(chain(lengths, slide), 0.5), close=1e-5)
+
+
+def test_long_chains_stay_in_reference_coordinates() -> None:
+    sol = chain([0.3] * 8).simulate(0.1, steps=4)
+    assert not sol.stats.independent
+
+
+def test_angles_count_their_turns() -> None:
+    """A flywheel that a rocking lever's linkage carries round and round."""
+    m = Mechanism("turns")
+    wheel = m.body("wheel", 1.0, inertia=0.5)
+    m.revolute("O", m.ground.at(0, 0), wheel.origin)
+    m.start_moving(wheel=50.0)
+    bar = m.bar("bar", 1.0, 0.2)
+    m.revolute("A", wheel.at(0.2, 0), bar.start)
+    m.pin_in_slot("rail", m.ground.at(0, 0), bar.end)
+    m.start_near(bar=0)
+    sol = m.simulate(2.0, steps=50)
+    assert sol.stats.independent
+    theta = sol.body("wheel").theta
+    assert theta[-1] > 40.0
+    assert (np.diff(theta) > 0).all()
+
+
+# -- forces -----------------------------------------------------------------------------------------------------------
+
+
+def test_forces_of_all_sorts() -> None:
+    m = freed("RRR")
+    rocker, coupler, crank = (m.bodies[n] for n in ("rocker", "coupler", "crank"))
+    m.spring("spring", m.ground.at(0.1, 0.5), coupler.at(0.1, 0.1), 300.0, damping=2.0, free_length=0.3)
+    m.torsion_spring("clock", m.ground, rocker, 4.0, damping=0.05, free_angle=1.0)
+    m.torque("push", crank, 0.4)
+    m.drag("air", rocker.end, 0.8)
+    m.user_force("wind", lambda t, q, v: [0.3 * math.sin(9 * t), -0.2 * v[1], 0.01 * q[2]], rocker)
+    agree(*both(m, 0.6), close=1e-5)
+
+
+def test_bodies_without_mass() -> None:
+    m = Mechanism("light")
+    crank, coupler, rocker = m.bar("crank", 0.1, 1.0), m.bar("coupler", 0.38), m.bar("rocker", 0.3, 1.0)
+    m.revolute("O", m.ground.at(0, 0), crank.start)
+    m.revolute("A", crank.end, coupler.start)
+    m.revolute("B", coupler.end, rocker.end)
+    m.revolute("C", m.ground.at(0.4, 0), rocker.start)
+    m.start_near(crank=10, coupler=45, rocker=90)
+    agree(*both(m, 0.5), close=1e-5)
+
+
+# -- poor and singular poses ------------------------------------------------------------------------------------------
+
+
+def double_rocker() -> Mechanism:
+    """Neither lever turns round: both pass poses in which they tell the other's place badly."""
+    m = Mechanism("double rocker")
+    left, coupler, right = m.bar("left", 0.3, 1.0), m.bar("coupler", 0.2, 0.5), m.bar("right", 0.32, 1.0)
+    m.revolute("O", m.ground.at(0, 0), left.start)
+    m.revolute("A", left.end, coupler.start)
+    m.revolute("B", coupler.end, right.end)
+    m.revolute("C", m.ground.at(0.4, 0), right.start)
+    m.start_near(left=70, coupler=5, right=110)
+    m.start_moving(left=8.0)
+    return m
+
+
+def test_coordinates_change_where_others_are_better(monkeypatch: pytest.MonkeyPatch) -> None:
+    taken = []
+    original = embedded_run.EmbeddedRun._take
+
+    def watched(self, made, *rest) -> None:
+        taken.append(made.coordinates[0].body)
+        original(self, made, *rest)
+
+    monkeypatch.setattr(embedded_run.EmbeddedRun, "_take", watched)
+    one, other = both(double_rocker(), 2.0, tolerance=1e-11)
+    agree(one, other, close=1e-5)
+    assert len(set(taken)) > 1, "no other coordinate was taken"
+    assert np.ptp(one.energy.total) < 1e-6
+
+
+def parallelogram(loops: int = 1) -> Mechanism:
+    """Rods that swing through the pose where all lie in one line."""
+    m = Mechanism("parallelogram")
+    last = None
+    for k in range(loops + 1):
+        rod = m.bar(f"rod{k}", 1.0, 1.0)
+        m.revolute(f"foot{k}", m.ground.at(k, 0), rod.start)
+        m.start_near(**{rod.name: 90})
+        m.start_moving(**{rod.name: -1.0})
+        if last is not None:
+            bar = m.bar(f"bar{k}", 1.0, 1.0)
+            m.revolute(f"left{k}", last.end, bar.start)
+            m.revolute(f"right{k}", bar.end, rod.end)
+            m.start_near(**{bar.name: 0})
+        last = rod
+    return m
+
+
+@pytest.mark.parametrize("loops", [1, 5])
+def test_change_points_are_passed_on_the_smooth_branch(loops: int) -> None:
+    sol = parallelogram(loops).simulate(6.0, steps=333, tolerance=1e-9, formulation="independent")
+    for k in range(1, loops + 1):
+        np.testing.assert_allclose(sol.body(f"bar{k}").theta, 0.0, atol=1e-6)
+        np.testing.assert_allclose(sol.body(f"rod{k}").theta, sol.body("rod0").theta, atol=1e-6)
+    assert abs(sol.body("rod0").theta[-1]) > 2 * math.pi
+    assert np.ptp(sol.energy.total) < 1e-5
+
+
+def test_an_output_at_a_change_point_itself() -> None:
+    """The very time of the flat pose is an output, then the end."""
+    m = parallelogram()
+    sol = m.simulate(2.0, steps=2000, tolerance=1e-11)
+    k = int(np.argmax(sol.body("rod0").theta < 0))
+    t, theta, omega, here = sol.t[k], sol.body("rod0").theta[k], sol.body("rod0").omega[k], sol
+    for _ in range(3):
+        t -= theta / omega
+        here = m.simulate(times=[0.0, t, 2.0], tolerance=1e-11, formulation="independent")
+        theta, omega = here.body("rod0").theta[1], here.body("rod0").omega[1]
+    assert abs(theta) < 1e-7
+    assert here.stats.independent
+    assert np.isfinite(here.q).all()
+    assert np.isfinite(here.v).all()
+    np.testing.assert_allclose(here.body("bar1").theta, 0.0, atol=1e-6)
+    np.testing.assert_allclose(here.q[-1], sol.q[-1], atol=1e-6)
+    end = m.simulate(times=[0.0, t], tolerance=1e-11, formulation="independent")
+    for name in ("q", "v"):
+        np.testing.assert_allclose(getattr(end, name)[-1], getattr(here, name)[1], atol=1e-8)
+
+
+# -- what is refused --------------------------------------------------------------------------------------------------
+
+
+def test_what_must_stay_in_reference_coordinates_says_why() -> None:
+    m = double_rocker()
+    with pytest.raises(ModelError, match="no formulation 'fast'"):
+        m.simulate(0.1, formulation="fast")
+    with pytest.raises(ModelError, match="'rk4' works in reference"):
+        m.simulate(0.1, method="rk4", formulation="independent")
+    m.friction("rub", "A", 0.1, radius=0.01)
+    with pytest.raises(ModelError, match="reactions"):
+        m.simulate(0.1, formulation="independent")
+    geared = Mechanism("geared")
+    one, two = geared.body("one", 1.0, inertia=0.1), geared.body("two", 1.0, inertia=0.1)
+    geared.revolute("O", geared.ground.at(0, 0), one.origin)
+    geared.revolute("P", geared.ground.at(0.3, 0), two.origin)
+    geared.gear_pair("mesh", one.origin, two.origin, 0.1, 0.2)
+    with pytest.raises(ModelError, match="fall apart"):
+        geared.simulate(0.1, formulation="independent")
+    assert not geared.simulate(0.1, steps=2).stats.independent
+
+
+def test_no_choice_at_a_flat_pose() -> None:
+    """All rods in one line: no coordinate tells the branch."""
+    ready = prepare_dynamics(parallelogram(), 0.0, 1.0)
+    q = ready.initial.q.copy()
+    q[:] = [0, 0, 0, 0.5, 0, 0, 1.5, 0, 0, 1.5, 0, 0]  # ground, rod0, rod1, bar1 (in the order of their making)
+    assert embed(ready, q, np.zeros_like(q), 0.0) is None
+
+
+def test_laws_of_time_with_rates() -> None:
+    """A driven base that carries a free arm: convective terms of the law."""
+    m = Mechanism("shaker")
+    table, arm = m.body("table", 1.0, inertia=0.1), m.bar("arm", 0.4, 0.7)
+    m.prismatic("rail", m.ground.at(0, 0, 0.2), table.origin)
+    m.drive_coordinate("shake", m.ground.at(0, 0, 0.2), table.origin, harmonic(0.1, 12.0))
+    m.revolute("pin", table.at(0.1, 0.0), arm.start)
+    m.start_near(arm=-70)
+    spun = m.bar("spun", 0.3, 0.4)
+    m.revolute("tip", arm.end, spun.start)
+    m.drive_relative_angle("wheel", arm, spun, constant_rate(15.0))
+    agree(*both(m, 0.6), close=1e-5)

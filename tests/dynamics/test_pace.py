@@ -1,0 +1,126 @@
+"""Runs that hardly advance: a force that jumps, stiff friction; long runs say where they are and can be interrupted."""
+
+from __future__ import annotations
+
+import logging
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from mbsd import Mechanism, SimulationError
+from mbsd.dynamics import pace
+
+
+def pendulum() -> Mechanism:
+    m = Mechanism("pendulum", gravity=(0.0, -9.81))
+    rod = m.bar("rod", 1.0, mass=1.0)
+    m.revolute("pin", m.ground.at(0, 0), rod.start)
+    m.start_near(rod=-60)
+    return m
+
+
+@pytest.mark.parametrize("formulation", ["auto", "reference"])
+def test_friction_that_jumps_is_named(formulation: str) -> None:
+    """A brake that holds: its sign changes with every step, for ever."""
+    m = pendulum()
+    m.user_force("brake", lambda t, q, v: [0.0, 0.0, -3.0 * np.sign(v[2])], m.bodies["rod"])
+    m.torsion_spring("spring", m.ground, m.bodies["rod"], 0.5)
+    seen: list[float] = []
+    with pytest.raises(
+        SimulationError,
+        match=r"pendulum: dop853 no longer advances at t = 0\.\d+ s: .* force 'brake' jumps there, by 6 .*sticks=True",
+    ):
+        m.simulate(1.0, formulation=formulation, progress=seen.append)
+    assert seen, "progress was reported meanwhile"
+    assert seen == sorted(seen)
+
+
+def test_a_force_that_jumps_now_and_then_is_no_matter() -> None:
+    """The brake is too weak to hold: the rod swings to and fro, and each turn is one jump."""
+    m = pendulum()
+    m.user_force("brake", lambda t, q, v: [0.0, 0.0, -0.3 * np.sign(v[2])], m.bodies["rod"])
+    sol = m.simulate(3.0, tolerance=1e-6)
+    assert np.ptp(sol.audit) < 1e-4
+
+
+@pytest.mark.parametrize("friction", [{"viscous": 1e7}, {"viscous": 1e12}, {"coefficient": 1e7}])
+def test_friction_that_is_far_too_stiff_is_named(friction: dict[str, float]) -> None:
+    m = pendulum()
+    m.friction("rub", "pin", **{"coefficient": 0.0, "radius": 0.01, **friction})
+    with pytest.raises(
+        SimulationError,
+        match=r"pendulum: dop853 no longer advances at t = .* s: .* force 'rub' of joint 'pin' is stiff.*radau",
+    ):
+        m.simulate(1.0)
+
+
+def test_friction_without_bound_jams() -> None:
+    m = pendulum()
+    m.friction("rub", "pin", 1e12, radius=0.01)
+    with pytest.raises(SimulationError, match="joints jam"):
+        m.simulate(1.0)
+
+
+def test_stiff_dampers_that_take_many_steps_are_let_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Thousands of steps for stability's sake, and an end in sight: looked at, and gone on with."""
+    monkeypatch.setattr(pace, "MANY", 1e3)
+    looked = []
+    original = pace.diagnosis
+    monkeypatch.setattr(pace, "diagnosis", lambda *given: looked.append(given) or original(*given))
+    m = pendulum()
+    m.torsion_spring("damper", m.ground, m.bodies["rod"], 0.0, damping=3e4)
+    sol = m.simulate(1.0)
+    assert sol.stats.steps > 1000
+    assert looked, "the run was looked at"
+    assert np.ptp(sol.audit) < 1e-4
+
+
+def test_long_runs_say_where_they_are(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
+    monkeypatch.setattr(pace, "PATIENCE", 1e-6)
+    monkeypatch.setattr(pace, "STEPS_AT_ONCE", 20)
+    with caplog.at_level(logging.WARNING, "mbsd"):
+        pendulum().simulate(20.0)
+    words = [record.getMessage() for record in caplog.records]
+    assert words
+    assert all(word.startswith("mbsd: pendulum: t = ") and "of 20 s" in word for word in words)
+    caplog.clear()
+    with caplog.at_level(logging.WARNING, "mbsd"):
+        pendulum().simulate(20.0, progress=lambda done: None)
+    assert not caplog.records, "who takes the progress needs no words"
+
+
+RUNNING = """
+from tests.dynamics.test_pace import pendulum
+m = pendulum()
+{extra}
+m.simulate(0.1, {options})
+print("running", flush=True)
+m.simulate(1e7, steps=10, {options})
+"""
+FORCE = "m.user_force('wind', lambda t, q, v: [0.0, 0.0, 0.01 * v[2]], m.bodies['rod'])"
+EVENT = "m.event('down', lambda t, now: now.body('rod').theta + 1.5)"
+
+
+@pytest.mark.parametrize(
+    ("extra", "options"),
+    [("", ""), ("", "formulation='reference'"), (FORCE, ""), (EVENT, ""), ("", "method='radau'")],
+    ids=["independent", "reference", "user force", "event", "radau"],
+)
+def test_ctrl_c_ends_a_run_at_once(extra: str, options: str) -> None:
+    code = RUNNING.format(extra=extra, options=options)
+    child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
+        assert child.stdout is not None
+        assert child.stdout.readline() == "running\n"
+        time.sleep(0.5)
+        assert child.poll() is None
+        child.send_signal(signal.SIGINT)
+        _, errors = child.communicate(timeout=60)  # about a second; without the cure the run goes on for hours
+        assert "KeyboardInterrupt" in errors
+        assert child.returncode != 0
+    finally:
+        child.kill()

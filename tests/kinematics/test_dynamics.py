@@ -1,0 +1,187 @@
+"""Reactions, efforts, energy: balance on every body, power, invariance, numbers known in closed form."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mbsd import Mechanism, ModelError, constant_rate, harmonic
+from mbsd.solution import Solution
+from tests.models import four_bars
+
+Lengths = tuple[float, float, float, float]
+Masses = dict[str, tuple[float, tuple[float, float], float]]
+
+
+def _imbalance(sol: Solution) -> float:
+    """Largest violation of Newton-Euler over all bodies and times, relative to the largest load."""
+    m, worst, largest = sol.mechanism, 0.0, 0.0
+    for name, body in m.bodies.items():
+        if name == "ground":
+            continue
+        b = sol.packed.body_names.index(name)
+        place, acceleration = sol.q[:, b, :2], sol.a[:, b]
+        force = body.mass * np.array(m.gravity) - body.mass * acceleration[:, :2]
+        moment = -body.inertia * acceleration[:, 2]
+        for key, joint in m.joints.items():
+            side = {joint.j.body.name: 1.0, joint.i.body.name: -1.0}.get(name)
+            if side is None:
+                continue
+            view = sol.joint(key)
+            push = side * view.reaction
+            arm = np.stack([view.x, view.y], axis=1) - place
+            force = force + push
+            moment = moment + arm[:, 0] * push[:, 1] - arm[:, 1] * push[:, 0] + side * view.torque
+            largest = max(largest, float(view.magnitude.max()))
+        for key, driver in m.drivers.items():
+            side = {driver.j.body.name: 1.0, driver.i.body.name: -1.0}.get(name, 0.0)
+            moment = moment + side * sol.driver(key).torque
+        worst = max(worst, float(np.abs(force).max()), float(np.abs(moment).max()))
+    return worst / largest
+
+
+@settings(max_examples=25)
+@given(lengths=four_bars.crank_rockers(), masses=four_bars.mass_sets(), speed=st.floats(0.2, 30.0))
+def test_reactions_balance_on_every_body(lengths: Lengths, masses: Masses, speed: float) -> None:
+    sol = four_bars.model(lengths, speed, masses).sweep(steps=60)
+    assert _imbalance(sol) < 1e-9
+
+
+@settings(max_examples=20)
+@given(lengths=four_bars.crank_rockers(), masses=four_bars.mass_sets(), speed=st.floats(0.2, 10.0))
+def test_the_driver_pays_for_every_change_of_energy(lengths: Lengths, masses: Masses, speed: float) -> None:
+    sol = four_bars.model(lengths, speed, masses).sweep(steps=720)
+    scale = max(1.0, float(np.abs(sol.driver("motor").power).max()))
+    assert sol.stats.power_residual < 1e-9 * scale
+    h = sol.t[1] - sol.t[0]
+    e = sol.energy.total
+    change = (e[:-4] - 8 * e[1:-3] + 8 * e[3:-1] - e[4:]) / (12 * h)
+    np.testing.assert_allclose(change, sol.driver("motor").power[2:-2], atol=5e-3 * scale)
+
+
+@settings(max_examples=20)
+@given(
+    lengths=four_bars.crank_rockers(),
+    masses=four_bars.mass_sets(),
+    turned=st.floats(-3.0, 3.0),
+    moved=st.tuples(st.floats(-5, 5), st.floats(-5, 5)),
+)
+def test_a_rigid_motion_of_the_whole_changes_nothing(
+    lengths: Lengths, masses: Masses, turned: float, moved: tuple[float, float]
+) -> None:
+    plain = four_bars.model(lengths, 2.0, masses).sweep(steps=24)
+    pull = (9.81 * math.sin(turned), -9.81 * math.cos(turned))
+    other = four_bars.model(lengths, 2.0, masses, turned, moved, pull).sweep(steps=24)
+    for name in ("B", "C"):
+        largest = plain.joint(name).magnitude.max()
+        np.testing.assert_allclose(other.joint(name).magnitude, plain.joint(name).magnitude, atol=1e-9 * largest)
+    torque = plain.driver("motor").torque
+    np.testing.assert_allclose(other.driver("motor").torque, torque, atol=1e-9 * max(1.0, abs(torque).max()))
+    np.testing.assert_allclose(other.body("rocker").omega, plain.body("rocker").omega, atol=1e-10)
+
+
+@given(place=st.floats(-0.4, 0.4), angle=st.floats(-1.0, 1.0))
+@settings(max_examples=10)
+def test_the_authors_frame_does_not_matter(place: float, angle: float) -> None:
+    """The same arm drawn in another frame: same torque, same reaction."""
+    torques = []
+    for x, turn in ((0.0, 0.0), (place, angle)):
+        m = Mechanism("arm")
+        c, s = math.cos(turn), math.sin(turn)
+        at = lambda px, py: (c * (px - x) + s * py, -s * (px - x) + c * py)  # noqa: B023, E731
+        arm = m.body("arm", 2.0, at(0.3, 0.1), 0.05)
+        m.revolute("A", m.ground.origin, arm.at(*at(0, 0)))
+        m.drive_angle("motor", arm, harmonic(0.7, 3.0, 0.1, turn))
+        m.start_near(arm=math.degrees(turn))
+        torques.append(m.sweep(steps=30).driver("motor").torque)
+    np.testing.assert_allclose(torques[1], torques[0], atol=1e-11)
+
+
+def test_a_driven_pendulum_needs_the_torque_of_the_textbook() -> None:
+    """T = (I + m l^2/4) theta'' + m g l/2 cos(theta)."""
+    m = Mechanism("pendulum", gravity=(0.0, -9.81))
+    rod = m.bar("rod", 0.8, 1.5)
+    m.revolute("A", m.ground.at(0.2, 0.3), rod.start)
+    law = harmonic(1.1, 2.3, 0.4, -0.5)
+    m.drive_angle("motor", rod, law)
+    sol = m.sweep()
+    theta, _, alpha = law(sol.t).T
+    wanted = 1.5 * 0.8**2 / 3 * alpha + 1.5 * 9.81 * 0.4 * np.cos(theta)
+    np.testing.assert_allclose(sol.driver("motor").torque, wanted, atol=1e-12)
+
+
+def test_gravity_can_be_off() -> None:
+    lengths, masses = (4.0, 1.0, 3.5, 3.0), {"rocker": (1.0, (1.5, 0.0), 0.2)}
+    off = four_bars.model(lengths, 1.0, masses, gravity=None).sweep()
+    assert np.abs(off.energy.potential).max() == 0.0
+    still = four_bars.model(lengths, 1e-6, masses, gravity=None).sweep()
+    assert still.joint("D").magnitude.max() < 1e-9
+    weighted = four_bars.model(lengths, 1e-6, masses).sweep()
+    assert weighted.joint("D").magnitude.max() > 1.0
+
+
+def test_massless_links_carry_no_load() -> None:
+    sol = four_bars.model((4.0, 1.0, 3.5, 3.0), 5.0).sweep()
+    assert np.abs(sol.driver("motor").torque).max() == 0.0
+    assert sol.joint("B").magnitude.max() == 0.0
+
+
+def test_views_name_what_there_is() -> None:
+    sol = four_bars.model((4.0, 1.0, 3.5, 3.0)).sweep(steps=4)
+    with pytest.raises(ModelError, match="no body 'arm'; there is: ground, crank, coupler, rocker"):
+        sol.body("arm")
+    with pytest.raises(ModelError, match="no joint 'E'; there is: A, B, C, D"):
+        sol.joint("E")
+    with pytest.raises(ModelError, match="has a torque, not a force"):
+        _ = sol.driver("motor").force
+    with pytest.raises(ModelError, match="traced point 'P'; there is: none"):
+        sol.point("P")
+
+
+def test_frame_and_notebook_views() -> None:
+    m = four_bars.model((4.0, 1.0, 3.5, 3.0))
+    m.trace("P", m.bodies["coupler"].at(1, 1))
+    sol = m.sweep(steps=6)
+    frame = sol.to_frame()
+    assert frame.shape == (7, len(sol.columns()))
+    assert frame["coupler.theta [rad]"].to_numpy() == pytest.approx(sol.body("coupler").theta)
+    assert {"P.ax [m/s^2]", "B.fx [N]", "motor.effort [N m]", "kinetic [J]"} <= set(frame.columns)
+    shown = sol._repr_html_()
+    assert "coupler.theta [rad]" in shown
+    assert "1 degree of freedom" in shown
+    assert "random" in repr(sol)
+
+
+def test_a_cranked_motor_reports_its_power() -> None:
+    m = Mechanism("wheel")
+    wheel = m.body("wheel", 2.0, (0, 0), 0.1)
+    m.revolute("axle", m.ground.origin, wheel.origin)
+    m.drive_angle("motor", wheel, constant_rate(3.0))
+    sol = m.sweep(steps=8)
+    np.testing.assert_allclose(sol.driver("motor").power, 0.0, atol=1e-12)
+    np.testing.assert_allclose(sol.energy.kinetic, 0.45)
+
+
+def test_columns_of_things_with_one_name_stay_apart() -> None:
+    m = Mechanism("namesakes")
+    slider = m.body("slider", 2.0)
+    m.prismatic("slider", m.ground.origin, slider.at(0.0, 0.3))
+    m.trace("slider", slider.at(0.1, 0.2))
+    m.trace("way", slider.origin)
+    m.drive_coordinate("way", m.ground.origin, slider.origin, harmonic(0.1, 2.0))
+    columns = m.sweep(1.0, steps=4).columns()
+    assert {
+        "slider.x [m]",
+        "trace slider.x [m]",
+        "joint slider.x [m]",
+        "trace way.x [m]",
+        "driver way.effort [N]",
+    } <= set(columns)
+    places = [columns[f"{what}slider.y [m]"] for what in ("", "trace ", "joint ")]
+    np.testing.assert_allclose(np.ptp(places, axis=1), 0.0, atol=1e-15)
+    assert len({round(float(place[0]), 9) for place in places}) == 3
+    assert len(columns) == 9 + 2 * 6 + 5 + 3 + 2

@@ -1,0 +1,90 @@
+"""Layers and places of Geneva drives and cams by themselves. No CAD is built."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from mbsd import Mechanism, constant_rate
+from mbsd.cams import Lift, flat_cam, roller_cam
+from mechanisms.stages.automatic.automatic import Automatic
+from mechanisms.stages.automatic.cams.cams import Cam
+from mechanisms.stages.automatic.cams.geneva import GenevaDrive
+from shared.stage.errors import UserError
+from tests.models.genevas import geneva
+
+LIFT = Lift.of((2.0, 0.02, "cycloidal"), (1.0, 0.02), (2.0, 0.0, "cycloidal"), (2 * math.pi - 5.0, 0.0))
+
+
+def _made(m: Mechanism, duration: float) -> Automatic:
+    return Automatic(m, m.sweep(duration, 300))
+
+
+def _follower(flat: bool) -> Mechanism:
+    """A cam of 35 mm base radius under a follower on a guide, which turns at 2 pi rad/s."""
+    m = Mechanism("lifter")
+    cam, follower = m.body("cam"), m.body("follower")
+    m.revolute("O", m.ground.at(0, 0), cam.origin)
+    m.prismatic("guide", m.ground.at(0, 0.12, math.pi / 2), follower.at(0, 0.075, math.pi / 2))
+    if flat:
+        m.cam_flat("contact", cam.origin, follower.origin, flat_cam(LIFT, 0.035))
+    else:
+        m.cam_roller("contact", cam.origin, follower.origin, roller_cam(LIFT, 0.035, 0.012))
+    m.drive_angle("motor", cam, constant_rate(2 * math.pi))
+    m.start_near(follower=(0, 0.04, 0))
+    return m
+
+
+def _cam(made: Automatic) -> Cam:
+    return next(feature for feature in made.layout.features if isinstance(feature, Cam))
+
+
+@pytest.mark.parametrize("slots", [3, 4, 6])
+def test_geneva_has_room_for_its_hubs_and_pins(slots: int) -> None:
+    made = _made(geneva(slots), 2 * math.pi)
+    assert made.levels["crank"] != made.levels["wheel"]
+    drive = next(feature for feature in made.layout.features if isinstance(feature, GenevaDrive))
+    sizes, shape = made.sizes, drive.shape
+    assert shape.distance == pytest.approx(sizes.of_metres(0.1))
+    assert shape.bottom > sizes.eye  # the hub stays within the slots' bottoms
+    assert shape.least_hub > sizes.hardware + 2.5  # the disc's hole stays within its cut
+    assert shape.lock < shape.radius - shape.slot / 2 - 3.9
+    assert 2 * shape.rim * math.sin(math.pi / slots) > 2 * shape.slot
+
+
+def test_roller_is_short_of_the_cam_by_the_clearance_all_the_way() -> None:
+    made = _made(_follower(flat=False), 1.0)
+    assert made.levels["cam"] != made.levels["follower"]
+    cam, scale = _cam(made), made.sizes.scale
+    assert cam.roller is not None
+    centre = made.layout.seen("follower", cam.at[:2], "cam")
+    gaps = np.linalg.norm(cam.outline[None] - centre[:, None], axis=2).min(axis=1) - cam.roller
+    assert gaps.min() * scale == pytest.approx(cam.clear * scale, abs=2e-3)
+    assert gaps.max() * scale == pytest.approx(cam.clear * scale, abs=5e-3)
+    assert cam.clear * scale > 0.05
+
+
+def test_face_is_short_of_the_cam_and_long_enough() -> None:
+    made = _made(_follower(flat=True), 1.0)
+    assert made.levels["cam"] != made.levels["follower"]
+    cam, scale = _cam(made), made.sizes.scale
+    # A translating face is touched at the speed of the lift beside its line (Norton, Design of Machinery, ch. 8).
+    fastest = 2 * 0.02 / 2.0 * 1e3 / scale
+    assert max(abs(cam.face[0]), abs(cam.face[1])) == pytest.approx(fastest, rel=0.04)
+    deepest = max(made.layout.seen("cam", (u, v), "follower")[:, 1].max() for u, v in cam.outline[::10])
+    assert deepest < 0.01
+    assert all(y == pytest.approx(cam.clear + 6.0) for _, y in cam.shoe())
+
+
+def test_parts_on_ground_and_undercut_cams_are_refused() -> None:
+    m = Mechanism("turned")
+    frame, wheel = m.body("frame"), m.body("wheel")
+    m.revolute("O", m.ground.at(0, 0), frame.origin)
+    m.revolute("W", frame.at(0.1, 0), wheel.origin)
+    m.geneva("index", m.ground.origin, wheel.origin, 4, 0.1 * math.sin(math.pi / 4))
+    m.drive_angle("motor", frame, constant_rate(1.0, math.pi))
+    m.start_near(frame=180, wheel=5)
+    with pytest.raises(UserError, match="joint 'index' is a geneva with a part on ground"):
+        _ = _made(m, 1.0).levels

@@ -1,0 +1,81 @@
+"""Wheels on roads by themselves: the road passes under the wheel all the way and stays clear of it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from mbsd import Mechanism, constant_rate
+from mechanisms.stages.automatic.automatic import Automatic
+from mechanisms.stages.automatic.layout.profiles import distances
+from mechanisms.stages.automatic.rolling.roads import Road
+from mechanisms.stages.automatic.rolling.rounds import Round
+from shared.stage.errors import UserError
+
+HILLS = [(-0.2, 0.0), (-0.1, 0.01), (0.0, 0.0), (0.1, -0.01), (0.2, 0.0), (0.3, 0.01), (0.4, 0.0)]
+
+
+def _cart(curve: bool) -> Mechanism:
+    """A wheel of 40 mm radius that a driver turns by 2 rad; a body on its axle stays level."""
+    m = Mechanism("cart")
+    wheel, slider = m.body("wheel"), m.body("slider")
+    m.revolute("axle", wheel.origin, slider.at(0, 0))
+    if curve:
+        m.rolling_on_curve("road", m.ground.origin, wheel.origin, HILLS, 0.04)
+    else:
+        m.rolling_disc("road", m.ground.origin, wheel.origin, 0.04)
+    m.angle_lock("level", m.ground.origin, slider.origin)
+    m.drive_angle("motor", wheel, constant_rate(-2.0))
+    m.start_near(wheel=(0, 0.04, 0), slider=(0, 0.04, 0))
+    return m
+
+
+def _made(m: Mechanism) -> tuple[Automatic, Round, np.ndarray]:
+    made = Automatic(m, m.sweep(1.0, 200))
+    features = made.layout.features
+    [wheel] = [feature for feature in features if isinstance(feature, Round)]
+    [road] = [feature for feature in features if isinstance(feature, Road)]
+    assert road.rounds == [wheel]
+    return made, wheel, road.path
+
+
+@pytest.mark.parametrize("curve", [False, True])
+def test_wheel_is_short_of_its_road_by_the_clearance(curve: bool) -> None:
+    made, wheel, path = _made(_cart(curve))
+    assert made.levels["wheel"] != made.levels["slider"]
+    centre = made.layout.seen("wheel", wheel.at, "ground")
+    away = distances(centre, path)
+    scale = made.sizes.scale
+    assert (away - wheel.made).min() * scale > 0.05
+    assert (away - wheel.made).max() * scale < 0.2
+    assert np.ptp(centre[:, 0]) * scale == pytest.approx(80.0, rel=0.05)  # 2 rad of 40 mm
+
+
+def test_wheel_tyre_and_road_are_sound() -> None:
+    made, wheel, path = _made(_cart(curve=True))
+    plan = made.plan()
+    (plate,) = plan.plates["wheel"]
+    named = {solid.name: solid for solids in plan.solids.values() for solid in solids}
+    road, tyre = named["road_road"], named["tyre_road"]
+    for solid in (plate.shape, road.shape, tyre.shape):
+        assert solid.val().isValid()
+        assert solid.solids().size() == 1
+    box = road.shape.val().BoundingBox()
+    assert box.zmax == pytest.approx(made.heights.top("wheel"))
+    assert box.xlen > np.ptp(path[:, 0]) - 1e-6
+    outer = 0.5 * tyre.shape.val().BoundingBox().xlen
+    assert outer == pytest.approx(wheel.made, abs=0.05)
+
+
+def test_roads_that_move_and_closed_ones_are_refused() -> None:
+    m = Mechanism("ring")
+    wheel = m.body("wheel")
+    angle = np.linspace(0, 2 * math.pi, 24, endpoint=False)
+    points = [(0.2 * math.cos(a), 0.2 * math.sin(a)) for a in angle]
+    m.rolling_on_curve("ring", m.ground.origin, wheel.origin, points, 0.04, closed=True)
+    m.drive_angle("motor", wheel, constant_rate(1.0))
+    m.start_near(wheel=(0.16, 0, 0))
+    with pytest.raises(UserError, match="joint 'ring' rolls on a closed curve"):
+        _ = Automatic(m, m.sweep(0.5, 50)).levels

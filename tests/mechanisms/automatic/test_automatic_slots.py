@@ -1,0 +1,143 @@
+"""Parts by themselves of slots on ground and along curves, of pins on ground, and of welds."""
+
+from __future__ import annotations
+
+import math
+
+import cadquery as cq
+import numpy as np
+import pytest
+
+from mbsd import Mechanism, constant_rate
+from mechanisms.stages.automatic.automatic import Automatic
+from mechanisms.stages.automatic.layout.items import spans_meet
+from mechanisms.stages.automatic.pins.welds import Weld
+from mechanisms.stages.automatic.slides.curved_slots import CurvedSlot
+from mechanisms.stages.automatic.slides.slots import Slot
+from shared.shapes.band import band, loop, sharpest
+from shared.shapes.build import extruded
+from shared.stage.errors import UserError
+from tests.mechanisms.automatic.layouts import meets
+from tests.models.assur_models import six_bar_with_welds
+from tools.hunt_parts.case import parts_of
+from tools.hunt_parts.outcome import BUILT
+
+TURN = np.linspace(0.0, 1.0, 121)
+
+
+def _crank(m: Mechanism, length: float = 0.1):
+    crank = m.bar("crank", length)
+    m.revolute("O", m.ground.at(0, 0), crank.start)
+    m.drive_angle("motor", crank, constant_rate(2 * math.pi))
+    m.start_near(crank=0)
+    return crank
+
+
+def ground_slot() -> Mechanism:
+    m = Mechanism("ground_slot")
+    rod = m.bar("rod", 0.3)
+    m.revolute("A", _crank(m).end, rod.start)
+    m.pin_in_slot("slot", m.ground.at(0.2, -0.05, 0.1), rod.end)
+    m.start_near(rod=-5)
+    return m
+
+
+def ground_pin() -> Mechanism:
+    m = Mechanism("ground_pin")
+    lever = m.body("lever")
+    m.revolute("A", _crank(m).end, lever.origin)
+    m.pin_in_slot("slot", lever.origin, m.ground.at(0.3, 0))
+    m.start_near(lever=-5)
+    return m
+
+
+def egg(scale: float = 1.0, closed: bool = True) -> Mechanism:
+    """A pin on an egg-shaped curve of ground, pulled round by a slide on the crank."""
+    m = Mechanism("egg")
+    crank, pin = _crank(m, 0.06 * scale), m.body("pin")
+    angles = np.linspace(0, 2 * math.pi, 13)[:-1]
+    points = [(0.1 * scale * (1 + 0.1 * math.cos(a)) * math.cos(a), 0.1 * scale * math.sin(a)) for a in angles]
+    m.prismatic("slide", crank.origin, pin.origin)
+    m.point_on_curve("curve", m.ground.origin, pin.origin, points, closed=closed)
+    m.start_near(pin=(0.11 * scale, 0.0, 0.0))
+    return m
+
+
+@pytest.mark.parametrize("build", [ground_slot, ground_pin, egg, lambda: egg(30.0)])
+def test_slots_get_an_order_of_layers(build: object) -> None:
+    m = build()
+    made = Automatic(m, m.sweep(times=TURN))
+    assert not meets(made)
+    (slot,) = [feature for feature in made.layout.features if isinstance(feature, Slot)]
+    seen = made.layout.seen(slot.pin, slot.pin_at, slot.slot)
+    if len(slot.path) == 2:
+        (x0, y0), (x1, y1) = slot.path
+        way = np.array([x1 - x0, y1 - y0]) / math.hypot(x1 - x0, y1 - y0)
+        along = (seen - slot.path[0]) @ way
+        assert along.min() > 0.5
+        assert along.max() < math.hypot(x1 - x0, y1 - y0) - 0.5
+    else:
+        assert isinstance(slot, CurvedSlot)
+        assert slot.closed
+        apart = np.linalg.norm(seen[:, None] - slot.path[None], axis=2).min(axis=1)
+        assert apart.max() < 1.5, "the pin runs in its slot"
+
+
+def test_welded_plates_are_on_layers_of_their_own() -> None:
+    m = six_bar_with_welds()
+    made = Automatic(m, m.sweep(times=TURN))
+    assert not meets(made)
+    (weld,) = [feature for feature in made.layout.features if isinstance(feature, Weld)]
+    assert set(weld.movers) == {"arm", "rocker"}
+    assert made.levels["arm"] != made.levels["rocker"]
+    first, second = (
+        np.array([made.layout.seen(body, place, "ground")[0] for place in weld.bolts(body)]) for body in weld.movers
+    )
+    assert np.allclose(first, second, atol=1e-6)
+
+
+def test_a_rail_and_a_pivot_do_not_stand_on_one_place() -> None:
+    """The rail goes through where the lever's pedestal would be: the pivot hangs over it, from a bridge."""
+    m = Mechanism("crossing")
+    block, lever = m.body("block"), m.bar("lever", 0.1)
+    m.prismatic("rail", m.ground.at(0, 0), block.origin)
+    m.drive_coordinate("push", m.ground.at(0, 0), block.origin, lambda t: 0.1 * math.cos(2 * math.pi * t))
+    m.revolute("D", m.ground.at(0.02, 0.01), lever.start)
+    m.drive_angle("turn", lever, constant_rate(1.0))
+    made = Automatic(m, m.sweep(times=TURN))
+    assert made.decided["pin D"] == 1
+    assert made.levels["lever"] > made.levels["block"]
+    on_ground = {item.what: item.reach.span(made.decided) for item in made.layout.items if item.body == "ground"}
+    assert not spans_meet(on_ground["the rail of rail"], on_ground["the pivot D on ground"])
+
+
+def test_a_curve_that_bends_too_sharply_is_refused() -> None:
+    m = egg()
+    m.name = "sharp"
+    made = Automatic(m, m.sweep(times=TURN), pin=120.0)
+    with pytest.raises(UserError, match="the curve of joint 'curve' bends with a radius of"):
+        _ = made.levels
+
+
+@pytest.mark.parametrize("build", [six_bar_with_welds])
+def test_solids_are_sound_and_touch_nothing(build: object) -> None:
+    m = build()
+    found = parts_of(m, m.sweep(times=np.linspace(0.0, 1.0, 241)))
+    assert found.state == BUILT, found
+
+
+def test_bands_follow_arcs() -> None:
+    """Areas of a half ring and of a ring, and the radius of curvature of a circle."""
+    angles = np.linspace(0.0, math.pi, 60)
+    arc = 50.0 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    exact = math.pi * 50.0 * 12.0 + math.pi * 36.0
+    assert extruded(band(arc, 6.0), 1.0).val().Volume() == pytest.approx(exact, rel=2e-4)
+    angles = np.linspace(0.0, 2 * math.pi, 120)
+    circle = 50.0 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    for turned in (circle, circle[::-1]):
+        ring = extruded(loop(turned, 6.0), 1.0).cut(extruded(loop(turned, -6.0), 1.0))
+        assert isinstance(ring, cq.Workplane)
+        assert ring.val().Volume() == pytest.approx(math.pi * (56.0**2 - 44.0**2), rel=2e-4)
+    assert sharpest(circle) == pytest.approx(50.0, rel=5e-3)
+    with pytest.raises(ValueError, match="bends as sharply"):
+        band(arc, 55.0)

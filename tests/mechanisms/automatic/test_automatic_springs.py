@@ -1,0 +1,163 @@
+"""Springs with parts by themselves: studs where their ends are, and a layer in which nothing meets them."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+
+from mbsd import Mechanism, constant_rate
+from mechanisms.stages.automatic.automatic import Automatic
+from mechanisms.stages.automatic.layout.planar import Rounded, least_gap
+from mechanisms.stages.automatic.pins.springs import Stretching
+from mechanisms.stages.automatic.pins.studs import Stud
+from shared.shapes.stud import Collar, ball_stud
+
+
+def crank_rocker(scale: float = 1.0, turn: float = 0.0) -> Mechanism:
+    """With a spring on pins at both ends, another and a damper from one place of ground, and an actuator."""
+    m = Mechanism("sprung", gravity=None)
+
+    def ground(x: float, y: float):
+        c, s = math.cos(turn), math.sin(turn)
+        return m.ground.at(scale * (c * x - s * y), scale * (s * x + c * y))
+
+    crank, coupler, rocker = (
+        m.bar(name, scale * at) for name, at in (("crank", 0.1), ("coupler", 0.3), ("rocker", 0.25))
+    )
+    m.revolute("A", ground(0, 0), crank.start)
+    m.revolute("B", crank.end, coupler.start)
+    m.revolute("C", coupler.end, rocker.end)
+    m.revolute("D", ground(0.3, 0), rocker.start)
+    m.spring("on_pins", ground(0.3, 0), coupler.start, 100.0, free_length=0.1)
+    m.spring("return", ground(0.1, -0.12), rocker.at(scale * 0.12, 0), 100.0)
+    m.spring_law("damper", ground(0.1, -0.12), rocker.at(scale * 0.06, 0), lambda length, rate: -rate)
+    m.actuator("push", ground(0.5, 0.2), rocker.at(scale * 0.12, 0), 1.0)
+    m.drive_angle("motor", crank, constant_rate(6.0))
+    m.start_near(crank=60 + math.degrees(turn), coupler=20 + math.degrees(turn), rocker=100 + math.degrees(turn))
+    return m
+
+
+@cache
+def planned(scale: float = 1.0, turn: float = 0.0) -> Automatic:
+    m = crank_rocker(scale, turn)
+    return Automatic(m, m.sweep())
+
+
+def springs(made: Automatic) -> dict[str, Stretching]:
+    return {one.force: one for one in made.layout.features if isinstance(one, Stretching)}
+
+
+@pytest.mark.parametrize(("scale", "turn"), [(1.0, 0.0), (0.1, 1.0), (30.0, -2.0)])
+def test_what_the_film_draws_of_a_spring_meets_no_plate_and_no_other_spring(scale: float, turn: float) -> None:
+    made = planned(scale, turn)
+    heights, poses = made.heights, made.layout.poses
+    found = springs(made)
+    assert set(found) == {"on_pins", "return", "damper", "push"}
+    for one in found.values():
+        along = Rounded(one.path[:, :, :], one.outer)
+        for body in made.layout.moving:
+            low, high = heights.bottom(body), heights.top(body)
+            if low > one.z(heights) + one.outer or high < one.z(heights) - one.outer:
+                continue
+            gap, _ = least_gap(along, made.layout.outline(body), (poses[one.layer], poses[body]), 0.0)
+            assert gap > 0, f"{one.force} cuts {body}"
+        for other in found.values():
+            if other is not one and abs(other.z(heights) - one.z(heights)) < one.outer + other.outer:
+                gap, _ = least_gap(along, Rounded(other.path, other.outer), (poses[one.layer], poses[other.layer]), 0.0)
+                assert gap > 0, f"{one.force} cuts {other.force}"
+
+
+def test_springs_lie_over_their_bodies_and_over_the_pins_that_hold_them() -> None:
+    made = planned()
+    for stud in (feature for feature in made.layout.features if isinstance(feature, Stud)):
+        bodies = [b for b in (stud.pin.movers if stud.pin else [stud.body]) if b != "ground"]
+        assert all(made.decided[one.layer] > made.levels[body] for one, _ in stud.ends for body in bodies)
+
+
+def test_ends_on_one_place_share_a_stud() -> None:
+    made = planned()
+    studs = {frozenset((one.force, end) for one, end in f.ends) for f in made.layout.features if isinstance(f, Stud)}
+    assert frozenset({("return", 0), ("damper", 0)}) in studs
+    assert frozenset({("return", 1), ("push", 1)}) in studs
+    assert len(studs) == 6
+
+
+def test_every_end_is_held_where_it_is() -> None:
+    """The ball's middle is on the marker, at the height that the film is told."""
+    made = planned()
+    scale = made.sizes.scale
+    held: dict[str, list[tuple[float, float]]] = {}
+    for body, solids in made.solids().items():
+        for solid in solids:
+            for hold in solid.holds:
+                low, high = solid.shape.val().BoundingBox().zmin, solid.shape.val().BoundingBox().zmax
+                assert low < hold.z < high
+                one = springs(made)[hold.force]
+                assert (hold.z, hold.radius) == pytest.approx((one.z(made.heights) * scale, one.radius * scale))
+                ball = solid.shape.val().BoundingBox().center
+                pose = made.layout.poses[body][0]
+                c, s = math.cos(pose[2]), math.sin(pose[2])
+                place = [pose[0] + (c * ball.x - s * ball.y) / scale, pose[1] + (s * ball.x + c * ball.y) / scale]
+                assert np.linalg.norm(one.path[0] - place, axis=1).min() < 1e-6
+                held.setdefault(hold.force, []).append((place[0], place[1]))
+    assert {force: len(set(places)) for force, places in held.items()} == dict.fromkeys(springs(made), 2)
+
+
+def test_a_spring_that_shrinks_to_nothing_gets_no_studs() -> None:
+    m = Mechanism("through")
+    block = m.body("block", 1.0)
+    m.prismatic("rail", m.ground.origin, block.origin)
+    m.spring("spring", m.ground.origin, block.origin, 100.0)
+    m.start_near(block=(0.1, 0, 0))
+    made = Automatic(m, m.simulate(0.5))
+    assert not springs(made)
+    assert not [solid for solids in made.solids().values() for solid in solids if solid.holds]
+
+
+def test_a_spring_without_room_is_left_out_and_told(capsys: pytest.CaptureFixture[str]) -> None:
+    """From the crank's middle no stud goes up: the coupler passes over it."""
+    m = crank_rocker()
+    m.actuator("pull", m.bodies["crank"].at(0.05, 0.05), m.bodies["rocker"].at(0.12, 0), 1.0)
+    made = Automatic(m, m.sweep())
+    assert set(springs(made)) == {"on_pins", "return", "damper", "push"}
+    assert "sprung: no order of layers leaves room for pull beside the others" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("aside", "held"), [(0.0, True), (0.02, False)])
+def test_gas_has_a_cylinder_where_its_piston_is_on_its_axis(aside: float, held: bool) -> None:
+    m = Mechanism("shock")
+    block = m.body("block", 1.0)
+    m.prismatic("rail", m.ground.at(0, 0, 0.4), block.at(0, 0, 0.4))
+    m.gas("gas", m.ground.at(-0.2 * math.cos(0.4), -0.2 * math.sin(0.4), 0.4), block.at(0, aside), 1e-3, 1.1e5, 0.2)
+    m.start_near(block=(0.0, 0.0, 0.0))
+    made = Automatic(m, m.simulate(0.2, 60))
+    assert set(springs(made)) == ({"gas"} if held else set())
+    if held:
+        one = springs(made)["gas"]
+        assert one.outer == pytest.approx(0.6 * one.radius)
+
+
+def test_a_moving_core_is_looked_at_pose_by_pose() -> None:
+    """A line that grows from 1 to 5 touches a disc at 6 only at the end."""
+    still = np.zeros((9, 3))
+    ends = np.linspace(1.0, 5.0, 9)
+    core = np.stack([np.zeros((9, 2)), np.column_stack([ends, 0 * ends])], axis=1)
+    gap, at = least_gap(Rounded(core, 0.1), Rounded(np.array([[6.0, 0.0]]), 0.4), (still, still), 0.51)
+    assert (gap, at) == (pytest.approx(0.5), 8)
+
+
+@pytest.mark.parametrize("balls", [[20.0], [12.0, 20.0], [0.0, 20.0]])
+def test_ball_studs_are_one_solid(balls: list[float]) -> None:
+    shape = ball_stud(4.0, 0.0, 20.0, balls, 3.5, [Collar(4.5, 1.4, 4.5)])
+    assert shape.val().isValid()
+    box = shape.val().BoundingBox()
+    assert box.xmax == pytest.approx(4.5)
+    assert box.zmin == pytest.approx(0.0 if balls[0] else -3.5 * math.sqrt(1 - 0.35**2), abs=1e-6)
+
+
+def test_a_stud_whose_balls_overlap_is_refused() -> None:
+    with pytest.raises(ValueError, match="overlap between"):
+        ball_stud(4.0, 0.0, 20.0, [18.0, 20.0], 3.5)

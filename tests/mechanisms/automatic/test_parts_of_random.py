@@ -1,0 +1,119 @@
+"""Parts by themselves for a hundred random mechanisms: an order of layers in which nothing meets, or a reason."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mbsd.errors import MechanismError
+from mechanisms.stages.automatic.automatic import Automatic
+from shared.stage.errors import UserError
+from tests.mechanisms.automatic.layouts import meets
+from tests.models.four_bars import angles, model
+from tools.hunt.case import drawn
+from tools.hunt.outcome import CaseResult
+from tools.hunt_parts import case
+from tools.hunt_parts.__main__ import hunt
+from tools.hunt_parts.outcome import BUILT, COLLIDES, ERROR, STUCK, UNSOUND, reason
+
+SEED = 4_000_000
+KINDS = (
+    "four-bar, any lengths",
+    "four-bar, crank turns",
+    "slider-crank",
+    "six-bar and more",
+    "six-bar, crank swings",
+    "five-bar, two drivers",
+    "inverted slider-crank, quick return",
+    "yoke",
+    "linkage, cranks swing",
+    "model of each group",
+)
+REASONS = ("no order of layers lets", "has no parts by itself", "bends with a radius")
+
+
+def test_a_hundred_random_mechanisms_get_layers_or_a_reason() -> None:
+    came: Counter[str] = Counter()
+    for k in range(100):
+        _, subject, _ = drawn(SEED + k, KINDS[k % len(KINDS)])
+        try:
+            solution = case.moved(subject, steps=120)
+        except MechanismError:
+            came[STUCK] += 1
+            continue
+        made = Automatic(subject.m, solution)
+        try:
+            _ = made.heights
+        except UserError as error:
+            told = next((words for words in REASONS if words in str(error)), f"case {SEED + k}: {error}")
+            came[told] += 1
+            continue
+        assert not meets(made), f"case {SEED + k}"
+        came[BUILT] += 1
+    assert set(came) <= {BUILT, STUCK, *REASONS}, came
+    assert came[BUILT] >= 70, came
+    assert came["no order of layers lets"] <= 20, came
+
+
+def test_every_four_bar_whose_crank_turns_gets_an_order() -> None:
+    """Crank-rockers and drag links of any proportions (Grashof: s + l < p + q, the shortest is crank or ground)."""
+    rng, counted = np.random.default_rng(3), 0
+    while counted < 20:
+        lengths = tuple(float(x) for x in rng.uniform(0.03, 0.2, 4))
+        ordered = sorted(lengths)
+        if ordered[0] + ordered[3] > ordered[1] + ordered[2] - 0.004 or ordered[0] not in lengths[:2]:
+            continue
+        if not np.isfinite(np.concatenate(angles(lengths, np.linspace(0, 6.3, 50)))).all():
+            continue
+        m = model(lengths)
+        made = Automatic(m, m.sweep(times=np.linspace(0, 2 * np.pi, 121)))
+        assert set(made.levels) == {"crank", "coupler", "rocker"}
+        assert not meets(made)
+        counted += 1
+
+
+# -- the tool ---------------------------------------------------------------------------------------------------------
+
+
+def test_a_short_hunt_for_parts_writes_its_report(out_root: Path) -> None:
+    assert hunt(3, seed=4, jobs=1, kind="four-bar, crank turns", solids=False) == 0
+    report = json.loads((out_root / "hunt_parts.json").read_text())
+    assert report["cases"][BUILT] == sum(report["cases"].values()) == 3
+
+
+def test_one_is_built_and_proven() -> None:
+    found = case.run(SEED, "slider-crank").outcomes[-1]
+    assert found.state == BUILT, found
+    assert "pieces, nearest" in found.detail
+
+
+def test_what_is_wrong_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A search that puts every plate on one layer; pieces in one another; a plan that fails."""
+    from mechanisms.stages.automatic import decided
+
+    def flat(problem: object) -> dict[str, int]:
+        from mechanisms.stages.automatic.layout.layer_clauses import choices_of
+
+        return dict.fromkeys([*problem.bodies, *choices_of(problem.items)], 0)
+
+    monkeypatch.setattr(decided, "find_layers", flat)
+    assert case.run(SEED, "slider-crank").outcomes[-1].state in (COLLIDES, UNSOUND)
+    monkeypatch.setattr(decided, "find_layers", lambda _: {})
+    assert case.run(SEED, "slider-crank").outcomes[-1].state == ERROR
+
+
+def test_refusals_are_counted_without_names_and_numbers() -> None:
+    text = "four: joint 'loop' is a belt, which has no parts by itself yet (there are: revolute)"
+    assert reason(text) == "has no parts by itself: belt"
+    assert reason("a: no order of layers lets x and y pass each other with pins of 4 mm") == "no order of layers"
+    assert reason("a: gears of 'b' with 12.5 mm") == reason("c: gears of 'd' with 3e-2 mm")
+
+
+def test_results_name_their_kind() -> None:
+    result = case.run(SEED + 2, "slider-crank", solids=False)
+    assert isinstance(result, CaseResult)
+    assert (result.family, result.outcomes[-1].state) == ("slider-crank", BUILT)

@@ -1,0 +1,135 @@
+"""Gears in mesh: one pitch proves what the search over the whole motion finds, and odd wheels are left to that."""
+
+from __future__ import annotations
+
+import math
+
+import manifold3d
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mechanisms.stages.clearance.meshing import Gears, least_in_mesh
+from mechanisms.stages.clearance.path import BodyPath
+from mechanisms.stages.clearance.pieces import MeshPiece
+from mechanisms.stages.clearance.search.search import RESOLUTION, Least
+from mechanisms.stages.clearance.search.sweep import Sweep
+from mechanisms.stages.clearance.unions import order, turned_union
+from shared.shapes.involute import longest_tip, toothed
+
+PLAY = 0.12
+"""Taken from each tooth (mm)."""
+
+
+def wheel(body: str, outline: np.ndarray, rim: float = 0.0) -> MeshPiece:
+    """A prism 4 mm high on an outline; with ``rim`` a ring of that radius around it."""
+    section = manifold3d.CrossSection([outline])
+    if rim:
+        section = manifold3d.CrossSection.circle(rim, 128) - section
+    mesh = manifold3d.Manifold.extrude(section, 4.0).to_mesh()
+    return MeshPiece(body, body, mesh.vert_properties[:, :3][mesh.tri_verts].astype(float))
+
+
+def turning(rate: float, turns: float, phase: float = 0.0, x: float = 0.0, per_turn: int = 120) -> BodyPath:
+    """About (x, 0), at a rate (rad/s), for so many seconds of which each is a turn of the fastest."""
+    time = np.linspace(0.0, turns, round(per_turn * turns) + 1)
+    one, zero = np.ones_like(time), np.zeros_like(time)
+    return BodyPath(
+        time,
+        np.column_stack([x * one, zero, phase + rate * time]),
+        np.column_stack([zero, zero, rate * one]),
+        np.zeros((len(time), 3)),
+    )
+
+
+class Pair:
+    """Two wheels of 1 mm module, a ring the first of them, as ``a`` and ``b`` at a distance along x."""
+
+    def __init__(self, teeth: tuple[int, int], ring: bool = False, turns: float = 1.0, late: float = 0.0) -> None:
+        """``late``: by how much of a pitch the second is turned from where it meshes."""
+        one, two = (n / 2 for n in teeth)
+        self.teeth, self.ring, self.apart = teeth, ring, one - two if ring else one + two
+        pitch = 2 * math.pi / teeth[1]
+        if ring:
+            hole = toothed(teeth[0], 1.0, one + 1.25, one - 0.75, -PLAY, math.pi / teeth[0])
+            first, second = wheel("a", hole, one + 4.0), toothed(teeth[1], 1.0, two + 0.9, two - 1.25, PLAY)
+            phase = pitch / 2
+        else:
+            tips = [min(r + 1.0, longest_tip(r, other)) for r, other in ((one, two), (two, one))]
+            first = wheel("a", toothed(teeth[0], 1.0, tips[0], one - 1.25, PLAY))
+            second = toothed(teeth[1], 1.0, tips[1], two - 1.25, PLAY)
+            phase = math.pi + pitch / 2
+        self.pieces = (first, wheel("b", second))
+        sense = 1.0 if ring else -1.0
+        self.where = {
+            "a": turning(2 * math.pi * teeth[1] / teeth[0], turns),
+            "b": turning(sense * 2 * math.pi, turns, phase + pitch * late, self.apart),
+        }
+
+    @property
+    def gears(self) -> Gears:
+        return Gears(("a", "b"), (np.zeros(2), np.zeros(2)), self.teeth, self.ring)
+
+    def sweep(self, turned: bool = False) -> Sweep:
+        first, second = self.pieces[::-1] if turned else self.pieces
+        return Sweep(first, second, self.where[first.body], self.where[second.body])
+
+    def by_pitch(self, turned: bool = False) -> Least | None:
+        return least_in_mesh(self.sweep(turned), {frozenset("ab"): [self.gears]}, self.where)
+
+
+@settings(max_examples=6, deadline=None)
+@given(st.integers(12, 28), st.integers(12, 20), st.booleans(), st.booleans())
+def test_one_pitch_tells_what_the_whole_motion_does(first: int, second: int, ring: bool, turned: bool) -> None:
+    pair = Pair((first + 24, second) if ring else (first, second), ring, turns=0.5)
+    found, whole = pair.by_pitch(turned), pair.sweep(turned).least(5.0)
+    assert found is not None
+    assert found.gap == pytest.approx(whole.gap, abs=RESOLUTION)
+    assert 0.05 < whole.gap - 2 * RESOLUTION < found.proven <= found.gap
+    assert pair.sweep().gap_at(found.time, 5.0) == pytest.approx(found.gap, abs=1e-6)
+
+
+def test_more_turns_cost_no_more() -> None:
+    few, many = Pair((18, 18), turns=0.5).by_pitch(), Pair((18, 18), turns=10.0).by_pitch()
+    assert few is not None
+    assert many is not None
+    assert many.gap == pytest.approx(few.gap, abs=RESOLUTION)
+    assert many.poses <= few.poses + 10
+
+
+@pytest.mark.parametrize("late", [0.5, 0.2])
+def test_wheels_out_of_phase_are_left_to_the_search_that_tells_their_collision(late: float) -> None:
+    pair = Pair((18, 24), late=late)
+    assert pair.by_pitch() is None
+    assert pair.sweep().least(5.0).gap == 0
+
+
+def test_one_thick_tooth_is_found_though_its_turn_comes_once() -> None:
+    """The teeth of a sector that collide at a single moment are in every copy of the wheel."""
+    pair = Pair((20, 16), turns=2.0)
+    good, outline = pair.pieces[1], toothed(16, 1.0, 9.0, 6.75, PLAY)
+    count = len(outline) // 16
+    outline[5 * count : 6 * count] = toothed(16, 1.0, 9.0, 6.75, -0.5)[5 * count : 6 * count]
+    pair.pieces = (pair.pieces[0], wheel("b", outline))
+    assert len(good.triangles) == len(pair.pieces[1].triangles)
+    assert pair.by_pitch() is None
+
+
+def test_a_motion_that_is_not_rolling_is_left_to_the_search() -> None:
+    pair = Pair((18, 18), turns=1.0)
+    pair.where["a"] = turning(6.2, 1.0)
+    assert pair.by_pitch() is None
+
+
+def test_unions_of_equal_teeth_are_the_wheel_itself() -> None:
+    outline = toothed(18, 1.0, 10.0, 7.75, PLAY)
+    piece = wheel("a", outline + np.array([3.0, -2.0]))
+    sides = piece.triangles[~piece.level]
+    found = turned_union(sides, np.array([3.0, -2.0]), 18, (0.0, 99.0))
+    assert found is not None
+    assert len(sides) <= len(found.triangles) <= 2 * len(sides)
+    assert found.spread < 1e-5
+    assert turned_union(sides, np.array([3.0, -2.0]), 17, (0.0, 99.0)) is None
+    assert order([piece], "a", np.array([3.0, -2.0]), 9.0) == 18
+    assert order([piece], "b", np.zeros(2), 9.0) == 1

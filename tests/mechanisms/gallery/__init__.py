@@ -1,0 +1,1 @@
+"""Mechanisms of the gallery against closed forms and published numbers."""

@@ -1,0 +1,263 @@
+"""What the parts and the motion follow from beyond their own file: helpers, measured data, CAD files, and no more."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from mechanisms.stages.loading.inputs import sources_state
+from mechanisms.stages.parts import stage as parts_stage
+from mechanisms.stages.solve import stage as solve_stage
+from shared.contract import read_motion, read_parts
+from shared.stage.paths import ROOT, Out
+from shared.stage.stages import Stage
+from tests.mechanisms.author_project import Project, put
+
+MECHANISM = """
+from dataclasses import dataclass
+from pathlib import Path
+from mbsd import Mechanism, constant_rate
+
+WIDTH = 8.0
+
+@dataclass(frozen=True)
+class Params:
+    length: float = 0.04
+    speed: float = 6.0
+
+    def area(self):
+        return self.length * WIDTH
+
+def build(p):
+    m = Mechanism("arm")
+    arm = m.bar("arm", p.length)
+    m.revolute("A", m.ground.at(0, 0), arm.start)
+    m.drive_angle("motor", arm, constant_rate(p.speed))
+    return m
+
+def motion(m, p):
+    return m.sweep(steps=12)
+"""
+PARTS = """
+from pathlib import Path
+import cadquery as cq
+from mechanisms.arm.mechanism import Params
+from shared.shapes.solid import Solid
+
+HERE = Path(__file__).parent
+
+def box(length, width=8.0):
+    return cq.Workplane().box(length, width, 3.0)
+
+def parts(p: Params) -> dict[str, list[Solid]]:
+    return {"ground": [Solid("plate", box(20.0), "steel", 0)], "arm": [Solid("arm", arm(p), "steel", 0)]}
+
+"""
+HELPER = "mechanisms/arm/helper.py"
+WIDER = put("mechanisms/arm/mechanism.py", MECHANISM.replace("WIDTH = 8.0", "WIDTH = 9.0"))
+FASTER = put("mechanisms/arm/mechanism.py", MECHANISM.replace("speed: float = 6.0", "speed: float = 7.0"))
+LONGER = put("mechanisms/arm/mechanism.py", MECHANISM.replace("length: float = 0.04", "length: float = 0.05"))
+
+
+def step_file(width: float) -> Callable[[Project], None]:
+    def write(project: Project) -> None:
+        import cadquery as cq
+
+        cq.exporters.export(cq.Workplane().box(40.0, width, 3.0), str(project.folder / "bought.step"))
+
+    return write
+
+
+def nothing(project: Project) -> None:
+    pass
+
+
+@pytest.fixture
+def parts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, out_root: Path) -> Project:
+    project = Project(tmp_path / "project", monkeypatch, parts_stage)
+    put("mechanisms/arm/mechanism.py", MECHANISM)(project)
+    return project
+
+
+BY_VALUE = "def arm(p):\n    return box(1000 * p.length)\n"
+CASES: dict[str, tuple[str, Callable[[Project], None], Callable[[Project], None], bool]] = {
+    # what parts.py adds; before the first run; the change; whether the parts are made again
+    "a parameter": (BY_VALUE, nothing, LONGER, True),
+    "a parameter that it does not read": (BY_VALUE, nothing, FASTER, False),
+    "a number of mechanism.py that it does not use": (BY_VALUE, nothing, WIDER, False),
+    "a number of mechanism.py": (
+        "from mechanisms.arm.mechanism import WIDTH\ndef arm(p):\n    return box(40.0, WIDTH)\n",
+        nothing,
+        WIDER,
+        True,
+    ),
+    "mechanism.py as a module": (
+        "from mechanisms.arm import mechanism\ndef arm(p):\n    return box(40.0, mechanism.WIDTH)\n",
+        nothing,
+        WIDER,
+        True,
+    ),
+    "a method of the parameters": ("def arm(p):\n    return box(40.0, p.area() / p.length)\n", nothing, WIDER, True),
+    "parameters of its own": (
+        "P = Params()\ndef arm(p):\n    return box(1000 * P.length)\n",
+        nothing,
+        LONGER,
+        True,
+    ),
+    "a helper that uses mechanism.py": (
+        "from mechanisms.arm.helper import width\ndef arm(p):\n    return box(40.0, width())\n",
+        put(HELPER, "def width():\n    from mechanisms.arm.mechanism import WIDTH\n    return WIDTH\n"),
+        WIDER,
+        True,
+    ),
+    "a helper": (
+        "from mechanisms.arm.helper import WIDTH\ndef arm(p):\n    return box(40.0, WIDTH)\n",
+        put(HELPER, "WIDTH = 8.0\n"),
+        put(HELPER, "WIDTH = 9.0\n"),
+        True,
+    ),
+    "measured data": (
+        "import numpy as np\ndef arm(p):\n    return box(40.0, float(np.loadtxt(HERE / 'width.csv')))\n",
+        put("mechanisms/arm/width.csv", "8"),
+        put("mechanisms/arm/width.csv", "9"),
+        True,
+    ),
+    "a STEP file, which the kernel opens by itself": (
+        "def arm(p):\n    return cq.importers.importStep(str(HERE / 'bought.step'))\n",
+        step_file(8.0),
+        step_file(9.0),
+        True,
+    ),
+}
+
+
+@pytest.mark.parametrize(("text", "first", "change", "again"), CASES.values(), ids=CASES.keys())
+def test_parts_follow_from_what_parts_py_uses(
+    parts: Project, text: str, first: Callable[[Project], None], change: Callable[[Project], None], again: bool
+) -> None:
+    put("mechanisms/arm/parts.py", PARTS + text)(parts)
+    first(parts)
+    assert parts.run()
+    before = read_parts(Out("arm").parts).bodies["arm"].mass.mass
+    for file in parts.folder.iterdir():
+        os.utime(file, (1e9, 1e9))
+    assert not parts.run()
+    change(parts)
+    assert parts.run() == again
+    assert (read_parts(Out("arm").parts).bodies["arm"].mass.mass != before) == again
+    assert not parts.run()
+
+
+def test_where_mechanism_py_counts_the_solver_counts_that_it_imports(parts: Project) -> None:
+    for text, counts in ((BY_VALUE, []), (CASES["a method of the parameters"][0], ["mbsd"])):
+        put("mechanisms/arm/parts.py", PARTS + text)(parts)
+        assert parts.run()
+        assert Stage(Out("arm"), "parts", "", []).notes()["inputs"]["sources"] == counts
+
+
+def test_parameters_from_measured_data_count_by_their_value(parts: Project) -> None:
+    """mechanism.py reads the file when it is loaded; parts.py gets the number."""
+    text = MECHANISM.replace("0.04", "float((Path(__file__).parent / 'length.txt').read_text())")
+    put("mechanisms/arm/mechanism.py", text)(parts)
+    put("mechanisms/arm/parts.py", PARTS + BY_VALUE)(parts)
+    put("mechanisms/arm/length.txt", "0.04")(parts)
+    assert parts.run()
+    put("mechanisms/arm/length.txt", "0.0400")(parts)
+    assert not parts.run()
+    put("mechanisms/arm/length.txt", "0.05")(parts)
+    assert parts.run()
+
+
+MOTION: dict[str, tuple[str, str, Callable[[Project], None], Callable[[Project], None]]] = {
+    # a text of mechanism.py and what stands there instead; before the first run; the change
+    "mechanism.py": ("speed: float = 6.0", "speed: float = 6.0", nothing, FASTER),
+    "a helper": (
+        "constant_rate(p.speed)",
+        "constant_rate(__import__('mechanisms.arm.helper', fromlist=['x']).SPEED)",
+        put(HELPER, "SPEED = 6.0\n"),
+        put(HELPER, "SPEED = 7.0\n"),
+    ),
+    "a file that build() reads": (
+        "constant_rate(p.speed)",
+        "constant_rate(float((Path(__file__).parent / 'speed.txt').read_text()))",
+        put("mechanisms/arm/speed.txt", "6"),
+        put("mechanisms/arm/speed.txt", "7"),
+    ),
+    "a file that motion() reads": (
+        "m.sweep(steps=12)",
+        "m.sweep(steps=int((Path(__file__).parent / 'steps.txt').read_text()))",
+        put("mechanisms/arm/steps.txt", "12"),
+        put("mechanisms/arm/steps.txt", "13"),
+    ),
+    "a model that the solver loads": (
+        "m.sweep(steps=12)",
+        "m.sweep(steps=len(Mechanism.load(Path(__file__).parent / 'model.json').bodies) + 10)",
+        lambda project: saved(project, "one"),
+        lambda project: saved(project, "one", "two"),
+    ),
+}
+
+
+def saved(project: Project, *bodies: str) -> None:
+    from mbsd import Mechanism
+
+    m = Mechanism("saved")
+    for body in bodies:
+        m.bar(body, 0.1)
+    m.save(project.folder / "model.json")
+
+
+@pytest.mark.parametrize(("old", "new", "first", "change"), MOTION.values(), ids=MOTION.keys())
+def test_the_motion_follows_from_what_mechanism_py_uses(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    out_root: Path,
+    old: str,
+    new: str,
+    first: Callable[[Project], None],
+    change: Callable[[Project], None],
+) -> None:
+    with monkeypatch.context() as patch:
+        made = Project(tmp_path / "made", patch, parts_stage)
+        put("mechanisms/arm/mechanism.py", MECHANISM)(made)
+        put("mechanisms/arm/parts.py", PARTS + BY_VALUE)(made)
+        made.run()
+    project = Project(tmp_path / "project", monkeypatch, solve_stage)
+    assert old in MECHANISM
+    put("mechanisms/arm/mechanism.py", MECHANISM.replace(old, new))(project)
+    first(project)
+    assert project.run()
+    before = read_motion(Out("arm").motion)
+    for file in project.folder.iterdir():
+        os.utime(file, (1e9, 1e9))
+    put("mechanisms/arm/notes.md", "read by nobody")(project)
+    assert not project.run()
+    change(project)
+    assert project.run()
+    after = read_motion(Out("arm").motion)
+    assert (after.time != before.time) or (after.bodies != before.bodies)
+    assert after.provenance.inputs != before.provenance.inputs
+    assert not project.run()
+
+
+def test_an_edit_of_the_solver_counts_and_one_of_its_drawing_does_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import shutil
+
+    from shared.stage import paths
+
+    shutil.copytree(ROOT / "mbsd", tmp_path / "mbsd", ignore=shutil.ignore_patterns("__pycache__"))
+    before = sources_state("mbsd")
+    monkeypatch.setattr(paths, "ROOT", tmp_path)
+    assert sources_state("mbsd") == before
+    drawn = sources_state("mbsd/drawing")
+    with (tmp_path / "mbsd" / "drawing" / "skeleton.py").open("a") as file:
+        file.write("# thicker\n")
+    assert (sources_state("mbsd") == before, sources_state("mbsd/drawing") == drawn) == (True, False)
+    with (tmp_path / "mbsd" / "kinematics.py").open("a") as file:
+        file.write("# closer\n")
+    assert sources_state("mbsd") != before

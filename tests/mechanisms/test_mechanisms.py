@@ -1,0 +1,159 @@
+"""Every folder of mechanisms/, without being told: it solves, closes, has solids, a shot and a GLB, never touches."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mechanisms.stages.loading import loading
+from mechanisms.stages.parts.mesh_check import VOLUME_TOLERANCE
+from mechanisms.stages.parts.parts_files import read_mesh
+from render import glb
+from shared import contract
+from shared.contract.shot import Names, read_shot, refuse_unknown
+from shared.stage.paths import ROOT, Out, mechanism_names
+from tests.render.glb_file import GlbFile
+
+
+def _stage(name: str, stage: str, root: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "mechanisms", stage, name],
+        cwd=ROOT,
+        env=os.environ | {"MBSD_OUT": str(root)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.fixture(scope="module", params=mechanism_names())
+def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
+    """All stages before the pictures, run as a user runs them."""
+    root = tmp_path_factory.mktemp(request.param)
+    for stage in ("parts", "solve", "clearance", "shot"):
+        run = _stage(request.param, stage, root)
+        assert run.returncode == 0, f"{stage}: {run.stdout}{run.stderr}"
+    return request.param, root
+
+
+@pytest.fixture
+def out(made: tuple[str, Path], monkeypatch: pytest.MonkeyPatch) -> Out:
+    monkeypatch.setenv("MBSD_OUT", str(made[1]))
+    return Out(made[0])
+
+
+def test_it_closes_and_its_drivers_fix_every_freedom(out: Out) -> None:
+    """A simulated one is free, and keeps its energy but for what impacts take; a driven one comes to no dead point."""
+    motion = contract.read_motion(out.motion)
+    assert motion.diagnostics.position_residual < 1e-10
+    assert motion.diagnostics.velocity_residual < 1e-8
+    assert motion.diagnostics.acceleration_residual < 1e-6
+    if motion.analysis == "simulation":
+        assert motion.diagnostics.dof > len(motion.drivers)
+        audit = np.array(motion.energy.audit) - _taken_by_impacts(motion)
+        assert np.ptp(audit) < 1e-5 * (np.ptp(motion.energy.kinetic) + np.ptp(motion.energy.potential))
+        return
+    assert motion.diagnostics.dof == len(motion.drivers)
+    assert motion.diagnostics.power_residual < 1e-8
+    assert min(motion.diagnostics.singularity_margin) > 1e-4
+
+
+def _taken_by_impacts(motion: contract.Motion) -> np.ndarray:
+    """(T,) energy (J) that the impacts up to each row have changed; of two rows at an impact the second is after it."""
+    time, found = np.array(motion.time), np.zeros(len(motion.time))
+    for event in motion.events:
+        before = int(np.searchsorted(time, event.time))
+        found[before + 1 if before < len(time) and time[before] == event.time else before :] += event.energy
+        assert event.what != "impact" or event.energy <= 1e-12 * max(motion.energy.kinetic)
+    return found
+
+
+def test_pins_of_two_bodies_stay_together(out: Out) -> None:
+    """From the file alone: both sides of every revolute joint, placed by the poses of their bodies, coincide."""
+    motion = contract.read_motion(out.motion)
+    m = loading.load(out.name, "mechanism").build(loading.params(out.name))
+    for joint in m.joints.values():
+        if joint.kind.name != "revolute":
+            continue
+        places = []
+        for marker in (joint.i, joint.j):
+            body = motion.bodies.get(marker.body.name)
+            if body is None:
+                places.append(np.broadcast_to([marker.x, marker.y], (len(motion.time), 2)))
+                continue
+            c, s = np.cos(body.theta), np.sin(body.theta)
+            x = np.array(body.x) + c * marker.x - s * marker.y
+            places.append(np.stack([x, np.array(body.y) + s * marker.x + c * marker.y], axis=1))
+        np.testing.assert_allclose(places[0], places[1], atol=1e-12)
+
+
+def test_solids_and_bodies_have_the_same_names_and_masses(out: Out) -> None:
+    """But for masses that mechanism.py gives, and bodies that are left out."""
+    motion, parts = contract.read_motion(out.motion), contract.read_parts(out.parts)
+    assert (set(parts.bodies) | set(parts.without_solids)) - {"ground"} == set(motion.bodies)
+    for name, body in motion.bodies.items():
+        assert body.mass > 0
+        if name in parts.without_solids:
+            assert body.mass_from in ("mechanism", "estimate")
+        if name in parts.without_solids or body.mass_from == "mechanism":
+            continue
+        assert body.mass_from == "parts"
+        assert (body.mass, body.com, body.inertia) == (
+            parts.bodies[name].mass.mass,
+            parts.bodies[name].mass.com,
+            parts.bodies[name].mass.inertia,
+        )
+
+
+def test_solids_are_closed_and_of_the_size_that_is_told(out: Out) -> None:
+    parts = contract.read_parts(out.parts)
+    for body in parts.bodies.values():
+        for piece in body.pieces.values():
+            mesh = read_mesh((out.parts_folder / piece.stl).read_bytes())
+            assert mesh.is_watertight
+            assert mesh.volume * 1e-9 == pytest.approx(piece.mass.volume, rel=VOLUME_TOLERANCE)
+            assert mesh.bounds[:, 2] / 1000 == pytest.approx(np.array(piece.z_range), abs=1e-6)
+            assert len(mesh.faces) == piece.triangles
+
+
+def test_the_glb_moves_as_data_json_has_it(out: Out) -> None:
+    """Corners of the box round all pieces of a body, at samples all over the motion, to 0.01 mm."""
+    glb.run(out.name)
+    motion, parts = contract.read_motion(out.motion), contract.read_parts(out.parts)
+    found = GlbFile(out.glb.read_bytes())
+    boxes = {body: found.box_of(body) for body in parts.bodies}
+    assert set(boxes) == {name for name in found.nodes if name in {"ground", *motion.bodies}}
+    start, time = motion.time[0], np.array(motion.time)
+    for t in found.clock[:: max(1, len(found.clock) // 12)]:
+        k = int(np.abs(time - start - t).argmin())
+        matrices = found.matrices(float(t))
+        for body, corners in boxes.items():
+            pose = motion.bodies.get(body)
+            x, y, angle = (pose.x[k], pose.y[k], pose.theta[k]) if pose else (0.0, 0.0, 0.0)
+            place = (corners[:, 0] + 1j * corners[:, 1]) * np.exp(1j * angle) + complex(x, y)
+            upright = np.column_stack([place.real, corners[:, 2], -place.imag])  # glTF's y is up
+            np.testing.assert_allclose((corners @ matrices[body][:3, :3].T) + matrices[body][:3, 3], upright, atol=1e-5)
+
+
+def test_the_shot_names_what_there_is(out: Out) -> None:
+    refuse_unknown(read_shot(out.shot), Names.of(contract.read_motion(out.motion), contract.read_parts(out.parts)))
+
+
+def test_a_second_run_has_nothing_to_do(made: tuple[str, Path]) -> None:
+    name, root = made
+    before = {path: path.read_bytes() for path in sorted(root.rglob("*.json"))}
+    for stage in ("parts", "solve", "clearance", "shot"):
+        assert "nothing to do" in _stage(name, stage, root).stdout
+    assert {path: path.read_bytes() for path in sorted(root.rglob("*.json"))} == before
+
+
+def test_solving_anew_gives_the_same_bytes(made: tuple[str, Path], out: Out) -> None:
+    before = out.motion.read_bytes()
+    out.motion.unlink()
+    assert _stage(made[0], "solve", made[1]).returncode == 0
+    assert out.motion.read_bytes() == before

@@ -1,0 +1,192 @@
+"""The parts stage: what it redoes, what it leaves, what it refuses."""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import cadquery as cq
+import pytest
+
+from mechanisms.stages.loading.inputs import Inputs
+from mechanisms.stages.parts import stage as parts_stage
+from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
+from mechanisms.stages.parts.parts_files import read_mesh, stl_bytes
+from mechanisms.stages.parts.traced_params import traced
+from shared.contract import read_parts
+from shared.shapes.build import extruded
+from shared.shapes.outline import circle
+from shared.shapes.solid import Solid, placed
+from shared.shapes.units import mm
+from shared.stage.errors import UserError
+from shared.stage.paths import Out
+from shared.stage.stages import Stage
+
+
+@dataclass(frozen=True)
+class Params:
+    """Lengths in m, speed in rad/s."""
+
+    crank: float = 0.040
+    rocker: float = 0.090
+    speed: float = 6.0
+
+    @property
+    def half(self) -> float:
+        return self.crank / 2
+
+
+def washer(name: str, x: float, holes: int = 1, material: str = "steel") -> Solid:
+    shape = extruded(circle(0, 0, 8.0), 3.0, holes=[circle(0, 0, 4.0)])
+    return Solid(name, placed(shape, x), material, holes)
+
+
+def two_bodies(p: Any) -> dict[str, list[Solid]]:
+    return {
+        "ground": [washer("plate", 0.0)],
+        "crank": [washer("crank", mm(p.crank)), washer("pin", 0.0, material="brass")],
+        "rocker": [washer("rocker", mm(p.rocker))],
+    }
+
+
+class Bench:
+    """The stage on parameters and solids of the test's own."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.params: Any = Params()
+        self.parts: Any = two_bodies
+        self.builds = 0
+        monkeypatch.setattr(parts_stage, "params", lambda name: self.params)
+        monkeypatch.setattr(parts_stage, "load", self._load)
+
+    def _load(self, name: str, file: str) -> SimpleNamespace:
+        self.builds += 1
+        return SimpleNamespace(parts=self.parts)
+
+    def run(self) -> dict[str, float]:
+        """Run the stage; the time stamps of the files."""
+        parts_stage.run("four_bar")
+        folder = Out("four_bar").parts_folder
+        for path in folder.iterdir():  # so that a file that is written again shows
+            if path.stat().st_mtime > 1e9:
+                os.utime(path, (1e9 + self.builds, 1e9 + self.builds))
+        return {path.name: path.stat().st_mtime for path in folder.iterdir()}
+
+
+@pytest.fixture
+def bench(monkeypatch: pytest.MonkeyPatch, out_root: Path) -> Bench:
+    return Bench(monkeypatch)
+
+
+def test_nothing_changed_nothing_built(bench: Bench) -> None:
+    bench.run()
+    bench.run()
+    assert bench.builds == 1
+    assert parts_stage.are_current("four_bar")
+    bench.params = replace(bench.params, crank=0.041)
+    assert not parts_stage.are_current("four_bar")
+
+
+def test_a_parameter_that_the_parts_do_not_read_redoes_nothing(bench: Bench) -> None:
+    bench.run()
+    bench.params = replace(bench.params, speed=1.0)
+    bench.run()
+    assert bench.builds == 1
+
+
+def test_a_length_changes_what_follows_from_it_and_nothing_else(bench: Bench) -> None:
+    bench.run()
+    folder = Out("four_bar").parts_folder
+    before = {path.name: (path.read_bytes(), path.stat().st_ino) for path in folder.iterdir()}
+    bench.params = replace(bench.params, crank=0.050)
+    bench.run()
+    assert bench.builds == 2
+    after = {path.name: (path.read_bytes(), path.stat().st_ino) for path in folder.iterdir()}
+    assert {name for name in after if after[name] != before[name]} == {"crank.stl", "crank.step", "parts.json"}
+    crank = read_parts(folder / "parts.json").bodies["crank"].pieces["crank"]
+    assert crank.mass.com == pytest.approx((0.050, 0.0), abs=1e-9)
+
+
+def test_solids_that_are_gone_leave_no_files(bench: Bench) -> None:
+    bench.run()
+    bench.params = replace(bench.params, rocker=0.091)  # so that the stage runs
+    bench.parts = lambda p: {"ground": [washer("plate", 0.0)], "rocker": [washer("rocker", mm(p.rocker))]}
+    assert set(bench.run()) == {"plate.stl", "plate.step", "rocker.stl", "rocker.step", "parts.json"}
+
+
+@pytest.mark.parametrize(
+    ("parts", "message"),
+    [
+        (lambda p: {"ground": [washer("plate", 0.0, holes=2)]}, "ground: plate: Euler number 0 means 1 through holes"),
+        (lambda p: {"ground": [washer("a", 0.0), washer("a", 9.0)]}, "both have a solid 'a'"),
+        (lambda p: {"ground": [washer("a b", 0.0)]}, "a solid is called 'a b'; use letters, digits and _"),
+        (lambda p: {"ground": [washer("a", 0.0, material="cheese")]}, "a is of 'cheese'; there is aluminium"),
+        (lambda p: {"ground": []}, r"parts\(\)\['ground'\] must be a list of one Solid or more"),
+        (lambda p: {}, r"parts\(\) must return a dict"),
+        (
+            lambda p: {"ground": [Solid("two", cq.Workplane().pushPoints([(0, 0), (9, 0)]).box(2, 2, 2), "steel", 0)]},
+            "ground: two consists of 2 separate solids",
+        ),
+    ],
+)
+def test_what_is_wrong_is_named(bench: Bench, parts: Any, message: str) -> None:
+    bench.run()
+    before = read_parts(Out("four_bar").parts)
+    bench.parts, bench.params = parts, replace(bench.params, crank=0.041)
+    with pytest.raises(UserError, match=message):
+        bench.run()
+    assert read_parts(Out("four_bar").parts) == before  # what was made stays
+
+
+def test_a_mesh_that_is_off_in_volume_is_refused() -> None:
+    solid = only_solid(washer("a", 0.0).shape, "a")
+    mesh = read_mesh(stl_bytes(solid))
+    with pytest.raises(UserError, match=r"a: its mesh has .* allowed 0.5%; a fillet has probably failed"):
+        check_mesh(mesh, 1.01 * solid.Volume(), 1, "a")
+    mesh.update_faces([True] * (len(mesh.faces) - 1) + [False])
+    with pytest.raises(UserError, match="a: its mesh has 3 open edges"):
+        check_mesh(mesh, solid.Volume(), 1, "a")
+
+
+def test_reads_of_parameters_are_seen_through_properties_and_asdict() -> None:
+    stand_in, seen = traced(Params())
+    assert isinstance(stand_in, Params)
+    assert (stand_in.rocker, stand_in) == (0.090, stand_in)
+    assert seen == {"rocker"}
+    stand_in, seen = traced(Params())
+    assert stand_in.half == 0.020
+    assert seen == {"half", "crank"}
+    stand_in, seen = traced(Params())
+    assert asdict(stand_in) == asdict(Params())
+    assert seen == {"crank", "rocker", "speed"}
+
+
+def test_a_computed_parameter_makes_the_text_of_its_file_count(
+    bench: Bench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """``half`` may be computed from anything, so all of mechanism.py is part of the key."""
+    folder = tmp_path / "four_bar"
+    folder.mkdir()
+    (folder / "mechanism.py").write_text("class Params: ...\n")
+    (folder / "parts.py").write_text("from .mechanism import Params\ndef parts(p: Params): ...\n")
+    monkeypatch.setattr(parts_stage, "mechanism_folder", lambda _: folder)
+    for module in [module for module in sys.modules if module.startswith("mechanisms.four_bar")]:
+        monkeypatch.delitem(sys.modules, module)  # the real one, which an earlier test may have loaded
+    nothing = Inputs()
+    plain = parts_stage._key(Params(), ["crank"], nothing)
+    assert parts_stage._key(Params(speed=1.0), ["crank"], nothing) == plain
+    assert parts_stage._key(Params(crank=0.041), ["crank"], nothing) != plain
+    assert not parts_stage._more_than_values("four_bar", Params(), ["crank"])
+    assert parts_stage._more_than_values("four_bar", Params(), ["crank", "half"])
+    bench.run()
+    notes = Stage(Out("four_bar"), "parts", "", []).notes()
+    assert not [file for file in notes["inputs"]["files"] if file.endswith("four_bar/mechanism.py")]
+    bench.parts = lambda p: {"ground": [washer("plate", mm(p.half))]}
+    bench.params = replace(bench.params, crank=0.050)
+    bench.run()
+    notes = Stage(Out("four_bar"), "parts", "", []).notes()
+    assert [file for file in notes["inputs"]["files"] if file.endswith("four_bar/mechanism.py")]

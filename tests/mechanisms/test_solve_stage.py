@@ -1,0 +1,145 @@
+"""Masses from parts to model, what is refused, and the motion as the contract has it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mbsd import Mechanism, angle_reaches, constant_rate
+from mechanisms.stages.loading import loading
+from mechanisms.stages.solve.masses import give_masses
+from mechanisms.stages.solve.motion_file import to_motion
+from mechanisms.stages.solve.stage import solve
+from shared import contract
+from shared.stage.errors import UserError
+
+
+def _mechanism() -> Mechanism:
+    m = Mechanism("arm")
+    arm = m.bar("arm", 0.2)
+    m.revolute("A", m.ground.at(0, 0), arm.start)
+    m.drive_angle("motor", arm, constant_rate(6.0))
+    m.trace("tip", arm.end)
+    return m
+
+
+def _parts(*names: str) -> contract.Parts:
+    mass = contract.Mass(mass=0.3, com=(0.11, 0.01), inertia=2e-4, volume=1e-4)
+    piece = contract.Piece(
+        material="steel", stl="a.stl", step="a.step", mass=mass, z_range=(0.0, 0.01), triangles=12, stl_sha256="0"
+    )
+    return contract.Parts(
+        mechanism="arm",
+        provenance=contract.Provenance(inputs="x", versions={}),
+        bodies={name: contract.BodyParts(pieces={"a": piece}, mass=mass, z=0.005) for name in names},
+    )
+
+
+def test_masses_of_the_parts_reach_model_and_file() -> None:
+    m, parts = _mechanism(), _parts("ground", "arm")
+    give_masses(m, parts)
+    assert (m.bodies["arm"].mass, m.bodies["arm"].com, m.bodies["arm"].inertia) == (0.3, (0.11, 0.01), 2e-4)
+    motion = to_motion(m.sweep(steps=8), parts, "key", {"numpy": "2"})
+    arm = motion.bodies["arm"]
+    assert (arm.mass, arm.com, arm.inertia, arm.z) == (0.3, (0.11, 0.01), 2e-4, 0.005)
+    assert motion.period == pytest.approx(2 * 3.141592653589793 / 6.0)
+    assert motion.joints["A"].bodies == ("ground", "arm")
+    assert motion.drivers["motor"].kind == "angle"
+    assert set(motion.points) == {"tip"}
+    assert max(motion.drivers["motor"].effort) > 0.2
+
+
+class _Author:
+    """A mechanism.py of the test's own."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, build: Any, motion: Any = None) -> None:
+        self.build = build
+        if motion is not None:
+            self.motion = motion
+        monkeypatch.setattr(loading, "load", lambda *_: self)
+        monkeypatch.setattr(loading, "params", lambda _: None)
+
+
+def _called(name: str) -> Mechanism:
+    m = _mechanism()
+    m.name = name
+    return m
+
+
+@pytest.mark.parametrize(
+    ("build", "motion", "words"),
+    [
+        (lambda p: None, None, r"mechanism\.py: build\(\) returned None, .*; does it end with 'return m'\?"),
+        (lambda p: 3.0, None, r"build\(\) returned a float"),
+        (lambda p: _called("crank"), None, r"arm/mechanism\.py: build\(\) calls its mechanism 'crank', but the folder"),
+        (lambda p: _mechanism(), lambda m, p: None, r"motion\(\) returned None; it must return a Solution"),
+        (
+            lambda p: _mechanism(),
+            lambda m, p: _called("leg").sweep(steps=4),
+            r"motion\(\) solved 'leg' with the bodies",
+        ),
+    ],
+)
+def test_what_is_no_model_or_solution_is_told(
+    monkeypatch: pytest.MonkeyPatch, build: Any, motion: Any, words: str
+) -> None:
+    _Author(monkeypatch, build, motion)
+    with pytest.raises(UserError, match=words):
+        solve("arm", _parts("ground", "arm"))
+
+
+def test_a_point_in_millimetres_is_told_in_a_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def build(p: None) -> Mechanism:
+        m = _mechanism()
+        m.trace("P", m.bodies["arm"].at(60, 30))
+        return m
+
+    _Author(monkeypatch, build, lambda m, p: m.sweep(steps=4))
+    solve("arm", _parts("ground", "arm"))
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("solve: warning: arm: trace P: its point (60, 30) on arm is")
+
+
+def test_events_reach_the_file_with_both_of_their_rows(tmp_path: Path) -> None:
+    m = Mechanism("arm", gravity=(0, -9.81))
+    arm = m.bar("arm", 0.2, mass=0.3)
+    m.revolute("A", m.ground.at(0, 0), arm.start)
+    m.event(
+        "passes",
+        angle_reaches(arm, -1.0),
+        direction=-1,
+        action=lambda moment: moment.set_velocity("arm", 0.0, 0.2, 2.0),
+    )
+    m.start_near(arm=0)
+    motion = to_motion(m.simulate(0.25, steps=20, event_rows=True), _parts("ground", "arm"), "key", {})
+    contract.write_motion(tmp_path / "data.json", motion)
+    assert contract.read_motion(tmp_path / "data.json") == motion
+    (event,) = motion.events
+    before = motion.time.index(event.time)
+    assert motion.time[before + 1] == event.time
+    assert motion.bodies["arm"].omega[before] < -5.0
+    assert motion.bodies["arm"].theta[before : before + 2] == pytest.approx([-1.0, -1.0], abs=1e-9)
+
+
+def test_names_that_differ_are_told() -> None:
+    with pytest.raises(UserError, match=r"it has: army; did you mean 'army'\? mechanism\.py and parts\.py must name"):
+        give_masses(_mechanism(), _parts("ground", "army"))
+    with pytest.raises(UserError, match=r"arm: parts\.py has no body 'arm'; it has: lever"):
+        give_masses(_mechanism(), _parts("ground", "lever"))
+    with pytest.raises(UserError, match=r"arm: mechanism\.py has no body 'lever'"):
+        give_masses(_mechanism(), _parts("ground", "arm", "lever"))
+
+
+def test_a_mass_of_mechanism_py_wins_over_that_of_the_parts() -> None:
+    m = _mechanism()
+    m.set_mass("arm", 0.5, (0.1, 0.0), 1e-3)
+    source, (said,) = give_masses(m, _parts("ground", "arm"))
+    assert source == {"arm": "mechanism"}
+    assert (m.bodies["arm"].mass, m.bodies["arm"].com, m.bodies["arm"].inertia) == (0.5, (0.1, 0.0), 1e-3)
+    assert said == "masses of mechanism.py count, not those of the parts: arm 0.5 kg (parts 0.3 kg)"
+    m = _mechanism()
+    assert give_masses(m, _parts("ground", "arm")) == ({"arm": "parts"}, [])

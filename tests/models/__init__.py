@@ -1,0 +1,1 @@
+"""Models that tests of several rooms share."""

@@ -1,0 +1,89 @@
+"""The documents are true: their Python runs, their commands exist, their links lead somewhere."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from shared.stage.paths import ROOT
+
+PUBLIC = ("README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md")
+DOCUMENTS = [ROOT / name for name in PUBLIC] + sorted((ROOT / "docs").rglob("*.md"))
+BLOCK = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
+
+
+def blocks(document: Path, *languages: str) -> list[str]:
+    return [code for language, code in BLOCK.findall(document.read_text()) if language in languages]
+
+
+def make_targets(document: Path) -> set[str]:
+    """Targets named as ``make target`` in code, inline or in a block; a placeholder like <name> is made real."""
+    text = document.read_text()
+    code = "\n".join(re.findall(r"`([^`\n]+)`", text)) + "\n" + "\n".join(code for _, code in BLOCK.findall(text))
+    code = re.sub(r'="[^"]*"', "=x", code)
+    targets = set()
+    for line in re.findall(r"\bmake ((?:[a-z][a-z_<>-]*|[A-Z]+=\S+)(?: (?:[a-z][a-z_<>-]*|[A-Z]+=\S+))*)", code):
+        targets |= {word.replace("<name>", "four-bar") for word in line.split() if "=" not in word}
+    return targets
+
+
+def test_the_readme_shows_the_four_bar_as_it_is() -> None:
+    shown = blocks(ROOT / "README.md", "python")[0]
+    file = (ROOT / "mechanisms" / "four_bar" / "mechanism.py").read_text()
+    assert _without_docstrings(shown) == _without_docstrings(file)
+
+
+def _without_docstrings(code: str) -> str:
+    tree = ast.parse(code)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Module | ast.FunctionDef | ast.ClassDef) and ast.get_docstring(node) is not None:
+            node.body = node.body[1:]
+    return ast.dump(tree)
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_python_blocks_run(document: Path, tmp_path: Path) -> None:
+    """In order, in one process, from the project's folder."""
+    code = "\n".join(blocks(document, "python", "py"))
+    environment = os.environ | {"MBSD_OUT": str(tmp_path), "MPLBACKEND": "Agg", "PYTHONPATH": str(ROOT)}
+    script = tmp_path / "document.py"
+    script.write_text(code)
+    done = subprocess.run([sys.executable, str(script)], cwd=ROOT, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_make_targets_exist(document: Path) -> None:
+    environment = {key: value for key, value in os.environ.items() if key not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS")}
+    for target in sorted(make_targets(document)):
+        done = subprocess.run(["make", "-n", target], cwd=ROOT, env=environment, capture_output=True, text=True)
+        assert done.returncode == 0, f"{document.name} names make {target}: {done.stderr}"
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_links_lead_to_files(document: Path) -> None:
+    for link in re.findall(r"\]\(([^)#\s]+)", document.read_text()) + re.findall(
+        r'src="([^"]+)"', document.read_text()
+    ):
+        if not link.startswith(("http://", "https://", "mailto:")):
+            assert (document.parent / link).exists(), f"{document.name} links to {link}"
+
+
+def test_the_readme_is_short_and_shows_the_two_commands() -> None:
+    text = (ROOT / "README.md").read_text()
+    assert len(text.splitlines()) <= 120
+    assert "make run-four-bar" in text
+    assert "make test" in text
+
+
+def test_pictures_are_small_enough_for_a_clone() -> None:
+    pictures = [path for path in (ROOT / "docs").rglob("*") if path.suffix in (".svg", ".png", ".jpg", ".gif")]
+    assert len(pictures) > 10
+    large = {path.name: path.stat().st_size for path in pictures if path.stat().st_size > 300_000}
+    assert not large

@@ -1,0 +1,74 @@
+"""Who may import whom, where import-linter cannot look: the three files of each mechanism."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from shared.stage.paths import MECHANISMS, ROOT
+
+ALLOWED = {
+    "mechanism.py": {"mbsd", "numpy"},
+    "parts.py": {"shared", "cadquery", "numpy"},
+    "shot.py": {"shared"},
+}
+FILES = [file for folder in sorted(MECHANISMS.glob("*/mechanism.py")) for file in sorted(folder.parent.glob("*.py"))]
+TEMPLATES = sorted((MECHANISMS / "stages" / "new" / "templates").glob("*/*.py.txt"))
+
+
+def imports(file: Path) -> set[str]:
+    """Modules that a file imports, dotted."""
+    found = set()
+    for node in ast.walk(ast.parse(file.read_text().replace("@NAME@", "new_templates"))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{file} imports relatively"
+            found.add(node.module or "")
+    return found
+
+
+@pytest.mark.parametrize("file", FILES + TEMPLATES, ids=lambda file: f"{file.parent.name}/{file.name}")
+def test_a_mechanism_imports_its_own_world_and_no_other_mechanism(file: Path) -> None:
+    own = "mechanisms.new_templates." if file in TEMPLATES else f"mechanisms.{file.parent.name}."
+    allowed = ALLOWED[file.name.removesuffix(".txt")]
+    for module in imports(file):
+        top = module.partition(".")[0]
+        by_itself = file.name.startswith("parts.py") and module == "mechanisms.automatic"
+        assert by_itself or module.startswith(own) or top in allowed or top in sys.stdlib_module_names, (
+            f"{file} imports {module}"
+        )
+
+
+def test_a_mechanism_is_three_files_at_most() -> None:
+    for folder in {file.parent for file in FILES}:
+        files = {f.name for f in folder.iterdir() if f.name != "__pycache__"}
+        assert "mechanism.py" in files
+        assert files <= set(ALLOWED), folder
+
+
+def test_import_linter_sees_every_other_folder() -> None:
+    """It skips folders without an __init__.py."""
+    for room in ("mbsd", "render", "shared", "mechanisms"):
+        for file in (ROOT / room).rglob("*.py"):
+            if file not in FILES:
+                assert (file.parent / "__init__.py").is_file(), file
+
+
+HEAVY = {"bpy", "cadquery", "trimesh", "manifold3d", "matplotlib", "numba", "scipy", "rich"}
+STAGES = [
+    *(f"mechanisms.stages.{room}.stage" for room in ("parts", "solve", "clearance", "shot")),
+    "render.plots", "render.frames.still", "render.frames.frames", "render.frames.film", "render.frames.blend",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("module", STAGES)
+def test_a_stage_loads_nothing_heavy_before_it_knows_that_it_must_run(module: str) -> None:
+    code = f"import sys, {module}; print(*(set(sys.modules) & {HEAVY!r}))"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == []

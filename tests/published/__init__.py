@@ -1,0 +1,1 @@
+"""Published answers: numbers of others."""

@@ -1,0 +1,108 @@
+"""The camera holds the whole swept motion, as tightly as its margin says."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from render.film.film import Film
+from render.film.framing import NEAREST, SENSOR, CameraPose, axes, depth_of_field, fit, project
+from render.film.solids import prism, read_vertices, swept
+from shared.contract import read_motion, read_parts
+from shared.contract.shot import Camera, Shot
+from shared.stage.errors import UserError
+from tests.render import film_fixture
+
+CLOUDS = arrays(float, (12, 3), elements=st.floats(-0.2, 0.2))
+ANGLES = st.tuples(st.floats(-3, 3), st.floats(0.1, 1.5))
+
+
+@given(CLOUDS, ANGLES, st.floats(30, 120), st.floats(0, 0.3))
+def test_all_points_are_inside_the_margin_and_two_sides_touch_it(
+    points: np.ndarray, angles: tuple[float, float], lens: float, margin: float
+):
+    points = np.concatenate([points, [[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0.05]]])
+    position, _ = fit(points, *angles, lens, margin)
+    camera = CameraPose(
+        position=tuple(position), azimuth=angles[0], elevation=angles[1], lens=lens, focus=1.0, fstop=0.0
+    )
+    pixels = project(camera, points, 1600, 900) / [1600, 900]
+    assert pixels.min() >= margin - 1e-6
+    assert pixels.max() <= 1 - margin + 1e-6
+    low, high = pixels.min(axis=0), pixels.max(axis=0)
+    touching = [(abs(low[k] - margin) < 1e-6) and (abs(high[k] - 1 + margin) < 1e-6) for k in (0, 1)]
+    nearest = ((points - position) @ axes(*angles)[2]).min()
+    assert any(touching) or nearest == pytest.approx(NEAREST * np.linalg.norm(np.ptp(points, axis=0)))
+
+
+def test_what_is_right_up_and_near_lands_right_up():
+    camera = CameraPose(position=(0.0, -1.0, 0.0), azimuth=0.0, elevation=0.0, lens=SENSOR / 2, focus=1.0, fstop=0.0)
+    assert project(camera, np.array([[0.0, 0.0, 0.0]]), 160, 90)[0] == pytest.approx([80, 45])
+    assert project(camera, np.array([[0.5, 0.0, 0.25]]), 160, 90)[0] == pytest.approx([120, 25])
+
+
+@pytest.mark.parametrize("orbit", [0.0, 14.0])
+def test_every_body_stays_in_the_frame_over_the_whole_film(out_root: Path, orbit: float):
+    shot = Shot(camera=Camera(orbit=orbit, margin=0.08), seconds_per_turn=1.0)
+    out = film_fixture.write(shot)
+    film = Film(read_motion(out.motion), read_parts(out.parts), shot, out.parts_folder)
+    extremes = []
+    for frame in range(30):
+        state = film.state(frame)
+        for body, solids in film.parts.bodies.items():
+            for piece in solids.pieces.values():
+                corners = swept(read_vertices(out.parts_folder / piece.stl), np.array([state.bodies[body]]))
+                extremes.append(project(state.camera, corners, 1280, 720) / [1280, 720])
+    pixels = np.concatenate(extremes)
+    assert pixels.min() >= 0.08 - 2e-3
+    assert pixels.max() <= 0.92 + 2e-3
+    assert np.ptp(pixels, axis=0).max() > 0.70  # and not lost in it
+
+
+def test_depth_of_field_blurs_the_nearest_and_the_farthest_part_alike():
+    near, far, lens, blur = 0.4, 0.6, 55.0, 1.5
+    focus, fstop = depth_of_field(near, far, lens, blur)
+    for distance in (near, far):
+        s, d = focus * 1000, distance * 1000  # mm
+        disc = lens**2 * abs(d - s) / (fstop * d * (s - lens))
+        assert disc / SENSOR * 1280 == pytest.approx(blur)
+    assert depth_of_field(near, far, lens, 0.0)[1] == 0.0
+
+
+def test_axes_are_right_handed():
+    right, up, forward = axes(0.4, 0.7)
+    assert np.cross(right, forward) == pytest.approx(up)
+    assert np.linalg.norm([right, up, forward], axis=1) == pytest.approx([1, 1, 1])
+    assert forward[2] == pytest.approx(-math.sin(0.7))
+
+
+@given(arrays(float, (30, 3), elements=st.floats(-1, 1)))
+def test_the_prism_holds_every_vertex(vertices: np.ndarray):
+    outline = prism(vertices)
+    assert len(outline) <= 2 * len(vertices)
+    directions = np.random.default_rng(0).normal(size=(50, 3))
+    assert np.all((outline @ directions.T).max(axis=0) >= (vertices @ directions.T).max(axis=0) - 1e-12)
+
+
+def test_parts_without_a_solid_are_refused(out_root: Path):
+    out = film_fixture.write()
+    parts = read_parts(out.parts)
+    parts.bodies = {}
+    with pytest.raises(UserError, match=r"four_bar: parts\.json has no solids"):
+        Film(read_motion(out.motion), parts, Shot(trails=()), out.parts_folder)
+
+
+def test_a_truncated_stl_is_refused(out_root: Path):
+    out = film_fixture.write()
+    path = out.parts_folder / "crank-crank.stl"
+    path.write_bytes(path.read_bytes()[:-20])
+    with pytest.raises(UserError, match=r"crank-crank\.stl is not a whole binary STL"):
+        read_vertices(path)
+    with pytest.raises(UserError, match=r"crank-crank\.stl is not the file parts.json describes"):
+        Film(read_motion(out.motion), read_parts(out.parts), Shot(), out.parts_folder)

@@ -1,0 +1,142 @@
+"""Coils, cylinders and ropes of films: their geometry between two points that move; no Blender."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+
+from render.blender.scene.tubes import SIDES, vertices
+from render.film.film import Film
+from render.film.poses import Moment
+from render.film.tubes.stretched import HOOK, helix, placed, sagging
+from render.frames.keys import scene_key
+from render.presets import PRESETS
+from shared.contract import Action, ContactMotion, ForceMotion, Motion, Shape, read_motion, read_parts
+from shared.contract.shot import Shot, read_shot
+from tests.render import film_fixture
+
+A = np.array([0.1, -0.2, 0.03])
+DOWN = np.array([0.0, -1.0, 0.0])
+MARKERS = ((0.05, 0.2, 0.0), (0.03, 0.01, 0.0))
+
+
+def force(motion: Motion, stiff: bool) -> ForceMotion:
+    """A spring from a point of ground to one of the rocker, or a damper if it holds no energy."""
+    rocker = motion.bodies["rocker"]
+    end = np.array([placed(pose, MARKERS[1]) for pose in zip(rocker.x, rocker.y, rocker.theta, strict=True)])
+    value = np.hypot(*(end - MARKERS[0][:2]).T)
+    zero = np.zeros(len(value)).tolist()
+    return ForceMotion(
+        kind="spring",
+        actions=[Action(body="rocker", x=end[:, 0].tolist(), y=end[:, 1].tolist(), fx=zero, fy=zero, torque=zero)],
+        several=False, measures="length", value=value.tolist(), rate=zero, effort=zero, normal=None, power=zero,
+        potential=[float(stiff)] * len(value), shape=Shape(bodies=("ground", "rocker"), markers=MARKERS),
+    )  # fmt: skip
+
+
+def film(stiff: bool = True, rope: float | None = None) -> Film:
+    out = film_fixture.write(Shot(seconds_per_turn=0.4))
+    motion = read_motion(out.motion)
+    zero = np.zeros(len(motion.time)).tolist()
+    shape = Shape(bodies=("ground", "rocker"), markers=MARKERS, length=rope)
+    contact = ContactMotion(
+        kind="rope", bodies=("ground", "rocker"), x=zero, y=zero, fx=zero, fy=zero, torque=zero, gap=zero, rate=zero,
+        normal=zero, friction=zero, state=["open"] * len(zero), shape=shape,
+    )  # fmt: skip
+    motion = msgspec.structs.replace(
+        motion, forces={"spring": force(motion, stiff)}, contacts={} if rope is None else {"rope": contact}
+    )
+    return Film(motion, read_parts(out.parts), read_shot(out.shot), out.parts_folder)
+
+
+@pytest.mark.parametrize("length", [0.05, 0.11, 0.3])
+def test_a_coil_keeps_its_turns_and_its_radius_however_long_it_is(length: float):
+    direction = np.array([0.6, 0.8, 0.0])
+    b, turns, radius = A + length * direction, 7, 0.008
+    path = helix(A, b, radius, turns)
+    assert path[0] == pytest.approx(A)
+    assert path[-1] == pytest.approx(b)
+    assert len(path) == len(helix(A, A + direction, radius, turns))
+    along = (path - A) @ direction
+    off = path - A - along[:, None] * direction
+    distance = np.linalg.norm(off, axis=1)
+    inside = (along > length * (HOOK + (1 - 2 * HOOK) / (turns + 2))) & (along < length * (1 - HOOK) * 0.98)
+    inside &= along < length - length * (HOOK + (1 - 2 * HOOK) / (turns + 2))
+    assert distance[inside] == pytest.approx(radius)
+    assert distance.max() < radius * (1 + 1e-9)
+    side = np.array([-0.8, 0.6, 0.0])
+    angle = np.unwrap(np.arctan2(off[inside] @ np.array([0.0, 0.0, 1.0]), off[inside] @ side))
+    assert abs(angle[-1] - angle[0]) / (2 * np.pi) == pytest.approx(turns, abs=0.2)
+    assert (np.diff(along) > 0).all()
+
+
+@pytest.mark.parametrize("distance", [0.02, 0.2, 0.399])
+def test_a_slack_rope_has_its_length_and_hangs_down(distance: float):
+    b = A + distance * np.array([1.0, 0.0, 0.0])
+    path = sagging(A, b, 0.4, DOWN)
+    assert np.linalg.norm(np.diff(path, axis=0), axis=1).sum() == pytest.approx(0.4, rel=1e-9)
+    assert path[1:-1, 1].max() < A[1]
+    assert path[[0, -1]] == pytest.approx(np.array([A, b]))
+
+
+def test_a_taut_rope_and_one_without_weight_are_straight():
+    b = A + np.array([0.4, 0.0, 0.0])
+    for path in (sagging(A, b, 0.4, DOWN), sagging(A, b, 0.6, np.zeros(3))):
+        assert path[:, 1:] == pytest.approx(np.tile(A[1:], (len(path), 1)))
+
+
+def test_a_tube_has_its_radius_everywhere():
+    path = helix(A, A + np.array([0.1, 0.0, 0.0]), 0.01, 5)
+    rings = vertices([(float(x), float(y), float(z)) for x, y, z in path], 0.002).reshape(-1, SIDES, 3)
+    assert np.linalg.norm(rings - path[:, None], axis=2) == pytest.approx(0.002, rel=1e-3)
+    assert rings.mean(axis=1) == pytest.approx(path, abs=1e-6)
+
+
+def test_the_spring_follows_its_bodies_in_every_frame(out_root: Path):
+    seen = film()
+    for frame in (0, 4, 9):
+        state, at = seen.state(frame), seen.clock.moment(frame)
+        coil = np.array(state.tubes[0])
+        assert coil[0, :2] == pytest.approx(MARKERS[0][:2])
+        assert coil[-1, :2] == pytest.approx(placed(state.bodies["rocker"], MARKERS[1]))
+        assert [len(path) for path in state.tubes] == [spec.points for spec in seen.scene.tubes]
+        assert at.time == pytest.approx(frame / 12)
+    height = coil[0, 2]
+    top = max(piece.z_range[1] for piece in seen.parts.bodies["rocker"].pieces.values())
+    assert height > film_fixture.LAYERS["rocker"]
+    assert height < top + seen.space.size
+
+
+def test_without_stiffness_a_rod_slides_in_a_cylinder_and_stays_in_it(out_root: Path):
+    seen = film(stiff=False)
+    names = [spec.name for spec in seen.scene.tubes[:3]]
+    assert names == ["spring cylinder", "spring rod", "spring eye"]
+    lengths = []
+    for frame in range(seen.clock.frames):
+        cylinder, rod, eye = (np.array(path) for path in seen.state(frame).tubes[:3])
+        lengths += [np.linalg.norm(np.diff(one, axis=0)) for one in (cylinder, rod)]
+        axis = (rod[0] - eye[0]) / np.linalg.norm(rod[0] - eye[0])
+        assert 0 < (rod[1] - eye[0]) @ axis < (cylinder[1] - eye[0]) @ axis
+        assert (rod[0] - cylinder[1]) @ axis > 0
+    assert np.ptp(lengths[::2]) < 1e-9
+    assert np.ptp(lengths[1::2]) < 1e-9
+
+
+def test_coil_and_rope_count_in_the_key_and_are_in_the_picture(out_root: Path):
+    from render.film.framing import project
+
+    keys = {scene_key(one.scene, PRESETS["draft"], "5.2") for one in (film(), film(False), film(rope=0.4))}
+    assert len(keys) == 3
+    seen = film(rope=0.6)
+    state = seen.state(3)
+    assert "rope" in {spec.name for spec in seen.scene.tubes}
+    at: Moment = seen.clock.moment(3)
+    rope = next(one for one in seen.stretched if one.name == "rope")
+    assert np.linalg.norm(np.diff(rope.paths(seen.poses, at)[0], axis=0), axis=1).sum() == pytest.approx(0.6)
+    for path in state.tubes:
+        pixels = project(state.camera, np.array(path), 1280, 720)
+        assert (pixels > 0).all()
+        assert (pixels < (1280, 720)).all()

@@ -1,0 +1,215 @@
+"""Curved arrows of the film: which torques they stand for, how far they reach, and forces of drivers of a length."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from PIL import Image
+
+from render.blender.scene.arcs import FRONT, RINGS, SIDES, faces, vertices
+from render.blender.worker import overlay
+from render.film.arrows import writing
+from render.film.arrows.arcs import APART, FULL_TURN, RADIUS, Arcs
+from render.film.arrows.arrows import COLOURS
+from render.film.arrows.scales import LONGEST, TINY
+from render.film.arrows.torques import Torque, rounding, torques
+from render.film.arrows.vectors import vectors
+from render.film.framing import project
+from render.film.inputs import read_film
+from render.film.scene import ArcSpec, LegendRow, Writing
+from render.frames import still
+from render.presets import Preset
+from shared.contract import Action, DriverMotion, ForceMotion, Motion, Shape
+from shared.contract.shot import Shot, Title
+from tests.models.motions import four_bar_motion
+from tests.render import film_fixture
+
+TIME = np.linspace(0.0, 1.0, 101)
+SPEC = ArcSpec(name="a", colour=(1, 1, 1), radius=0.02, shaft=0.0012, head=0.0036, point=0.01)
+
+
+def steady(value: np.ndarray | float, quantity: str = "forces", at: tuple[float, float] = (0.0, 0.0)) -> Torque:
+    """A torque about a point, over TIME."""
+    values = np.broadcast_to(value, TIME.shape)
+    return Torque(quantity, "motor", ("ground", "bar"), np.tile(at, (len(TIME), 1)), values)  # pyright: ignore[reportArgumentType]
+
+
+def with_driver(motion: Motion, **fields: Any) -> Motion:
+    """The four-bar with another driver."""
+    count = len(motion.time)
+    blank = {"value": [0.0] * count, "effort": [2.0] * count, "power": [0.0] * count}
+    return msgspec.structs.replace(motion, drivers={"lift": DriverMotion(**blank | fields)})
+
+
+def with_force(motion: Motion, torque: float, bodies: tuple[str, ...], kind: str = "torsion_spring") -> Motion:
+    """The four-bar with a torque on these bodies at D, the opposite on the first of two."""
+    d, count = motion.joints["D"], len(motion.time)
+    zero = [0.0] * count
+    actions = [
+        Action(body=body, x=d.x, y=d.y, fx=zero, fy=zero, torque=[sign * torque] * count)
+        for body, sign in zip(bodies, (-1.0, 1.0)[-len(bodies) :], strict=True)
+    ]
+    force = ForceMotion(
+        kind=kind, actions=actions, several=False, measures="angle", value=zero, rate=zero, effort=[torque] * count,
+        normal=None, power=zero, potential=zero, shape=None,
+    )  # fmt: skip
+    return msgspec.structs.replace(motion, forces={"spring": force})
+
+
+def test_the_motors_torque_is_drawn_about_the_pin_it_turns():
+    motion = msgspec.structs.replace(four_bar_motion())
+    motion.drivers["motor"].bodies = ("ground", "crank")
+    [motor] = torques(motion, ("forces",))
+    assert motor.name == "motor on crank"
+    assert motor.value == pytest.approx(motion.drivers["motor"].effort)
+    assert motor.place == pytest.approx(np.zeros((361, 2)))
+    motion.drivers["motor"].bodies = ("crank", "ground")
+    assert torques(motion, ("forces",))[0].value == pytest.approx(-np.array(motion.drivers["motor"].effort))
+    assert torques(motion, ("velocities", "accelerations")) == []
+
+
+def test_a_torque_between_two_bodies_is_drawn_once_and_as_the_moving_one_feels_it():
+    motion = with_force(four_bar_motion(), 0.3, ("ground", "rocker"))
+    [spring, *_] = torques(motion, ("forces",))
+    assert (spring.name, spring.bodies) == ("spring on rocker", ("ground", "rocker"))
+    assert spring.value == pytest.approx(0.3)
+    assert spring.place[0] == pytest.approx([0.12, 0.0])
+    [other, *_] = torques(with_force(four_bar_motion(), 0.3, ("rocker", "ground")), ("forces",))
+    assert (other.name, other.value[0]) == ("spring on rocker", -0.3)
+
+
+def test_a_guide_has_a_torque_and_what_touches_beside_its_marker_has_the_force_alone():
+    motion = four_bar_motion()
+    count = len(motion.time)
+    for kind, value in (("prismatic", 0.2), ("gear_pair", 0.0)):
+        joint = msgspec.structs.replace(motion.joints["D"], kind=kind, torque=[0.2] * count)
+        changed = msgspec.structs.replace(motion, joints=motion.joints | {"D": joint})
+        [at_d] = [torque for torque in torques(changed, ("reactions",)) if torque.name == "D"]
+        assert at_d.value == pytest.approx(np.full(count, value)), kind
+    held = msgspec.structs.replace(
+        motion.joints["D"], kind="geneva", torque=[0.2] * count, fx=[0.0] * count, fy=[0.0] * count
+    )
+    locked = msgspec.structs.replace(motion, joints={"D": held})
+    assert torques(locked, ("reactions",))[0].value == pytest.approx(np.full(count, 0.2))
+
+
+def test_a_distance_driver_pushes_along_its_line_and_a_coordinate_driver_along_its_axis():
+    motion = four_bar_motion()
+    shape = Shape(bodies=("crank", "rocker"), markers=((0.02, 0.0, 0.3), (0.09, 0.0, 0.0)))
+    made = {
+        kind: {
+            vector.name: vector
+            for vector in vectors(with_driver(motion, kind=kind, bodies=("crank", "rocker"), shape=shape), ("forces",))
+            if "lift" in vector.name
+        }
+        for kind in ("distance", "coordinate")
+    }
+    first, second = made["distance"]["lift on crank"], made["distance"]["lift on rocker"]
+    gap = second.place - first.place
+    assert second.value == pytest.approx(2.0 * gap / np.hypot(*gap.T)[:, None])
+    assert first.value == pytest.approx(-second.value)
+    assert second.place == pytest.approx(np.stack([motion.joints["C"].x, motion.joints["C"].y], axis=1), abs=1e-9)
+    axis = np.array(motion.bodies["crank"].theta) + 0.3
+    first, second = made["coordinate"]["lift on crank"], made["coordinate"]["lift on rocker"]
+    assert second.value == pytest.approx(2.0 * np.stack([np.cos(axis), np.sin(axis)], axis=1))
+    assert first.place == pytest.approx(second.place)
+
+
+def test_the_largest_has_the_full_sweep_tiny_ones_and_rounding_are_left_out():
+    made = Arcs(TIME, [steady(-50.0), steady(5.0, at=(1, 0)), steady(0.4 * TINY * 50.0)], size=0.4)
+    assert [torque.value[0] for torque in made.torques] == [-50.0, 5.0]
+    assert [sweep for _, sweep in made.at(0.5, [0.01, 0.02])] == pytest.approx([-FULL_TURN, FULL_TURN / 10])
+    assert [row.number for row in made.legend()] == ["20 N m"]
+    assert made.legend()[0].sweep == pytest.approx(FULL_TURN * 20 / 50)
+    forces = vectors(four_bar_motion(), ("forces", "reactions"))
+    least = rounding(forces, 0.3)
+    assert 0 < least < 1e-8
+    assert Arcs(TIME, [steady(0.5 * least)], 0.3, least).specs() == []
+    fading = Arcs(TIME, [steady(100.0 * (1 - TIME))], size=1.0)
+    assert fading.at(0.999, [0.0])[0][1] == 0.0
+
+
+def test_a_short_peak_is_cut_and_no_arc_meets_its_own_tail():
+    pulse = np.where(np.abs(TIME - 0.5) < 0.006, 300.0, 10.0)
+    made = Arcs(TIME, [steady(pulse, "reactions")], size=1.0)
+    assert made.at(0.5, [0.0])[0][1] == pytest.approx(FULL_TURN * LONGEST)
+    assert 1.8 * np.pi > FULL_TURN * LONGEST
+    assert made.legend()[0].words == "torques of joints, peaks cut"
+
+
+def test_arcs_about_one_point_lie_around_each_other_and_the_camera_holds_them():
+    made = Arcs(TIME, [steady(1.0), steady(-2.0, "reactions"), steady(1.0, at=(1, 0))], size=2.0)
+    assert [spec.radius for spec in made.specs()] == pytest.approx([2 * RADIUS, 2 * (RADIUS + APART), 2 * RADIUS])
+    for spec, rim in zip(made.specs(), made.rims([0.1] * 3), strict=True):
+        assert np.ptp(rim, axis=0)[:2] == pytest.approx(2 * (spec.radius + spec.head))
+        assert (rim[:, 2] == 0.1).all()
+
+
+@given(st.floats(-1.8 * np.pi, 1.8 * np.pi).filter(lambda sweep: abs(sweep) > 0.05))
+def test_the_mesh_of_an_arc_is_closed_begins_and_ends_where_it_should_and_faces_outwards(sweep: float):
+    import trimesh
+
+    centre = (0.1, -0.2, 0.03)
+    points = vertices(SPEC, centre, sweep).astype(float)
+    rings = points.reshape(RINGS + 2, SIDES, 3).mean(axis=1) - centre
+    for ring, angle in ((0, FRONT - sweep / 2), (RINGS + 1, FRONT + sweep / 2)):
+        assert rings[ring] == pytest.approx([SPEC.radius * np.cos(angle), SPEC.radius * np.sin(angle), 0], abs=2e-6)
+    around, ends = faces()
+    triangles = [(face[0], face[k], face[k + 1]) for face in around + ends for k in range(1, len(face) - 1)]
+    mesh = trimesh.Trimesh(points, triangles, process=False)
+    assert mesh.is_watertight
+    assert mesh.volume > 0
+
+
+def test_an_arc_that_is_not_there_has_no_size():
+    points = vertices(SPEC, (0.0, 0.0, 0.0), 0.0)
+    assert np.isfinite(points).all()
+    assert np.ptp(points, axis=0).max() < 1e-6
+
+
+def test_the_legend_shows_how_far_an_arc_reaches(tmp_path: Path):
+    path = tmp_path / "p.png"
+    seen = []
+    for sweep in (0.5 * np.pi, np.pi):
+        Image.new("RGB", (640, 360), (40, 40, 40)).save(path)
+        row = LegendRow(number="5 N m", words="torques", colour=COLOURS["forces"], sweep=sweep)
+        overlay.lay(path, None, Writing(legend=[row]), "")
+        orange = np.abs(np.asarray(Image.open(path)) - 255 * np.array(COLOURS["forces"])).sum(axis=2) < 40
+        seen.append(int(orange.sum()))
+    assert 12 < seen[0] < 0.75 * seen[1]
+
+
+def test_the_number_beside_the_title_is_of_what_acts_where_the_drivers_give_nothing():
+    shot = Shot(title=Title())
+    idle = with_driver(four_bar_motion(), kind="coordinate", effort=[0.0] * 361)
+    assert writing.number(idle, shot)(0.0).startswith("lift")
+    acting = with_force(idle, 0.3, ("rocker",), "torque")
+    assert writing.number(acting, shot)(0.0) == "spring  0.300 N m"
+    assert writing.number(with_force(four_bar_motion(), 0.3, ("rocker",), "torque"), shot)(0.0).startswith("motor")
+
+
+def test_an_arc_is_drawn_where_it_is(out_root: Path):
+    preset = Preset("stamp", 240, 135, 2)
+    out = film_fixture.write(Shot(seconds_per_turn=0.4, trails=()))
+    motion = four_bar_motion()
+    motion.drivers["motor"].bodies = ("ground", "crank")
+    from shared.contract import write_motion
+
+    write_motion(out.motion, motion)
+    film = read_film(out, "forces")
+    still.still("four_bar", preset, 5, "forces")
+    picture = np.asarray(Image.open(out.stills / "stamp-0005-forces.png").convert("RGB")).astype(int)
+    state, [spec] = film.state(5), film.scene.arcs
+    [(centre, sweep)] = state.arcs
+    assert abs(sweep) > 0.5
+    pixels = project(state.camera, vertices(spec, centre, sweep).reshape(RINGS + 2, SIDES, 3).mean(axis=1), 240, 135)
+    assert ((pixels > 0) & (pixels < (240, 135))).all()
+    x, y = pixels[RINGS // 2].astype(int)
+    patch = picture[y - 1 : y + 2, x - 1 : x + 2].reshape(-1, 3)
+    assert (patch[:, 0] - patch[:, 2]).max() > 90  # orange

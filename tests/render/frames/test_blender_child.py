@@ -1,0 +1,130 @@
+"""The process that runs Blender: it never waits for ever, never in silence, and says how Blender ended."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from render.blender import child
+from render.blender.job import Job, Picture
+from render.blender.patience import FLOOR, START, Patience
+from render.film.scene import Scene, StudioSpec
+from shared.stage.errors import UserError
+from shared.stage.paths import ROOT
+
+STUDIO = StudioSpec(look="studio", centre=(0.0, 0.0, 0.0), radius=1.0, floor=0.0, azimuth=0.0)
+SCENE = Scene(mechanism="x", fps=30, pieces=[], trails=[], labels=[], studio=STUDIO)
+
+
+@pytest.fixture
+def acts(out_root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """Runs a worker that acts as told, with two seconds of patience for a picture; keys of the pictures it made."""
+    monkeypatch.setattr(child, "WORKER", "tests.render.frames.acting_worker")
+    monkeypatch.setattr(child, "TICK", 0.1)
+    monkeypatch.setattr(child, "FIRST_WORD", 0.5)
+    monkeypatch.setenv("MBSD_PATIENCE", "2")
+
+    def run(*names: str) -> list[str]:
+        pictures = [Picture(state=0, folder=str(tmp_path), key=f"k{i}", name=name) for i, name in enumerate(names)]
+        with child.blender(Job(scene=SCENE, states=[], pictures=pictures)) as answers:
+            return [answer.key for answer in answers if answer.key]
+
+    yield run
+    assert not list(out_root.glob(".blender/tmp-*"))
+    listing = subprocess.run(["ps", "-axwwo", "args="], capture_output=True, text=True, check=True).stdout
+    assert str(out_root) not in listing
+
+
+def test_a_worker_that_hangs_is_started_again_with_what_is_left(acts, capsys: pytest.CaptureFixture[str]):
+    assert acts("good", "stops once", "good") == ["k0", "k1", "k2"]
+    said = capsys.readouterr().err
+    assert (
+        "warning: Blender has said nothing for 0.5 s (renders stops once: Sample 1/8, stopped by a signal: kill" in said
+    )
+    assert "; it is started again after 2.0 s" in said
+    assert "lets it go on); it is started again\n" in said
+
+
+def test_each_picture_may_hang_once(acts):
+    assert acts("stops once", "good", "stops once") == ["k0", "k1", "k2"]
+
+
+def test_a_worker_that_hangs_twice_is_an_error_with_what_it_did_last(acts):
+    started = time.monotonic()
+    sentence = (
+        r"Blender has said nothing for .* s \(renders sleeps: Sample 1/8.*\), for the second time; nothing was lost"
+    )
+    with pytest.raises(UserError, match=sentence):
+        acts("good", "sleeps", "good")
+    assert time.monotonic() - started < 30
+
+
+def test_a_worker_that_hangs_on_its_way_out_has_done_its_job(acts):
+    assert acts("good", "does not end") == ["k0", "k1"]
+
+
+@pytest.mark.parametrize(
+    ("act", "words"),
+    [
+        ("SIGKILL", r"Blender was killed by SIGKILL \(renders SIGKILL: .*\): by the system if the memory ran out"),
+        ("SIGSEGV", r"Blender crashed by SIGSEGV \(renders SIGSEGV: Sample 1/8\); the same command goes on"),
+        ("SIGTERM", "Blender was ended from outside by SIGTERM"),
+        ("fails", r"Blender ended with code 1 \(renders fails: Sample 1/8\): RuntimeError: no such node"),
+        ("is cut", "Blender was killed by SIGKILL"),
+    ],
+)
+def test_how_it_ended_is_told_by_its_signal_and_not_by_a_warning_of_blenders(acts, act: str, words: str):
+    with pytest.raises(UserError, match=words) as error:
+        acts("good", act)
+    assert "texture" not in str(error.value)
+
+
+def test_patience_follows_what_a_picture_takes(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.delenv("MBSD_PATIENCE", raising=False)
+    patience = Patience()
+    assert patience.limit("builds the scene") == START
+    assert patience.limit("renders frame 1: Loading render kernels (may take a few minutes the first time)") > 5 * START
+    patience.finished(0.2)
+    assert patience.limit("renders frame 2: Sample 1/8") == FLOOR
+    patience.finished(831.0)
+    assert patience.limit("renders frame 3: Sample 1/64") == pytest.approx(8310.0)
+    assert Patience(1e9).limit("") < 86400
+    monkeypatch.setenv("MBSD_PATIENCE", "12")
+    assert Patience().limit("") == pytest.approx(START / 10)
+    for nonsense in ("x", "", "0", "-1", "inf", "nan"):
+        monkeypatch.setenv("MBSD_PATIENCE", nonsense)
+        assert Patience().limit("") == START
+
+
+def test_a_worker_does_not_outlive_a_killed_parent(out_root: Path, tmp_path: Path):
+    code = (
+        "import sys; from tests.render.frames.test_blender_child import SCENE; from render.blender import child\n"
+        "from render.blender.job import Job\n"
+        "with child.blender(Job(scene=SCENE, states=[], blend=sys.argv[1])) as answers:\n"
+        "    print(child.os.getpid(), flush=True); next(answers); sys.stdin.read()\n"
+    )
+    parent = subprocess.Popen(
+        [sys.executable, "-c", code, str(tmp_path / "a.blend")], cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    )
+    assert parent.stdin
+    assert parent.stdout
+    parent.stdout.readline()
+    end = time.monotonic() + 30
+    while not (workers := workers_of(out_root)):
+        assert time.monotonic() < end
+        time.sleep(0.02)
+    parent.kill()
+    parent.communicate()
+    while workers_of(out_root):
+        assert time.monotonic() < end, workers
+        time.sleep(0.02)
+
+
+def workers_of(folder: Path) -> list[str]:
+    listing = subprocess.run(["ps", "-axwwo", "pid=,args="], capture_output=True, text=True, check=True).stdout
+    return [line for line in listing.splitlines() if str(folder) in line and f"{os.getpid()} " not in line]

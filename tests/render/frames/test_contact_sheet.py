@@ -1,0 +1,77 @@
+"""The contact sheet: twelve frames from start to end, in order, through the store of frames."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+from PIL import Image
+
+from render.film.film import Film
+from render.film.inputs import read_film
+from render.frames import contact
+from render.frames.store import FrameStore
+from render.presets import Preset
+from shared.contract.shot import Shot
+from shared.stage.paths import Out
+from tests.models.motions import four_bar_motion
+from tests.render import film_fixture
+
+TINY = Preset("tiny", 96, 54, 1)
+
+
+def test_a_motion_that_repeats_is_shown_over_one_turn(out_root: Path) -> None:
+    film = read_film(film_fixture.write(Shot(seconds_per_turn=4.0)))
+    assert contact.frames_of(film) == list(range(0, 120, 10))
+
+
+@pytest.mark.parametrize("turns", [2, 3, 4, 6])
+def test_a_period_of_several_turns_shows_no_turn_as_another(out_root: Path, turns: int) -> None:
+    whole = read_film(film_fixture.write())
+    film = Film(four_bar_motion(turns=turns), whole.parts, Shot(seconds_per_turn=4.0), whole.folder)
+    times = np.array([film.clock.moment(frame).time for frame in contact.frames_of(film)])
+    assert (np.diff(times) > 0).all()
+    assert times[-1] < turns
+    assert times[-1] > 0.95 * turns
+    phases = np.sort(times % 1.0)
+    assert np.diff(phases).min() > 0.01
+
+
+def test_another_is_shown_from_its_start_to_its_end(out_root: Path) -> None:
+    whole = read_film(film_fixture.write(Shot(seconds_per_turn=4.0)))
+    film = Film(msgspec.structs.replace(whole.motion, period=None), whole.parts, whole.shot, whole.folder)
+    times = [film.clock.moment(frame).time for frame in contact.frames_of(film)]
+    assert times == sorted(times)
+    assert times[0] == film.motion.time[0]
+    assert times[-1] == pytest.approx(film.motion.time[-1])
+
+
+def test_frames_lie_in_rows_with_their_times(tmp_path: Path) -> None:
+    pictures = []
+    for k in range(12):
+        pictures.append(tmp_path / f"{k}.png")
+        Image.new("RGB", (96, 54), (20 * k, 0, 255 - 20 * k)).save(pictures[-1])
+    page = Image.open(io.BytesIO(contact.sheet(pictures, ["t = 0 s"] * 12, "four bar")))
+    wide, high = 96 + contact.GAP, 54 + contact.GAP
+    assert page.size == (4 * wide + contact.GAP, contact.HEAD + 3 * high)
+    for k in range(12):
+        at = contact.GAP + k % 4 * wide + 80, contact.HEAD + k // 4 * high + 10
+        assert page.getpixel(at) == (20 * k, 0, 255 - 20 * k)
+
+
+def test_the_film_finds_the_frames_of_the_sheet(out_root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = film_fixture.write(Shot(turns=1, seconds_per_turn=0.4))  # twelve frames
+    contact.run("four_bar", TINY)
+    with Image.open(out.contact) as page:
+        assert page.size == (4 * 106 + 10, 46 + 3 * 64)
+    assert len(list(FrameStore(out.frames("tiny")).folder.glob("[!.]*.png"))) == 12
+    capsys.readouterr()
+    contact.run("four_bar", TINY)
+    assert "nothing to do" in capsys.readouterr().out
+    out.contact.unlink()
+    contact.run("four_bar", TINY)
+    assert "0 of 12 pictures to render" in capsys.readouterr().out
+    assert Out("four_bar").contact.is_file()

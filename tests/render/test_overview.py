@@ -1,0 +1,60 @@
+"""The table at the end of make run-all: every run in a row, with its numbers if it was done."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from render.report import overview
+from render.report.facts import fastest
+from shared.contract import Provenance, read_motion
+from shared.contract.clearance import Clearance, PairClearance, write_clearance
+from tests.render import film_fixture
+
+
+@pytest.fixture
+def made(out_root: Path) -> None:
+    """A four-bar with all its files."""
+    out = film_fixture.write()
+    pair = PairClearance(
+        bodies=("crank", "coupler"), pieces=("a", "b"), gap=1.25e-4, proven=1.2e-4, time=0.0, proof="motion", poses=9
+    )
+    write_clearance(
+        out.clearance,
+        Clearance(
+            mechanism="four_bar", provenance=Provenance(inputs="0" * 64, versions={}), limit=5e-5, resolution=5e-6,
+            interpolation_error=0.0, pairs=[pair], apart=3,
+        ),
+    )  # fmt: skip
+
+
+@pytest.mark.usefixtures("made")
+def test_a_row_has_the_numbers_of_what_was_done(capsys: pytest.CaptureFixture[str]) -> None:
+    overview.run(["four_bar 125 done\n", "broken 3 failed\n", "cleaned 1 done\n"])
+    said = capsys.readouterr().out.splitlines()
+    rows = {line.split()[0]: line for line in said if line.split()}
+    assert rows["mechanism"].split("  ")
+    four_bar = rows["four_bar"]
+    assert "2 min 05 s" in four_bar
+    for word in ("m/s (", "N m (motor)", "125 µm", "done"):
+        assert word in four_bar
+    assert rows["broken"].split() == ["broken", "3.0", "s", "failed"]
+    assert rows["cleaned"].split() == ["cleaned", "1.0", "s", "done"]
+    assert max(map(len, said)) <= overview.WIDTH
+
+
+@pytest.mark.usefixtures("made")
+def test_what_a_failed_run_left_is_not_told() -> None:
+    assert overview.row_of("four_bar 2 failed") == ["four_bar", "2.0 s", "", "", "", "", "failed"]
+
+
+def test_the_fastest_place_counts_centres_of_mass(out_root: Path) -> None:
+    """Of a bar that turns about its frame, which stands still itself: omega times the way to the centre of mass."""
+    motion = read_motion(film_fixture.write().motion)
+    crank = motion.bodies["crank"]
+    motion.bodies, motion.points, motion.joints = {"crank": crank}, {}, {}
+    crank.com = (3.0, 4.0)
+    name, speed = fastest(motion)
+    assert (name, speed) == ("crank", pytest.approx(5.0 * float(np.abs(crank.omega).max())))

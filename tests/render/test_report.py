@@ -1,0 +1,227 @@
+"""report.md: its numbers are those of the motion, its sentences say what is true, it is written when that changed."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+
+from mbsd import Mechanism, constant_rate
+from mechanisms.stages.solve.motion_file import to_motion
+from render import report
+from render.report.facts import facts
+from render.report.transmission import loops
+from render.report.written import degrees, speed, turning, written
+from shared.contract import Motion, Provenance, write_motion
+from shared.contract.clearance import Clearance, PairClearance
+from shared.stage.errors import UserError
+from shared.stage.paths import Out
+from tests.models.motions import bouncing_ball, four_bar_motion
+
+MOTION = four_bar_motion()
+
+
+def slider_crank(
+    crank: float = 0.05, rod: float = 0.15, mass: float = 0.5, start: float = 0.3, steps: int = 360
+) -> Motion:
+    m = Mechanism("slider_crank")
+    one, two, three = m.bar("crank", crank), m.bar("rod", rod), m.body("slider", mass)
+    m.revolute("O", m.ground.at(0, 0), one.start)
+    m.revolute("A", one.end, two.start)
+    m.revolute("B", two.end, three.origin)
+    m.prismatic("guide", m.ground.at(0, 0), three.origin)
+    m.drive_angle("motor", one, constant_rate(100.0, start))
+    m.start_near(crank=math.degrees(start), rod=-math.degrees(math.asin(crank / rod * math.sin(start))))
+    return to_motion(m.sweep(steps=steps), None, "0" * 64, {}, dict.fromkeys(("crank", "rod", "slider"), "mechanism"))
+
+
+# -- transmission ----------------------------------------------------------------------------------------------------
+
+
+def test_a_four_bars_transmission_angle_and_dead_points_are_those_of_its_triangles() -> None:
+    a, b, c, d = 0.040, 0.120, 0.090, 0.120
+    [loop] = loops(MOTION)
+    assert (loop.crank, loop.coupler, loop.follower, loop.slides) == ("crank", "coupler", "rocker", False)
+    assert loop.lengths == pytest.approx((a, b, c, d))
+    ends = [math.acos((b * b + c * c - (d + s * a) ** 2) / (2 * b * c)) for s in (-1, 1)]
+    assert loop.transmission.min() == pytest.approx(min(*ends, math.pi - ends[1]), abs=1e-6)
+    found = [angle for _, angle in loop.dead_points(np.array(MOTION.time))]
+    # crank and coupler in line: a triangle of b + a or b - a, c and d
+    stretched = math.acos(((b + a) ** 2 + d * d - c * c) / (2 * (b + a) * d))
+    folded = math.pi + math.acos(((b - a) ** 2 + d * d - c * c) / (2 * (b - a) * d))
+    assert found == pytest.approx([stretched, folded], abs=1e-4)
+    rocker = [math.acos(((b + s * a) ** 2 - c * c - d * d) / (-2 * c * d)) for s in (-1, 1)]
+    assert loop.travel == pytest.approx(rocker[1] - rocker[0], abs=1e-3)
+
+
+def test_a_slider_cranks_dead_points_are_its_dead_centres() -> None:
+    motion = slider_crank()
+    [loop] = loops(motion)
+    assert loop.slides
+    assert loop.transmission.min() == pytest.approx(math.acos(0.05 / 0.15), abs=1e-3)
+    assert loop.travel == pytest.approx(0.1, abs=1e-4)
+    angles = sorted(angle % (2 * math.pi) for _, angle in loop.dead_points(np.array(motion.time)))
+    assert min(abs(math.sin(angle)) for angle in angles) < 1e-6
+    assert len(angles) == 2
+
+
+@pytest.mark.parametrize(("start", "steps"), [(0.0, 360), (0.0, 7), (math.pi, 36), (1e-4, 36), (math.pi / 2, 4)])
+def test_dead_centres_on_the_seam_of_a_period_count_once(start: float, steps: int) -> None:
+    motion = slider_crank(start=start, steps=steps)
+    [loop] = loops(motion)
+    found = sorted(angle for _, angle in loop.dead_points(np.array(motion.time)))
+    assert len(found) == 2
+    away = [min(abs(math.remainder(angle - dead, 2 * math.pi)) for dead in (0.0, math.pi)) for angle in found]
+    assert max(away) < 1e-6 + 0.6 / steps**2
+    if steps > 30:
+        assert "Both ways take equally long." in report.report(motion, None, None)
+
+
+def test_a_linkage_that_nothing_turns_has_no_driven_loop() -> None:
+    free = msgspec.structs.replace(MOTION, drivers={})
+    assert loops(free) == []
+    assert "## Transmission" not in report.report(free, None, None)
+
+
+def test_a_crank_that_forces_turn_has_its_dead_points_once_and_tells_how_evenly_it_runs() -> None:
+    run = msgspec.structs.replace(four_bar_motion(turns=3), drivers={}, analysis="simulation", period=None)
+    omega = np.array(run.bodies["crank"].omega) * (1 + 0.1 * np.cos(run.bodies["crank"].theta))
+    crank = msgspec.structs.replace(run.bodies["crank"], omega=omega.tolist())
+    said = report.report(msgspec.structs.replace(run, bodies=run.bodies | {"crank": crank}), None, None)
+    [line] = [line for line in said.splitlines() if "are in line with the crank at" in line]
+    assert line.count(" s)") == 3  # two dead points, and the least transmission angle
+    assert "One way takes" not in line
+    assert "In its last turn the crank has 6.28 rad/s (60 rpm) on average" in said
+    assert "its speed fluctuates by 20 % of the mean" in said
+    assert "on average" not in report.report(MOTION, None, None)
+
+
+def test_a_body_that_turns_about_its_centre_of_mass_does_not_move() -> None:
+    still = msgspec.structs.replace(MOTION.bodies["crank"], com=(1e-19, 0.0))
+    said = report.report(msgspec.structs.replace(MOTION, bodies=MOTION.bodies | {"crank": still}), None, None)
+    assert "| crank | 0 |  | 0 | 6.28 rad/s (60 rpm) |" in said
+
+
+# -- sentences -------------------------------------------------------------------------------------------------------
+
+
+def test_peaks_are_told_with_their_time() -> None:
+    text = report.report(MOTION, None, None)
+    joint = MOTION.joints["C"]
+    size = np.hypot(joint.fx, joint.fy)
+    assert f"| C (revolute) | coupler, rocker | {written(float(size.max()), 'N')} |" in text
+    p = MOTION.points["P"]
+    fastest = float(np.hypot(p.vx, p.vy).max())
+    assert f"| point P | {speed(fastest)} |" in text
+    assert "6.28 rad/s (60 rpm)" in text
+    assert "1 degree of freedom and is driven by motor" in text
+    assert "weighs 270 g" in text
+    assert "It was not checked" in text
+
+
+def test_a_sweeps_work_over_a_period_is_nothing() -> None:
+    assert re.search(r"\| motor \|.*\| 0 J \|$", report.report(MOTION, None, None), flags=re.MULTILINE)
+
+
+def test_impacts_and_their_losses() -> None:
+    motion = bouncing_ball()
+    text = report.report(motion, None, None)
+    assert f"Impacts and other events (1 impact) take {written(0.75 * 0.2 * 9.81, 'J')}." in text
+    assert "moved by forces alone" in text
+
+
+def test_the_balance_of_a_simulation_counts_what_impacts_take() -> None:
+    m = Mechanism("ball", gravity=(0.0, -9.81))
+    body = m.body("ball", 0.2, inertia=1e-4)
+    m.rigid_contact("floor", m.ground.at(0, 0), body.origin, radius=0.05, restitution=0.5)
+    m.start_near(ball=(0, 1.05, 0))
+    motion = to_motion(m.simulate(2.0, event_rows=True), None, "0" * 64, {}, {"ball": "mechanism"})
+    text = report.report(motion, None, None)
+    found = re.search(r"drifts by .*: ([\d.e-]+) of the largest exchange", text)
+    assert found
+    assert float(found[1]) < 1e-9
+    assert re.search(r"\| floor \(rigid contact\) \| 1\.96 N \|", text)
+
+
+def test_massless_bodies_load_nothing() -> None:
+    motion = slider_crank(mass=0.0)
+    assert "Nothing loads the joints: no body has a mass, and no force acts." in report.report(motion, None, None)
+
+
+def test_the_nearest_parts_are_named() -> None:
+    pair = PairClearance(
+        bodies=("crank", "coupler"), pieces=("pin_B", "coupler"), gap=0.0004, proven=0.00039, time=0.25, proof="motion",
+        poses=90,
+    )  # fmt: skip
+    found = Clearance(
+        mechanism="four_bar", provenance=Provenance(inputs="0" * 64, versions={}), limit=1e-5, resolution=1e-5,
+        interpolation_error=0.0, pairs=[pair], apart=12,
+    )  # fmt: skip
+    text = report.report(MOTION, None, found)
+    assert "pin_B (crank) and coupler (coupler) come nearest, to 400 µm at t = 0.25 s" in text
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "words"),
+    [
+        (0.0123, "N", "12.3 mN"), (4200.0, "N", "4.2 kN"), (0.05, "kg", "50 g"), (3.2, "kg", "3.2 kg"),
+        (0.0004, "m", "400 µm"), (-0.054, "N m", "\N{MINUS SIGN}54 mN m"), (0.0, "W", "0 W"), (1234.0, "m", "1234 m"),
+    ],
+)  # fmt: skip
+def test_numbers(value: float, unit: str, words: str) -> None:
+    assert written(value, unit) == words
+
+
+def test_speeds_and_angles() -> None:
+    assert speed(10.0) == "10 m/s (36 km/h)"
+    assert turning(2 * math.pi) == "6.28 rad/s (60 rpm)"
+    assert degrees(-math.pi / 4) == "\N{MINUS SIGN}45.0°"
+
+
+# -- the stage -------------------------------------------------------------------------------------------------------
+
+
+def test_it_is_written_once(out_root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = Out("four_bar")
+    write_motion(out.motion, MOTION)
+    report.run("four_bar")
+    text = out.report.read_text()
+    assert text.startswith("# Four bar\n\nFour-bar crank-rocker")  # as mechanism.py says
+    report.run("four_bar")
+    assert "nothing to do" in capsys.readouterr().out
+    write_motion(out.motion, four_bar_motion(speed=3.0))
+    report.run("four_bar")
+    assert out.report.read_text() != text
+
+
+def test_without_a_motion_it_says_so(out_root: Path) -> None:
+    with pytest.raises(UserError, match=r"data\.json"):
+        report.run("four_bar")
+
+
+def test_powers_that_are_rounding_are_nothing() -> None:
+    motor = MOTION.drivers["motor"]
+    power = np.maximum(motor.power, 0.0)
+    power[5] = -1e-13
+    said = report.report(
+        msgspec.structs.replace(MOTION, drivers={"motor": msgspec.structs.replace(motor, power=power.tolist())}),
+        None,
+        None,
+    )
+    [row] = [line for line in said.splitlines() if line.startswith("| motor |")]
+    assert row.split("|")[6].strip() == "0 W"
+
+
+def test_an_effort_that_is_rounding_beside_the_reactions_is_nothing() -> None:
+    motor = MOTION.drivers["motor"]
+    tuned = msgspec.structs.replace(
+        motor, effort=list(1e-16 * np.array(motor.effort)), power=[1e-18] * len(MOTION.time)
+    )
+    motion = msgspec.structs.replace(MOTION, drivers={"motor": tuned})
+    [row] = [line for line in report.report(motion, None, None).splitlines() if line.startswith("| motor |")]
+    assert row == "| motor | 0 N m | 0 s | 0 N m | 0 W | 0 W | 0 J |"
+    assert not [fact for fact in facts(motion, None, None) if fact.startswith("motor")]

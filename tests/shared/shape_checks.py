@@ -1,0 +1,18 @@
+"""What every shape must be: one valid solid, watertight, right in volume and in its number of through holes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cadquery as cq
+
+from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
+from mechanisms.stages.parts.parts_files import read_mesh, stl_bytes
+
+
+def checked(shape: cq.Workplane, through_holes: int) -> tuple[Any, Any]:
+    """The solid and its mesh, after the checks of the parts stage."""
+    solid = only_solid(shape, "shape")
+    mesh = read_mesh(stl_bytes(solid))
+    check_mesh(mesh, solid.Volume(), through_holes, "shape")
+    return solid, mesh

@@ -1,0 +1,84 @@
+"""Stages end with the make that started them, whatever ends it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from shared.stage.paths import ROOT
+
+STAGE = """
+import sys, time
+from pathlib import Path
+from shared.stage.console import run_cli
+
+def main():
+    left = Path(sys.argv[1])
+    try:
+        left.touch()
+        time.sleep(60)
+    finally:
+        left.unlink()
+
+run_cli(main)
+"""
+LINUX = pytest.mark.skipif(sys.platform != "linux", reason="nothing tells there that make got this signal")
+
+
+@pytest.mark.parametrize(
+    ("victim", "how"),
+    [
+        ("make", signal.SIGTERM),
+        pytest.param("make", signal.SIGINT, marks=LINUX),
+        pytest.param("make", signal.SIGHUP, marks=LINUX),
+        ("make", signal.SIGKILL),
+        ("run_all.sh", signal.SIGTERM),
+        ("run_all.sh", signal.SIGKILL),
+    ],
+    ids=str,
+)
+def test_whatever_ends_run_all_ends_its_stages(tmp_path: Path, victim: str, how: signal.Signals) -> None:
+    left, script = tmp_path / "left behind", tmp_path / "python"
+    (tmp_path / "stage.py").write_text(STAGE)
+    script.write_text(f"#!/bin/sh\nexec '{sys.executable}' '{tmp_path}/stage.py' '{left}'\n")
+    script.chmod(0o755)
+    clean = {key: value for key, value in os.environ.items() if key not in ("MAKEFLAGS", "MAKELEVEL", "MBSD_MAKE")}
+    process = subprocess.Popen(
+        ["make", "-o", "install", "run-all", f"PYTHON={script}"],
+        cwd=ROOT,
+        env=clean | {"PYTHONPATH": str(ROOT)},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    try:
+        wait_until(left.exists)
+        shells = [pid for pid, parent, _ in processes() if parent == process.pid]
+        os.kill(process.pid if victim == "make" else shells[0], how)
+        process.wait(timeout=20)
+        wait_until(lambda: not any(str(left) in arguments for *_, arguments in processes()))
+        assert not left.exists()
+    finally:
+        for pid, _, arguments in processes():
+            if str(tmp_path) in arguments:
+                os.kill(pid, signal.SIGKILL)
+
+
+def processes() -> list[tuple[int, int, str]]:
+    """Number, parent and command line of every process."""
+    listing = subprocess.run(["ps", "-axwwo", "pid=,ppid=,args="], capture_output=True, text=True, check=True).stdout
+    lines = [line.split(maxsplit=2) for line in listing.splitlines()]
+    return [(int(pid), int(parent), "".join(arguments)) for pid, parent, *arguments in lines]
+
+
+def wait_until(condition: Callable[[], bool], seconds: float = 20.0) -> None:
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.05)

@@ -1,0 +1,67 @@
+"""``make check``: versions, packages against the lock, system libraries and disk space of this machine."""
+
+from __future__ import annotations
+
+import platform
+import re
+import shutil
+from importlib import metadata
+from pathlib import Path
+
+from shared.stage.console import run_cli, say, warn
+from shared.stage.paths import ROOT, out_root
+from tools import system_libraries
+
+SHOWN = ("numpy", "scipy", "numba", "cadquery", "trimesh", "manifold3d", "bpy", "matplotlib", "imageio-ffmpeg")
+"""Packages whose versions are printed; all of the lock are compared."""
+ROOM = 5e9
+"""Bytes: below this much free disk a film at the larger presets may not fit."""
+
+
+def main() -> int:
+    """Print the findings, a line each; 1 if something stands in the way of a run, else 0."""
+    say("python", f"{platform.python_version()} on {platform.system()} {platform.machine()}")
+    say("packages", ", ".join(f"{name} {metadata.version(name)}" for name in SHOWN))
+    faults = [*_wrong_packages(), *_missing_libraries(), *_full_disk()]
+    for fault in faults:
+        warn("check", fault)
+    return 1 if faults else 0
+
+
+def locked(lock: Path) -> dict[str, str]:
+    """Names and versions in a lock file; those for another system (behind a ``;``) are left out."""
+    lines = re.findall(r"^([A-Za-z0-9._-]+)==(\S+)( ;)?", lock.read_text(), flags=re.MULTILINE)
+    return {name: version for name, version, elsewhere in lines if not elsewhere}
+
+
+def _wrong_packages() -> list[str]:
+    wrong = []
+    for name, version in locked(ROOT / "requirements.lock").items():
+        try:
+            found = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            found = "missing"
+        if found != version:
+            wrong.append(f"{name} is {found}, requirements.lock has {version}; remove .venv and run make install")
+    return wrong
+
+
+def _missing_libraries() -> list[str]:
+    names = system_libraries.missing()
+    if not names:
+        say("system libraries", "all found")
+        return []
+    return [system_libraries.cure(names)]
+
+
+def _full_disk() -> list[str]:
+    folder = out_root()
+    while not folder.exists():
+        folder = folder.parent
+    free = shutil.disk_usage(folder).free
+    say("disk", f"{free / 1e9:.0f} GB free for results")
+    return [f"only {free / 1e9:.1f} GB free at {folder}; a film may not fit"] if free < ROOM else []
+
+
+if __name__ == "__main__":
+    run_cli(main)

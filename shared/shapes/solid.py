@@ -41,7 +41,8 @@ class Solid:
     is the number of holes that go right through: the Euler number of the closed surface is 2 - 2 * through_holes.
     ``holds`` says which springs are fixed to it, so that the film adds no pins of its own. ``buy`` says what to ask for
     in a shop where the piece has a standard's sizes, such as "circlip 8x0.8 DIN 471"; a piece without it is to be made.
-    ``rolls`` says how it turns in the film.
+    ``rolls`` says how it turns in the film. ``tolerance`` is the largest distance (mm) of its mesh from the true
+    surface; None is that of usual parts, which is fine for large ones.
     """
 
     name: str
@@ -51,6 +52,7 @@ class Solid:
     holds: tuple[Hold, ...] = ()
     buy: str = ""
     rolls: Roll | None = None
+    tolerance: float | None = None
 
 
 def placed(shape: cq.Workplane, x: float = 0.0, y: float = 0.0, z: float = 0.0, turn: float = 0.0) -> cq.Workplane:

@@ -108,7 +108,7 @@ def meshed(bodies: Bodies) -> list[MeshPiece]:
         for solid in solids:
             where = f"{body}: {solid.name}"
             shape = only_solid(solid.shape, where)
-            stl = stl_bytes(shape)
+            stl = stl_bytes(shape, solid.tolerance)
             check_mesh(read_mesh(stl), shape.Volume(), solid.through_holes, where)
             pieces.append(MeshPiece(body, solid.name, read_triangles(stl)))
     return pieces

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from mechanisms.stages.clearance.distinct import distinct
 from mechanisms.stages.clearance.tree import FacetTree
 from mechanisms.stages.parts.parts_files import read_triangles
 from shared.contract import Parts
@@ -46,6 +47,10 @@ class MeshPiece:
     def radius(self) -> float:
         """Of the circle round ``centre`` that holds the piece."""
         return float(np.linalg.norm(self.triangles[:, :, :2].reshape(-1, 2) - self.centre, axis=1).max())
+
+    def is_around(self, place: np.ndarray) -> bool:
+        """Whether the circle round it holds a place (2,) of its body's frame."""
+        return float(np.hypot(*(place - self.centre))) <= self.radius
 
     @cached_property
     def reach(self) -> float:
@@ -84,8 +89,9 @@ class MeshPiece:
         """The ``manifold3d.Manifold`` of the mesh."""
         import manifold3d
 
-        corners, index = np.unique(self.triangles.reshape(-1, 3), axis=0, return_inverse=True)
-        solid = manifold3d.Manifold(manifold3d.Mesh64(corners, index.reshape(-1, 3).astype(np.uint64)))
+        corners = self.triangles.reshape(-1, 3)
+        first, index = distinct(corners)
+        solid = manifold3d.Manifold(manifold3d.Mesh64(corners[first], index.reshape(-1, 3).astype(np.uint64)))
         if solid.status() != manifold3d.Error.NoError:
             raise UserError(f"{self.body}: {self.name}: its STL is not a closed surface ({solid.status()})")
         return solid

@@ -4,7 +4,8 @@ Every pair of pieces of two bodies is settled by the first of these that suffice
 
 1. Circles. Pieces whose circles in the plane stay apart do not meet, nor do those of bodies far apart (far.py).
 2. Layers. The motion is planar, so pieces at different heights stay apart, whatever the motion.
-3. Turn. Bodies with a revolute joint between them turn about one axis: the gap at every angle at once (turn.py).
+3. Turn. Bodies with a revolute joint between them turn about one axis: the gap of pieces round it at every angle at
+   once (turn.py).
    This also covers a pin in its hole with 0.1 mm of room.
 4. Motion. The gap of the two meshes over the whole motion, found and proven by branch and bound: of their outlines in
    the plane (outline_search.py), and where these do not tell it, of their facets (search.py). Of gears, over one pitch
@@ -13,8 +14,8 @@ Every pair of pieces of two bodies is settled by the first of these that suffice
 What is proven: at every moment of the motion, which between the samples of data.json is the quintic that the film
 shows, the meshes are apart by the ``proven`` gap of clearance.json. It is at most ``resolution`` below the gap that was
 measured, and less what the true motion may be off between two samples there (path.py). Meshes lie within
-``parts_files.TOLERANCE`` of the solids. Pieces of one body are not compared with each other, nor are pieces of two
-bodies that parts.json says may touch by design; clearance.json names these pairs.
+``parts_files.TOLERANCE`` of the solids, or the ``tolerance`` of a Solid. Pieces of one body are not compared with each
+other, nor are pieces of two bodies that parts.json says may touch by design; clearance.json names these pairs.
 """
 
 from __future__ import annotations
@@ -182,12 +183,12 @@ def _with_common_pins(axes: Axes) -> Axes:
 def _turn(
     first: MeshPiece, second: MeshPiece, axes: Axes, sweep: Sweep, limit: float, reach: float
 ) -> PairClearance | None:
-    """The pair's gap at every angle of the joint between its bodies; None if there is none, or that is not enough."""
+    """The gap at every angle of a pair round the joint between its bodies; None if it is none, or that is not enough."""
     from mechanisms.stages.clearance.turn import turn_gap
 
     axis = axes.get(frozenset((first.body, second.body)))
-    if axis is None:
-        return None
+    if axis is None or not all(piece.is_around(axis[piece.body]) for piece in (first, second)):
+        return None  # of a post beside the axis the motion tells more than all angles do
     about = [piece.triangles - [axis[piece.body][0], axis[piece.body][1], 0.0] for piece in (first, second)]
     if sweep.gap_at(float(sweep.times[0]), reach) < limit:
         return None

@@ -10,11 +10,17 @@ from __future__ import annotations
 
 import numpy as np
 
+from mechanisms.stages.clearance.distinct import distinct
+
 RESOLUTION = 0.004
 """The bound is at most this far (mm) below what is reached, or ROUNDS are over."""
 ROUNDS = 14
 ROUNDING = 1e-4
 """Boxes are widened to multiples of this (mm), so that those of a turned part coincide."""
+GROUP = 32
+"""Boxes that are looked at together."""
+MANY = 4_000_000
+"""Pairs of boxes in one go."""
 FEW = 1500
 """Points of a surface that are compared with those of another; of more, some are left out, evenly."""
 
@@ -38,9 +44,9 @@ def turn_gap(first: np.ndarray, second: np.ndarray, reach: float, limit: float =
         best = min(best, _reached(a, b))
         if best < limit:
             return best, 0.0
-        low_a, low_b = _bounds(box_a, box_b)
-        proven = float(low_a.min())
         enough = best - RESOLUTION if best < reach else reach
+        low_a, low_b = _bounds(box_a, box_b, enough)
+        proven = float(low_a.min())
         if proven >= enough:
             break
         a, b = _split(a[low_a < enough]), _split(b[low_b < enough])
@@ -88,22 +94,45 @@ def _near(t: np.ndarray, box: np.ndarray, other: np.ndarray, reach: float) -> tu
 
 def _box_gap(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """(n, m): distances between boxes."""
-    r = np.maximum(np.maximum(a[:, None, 0] - b[None, :, 1], b[None, :, 0] - a[:, None, 1]), 0.0)
-    z = np.maximum(np.maximum(a[:, None, 2] - b[None, :, 3], b[None, :, 2] - a[:, None, 3]), 0.0)
+    return _pair_gap(a[:, None], b[None])
+
+
+def _bounds(a: np.ndarray, b: np.ndarray, enough: float) -> tuple[np.ndarray, np.ndarray]:
+    """For each box of either set, its distance to the nearest box of the other; at least ``enough`` where it is more."""
+    (first_a, which_a), (first_b, which_b) = distinct(a), distinct(b)
+    (a, place_a, hull_a), (b, place_b, hull_b) = _grouped(a[first_a]), _grouped(b[first_b])
+    low_a, low_b = np.full(len(a), max(enough, 0.0)), np.full(len(b), max(enough, 0.0))
+    pairs = np.argwhere(_box_gap(hull_a, hull_b) < enough)
+    for some in np.array_split(pairs, 1 + len(pairs) * GROUP * GROUP // MANY):
+        rows, columns = (group[:, None] * GROUP + np.arange(GROUP) for group in some.T)
+        gap = _pair_gap(a[rows][:, :, None], b[columns][:, None])
+        np.minimum.at(low_a, rows, gap.min(axis=2))
+        np.minimum.at(low_b, columns, gap.min(axis=1))
+    return low_a[place_a][which_a], low_b[place_b][which_b]
+
+
+def _grouped(boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Boxes in groups of :data:`GROUP` that are near each other, the last box as often as is missing; the place of each
+    of ``boxes`` in them; (groups, 4) the box round each group.
+    """
+    count = -(-len(boxes) // GROUP)
+    strips = max(1, round(count**0.5))
+    z, r = boxes[:, 2] + boxes[:, 3], boxes[:, 0] + boxes[:, 1]
+    order = np.argsort(z, kind="stable")
+    order = np.concatenate([strip[np.argsort(r[strip], kind="stable")] for strip in np.array_split(order, strips)])
+    place = np.empty(len(boxes), dtype=np.int64)
+    place[order] = np.arange(len(boxes))
+    grouped = boxes[np.append(order, np.full(count * GROUP - len(boxes), order[-1]))]
+    members = grouped.reshape(count, GROUP, 4)
+    low, high = members.min(axis=1), members.max(axis=1)
+    return grouped, place, np.column_stack([low[:, 0], high[:, 1], low[:, 2], high[:, 3]])
+
+
+def _pair_gap(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Distances of boxes (..., 4)."""
+    r = np.maximum(np.maximum(a[..., 0] - b[..., 1], b[..., 0] - a[..., 1]), 0.0)
+    z = np.maximum(np.maximum(a[..., 2] - b[..., 3], b[..., 2] - a[..., 3]), 0.0)
     return np.hypot(r, z)
-
-
-def _bounds(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """For each box of either set, its distance to the nearest box of the other."""
-    ua, ia = np.unique(a, axis=0, return_inverse=True)
-    ub, ib = np.unique(b, axis=0, return_inverse=True)
-    low_a, low_b = np.empty(len(ua)), np.full(len(ub), np.inf)
-    chunk = max(1, 4_000_000 // len(ub))
-    for start in range(0, len(ua), chunk):
-        gap = _box_gap(ua[start : start + chunk], ub)
-        low_a[start : start + chunk] = gap.min(axis=1)
-        low_b = np.minimum(low_b, gap.min(axis=0))
-    return low_a[ia.ravel()], low_b[ib.ravel()]
 
 
 def _reached(a: np.ndarray, b: np.ndarray) -> float:

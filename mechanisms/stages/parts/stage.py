@@ -193,7 +193,7 @@ def _piece(name: str, body: str, solid: Any, files: dict[str, bytes]) -> Piece:
     try:
         shape = only_solid(solid.shape, where)
         step = step_bytes(shape, solid.name)  # before the mesh, which the shape would carry along
-        stl = stl_bytes(shape)
+        stl = stl_bytes(shape, solid.tolerance)
     except Exception as error:
         if not is_of_kernel(error):
             raise

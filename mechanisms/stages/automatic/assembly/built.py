@@ -21,6 +21,7 @@ from shared.shapes.solid import Solid, placed
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
+    from mechanisms.stages.automatic.layout.sizes import Sizes
     from shared.shapes.outline import Circle
 
 
@@ -34,8 +35,7 @@ def built(plan: Plan, heights: Heights) -> dict[str, list[Solid]]:
         shape = marked(shape, plan, body, heights.thickness)
         plate = Solid(plan.main[body], placed(shape, z=heights.bottom(body)), plan.materials[body], holes)
         made[body] = [plate, *plan.solids.get(body, [])]
-    scale = plan.layout.sizes.scale
-    return {body: [_scaled(solid, scale) for solid in solids] for body, solids in made.items()}
+    return {body: [_scaled(solid, plan.layout.sizes) for solid in solids] for body, solids in made.items()}
 
 
 def _plate(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
@@ -95,7 +95,8 @@ def _blanks(plan: Plan, body: str, eyes: list[PlacedEye]) -> list[PlacedEye]:
     ]
 
 
-def _scaled(solid: Solid, scale: float) -> Solid:
+def _scaled(solid: Solid, sizes: Sizes) -> Solid:
+    scale = sizes.scale
     if scale == 1.0:
         return solid
     shape = cq.Workplane(obj=solid.shape.val().scale(scale))
@@ -103,4 +104,4 @@ def _scaled(solid: Solid, scale: float) -> Solid:
     roll = solid.rolls
     if roll is not None:
         roll = replace(roll, x=roll.x * scale, y=roll.y * scale, radius=roll.radius * scale)
-    return replace(solid, shape=shape, holds=holds, rolls=roll)
+    return replace(solid, shape=shape, holds=holds, rolls=roll, tolerance=sizes.tolerance)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from mechanisms.stages.parts.parts_files import TOLERANCE
 from shared.shapes.fit import Fit
 from shared.shapes.pin import Head
 from shared.shapes.pivot import Pivot
@@ -55,6 +56,8 @@ LEAST_LINK = 2.75
 OVERALL = 20.0
 """The longer side of what the joints sweep, in diameters of a pin."""
 
+COARSEST = 0.13
+"""Tolerance of meshes, at most so much of the clearance of pins."""
 THINNEST = 0.5
 """Of the pins that are tried, in pins of the wished size."""
 
@@ -101,6 +104,14 @@ class Sizes:
     def clip_room(self) -> float:
         """Height (rmm) that a circlip and the pin's end take above the eye, with room above."""
         return self.pivot.flange_room + self.pivot.retainer_room + self.pin_end + self.pivot.fit.axial
+
+    @property
+    def tolerance(self) -> float | None:
+        """Largest distance (mm) of meshes from the true surface: in proportion where parts are large, well below the
+        clearance of pins; None: the usual one.
+        """
+        large = min(self.scale, COARSEST * self.pivot.fit.running * self.scale / TOLERANCE)
+        return TOLERANCE * large if large > 1.0 else None
 
     @property
     def screw(self) -> float:

@@ -183,7 +183,7 @@ def _with_common_pins(axes: Axes) -> Axes:
 def _turn(
     first: MeshPiece, second: MeshPiece, axes: Axes, sweep: Sweep, limit: float, reach: float
 ) -> PairClearance | None:
-    """The gap at every angle of a pair round the joint between its bodies; None if it is none, or that is not enough."""
+    """The gap at every angle of a pair round the joint between its bodies; None if that is not enough."""
     from mechanisms.stages.clearance.turn import turn_gap
 
     axis = axes.get(frozenset((first.body, second.body)))

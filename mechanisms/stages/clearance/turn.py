@@ -98,7 +98,7 @@ def _box_gap(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _bounds(a: np.ndarray, b: np.ndarray, enough: float) -> tuple[np.ndarray, np.ndarray]:
-    """For each box of either set, its distance to the nearest box of the other; at least ``enough`` where it is more."""
+    """For each box of either set, its distance to the nearest box of the other, or ``enough`` if that is less."""
     (first_a, which_a), (first_b, which_b) = distinct(a), distinct(b)
     (a, place_a, hull_a), (b, place_b, hull_b) = _grouped(a[first_a]), _grouped(b[first_b])
     low_a, low_b = np.full(len(a), max(enough, 0.0)), np.full(len(b), max(enough, 0.0))

@@ -27,7 +27,8 @@ _TIMESTAMP = re.compile(rb"(FILE_NAME\('[^']*',)'[^']*'")
 def stl_bytes(solid: Any, tolerance: float | None = None) -> bytes:
     """Binary STL of a ``cadquery.Solid``, in mm, its triangles in an order of their own.
 
-    ``tolerance`` (mm) is :data:`TOLERANCE` by default. Small parts get a finer mesh until it holds their volume to :data:`VOLUME_GOAL`.
+    ``tolerance`` (mm) is :data:`TOLERANCE` by default. Small parts get a finer mesh until it holds their
+    volume to :data:`VOLUME_GOAL`.
     The kernel gives the same triangles each time, but those of a face with many holes in another order, and
     normals that differ in their last bits. Raises UserError if the kernel cannot write its file.
     """

@@ -2,7 +2,7 @@
 
 On ground the rail stands on the base, or on two posts where the block is high. Between moving bodies the rail is
 screwed to its body's plate on the side of the block. Where the second marker is on ground, the block stands there,
-and the rail hangs under its body."""
+and the rail hangs under its body. Rails on ground that would cross are the grooves of a plate (crossings.py)."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ import numpy as np
 from mechanisms.stages.automatic.layout.features import Anchor, Feature, Need, kind
 from mechanisms.stages.automatic.layout.items import Item, Reach
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
+from mechanisms.stages.automatic.slides.crossings import with_crossings
 from mechanisms.stages.automatic.slides.slide_solids import (
     BEAM,
     HALF_LENGTH,
@@ -52,13 +53,20 @@ class Slide:
 
     def rail_ends(self) -> list[tuple[float, float]]:
         """Middles of the rail's round ends, in its body's frame: the block never leaves it."""
-        first, last = self.travel[0] - HALF_LENGTH, self.travel[1] + HALF_LENGTH
-        return [_along(self.rail_at, first), _along(self.rail_at, last)]
+        return [self.rail_place(self.travel[0] - HALF_LENGTH), self.rail_place(self.travel[1] + HALF_LENGTH)]
+
+    def rail_place(self, distance: float) -> tuple[float, float]:
+        """On the rail, that far from its marker, in its body's frame."""
+        return _along(self.rail_at, distance)
+
+    def block_place(self, distance: float) -> tuple[float, float]:
+        """On the line of the block, that far from its marker, in its body's frame."""
+        return _along(self.block_at, distance)
 
     def block_ends(self, radius: float) -> list[tuple[float, float]]:
         """Middles of the block's round ends, in its body's frame."""
         reach = HALF_LENGTH - radius
-        return [_along(self.block_at, -reach), _along(self.block_at, reach)]
+        return [self.block_place(-reach), self.block_place(reach)]
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """The block's plate, and a plate under the rail."""
@@ -115,15 +123,15 @@ class Slide:
 
 @kind("prismatic")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """One for each joint."""
-    found: list[Feature] = []
+    """One for each joint, but one for those on ground that cross."""
+    found: list[Slide] = []
     for joint in joints:
         rail_at, block_at = (*layout.place(joint.i), joint.i.angle), (*layout.place(joint.j), joint.j.angle)
         along = layout.seen(joint.j.body.name, block_at[:2], joint.i.body.name) - np.array(rail_at[:2])
         place = along @ np.array([math.cos(joint.i.angle), math.sin(joint.i.angle)])
         travel = float(place.min()), float(place.max())
         found.append(Slide(joint.name, joint.i.body.name, joint.j.body.name, rail_at, block_at, travel))
-    return found
+    return with_crossings(found, layout)
 
 
 def _along(at: tuple[float, float, float], distance: float) -> tuple[float, float]:

@@ -1,0 +1,5 @@
+"""How the trammel is filmed: from high up, so that grooves and ellipse read; the rod is coloured, as what is turned."""
+
+from shared.shot import Camera, Shot
+
+shot = Shot(camera=Camera(azimuth=-12.0, elevation=58.0), materials={"rod": "aluminium_orange"}, poster=0.09)

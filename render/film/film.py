@@ -109,12 +109,17 @@ class Film:
     @cached_property
     def drawn(self) -> list[Stretched | Spiral | Belt]:
         """All that is laid anew in every frame."""
-        return [*self.stretched, *self.spirals, *belts(self.motion, self._held)]
+        return [*self.stretched, *self.spirals, *self.belts]
 
     @cached_property
     def stretched(self) -> list[Stretched]:
         """Springs, dampers and ropes."""
         return list(stretched(self.motion, self.space.size, self.heights.spring, self._held))
+
+    @cached_property
+    def belts(self) -> list[Belt]:
+        """Belts and chains."""
+        return list(belts(self.motion, self._held))
 
     @cached_property
     def _held(self) -> dict[str, Held]:

@@ -1,8 +1,8 @@
 """The mechanism as a glTF scene: a node for each body, its pieces below, its motion as one animation in real time.
 
 The scene's z is up, glTF's y: the root turns it. A body's translation and rotation are its frame in data.json; the
-ground stands still; springs and ropes stand beside the bodies. There is no floor, no light and no camera: viewers bring
-theirs.
+ground stands still; springs, ropes and belts stand beside the bodies. There is no floor, no light and no camera:
+viewers bring theirs.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from render.film.film import Film
 from render.film.scene import PieceSpec
 from render.film.solids import read_triangles
 from render.glb.animation import Animation, about_z
+from render.glb.belts import add_belt
 from render.glb.document import INDICES, VERTICES, Document
 from render.glb.materials import CLEARCOAT, Paints
 from render.glb.mesh import smooth
@@ -50,9 +51,10 @@ def glb(film: Film) -> bytes:
         springs.stretched(stretched)
     for spiral in film.spirals:
         springs.spiral(spiral)
+    belts = [node for belt in film.belts for node in add_belt(document, animation, paints, film.poses, belt)]
     root = document.add(
         "nodes",
-        {"name": motion.mechanism, "rotation": list(UPRIGHT), "children": [*nodes.values(), *springs.nodes]},
+        {"name": motion.mechanism, "rotation": list(UPRIGHT), "children": [*nodes.values(), *springs.nodes, *belts]},
     )
     document.add("scenes", {"name": motion.mechanism, "nodes": [root]})
     document.json["scene"] = 0

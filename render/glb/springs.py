@@ -14,19 +14,17 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from render.blender.scene.tubes import SIDES, vertices
 from render.film.markers import moved
 from render.film.scene import TubeSpec
 from render.film.tubes.spirals import Spiral
 from render.film.tubes.stretched import Path, Stretched
 from render.glb.animation import Animation
-from render.glb.document import INDICES, VERTICES, Document
+from render.glb.document import Document
 from render.glb.materials import Paints
+from render.glb.tubes import Tube, tube, tube_mesh
 from shared.contract import Motion
 
 Array = NDArray[np.float64]
-Tube = tuple[Array, Array, NDArray[np.signedinteger]]
-"""Positions and normals (n, 3), corners (m,)."""
 LINKS = 24
 """Of a rope."""
 WINDING = 0.35
@@ -67,7 +65,7 @@ class Springs:
         turned = inner - (start - one.at[2])
         least, most = float(turned.min()), float(turned.max())
         shapes = np.linspace(least, most, min(SHAPES, max(2, math.ceil((most - least) / WINDING) + 1)))
-        tubes = [_tube(one.curve(angle), wire.radius) for angle in shapes]
+        tubes = [tube(one.curve(angle), wire.radius) for angle in shapes]
         node = self._node(wire, wire.name, tubes)
         self._animation.place(node, _flat(place), start)
         if most > least:
@@ -92,18 +90,18 @@ class Springs:
             return
         length = np.hypot(way[:, 0], way[:, 1])
         mean = float(length.mean())
-        node = self._node(spec, name, [_tube(np.array([[0.0, 0, 0], [mean, 0, 0]]), spec.radius)])
+        node = self._node(spec, name, [tube(np.array([[0.0, 0, 0], [mean, 0, 0]]), spec.radius)])
         self._between(node, lines[:, 0], way, length / mean)
 
     def _upright(self, spec: TubeSpec, name: str, places: Array, low: float, high: float) -> None:
         """From one height to another (m) at places (T, 2)."""
-        node = self._node(spec, name, [_tube(np.array([[0.0, 0, low], [0.0, 0, high]]), spec.radius)])
+        node = self._node(spec, name, [tube(np.array([[0.0, 0, low], [0.0, 0, high]]), spec.radius)])
         self._animation.place(node, _flat(places), np.zeros(len(places)))
 
     def _coil(self, spec: TubeSpec, path: Path, a: Array, b: Array) -> None:
         length = np.hypot(*(b - a)[:, :2].T)
         mean = float(length.mean())
-        node = self._node(spec, spec.name, [_tube(path(np.zeros(3), np.array([mean, 0.0, 0.0])), spec.radius)])
+        node = self._node(spec, spec.name, [tube(path(np.zeros(3), np.array([mean, 0.0, 0.0])), spec.radius)])
         self._between(node, a, b - a, length / mean)
 
     def _between(self, node: int, start: Array, way: Array, longer: Array) -> None:
@@ -116,52 +114,11 @@ class Springs:
 
     def _node(self, spec: TubeSpec, name: str, tubes: list[Tube]) -> int:
         """A node with a tube as its mesh; tubes beyond the first are shapes that it may be blended to."""
-        add = self._document.array
-        (positions, normals, corners), *others = tubes
-        primitive = {
-            "attributes": {
-                "POSITION": add(positions.astype(np.float32), VERTICES, bounds=True),
-                "NORMAL": add(normals.astype(np.float32), VERTICES),
-            },
-            "indices": add(corners.astype(np.uint16 if len(positions) < 65535 else np.uint32), INDICES),
-            "material": self._paints.of(spec.surface),
-        }
-        if others:
-            primitive["targets"] = [
-                {
-                    "POSITION": add((p - positions).astype(np.float32), VERTICES, bounds=True),
-                    "NORMAL": add((n - normals).astype(np.float32), VERTICES),
-                }
-                for p, n, _ in others
-            ]
-        mesh = {"name": name, "primitives": [primitive]}
-        if others:
-            mesh["weights"] = [0.0] * len(others)
-        self.nodes.append(self._document.add("nodes", {"name": name, "mesh": self._document.add("meshes", mesh)}))
+        mesh = tube_mesh(self._document, self._paints, spec, name, tubes)
+        self.nodes.append(self._document.add("nodes", {"name": name, "mesh": mesh}))
         return self.nodes[-1]
 
 
 def _flat(places: Array) -> Array:
     """(n, 3) of places (n, 2), at height 0."""
     return np.column_stack([places, np.zeros(len(places))])
-
-
-def _tube(path: Array, radius: float) -> Tube:
-    """Positions and normals (n, 3) and corners (m,) of a tube along a path (k, 3) with flat ends."""
-    line = [(float(x), float(y), float(z)) for x, y, z in path]
-    rings = vertices(line, radius).astype(float).reshape(-1, SIDES, 3)
-    middles = np.asarray(path)[:, None]
-    outwards = (rings - middles) / radius
-    ends = [(path[0] - path[1]), (path[-1] - path[-2])]
-    faces = [np.tile(end / np.linalg.norm(end), (SIDES, 1)) for end in ends]
-    positions = np.concatenate([rings.reshape(-1, 3), rings[0], rings[-1]])
-    normals = np.concatenate([outwards.reshape(-1, 3), *faces])
-    side, following = np.arange(SIDES), (np.arange(SIDES) + 1) % SIDES
-    quads = []
-    for ring in range(len(path) - 1):
-        a, b = ring * SIDES + side, ring * SIDES + following
-        quads += [np.stack([a, b, b + SIDES], axis=1), np.stack([a, b + SIDES, a + SIDES], axis=1)]
-    first, last = len(path) * SIDES, (len(path) + 1) * SIDES
-    fan = np.stack([np.zeros(SIDES - 2, int), np.arange(1, SIDES - 1), np.arange(2, SIDES)], axis=1)
-    corners = np.concatenate([*quads, first + fan[:, ::-1], last + fan])
-    return positions, normals, corners.reshape(-1)

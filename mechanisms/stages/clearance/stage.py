@@ -14,8 +14,9 @@ Every pair of pieces of two bodies is settled by the first of these that suffice
 What is proven: at every moment of the motion, which between the samples of data.json is the quintic that the film
 shows, the meshes are apart by the ``proven`` gap of clearance.json. It is at most ``resolution`` below the gap that was
 measured, and less what the true motion may be off between two samples there (path.py). Meshes lie within
-``parts_files.TOLERANCE`` of the solids, or the ``tolerance`` of a Solid. Pieces of one body are not compared with each
-other, nor are pieces of two bodies that parts.json says may touch by design; clearance.json names these pairs.
+``parts_files.TOLERANCE`` of the solids, or the ``tolerance`` of a Solid. A belt or chain is the band that it runs in
+(belts.py), compared with all but its own pulleys. Pieces of one body are not compared with each other, nor are pieces
+of two bodies that parts.json says may touch by design; clearance.json names these pairs.
 """
 
 from __future__ import annotations
@@ -33,15 +34,10 @@ from shared.stage.paths import ROOT, Out
 from shared.stage.stages import Stage, contract_sources, key_of, versions
 
 if TYPE_CHECKING:
-    import numpy as np
-
-    from mechanisms.stages.clearance.path import BodyPath
+    from mechanisms.stages.clearance.axes import Axes
     from mechanisms.stages.clearance.pieces import MeshPiece
     from mechanisms.stages.clearance.search.search import Least
     from mechanisms.stages.clearance.search.sweep import Sweep
-
-type Axes = dict[frozenset[str], dict[str, np.ndarray]]
-"""By pair of bodies: the axis of their joint, as a point (mm) in the frame of either."""
 
 LIMIT = 0.05
 """Smaller gaps between two bodies are refused (mm)."""
@@ -50,7 +46,7 @@ REACH = 5.0
 PACKAGES = ("manifold3d", "numpy")
 SOURCES = [
     *(ROOT / "mechanisms" / "stages" / name for name in ("clearance", "parts/parts_files.py")),
-    *contract_sources("clearance", "spanning"),
+    *contract_sources("belt_path", "belt_section", "clearance", "spanning"),
 ]
 
 
@@ -79,6 +75,8 @@ def check(
 ) -> Clearance:
     """Check every pair of ``pieces`` of different bodies; ``limit`` and ``reach`` in mm. Raises as :func:`run`."""
     from mechanisms.stages.clearance import far as bodies
+    from mechanisms.stages.clearance.axes import axes_of
+    from mechanisms.stages.clearance.belts import bands
     from mechanisms.stages.clearance.meshing import least_in_mesh, meshes
     from mechanisms.stages.clearance.path import paths
     from mechanisms.stages.clearance.search.search import RESOLUTION
@@ -93,14 +91,21 @@ def check(
             "use the names of mechanism.py in parts()"
         )
     where = paths(motion)
+    axes, in_mesh = axes_of(motion, parts, where), meshes(motion, pieces)
+    own: set[frozenset[tuple[str, str]]] = set()
+    for belt in list(bands(parts, motion, where)):
+        it = belt.piece
+        pieces, where[it.body] = [*pieces, it], belt.path
+        axes |= {frozenset((it.body, body)): {it.body: at, body: there} for body, (at, there) in belt.axes.items()}
+        own |= {frozenset(((it.body, it.name), pulley)) for pulley in belt.own}
     far = bodies.far_bodies(pieces, where, reach)
-    axes, in_mesh = _axes(motion, parts, where), meshes(motion, pieces)
     pairs: list[PairClearance] = []
     refused: list[tuple[Sweep, Least]] = []
     apart, error = 0, 0.0
     alike = {frozenset(pair) for pair in parts.may_touch} | {frozenset((piece.body,)) for piece in pieces}
     for first, second in combinations(pieces, 2):
-        if frozenset((first.body, second.body)) in alike:
+        names = frozenset(((first.body, first.name), (second.body, second.name)))
+        if frozenset((first.body, second.body)) in alike or names in own:
             continue
         height = _height_gap(first, second)
         is_far = frozenset((first.body, second.body)) in far
@@ -138,46 +143,6 @@ def check(
         apart=apart,
         may_touch=parts.may_touch,
     )
-
-
-def _axes(motion: Motion, parts: Parts, where: dict[str, BodyPath]) -> Axes:
-    """For bodies that a revolute joint or a rod's end connects: the axis as a point (mm) in the frame of either."""
-    import numpy as np
-
-    from mechanisms.stages.clearance.path import points, relative
-
-    found: Axes = {}
-    for joint in motion.joints.values():
-        if joint.kind != "revolute":
-            continue
-        at = np.column_stack([np.array(joint.x) * mm(1), np.array(joint.y) * mm(1), np.zeros(len(joint.x))])
-        seen = {body: relative(at, where[body].pose)[:, :2] for body in joint.bodies}
-        if all(np.ptp(point, axis=0).max() < 1e-4 for point in seen.values()):
-            found[frozenset(joint.bodies)] = {body: point.mean(axis=0) for body, point in seen.items()}
-    for rod, described in parts.bodies.items():
-        for end in described.spans or ():
-            own = np.array([end.x, end.y]) * mm(1)
-            at = points(where[end.body].pose, own)
-            point = relative(np.column_stack([at, np.zeros(len(at))]), where[rod].pose)[:, :2]
-            if np.ptp(point, axis=0).max() < 1e-4:
-                found[frozenset((rod, end.body))] = {rod: point.mean(axis=0), end.body: own}
-    return _with_common_pins(found)
-
-
-def _with_common_pins(axes: Axes) -> Axes:
-    """Also bodies that turn on a common pin without a joint between the two of them."""
-    import numpy as np
-
-    waiting = list(axes.items())
-    while waiting:
-        pair, at = waiting.pop()
-        for other, there in list(axes.items()):
-            for body in pair & other:
-                ends = pair ^ other
-                if len(ends) == 2 and ends not in axes and np.abs(at[body] - there[body]).max() < 1e-4:
-                    axes[ends] = {end: (at | there)[end] for end in ends}
-                    waiting.append((ends, axes[ends]))
-    return axes
 
 
 def _turn(

@@ -1,10 +1,10 @@
-"""Belts and chains that run: a round belt with marks, a chain of rollers between two rows of plates. As tubes.
+"""Belts and chains that run: a round belt with marks, a chain of rollers between plates. As tubes.
 
 The belt moves with the first pulley: what lies on it at the body's angle gamma is r (gamma + theta - phi - beta) along
 the path of shared/contract/belt_path.py (phi is the direction of the line of centres). Marks and rollers are evenly
 spread over the belt. Where the motion has a period, the way of the belt in it is rounded to a whole number of their
 distances, so that the film loops without a jump; of a chain whose length is a whole number of its pitch nothing is
-rounded.
+rounded. Its inner and outer plates take turns, unless it has an odd number of links or moves on by one in a period.
 """
 
 from __future__ import annotations
@@ -21,21 +21,19 @@ from render.film.scene import Point, SurfaceSpec, TubeSpec
 from render.film.tubes.stretched import BLACK, STEEL, placed
 from shared.contract import Held, Motion, Shape
 from shared.contract.belt_path import BeltPath
+from shared.contract.belt_section import APART, BOLT, LONG, PIN, PLATE, PLATES, PROUD, ROLLER
 
 Array = NDArray[np.float64]
 BELT = SurfaceSpec(colour=(0.045, 0.045, 0.05), finish="rubber", roughness=0.55)
 MARK = SurfaceSpec(colour=(0.86, 0.5, 0.06), finish="satin", roughness=0.4)
+CHAIN = (("roller", STEEL, ROLLER), ("pin", STEEL, BOLT), ("lower plate", BLACK, PLATE), ("upper plate", BLACK, PLATE))
+"""Name, surface and radius of what each link has; its plates reach to the next."""
 POINTS, MARK_POINTS = 181, 5
 """Of a belt's tube and of a mark."""
 FEWEST, MOST = 6, 14
 """Marks on a belt."""
-LONG, PROUD = 1.6, 1.06
-"""Half of a mark's length, and its radius, in the belt's radius."""
-PLATES, PIN, PLATE = 1.5, 2.1, 0.42
-"""Of a chain, in the radius of its rollers: how far plates lie from the middle, half a pin's length, a plate's radius.
-"""
-APART = 1.1
-"""How far the strands of a crossed belt pass over and under each other, in its radius."""
+OUTER, INNER = 1.0, 0.72
+"""How far the plates of every other link of a chain lie from its middle, in PLATES."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +55,9 @@ class Belt:
     pace: float
     """By how much the belt is shown faster than it is."""
 
+    alike: bool
+    """Whether all links of a chain have the same plates; else every other link's lie inside its neighbours'."""
+
     @property
     def specs(self) -> list[TubeSpec]:
         """Of each tube."""
@@ -66,21 +67,46 @@ class Belt:
                 for k in range(self.count)
             ]
             return [TubeSpec(name=self.name, surface=BELT, radius=self.radius, points=POINTS), *marks]
-        plates = [
-            TubeSpec(name=f"{self.name} plates {side}", surface=BLACK, radius=PLATE * self.radius, points=POINTS)
-            for side in (1, 2)
-        ]
         return [
-            *plates,
-            *(
-                TubeSpec(name=f"{self.name} {what} {k + 1}", surface=STEEL, radius=part * self.radius, points=2)
-                for what, part in (("roller", 0.9), ("pin", 0.35))
-                for k in range(self.count)
-            ),
+            TubeSpec(name=f"{self.name} {what} {k + 1}", surface=surface, radius=part * self.radius, points=2)
+            for what, surface, part in CHAIN
+            for k in range(self.count)
         ]
 
     def paths(self, poses: Poses, at: Moment) -> list[list[Point]]:
         """Of each tube at that moment."""
+        place, every = self.run(poses, at)
+        if not self.chain:
+            reach = LONG * self.radius * np.linspace(-1.0, 1.0, MARK_POINTS)
+            return [place.points(self.closed), *(place.points(s + reach) for s in every)]
+        seats, found = place.points(every), []
+        for (x, y, z), half in ((seat, half) for half in (self.roller, PIN * self.radius) for seat in seats):
+            found.append([(x, y, z - half), (x, y, z + half)])
+        for side in (-1.0, 1.0):
+            for k, (start, end) in enumerate(zip(seats, [*seats[1:], seats[0]], strict=True)):
+                found.append([(x, y, z + side * self.aside(k)) for x, y, z in (start, end)])
+        return found
+
+    @property
+    def closed(self) -> Array:
+        """Lengths (m) of the points of the whole belt."""
+        return np.linspace(0.0, self.path.length, POINTS)
+
+    @property
+    def roller(self) -> float:
+        """Half of a chain's roller's length (m)."""
+        return 0.85 * self.aside(1)
+
+    def aside(self, link: int) -> float:
+        """How far (m) the plates of a link lie from the middle."""
+        return PLATES * self.radius * (OUTER if self.alike or link % 2 == 0 else INNER)
+
+    def still(self) -> Placing:
+        """Beside its first pulley's centre at the origin, the second on the x axis."""
+        return Placing(self, (0.0, 0.0), 0.0)
+
+    def run(self, poses: Poses, at: Moment) -> tuple[Placing, Array]:
+        """Where the belt is at a moment, and the lengths (m) along it of its marks or rollers."""
         first, second = (
             placed(poses.body(body, at), marker)
             for body, marker in zip(self.shape.bodies, self.shape.markers, strict=True)
@@ -93,21 +119,11 @@ class Belt:
         steady = line + math.tau * (round((guess - line) / math.tau) + whole * at.turns)
         begin = self.path.first * (self.start - self.path.beta)
         gone = begin + self.pace * self.path.first * (theta - steady - self.start)
-        every = gone + self.path.length / self.count * np.arange(self.count)
-        place = _Placing(self, first, line)
-        closed = np.linspace(0.0, self.path.length, POINTS)
-        if not self.chain:
-            reach = LONG * self.radius * np.linspace(-1.0, 1.0, MARK_POINTS)
-            return [place.points(closed), *(place.points(s + reach) for s in every)]
-        side = PLATES * self.radius
-        found = [place.points(closed, height) for height in (-side, side)]
-        for half in (0.85 * side, PIN * self.radius):
-            found += [[*place.points(np.array([s]), -half), *place.points(np.array([s]), half)] for s in every]
-        return found
+        return Placing(self, first, line), gone + self.path.length / self.count * np.arange(self.count)
 
 
 @dataclass(frozen=True)
-class _Placing:
+class Placing:
     """From lengths along a belt to points of the world."""
 
     belt: Belt
@@ -152,6 +168,7 @@ def belts(motion: Motion, held: Mapping[str, Held]) -> Iterator[Belt]:
         yield Belt(
             name, shape, path, own.z, own.radius, count, chain, (float(line[0]), float(line[-1])),
             float(theta[0] - line[0]), _pace(gone, path.length / count),
+            alike=count % 2 == 1 or round(gone * count / path.length) % 2 == 1,
         )  # fmt: skip
 
 

@@ -129,7 +129,7 @@ def test_rollers_of_a_chain_lie_in_the_seats_of_both_sprockets() -> None:
     scale = made.sizes.scale * 1e-3
     seen = 0
     for time in (0.0, 0.21, 0.77):
-        rollers = np.array([path[0][:2] for path in belt.paths(poses, Moment(time, 0))[2 : 2 + belt.count]])
+        rollers = np.array([path[0][:2] for path in belt.paths(poses, Moment(time, 0))[: belt.count]])
         for pulley in pulleys:
             x, y, theta = poses.body(pulley.body, Moment(time, 0))
             c, s = math.cos(theta), math.sin(theta)

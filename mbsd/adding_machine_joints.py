@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +10,7 @@ import numpy as np
 from mbsd.adding_joints import AddingJoints
 from mbsd.arguments import number_pair
 from mbsd.body import Marker
-from mbsd.errors import PACKAGE, ModelError, ModelWarning
+from mbsd.errors import ModelError, ModelWarning
 from mbsd.joint import Joint
 from mbsd.joints.angle_lock import ANGLE_LOCK
 from mbsd.joints.belt import BELT
@@ -26,6 +25,7 @@ from mbsd.joints.rolling_disc import ROLLING_DISC
 from mbsd.joints.rolling_on_curve import ROLLING_ON_CURVE
 from mbsd.shown import shown
 from mbsd.teeth import FEWEST, with_radii
+from mbsd.warn import warn
 
 if TYPE_CHECKING:
     from mbsd.cams import CamProfile
@@ -190,9 +190,7 @@ class AddingMachineJoints(AddingJoints):
                 f"follower '{profile.follower}'; use {'cam_roller' if flat else 'cam_flat'}"
             )
         if profile.undercut:
-            warnings.warn(
-                f"{self.name}: joint '{name}': {profile.problems[0]}", ModelWarning, skip_file_prefixes=PACKAGE
-            )
+            warn(f"{self.name}: joint '{name}': {profile.problems[0]}", ModelWarning)
         return profile.data
 
     def geneva(self, name: str, crank: Marker, wheel: Marker, slots: int, radius: float) -> Joint:

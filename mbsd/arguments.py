@@ -12,7 +12,7 @@ import functools
 import inspect
 import math
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from mbsd.errors import ModelError
 from mbsd.names import no_such
 from mbsd.shown import shown
 from mbsd.users_function import described
+
+F = TypeVar("F", bound=Callable[..., Any])
+C = TypeVar("C", bound=type)
 
 LARGEST = 1e100
 """Of any number: squares and products of a few such numbers can still be represented."""
@@ -136,7 +139,7 @@ CHECKS: dict[str, Callable[[str, Any], object]] = {
 """By annotation; they return what the function is given."""
 
 
-def checked[F: Callable[..., Any]](function: F) -> F:
+def checked(function: F) -> F:
     """``function`` with its arguments checked by their annotations, before it runs."""
     signature = inspect.signature(function)
     parameters = list(signature.parameters.values())
@@ -203,7 +206,7 @@ def _check_of(annotation: str) -> Callable[[str, Any], object] | None:
     return lambda what, value: None if value is None else check(what, value)
 
 
-def checked_methods[C: type](cls: C) -> C:
+def checked_methods(cls: C) -> C:
     """A class whose public methods, inherited ones too, are :func:`checked`. They name the object's ``name``."""
     for name, member in inspect.getmembers(cls, inspect.isfunction):
         if not name.startswith("_") and not isinstance(inspect.getattr_static(cls, name), staticmethod):

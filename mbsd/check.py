@@ -7,16 +7,16 @@ radius of gyration is 20 sizes, marker angles of whole degrees beyond a turn. Si
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from mbsd.body import Body, Marker
-from mbsd.errors import PACKAGE, ModelWarning
+from mbsd.errors import ModelWarning
 from mbsd.joint import Joint
 from mbsd.mechanism_base import MechanismBase
+from mbsd.warn import warn
 
 SIZE_GAP = 100.0
 """Between neighbours in the sorted list of sizes; millimetres taken for metres are 1000 apart."""
@@ -67,7 +67,7 @@ def tell(m: MechanismBase) -> None:
         return
     m.findings_told = True
     for finding in check(m):
-        warnings.warn(f"{m.name}: {finding}", ModelWarning, skip_file_prefixes=PACKAGE)
+        warn(f"{m.name}: {finding}", ModelWarning)
 
 
 def body_sizes(m: MechanismBase) -> dict[str, float]:

@@ -23,7 +23,8 @@ def no_such(what: str, name: object, known: Iterable[object]) -> str:
     listed = ", ".join(names[:LISTED]) or "none"
     if len(names) > LISTED:
         listed += f" and {len(names) - LISTED} more"
-    said = f"there is no {what} {f"'{name}'" if isinstance(name, str) and len(name) < 60 else shown(name)}"
+    plain = isinstance(name, str) and len(name) < 60
+    said = f"there is no {what} '{name}'" if plain else f"there is no {what} {shown(name)}"
     meant = _meant(name, names)
     return f"{said}; there is: {listed}" if meant is None else f"{said}, did you mean '{meant}'? There is: {listed}"
 

@@ -7,7 +7,9 @@ import reprlib
 LONGEST = 80
 """Characters."""
 
-_short = reprlib.Repr(maxlevel=3, maxlist=6, maxtuple=6, maxdict=4, maxset=4, maxarray=6, maxstring=60, maxother=60)
+_short = reprlib.Repr()
+_short.maxlevel, _short.maxlist, _short.maxtuple, _short.maxdict, _short.maxset = 3, 6, 6, 4, 4
+_short.maxarray, _short.maxstring, _short.maxother = 6, 60, 60
 
 
 def shown(value: object) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from functools import partial
 
@@ -10,7 +9,7 @@ import numpy as np
 
 from mbsd.closed_contacts import refuse_passed_contacts
 from mbsd.curve_following import CurveFollowing, refuse_jumps
-from mbsd.errors import PACKAGE, ModelError, ModelWarning
+from mbsd.errors import ModelError, ModelWarning
 from mbsd.inverse_dynamics import inverse_dynamics, singularity_margin
 from mbsd.limits import limits_of, refuse_passed
 from mbsd.model import Mechanism
@@ -18,6 +17,7 @@ from mbsd.output_times import equal_times, rising_times
 from mbsd.period import MOST_TURNS, common_period, repetition, returned
 from mbsd.prepared import March, Prepared, prepare
 from mbsd.solution import Solution, Stats
+from mbsd.warn import warn
 
 
 def sweep(m: Mechanism, duration: float | None, steps: int, times: Sequence[float] | np.ndarray | None) -> Solution:
@@ -99,10 +99,9 @@ def _whole_period(m: Mechanism, ready: Prepared, march: March, duration: float) 
         if found is not None:
             return found
         why = f"its bodies are not back within {MOST_TURNS} times {common:.6g} s, after which its drivers repeat"
-    warnings.warn(
+    warn(
         f"{m.name}: {why}, so the motion does not repeat, and {duration:.6g} s of it are swept; "
         "say sweep(duration=...) for more or less",
         ModelWarning,
-        skip_file_prefixes=PACKAGE,
     )
     return None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
@@ -17,7 +16,7 @@ from mbsd.dynamics.large import MANY_COORDINATES
 from mbsd.dynamics.prepare import PreparedDynamics, prepare_dynamics
 from mbsd.dynamics.run import AUTO, FORMULATIONS, INDEPENDENT, Run
 from mbsd.dynamics.trail import Trail, follow, resumed
-from mbsd.errors import PACKAGE, InitialConditionWarning, ModelError
+from mbsd.errors import InitialConditionWarning, ModelError
 from mbsd.friction_along import friction_along
 from mbsd.integrators.kind import INTEGRATORS, Integrator
 from mbsd.inverse_dynamics import JACOBIAN_NUMBERS
@@ -29,6 +28,7 @@ from mbsd.output_times import equal_times, rising_times
 from mbsd.reactions import generalised, times_compact, wrenches
 from mbsd.shown import shown
 from mbsd.solution import Solution, Stats
+from mbsd.warn import warn
 
 LEAST_TOLERANCE = 1e-16
 MOST_STEPS = 1e12
@@ -67,10 +67,9 @@ def simulate(
         raise ModelError(f"{m.name}: {no_such('formulation', formulation, FORMULATIONS)}")
     ready = prepare_dynamics(m, float(grid[0]), float(grid[-1]), contacts=True)
     if ready.initial.velocities:
-        warnings.warn(
+        warn(
             f"{m.name}: the start was made consistent: " + "; ".join(ready.initial.velocities),
             InitialConditionWarning,
-            skip_file_prefixes=PACKAGE,
         )
     longest = step or float(np.diff(grid).max())
     run = Run(ready, integrator, tolerance, longest, float(grid[-1] - grid[0]), options, formulation)

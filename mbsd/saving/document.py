@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, fields
-from typing import Any
+from typing import Any, TypeVar
 
 from mbsd.body import Body, Marker
 from mbsd.changing import law_name, with_markers
@@ -31,6 +31,8 @@ from mbsd.names import no_such
 from mbsd.saving.entry import Entry
 from mbsd.saving.laws import called, law_from, plain
 from mbsd.shown import shown
+
+K = TypeVar("K")
 
 SCHEMA, SCHEMA_VERSION = "mbsd.model", 1
 
@@ -173,7 +175,7 @@ def _read_contact(m: Mechanism, name: str, entry: Entry) -> None:
     _add(m, getattr(m, kind.name), name, entry, _params(m, entry))
 
 
-def _kind[K](entry: Entry, what: str, kinds: Mapping[str, K]) -> K:
+def _kind(entry: Entry, what: str, kinds: Mapping[str, K]) -> K:
     kind = kinds.get(entry.text("kind"))
     if kind is None:
         raise ModelError(f"{entry.where}: {no_such(f'{what} of kind', entry.text('kind'), kinds)}")

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 from mbsd.arguments import finite_number
 from mbsd.errors import ModelError
 from mbsd.names import no_such
 from mbsd.shown import shown
+
+T = TypeVar("T")
 
 
 class Entry:
@@ -57,7 +59,7 @@ class Entry:
         for name in table.data:
             yield name, table.entry(name)
 
-    def within[T](self, read: Callable[[], T]) -> T:
+    def within(self, read: Callable[[], T]) -> T:
         """What ``read`` returns; its ModelError gets the place in the file."""
         try:
             return read()

@@ -1,0 +1,28 @@
+"""Warnings point at the user's line on every Python."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+import mbsd.warn
+from mbsd.errors import PACKAGE, ModelWarning
+
+DEEP = "def finds(warn):\n    warn('off', ModelWarning)\ndef asked(warn):\n    finds(warn)\n"
+
+
+@pytest.mark.parametrize("version", [(3, 11), (3, 12)])
+def test_a_warning_names_the_file_outside_the_package(
+    monkeypatch: pytest.MonkeyPatch, version: tuple[int, int]
+) -> None:
+    names: dict[str, Any] = {"ModelWarning": ModelWarning}
+    exec(compile(DEEP, f"{PACKAGE[0]}found.py", "exec"), names)
+    monkeypatch.setattr(mbsd.warn, "sys", SimpleNamespace(version_info=version, _getframe=sys._getframe))
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        names["asked"](mbsd.warn.warn)
+    assert [(one.filename, str(one.message)) for one in told] == [(__file__, "off")]

@@ -10,6 +10,7 @@ VIEW ?=
 SHOW ?=
 SPECTRA ?=
 BED ?=
+KERNELS ?=
 GAP ?=
 N ?=
 ONLY ?=
@@ -28,13 +29,14 @@ override VIEW := $(value VIEW)
 override SHOW := $(value SHOW)
 override SPECTRA := $(value SPECTRA)
 override BED := $(value BED)
+override KERNELS := $(value KERNELS)
 override GAP := $(value GAP)
 override N := $(value N)
 override ONLY := $(value ONLY)
 override SEED := $(value SEED)
 override EVERY := $(value EVERY)
 override MECHANISM = $(subst -,_,$*)
-export PRESET SHEET_PRESET FRAME NAME KIND VIEW SHOW SPECTRA BED GAP MECHANISM N ONLY SEED EVERY
+export PRESET SHEET_PRESET FRAME NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N ONLY SEED EVERY
 
 PRESETS := draft preview production final
 ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
@@ -54,7 +56,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install check list run-all all gallery new test lint format bench bench-start hunt hunt-parts torture check-numbers record-numbers schema docs integrators lock clean clean-all always
+.PHONY: help install check list run-all all gallery new test lint format bench bench-start hunt hunt-parts torture check-numbers record-numbers schema docs integrators wheel lock clean clean-all always
 
 # A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
 define upto_motion
@@ -222,6 +224,9 @@ docs: install ## write docs/theory.md from the docstrings of the solver, and dra
 integrators: install ## measure the integrators again, for docs/integrators.md: order, cost, 10 000 periods (5 minutes)
 	@$(PYTHON) -m tools.integrators
 	@$(PYTHON) -m tools.figures integrators
+
+wheel: install ## the solver alone as sdist and wheel: dist/; KERNELS=1: a wheel with compiled kernels, too
+	@$(PYTHON) -m tools.wheel $${KERNELS:+--kernels}
 
 lock: ## choose versions anew within pyproject.toml: requirements.lock, requirements-bench.lock
 	@sh tools/lock.sh

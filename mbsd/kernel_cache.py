@@ -4,6 +4,9 @@ numba's own cache does not notice an edit in an *imported* file (numba issue 948
 old numbers. So each kernel's folder is named after a hash of its file and of all that this file imports at its top,
 files of installed packages left out. An edit that no kernel is made of compiles nothing anew; going back to
 an earlier source finds its code again.
+
+A wheel may bring compiled code along, in ``mbsd/kernels``. It is looked at first and never written to; what it lacks is
+looked for, compiled and kept in the user's folder.
 """
 
 from __future__ import annotations
@@ -15,14 +18,24 @@ import shutil
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _Cache, _CacheLocator
 
+from mbsd.shipped_kernels import SHIPPED, tell_of_other_kernels
+
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None
+
 _PACKAGE = Path(__file__).parent
 _HERE = _PACKAGE.parent
+_ABOUT_THE_CACHE = {str(_PACKAGE / name) for name in ("kernel_cache.py", "shipped_kernels.py", "compile_notice.py")}
+"""Files that decide where code is kept and what is said, not what it does."""
 KEPT = 4
 """So many versions of one file's kernels are kept."""
 
@@ -72,7 +85,7 @@ def _sources(path: str) -> Iterator[str]:
                 modules.append(base)
             for name in modules:
                 found = getattr(sys.modules.get(name), "__file__", None)
-                if found and found not in seen and found.startswith(within):
+                if found and found not in seen and found.startswith(within) and found not in _ABOUT_THE_CACHE:
                     seen.add(found)
                     waiting.append(found)
 
@@ -94,15 +107,11 @@ def _name(path: str) -> str:
 class _Locator(_CacheLocator):
     """Says where numba keeps the code of one function."""
 
-    def __init__(self, py_func: Callable[..., Any], py_file: str) -> None:
+    def __init__(self, py_func: Callable[..., Any], py_file: str, root: Path) -> None:
         self._line = py_func.__code__.co_firstlineno
         self._stamp = made_of(py_file)
         name = _name(py_file).removesuffix(".py").strip(os.sep).replace(os.sep, ".").replace("/", ".")
-        folder = cache_root() / f"{name[-80:]}-{self._stamp}"
-        if not folder.is_dir():
-            folder.mkdir(parents=True, exist_ok=True)
-            _forget_old(folder)
-        self._path = str(folder)
+        self._path = str(root / f"{name[-80:]}-{self._stamp}")
 
     def get_cache_path(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
         """The folder."""
@@ -119,7 +128,24 @@ class _Locator(_CacheLocator):
     @classmethod
     def from_function(cls, py_func: Callable[..., Any], py_file: str) -> _Locator | None:
         """None for functions without a file, such as those of a notebook."""
-        return cls(py_func, py_file) if os.path.isfile(py_file) else None
+        if not os.path.isfile(py_file):
+            return None
+        made = cls(py_func, py_file, cache_root())
+        folder = Path(made._path)
+        if not folder.is_dir():
+            folder.mkdir(parents=True, exist_ok=True)
+            _forget_old(folder)
+        return made
+
+
+class _ShippedLocator(_Locator):
+    """The same in the wheel."""
+
+    @classmethod
+    def from_function(cls, py_func: Callable[..., Any], py_file: str) -> _ShippedLocator | None:
+        """None where the wheel has nothing of that file as it is."""
+        made = cls(py_func, py_file, SHIPPED) if os.path.isfile(py_file) else None
+        return made if made is not None and os.path.isdir(made._path) else None
 
 
 def _forget_old(folder: Path) -> None:
@@ -143,6 +169,26 @@ class _Files(FunctionCache):
     _impl_class = _Results
 
 
+class _ShippedResults(CompileResultCacheImpl):
+    _locator_classes = [_ShippedLocator]
+
+
+class _ShippedFiles(FunctionCache):
+    _impl_class = _ShippedResults
+
+
+@contextmanager
+def _alone_in(folder: str) -> Iterator[None]:
+    """No other process saves in ``folder`` meanwhile: numba would give two signatures the same file."""
+    if fcntl is None:
+        yield
+        return
+    os.makedirs(folder, exist_ok=True)
+    with open(os.path.join(folder, ".lock"), "ab") as held:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        yield
+
+
 class KernelCache(_Cache):
     """numba's cache of one function, opened when the function is first compiled: by then all it imports is loaded."""
 
@@ -157,6 +203,13 @@ class KernelCache(_Cache):
         except (RuntimeError, OSError):  # no place for it: compiled in every process
             return None
 
+    @cached_property
+    def _shipped(self) -> _ShippedFiles | None:
+        try:
+            return _ShippedFiles(self._py_func) if SHIPPED.is_dir() else None
+        except (RuntimeError, OSError):
+            return None
+
     @property
     def cache_path(self) -> str | None:  # pyright: ignore[reportIncompatibleMethodOverride, reportIncompatibleVariableOverride]
         """The folder, if there is one."""
@@ -164,12 +217,20 @@ class KernelCache(_Cache):
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The compiled function, or None."""
-        return self._files.load_overload(sig, target_context) if self._enabled and self._files is not None else None
+        if not self._enabled:
+            return None
+        found = self._shipped.load_overload(sig, target_context) if self._shipped is not None else None
+        if found is None and self._files is not None:
+            found = self._files.load_overload(sig, target_context)
+        if found is None and SHIPPED.is_dir():
+            tell_of_other_kernels()
+        return found
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep a compiled function."""
         if self._enabled and self._files is not None:
-            self._files.save_overload(sig, data)
+            with _alone_in(self._files.cache_path):
+                self._files.save_overload(sig, data)
 
     def enable(self) -> None:
         """Use it."""

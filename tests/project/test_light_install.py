@@ -6,7 +6,6 @@ import ast
 import email
 import os
 import re
-import shutil
 import subprocess
 import sys
 import tomllib
@@ -16,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from shared.stage.paths import ROOT
+from tools.wheel.archives import build
 
 CORE = {"numpy", "scipy", "numba"}
 OPTIONAL = {
@@ -79,17 +79,8 @@ print(os.path.dirname(mbsd.__file__))
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The wheel, built from the files that belong to it."""
-    folder = tmp_path_factory.mktemp("wheel")
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
-        shutil.copy(ROOT / name, folder)
-    for room in ("mbsd", "shared", "render"):
-        shutil.copytree(ROOT / room, folder / room, ignore=shutil.ignore_patterns("__pycache__"))
-    code = "from setuptools.build_meta import build_wheel; print(build_wheel('dist'))"
-    environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
-    done = subprocess.run([sys.executable, "-c", code], cwd=folder, env=environment, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    return folder / "dist" / done.stdout.splitlines()[-1]
+    """The wheel that ``make wheel`` builds."""
+    return build(ROOT, tmp_path_factory.mktemp("wheel"))[1]
 
 
 def test_the_wheel_holds_the_solver_and_nothing_else(wheel: Path) -> None:
@@ -142,6 +133,14 @@ def _for_types(tree: ast.Module, node: ast.AST) -> bool:
         isinstance(block, ast.If) and ast.unparse(block.test) == "TYPE_CHECKING" and node in block.body
         for block in tree.body
     )
+
+
+def test_the_solver_keeps_to_the_syntax_of_its_oldest_python() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    oldest = tuple(map(int, project["requires-python"].removeprefix(">=").split(".")))
+    assert f"Programming Language :: Python :: {oldest[0]}.{oldest[1]}" in project["classifiers"]
+    for file in (ROOT / "mbsd").rglob("*.py"):
+        ast.parse(file.read_text(), filename=str(file), feature_version=oldest)
 
 
 def test_each_optional_import_has_its_extra() -> None:

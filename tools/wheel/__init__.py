@@ -1,0 +1,1 @@
+"""The solver alone as sdist and wheels."""

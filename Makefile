@@ -217,8 +217,9 @@ schema: install ## write docs/schema/ from shared/contract/ and the solver's joi
 	@$(PYTHON) -m tools.schema
 	@$(PYTHON) -m mbsd.saving.schema docs/schema/model.schema.json
 
-docs: install ## write docs/theory.md from the docstrings of the solver, and draw the pictures of docs/
+docs: install ## write docs/theory.md and the map of rooms from docstrings, and draw the pictures of docs/
 	@$(PYTHON) tools/theory.py
+	@$(PYTHON) tools/rooms.py
 	@$(PYTHON) -m tools.figures
 
 integrators: install ## measure the integrators again, for docs/integrators.md: order, cost, 10 000 periods (5 minutes)

@@ -1,1 +1,1 @@
-"""Mechanisms, one folder each, and the stages that turn them into files."""
+"""Mechanisms, a folder each, and the stages that make their files."""

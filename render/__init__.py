@@ -1,1 +1,1 @@
-"""From data.json, parts and shot to plots, stills and films. Knows neither the solver nor the mechanisms."""
+"""Everything that is seen: plots, report, pictures and films, from files alone."""

@@ -1,1 +1,1 @@
-"""What every room may use: the files that cross a process, the folders they live in, the console."""
+"""What both sides of the line use; it knows no other room."""

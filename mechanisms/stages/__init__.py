@@ -1,1 +1,1 @@
-"""The stages of a mechanism: each makes files of its folder and of the files before it. They import mbsd and shared."""
+"""The stages: each reads files of a mechanism and writes others. They import `mbsd` and `shared`."""

@@ -1,4 +1,4 @@
-"""Everything that touches bpy, in a process of its own. From a Scene and its States to pictures or a .blend.
+"""Blender's process from outside: its job, its answers, its patience. Inside is `worker` with `scene`.
 
-The sources in this folder are a part of every frame's key: a change here renders the frames again.
+What is inside is a part of every frame's key: a change there renders the frames again.
 """

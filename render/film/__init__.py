@@ -1,1 +1,1 @@
-"""What is in the picture at every moment, without Blender. It imports shared and presets."""
+"""What is in the picture at each moment: bodies, camera, clock. Without Blender."""

@@ -1,1 +1,1 @@
-"""Frames, the store that keeps them, and the film they make. It imports film and blender."""
+"""Frames, the folder that keeps them, stills, and the film that they make."""

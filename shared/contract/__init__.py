@@ -1,6 +1,7 @@
-"""The files that cross a process: data.json (the motion) and parts.json (the solids). shot.json is in shot.py.
+"""The files that cross a process, and what both sides must compute alike.
 
-What is in them: contract_motion.py and contract_loads.py, contract_parts.py, contract_base.py.
+data.json (the motion) is motion.py and loads.py, parts.json (the solids) parts.py; base.py is in both. shot.json,
+clearance.json and skeleton.json are files of their own. This module reads, checks and writes the first two.
 """
 
 from __future__ import annotations

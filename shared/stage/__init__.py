@@ -1,1 +1,1 @@
-"""How a stage runs: paths, files, console, errors, and what decides whether it is done again."""
+"""How a stage runs: paths, files, console, errors, and whether there is anything to do."""

@@ -1,1 +1,1 @@
-"""Tests of analyses."""
+"""Equilibrium, linearisation, given efforts."""

@@ -1,1 +1,1 @@
-"""Tests of drawing."""
+"""Drawings and animations of the skeleton."""

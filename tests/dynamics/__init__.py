@@ -1,1 +1,1 @@
-"""Tests of dynamics."""
+"""Forward dynamics, integrators, contacts and friction by events."""

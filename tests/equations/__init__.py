@@ -1,1 +1,1 @@
-"""Tests of equations."""
+"""Joints, forces and contacts one by one; how they are compiled."""

@@ -1,1 +1,1 @@
-"""Tests of kinematics."""
+"""Motions that drivers decide, their reactions, mobility."""

@@ -1,1 +1,1 @@
-"""Tests of mechanisms."""
+"""The stages, and every folder of mechanisms/."""

@@ -12,7 +12,7 @@ import pytest
 
 from mechanisms.stages.loading import loading
 from mechanisms.stages.parts.mesh_check import VOLUME_TOLERANCE
-from mechanisms.stages.parts.parts_files import read_mesh
+from mechanisms.stages.parts_files import read_mesh
 from render import glb
 from shared import contract
 from shared.contract.shot import Names, read_shot, refuse_unknown

@@ -15,8 +15,8 @@ import pytest
 from mechanisms.stages.loading.inputs import Inputs
 from mechanisms.stages.parts import stage as parts_stage
 from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
-from mechanisms.stages.parts.parts_files import read_mesh, stl_bytes
 from mechanisms.stages.parts.traced_params import traced
+from mechanisms.stages.parts_files import read_mesh, stl_bytes
 from shared.contract import read_parts
 from shared.shapes.build import extruded
 from shared.shapes.outline import circle

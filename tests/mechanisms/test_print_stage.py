@@ -16,7 +16,7 @@ import lib3mf
 import numpy as np
 import pytest
 
-from mechanisms.stages.parts.parts_files import read_mesh
+from mechanisms.stages.parts_files import read_mesh
 from mechanisms.stages.print import stage as print_stage
 from shared.contract import read_parts
 from shared.stage.errors import UserError

@@ -16,7 +16,7 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from hypothesis.strategies import floats, integers, lists, tuples
 
-from mechanisms.stages.parts.parts_files import read_triangles, step_bytes, stl_bytes
+from mechanisms.stages.parts_files import read_triangles, step_bytes, stl_bytes
 from mechanisms.stages.print.alike import groups, is_equal
 from mechanisms.stages.print.flat import sheet_of
 from mechanisms.stages.print.laying import Laid, fitting, laid

@@ -1,1 +1,1 @@
-"""Tests of model."""
+"""Models, laws and what users call."""

@@ -1,1 +1,1 @@
-"""Models that tests of several rooms share."""
+"""Models that tests of several rooms use."""

@@ -1,1 +1,1 @@
-"""Tests of what holds the project together: rooms, Makefile, documents, installation."""
+"""What holds the project together: rooms, Makefile, documents, installation."""

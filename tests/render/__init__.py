@@ -1,1 +1,1 @@
-"""Tests of render."""
+"""Plots, report, GLB and gallery."""

@@ -1,1 +1,1 @@
-"""Tests of saving."""
+"""Models as files."""

@@ -1,1 +1,1 @@
-"""Tests of shared."""
+"""The contract, how a stage runs, and the shapes."""

@@ -7,7 +7,7 @@ from typing import Any
 import cadquery as cq
 
 from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
-from mechanisms.stages.parts.parts_files import read_mesh, stl_bytes
+from mechanisms.stages.parts_files import read_mesh, stl_bytes
 
 
 def checked(shape: cq.Workplane, through_holes: int) -> tuple[Any, Any]:

@@ -101,7 +101,7 @@ def meshed(bodies: Bodies) -> list[MeshPiece]:
     """The pieces as the clearance stage sees them. Raises UserError for what is no sound solid."""
     from mechanisms.stages.clearance.pieces import MeshPiece
     from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
-    from mechanisms.stages.parts.parts_files import read_mesh, read_triangles, stl_bytes
+    from mechanisms.stages.parts_files import read_mesh, read_triangles, stl_bytes
 
     pieces = []
     for body, solids in bodies.items():

@@ -1,1 +1,1 @@
-"""Draws the moving skeleton from mechanism.py alone. It imports loading and solve."""
+"""The skeleton in motion, from mechanism.py alone: animation.mp4 and animation.gif."""

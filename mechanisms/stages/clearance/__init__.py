@@ -1,1 +1,1 @@
-"""The sweep check: no two parts touch over the whole motion. Lengths inside this package are millimetres."""
+"""The proof that no two parts touch over the whole motion: clearance.json. Lengths are millimetres."""

@@ -24,8 +24,9 @@ import numpy as np
 from mechanisms.stages.clearance.path import BodyPath, RelativePath
 from mechanisms.stages.clearance.pieces import MeshPiece, height_between
 from mechanisms.stages.clearance.rolling import Rolling, rolling
+from mechanisms.stages.clearance.search.least import FIRST
 from mechanisms.stages.clearance.search.search import RESOLUTION, Least, Search
-from mechanisms.stages.clearance.search.sweep import FIRST, Sweep
+from mechanisms.stages.clearance.search.sweep import Sweep
 from mechanisms.stages.clearance.tree import FacetTree
 from mechanisms.stages.clearance.unions import extent, order, turned_union
 from shared.contract import Motion

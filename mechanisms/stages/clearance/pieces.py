@@ -12,7 +12,7 @@ import numpy as np
 
 from mechanisms.stages.clearance.distinct import distinct
 from mechanisms.stages.clearance.tree import FacetTree
-from mechanisms.stages.parts.parts_files import read_triangles
+from mechanisms.stages.parts_files import read_triangles
 from shared.contract import Parts
 from shared.stage.errors import UserError
 

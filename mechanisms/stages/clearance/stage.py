@@ -45,7 +45,7 @@ REACH = 5.0
 """Larger gaps are not measured (mm)."""
 PACKAGES = ("manifold3d", "numpy")
 SOURCES = [
-    *(ROOT / "mechanisms" / "stages" / name for name in ("clearance", "parts/parts_files.py")),
+    *(ROOT / "mechanisms" / "stages" / name for name in ("clearance", "parts_files.py")),
     *contract_sources("belt_path", "belt_section", "clearance", "spanning"),
 ]
 
@@ -79,6 +79,7 @@ def check(
     from mechanisms.stages.clearance.belts import bands
     from mechanisms.stages.clearance.meshing import least_in_mesh, meshes
     from mechanisms.stages.clearance.path import paths
+    from mechanisms.stages.clearance.search.least import least_gap
     from mechanisms.stages.clearance.search.search import RESOLUTION
     from mechanisms.stages.clearance.search.sweep import Sweep
     from shared.contract.spanning import with_rods
@@ -122,7 +123,7 @@ def check(
             continue
         found = _turn(first, second, axes, sweep, limit, reach)
         if found is None:
-            least = least_in_mesh(sweep, in_mesh, where) or sweep.least(reach)
+            least = least_in_mesh(sweep, in_mesh, where) or least_gap(sweep, reach)
             if least.gap < limit or least.proven < limit / 2:
                 refused.append((sweep, least))
                 continue

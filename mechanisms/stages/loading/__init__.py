@@ -1,1 +1,1 @@
-"""Reads the files that an author writes, and finds what these depend on. It imports no other stage."""
+"""Loads what an author writes, and finds what it depends on. It knows no other stage."""

@@ -1,1 +1,1 @@
-"""Makes a new mechanism from templates. It imports no other stage."""
+"""A new mechanism that already runs, from templates."""

@@ -1,1 +1,1 @@
-"""Makes the solids: STL, STEP and parts.json. It imports loading, solve and automatic."""
+"""The solids of a mechanism: STL, STEP and parts.json, from parts.py or by themselves."""

@@ -31,9 +31,10 @@ if TYPE_CHECKING:
     from shared.shapes.bodies import Place
 
 _STAGES = ROOT / "mechanisms" / "stages"
-_STAGE = ("stage", "parts_files", "returned_parts", "mass_properties", "mesh_check", "traced_params")
+_STAGE = ("stage", "returned_parts", "mass_properties", "mesh_check", "traced_params")
 SOURCES = [
     ROOT / "shared" / "shapes",
+    _STAGES / "parts_files.py",
     *(_STAGES / "parts" / f"{name}.py" for name in _STAGE),
     *contract_sources(),
 ]
@@ -182,7 +183,7 @@ def _piece(name: str, body: str, solid: Any, files: dict[str, bytes]) -> Piece:
     from mechanisms.stages.loading.author_errors import is_of_kernel
     from mechanisms.stages.parts.mass_properties import mass_of
     from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
-    from mechanisms.stages.parts.parts_files import read_mesh, step_bytes, stl_bytes
+    from mechanisms.stages.parts_files import read_mesh, step_bytes, stl_bytes
 
     where = f"{name}: {body}: {solid.name}"
     if not callable(getattr(solid.shape, "solids", None)):

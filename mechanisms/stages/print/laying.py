@@ -8,6 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import ConvexHull
 
+type Bed = tuple[float, float, float]
+"""Length, width and height that a printer can use (mm); the height is infinite if it is not given."""
+
 FLAT = 2e-3
 """What counts as in a plane (mm)."""
 PLANES = 60

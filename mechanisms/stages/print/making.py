@@ -18,7 +18,7 @@ from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
     from mechanisms.stages.clearance.pieces import MeshPiece
-    from mechanisms.stages.print.stage import Bed
+    from mechanisms.stages.print.laying import Bed
     from shared.contract import Piece
     from shared.stage.paths import Out
 

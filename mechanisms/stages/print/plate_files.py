@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from mechanisms.stages.parts.parts_files import binary_stl
+from mechanisms.stages.parts_files import binary_stl
 from mechanisms.stages.print.laying import Laid
 from shared.contract.materials import MATERIALS
 

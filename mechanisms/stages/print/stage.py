@@ -19,17 +19,15 @@ from shared.stage.stages import Stage, key_of, versions
 
 if TYPE_CHECKING:
     from mechanisms.stages.clearance.pieces import MeshPiece
+    from mechanisms.stages.print.laying import Bed
     from mechanisms.stages.print.lists import Bought, Made
     from shared.contract import Parts
-
-type Bed = tuple[float, float, float]
-"""Length, width and height that a printer can use (mm); the height is infinite if it is not given."""
 
 BED, GAP = "220x220", "5"
 """Size of a plate, and what pieces on it keep apart (mm), where nobody says."""
 PACKAGES = ("cadquery", "cadquery-ocp", "ezdxf", "lib3mf", "manifold3d", "numpy", "scipy", "trimesh")
 SOURCES = [
-    *(ROOT / "mechanisms" / "stages" / name for name in ("print", "parts/parts_files.py", "clearance/pieces.py")),
+    *(ROOT / "mechanisms" / "stages" / name for name in ("print", "parts_files.py", "clearance/pieces.py")),
     *(ROOT / "shared" / "contract" / f"{name}.py" for name in ("parts", "materials")),
 ]
 _LENGTH = re.compile(r"[0-9]+(\.[0-9]*)?")

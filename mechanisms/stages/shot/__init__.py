@@ -1,1 +1,1 @@
-"""Checks the description of the film: shot.json. It imports loading alone."""
+"""The description of the film, checked: shot.json."""

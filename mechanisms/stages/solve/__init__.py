@@ -1,1 +1,1 @@
-"""Solves the motion: masses, run and data.json. It imports loading alone."""
+"""The motion of a mechanism: masses, the run, data.json and skeleton.json."""

@@ -1,1 +1,1 @@
-"""The scene in Blender: bodies, materials, lights, arrows."""
+"""A scene in Blender: bodies, materials, light, arrows."""

@@ -1,1 +1,1 @@
-"""The process that renders: everything here runs inside Blender."""
+"""The process that renders, inside Blender."""

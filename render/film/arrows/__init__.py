@@ -1,1 +1,1 @@
-"""Arrows, arcs and words of the film: what they stand for, and how long they are."""
+"""Arrows, arcs and words of the film: what they stand for, how long they are."""

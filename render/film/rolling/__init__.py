@@ -1,1 +1,1 @@
-"""How far pieces turn that roll on others."""
+"""Pieces that turn as they roll."""

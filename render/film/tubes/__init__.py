@@ -1,1 +1,1 @@
-"""Springs, ropes, belts and trails: what changes its shape along the film."""
+"""What changes its shape: springs, ropes, belts, traces of points."""

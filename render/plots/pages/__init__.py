@@ -1,1 +1,1 @@
-"""Plots, a page a file."""
+"""The plots, a page a file."""

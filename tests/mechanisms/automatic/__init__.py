@@ -1,1 +1,1 @@
-"""Tests of mechanisms/automatic."""
+"""Parts by themselves."""

@@ -1,1 +1,1 @@
-"""Tests of mechanisms/clearance."""
+"""The proof that no two parts touch."""

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from mechanisms.stages.clearance.path import paths, points, relative
 from mechanisms.stages.clearance.pieces import MeshPiece
+from mechanisms.stages.clearance.search.least import least_gap
 from mechanisms.stages.clearance.search.search import RESOLUTION as SHARP
 from mechanisms.stages.clearance.search.sweep import Sweep
 from mechanisms.stages.clearance.turn import RESOLUTION, turn_gap
@@ -104,7 +105,7 @@ def test_the_gap_of_a_motion_is_that_of_a_dense_sampling() -> None:
     bar = four_bar_pieces()[4]
     where = paths(motion)
     sweep = Sweep(bar, disc("ground", "peg", 60.0, 120.0, 3.0, 10.0, 20.0), where["coupler"], where["ground"])
-    least = sweep.least(200.0)
+    least = least_gap(sweep, 200.0)
     sampled = [sweep.gap_at(float(time), 200.0) for time in np.linspace(0.0, motion.time[-1], 721)]
     assert least.gap - SHARP - 1e-6 <= least.proven <= min(sampled)
     assert min(sampled) - SHARP <= least.gap <= min(sampled) + SHARP

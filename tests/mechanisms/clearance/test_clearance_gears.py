@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from mechanisms.stages.clearance.meshing import Gears, least_in_mesh
 from mechanisms.stages.clearance.path import BodyPath
 from mechanisms.stages.clearance.pieces import MeshPiece
+from mechanisms.stages.clearance.search.least import least_gap
 from mechanisms.stages.clearance.search.search import RESOLUTION, Least
 from mechanisms.stages.clearance.search.sweep import Sweep
 from mechanisms.stages.clearance.unions import order, turned_union
@@ -83,7 +84,7 @@ class Pair:
 @given(st.integers(12, 28), st.integers(12, 20), st.booleans(), st.booleans())
 def test_one_pitch_tells_what_the_whole_motion_does(first: int, second: int, ring: bool, turned: bool) -> None:
     pair = Pair((first + 24, second) if ring else (first, second), ring, turns=0.5)
-    found, whole = pair.by_pitch(turned), pair.sweep(turned).least(5.0)
+    found, whole = pair.by_pitch(turned), least_gap(pair.sweep(turned), 5.0)
     assert found is not None
     assert found.gap == pytest.approx(whole.gap, abs=RESOLUTION)
     assert 0.05 < whole.gap - 2 * RESOLUTION < found.proven <= found.gap
@@ -102,7 +103,7 @@ def test_more_turns_cost_no_more() -> None:
 def test_wheels_out_of_phase_are_left_to_the_search_that_tells_their_collision(late: float) -> None:
     pair = Pair((18, 24), late=late)
     assert pair.by_pitch() is None
-    assert pair.sweep().least(5.0).gap == 0
+    assert least_gap(pair.sweep(), 5.0).gap == 0
 
 
 def test_one_thick_tooth_is_found_though_its_turn_comes_once() -> None:

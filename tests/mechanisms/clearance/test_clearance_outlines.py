@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from mechanisms.stages.clearance.path import BodyPath
 from mechanisms.stages.clearance.pieces import MeshPiece
-from mechanisms.stages.clearance.search import sweep as sweeping
+from mechanisms.stages.clearance.search import least
 from mechanisms.stages.clearance.search.outline import Outline, covers, outline
 from mechanisms.stages.clearance.search.outline_search import least_by_outlines, nearest
 from mechanisms.stages.clearance.search.search import RESOLUTION
@@ -114,11 +114,11 @@ def test_what_outlines_tell_is_what_the_meshes_tell(seed: int, monkeypatch: pyte
     away = math.hypot(reach, 2.0) + math.hypot(14.0, 6.0) + rng.uniform(0.1, 1.0)
     paths = _turning(0, 0, rng.uniform(3, 7)), _turning(away, rng.uniform(-3, 3), rng.uniform(-7, 7), 1.0)
     pair = Sweep(star, plate, *paths)
-    told = pair.least(5.0)
+    told = least.least_gap(pair, 5.0)
     if told.gap < 3.0:  # of the collar over the plate
         assert least_by_outlines(pair, pair.gap_at(0.0, 5.0), 0.0, 1) is not None
-    monkeypatch.setattr(sweeping, "least_by_outlines", lambda *_: None)
-    slow = pair.least(5.0)
+    monkeypatch.setattr(least, "least_by_outlines", lambda *_: None)
+    slow = least.least_gap(pair, 5.0)
     assert told.gap == pytest.approx(slow.gap, abs=RESOLUTION)
     for found in (told, slow):
         assert found.gap - RESOLUTION <= found.proven <= found.gap

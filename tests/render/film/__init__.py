@@ -1,1 +1,1 @@
-"""Tests of render/film."""
+"""What is in the picture."""

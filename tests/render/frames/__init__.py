@@ -1,1 +1,1 @@
-"""Tests of render/frames."""
+"""Frames and films, the process of Blender."""

@@ -143,7 +143,7 @@ def test_a_solid_that_the_cad_kernel_cuts_short_is_refused(file: str):
     """Its writers say nothing of a full disk either; a cut STEP went unnoticed."""
     code = (
         "import cadquery, resource\n"
-        "from mechanisms.stages.parts.parts_files import step_bytes, stl_bytes\n"
+        "from mechanisms.stages.parts_files import step_bytes, stl_bytes\n"
         "from shared.stage.console import run_cli\n"
         "solid = cadquery.Workplane().box(10, 10, 10).val()\n"
         "write = {'step': lambda: step_bytes(solid, 'a'), 'stl': lambda: stl_bytes(solid)}\n"

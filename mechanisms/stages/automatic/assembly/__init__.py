@@ -1,1 +1,1 @@
-"""From a plan to solids: plates of the bodies, the base, engraved words."""
+"""From the plan to solids: plates, the base, engraved words."""

@@ -1,1 +1,1 @@
-"""Cams and Geneva drives: features and their solids."""
+"""Bodies whose plate is a cam or a Geneva wheel, and what runs on it."""

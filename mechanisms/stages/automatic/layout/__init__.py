@@ -1,1 +1,1 @@
-"""What takes room, in which layer and at which height. It knows no kind of joint."""
+"""What takes room, in which layer, and at which height; it knows no kind of joint."""

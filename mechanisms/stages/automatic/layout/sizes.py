@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from mechanisms.stages.parts.parts_files import TOLERANCE
+from mechanisms.stages.parts_files import TOLERANCE
 from shared.shapes.fit import Fit
 from shared.shapes.pin import Head
 from shared.shapes.pivot import Pivot

@@ -1,1 +1,1 @@
-"""Revolute joints, welds, springs and bodies without joints: features and their solids."""
+"""Pins, rods, welds, bridges, studs of springs, and bodies that no joint shapes."""

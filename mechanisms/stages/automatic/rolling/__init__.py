@@ -1,1 +1,1 @@
-"""Discs, balls and tyres, and what they touch: features and their solids."""
+"""Balls, wheels with tyres and discs, and what they touch."""

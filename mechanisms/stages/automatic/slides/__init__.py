@@ -1,1 +1,1 @@
-"""Prismatic joints, pins in slots and along curves: features and their solids."""
+"""Blocks on rails, and pins in slots."""

@@ -1,1 +1,1 @@
-"""Gears, racks, belts and chains: features and their solids."""
+"""Gears, racks, belts and chains."""

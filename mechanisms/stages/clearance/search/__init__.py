@@ -1,1 +1,1 @@
-"""Branch and bound over spans of time: least gaps in the plane and in space."""
+"""The least gap of two pieces by branch and bound over spans of time, in the plane and in space."""

@@ -1,21 +1,15 @@
-"""Two pieces over a motion: whether they stay far apart, their least gap with its proof, and where they overlap."""
+"""Two pieces over a motion: their gap at a time, whether they stay far apart, and where they overlap."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from mechanisms.stages.clearance.path import BodyPath, RelativePath, relative
-from mechanisms.stages.clearance.pieces import MeshPiece, height_between
-from mechanisms.stages.clearance.search.outline_search import least_by_outlines
-from mechanisms.stages.clearance.search.search import RESOLUTION, Least, Search
+from mechanisms.stages.clearance.pieces import MeshPiece
 from mechanisms.stages.clearance.search.spans import Spans
-from mechanisms.stages.clearance.tree import Tree
-
-FIRST = 9
-"""Poses at which the whole pieces are compared before the search."""
 
 
 @dataclass(frozen=True)
@@ -54,25 +48,6 @@ class Sweep:
         spans = Spans(self.path)
         away = np.hypot(*(spans.ends[:, 1, :2] - self.still.centre).T) - spans.travel
         return bool((away - spans.off - self.mover.radius - self.still.radius >= reach).all())
-
-    def least(self, reach: float) -> Least:
-        """The least gap over the motion, ``reach`` (mm) if it is larger; an overlap ends the search."""
-        starts = np.linspace(self.times[0], self.times[-1], FIRST)
-        gaps = {float(time): self.gap_at(float(time), reach) for time in starts}
-        best = min(gaps, key=gaps.__getitem__)
-        if gaps[best] <= 0:
-            return Least(0.0, best, 0.0, len(gaps))
-        told = least_by_outlines(self, gaps[best], best, len(gaps))
-        if told is not None:
-            return told
-        found = self._search(self.still.sides, self.mover.sides, gaps[best], best, len(gaps))
-        height = height_between(self.still, self.mover)
-        if height >= found.gap - RESOLUTION:
-            return replace(found, proven=min(found.proven, height))
-        return self._search(self.still.tree, self.mover.tree, found.gap, found.time, found.poses)
-
-    def _search(self, still: Tree, mover: Tree, gap: float, time: float, poses: int) -> Least:
-        return Search(still, mover, self.path, self.still.centre).run(gap, time, poses)
 
     def overlap(self, around: float, count: int = 120) -> Overlap:
         """Look at ``count`` poses and at ``around`` for the deepest overlap."""

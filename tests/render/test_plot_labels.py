@@ -1,0 +1,49 @@
+"""Labels of plots: none covers another, and all are on the page."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import msgspec
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from render.plots.style import spread
+from tests.render.plotted import MOTION, NAMES, figure, overlaps
+
+
+@pytest.mark.parametrize("plot", NAMES)
+def test_no_label_covers_another(plot: str) -> None:
+    assert overlaps(figure(plot, MOTION)) == []
+
+
+def test_many_bodies_and_joints_stay_readable() -> None:
+    bodies = {f"link_{i:02d}": MOTION.bodies["rocker"] for i in range(40)}
+    joints = {f"J{i:02d}": MOTION.joints["A"] for i in range(40)}
+    motion = msgspec.structs.replace(MOTION, bodies=bodies, joints=joints)
+    assert overlaps(figure("bodies", motion)) == []
+    assert overlaps(figure("reactions", motion)) == []
+    assert len([axes for axes in figure("hodographs", motion).axes if axes.get_visible()]) == 12
+
+
+def test_long_names_stay_on_the_page() -> None:
+    names = ("a", "coupler_of_the_first_loop", "crank_of_the_engine")
+    motion = msgspec.structs.replace(MOTION, bodies=dict.fromkeys(names, MOTION.bodies["rocker"]))
+    drawn = figure("bodies", motion)
+    drawn.canvas.draw()
+    boxes = [text.get_window_extent() for axes in drawn.axes for text in axes.texts if text.get_text() in names]
+    assert len(boxes) == 3 * len(names)
+    assert max(box.x1 for box in boxes) < drawn.bbox.x1
+
+
+@given(st.lists(st.floats(0, 300), min_size=1, max_size=12), st.floats(5, 20))
+def test_labels_are_spread_apart_in_their_order(wishes: list[float], gap: float) -> None:
+    placed = spread(np.array(wishes), gap, 300.0)
+    order = np.argsort(wishes, kind="stable")
+    assert all(b - a >= min(gap, 300 / max(len(wishes) - 1, 1)) - 1e-6 for a, b in pairwise(placed[order]))
+    assert placed.min() >= -1e-6
+    assert placed.max() <= 300 + 1e-6
+    if len(wishes) == 1:
+        assert placed[0] == wishes[0]

@@ -78,7 +78,7 @@ class _Tried:
         warn(
             "parts",
             f"{best[0].m.name}: no order of layers leaves room for {', '.join(sorted(left_out))} beside the others; "
-            "no studs are made there, and the film draws them over all parts",
+            "no studs or stops are made there, and the film draws springs over all parts",
         )
         return best if bridges else self.with_styluses(best)
 

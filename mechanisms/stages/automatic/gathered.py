@@ -19,6 +19,7 @@ from mechanisms.stages.automatic.layout.features import (
     Need,
 )
 from mechanisms.stages.automatic.pins.rods import KIND as ROD
+from mechanisms.stages.automatic.pins.stops import stops
 from shared.shapes.link import Eye
 from shared.stage.errors import UserError
 
@@ -88,6 +89,7 @@ def gathered(layout: Layout) -> list[Feature]:
     features += _of(FORCE_KINDS, m, m.forces.values(), layout)
     features += _of(CONTACT_KINDS, m, m.contacts.values(), layout)
     features += _of(DRIVER_KINDS, m, m.drivers.values(), layout)
+    features += stops(m, features, layout)
     return features + _loose_eyes(loose, features, layout)
 
 

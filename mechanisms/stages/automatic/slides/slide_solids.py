@@ -27,6 +27,8 @@ HALF_LENGTH = 23.0
 """Of a block."""
 GIB = (28.0, 4.4)
 """Length and width of a gib."""
+STOP = 8.0
+"""Length of a stop beside the rail."""
 DEPTH = 4.8
 """How far gibs reach down beside the rail."""
 
@@ -38,6 +40,7 @@ def fixed_rail(slide: Slide, plan: Plan, heights: Heights) -> None:
     low = heights.levels[slide.block] == 0
     bottom = fit.seat if low else top - BEAM
     plan.make("ground", f"rail_{slide.name}", _bar(ends, RAIL / 2, bottom, top), "steel", 0)
+    _stops(slide, bottom, top, plan)
     for k, (x, y) in enumerate(ends):
         plan.feet.append(Foot("", x, y, RAIL / 2 + 2.0))
         if not low:
@@ -56,6 +59,7 @@ def fixed_block(slide: Slide, plan: Plan, heights: Heights) -> None:
     plan.make(
         slide.rail, f"rail_{slide.name}", _bar(slide.rail_ends(), RAIL / 2, floor + fit.axial, rail_top), "steel", 0
     )
+    _stops(slide, floor + fit.axial, rail_top, plan)
     ends = slide.block_ends(radius)
     plan.make("ground", f"block_{slide.name}", _bar(ends, radius, fit.seat, floor), "aluminium", 0)
     plan.feet += [Foot("", x, y, radius + 2.0) for x, y in ends]
@@ -74,6 +78,7 @@ def moving_rail(slide: Slide, plan: Plan, heights: Heights) -> None:
         face = heights.top(slide.block) + fit.seat
         gibs = face, face + DEPTH
     plan.make(slide.rail, f"rail_{slide.name}", _bar(slide.rail_ends(), RAIL / 2, z0, z1), "steel", 0)
+    _stops(slide, z0, z1, plan)
     _gibs(slide, slide.block, slide.block_at, *gibs, plan)
 
 
@@ -87,6 +92,21 @@ def _gibs(slide: Slide, body: str, at: tuple[float, float, float], z0: float, z1
         x, y = at[0] - offset * math.sin(at[2]), at[1] + offset * math.cos(at[2])
         shape = placed(strip, x, y, (z0 + z1) / 2, math.degrees(at[2]))
         plan.make(body, f"gib_{slide.name}_{side}", shape, "bronze", 0)
+
+
+def _stops(slide: Slide, z0: float, z1: float, plan: Plan) -> None:
+    """Two blocks beside the rail at either end of its way: the gibs meet them."""
+    layout, angle = plan.layout, slide.rail_at[2]
+    seat = layout.sizes.pivot.fit.seat
+    width = GIB[1] + layout.sizes.pivot.fit.axial / 2 - seat
+    block = cq.Workplane().box(STOP, width, z1 - z0).edges("|Z").chamfer(0.6)
+    for word, distance in slide.stops(layout):
+        x, y = slide.rail_place(distance)
+        for side in (1, 2):
+            off = (RAIL / 2 + seat + width / 2) * (1 if side == 1 else -1)
+            at = x - off * math.sin(angle), y + off * math.cos(angle)
+            shape = placed(block, *at, (z0 + z1) / 2, math.degrees(angle))
+            plan.make(slide.rail, f"stop_{slide.name}_{word}_{side}", shape, "brass", 0)
 
 
 def _bar(ends: list[tuple[float, float]], radius: float, z0: float, z1: float) -> cq.Workplane:

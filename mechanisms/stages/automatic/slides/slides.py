@@ -2,7 +2,9 @@
 
 On ground the rail stands on the base, or on two posts where the block is high. Between moving bodies the rail is
 screwed to its body's plate on the side of the block. Where the second marker is on ground, the block stands there,
-and the rail hangs under its body. Rails on ground that would cross are the grooves of a plate (crossings.py)."""
+and the rail hangs under its body. Limits and stops are blocks beside the rail, which the gibs meet. Rails on ground
+that would cross are the grooves of a plate (crossings.py).
+"""
 
 from __future__ import annotations
 
@@ -13,15 +15,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechanisms.stages.automatic.cams.cams import CLEAR
+from mechanisms.stages.automatic.layout import limits
 from mechanisms.stages.automatic.layout.features import Anchor, Feature, Need, kind
 from mechanisms.stages.automatic.layout.items import Item, Reach
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
 from mechanisms.stages.automatic.slides.crossings import with_crossings
 from mechanisms.stages.automatic.slides.slide_solids import (
     BEAM,
+    GIB,
     HALF_LENGTH,
     RAIL,
     RAIL_HEIGHT,
+    STOP,
     fixed_block,
     fixed_rail,
     moving_rail,
@@ -35,6 +41,8 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.layout import Layout
     from mechanisms.stages.automatic.layout.plan import Plan
 
+FAR = 4.0
+"""Stops farther beyond the travel than it is long, or than this (half lengths of a block), are not made."""
 WALL = 3.0
 """Of a rail's plate beside the rail (rmm)."""
 
@@ -49,7 +57,9 @@ class Slide:
     rail_at: tuple[float, float, float]
     block_at: tuple[float, float, float]
     travel: tuple[float, float]
-    """Of the block's middle along the rail, from its marker."""
+    """Of the block's middle along the rail, from its marker; as far as its stops where it has any."""
+    ends: limits.Limits = (None, None)
+    """Where stops on the rail end that travel, before and behind."""
 
     def rail_ends(self) -> list[tuple[float, float]]:
         """Middles of the rail's round ends, in its body's frame: the block never leaves it."""
@@ -62,6 +72,17 @@ class Slide:
     def block_place(self, distance: float) -> tuple[float, float]:
         """On the line of the block, that far from its marker, in its body's frame."""
         return _along(self.block_at, distance)
+
+    def stops(self, layout: Layout) -> list[tuple[str, float]]:
+        """Of each stop on the rail: its name, and the distance of its middle from the rail's marker."""
+        beyond = GIB[0] / 2 + CLEAR * layout.sizes.pivot.fit.running + STOP / 2
+        words = (("lower", -beyond), ("upper", beyond))
+        return [(word, end + off) for (word, off), end in zip(words, self.ends, strict=True) if end is not None]
+
+    def across(self, distance: float) -> list[tuple[float, float]]:
+        """Two places beside the rail, that far from its marker, in its body's frame."""
+        x, y, angle = *self.rail_place(distance), self.rail_at[2] + math.pi / 2
+        return [_along((x, y, angle), side) for side in (-RAIL / 2 - GIB[1] / 2, RAIL / 2 + GIB[1] / 2)]
 
     def block_ends(self, radius: float) -> list[tuple[float, float]]:
         """Middles of the block's round ends, in its body's frame."""
@@ -82,6 +103,7 @@ class Slide:
         block = Rounded(np.array(self.block_ends(layout.sizes.eye)), layout.sizes.eye)
         what, gibs = f"the rail of {self.name}", f"the block of {self.name}"
         sliding = frozenset((self.block, gibs))  # nothing else of the block's body passes through the rail
+        at_end = [Rounded(np.array(self.across(s)), STOP / 2 + 0.5) for _, s in self.stops(layout)]
         if self.rail == "ground":
             below = Reach((self.block,), -1, -1)
             posts = Reach((self.block,), -1, -1, base=True)
@@ -89,14 +111,18 @@ class Slide:
             for x, y in self.rail_ends():
                 post = disc(x, y, RAIL / 2 + 1.0)
                 yield Item(what, "ground", post, posts, source=self, meshes=sliding, stands=what)
+            for stop in at_end:
+                yield Item(what, "ground", stop, below, source=self, meshes=sliding, stands=what)
             yield Item(gibs, self.block, block, below, source=self, meshes=frozenset((what,)))
         elif self.block == "ground":
             reach = Reach((self.rail,), -1, -1, base=True)
-            yield Item(what, self.rail, rail, Reach((self.rail,), -1, -1), source=self, meshes=sliding)
+            for shape in (rail, *at_end):
+                yield Item(what, self.rail, shape, Reach((self.rail,), -1, -1), source=self, meshes=sliding)
             yield Item(gibs, "ground", block, reach, source=self, meshes=frozenset((what, self.rail)), stands=what)
         else:
             between = Reach((self.rail, self.block), 1, -1)
-            yield Item(what, self.rail, rail, between, source=self, meshes=sliding)
+            for shape in (rail, *at_end):
+                yield Item(what, self.rail, shape, between, source=self, meshes=sliding)
             yield Item(gibs, self.block, block, between, source=self, meshes=frozenset((what, self.rail)))
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
@@ -130,7 +156,11 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
         along = layout.seen(joint.j.body.name, block_at[:2], joint.i.body.name) - np.array(rail_at[:2])
         place = along @ np.array([math.cos(joint.i.angle), math.sin(joint.i.angle)])
         travel = float(place.min()), float(place.max())
-        found.append(Slide(joint.name, joint.i.body.name, joint.j.body.name, rail_at, block_at, travel))
+        lower, upper = (None if end is None else layout.sizes.of_metres(end) for end in limits.sliding(joint, m))
+        ends = limits.reached((lower, upper), travel, FAR * HALF_LENGTH)
+        given = [end for end in ends if end is not None]
+        travel = min(travel[0], *given, travel[1]), max(travel[1], *given, travel[0])
+        found.append(Slide(joint.name, joint.i.body.name, joint.j.body.name, rail_at, block_at, travel, ends))
     return with_crossings(found, layout)
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechanisms.stages.automatic.layout import limits
 from mechanisms.stages.automatic.layout.features import Anchor, Feature, Need, kind
 from mechanisms.stages.automatic.layout.items import BASE, Item, Reach
 from mechanisms.stages.automatic.layout.planar import around, disc
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.layout import Layout
     from mechanisms.stages.automatic.layout.plan import Plan
 
+FAR = 6.0
+"""Limits farther beyond the travel than it is long, or than this (diameters of a roller), end no slot."""
 WALL = 7.0
 """Of the plate beside the slot (rmm)."""
 
@@ -118,9 +121,16 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
         slot, pin = joint.i.body.name, joint.j.body.name
         (x, y), way = layout.place(joint.i), np.array([math.cos(joint.i.angle), math.sin(joint.i.angle)])
         place = (layout.seen(pin, layout.place(joint.j), slot) - np.array([x, y])) @ way
-        ends = np.array([x, y]) + np.outer([place.min() - 1.0, place.max() + 1.0], way)
+        ends = np.array([x, y]) + np.outer(_ends(joint, m, (place.min(), place.max()), layout), way)
         found.append(entered(Slot(joint.name, slot, pin, ends, layout.place(joint.j)), layout))
     return found
+
+
+def _ends(joint: Joint, m: Mechanism, travel: tuple[float, float], layout: Layout) -> tuple[float, float]:
+    """Of the way of the roller's middle in the slot (rmm): limits that are near, for the slot ends there."""
+    lower, upper = (None if end is None else layout.sizes.of_metres(end) for end in limits.sliding(joint, m))
+    lower, upper = limits.reached((lower, upper), travel, FAR * layout.sizes.roller)
+    return travel[0] - 1.0 if lower is None else lower, travel[1] + 1.0 if upper is None else upper
 
 
 def entered(slot: Slot, layout: Layout) -> Slot:

@@ -48,6 +48,16 @@ def _newton() -> None:
     dataclasses.replace(prepare(_driven()), groups=None).march(np.linspace(0.0, 1.0, 4))
 
 
+def _parts() -> None:
+    """Sweeps in closed form with parts by Newton-Raphson between."""
+    m = _driven()
+    wheel = m.body("wheel")
+    m.revolute("B", m.ground.at(1.0, 0.0), wheel.origin)
+    m.geneva("index", m.bodies["crank"].start, wheel.origin, 4, 0.5**0.5)
+    m.start_near(crank=180.0, wheel=45.0)
+    m.sweep(0.1, steps=4)
+
+
 def _closed() -> None:
     """Sweeps in closed form, and batches of designs."""
     m = _driven()
@@ -60,6 +70,7 @@ PARTS: dict[str, Callable[[], None]] = {
     "reference": _reference,
     "independent": _independent,
     "newton": _newton,
+    "parts": _parts,
     "closed": _closed,
 }
 """By name, those that take longest first."""

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mbsd.arguments import number_array, whole_number
+from mbsd.assur.blocks import BLOCK
 from mbsd.assur.designs import place_designs
 from mbsd.assur.groups import BRANCH, DRIVEN, PRP, RPR, RRP, SLIDE, WELDED, YOKE, Groups
 from mbsd.assur.plan import plan_groups
@@ -87,7 +88,7 @@ def batch(
     grid = sweep_times(m, duration, steps, None)
     ready = prepare(m, float(grid[0]), float(grid[-1]))
     packed, groups = ready.packed, ready.groups
-    if groups is None:
+    if groups is None or ready.mobility.redundant_rows or (groups.kind >= BLOCK).any():
         raise ModelError(
             f"{m.name}: batch solves mechanisms of driven bodies and dyads (pins, sliders, slots, rods, "
             "welds); this one holds something else or a redundant joint. Sweep its designs one by one."

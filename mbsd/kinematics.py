@@ -29,6 +29,7 @@ from mbsd.assembly import evaluate_gamma, evaluate_nu, evaluate_position
 from mbsd.elimination import factorise, solve
 from mbsd.jit import inlined, kernel
 from mbsd.law_step import jumps
+from mbsd.predictor import quintic_factors
 
 TOLERANCE = 1e-12
 """Of a Newton correction, relative to the mechanism's size (m) and to 1 rad."""
@@ -47,35 +48,14 @@ SHRINKS = 0.1
 """A determinant that falls to this part of its last value, or heads for it, may vanish in between."""
 CROSSING = 1e-5
 """Length of a step, in sizes and rad, within which two assemblies meet at a change point."""
-LONGEST_STRETCH = 4.0
-"""Beyond this ratio of step lengths the quintic is not trusted; the last (q, v, a) alone predicts."""
 
 DONE, NO_CONTRACTION, BRANCH_DOUBT, SINGULAR = 0, 1, 2, 3
 
 
 @inlined
 def _predict(q, v, a, t, k, time, out):
-    """Pose at ``time`` from results 0 .. k-1: the quintic through the last two, or the last alone.
-
-    With s = ahead / h the quintic is linear in the six data, so its five factors are found once for all coordinates.
-    """
-    ahead = time - t[k - 1]
-    h = t[k - 1] - t[k - 2] if k > 1 else 0.0
-    from_q = 0.0
-    from_v = ahead
-    from_a = 0.5 * ahead * ahead
-    earlier_v = 0.0
-    earlier_a = 0.0
-    if ahead < LONGEST_STRETCH * h:
-        s = ahead / h
-        cube = s * s * s
-        from_q = -cube * (10.0 + s * (15.0 + 6.0 * s))
-        p1 = -cube * (4.0 + s * (7.0 + 3.0 * s))
-        p2 = -cube * (0.5 + s * (1.0 + 0.5 * s))
-        from_v = h * (s + from_q - p1)
-        from_a = h * h * (0.5 * s * s - 0.5 * from_q + p1 - p2)
-        earlier_v = h * p1
-        earlier_a = h * h * p2
+    """Pose at ``time`` from results 0 .. k-1: the quintic through the last two, or the last alone."""
+    from_q, from_v, from_a, earlier_v, earlier_a = quintic_factors(t, k, time)
     last = k - 1
     before = max(k - 2, 0)
     for c in range(3, q.shape[1]):
@@ -101,7 +81,7 @@ def _extent(delta, per_metre):
 
 
 @inlined
-def _heads_for_zero(determinants, times, k, first):
+def heads_for_zero(determinants, times, k, first):
     """Index of the step in which a determinant may have vanished: k, or the one after row ``first``; 0 if in none.
 
     ``first``: the row at which the determinants begin.
@@ -207,7 +187,7 @@ def sweep(system, seq, fac, ws, size, times, drives, stride, q, v, a, residual, 
             step = _extent(delta[0], per_metre)
             if first > SUSPICIOUS * step + 1e-9 or second > CONTRACTS * first + 1e-9:
                 return BRANCH_DOUBT, k
-            refused = _heads_for_zero(determinant, times, k, chosen) if k > chosen else 0
+            refused = heads_for_zero(determinant, times, k, chosen) if k > chosen else 0
             if 0 < refused < k:
                 for c in range(3, n3):
                     delta[0, c] = q[refused, c] - q[refused - 1, c]

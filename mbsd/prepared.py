@@ -9,8 +9,10 @@ import numpy as np
 
 from mbsd import kinematics
 from mbsd.arguments import number_array
-from mbsd.assembly import residual_and_jacobian
+from mbsd.assembly import residual_and_jacobian, tabulate
+from mbsd.assur.blocks import Blocks, no_blocks
 from mbsd.assur.groups import Groups
+from mbsd.assur.parts import plan_parts
 from mbsd.assur.plan import describe, plan_groups
 from mbsd.assur.points import DOUBTED, OPEN, SOLVED
 from mbsd.assur.solve import solve_groups
@@ -73,14 +75,19 @@ class Prepared:
     factors: Factors
     mobility: Mobility
     groups: Groups | None
-    """Where the mechanism falls apart into groups with closed forms; else Newton-Raphson solves it as a whole."""
+    """Where the mechanism falls apart into groups and blocks; else Newton-Raphson solves it as a whole."""
+    blocks: Blocks
+    """What of it no closed form covers."""
+    proved: bool = False
+    """Whether joints that repeat others are sure to hold where these do not."""
 
     @property
     def route(self) -> str:
         """How positions are found, as long as no two assemblies meet on the way."""
         if self.groups is None:
             return "Newton-Raphson"
-        return f"closed form: {describe(self.groups, self.packed.body_names)}"
+        how = "by parts" if len(self.blocks.head) else "closed form"
+        return f"{how}: {describe(self.groups, self.blocks, self.packed.body_names)}"
 
     def kinematics(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(T, nb, 3) positions, velocities and accelerations of the centres of mass and angles; ground is body 0."""
@@ -104,30 +111,44 @@ class Prepared:
 
     def _closed_form(self, groups: Groups, steps: Steps) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
         """Positions, velocities, accelerations (T, 3 nb) at all steps; None where branches meet or a group opens."""
-        n3, size = len(self.q0), self.packed.size
+        n3, size, blocks = len(self.q0), self.packed.size, self.blocks
         turn, point, before = np.zeros((n3 // 3, 2)), np.zeros((4, 8)), np.zeros((len(groups.kind), 2))
         turn[0, 0] = 1.0
         q, v, a = (np.zeros((len(steps.times), n3)) for _ in range(3))
+        determinant = np.zeros((len(blocks.head), len(steps.times), 1))
         first = 0
         while True:
             status, index, part = solve_groups(
-                groups, self.q0, steps.times, steps.drives, steps.stride, ZERO_LENGTH * size * size, first, q, v, a,
-                turn, point, before,
+                groups, blocks, self.q0, steps.times, steps.drives, steps.stride, ZERO_LENGTH * size * size, first,
+                q, v, a, determinant, turn, point, before,
             )  # fmt: skip
+            self.packed.specials.check()
             if status == SOLVED:
-                return q, v, a
+                return (q, v, a) if self._all_close(steps, q) else None
             if status == OPEN:
                 steps.out_of_reach = float(steps.times[index])
             if status != DOUBTED:
                 return None
             if steps.follow_laws():
                 q, v, a = (np.zeros((len(steps.times), n3)) for _ in range(3))
+                determinant = np.zeros((len(blocks.head), len(steps.times), 1))
                 first = 0
                 continue
             if not steps.divide(index, part):
                 return None
             q, v, a = (np.insert(array, index, 0.0, axis=0) for array in (q, v, a))
+            determinant = np.insert(determinant, index, 0.0, axis=1)
             first = index - 1
+
+    def _all_close(self, steps: Steps, q: np.ndarray) -> bool:
+        """Whether joints that repeat others, which the groups leave out, hold at all poses q (T, 3 nb)."""
+        packed = self.packed
+        if self.proved or not self.mobility.redundant_rows:
+            return True
+        count, rows = len(q), len(packed.ws.phi)
+        phi, gamma = np.zeros((2, count, rows))
+        tabulate(packed.system, steps.drives, q, np.zeros_like(q), packed.ws, phi, np.zeros((count, rows, 6)), gamma)
+        return float(np.abs(phi).max()) <= REDUNDANT_GAP * max(packed.size, 1.0)
 
     def _newton(self, steps: Steps) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Positions, velocities, accelerations (T, 3 nb) at all steps; those that the kernel refuses are divided."""
@@ -248,9 +269,14 @@ def prepare(m: Mechanism, start: float = 0.0, end: float = 1.0) -> Prepared:
         raise
     mobility = joint_mobility(packed, q0)
     kept = choose_rows(packed, q0, start, mobility)
-    sequence, factors = plan(_sample_jacobians(packed), kept, packed.system.row_body)
-    groups = plan_groups(packed, q0, mobility.redundant_rows)
-    return Prepared(packed, q0, start, sequence, factors, mobility, groups)
+    samples = _sample_jacobians(packed)
+    sequence, factors = plan(samples, kept, packed.system.row_body)
+    groups, blocks = plan_groups(packed, q0, mobility.redundant_rows), no_blocks()
+    if groups is None:
+        parts = plan_parts(packed, q0, (samples != 0.0).any(axis=0), kept)
+        if parts is not None:
+            return Prepared(packed, q0, start, sequence, factors, mobility, *parts)
+    return Prepared(packed, q0, start, sequence, factors, mobility, groups, blocks)
 
 
 def refuse_bad_laws(packed: Packed, start: float, end: float) -> None:

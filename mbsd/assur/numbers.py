@@ -143,6 +143,17 @@ class Numbers:
         base = np.array(self._arm(slide.there)) + _turned(np.array(arm) - self._arm(slide.here), angle)
         return [*base, *axis, angle]
 
+    def pin(self, pin: Link) -> list[float]:
+        """P on K1, P on A."""
+        return [*self._arm(pin.there), *self._arm(pin.here)]
+
+    def hanging(self, link: Link) -> list[float]:
+        """Of a body of a block (mbsd/assur/blocks.py) that hangs by a pin, a slide or a weld."""
+        arm = self._arm(link.here)
+        if link.kind == "P":
+            return [float(x) for x in (*self._on_slide(link, arm), *arm)]
+        return [*self._arm(link.there), 1.0, 0.0, -link.offset if link.first else link.offset, *arm]
+
     def rod(self, a: int, pin: Link, rod: Link):
         """A pinned body held by a rod or an actuator."""
         numbers = [

@@ -1,18 +1,21 @@
 """Takes a mechanism apart into groups, beginning at ground: each time the first group whose neighbours are known.
 
 A mechanism with anything that no group covers (a gear, a redundant joint, three bodies rigid only together) has no
-such plan and is solved by Newton-Raphson as a whole.
+such plan; parts.py puts blocks between the groups.
 """
 
 from __future__ import annotations
 
 import copy
 import heapq
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from mbsd.assur.blocks import BLOCK, BODIES, BODY, TRAIN, TREE_AT, Blocks
 from mbsd.assur.groups import NAMES, NUMBERS, Groups
 from mbsd.assur.numbers import Link, Numbers
+from mbsd.joint import Joint
 from mbsd.packing import Packed
 
 COVERED = {
@@ -40,24 +43,45 @@ def plan_groups(packed: Packed, q0: np.ndarray, redundant_rows: int) -> Groups |
     return plan.groups() if plan.complete else None
 
 
-def describe(groups: Groups, names: list[str]) -> str:
+def describe(groups: Groups, blocks: Blocks, names: list[str]) -> str:
     """What the plan is, for people: ``driven crank; RRR coupler, rocker``."""
     parts = []
-    for kind, bodies in zip(groups.kind, groups.body, strict=True):
-        parts.append(f"{NAMES[kind]} {', '.join(names[b] for b in bodies[:2] if b >= 0)}")
+    for kind, bodies, motion in zip(groups.kind, groups.body, groups.motion, strict=True):
+        if kind == BLOCK:
+            head = blocks.head[motion]
+            own = blocks.tree[head[TREE_AT] : head[TREE_AT] + head[BODIES], BODY]
+            parts.append(f"Newton-Raphson {', '.join(names[b] for b in sorted(own))}")
+        elif kind == TRAIN:
+            parts.append(f"train {names[bodies[0]]}")
+        else:
+            parts.append(f"{NAMES[kind]} {', '.join(names[b] for b in bodies[:2] if b >= 0)}")
     return "; ".join(parts)
 
 
 def links_of(packed: Packed) -> list[list[Link]] | None:
     """(nb,) links of each body; None if a joint is of a kind that no group covers."""
+    everything = range(len(packed.joints))
+    if any(link_kind(packed.joints[number]) is None for number in everything):
+        return None
+    return links_of_joints(packed, everything)
+
+
+def link_kind(joint: Joint) -> str | None:
+    """How groups call a joint or driver; None if none covers it."""
+    kind = COVERED.get(tuple(joint.kind.constraints))
+    return None if kind is None or ((kind in DRIVERS) != joint.kind.driven and kind != "L") else kind
+
+
+def links_of_joints(packed: Packed, numbers: Iterable[int]) -> list[list[Link]]:
+    """(nb,) links of each body by these joints, as far as groups cover them."""
     system = packed.system
     links: list[list[Link]] = [[] for _ in packed.body_names]
     angle_at = {int(row[2]): k for k, row in enumerate(system.angle)}
     rod_at = {int(row[2]): k for k, row in enumerate(system.distance)}
-    for number, joint in enumerate(packed.joints):
-        kind = COVERED.get(tuple(joint.kind.constraints))
-        if kind is None or ((kind in DRIVERS) != joint.kind.driven and kind != "L"):
-            return None
+    for number in numbers:
+        kind = link_kind(packed.joints[number])
+        if kind is None:
+            continue
         i, j = (int(marker) for marker in packed.markers[number])
         offset, motion = 0.0, packed.motion_of(number)
         for row in range(packed.first_row[number], packed.first_row[number + 1]):
@@ -183,9 +207,13 @@ class Plan:
         return False
 
     def _take(self, made: tuple, bodies: tuple[int, ...], links: list[Link]) -> None:
+        self.used.update(link.joint for link in links)
+        self.take(made, bodies)
+
+    def take(self, made: tuple, bodies: Sequence[int]) -> None:
+        """Add a group, whose bodies are then known."""
         self.taken.append(made)
         self.known.update(bodies)
-        self.used.update(link.joint for link in links)
         near = {link.other for body in bodies for link in self.links[body]} - self.known
         for body in near:
             heapq.heappush(self.singles, body)

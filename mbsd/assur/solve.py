@@ -27,6 +27,8 @@ from __future__ import annotations
 
 import math
 
+from mbsd.assur.block_call import call_block
+from mbsd.assur.blocks import BLOCK, CARRIES_ON, DOUBTED_BEFORE, NEAR_AT, ROWS_AT, TRAIN, TREE_AT
 from mbsd.assur.groups import DRIVEN, PRP, RPR, RRP, RRR, SLIDE, WELDED, YOKE
 from mbsd.assur.points import DOUBTED, MEETING, SOLVED, aim, carried, dip, follow, hang, reach, wound
 from mbsd.assur.slides import solve_prp, solve_rod, solve_slide
@@ -35,11 +37,14 @@ from mbsd.law_step import jumps
 
 
 @kernel
-def solve_groups(groups, start, times, drives, stride, tiny, first_row, q, v, a, turn, point, before):
+def solve_groups(
+    groups, blocks, start, times, drives, stride, tiny, first_row, q, v, a, determinant, turn, point, before
+):
     """Fill rows ``first_row`` .. of q, v, a (T, 3 nb) at times (T,) with drives (T, motions + 1, 3).
 
     Angles go on from start (3 nb,). ``stride`` (motions + 1,) is how far each law may go in one step, ``tiny`` (m^2)
     the square of a length that counts as zero. The row ``first_row`` itself is not compared with the one before it.
+    ``determinant`` (blocks, T, 1) is filled for the blocks (mbsd/assur/blocks.py).
     Scratch: ``turn`` (nb, 2) with (1, 0) for ground, ``point`` (4, 8), ``before`` (g, 2) discriminants and their rates.
     Returns (status, index, part): where a step was DOUBTED, the part of it at which a pose is asked for.
     """
@@ -234,6 +239,61 @@ def solve_groups(groups, start, times, drives, stride, tiny, first_row, q, v, a,
                 g[5] = p[5] + turning * sx - spin * spin * sy + 2.0 * spin * rate * ex + along * ey
                 follow(qk, vk, ak, turn, body, k1, n[8])
                 hang(qk, vk, ak, turn, body, g, n[9], n[10])
+            elif kind == BLOCK:
+                head = blocks.head[groups.motion[e]]
+                state = call_block(
+                    blocks.address[0],
+                    k,
+                    (
+                        head,
+                        blocks.tree[head[TREE_AT] :],
+                        blocks.rows[head[ROWS_AT] :],
+                        blocks.near[head[NEAR_AT] :],
+                        blocks.frame[head[TREE_AT] :],
+                        blocks.arms[head[ROWS_AT] :],
+                        times,
+                        drives,
+                        q,
+                        v,
+                        a,
+                        turn,
+                        start,
+                        blocks.numbers,
+                        determinant[groups.motion[e]],
+                        point,
+                        blocks.unknown,
+                        blocks.jac,
+                        blocks.out,
+                        blocks.du,
+                        blocks.scratch,
+                    ),
+                )
+                if state == DOUBTED_BEFORE:
+                    return DOUBTED, k - 1, 0.5
+                if state != SOLVED:
+                    return state, k, 0.5
+                continue
+            elif kind == TRAIN:
+                train = groups.motion[e]
+                angle = n[4]
+                omega = 0.0
+                alpha = 0.0
+                for i in range(blocks.train[train, 0], blocks.train[train, 0] + blocks.train[train, 1]):
+                    share = blocks.share[i]
+                    c = 3 * blocks.train_body[i] + 2
+                    angle += share * qk[c]
+                    omega += share * vk[c]
+                    alpha += share * ak[c]
+                qk[at + 2] = angle
+                vk[at + 2] = omega
+                ak[at + 2] = alpha
+                turn[body, 0] = math.cos(angle)
+                turn[body, 1] = math.sin(angle)
+                carried(qk, vk, ak, turn, k1, n[0], n[1], p)
+                hang(qk, vk, ak, turn, body, p, n[2], n[3])
+                if goes_on and n[CARRIES_ON] > 0.0 and wound(qk, last, vk, v[k - 1], ak, a[k - 1], h, at + 2):
+                    return DOUBTED, k, 0.5
+                continue
             else:
                 bodies = groups.body[e]
                 motion = groups.motion[e]

@@ -1,0 +1,328 @@
+"""One block of a plan at one time by Newton-Raphson in its few unknowns, with the branch guard of mbsd/kinematics.py.
+
+    predict   poses from the quintic through the last two
+    correct   G du = -F,  G = J B;  B the rates of the bodies for unit rates of the unknowns
+    then      G u' = f' - J v,   G u'' = gamma + f'' - J a      v, a of the block with its unknowns held
+
+It is reached by its machine address, and compiled when a plan with blocks is first solved.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import carray
+
+from mbsd.assur.block_call import PYTHON, SIGNATURE
+from mbsd.assur.block_matrix import extent, factor, held, solve, turns_too_far
+from mbsd.assur.block_rows import begin, bend_of, evaluate_row, fill_columns, move
+from mbsd.assur.blocks import (
+    BODIES,
+    BODY,
+    BODY_J,
+    DOUBTED_BEFORE,
+    EQUATIONS,
+    FREE,
+    HANGS,
+    LARGEST,
+    LAWS,
+    MOTION,
+    MOVING,
+    NEAR,
+    PARENT,
+    PIN,
+    PLACE_I,
+    PLACE_J,
+    SIZE,
+    SLIDE,
+    STRIDE,
+    UNKNOWN,
+    UNKNOWNS,
+)
+from mbsd.assur.fused import fused
+from mbsd.assur.points import DOUBTED, MEETING, SOLVED, carried, hang
+from mbsd.jit import COMPILED, at_address
+from mbsd.kinematics import CONTRACTS, MAX_ITERATIONS, ROUNDING, SUSPICIOUS, TOLERANCE, heads_for_zero
+from mbsd.law_step import jumps
+from mbsd.predictor import quintic_factors
+
+LONG = 1 << 40
+"""For arrays whose length does not matter."""
+COLUMNS = LARGEST * LARGEST
+"""Where the columns of unknowns begin in the scratch, after the matrix."""
+
+
+@fused
+def predict(tree, count, times, k, q, v, a, start):
+    """Fill row k of q for the block's bodies."""
+    if k == 0:
+        for e in range(count):
+            for c in range(3 * tree[e, BODY], 3 * tree[e, BODY] + 3):
+                q[0, c] = start[c]
+        return
+    for e in range(count):
+        for c in range(3 * tree[e, BODY], 3 * tree[e, BODY] + 3):
+            q[k, c] = predicted(times, k, q, v, a, c)
+
+
+@fused
+def predicted(times, k, q, v, a, c):
+    """Coordinate c at row k."""
+    from_q, from_v, from_a, earlier_v, earlier_a = quintic_factors(times, k, times[k])
+    last = k - 1
+    before = max(k - 2, 0)
+    return (
+        q[last, c]
+        + from_q * (q[before, c] - q[last, c])
+        + from_v * v[last, c]
+        + earlier_v * v[before, c]
+        + from_a * a[last, c]
+        + earlier_a * a[before, c]
+    )
+
+
+@fused
+def linearise(head, tree, rows, frame, arms, q, turn, numbers, jac, out, values, scratch):
+    """values (n,) of the equations, their rows jac (n, 6) with derivatives out (n, 10), and G in the scratch."""
+    count = head[BODIES]
+    n = head[EQUATIONS]
+    fill_columns(tree, frame, count, n, q, turn, scratch[COLUMNS:])
+    relative = scratch[COLUMNS + 3 * n * count :]
+    for r in range(n):
+        values[r] = evaluate_row(rows[r], arms[r], q, turn, numbers, relative, out[r], jac[r])
+        first = rows[r, PLACE_I]
+        second = rows[r, PLACE_J]
+        for j in range(n):
+            rate = 0.0
+            for c in range(3):
+                if first >= 0:
+                    rate += jac[r, c] * scratch[COLUMNS + 3 * (n * first + j) + c]
+                if second >= 0:
+                    rate += jac[r, 3 + c] * scratch[COLUMNS + 3 * (n * second + j) + c]
+            scratch[n * r + j] = rate
+
+
+@fused
+def correction(head, tree, du, per_metre):
+    """Largest of a change of the unknowns, in sizes and rad; NaN counts as infinite."""
+    largest = 0.0
+    for e in range(head[BODIES]):
+        c = tree[e, UNKNOWN]
+        hangs = tree[e, HANGS]
+        for i in range(UNKNOWNS[hangs]):
+            part = abs(du[c + i])
+            if hangs == SLIDE or (hangs == FREE and i < 2):
+                part *= per_metre
+            if not part <= largest:
+                largest = part if part == part else math.inf
+    return largest
+
+
+@fused
+def solve_pinned(
+    k, head, tree, rows, near, frame, arms, times, drives, q, v, a, turn, start, numbers, determinant, point, jac, out,
+    relative,
+):  # fmt: skip
+    """As solve_arrays for a block of one pinned body, whose angle is the only unknown."""
+    body = tree[0, BODY]
+    b = 3 * body
+    n = frame[0]
+    row = rows[0]
+    per_metre = 1.0 / arms[0, SIZE]
+    motion = row[MOTION]
+    qk = q[k]
+    vk = v[k]
+    ak = a[k]
+    h = 0.0
+    theta = start[b + 2]
+    if k > 0:
+        h = times[k] - times[k - 1]
+        if motion > 0 and jumps(drives[k, motion], drives[k - 1, motion], h, arms[0, STRIDE]):
+            return DOUBTED
+        theta = predicted(times, k, q, v, a, b + 2)
+    own = 3 if row[BODY_J] == body else 0
+    p = point[0]
+    carried(qk, vk, ak, turn, tree[0, PARENT], n[0], n[1], p)
+    first = 0.0
+    second = 0.0
+    last = math.inf
+    change = math.inf
+    slope = 0.0
+    correction = 0.0
+    for iteration in range(MAX_ITERATIONS):
+        turn[body, 0] = math.cos(theta)
+        turn[body, 1] = math.sin(theta)
+        sx = turn[body, 0] * n[5] - turn[body, 1] * n[6]
+        sy = turn[body, 1] * n[5] + turn[body, 0] * n[6]
+        qk[b] = p[0] - sx
+        qk[b + 1] = p[1] - sy
+        qk[b + 2] = theta
+        value = evaluate_row(row, arms[0], qk, turn, numbers, relative, out[0], jac[0])
+        slope = jac[0, own] * sy - jac[0, own + 1] * sx + jac[0, own + 2]
+        if slope == 0.0:
+            return MEETING
+        correction = (drives[k, motion, 0] - value) / slope
+        theta += correction
+        change = abs(correction)
+        if iteration == 0:
+            first = change
+        elif iteration == 1:
+            second = change
+        if change <= TOLERANCE:
+            break
+        if iteration > 0 and not change < 0.5 * last:
+            break
+        last = change
+    if not change <= ROUNDING:
+        return DOUBTED
+    determinant[k, 0] = slope
+    qk[b + 2] = theta
+    cosine = turn[body, 0]
+    turn[body, 0] -= turn[body, 1] * correction  # a correction of 1e-9 is exact this way
+    turn[body, 1] += cosine * correction
+    vk[b] = p[2]
+    vk[b + 1] = p[3]
+    vk[b + 2] = 0.0
+    vk[b + 2] = (drives[k, motion, 1] - held(jac[0], row, vk)) / slope
+    ak[b + 2] = 0.0
+    hang(qk, vk, ak, turn, body, p, n[5], n[6])
+    bend = bend_of(row, arms[0], qk, vk, turn, out[0])
+    ak[b + 2] = (bend + drives[k, motion, 2] - held(jac[0], row, ak)) / slope
+    hang(qk, vk, ak, turn, body, p, n[5], n[6])
+    return in_doubt(head, tree, near, times, q, v, a, determinant, k, h, per_metre, first, second) if k > 0 else SOLVED
+
+
+@fused
+def in_doubt(head, tree, near, times, q, v, a, determinant, k, h, per_metre, first, second):
+    """The branch guard after row k: SOLVED, or in which step a pose is needed."""
+    step = 0.0
+    for e in range(head[BODIES]):
+        step = max(step, extent(q[k], q[k - 1], tree[e, BODY], per_metre))
+    for e in range(head[NEAR]):
+        step = max(step, extent(q[k], q[k - 1], near[e], per_metre))
+    if first > SUSPICIOUS * step + 1e-9 or second > CONTRACTS * first + 1e-9:
+        return DOUBTED
+    refused = heads_for_zero(determinant, times, k, 0)
+    if refused > 0:
+        return DOUBTED if refused == k else DOUBTED_BEFORE
+    return DOUBTED if turns_too_far(head, tree, q, v, a, k, h, per_metre) else SOLVED
+
+
+@fused
+def solve_arrays(
+    k, head, tree, rows, near, frame, arms, times, drives, q, v, a, turn, start, numbers, determinant, point,
+    unknown, jac, out, du, scratch,
+):  # fmt: skip
+    """Fill row k of q, v, a (T, 3 nb) for the bodies of one block; returns SOLVED, or why not."""
+    count = head[BODIES]
+    n = head[EQUATIONS]
+    per_metre = 1.0 / arms[0, SIZE]
+    qk = q[k]
+    vk = v[k]
+    ak = a[k]
+    drive = drives[k]
+    h = times[k] - times[k - 1] if k > 0 else 0.0
+    for r in range(n):
+        motion = rows[r, MOTION]
+        if k > 0 and motion > 0 and jumps(drive[motion], drives[k - 1, motion], h, arms[r, STRIDE]):
+            return DOUBTED
+    predict(tree, count, times, k, q, v, a, start)
+    begin(tree, frame, count, qk, turn, unknown[0])
+    for c in range(n):
+        unknown[1, c] = 0.0
+        unknown[2, c] = 0.0
+    first = 0.0
+    second = 0.0
+    last = math.inf
+    change = math.inf
+    for iteration in range(MAX_ITERATIONS):
+        move(tree, frame, count, unknown, iteration == 0, qk, vk, ak, turn, point)
+        linearise(head, tree, rows, frame, arms, qk, turn, numbers, jac, out, du[0], scratch)
+        determinant[k, 0] = factor(scratch, du[1], n)
+        if determinant[k, 0] == 0.0:
+            return MEETING
+        for r in range(n):
+            du[0, r] = drive[rows[r, MOTION], 0] - du[0, r]
+        solve(scratch, du[1], n, du[0])
+        for c in range(n):
+            unknown[0, c] += du[0, c]
+        change = correction(head, tree, du[0], per_metre)
+        if iteration == 0:
+            first = change
+        elif iteration == 1:
+            second = change
+        if change <= TOLERANCE:
+            break
+        if iteration > 0 and not change < 0.5 * last:
+            break
+        last = change
+    if not change <= ROUNDING:
+        return DOUBTED
+    for r in range(n):
+        unknown[1, r] = drive[rows[r, MOTION], 1] - held(jac[r], rows[r], vk)
+    solve(scratch, du[1], n, unknown[1])
+    move(tree, frame, count, unknown, False, qk, vk, ak, turn, point)
+    for r in range(n):
+        bend = bend_of(rows[r], arms[r], qk, vk, turn, out[r])
+        unknown[2, r] = bend + drive[rows[r, MOTION], 2] - held(jac[r], rows[r], ak)
+    solve(scratch, du[1], n, unknown[2])
+    move(tree, frame, count, unknown, True, qk, vk, ak, turn, point)
+    return in_doubt(head, tree, near, times, q, v, a, determinant, k, h, per_metre, first, second) if k > 0 else SOLVED
+
+
+def _at_address(
+    k, head, tree, rows, near, frame, arms, times, drives, q, v, a, turn, start, numbers, determinant, point,
+    unknown, jac, out, du, scratch,
+):  # fmt: skip
+    """The same with pointers."""
+    sizes = carray(head, (MOVING + 1,))
+    count = sizes[BODIES]
+    n = sizes[EQUATIONS]
+    bodies = sizes[MOVING]
+    rows_known = k + 1
+    tree_of = carray(tree, (count, 5))
+    rows_of = carray(rows, (n, 9))
+    near_of = carray(near, (sizes[NEAR],))
+    frame_of = carray(frame, (count, 7))
+    arms_of = carray(arms, (n, 9))
+    at = carray(times, (rows_known,))
+    laws = carray(drives, (rows_known, sizes[LAWS], 3))
+    qs = carray(q, (rows_known, 3 * bodies))
+    vs = carray(v, (rows_known, 3 * bodies))
+    bends = carray(a, (rows_known, 3 * bodies))
+    turned = carray(turn, (bodies, 2))
+    before = carray(start, (3 * bodies,))
+    all_numbers = carray(numbers, (LONG,))
+    determinants = carray(determinant, (rows_known, 1))
+    points = carray(point, (4, 8))
+    jacobian = carray(jac, (LARGEST, 6))
+    values = carray(out, (LARGEST, 10))
+    work = carray(scratch, (LONG,))
+    return solve_any(
+        k, sizes, tree_of, rows_of, near_of, frame_of, arms_of, at, laws, qs, vs, bends, turned, before, all_numbers,
+        determinants, points, carray(unknown, (3, LARGEST)), jacobian, values, carray(du, (2, LARGEST)), work,
+    )  # fmt: skip
+
+
+@fused
+def solve_any(
+    k, head, tree, rows, near, frame, arms, times, drives, q, v, a, turn, start, numbers, determinant, point,
+    unknown, jac, out, du, scratch,
+):  # fmt: skip
+    """Fill row k of q, v, a (T, 3 nb) for the bodies of one block; returns SOLVED, or why not."""
+    if head[EQUATIONS] == 1 and head[BODIES] == 1 and tree[0, HANGS] == PIN:
+        return solve_pinned(
+            k, head, tree, rows, near, frame, arms, times, drives, q, v, a, turn, start, numbers, determinant, point,
+            jac, out, scratch,
+        )  # fmt: skip
+    return solve_arrays(
+        k, head, tree, rows, near, frame, arms, times, drives, q, v, a, turn, start, numbers, determinant, point,
+        unknown, jac, out, du, scratch,
+    )  # fmt: skip
+
+
+if COMPILED:
+    ADDRESS = at_address(SIGNATURE)(_at_address).address
+else:
+    PYTHON[:] = [solve_any]
+    ADDRESS = 0

@@ -1,0 +1,10 @@
+"""A decorator for the small kernels of a block (mbsd/assur/block.py): LLVM copies them into their caller.
+
+Each has one or two callers, and handing ten arrays on costs more than the work.
+"""
+
+from __future__ import annotations
+
+from mbsd.jit import _compiled  # pyright: ignore[reportPrivateUsage]
+
+fused = _compiled(no_cpython_wrapper=True, forceinline=True)

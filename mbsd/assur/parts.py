@@ -13,24 +13,18 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mbsd.assur.block_tables import equations_of, hanging_tree
 from mbsd.assur.blocks import (
-    ACROSS,
-    ALONG,
-    APART,
     BLOCK,
     BODIES,
     CARRIES,
     CARRIES_ON,
     EQUATIONS,
-    FREE,
     HANGS,
     LARGEST,
     PIN,
-    SLIDE,
-    SPECIAL,
     TRAIN,
     TREE_AT,
-    TURNED,
     UNKNOWNS,
     WELD,
     Blocks,
@@ -41,15 +35,11 @@ from mbsd.assur.numbers import Link
 from mbsd.assur.plan import Plan, links_of_joints
 from mbsd.assur.trains import Trains
 from mbsd.packing import Packed
-from mbsd.specials import ARM, AT
-from mbsd.steps import strides
+from mbsd.specials import ARM, ROW
 
 CLOSED, PINNED, BESIDE, EACH, WHOLE = 0.05, 0.17, 0.1, 0.2, 0.15
 """Measured costs of one time (us): of a closed group, of a block of one pinned body, of another block beside what each
 of its unknowns costs, and of a body in Newton-Raphson of the whole."""
-HANGING = {"W": WELD, "R": PIN, "P": SLIDE}
-"""Links that a body may hang by, the best first."""
-ONE_ROW = {"slot": ACROSS, "along": ALONG, "distance": APART}
 
 
 class Parts(NamedTuple):
@@ -84,8 +74,7 @@ class _Parts:
         ]
         self.plan = Plan(packed, q0.reshape(-1, 3), links_of_joints(packed, whole))
         self.bodies_of = packed.system.row_body
-        self.arms = {int(place[2]): int(entry[ARM]) for place, entry in self._specials()}
-        self.special_at = {int(place[2]): k for k, (place, _) in enumerate(self._specials())}
+        self.arms = {int(entry[ROW]): int(entry[ARM]) for entry in packed.system.special}
         self.trains = Trains(packed, q0)
         self.train: list[list[int]] = []
         self.shares: list[tuple[int, float]] = []
@@ -97,9 +86,6 @@ class _Parts:
         self.near: list[int] = []
         self._taken_rows: set[int] = set()
 
-    def _specials(self):
-        return list(zip(self.packed.specials.places, self.packed.system.special, strict=True))
-
     def add_block(self) -> bool:
         """Add the smallest block whose neighbours are known; False if it is too large or cannot be written."""
         left = [row for row in sorted(self.rows) if row not in self._used()]
@@ -108,7 +94,7 @@ class _Parts:
             return False
         inside = self.plan.known | members
         own = [row for row in left if all(int(body) in inside for body in self.bodies_of[row])]
-        tree, joints = self._tree(members)
+        tree, joints = hanging_tree(self.plan, members)
         unknowns = sum(UNKNOWNS[hangs] for _, hangs, _ in tree)
         hanging = {
             row for joint in joints for row in range(self.packed.first_row[joint], self.packed.first_row[joint + 1])
@@ -119,7 +105,7 @@ class _Parts:
         if self._add_train(tree, equations):
             self._taken_rows = self._taken_rows | set(own)
             return True
-        written = self._written(equations, {body: place for place, (body, _, _) in enumerate(tree)})
+        written = equations_of(self.packed, equations, {body: place for place, (body, _, _) in enumerate(tree)})
         if written is None:
             return False
         self._take(tree, *written, own)
@@ -180,62 +166,6 @@ class _Parts:
         ]
         least = min(free, key=lambda members: (len(members), members[0]))
         return {unknown[k] for k in least}
-
-    def _tree(self, members: set[int]) -> tuple[list[tuple[int, int, Link | None]], set[int]]:
-        """Bodies in the order of their placing, how they hang and by what; the joints that they hang by."""
-        placed, waiting = set(self.plan.known), sorted(members)
-        tree: list[tuple[int, int, Link | None]] = []
-        joints: set[int] = set()
-        while waiting:
-            found = None
-            for kind in HANGING:
-                for body in waiting:
-                    links = [x for x in self.plan.links[body] if x.kind == kind and x.other in placed]
-                    if links:
-                        found = body, HANGING[kind], links[0]
-                        break
-                if found:
-                    break
-            body, hangs, link = found or (waiting[0], FREE, None)
-            tree.append((body, hangs, link))
-            if link is not None:
-                joints.add(link.joint)
-            waiting.remove(body)
-            placed.add(body)
-        return tree, joints
-
-    def _written(self, rows: Sequence[int], place: dict[int, int]) -> tuple[list[list[int]], list[list[float]]] | None:
-        """The equations as tables; None if one of them is half of a pin."""
-        system, stride = self.packed.system, strides(self.packed)
-        offset = {int(row[2]): float(system.angle_offset[k]) for k, row in enumerate(system.angle)}
-        length = {int(row[2]): float(system.distance_length[k]) for k, row in enumerate(system.distance)}
-        kind = {int(row[2]): (TURNED, row) for row in system.angle}
-        for name, number in ONE_ROW.items():
-            kind |= {int(row[2]): (number, row) for row in getattr(system, name)}
-        for row in system.point:
-            if int(row[2]) in rows and int(row[2]) + 1 in rows:
-                kind |= {int(row[2]): (ALONG, row), int(row[2]) + 1: (ACROSS, row)}
-        equations, numbers = [], []
-        for row in rows:
-            at = arm = address = 0
-            if row in self.special_at:
-                k = self.special_at[row]
-                entry = system.special[k]
-                equation, (i, j, _, motion) = SPECIAL, entry[:4]
-                at, arm, address = int(entry[AT]), int(entry[ARM]), int(system.address[k])
-            elif row in kind:
-                equation, (i, j, _, motion) = kind[row]
-            else:
-                return None
-            bi, bj = int(system.marker_body[i]), int(system.marker_body[j])
-            equations.append(
-                [equation, bi, bj, place.get(bi, -1), place.get(bj, -1), int(motion), at, arm, address]
-            )  # fmt: skip
-            constant = offset.get(row, length.get(row, 0.0))
-            limit = float(stride[motion]) if motion else 0.0
-            parts = (*system.marker_arm[i], *system.marker_axis[i], *system.marker_arm[j])
-            numbers.append([*(float(x) for x in parts), constant, limit, self.packed.size])
-        return equations, numbers
 
     def _take(
         self,

@@ -1,4 +1,4 @@
-"""Positions, velocities and accelerations of one group PRP, ROD or SLIDE; the others are in solve.py.
+"""Positions, velocities and accelerations of one group PRP, ROD, SLIDE or TRAIN; the others are in solve.py.
 
 PRP   C = C_1 + s_1 e_1 = C_2 + s_2 e_2 where two slides cross;  c_i the point C as K_i carries it:
       s_1' e_1 - s_2' e_2 = c_2' - c_1'
@@ -144,3 +144,24 @@ def solve_slide(body, n, law, qk, vk, ak, turn, point):
     follow(qk, vk, ak, turn, body[0], k1, n[4])
     hang(qk, vk, ak, turn, body[0], p, n[5], n[6])
     return SOLVED
+
+
+@internal
+def solve_train(train, body_of, share_of, body, k1, n, qk, vk, ak, turn, p):
+    """train (2,): first share and how many; the angle is their sum. ``p`` (8,): scratch."""
+    angle = n[4]
+    omega = 0.0
+    alpha = 0.0
+    for i in range(train[0], train[0] + train[1]):
+        c = 3 * body_of[i] + 2
+        angle += share_of[i] * qk[c]
+        omega += share_of[i] * vk[c]
+        alpha += share_of[i] * ak[c]
+    at = 3 * body + 2
+    qk[at] = angle
+    vk[at] = omega
+    ak[at] = alpha
+    turn[body, 0] = math.cos(angle)
+    turn[body, 1] = math.sin(angle)
+    carried(qk, vk, ak, turn, k1, n[0], n[1], p)
+    hang(qk, vk, ak, turn, body, p, n[2], n[3])

@@ -1,6 +1,6 @@
 """The compiled closed forms: positions, velocities and accelerations of all groups at all times.
 
-PRP, ROD and SLIDE are in slides.py, points carried by a body in points.py.
+PRP, ROD, SLIDE and trains are in slides.py, blocks of Newton-Raphson in block.py, carried points in points.py.
 
     RRR   C where the circles about P and Q meet;  with u = C - P, w = C - Q:
           omega_A u_perp - omega_B w_perp = q' - p'
@@ -31,7 +31,7 @@ from mbsd.assur.block_call import call_block
 from mbsd.assur.blocks import BLOCK, CARRIES_ON, DOUBTED_BEFORE, NEAR_AT, ROWS_AT, TRAIN, TREE_AT
 from mbsd.assur.groups import DRIVEN, PRP, RPR, RRP, RRR, SLIDE, WELDED, YOKE
 from mbsd.assur.points import DOUBTED, MEETING, SOLVED, aim, carried, dip, follow, hang, reach, wound
-from mbsd.assur.slides import solve_prp, solve_rod, solve_slide
+from mbsd.assur.slides import solve_prp, solve_rod, solve_slide, solve_train
 from mbsd.jit import kernel
 from mbsd.law_step import jumps
 
@@ -242,55 +242,22 @@ def solve_groups(
             elif kind == BLOCK:
                 head = blocks.head[groups.motion[e]]
                 state = call_block(
-                    blocks.address[0],
-                    k,
+                    blocks.address[0], k,
                     (
-                        head,
-                        blocks.tree[head[TREE_AT] :],
-                        blocks.rows[head[ROWS_AT] :],
-                        blocks.near[head[NEAR_AT] :],
-                        blocks.frame[head[TREE_AT] :],
-                        blocks.arms[head[ROWS_AT] :],
-                        times,
-                        drives,
-                        q,
-                        v,
-                        a,
-                        turn,
-                        start,
-                        blocks.numbers,
-                        determinant[groups.motion[e]],
-                        point,
-                        blocks.unknown,
-                        blocks.jac,
-                        blocks.out,
-                        blocks.du,
-                        blocks.scratch,
+                        head, blocks.tree[head[TREE_AT] :], blocks.rows[head[ROWS_AT] :], blocks.near[head[NEAR_AT] :],
+                        blocks.frame[head[TREE_AT] :], blocks.arms[head[ROWS_AT] :], times, drives, q, v, a, turn,
+                        start, blocks.numbers, determinant[groups.motion[e]], point, blocks.unknown, blocks.jac,
+                        blocks.out, blocks.du, blocks.scratch,
                     ),
-                )
+                )  # fmt: skip
                 if state == DOUBTED_BEFORE:
                     return DOUBTED, k - 1, 0.5
                 if state != SOLVED:
                     return state, k, 0.5
                 continue
             elif kind == TRAIN:
-                train = groups.motion[e]
-                angle = n[4]
-                omega = 0.0
-                alpha = 0.0
-                for i in range(blocks.train[train, 0], blocks.train[train, 0] + blocks.train[train, 1]):
-                    share = blocks.share[i]
-                    c = 3 * blocks.train_body[i] + 2
-                    angle += share * qk[c]
-                    omega += share * vk[c]
-                    alpha += share * ak[c]
-                qk[at + 2] = angle
-                vk[at + 2] = omega
-                ak[at + 2] = alpha
-                turn[body, 0] = math.cos(angle)
-                turn[body, 1] = math.sin(angle)
-                carried(qk, vk, ak, turn, k1, n[0], n[1], p)
-                hang(qk, vk, ak, turn, body, p, n[2], n[3])
+                train = blocks.train[groups.motion[e]]
+                solve_train(train, blocks.train_body, blocks.share, body, k1, n, qk, vk, ak, turn, p)
                 if goes_on and n[CARRIES_ON] > 0.0 and wound(qk, last, vk, v[k - 1], ak, a[k - 1], h, at + 2):
                     return DOUBTED, k, 0.5
                 continue

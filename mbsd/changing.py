@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from mbsd.body import Marker
@@ -30,7 +31,7 @@ def with_markers(method: Callable[..., Any], markers: list[Marker], named: Mappi
     (``against``, ``frame``) takes what is left.
     """
     out = dict(named)
-    slots = [p for p in inspect.signature(method).parameters.values() if p.name not in named]
+    slots = [p for p in _parameters(method) if p.name not in named]
     needed = [p for p in slots if str(p.annotation) in ("Marker", "Body")]
     given = [p for p in slots if str(p.annotation) == "Body | None"]
     left = markers[: len(markers) - len(needed)]
@@ -39,9 +40,19 @@ def with_markers(method: Callable[..., Any], markers: list[Marker], named: Mappi
     return out
 
 
+def _parameters(method: Callable[..., Any]) -> tuple[inspect.Parameter, ...]:
+    """Of a method of a mechanism, ``self`` left out."""
+    return _parameters_of(method.__func__)[1:]  # pyright: ignore[reportFunctionMemberAccess]
+
+
+@lru_cache(maxsize=256)
+def _parameters_of(function: Callable[..., Any]) -> tuple[inspect.Parameter, ...]:
+    return tuple(inspect.signature(function).parameters.values())
+
+
 def law_name(method: Callable[..., Any]) -> str:
     """The argument of a driver's method that is its law."""
-    [law] = [p.name for p in inspect.signature(method).parameters.values() if str(p.annotation) == "Law"]
+    [law] = [p.name for p in _parameters(method) if str(p.annotation) == "Law"]
     return law
 
 
@@ -62,7 +73,7 @@ def change(m: Mechanism, name: str, values: Mapping[str, Any]) -> None:
 def _change(m: Mechanism, table: dict[str, Any], name: str, values: Mapping[str, Any]) -> None:
     old: Joint | Force = table[name]
     method = getattr(m, old.kind.name)
-    parameters = list(inspect.signature(method).parameters.values())[1:]
+    parameters = _parameters(method)[1:]
     own = [p.name for p in parameters if str(p.annotation) not in ("Marker", "Body", "Body | None")]
     if any(p.kind is p.VAR_POSITIONAL for p in parameters):
         own = []

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -24,6 +25,8 @@ from mbsd.start import CLOSED, assemble, close, rough_pose
 
 RANK_TOLERANCE = 1e-8
 """A row that adds less than this part of itself to the others repeats them."""
+SMALL = 4000
+"""Up to so many numbers of J, its rank is kept for the next call with the same J."""
 BETTER = 4.0
 """Rows are exchanged for others whose least singular value is this many times larger."""
 
@@ -178,6 +181,17 @@ def scaled_jacobian(packed: Packed, q: np.ndarray) -> np.ndarray:
 
 def independent_rows(jac: np.ndarray) -> list[int]:
     """Rows that are independent of those before them (Gram-Schmidt, done twice for rounding)."""
+    if jac.size > SMALL:
+        return _independent(jac)
+    return list(_kept_independent(jac.tobytes(), jac.shape))
+
+
+@lru_cache(maxsize=64)
+def _kept_independent(numbers: bytes, shape: tuple[int, int]) -> tuple[int, ...]:
+    return tuple(_independent(np.frombuffer(numbers).reshape(shape).copy()))
+
+
+def _independent(jac: np.ndarray) -> list[int]:
     basis = np.zeros((min(jac.shape), jac.shape[1]))
     kept: list[int] = []
     lengths = np.sqrt(np.einsum("rc,rc->r", jac, jac))
@@ -211,8 +225,18 @@ def _nearby(packed: Packed, q: np.ndarray, tries: int = 3, seed: int = 1) -> lis
 
 def _moving(packed: Packed, jac: np.ndarray) -> tuple[str, ...]:
     """Bodies that the null space of J moves."""
+    size = _kept_motion(jac.tobytes(), jac.shape) if jac.size <= SMALL else _motion(jac)
+    return tuple(name for name, moved in zip(packed.body_names[1:], size, strict=True) if moved > 1e-6)
+
+
+@lru_cache(maxsize=64)
+def _kept_motion(numbers: bytes, shape: tuple[int, int]) -> np.ndarray:
+    return _motion(np.frombuffer(numbers).reshape(shape).copy())
+
+
+def _motion(jac: np.ndarray) -> np.ndarray:
+    """(bodies,) largest number of each body in unit vectors that span the null space of J."""
     _, singular, v = np.linalg.svd(jac, full_matrices=True)
     rank = int((singular > RANK_TOLERANCE * max(1.0, singular.max(initial=0.0))).sum())
     null = v[rank:]
-    size = np.linalg.norm(null, axis=0).reshape(-1, 3).max(axis=1)
-    return tuple(name for name, moved in zip(packed.body_names[1:], size, strict=True) if moved > 1e-6)
+    return np.linalg.norm(null, axis=0).reshape(-1, 3).max(axis=1)

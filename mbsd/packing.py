@@ -18,6 +18,8 @@ from mbsd.specials import Specials
 from mbsd.system import System, Workspace, workspace
 from mbsd.users_function import law_of, tell_missed
 
+MOST_KEPT = 60
+"""Coordinates of mechanisms whose start is kept for the next solution."""
 SMALLEST_SIZE = 1e-12
 """Below this (m) all joints sit at the centres of mass, and 1 m serves as size."""
 
@@ -65,6 +67,12 @@ class Packed:
         """The first row that belongs to a contact: all before hold always."""
         return int(self.first_row[len(self.joints) - self.contacts])
 
+    def numbers(self) -> tuple[bytes, ...] | None:
+        """The system by its numbers; None where it is large, or has relative poses: functions of the user, phases."""
+        if len(self.system.special) or self.coordinates > MOST_KEPT:
+            return None
+        return (*(part.tobytes() for part in self.system), self.com.tobytes(), np.float64(self.size).tobytes())
+
     def contact_gaps(self) -> dict[str, int]:
         """Contacts by name, and the rows of their gaps; rows that hold joints at rest are none."""
         places = range(len(self.joints) - self.contacts, len(self.joints))
@@ -110,7 +118,9 @@ class Packed:
 
     def column_scale(self) -> np.ndarray:
         """(n,) size of a unit step of each coordinate: ``size`` for x and y, 1 for theta."""
-        return np.tile([self.size, self.size, 1.0], len(self.body_names) - 1)
+        scale = np.ones((len(self.body_names) - 1, 3))
+        scale[:, :2] = self.size
+        return scale.ravel()
 
     def jacobian(self) -> np.ndarray:
         """(m, n) of the last evaluation, ground's columns left out."""

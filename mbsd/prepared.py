@@ -18,6 +18,7 @@ from mbsd.assur.points import DOUBTED, OPEN, SOLVED
 from mbsd.assur.solve import solve_groups
 from mbsd.elimination import Elimination, Factors, plan
 from mbsd.errors import AssemblyError, BranchError, ModelError, SingularPoseError
+from mbsd.kept import Kept
 from mbsd.mobility import Mobility, best_rows, choose_rows, joint_mobility, refuse_overdriven
 from mbsd.model import Mechanism
 from mbsd.packing import Packed, pack
@@ -33,6 +34,7 @@ RUNAWAY = 30.0
 """Turning this many times faster than usual is the mark of a toggle; at a change point rates stay as they are."""
 LARGEST_ANGLE = 1e12
 """Of a driver (rad): beyond it neighbouring numbers are more than 1e-4 rad apart."""
+_SAMPLES: Kept[np.ndarray] = Kept()
 REDUNDANT_GAP = 1e-7
 """Largest gap, in sizes, by which redundant joints may disagree."""
 
@@ -314,6 +316,11 @@ def refuse_bad_laws(packed: Packed, start: float, end: float) -> None:
 
 def _sample_jacobians(packed: Packed) -> np.ndarray:
     """(4, m, n) at unrelated poses, to see which entries are constant."""
+    numbers = packed.numbers()
+    return _sampled(packed) if numbers is None else _SAMPLES.get(numbers, lambda: _sampled(packed))
+
+
+def _sampled(packed: Packed) -> np.ndarray:
     random = np.random.default_rng(2)
     none = np.zeros((len(packed.motions) + 1, 3))
     samples = []

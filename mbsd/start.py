@@ -13,6 +13,7 @@ import numpy as np
 
 from mbsd.assembly import residual_and_jacobian
 from mbsd.errors import AssemblyError
+from mbsd.kept import Kept
 from mbsd.model import Mechanism
 from mbsd.open_loops import turned, why_open
 from mbsd.packing import Packed
@@ -24,6 +25,8 @@ ATTEMPTS = 24
 MANY_ROWS = 100
 """From here on the shortest step is found without singular values where rows are well apart."""
 WELL_CONDITIONED = 1e-4
+_CLOSED: Kept[tuple[np.ndarray, np.ndarray]] = Kept()
+"""Closed poses, and the angle offsets that go with them."""
 LONGEST_STEP = 0.5
 """Of one Gauss-Newton step, in sizes and rad."""
 
@@ -31,6 +34,21 @@ LONGEST_STEP = 0.5
 def assemble(m: Mechanism, packed: Packed, time: float) -> np.ndarray:
     """(3 nb,) closed pose at ``time``, centre-of-mass coordinates. Raises AssemblyError naming the open joint."""
     drive = packed.drives(np.array([time]))[0]
+    numbers = packed.numbers()
+    if numbers is None:
+        return _assembled(m, packed, drive, time)
+
+    def closed() -> tuple[np.ndarray, np.ndarray]:
+        q = _assembled(m, packed, drive, time)
+        return q.copy(), packed.system.angle_offset.copy()  # the turns of welds are taken to suit the pose
+
+    key = (*numbers, tuple(packed.body_names), repr(m.starts), drive[:, 0].tobytes())
+    q, packed.system.angle_offset[:] = _CLOSED.get(key, closed)
+    return q.copy()
+
+
+def _assembled(m: Mechanism, packed: Packed, drive: np.ndarray, time: float) -> np.ndarray:
+    """The same, found anew; drive (motions + 1, 3) at ``time``."""
     best: tuple[float, np.ndarray] | None = None
     for attempt in range(ATTEMPTS):
         q = rough_pose(m, packed, drive, attempt)

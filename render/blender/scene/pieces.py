@@ -20,6 +20,8 @@ def build(scene: Any, pieces: list[PieceSpec], only_flat: dict[str, Colour] | No
 
     With ``only_flat`` just those pieces, in one flat colour.
     """
+    from mathutils import Matrix
+
     bodies: dict[str, Any] = {}
     paints: dict[SurfaceSpec, Any] = {}
     for piece in pieces:
@@ -33,7 +35,7 @@ def build(scene: Any, pieces: list[PieceSpec], only_flat: dict[str, Colour] | No
         solid.parent = bodies[carrier]
         if piece.turns_about is not None:
             x, y = piece.turns_about
-            solid.data.transform(((1, 0, 0, -x), (0, 1, 0, -y), (0, 0, 1, 0), (0, 0, 0, 1)))
+            solid.data.transform(Matrix.Translation((-x, -y, 0.0)))
         if only_flat is not None:
             paint = flat(only_flat[name], name)
         else:

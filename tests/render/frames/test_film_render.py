@@ -22,7 +22,7 @@ from render.film.inputs import read_film
 from render.frames import blend, film, frames, still
 from render.frames.store import FrameIndex, FrameStore, Timing
 from render.presets import PRESETS, Preset
-from shared.contract import write_motion
+from shared.contract import Rolling, read_parts, write_motion, write_parts
 from shared.contract.shot import Label, Shot, write_shot
 from shared.stage import jsonfile
 from shared.stage.paths import ROOT, Out
@@ -128,10 +128,16 @@ def test_blur_smears_what_moves(out_root: Path):
 
 @pytest.mark.parametrize("name", ["four_bar", "default"])
 def test_pins_are_within_a_pixel_of_where_the_solver_has_them(out_root: Path, name: str):
-    """Balls on the pins of the STL solids, through poses, timeline and camera, against the joints of data.json."""
+    """Balls on the pins of the STL solids, through poses, timeline and camera, against the joints of data.json.
+
+    One of them is a roller, which is placed by its own axis.
+    """
     shot = msgspec.structs.replace(four_bar_shot, trails=None) if name == "four_bar" else Shot()
     shot = msgspec.structs.replace(shot, seconds_per_turn=4.0, fps=30, labels=(), materials={})
     out = film_fixture.write(shot)
+    parts = read_parts(out.parts)
+    parts.bodies["coupler"].pieces["end"].rolls = Rolling(joint="C", x=0.12, y=0.0, radius=0.003, marks=1)
+    write_parts(out.parts, parts)
     seen = read_film(out)
     colours = {
         "crank/start": ("A", (1.0, 0.0, 0.0)),

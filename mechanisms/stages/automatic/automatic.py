@@ -18,8 +18,9 @@ from mechanisms.stages.automatic.assembly.marks import Wish, place, refuse_lette
 from mechanisms.stages.automatic.decided import decided
 from mechanisms.stages.automatic.gathered import gathered
 from mechanisms.stages.automatic.layout.extents import extents
-from mechanisms.stages.automatic.layout.features import Need
+from mechanisms.stages.automatic.layout.features import build
 from mechanisms.stages.automatic.layout.heights import Heights, heights
+from mechanisms.stages.automatic.layout.items import Need
 from mechanisms.stages.automatic.layout.layout import Layout, Springs
 from mechanisms.stages.automatic.layout.motion import poses_of, times_of
 from mechanisms.stages.automatic.layout.sizes import Sizes, of_pin, refuse_sizes, sizes
@@ -202,7 +203,7 @@ class Automatic:
         plan = Plan(self.layout, materials(self.m) | rods | self._materials)
         plan.reserve([*self.m.bodies, *rods, "base_plate"])
         for feature in self.layout.features:
-            feature.build(plan, self.heights)
+            build(feature, plan, self.heights)
         place(self._marks, plan)
         return plan
 

@@ -9,16 +9,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import mechanisms.stages.automatic.kinds  # noqa: F401  (enters them)
-from mechanisms.stages.automatic.layout.features import (
-    CONTACT_KINDS,
-    DRIVER_KINDS,
-    FORCE_KINDS,
-    KINDS,
-    Anchor,
-    Feature,
-    Need,
-)
-from mechanisms.stages.automatic.pins.rods import KIND as ROD
+from mechanisms.stages.automatic.layout.extents import ROD
+from mechanisms.stages.automatic.layout.features import CONTACT_KINDS, DRIVER_KINDS, FORCE_KINDS, KINDS
+from mechanisms.stages.automatic.layout.items import Anchor, Need
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.pins.stops import stops
 from shared.shapes.link import Eye
 from shared.stage.errors import UserError

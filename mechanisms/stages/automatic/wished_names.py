@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
-from mechanisms.stages.automatic.pins.rods import rods_of
+from mechanisms.stages.automatic.layout.extents import rods_of
 from shared.contract.materials import MATERIALS
 from shared.stage.errors import UserError
 from shared.stage.suggestions import did_you_mean

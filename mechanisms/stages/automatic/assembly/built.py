@@ -11,8 +11,9 @@ import cadquery as cq
 from mechanisms.stages.automatic.assembly.body_shape import PlacedEye, body_shape
 from mechanisms.stages.automatic.assembly.frame import base
 from mechanisms.stages.automatic.assembly.marks import marked
+from mechanisms.stages.automatic.assembly.rod_shape import rod_shape
 from mechanisms.stages.automatic.assembly.yoke_shape import yoke_shape
-from mechanisms.stages.automatic.pins.rods import rod_shape
+from mechanisms.stages.automatic.wheels.gear_solids import shape_of
 from shared.shapes.build import extruded
 from shared.shapes.link import Eye, with_eyes
 from shared.shapes.outline import circle
@@ -65,7 +66,7 @@ def _plate(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
 def _geared(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
     """The plate of a body with teeth: a wheel that carries its eyes, or a wheel and a plate round its eyes."""
     eyes, one = plan.eyes.get(body, []), plan.wheels[body]
-    wheel, holes = one.shape(thickness, [(x - one.x, y - one.y, eye) for x, y, eye in eyes])
+    wheel, holes = shape_of(one, thickness, [(x - one.x, y - one.y, eye) for x, y, eye in eyes])
     wheel = placed(wheel, one.x, one.y)
     for plate in plan.plates.get(body, []):
         wheel, holes = wheel.union(plate.shape), holes + plate.through_holes

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechanisms.stages.automatic.assembly.body_shape import EDGES, first_made
-from mechanisms.stages.automatic.layout.features import Anchor, Need
-from mechanisms.stages.automatic.layout.items import Item, Reach
+from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.planar import Rounded, convex_hull
 from shared.shapes.build import eased, extruded
 

@@ -6,19 +6,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechanisms.stages.automatic.cams.cams import SHOE, Cam
+from mechanisms.stages.automatic.layout.features import build
 from mechanisms.stages.automatic.slides.slot_solids import slot_pin
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded
 from shared.shapes.cam import cam_disc
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.cams.cams import Cam
     from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
-SHOE = 6.0
-"""Half of the height of a shoe behind its face (rmm)."""
 
 
+@build.register(Cam)
 def cam_solids(cam: Cam, plan: Plan, heights: Heights) -> None:
     """The disc becomes its body's plate; roller or shoe move with the follower, at the height of the disc."""
     x, y = cam.centre

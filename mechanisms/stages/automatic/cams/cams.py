@@ -1,7 +1,7 @@
 """Cams: the disc has the computed profile; a roller on a pin runs on it, or a shoe with a flat face.
 
 Disc and roller roll on each other by design. They are made with a clearance, so that they are two things that never
-touch: :data:`CLEAR`.
+touch: :data:`sizes.CLEAR`.
 """
 
 from __future__ import annotations
@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.cams.cam_solids import SHOE, cam_solids
 from mechanisms.stages.automatic.cams.own_plates import refuse_ground
 from mechanisms.stages.automatic.layout.extents import Extent, extent
-from mechanisms.stages.automatic.layout.features import Anchor, Feature, Need, kind
-from mechanisms.stages.automatic.layout.items import Item, Reach
+from mechanisms.stages.automatic.layout.features import kind
+from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.planar import Rounded, around, disc
 from mechanisms.stages.automatic.layout.profiles import curve_path, on_body
+from mechanisms.stages.automatic.layout.sizes import CLEAR
 from mechanisms.stages.automatic.slides.slots import Slot
 from shared.shapes.cam import evenly
 from shared.stage.errors import UserError
@@ -29,13 +30,11 @@ if TYPE_CHECKING:
     from mbsd.cams import CamProfile
     from mbsd.force import Force
     from mbsd.joint import Joint
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
 
-CLEAR = 0.6
-"""Between cam and roller or face, in running fits."""
+SHOE = 6.0
+"""Half of the height of a shoe behind its face (rmm)."""
 HULL = 60
 """Points of a cam's outline in the plane."""
 BASE, ROLLER = 15.0, 6.5
@@ -98,10 +97,6 @@ class Cam:
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """As a pin in a slot."""
         return self.pin.needs(levels, layout) if self.roller is not None else []
-
-    def build(self, plan: Plan, heights: Heights) -> None:
-        """Disc, and roller or shoe."""
-        cam_solids(self, plan, heights)
 
 
 @kind("cam_roller")

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.cams.geneva_solids import geneva_solids
 from mechanisms.stages.automatic.cams.own_plates import refuse_ground
 from mechanisms.stages.automatic.layout.extents import Extent, distance, extent
-from mechanisms.stages.automatic.layout.features import Anchor, Feature, Need, kind
-from mechanisms.stages.automatic.layout.items import Item, Reach
+from mechanisms.stages.automatic.layout.features import kind
+from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.planar import disc
 from mechanisms.stages.automatic.slides.slots import Slot
 from shared.shapes.geneva import Geneva
@@ -21,10 +21,8 @@ from shared.shapes.geneva import Geneva
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
     from mbsd.joint import Joint
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
 
 WALL = 4.0
 """Of the wheel's tips beside the slots (rmm), at least."""
@@ -70,10 +68,6 @@ class GenevaDrive:
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """As a pin in a slot."""
         return self.pin.needs(levels, layout)
-
-    def build(self, plan: Plan, heights: Heights) -> None:
-        """Wheel, locking disc and pin."""
-        geneva_solids(self, plan, heights)
 
     def _ends(self) -> list[tuple[str, tuple[float, float, float]]]:
         return [(self.crank, self.crank_at), (self.wheel, self.wheel_at)]

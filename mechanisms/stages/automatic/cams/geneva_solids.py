@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from mechanisms.stages.automatic.cams.geneva import GenevaDrive
+from mechanisms.stages.automatic.layout.features import build
 from mechanisms.stages.automatic.slides.slot_solids import slot_pin
 from shared.shapes.build import bore, extruded
 from shared.shapes.outline import circle
 from shared.shapes.solid import placed
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.cams.geneva import GenevaDrive
     from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
@@ -21,6 +22,7 @@ COLLAR = 2.5
 """Wall of the collar that carries the locking disc."""
 
 
+@build.register(GenevaDrive)
 def geneva_solids(drive: GenevaDrive, plan: Plan, heights: Heights) -> None:
     """The wheel becomes its body's plate; all else moves with the crank."""
     fit, shape = plan.layout.sizes.pivot.fit, drive.shape

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
 LINK, STUD = 22.0, 18.0
 """Least distances of two pins of one body, and of a spring's stud and a pin or stud beside it (rmm)."""
-PINNED = ("revolute", "distance")
+ROD = "distance"
+"""The kind of joint that is a rod: like a body here, though it has no mass and no pose of its own in the model."""
+PINNED = ("revolute", ROD)
 """Kinds of joints with a pin on either body."""
 STRETCHING = ("spring", "spring_law", "curve_of_length", "actuator", "gas")
 """Kinds of forces that act along the line of two points, or along an axis on which both may be."""
@@ -122,3 +124,13 @@ def distance(joint: Joint, solution: Solution) -> float:
     """Of a joint's two markers at the start (m)."""
     first, second = (_swept(solution, k.body.name, np.array([[k.x, k.y]]))[0] for k in (joint.i, joint.j))
     return float(np.hypot(*(second - first)))
+
+
+def rods_of(m: Mechanism, left_out: Collection[str] = ()) -> dict[str, Joint]:
+    """By name, which is that of the joint, but for joints whose name a body has; without those that lack an end."""
+    found: dict[str, Joint] = {}
+    for name, joint in m.joints.items():
+        rod = f"rod_{name}" if name in m.bodies else name
+        if joint.kind.name == ROD and rod not in left_out and not any(body in left_out for body in joint.bodies):
+            found[rod] = joint
+    return found

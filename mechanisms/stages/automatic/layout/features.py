@@ -2,56 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from collections.abc import Callable, Sequence
+from functools import singledispatch
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
     from mbsd.force import Force
     from mbsd.joint import Joint
     from mechanisms.stages.automatic.layout.heights import Heights
-    from mechanisms.stages.automatic.layout.items import Item, Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.layout import Feature, Layout
     from mechanisms.stages.automatic.layout.plan import Plan
-
-
-@dataclass(frozen=True)
-class Anchor:
-    """A place (rmm, body frame) that the outline of ``body`` goes round with ``radius``."""
-
-    body: str
-    x: float
-    y: float
-    radius: float
-
-
-@dataclass(frozen=True)
-class Need:
-    """The gap above layer ``gap`` (-1: above the base) is at least ``height`` rmm."""
-
-    gap: int
-    height: float
-
-
-class Feature(Protocol):
-    """One joint, or several that are one thing such as links on a common pin."""
-
-    def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """Where outlines of bodies must reach."""
-        ...
-
-    def items(self, layout: Layout) -> Iterable[Item]:
-        """What takes room besides the bodies' own plates."""
-        ...
-
-    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """How high gaps must be, once the layers are known."""
-        ...
-
-    def build(self, plan: Plan, heights: Heights) -> None:
-        """Give eyes to the bodies and solids to the plan."""
-        ...
 
 
 type Gather[Thing] = Callable[[Mechanism, list[Thing], Layout], Sequence[Feature]]
@@ -67,6 +28,12 @@ CONTACT_KINDS: dict[str, Gather[Joint]] = {}
 
 DRIVER_KINDS: dict[str, Gather[Joint]] = {}
 """By the name of a driver's kind. A driver whose kind is not here needs no part: it is what turns a pin, or pushes."""
+
+
+@singledispatch
+def build(feature: Any, plan: Plan, heights: Heights) -> None:
+    """Give eyes to the bodies and solids to the plan: as a file of solids has registered, else the feature itself."""
+    feature.build(plan, heights)
 
 
 def kind(name: str) -> Callable[[Gather[Joint]], Gather[Joint]]:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from mechanisms.stages.automatic.layout.features import Need
-from mechanisms.stages.automatic.layout.items import Levels
+from mechanisms.stages.automatic.layout.items import Levels, Need
 
 ROOF = 12.0
 """From the highest layer to bridges above it (rmm): room for heads of pins, weights and the like."""

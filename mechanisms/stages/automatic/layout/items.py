@@ -24,6 +24,24 @@ to its upper one (None: it goes up through all).
 
 
 @dataclass(frozen=True)
+class Anchor:
+    """A place (rmm, body frame) that the outline of ``body`` goes round with ``radius``."""
+
+    body: str
+    x: float
+    y: float
+    radius: float
+
+
+@dataclass(frozen=True)
+class Need:
+    """The gap above layer ``gap`` (-1: above the base) is at least ``height`` rmm."""
+
+    gap: int
+    height: float
+
+
+@dataclass(frozen=True)
 class Reach:
     """From the lowest layer of ``bodies`` plus ``low`` half layers to the highest plus ``high``.
 

@@ -5,25 +5,22 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from mechanisms.stages.automatic.layout.extents import rods_of
 from mechanisms.stages.automatic.layout.items import PIVOT, Item, Reach, spans_meet
 from mechanisms.stages.automatic.layout.layers import Problem
 from mechanisms.stages.automatic.layout.planar import Rounded, around, core_gaps, least_gap, placed
-from mechanisms.stages.automatic.pins.rods import rods_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from mbsd import Marker, Mechanism
     from mbsd.joint import Joint
-    from mechanisms.stages.automatic.layout.features import Anchor, Feature
-    from mechanisms.stages.automatic.layout.items import Levels
+    from mechanisms.stages.automatic.layout.items import Anchor, Levels, Need
     from mechanisms.stages.automatic.layout.sizes import Sizes
-    from mechanisms.stages.automatic.rolling.rounds import Round
-    from mechanisms.stages.automatic.wheels.wheels import Wheel
 
 
 @dataclass(frozen=True)
@@ -37,6 +34,36 @@ class Springs:
     """Names of the others, once features are gathered."""
 
 
+class Feature(Protocol):
+    """One joint, or several that are one thing such as links on a common pin."""
+
+    def anchors(self, layout: Layout) -> Iterable[Anchor]:
+        """Where outlines of bodies must reach."""
+        ...
+
+    def items(self, layout: Layout) -> Iterable[Item]:
+        """What takes room besides the bodies' own plates."""
+        ...
+
+    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
+        """How high gaps must be, once the layers are known."""
+        ...
+
+
+class Carrier(Protocol):
+    """A wheel, as far as the outline of its body and its plate ask."""
+
+    x: float
+    y: float
+    ring: bool
+    shares: bool
+
+    @property
+    def root(self) -> float:
+        """Radius where its teeth begin (rmm)."""
+        ...
+
+
 @dataclass(eq=False)
 class Layout:
     """A mechanism in reference millimetres: poses over the motion, features, outlines and what takes room."""
@@ -47,7 +74,7 @@ class Layout:
     """By body, (T, 3): x, y (rmm) and theta (rad)."""
     times: np.ndarray
     springs: Springs = field(default_factory=lambda: Springs())
-    wheels: dict[str, list[Wheel]] = field(default_factory=dict)
+    wheels: dict[str, list[Carrier]] = field(default_factory=dict)
     """By body; set before outlines are asked for."""
     extra: list[str] = field(default_factory=list)
     """Layers that are no body's: wheels on ground, further wheels of a body, racks."""
@@ -60,7 +87,7 @@ class Layout:
     """Pairs of bodies that may touch by design; a feature adds those of its own when it is gathered."""
     pressing: set[frozenset[str]] = field(default_factory=set)
     """Such pairs whose contact yields: the order of layers keeps all else of them apart."""
-    rounds: dict[tuple[str, float, float], Round] = field(default_factory=dict)
+    rounds: dict[tuple[str, float, float], Feature] = field(default_factory=dict)
     """By body and place: balls, wheels and discs, which several contacts may share."""
 
     def place(self, marker: Marker) -> tuple[float, float]:

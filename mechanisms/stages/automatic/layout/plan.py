@@ -12,8 +12,7 @@ from shared.shapes.solid import Solid
 if TYPE_CHECKING:
     import cadquery as cq
 
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.wheels.wheels import Wheel
+    from mechanisms.stages.automatic.layout.layout import Carrier, Layout
     from shared.shapes.outline import Circle
 
 
@@ -64,7 +63,7 @@ class Plan:
     feet: list[Foot] = field(default_factory=list)
     solids: dict[str, list[Solid]] = field(default_factory=dict)
     cuts: dict[str, list[tuple[cq.Workplane, int]]] = field(default_factory=dict)
-    wheels: dict[str, Wheel] = field(default_factory=dict)
+    wheels: dict[str, Carrier] = field(default_factory=dict)
     """By body: a wheel that is its plate, or a part of it."""
     slots: dict[str, list[list[tuple[float, float]]]] = field(default_factory=dict)
     """By body: middles of the two ends of each of its slots; a wall is round them."""

@@ -60,6 +60,8 @@ COARSEST = 0.13
 """Tolerance of meshes, at most so much of the clearance of pins."""
 THINNEST = 0.5
 """Of the pins that are tried, in pins of the wished size."""
+CLEAR = 0.6
+"""Between what touches by design, such as a cam and its roller, or stops, in running fits."""
 
 
 @dataclass(frozen=True)

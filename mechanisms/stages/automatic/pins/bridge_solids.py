@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mechanisms.stages.automatic.layout.features import build
+from mechanisms.stages.automatic.pins.bridges import BEAM, Bridge
 from mechanisms.stages.automatic.pins.pin_solids import FOOT, TOP, run, standing
 from shared.shapes import outline
 from shared.shapes.base import column
@@ -14,16 +16,14 @@ from shared.shapes.solid import placed
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
-    from mechanisms.stages.automatic.pins.bridges import Bridge
     from mechanisms.stages.automatic.pins.pins import Pin
 
-BEAM, BEAM_HEIGHT = 26.0, 11.0
-"""Width and height of a beam."""
-POST = FOOT
+BEAM_HEIGHT = 11.0
 DOWEL = 24.0
 """Length of the pins that hold a beam on its posts."""
 
 
+@build.register(Bridge)
 def bridge_solids(bridge: Bridge, plan: Plan, heights: Heights) -> None:
     """All of a bridge, and what hangs from it."""
     sizes = plan.layout.sizes

@@ -13,19 +13,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.features import Anchor, Feature, Need
+from mechanisms.stages.automatic.layout.items import Anchor, Need
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.planar import Rounded, core_gaps, placed
-from mechanisms.stages.automatic.pins.bridge_solids import BEAM, POST, bridge_solids
+from mechanisms.stages.automatic.pins.pin_solids import FOOT
 from mechanisms.stages.automatic.pins.pins import Pin
-from mechanisms.stages.automatic.pins.studs import Stud
+from mechanisms.stages.automatic.pins.stretching import Stud
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Item, Levels
     from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
 
+BEAM, POST = 26.0, FOOT
+"""Width of a beam, and diameter of a post (rmm)."""
 WAYS = 24
 """Directions that are tried for a beam, over half a turn."""
 STEP = 4.0
@@ -68,10 +69,6 @@ class Bridge:
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """Nothing."""
         return []
-
-    def build(self, plan: Plan, heights: Heights) -> None:
-        """Posts, beam and the shafts' upper ends."""
-        bridge_solids(self, plan, heights)
 
 
 def may_hang(layout: Layout) -> frozenset[str]:

@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.features import Anchor, Feature, Need
-from mechanisms.stages.automatic.layout.items import Item, Reach
+from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.planar import disc
-from mechanisms.stages.automatic.pins.studs import Stud
+from mechanisms.stages.automatic.pins.stretching import Stud
 from shared.contract.materials import MATERIALS
 from shared.shapes.build import eased, extruded
 from shared.shapes.outline import circle

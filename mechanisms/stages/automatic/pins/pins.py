@@ -12,20 +12,18 @@ from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from mechanisms.stages.automatic.layout.features import Anchor, Feature, Need, kind
-from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Item, PinReach, PivotReach
+from mechanisms.stages.automatic.layout.extents import ROD
+from mechanisms.stages.automatic.layout.features import kind
+from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Anchor, Item, Need, PinReach, PivotReach
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.planar import disc
-from mechanisms.stages.automatic.pins.pin_solids import ground_pin, hanging_pin, moving_pin
-from mechanisms.stages.automatic.pins.rods import KIND as ROD
 from mechanisms.stages.automatic.pins.rods import ends as rod_ends
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
     from mbsd.joint import Joint
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
 
 SAME = 0.02
 """Places on a body that are nearer than this (rmm) are one."""
@@ -104,18 +102,6 @@ class Pin:
             yield Need(top, sizes.clip_room if self.on_ground else sizes.end_room)
         if self.on_ground and not hangs and stack[0] == 0:
             yield Need(BASE, sizes.pedestal + pivot.washer_room + running)
-
-    def build(self, plan: Plan, heights: Heights) -> None:
-        """Eyes and hardware."""
-        stack = sorted(self.movers, key=lambda body: heights.bottom(body))
-        if self.on_ground and heights.levels[self.choice] == 1:
-            return  # its bridge builds it
-        if self.on_ground:
-            ground_pin(self, stack, plan, heights)
-        elif heights.levels[self.choice] == 1:
-            hanging_pin(self, stack, plan, heights)
-        else:
-            moving_pin(self, stack, plan, heights)
 
 
 @kind("revolute")

@@ -11,127 +11,34 @@ barrel is thicker than a layer, so it takes a part of the gaps beside its own.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechanisms.stages.automatic.layout.extents import LINEAR, ROPE, stretching
-from mechanisms.stages.automatic.layout.features import Feature, Need, contact_kind, driver_kind, force_kind
-from mechanisms.stages.automatic.layout.items import Item, Reach
-from mechanisms.stages.automatic.layout.planar import Rounded
-from mechanisms.stages.automatic.pins.stud_solids import BALL
-from mechanisms.stages.automatic.pins.studs import Stud, studs
+from mechanisms.stages.automatic.layout.features import contact_kind, driver_kind, force_kind
+from mechanisms.stages.automatic.layout.layout import Feature
+from mechanisms.stages.automatic.pins.pins import SAME, Pin
+from mechanisms.stages.automatic.pins.stretching import BALL, Stretching, Stud
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
     from mbsd.force import Force
     from mbsd.joint import Joint
-    from mechanisms.stages.automatic.layout.features import Anchor
-    from mechanisms.stages.automatic.layout.heights import Heights
-    from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
 
 RADIUS, BROAD = 9.0, 0.17
 """Of a coil's middle line: at most (rmm), and at most as a part of its least length."""
 WIRE, CYLINDER = 0.2, 0.6
 """Radius of the wire, and of a cylinder, in radii of a coil."""
-HOOK = 0.1
-"""Part of the way at either end where there is no barrel yet."""
 ASIDE = 0.05
 """How far a point may leave the axis along which gas or an actuator pushes it (rmm)."""
 CORD = 1.5
 """Radius of a rope (rmm)."""
 LEAST = 4.0
 """Lengths of the balls at its ends that what stretches has at least; what gets shorter has no studs."""
-
-
-@dataclass(frozen=True, eq=False)
-class Stretching:
-    """One spring, damper or actuator: its ends (body, x, y in its frame) and their ways in the world, in rmm."""
-
-    force: str
-    radius: float
-    """Of the coil that the film draws, or from which it draws a cylinder."""
-    outer: float
-    """Of all that it draws."""
-    ends: tuple[tuple[str, float, float], tuple[str, float, float]]
-    path: np.ndarray
-    """(T, 2, 2): both ends at every pose."""
-    sags: np.ndarray | None = None
-    """(T, 2): of a rope, from the middle between its ends to the corner of its tangents."""
-
-    @property
-    def layer(self) -> str:
-        """The name of its layer, and of what takes its room."""
-        return f"spring {self.force}"
-
-    @property
-    def names(self) -> tuple[str, str]:
-        """Of its barrel and of its whole length on the axis."""
-        return f"the spring {self.force}", f"the ends of spring {self.force}"
-
-    def z(self, heights: Heights) -> float:
-        """Height (rmm) of its axis: the middle of its layer."""
-        return heights.bottom(self.layer) + heights.thickness / 2
-
-    def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """None: the studs have them."""
-        return []
-
-    def items(self, layout: Layout) -> Iterable[Item]:
-        """Its barrel in its layer and both gaps beside it, and its whole length in its layer."""
-        barrel, ends = self.names
-        held = self._studs(layout)
-        own = {stud.what for stud in held} | {stud.pin.what for stud in held if stud.pin}
-        others = [f for f in layout.features if isinstance(f, Stretching) and f is not self]
-        first, last = self.path[:, :1], self.path[:, 1:]
-        inner = np.concatenate([first + HOOK * (last - first), last - HOOK * (last - first)], axis=1)
-        if self.sags is not None and self.sags.any():
-            inner = _corners(inner, (first + last) / 2 + self.sags[:, None])
-        layer, beside = Reach((self.layer,)), Reach((self.layer,), -1, 1)
-        studs_alone = frozenset(stud.what for stud in held)
-        yield Item(ends, self.layer, Rounded(self.path, BALL + 0.4), layer, source=self, meshes=studs_alone)
-        wide = Rounded(inner, self.outer)
-        meshes = frozenset(own | {one.names[0] for one in others})
-        yield Item(barrel, self.layer, wide, beside, source=self, meshes=meshes)
-        if others:
-            cores = frozenset(_core(one) for one in others)
-            yield Item(_core(self), self.layer, wide, layer, source=self, only=cores)
-
-    def _studs(self, layout: Layout) -> list[Stud]:
-        return [f for f in layout.features if isinstance(f, Stud) and any(one is self for one, _ in f.ends)]
-
-    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Room for its barrel, beside that of another and above a pin that its end stands on."""
-        sizes, level, over = layout.sizes, levels[self.layer], self.over(layout)
-        others = [f for f in layout.features if isinstance(f, Stretching) and f is not self]
-        pins = [max(levels[body] for body in stud.pin.movers) for stud in self._studs(layout) if stud.pin]
-        for gap, next_to in ((level - 1, level - 1), (level, level + 1)):
-            beside = [one.over(layout) for one in others if levels[one.layer] == next_to]
-            extra = max([0.0, *beside, *(sizes.end_room for top in pins if top == gap)])
-            if over + extra > 0:
-                yield Need(gap, over + sizes.pivot.fit.axial + extra)
-
-    def over(self, layout: Layout) -> float:
-        """How far it reaches beyond its layer, up and down (rmm)."""
-        return self.outer - layout.sizes.thickness / 2
-
-    def build(self, plan: Plan, heights: Heights) -> None:
-        """Nothing: the film draws it."""
-
-
-def _core(one: Stretching) -> str:
-    return f"{one.names[0]} in its layer"
-
-
-def _corners(ends: np.ndarray, corner: np.ndarray) -> np.ndarray:
-    """(T, 3, 2) triangles, counter-clockwise, of two ends (T, 2, 2) and a corner (T, 1, 2)."""
-    way, off = ends[:, 1] - ends[:, 0], corner[:, 0] - ends[:, 0]
-    left = way[:, 0] * off[:, 1] - way[:, 1] * off[:, 0] >= 0
-    return np.concatenate([np.where(left[:, None, None], ends, ends[:, ::-1]), corner], axis=1)
 
 
 def _sags(path: np.ndarray, length: float, down: tuple[float, float]) -> np.ndarray:
@@ -213,4 +120,22 @@ def _all_at(first: Force | Joint, m: Mechanism, layout: Layout) -> list[Feature]
     for one in found:
         layout.extra.append(one.layer)
         layout.poses[one.layer] = np.zeros((len(layout.times), 3))
-    return [*studs(found, layout), *found]
+    return [*_studs(found, layout), *found]
+
+
+def _studs(found: Sequence[Stretching], layout: Layout) -> list[Feature]:
+    """Ends that share a place of a body, or a pin, share a stud."""
+    pins = [feature for feature in layout.features if isinstance(feature, Pin)]
+    places: list[tuple[str, float, float, Pin | None, list[tuple[Stretching, int]]]] = []
+    for one in found:
+        for k, (body, x, y) in enumerate(one.ends):
+            pin = next((p for p in pins if body in p.places and math.dist(p.places[body], (x, y)) < SAME), None)
+            if pin is not None:
+                body, (x, y) = pin.home, pin.places[pin.home]
+            for place in places:
+                if place[0] == body and math.dist(place[1:3], (x, y)) < SAME:
+                    place[4].append((one, k))
+                    break
+            else:
+                places.append((body, x, y, pin, [(one, k)]))
+    return [Stud(body, x, y, tuple(ends), pin) for body, x, y, pin, ends in places]

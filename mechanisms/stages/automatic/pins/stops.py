@@ -17,12 +17,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.cams.cams import CLEAR
 from mechanisms.stages.automatic.layout import limits
-from mechanisms.stages.automatic.layout.features import Anchor, Feature, Need
-from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Item, Reach
+from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.plan import Foot
 from mechanisms.stages.automatic.layout.planar import disc
+from mechanisms.stages.automatic.layout.sizes import CLEAR
 from shared.shapes.link import Eye
 from shared.shapes.pin import pin
 from shared.shapes.solid import placed

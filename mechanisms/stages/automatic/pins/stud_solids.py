@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mechanisms.stages.automatic.layout.features import build
 from mechanisms.stages.automatic.layout.plan import Foot
 from mechanisms.stages.automatic.pins.pin_solids import upper_end
+from mechanisms.stages.automatic.pins.stretching import BALL, EYE, FOOT, POST, Stud
 from shared.shapes.base import column
 from shared.shapes.link import Eye
 from shared.shapes.solid import Hold, Solid, placed
@@ -17,15 +19,21 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.pins.pins import Pin
-    from mechanisms.stages.automatic.pins.studs import Stud
 
-BALL = 3.8
-"""Radius of a stud's ball."""
 SHANK, COLLAR = 4.6, 4.6
 """Diameter of its shank, and radius of the collars on it."""
-EYE, POST, FOOT = 9.0, 5.5, 9.0
-"""Radii of a stud's eye, of the room for studs and posts, and of a post's foot."""
 COLLAR_HEIGHT = 1.4
+
+
+@build.register(Stud)
+def stud_solids(stud: Stud, plan: Plan, heights: Heights) -> None:
+    """A stud with a ball at the height of each end."""
+    if stud.pin is not None:
+        stud_on_pin(stud, stud.pin, plan, heights)
+    elif stud.body == "ground":
+        stud_on_post(stud, plan, heights)
+    else:
+        stud_in_plate(stud, plan, heights)
 
 
 def stud_in_plate(stud: Stud, plan: Plan, heights: Heights) -> None:

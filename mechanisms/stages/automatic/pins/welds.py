@@ -7,8 +7,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mechanisms.stages.automatic.layout.features import Anchor, Feature, Need, kind
-from mechanisms.stages.automatic.layout.items import BASE, Item, Reach
+from mechanisms.stages.automatic.layout.features import kind
+from mechanisms.stages.automatic.layout.items import BASE, Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.plan import Foot
 from mechanisms.stages.automatic.layout.planar import around
 from shared.shapes import outline

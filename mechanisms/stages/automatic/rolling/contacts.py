@@ -17,7 +17,8 @@ import numpy as np
 from mbsd.curves import Curve
 from mechanisms.stages.automatic.cams.cams import pushing_cam, pushing_extent
 from mechanisms.stages.automatic.layout.extents import Extent, extent
-from mechanisms.stages.automatic.layout.features import Feature, contact_kind, force_kind
+from mechanisms.stages.automatic.layout.features import contact_kind, force_kind
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.profiles import curve_path, distances, on_body, profile_path
 from mechanisms.stages.automatic.rolling.roads import along
 from mechanisms.stages.automatic.rolling.rounds import Look, Round, round_at

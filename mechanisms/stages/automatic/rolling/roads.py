@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 import cadquery as cq
 import numpy as np
 
-from mechanisms.stages.automatic.layout.features import Anchor, Need
-from mechanisms.stages.automatic.layout.items import Item, Reach
+from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.plan import Foot
 from mechanisms.stages.automatic.layout.planar import around
 from mechanisms.stages.automatic.layout.profiles import simplified

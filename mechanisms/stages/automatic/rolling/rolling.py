@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechanisms.stages.automatic.layout.extents import Extent, extent
-from mechanisms.stages.automatic.layout.features import Feature, kind
+from mechanisms.stages.automatic.layout.features import kind
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.profiles import curve_path, on_body
 from mechanisms.stages.automatic.rolling.roads import along
 from mechanisms.stages.automatic.rolling.rounds import round_at

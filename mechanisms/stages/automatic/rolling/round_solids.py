@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from mechanisms.stages.automatic.layout.features import build
+from mechanisms.stages.automatic.rolling.rounds import Round
 from shared.shapes.build import extruded
 from shared.shapes.outline import circle
 from shared.shapes.pin import washer
@@ -14,13 +16,18 @@ from shared.shapes.stud import ball as sphere
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
-    from mechanisms.stages.automatic.rolling.rounds import Round
 
 TYRE = 0.16
 """Of the wheel's radius; 5 rmm at most."""
 HOLES = 5
 WIDE = 9.0
 """A wheel with so much between hub and tyre (rmm), and with nothing but its axle on it, has round holes."""
+
+
+@build.register(Round)
+def round_solids(part: Round, plan: Plan, heights: Heights) -> None:
+    """As it looks."""
+    {"ball": ball, "wheel": tyred_wheel, "disc": plain_disc}[part.look](part, plan, heights)
 
 
 def tyred_wheel(wheel: Round, plan: Plan, heights: Heights) -> None:

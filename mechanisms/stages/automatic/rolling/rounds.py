@@ -8,19 +8,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, cast
 
-from mechanisms.stages.automatic.cams.cams import CLEAR
-from mechanisms.stages.automatic.layout.features import Anchor, Need
-from mechanisms.stages.automatic.layout.items import Item, Reach
+from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.planar import disc
-from mechanisms.stages.automatic.rolling.round_solids import ball, plain_disc, tyred_wheel
+from mechanisms.stages.automatic.layout.sizes import CLEAR
 
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
 
 type Look = Literal["ball", "wheel", "disc"]
 
@@ -76,10 +73,6 @@ class Round:
             yield Need(level - 1, beyond)
             yield Need(level, beyond)
 
-    def build(self, plan: Plan, heights: Heights) -> None:
-        """Its solids."""
-        {"ball": ball, "wheel": tyred_wheel, "disc": plain_disc}[self.look](self, plan, heights)
-
     def top(self, heights: Heights) -> float:
         """How high what it touches must reach (rmm)."""
         if self.look == "ball":
@@ -99,9 +92,9 @@ def round_at(
     if key not in layout.rounds:
         ends = [marker for joint in layout.m.joints.values() for marker in (joint.i, joint.j)]
         pinned = any(marker.body.name == body and math.dist(layout.place(marker), at) < 0.01 for marker in ends)
-        layout.rounds[key] = Round(name, body, at, radius, short, look, pinned)
-        return layout.rounds[key], True
-    there = layout.rounds[key]
+        new = layout.rounds[key] = Round(name, body, at, radius, short, look, pinned)
+        return new, True
+    there = cast(Round, layout.rounds[key])
     least = min(there.made, radius - short)
     there.radius = min(there.radius, radius)
     there.short = there.radius - least

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mechanisms.stages.automatic.layout.features import build
 from mechanisms.stages.automatic.layout.plan import Foot
+from mechanisms.stages.automatic.slides.crossings import CORE, TONGUE, TONGUE_DEPTH, WALL, Crossing, Ends
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded
 
@@ -13,20 +15,9 @@ if TYPE_CHECKING:
 
     from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
-    from mechanisms.stages.automatic.slides.crossings import Crossing, Ends
-
-TONGUE, TONGUE_DEPTH = 11.0, 6.5
-"""Width of a tongue, and how far it reaches down."""
-TONGUE_HALF = 22.0
-"""Half of its length: twice as long as the grooves that it passes are wide."""
-FLOOR = 3.5
-"""Of the plate below its grooves, at least."""
-WALL = 8.0
-"""Of the plate beside its grooves."""
-CORE = 30.0
-"""Radius of the plate about the crossing."""
 
 
+@build.register(Crossing)
 def crossed(crossing: Crossing, plan: Plan, heights: Heights) -> None:
     """A cross with a round middle, its grooves cut into it, and the tongues."""
     fit = plan.layout.sizes.pivot.fit

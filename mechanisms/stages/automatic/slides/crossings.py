@@ -14,27 +14,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.features import Anchor, Feature, Need
-from mechanisms.stages.automatic.layout.items import BASE, Item, Reach
+from mechanisms.stages.automatic.layout.items import BASE, Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.planar import Rounded, core_gaps, disc
-from mechanisms.stages.automatic.slides.crossing_solids import (
-    CORE,
-    FLOOR,
-    TONGUE,
-    TONGUE_DEPTH,
-    TONGUE_HALF,
-    WALL,
-    crossed,
-)
-from mechanisms.stages.automatic.slides.slide_solids import HALF_LENGTH, RAIL
+from mechanisms.stages.automatic.slides.slides import HALF_LENGTH, RAIL
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.slides.slides import Slide
 
+TONGUE, TONGUE_DEPTH = 11.0, 6.5
+"""Width of a tongue, and how far it reaches down."""
+TONGUE_HALF = 22.0
+"""Half of its length: twice as long as the grooves that it passes are wide."""
+FLOOR = 3.5
+"""Of the plate below its grooves, at least."""
+WALL = 8.0
+"""Of the plate beside its grooves."""
+CORE = 30.0
+"""Radius of the plate about the crossing."""
 SMALLEST = math.radians(30.0)
 """Grooves at a smaller angle would leave a tongue without a guide where they cross."""
 
@@ -103,10 +102,6 @@ class Crossing:
             yield Need(BASE, FLOOR + TONGUE_DEPTH + 2 * layout.sizes.pivot.fit.axial)
         else:
             yield Need(levels[self.blocks[0]] - 1, TONGUE_DEPTH + 2 * layout.sizes.pivot.fit.axial)
-
-    def build(self, plan: Plan, heights: Heights) -> None:
-        """Plate and tongues."""
-        crossed(self, plan, heights)
 
 
 def with_crossings(slides: Sequence[Slide], layout: Layout) -> list[Feature]:

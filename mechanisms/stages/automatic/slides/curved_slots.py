@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechanisms.stages.automatic.layout.extents import Extent, extent
-from mechanisms.stages.automatic.layout.features import Anchor, Feature, Need, kind
-from mechanisms.stages.automatic.layout.items import Item, Reach
+from mechanisms.stages.automatic.layout.features import build, kind
+from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.planar import convex_hull, disc
 from mechanisms.stages.automatic.layout.profiles import curve_path, on_body
-from mechanisms.stages.automatic.slides.slot_solids import channelled
+from mechanisms.stages.automatic.slides.slot_solids import channelled, slotted
 from mechanisms.stages.automatic.slides.slots import Slot, entered
 from shared.shapes.band import normals, sharpest
 from shared.stage.errors import UserError
@@ -77,12 +78,11 @@ class CurvedSlot(Slot):
         """As a straight slot."""
         return Slot.needs(self, levels, layout)
 
-    def build(self, plan: Plan, heights: Heights) -> None:
-        """Slot or groove, pin and roller."""
-        if self.closed:
-            channelled(self, plan, heights)
-        else:
-            Slot.build(self, plan, heights)
+
+@build.register(CurvedSlot)
+def curved_slot_solids(slot: CurvedSlot, plan: Plan, heights: Heights) -> None:
+    """Slot or groove, pin and roller."""
+    (channelled if slot.closed else slotted)(slot, plan, heights)
 
 
 @kind("point_on_curve")

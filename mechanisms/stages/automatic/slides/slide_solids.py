@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 import cadquery as cq
 
+from mechanisms.stages.automatic.layout.features import build
 from mechanisms.stages.automatic.layout.plan import Foot
+from mechanisms.stages.automatic.slides.slides import BEAM, GIB, RAIL, RAIL_HEIGHT, STOP, Slide
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded
 from shared.shapes.solid import placed
@@ -15,22 +17,20 @@ from shared.shapes.solid import placed
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
-    from mechanisms.stages.automatic.slides.slides import Slide
 
-RAIL = 12.0
-"""Width of a rail."""
-RAIL_HEIGHT = 6.0
-"""Least height of a rail that is screwed to a plate."""
-BEAM = 8.0
-"""Height of a rail that stands on posts."""
-HALF_LENGTH = 23.0
-"""Of a block."""
-GIB = (28.0, 4.4)
-"""Length and width of a gib."""
-STOP = 8.0
-"""Length of a stop beside the rail."""
 DEPTH = 4.8
 """How far gibs reach down beside the rail."""
+
+
+@build.register(Slide)
+def slide_solids(slide: Slide, plan: Plan, heights: Heights) -> None:
+    """Rail, gibs and what carries them."""
+    if slide.rail == "ground":
+        fixed_rail(slide, plan, heights)
+    elif slide.block == "ground":
+        fixed_block(slide, plan, heights)
+    else:
+        moving_rail(slide, plan, heights)
 
 
 def fixed_rail(slide: Slide, plan: Plan, heights: Heights) -> None:

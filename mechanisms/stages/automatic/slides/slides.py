@@ -15,34 +15,27 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.cams.cams import CLEAR
 from mechanisms.stages.automatic.layout import limits
-from mechanisms.stages.automatic.layout.features import Anchor, Feature, Need, kind
-from mechanisms.stages.automatic.layout.items import Item, Reach
+from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
-from mechanisms.stages.automatic.slides.crossings import with_crossings
-from mechanisms.stages.automatic.slides.slide_solids import (
-    BEAM,
-    GIB,
-    HALF_LENGTH,
-    RAIL,
-    RAIL_HEIGHT,
-    STOP,
-    fixed_block,
-    fixed_rail,
-    moving_rail,
-)
+from mechanisms.stages.automatic.layout.sizes import CLEAR
 
 if TYPE_CHECKING:
-    from mbsd import Mechanism
-    from mbsd.joint import Joint
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
 
-FAR = 4.0
-"""Stops farther beyond the travel than it is long, or than this (half lengths of a block), are not made."""
+RAIL = 12.0
+"""Width of a rail."""
+RAIL_HEIGHT = 6.0
+"""Least height of a rail that is screwed to a plate."""
+BEAM = 8.0
+"""Height of a rail that stands on posts."""
+HALF_LENGTH = 23.0
+"""Of a block."""
+GIB = (28.0, 4.4)
+"""Length and width of a gib."""
+STOP = 8.0
+"""Length of a stop beside the rail."""
 WALL = 3.0
 """Of a rail's plate beside the rail (rmm)."""
 
@@ -136,32 +129,6 @@ class Slide:
             low = min(levels[self.rail], levels[self.block])
             if abs(levels[self.rail] - levels[self.block]) == 1:
                 yield Need(low, RAIL_HEIGHT + 2 * axial)
-
-    def build(self, plan: Plan, heights: Heights) -> None:
-        """Rail, gibs and what carries them."""
-        if self.rail == "ground":
-            fixed_rail(self, plan, heights)
-        elif self.block == "ground":
-            fixed_block(self, plan, heights)
-        else:
-            moving_rail(self, plan, heights)
-
-
-@kind("prismatic")
-def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """One for each joint, but one for those on ground that cross."""
-    found: list[Slide] = []
-    for joint in joints:
-        rail_at, block_at = (*layout.place(joint.i), joint.i.angle), (*layout.place(joint.j), joint.j.angle)
-        along = layout.seen(joint.j.body.name, block_at[:2], joint.i.body.name) - np.array(rail_at[:2])
-        place = along @ np.array([math.cos(joint.i.angle), math.sin(joint.i.angle)])
-        travel = float(place.min()), float(place.max())
-        lower, upper = (None if end is None else layout.sizes.of_metres(end) for end in limits.sliding(joint, m))
-        ends = limits.reached((lower, upper), travel, FAR * HALF_LENGTH)
-        given = [end for end in ends if end is not None]
-        travel = min(travel[0], *given, travel[1]), max(travel[1], *given, travel[0])
-        found.append(Slide(joint.name, joint.i.body.name, joint.j.body.name, rail_at, block_at, travel, ends))
-    return with_crossings(found, layout)
 
 
 def _along(at: tuple[float, float, float], distance: float) -> tuple[float, float]:

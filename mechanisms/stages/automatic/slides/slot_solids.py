@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechanisms.stages.automatic.layout.features import build
 from mechanisms.stages.automatic.layout.plan import Foot
 from mechanisms.stages.automatic.layout.planar import convex_hull
 from mechanisms.stages.automatic.pins.pin_solids import standing
+from mechanisms.stages.automatic.slides.slots import POST, Slot
 from shared.shapes import outline
 from shared.shapes.band import band, loop
 from shared.shapes.build import eased, extruded
@@ -22,7 +24,6 @@ if TYPE_CHECKING:
 
     from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
-    from mechanisms.stages.automatic.slides.slots import Slot
 
 GROOVES, GROOVE, GROOVE_DEPTH = 6, 2.6, 1.6
 """Grooves for oil in the face of a roller, by which one sees it turn: how many, width and depth (rmm)."""
@@ -38,10 +39,9 @@ PIECES = 24
 """About so many straight pieces stand for a curved slot."""
 CHANNEL = 4.6
 """Depth of a slot that does not go through (rmm)."""
-POST = 10.0
-"""Diameter of the posts of a plate on ground (rmm)."""
 
 
+@build.register(Slot)
 def slotted(slot: Slot, plan: Plan, heights: Heights) -> None:
     """Cut the slot, and put a pin with a roller through it: from below with its head on top, from above hanging."""
     sizes = plan.layout.sizes

@@ -14,21 +14,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechanisms.stages.automatic.layout import limits
-from mechanisms.stages.automatic.layout.features import Anchor, Feature, Need, kind
-from mechanisms.stages.automatic.layout.items import BASE, Item, Reach
+from mechanisms.stages.automatic.layout.features import kind
+from mechanisms.stages.automatic.layout.items import BASE, Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.planar import around, disc
-from mechanisms.stages.automatic.slides.slot_solids import POST, slotted
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
     from mbsd.joint import Joint
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
 
 FAR = 6.0
 """Limits farther beyond the travel than it is long, or than this (diameters of a roller), end no slot."""
+POST = 10.0
+"""Diameter of the posts of a plate on ground (rmm)."""
 WALL = 7.0
 """Of the plate beside the slot (rmm)."""
 
@@ -107,10 +107,6 @@ class Slot:
             yield Need(low, pivot.washer_room + fit.axial)
         if layout.is_covered(self, 2 * (high + 1), levels):
             yield Need(high, layout.sizes.head.height + 2 * fit.axial)
-
-    def build(self, plan: Plan, heights: Heights) -> None:
-        """Slot, pin and roller."""
-        slotted(self, plan, heights)
 
 
 @kind("pin_in_slot")

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from functools import singledispatch
 from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 
+from mechanisms.stages.automatic.layout.features import build
 from mechanisms.stages.automatic.layout.plan import Foot
+from mechanisms.stages.automatic.wheels.wheels import TUBE, Wheel
 from shared.shapes.build import extruded, turned
 from shared.shapes.involute import toothed, wire
 from shared.shapes.link import Eye
@@ -17,8 +20,8 @@ from shared.shapes.solid import placed
 
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.heights import Heights
+    from mechanisms.stages.automatic.layout.layout import Carrier
     from mechanisms.stages.automatic.layout.plan import Plan
-    from mechanisms.stages.automatic.wheels.wheels import Wheel
 
 WEB = 2.0
 """Depth to which a web is milled out on both faces."""
@@ -33,6 +36,7 @@ BESIDE = 36.0
 """How far inside of a cup's rim the base plate counts it as standing."""
 
 
+@build.register(Wheel)
 def build_wheel(wheel: Wheel, plan: Plan, heights: Heights) -> None:
     """Give the plan the wheel as its body's plate, on its body's plate, or as a piece of the ground."""
     if wheel.body == "ground":
@@ -48,7 +52,7 @@ def build_wheel(wheel: Wheel, plan: Plan, heights: Heights) -> None:
 def _on_ground(wheel: Wheel, plan: Plan, heights: Heights) -> None:
     thickness, seat = heights.thickness, plan.layout.sizes.pivot.fit.seat
     z = heights.bottom(wheel.layer)
-    shape, holes = wheel.shape(thickness, [])
+    shape, holes = shape_of(wheel, thickness, [])
     if not wheel.ring:
         bore = plan.layout.sizes.pivot.bushing + 1.0
         shape = shape.cut(extruded(circle(0, 0, bore / 2), thickness + 2, -1.0))
@@ -65,11 +69,9 @@ def _on_ground(wheel: Wheel, plan: Plan, heights: Heights) -> None:
 
 def _on_tube(wheel: Wheel, plan: Plan, heights: Heights) -> None:
     """A wheel in a layer of its own: one piece with the tube that reaches to its body's plate."""
-    from mechanisms.stages.automatic.wheels.wheels import TUBE
-
     inner, outer = TUBE
     thickness = heights.thickness
-    shape, _ = wheel.shape(thickness, [(0.0, 0.0, Eye(outer, 0.0))])
+    shape, _ = shape_of(wheel, thickness, [(0.0, 0.0, Eye(outer, 0.0))])
     low, high = _to_plate(wheel, plan, heights)
     z = heights.bottom(wheel.layer)
     if high > low:
@@ -82,7 +84,7 @@ def _on_tube(wheel: Wheel, plan: Plan, heights: Heights) -> None:
 def _cup(wheel: Wheel, plan: Plan, heights: Heights) -> None:
     """A ring that turns: rim and wall are a piece, the bottom is the body's plate."""
     thickness = heights.thickness
-    shape, holes = wheel.shape(thickness, [])
+    shape, holes = shape_of(wheel, thickness, [])
     low, high = _to_plate(wheel, plan, heights)
     z = heights.bottom(wheel.layer)
     if high > low:
@@ -117,6 +119,13 @@ def _to_plate(wheel: Wheel, plan: Plan, heights: Heights) -> tuple[float, float]
     return heights.top(wheel.layer), heights.bottom(wheel.body) - seat
 
 
+@singledispatch
+def shape_of(wheel: Carrier, thickness: float, eyes: list[tuple[float, float, Eye]]) -> tuple[cq.Workplane, int]:
+    """A wheel about the z axis from z = 0 up, with its eyes, and its number of through holes."""
+    raise TypeError(f"{type(wheel).__name__} has no shape")
+
+
+@shape_of.register(Wheel)
 def wheel_shape(wheel: Wheel, thickness: float, eyes: list[tuple[float, float, Eye]]) -> tuple[cq.Workplane, int]:
     """The wheel about the z axis from z = 0 up, with its eyes, and its number of through holes."""
     phase = wheel.phase or 0.0

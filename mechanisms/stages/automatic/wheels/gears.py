@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 from mbsd.teeth import with_radii
 from mechanisms.stages.automatic.layout.extents import Extent, extent
-from mechanisms.stages.automatic.layout.features import Feature, kind
+from mechanisms.stages.automatic.layout.features import kind
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.wheels import racks, wheels
 from mechanisms.stages.automatic.wheels.belts import BELTS, belts
 from mechanisms.stages.automatic.wheels.pulleys import Pulley
@@ -97,9 +98,11 @@ def settle(found: Sequence[Wheel], layout: Layout) -> None:
     """Enter the wheels; of each body the largest lies in its layer, unless a ring's bottom or, of pulleys, an arm does:
     a belt would run through that.
     """
+    by_body: dict[str, list[Wheel]] = {}
     for wheel in found:
-        layout.wheels.setdefault(wheel.body, []).append(wheel)
-    for here in layout.wheels.values():
+        by_body.setdefault(wheel.body, []).append(wheel)
+    for body, here in by_body.items():
+        layout.wheels[body] = [*here]
         outer = [wheel for wheel in here if not wheel.ring]
         largest = max(outer, key=lambda wheel: wheel.radius, default=None)
         for wheel in here:

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 import cadquery as cq
 import numpy as np
 
-from mechanisms.stages.automatic.wheels.gear_solids import with_hub
+from mechanisms.stages.automatic.layout.features import build
+from mechanisms.stages.automatic.wheels.gear_solids import build_wheel, shape_of, with_hub
+from mechanisms.stages.automatic.wheels.pulleys import BELT, Pulley
 from shared.shapes.build import extruded, turned
 from shared.shapes.involute import wire
 from shared.shapes.outline import circle
@@ -17,7 +19,6 @@ from shared.shapes.solid import Hold, Solid, placed
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
-    from mechanisms.stages.automatic.wheels.pulleys import Pulley
     from shared.shapes.link import Eye
 
 EDGE, FLOOR = 0.7, 1.3
@@ -28,16 +29,22 @@ SEAT = 5
 """Points of a sprocket's seat for a roller."""
 
 
+@shape_of.register(Pulley)
 def pulley_disc(pulley: Pulley, thickness: float, eyes: list[tuple[float, float, Eye]]) -> tuple[cq.Workplane, int]:
     """From z = 0 up, with its eyes, and its number of through holes."""
     shape = extruded(circle(0, 0, pulley.root), thickness)
     return with_hub(shape, pulley.root, thickness, eyes)
 
 
+@build.register(Pulley)
+def build_pulley(pulley: Pulley, plan: Plan, heights: Heights) -> None:
+    """Disc and rim."""
+    build_wheel(pulley, plan, heights)
+    build_rim(pulley, plan, heights)
+
+
 def build_rim(pulley: Pulley, plan: Plan, heights: Heights) -> None:
     """The rim about its disc."""
-    from mechanisms.stages.automatic.wheels.pulleys import BELT
-
     thickness, z = heights.thickness, heights.bottom(pulley.layer)
     inner = pulley.root + plan.layout.sizes.pivot.fit.seat
     middle, radius = z + thickness / 2, BELT

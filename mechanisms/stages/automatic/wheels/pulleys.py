@@ -13,20 +13,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.features import Anchor, Need
-from mechanisms.stages.automatic.layout.items import Item, Reach
+from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.planar import Rounded
-from mechanisms.stages.automatic.wheels.pulley_solids import build_rim, pulley_disc
 from mechanisms.stages.automatic.wheels.wheels import Wheel
 
 if TYPE_CHECKING:
-    import cadquery as cq
-
     from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
     from mechanisms.stages.automatic.layout.plan import Plan
-    from shared.shapes.link import Eye
 
 LEAST = 19.0
 """Least pitch radius of a pulley (rmm)."""
@@ -63,15 +58,6 @@ class Pulley(Wheel):
     def lip(self) -> float:
         """The rim's outer radius."""
         return self.radius + (self.tooth if self.teeth else 0.6 * BELT)
-
-    def shape(self, thickness: float, eyes: list[tuple[float, float, Eye]]) -> tuple[cq.Workplane, int]:
-        """The disc inside the rim."""
-        return pulley_disc(self, thickness, eyes)
-
-    def build(self, plan: Plan, heights: Heights) -> None:
-        """Disc and rim."""
-        super().build(plan, heights)
-        build_rim(self, plan, heights)
 
 
 @dataclass(frozen=True, eq=False)

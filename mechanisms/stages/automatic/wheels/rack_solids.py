@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from mechanisms.stages.automatic.layout.features import build
 from mechanisms.stages.automatic.layout.plan import Foot
+from mechanisms.stages.automatic.wheels.racks import BACK, STUD, Rack
 from shared.shapes.build import extruded
 from shared.shapes.involute import rack_outline, wire
 from shared.shapes.outline import circle
@@ -14,14 +16,9 @@ from shared.shapes.solid import placed
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
-    from mechanisms.stages.automatic.wheels.racks import Rack
-
-BACK = 11.0
-"""Height of the bar under its teeth."""
-STUD = 4.5
-"""Radius of a stud or post."""
 
 
+@build.register(Rack)
 def build_rack(rack: Rack, plan: Plan, heights: Heights) -> None:
     """A steel bar; in its body's layer it is part of the plate."""
     first, last = rack.teeth

@@ -13,22 +13,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.features import Anchor, Need
-from mechanisms.stages.automatic.layout.items import Item, Reach
+from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
-from mechanisms.stages.automatic.wheels.rack_solids import BACK, STUD, build_rack
 from shared.shapes.involute import DEDENDUM
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
     from mbsd.joint import Joint
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.wheels.wheels import Wheel
 
+BACK = 11.0
+"""Height of the bar under its teeth."""
+STUD = 4.5
+"""Radius of a stud or post."""
 LEAST = 24.0
 """Least pitch radius of a pinion (rmm): its pedestal stays clear of a slide under the rack's pitch line."""
 APART = 30.0
@@ -135,10 +135,6 @@ class Rack:
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """None."""
         return []
-
-    def build(self, plan: Plan, heights: Heights) -> None:
-        """The bar on its studs or posts."""
-        build_rack(self, plan, heights)
 
 
 def add_way(m: Mechanism, rack: Rack, pinion: Wheel, joint: Joint, layout: Layout) -> None:

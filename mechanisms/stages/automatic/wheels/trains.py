@@ -55,7 +55,7 @@ def _trains(toothed: Sequence[Toothed]) -> list[list[Toothed]]:
             if id(one) not in seen:
                 seen.add(id(one))
                 train.append(one)
-                waiting += one.mates
+                waiting += [mate for mate in one.mates if isinstance(mate, Wheel | Rack)]
         if train:
             found.append(train)
     return found

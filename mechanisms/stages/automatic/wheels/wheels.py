@@ -11,25 +11,17 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.features import Anchor, Need
-from mechanisms.stages.automatic.layout.items import Item, Reach
+from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
-from mechanisms.stages.automatic.wheels.gear_solids import build_wheel, wheel_shape
 from shared.shapes.involute import DEDENDUM
 
 if TYPE_CHECKING:
-    import cadquery as cq
-
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-    from mechanisms.stages.automatic.wheels.racks import Rack
-    from shared.shapes.link import Eye
 
 SECTORS = 36
 """Pieces of an annulus in the plane."""
@@ -39,6 +31,15 @@ TUBE = (10.2, 13.2)
 """Inner and outer radius of what carries a wheel in a layer of its own: inside is room for a pin's hardware."""
 LEAST, LEAST_ON_TUBE = 15.2, 18.0
 """Least pitch radii (rmm): a pin and its flanges, or a tube, stay inside of the teeth."""
+
+
+class Mate(Protocol):
+    """What meshes with a wheel: another one, or a rack."""
+
+    @property
+    def what(self) -> str:
+        """In messages."""
+        ...
 
 
 @dataclass(eq=False)
@@ -56,7 +57,7 @@ class Wheel:
     tip: float = 0.0
     play: float = 0.0
     phase: float | None = None
-    mates: list[Wheel | Rack] = field(default_factory=list)
+    mates: list[Mate] = field(default_factory=list)
     shares: bool = True
     """Whether it lies in its body's layer."""
 
@@ -129,11 +130,3 @@ class Wheel:
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """None."""
         return []
-
-    def shape(self, thickness: float, eyes: list[tuple[float, float, Eye]]) -> tuple[cq.Workplane, int]:
-        """The wheel about the z axis from z = 0 up, with its eyes, and its number of through holes."""
-        return wheel_shape(self, thickness, eyes)
-
-    def build(self, plan: Plan, heights: Heights) -> None:
-        """The wheel as its body's plate, on it, or as a piece that stands on ground."""
-        build_wheel(self, plan, heights)

@@ -1,0 +1,38 @@
+"""Prismatic joints by their slides; those on ground whose rails would cross are the grooves of one plate."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechanisms.stages.automatic.layout import limits
+from mechanisms.stages.automatic.layout.features import kind
+from mechanisms.stages.automatic.slides.crossings import with_crossings
+from mechanisms.stages.automatic.slides.slides import HALF_LENGTH, Slide
+
+if TYPE_CHECKING:
+    from mbsd import Mechanism
+    from mbsd.joint import Joint
+    from mechanisms.stages.automatic.layout.layout import Feature, Layout
+
+FAR = 4.0
+"""Stops farther beyond the travel than it is long, or than this (half lengths of a block), are not made."""
+
+
+@kind("prismatic")
+def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
+    """One for each joint, but one for those on ground that cross."""
+    found: list[Slide] = []
+    for joint in joints:
+        rail_at, block_at = (*layout.place(joint.i), joint.i.angle), (*layout.place(joint.j), joint.j.angle)
+        along = layout.seen(joint.j.body.name, block_at[:2], joint.i.body.name) - np.array(rail_at[:2])
+        place = along @ np.array([math.cos(joint.i.angle), math.sin(joint.i.angle)])
+        travel = float(place.min()), float(place.max())
+        lower, upper = (None if end is None else layout.sizes.of_metres(end) for end in limits.sliding(joint, m))
+        ends = limits.reached((lower, upper), travel, FAR * HALF_LENGTH)
+        given = [end for end in ends if end is not None]
+        travel = min(travel[0], *given, travel[1]), max(travel[1], *given, travel[0])
+        found.append(Slide(joint.name, joint.i.body.name, joint.j.body.name, rail_at, block_at, travel, ends))
+    return with_crossings(found, layout)

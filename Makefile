@@ -46,6 +46,8 @@ endif
 PYTHON := .venv/bin/python
 STAGE = $(PYTHON) -m mechanisms
 PICTURE = $(PYTHON) -m render
+# install compiles the kernels in the background; these want all of them, and nothing else running.
+ALL_KERNELS = @$(PYTHON) -m tools.compiling wait
 
 # pyright comes whole in its wheel; without this it asks the network whether it is the newest.
 export PYRIGHT_PYTHON_IGNORE_WARNINGS := 1
@@ -175,10 +177,11 @@ check: install ## versions, system libraries, render device, disk space
 	@$(PYTHON) -m tools.check
 	@$(PYTHON) -m tools.device_check
 
-install: ## uv, Python 3.13, every package at its locked version, compiled kernels
+install: ## uv, Python 3.13, every package at its locked version; kernels compile in the background
 	@sh tools/install.sh
 
 test: install ## the tests; PYTEST="-k name" picks some
+	$(ALL_KERNELS)
 	@$(PYTHON) -m pytest $(PYTEST)
 
 lint: install ## formatting, ruff, pyright, import rules
@@ -192,25 +195,32 @@ format: install ## format the sources and cure what ruff can
 	@.venv/bin/ruff format .
 
 bench: install ## the solver beside its peers: a table, and out/bench.json
+	$(ALL_KERNELS)
 	@sh tools/install.sh bench
 	@$(PYTHON) -m benchmarks
 
 bench-start: install ## how long one waits for a first result and for calls as users make them
+	$(ALL_KERNELS)
 	@$(PYTHON) -m benchmarks start
 
 check-numbers: install ## raw bytes of 210 runs against those recorded, all or ONLY="gallery four_bar"
+	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.numbers check "$$ONLY"
 
 record-numbers: install ## record them anew, where a change of numbers is meant
+	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.numbers record
 
 hunt: install ## N random mechanisms (1000), each solved again in other words; SEED=1 says which: out/hunt.json
+	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.hunt --n "$${N:-1000}" --seed "$$SEED"
 
 hunt-parts: install ## parts of N random mechanisms (1000), and the proof that none touch; SEED=1: out/hunt_parts.json
+	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.hunt_parts --n "$${N:-1000}" --seed "$$SEED"
 
 torture: install ## N films of a postage stamp (20), killed and damaged while they are made; SEED=1: out/torture.json
+	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.torture --n "$${N:-20}" --seed "$$SEED"
 
 schema: install ## write docs/schema/ from shared/contract/ and the solver's joints and laws
@@ -223,6 +233,7 @@ docs: install ## write docs/theory.md and the map of rooms from docstrings, and 
 	@$(PYTHON) -m tools.figures
 
 integrators: install ## measure the integrators again, for docs/integrators.md: order, cost, 10 000 periods (5 minutes)
+	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.integrators
 	@$(PYTHON) -m tools.figures integrators
 

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Makes .venv with the packages of requirements.lock and compiles the solver's kernels; `install.sh bench` adds the
-# peers of the benchmarks. What stands already, judged by the content of the lock, is left alone.
+# Makes .venv with the packages of requirements.lock and begins to compile the solver's kernels; `install.sh bench` adds
+# the peers of the benchmarks. What stands already, judged by the content of the lock, is left alone.
 set -eu
 cd "$(dirname "$0")/.."
 python=.venv/bin/python
@@ -34,15 +34,13 @@ make_environment() {
             exit 1
         }
     fi
-    rm -f .venv/requirements.lock .venv/requirements-bench.lock .venv/solver-installed
+    rm -f .venv/requirements.lock .venv/requirements-bench.lock .venv/solver-installed .venv/kernels-compiled
     echo "install: packages of requirements.lock (3 GB when all are new)"
     "$uv" pip sync --quiet --python $python --compile-bytecode --require-hashes requirements.lock || {
         echo "error: the packages of requirements.lock could not be installed; uv says why above." \
             "The same command goes on from here" >&2
         exit 1
     }
-    echo "install: compiling the solver's kernels"
-    $python -m mbsd compile
     cp requirements.lock .venv/requirements.lock
 }
 
@@ -58,6 +56,10 @@ if [ ! -f .venv/solver-installed ]; then
         exit 1
     }
     touch .venv/solver-installed
+fi
+
+if [ ! -f .venv/kernels-compiled ]; then
+    $python -m tools.compiling begin
 fi
 
 # Asked again until nothing is missing; the solver runs without these libraries, parts and pictures do not.

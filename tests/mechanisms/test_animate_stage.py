@@ -12,7 +12,7 @@ from mechanisms.stages.animate import stage as animate_stage
 from mechanisms.stages.parts import stage as parts_stage
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
-from tests.project.test_makefile import planned, run
+from tests.project.making import planned, run
 from tests.render import film_fixture
 
 

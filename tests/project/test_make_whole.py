@@ -1,0 +1,69 @@
+"""make over everything: run-all, clean and check."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+
+from shared.stage.paths import ROOT
+from tests.project.making import run
+
+
+def fake_make(folder: Path, *failing: str) -> Path:
+    """Stands for make in run_all.sh: fails for the named targets."""
+    script = folder / "make"
+    script.write_text(
+        f'#!/bin/sh\necho "made $2 $3 EVERY=$EVERY"\ncase " {" ".join(failing)} " in *" $2 "*) exit 1;; esac\n'
+    )
+    script.chmod(0o755)
+    return script
+
+
+def test_run_all_goes_on_after_a_failure_and_sums_up(tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "tools", tmp_path / "tools")
+    for name in ("a_linkage", "b_linkage", "c_linkage"):
+        (tmp_path / "mechanisms" / name).mkdir(parents=True)
+        (tmp_path / "mechanisms" / name / "mechanism.py").touch()
+    (tmp_path / "mechanisms" / "not_one").mkdir()
+    done = run("sh", "tools/run_all.sh", str(fake_make(tmp_path)), "draft", cwd=tmp_path)
+    assert done.returncode == 0
+    assert done.stdout.count("PRESET=draft EVERY=1") == 3  # what one of them lacks is no failure
+    assert done.stdout.endswith("run-all: 3 done\n")
+    done = run("sh", "tools/run_all.sh", str(fake_make(tmp_path, "run-b_linkage")), "final", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "made run-c_linkage PRESET=final" in done.stdout
+    assert "run-all: 2 done, failed: b_linkage" in done.stderr
+
+
+def test_clean_removes_the_results_and_leaves_a_folder_of_the_users_alone(tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "tools", tmp_path / "tools")
+    (tmp_path / "out" / "four_bar").mkdir(parents=True)
+    mine = tmp_path / "mine"
+    mine.mkdir()
+    done = run("sh", "tools/clean.sh", cwd=tmp_path, MBSD_OUT=str(mine))
+    assert done.returncode == 0
+    assert not (tmp_path / "out").exists()
+    assert mine.exists()
+    assert str(mine) in done.stderr
+    (mine / "data.json").touch()
+    (tmp_path / "out").symlink_to(mine)
+    done = run("sh", "tools/clean.sh", cwd=tmp_path)
+    assert (done.returncode, (tmp_path / "out").is_symlink(), (mine / "data.json").exists()) == (0, True, True)
+    assert f"out is a link, so it and the folder it leads to are left to you: {mine}" in done.stderr
+
+
+def test_check_tells_versions_libraries_disk_and_device() -> None:
+    done = run("make", "-o", "install", "check")
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    assert [line.partition(":")[0] for line in lines] == [
+        "python",
+        "packages",
+        "system libraries",
+        "disk",
+        "render device",
+    ]
+    assert re.search(r"numpy \d+\.\d+\.\d+, .*bpy 5\.2", lines[1])
+    assert re.search(r"\d+ GB free", lines[3])
+    assert re.search(r"(CPU|OPTIX|CUDA|HIP|METAL|ONEAPI).*, Blender 5\.2", lines[4])

@@ -18,12 +18,12 @@ BLEND = 20_000_000
 
 
 def save_scene(built: Any, path: Path) -> None:
-    """Write ``built``, a stage of render.blender.scene.set, to ``path``; raises UserError."""
+    """Write ``built``, a :class:`render.blender.scene.built_scene.BuiltScene`, to ``path``; raises UserError."""
     import bpy
 
-    from render.blender.scene import set as stage
+    from render.blender.scene.built_scene import bake_shapes
 
-    stage.bake_shapes(built)
+    bake_shapes(built)
     picture_settings(built.scene, built.job)
     if built.front is not None:  # in the saved scene the arrows are among the parts
         for thing in built.front.objects:

@@ -11,7 +11,7 @@ FRONT_SAMPLES = 24
 
 
 def picture_settings(scene: Any, job: Job) -> None:
-    """Size, samples, denoising: what facts on noise and time at few samples led to."""
+    """Set size, samples and denoising; denoiser and bounces are chosen for little noise in little time."""
     render, cycles = scene.render, scene.cycles
     render.resolution_x, render.resolution_y, render.resolution_percentage = job.width, job.height, 100
     render.image_settings.file_format = "PNG"

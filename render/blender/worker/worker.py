@@ -50,14 +50,14 @@ def _work(job: Job, answer: Callable[..., None]) -> None:
     """Build the scene and make what the job asks for."""
     import bpy
 
-    from render.blender.scene import set as stage
+    from render.blender.scene.built_scene import build
     from render.blender.worker import device
     from render.blender.worker.picture import render, save_picture, signs_of_life
     from render.blender.worker.scene_file import save_scene
     from render.blender.worker.settings import front_settings, picture_settings
 
     answer(doing="builds the scene")
-    built = stage.build(job)
+    built = build(job)
     answer(device=device.choose(built.scene))
     if job.blend is not None:
         answer(doing="saves the scene")

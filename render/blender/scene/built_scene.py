@@ -1,4 +1,4 @@
-"""The whole scene in Blender: built once, then played. Frame i of the timeline shows state i."""
+"""The whole scene in Blender is built once and then played. Frame i of the timeline shows state i."""
 
 # pyright: reportAttributeAccessIssue=false
 # bpy fills itself in when it is imported, its stubs are empty.
@@ -17,7 +17,7 @@ from render.film.scene import State
 
 
 @dataclass
-class Stage:
+class BuiltScene:
     """The built scene and its moving things."""
 
     job: Job
@@ -44,7 +44,7 @@ class Stage:
             arcs.place(thing, self.job.scene.arcs[which], *self.job.states[index].arcs[which])
 
 
-def build(job: Job) -> Stage:
+def build(job: Job) -> BuiltScene:
     """An empty Blender becomes the studio with the mechanism in it, with the motion on its timeline."""
     import bpy
 
@@ -70,7 +70,7 @@ def build(job: Job) -> Stage:
     curved = [arcs.build(front, spec) for spec in job.scene.arcs] if drawn else []
     scene.frame_start, scene.frame_end = 0, len(job.states) - 1
     scene.render.fps = job.scene.fps
-    return Stage(job, scene, bodies, trails, wires, front, curved)
+    return BuiltScene(job, scene, bodies, trails, wires, front, curved)
 
 
 def _front(job: Job, camera: Any) -> Any:
@@ -95,16 +95,16 @@ def _front(job: Job, camera: Any) -> Any:
     return front
 
 
-def bake_shapes(stage: Stage) -> None:
+def bake_shapes(built: BuiltScene) -> None:
     """Give each trail, tube and arc a shape per frame, so that a saved scene plays them."""
-    scene, states = stage.job.scene, stage.job.states
-    for which, thing in enumerate(stage.trails):
+    scene, states = built.job.scene, built.job.states
+    for which, thing in enumerate(built.trails):
         radius = scene.trails[which].radius
         _bake(thing, [trail.vertices(state.trails[which], radius) for state in states])
-    for which, thing in enumerate(stage.tubes):
+    for which, thing in enumerate(built.tubes):
         radius = scene.tubes[which].radius
         _bake(thing, [tubes.vertices(state.tubes[which], radius) for state in states])
-    for which, thing in enumerate(stage.arcs):
+    for which, thing in enumerate(built.arcs):
         _bake(thing, [arcs.vertices(scene.arcs[which], *state.arcs[which]) for state in states])
 
 

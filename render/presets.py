@@ -1,4 +1,4 @@
-"""How large and how clean a picture is. The active preset is always printed."""
+"""Presets say how large a picture is and how many samples it gets. The active one is always printed."""
 
 from __future__ import annotations
 

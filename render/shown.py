@@ -1,4 +1,4 @@
-"""SHOW=...: which arrows, and whether a title, a picture has instead of what the shot says."""
+"""Reads SHOW=...: the arrows and the title that a picture gets instead of those of the shot."""
 
 from __future__ import annotations
 

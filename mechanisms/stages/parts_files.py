@@ -1,4 +1,4 @@
-"""The bytes of a solid's files: the same for the same solid, whenever and wherever they are made."""
+"""Makes the bytes of a solid's files: equal solids give equal bytes, whenever and wherever they are made."""
 
 from __future__ import annotations
 

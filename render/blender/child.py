@@ -1,4 +1,4 @@
-"""Runs the Blender process and relays its answers. However this ends, no process and no temporary folder stays."""
+"""Runs the Blender process and relays its answers. However it ends, no process and no temporary folder remains."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ WORKER = "render.blender.worker.worker"
 TICK = 1.0
 """Seconds between two looks at a silent Blender."""
 FIRST_WORD = 30.0
-"""Seconds of silence after which the user is told, if Blender is stopped or a quarter of its time is over; then after
-twice as many, and so on."""
+"""Seconds of silence after which the user gets a message, if Blender is stopped or a quarter of its time is over; then
+after twice as many, and so on."""
 
 
 @contextmanager

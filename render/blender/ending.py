@@ -1,4 +1,4 @@
-"""Words for how a Blender process ended, or why it does not go on."""
+"""Says how a Blender process ended, or why it does not go on."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The file of a picture: is it whole, and is it the one that was rendered?
+"""Checks the file of a picture: whether it is whole, and whether it is the one that was rendered.
 
 Blender reports no error when the disk is full or a file is too large, so what it saved is looked at.
 """

@@ -1,4 +1,4 @@
-"""A folder for what Blender and its job need while they run; it goes when they end, or when the next one starts."""
+"""A temporary folder for Blender and its job; it is removed when they end, at the latest when the next one starts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The camera: framing whatever moves by itself, and where a point of the world lands in the picture.
+"""Frames what moves: the distance of the camera, and where a point of the world is in the picture.
 
 World axes: x right, y away, z up (the motion lies in x, y). Azimuth 0 looks along +y; positive azimuth walks the
 camera to the right. The picture is 16:9; pixel (0, 0) is the upper left corner of the upper left pixel.

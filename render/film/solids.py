@@ -1,4 +1,4 @@
-"""STL files of the parts, as far as the camera needs them: outlines, and the space they sweep."""
+"""Reads what the camera needs of the parts' STL files: their outlines and the space they sweep."""
 
 from __future__ import annotations
 

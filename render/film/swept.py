@@ -1,4 +1,4 @@
-"""The space a mechanism sweeps over its whole motion: what the camera must hold and the studio is sized by."""
+"""The space a mechanism sweeps over its whole motion: the camera shows it, and it decides the size of the studio."""
 
 from __future__ import annotations
 

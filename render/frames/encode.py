@@ -1,4 +1,4 @@
-"""Pictures to a film: MP4 with H.264, yuv420p and the index in front, so that every player and web page shows it."""
+"""Encodes pictures as a film: MP4 with H.264, yuv420p and the index in front, for every player and web page."""
 
 from __future__ import annotations
 

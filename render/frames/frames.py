@@ -1,4 +1,4 @@
-"""Renders the pictures a film still lacks. What was seen before is not rendered again."""
+"""Renders the pictures a film still lacks. A picture that is there already is not rendered again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which spectra are asked for: ``SPECTRA = ("shaking force", "motor")`` in mechanism.py, or SPECTRA=... of make."""
+"""Reads which spectra are wanted: ``SPECTRA = ("shaking force", "motor")`` in mechanism.py, or SPECTRA=... of make."""
 
 from __future__ import annotations
 

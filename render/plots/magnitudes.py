@@ -1,4 +1,4 @@
-"""How large the quantities of a motion are, so that rounding is drawn as zero and never as a curve.
+"""Computes how large the quantities of a motion are, so that rounding errors are drawn as zero and not as a curve.
 
 A number is noise where it is below :data:`NOISE` of what it is the difference of: a reaction beside the weights and
 inertia forces, a power beside the powers that cancel in it.

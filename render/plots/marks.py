@@ -1,4 +1,4 @@
-"""What happens at one moment of a motion, marked on the plots over time or angle: dead points, impacts and others."""
+"""Marks on the plots, over time or angle, what happens at one moment of a motion: dead points, impacts and others."""
 
 from __future__ import annotations
 

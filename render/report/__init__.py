@@ -19,7 +19,7 @@ READ = [*contract_sources("clearance"), ROOT / "render" / "crank.py"]
 
 
 def run(name: str) -> None:
-    """Write out/<name>/report.md, if what it tells of or the words have changed. Raises UserError without data.json."""
+    """Write out/<name>/report.md, if its inputs or its own sources have changed. Raises UserError without data.json."""
     out = Out(name)
     motion = read_motion(out.motion, out.name)
     parts = read_parts(out.parts, out.name) if out.parts.is_file() else None

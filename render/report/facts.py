@@ -1,4 +1,4 @@
-"""The few numbers of a mechanism that a line has room for."""
+"""Chooses the few numbers of a mechanism that fit into a line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The table at the end of ``make run-all``: ``python -m render overview`` reads who was run from its standard input."""
+"""The table at the end of ``make run-all``: ``python -m render overview`` reads from standard input what was run."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def run(lines: Iterable[str] = sys.stdin) -> None:
 
 
 def row_of(line: str) -> list[str]:
-    """The words of a row. What a failed run left is not told, because it may be of an earlier one."""
+    """The words of a row. Results of a failed run are left out, because they may be of an earlier one."""
     name, seconds, outcome = line.split()
     found = _numbers(Out(name)) if outcome == "done" else [""] * 4
     return [name, duration(float(seconds)), *found, outcome]

@@ -1,4 +1,4 @@
-"""Numbers as people write them: three digits, SI prefixes, km/h beside m/s; tables of Markdown."""
+"""Writes numbers as people do: three digits, SI prefixes, km/h beside m/s; tables of Markdown."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the types of a file cannot say: its units, lengths, times, names and files fit together.
+"""Checks what the types of a file cannot say: that its units, lengths, times, names and files fit together.
 
 Each function raises UserError naming the file and the field. ``path`` is the file's, for the message.
 """
@@ -114,7 +114,7 @@ def _bodies_of_loads(motion: Motion) -> list[tuple[str, str]]:
 
 
 def _refuse_wrong_events(motion: Motion, path: Path | str) -> None:
-    """Events come in the order of their times, within the time that is told."""
+    """Events come in the order of their times, within the time of the motion."""
     first, last = motion.time[0], motion.time[-1]
     for index, event in enumerate(motion.events):
         before = motion.events[index - 1].time if index else first

@@ -1,4 +1,4 @@
-"""data.json: the motion of one mechanism, as structs. shared/contract/__init__.py reads and writes them.
+"""data.json: the motion of one mechanism, as structs. The package reads and writes them.
 
 A body's x, y, theta place the frame its author drew it in, not its centre of mass.
 """
@@ -112,7 +112,7 @@ class EventMark(Strict, kw_only=True):
     what: str
     """event, end, impact, closes, opens, sticks, slides."""
     energy: float
-    """Kinetic energy after less before (J), of all that happens at this time; told with the first."""
+    """Kinetic energy after less before (J), of all that happens at this time; given with the first event."""
     impulse: float = 0.0
     """Of an impact, normal (N s; N m s of stops of angles)."""
 

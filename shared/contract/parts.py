@@ -1,4 +1,4 @@
-"""parts.json: the solids of one mechanism, as structs. shared/contract/__init__.py reads and writes them."""
+"""parts.json: the solids of one mechanism, as structs. The package reads and writes them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Fits: how much room parts leave each other. One place to open them up for another machine or printer."""
+"""Fits: the clearances between parts, in one place, where they are widened for another machine or printer."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Screws, washers and bushings come many times over: what a builder made of the same numbers is kept."""
+"""Keeps what a builder made of the same numbers, since screws, washers and bushings occur many times."""
 
 from __future__ import annotations
 

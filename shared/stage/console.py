@@ -1,4 +1,4 @@
-"""What a stage says: coloured and with a bar on a terminal, plain lines everywhere else."""
+"""Prints what a stage says: in colour and with a progress bar on a terminal, as plain lines everywhere else."""
 
 from __future__ import annotations
 

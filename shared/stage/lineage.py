@@ -20,7 +20,7 @@ FATAL = (signal.SIGHUP, signal.SIGINT, signal.SIGQUIT, signal.SIGTERM)
 
 
 def end_with_make() -> None:
-    """Send this process SIGTERM as soon as the make that it belongs to has ended or was told to end.
+    """Send this process SIGTERM as soon as the make that it belongs to has ended or got a signal to end.
 
     Does nothing where no make of this project is above.
     """

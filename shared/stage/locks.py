@@ -24,7 +24,7 @@ def take(handle: int) -> bool:
 
 
 def is_abandoned(path: Path) -> bool:
-    """Whether the process that locked this file has ended; False where that cannot be told."""
+    """Whether the process that locked this file has ended; False where that is unknown."""
     try:
         handle = os.open(path, os.O_RDWR | os.O_NOFOLLOW)
     except OSError:

@@ -1,4 +1,4 @@
-"""SIGTERM and SIGHUP leave like Ctrl-C does: through the finally blocks, so that nothing is left behind."""
+"""SIGTERM and SIGHUP end a stage as Ctrl-C does: through its finally blocks, so that nothing is left behind."""
 
 from __future__ import annotations
 

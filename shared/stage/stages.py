@@ -1,4 +1,4 @@
-"""What has to be made again: decided by content, never by timestamps.
+"""Decides by content, never by timestamps, what has to be made again.
 
 A stage has a key, a hash of everything it reads. When it is done, a stamp ``out/<mechanism>/.stamps/<stage>.json``
 keeps that key with size and SHA-256 of every output. The stage is fresh while the key is the same and every output
@@ -78,7 +78,7 @@ class Stage:
         jsonfile.write(self.stamp, StageStamp(stage=self.name, key=self.key, outputs=outputs, notes=notes))
 
     def notes(self) -> dict[str, Any]:
-        """What :meth:`done` was told last; empty if the stage never ended."""
+        """The notes of the last :meth:`done`; empty if the stage never ended."""
         stamp = self._read()
         return stamp.notes if stamp else {}
 

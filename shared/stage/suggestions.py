@@ -1,4 +1,4 @@
-"""A known name that an unknown one was probably meant to be."""
+"""Suggests the known name that an unknown one was probably meant to be."""
 
 from __future__ import annotations
 

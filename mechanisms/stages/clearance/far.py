@@ -1,4 +1,4 @@
-"""Bodies that stay far apart, so that no two of their pieces need to be looked at: a chain's links but for neighbours.
+"""Finds bodies that stay far apart, such as links of a chain that are no neighbours: their pieces need no comparison.
 
 Between two outputs a body's origin lies within the box round the control points of its quintic, and its pieces lie
 within a circle about the origin. Boxes that are apart by the radii and more settle all pieces of two bodies at once.

@@ -1,4 +1,4 @@
-"""Gears in mesh: the least gap of two wheels over any number of turns from one tooth pitch.
+"""The least gap of two gears in mesh over any number of turns follows from one tooth pitch.
 
 Wheels that roll on each other repeat: seen from the first wheel, turning the second wheel's centre on by one pitch of
 the first turns the second by one pitch of its own as well. So with teeth that are all alike, one pitch shows all gaps.

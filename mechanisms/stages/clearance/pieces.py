@@ -1,4 +1,4 @@
-"""The pieces as the check sees them: mesh, height range, circle in the plane."""
+"""A piece as the check uses it: its mesh, its range of heights, and a circle in the plane that holds it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The gap between two pieces that turn about a common axis: at every angle at once.
+"""The gap between two pieces that turn about a common axis, computed for every angle at once.
 
 A turn about the axis leaves distance from the axis, r, and height, z, of every point as they are. So the distance
 between the two meshes drawn in the (r, z) half-plane is a lower bound of their gap at every angle, and it is reached

@@ -1,4 +1,4 @@
-"""What the author's code raised, in a sentence: where, the author's own line, what, and a remedy where one is known."""
+"""Says in a sentence what the author's code raised: the file, the author's own line, the error, a remedy if known."""
 
 from __future__ import annotations
 

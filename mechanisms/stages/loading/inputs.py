@@ -1,4 +1,4 @@
-"""What somebody's code read: files, folders, variables and packages, by name, and what they hold now.
+"""Names the files, folders, variables and packages that an author's code read, and hashes what they hold now.
 
 The names are kept in a stage's stamp; what they hold goes into its key. Whether anything has changed is then known
 without running that code again. A file counts by its content, a folder by the names in it, and what was looked for in

@@ -1,4 +1,4 @@
-"""Which files the author's code is made of: the modules it imported, directly or through others, and what they import.
+"""Finds the files that the author's code consists of: the modules it imports, and what those import in turn.
 
 Of the program's own rooms, a module that the author's code imports counts with those that it imports itself; the solver
 counts as a whole, without its drawing. Of installed packages the version counts.

@@ -1,4 +1,4 @@
-"""Load one of the three files of a mechanism; what is wrong in it is told with file and line."""
+"""Loads one of the three files of a mechanism; an error in it is reported with file and line."""
 
 from __future__ import annotations
 

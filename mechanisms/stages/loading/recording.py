@@ -1,6 +1,6 @@
 """Records what the author's code reads while it runs: files, folders, variables of the environment.
 
-Python tells of every file that is opened and every folder that is listed (audit events); questions whether a file
+Python reports every file that is opened and every folder that is listed (audit events); questions whether a file
 exists and variables of the environment are seen because ``os.stat`` and ``os.environ`` are replaced meanwhile. Left out
 are files that the run itself makes, the interpreter, installed packages (their versions count instead) and caches of
 compiled code. What cannot be seen: what a program started by the code reads on its own, files that compiled libraries

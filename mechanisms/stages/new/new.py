@@ -25,7 +25,7 @@ TAKEN = {"all": "make run-all runs every mechanism", "films": "out/films holds t
 def run(name: str, kind: str = "driven") -> None:
     """Write the files of ``mechanisms/<name>/``, with comments; ``kind`` is one of :data:`KINDS`.
 
-    Raises UserError for a missing, unfit or used name and for an unknown kind; nothing that exists is touched.
+    Raises UserError for a missing, unfit or used name and for an unknown kind; nothing that exists is changed.
     """
     name = canonical_name(name)
     if kind not in KINDS:

@@ -1,4 +1,4 @@
-"""Tells a recorder of the files that the CAD kernel opens by itself: STEP, IGES, BREP, STL and fonts.
+"""Reports to a recorder the files that the CAD kernel opens by itself: STEP, IGES, BREP, STL and fonts.
 
 The kernel is compiled, so Python does not notice these; its reading functions are replaced while parts.py runs.
 """

@@ -1,4 +1,4 @@
-"""What is refused before a solid is written: anything that could not be printed, weighed or pictured."""
+"""Refuses, before a solid is written, anything that could not be printed, weighed or rendered."""
 
 from __future__ import annotations
 

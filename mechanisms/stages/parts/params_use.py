@@ -1,4 +1,4 @@
-"""What parts.py takes from mechanism.py: nothing but the class Params to annotate with, or more.
+"""Finds whether parts.py uses more of mechanism.py than the class Params for its annotations.
 
 If nothing more, the solids follow from mechanism.py only through the parameters that ``parts()`` reads, and an edit of
 anything else there leaves them alone.

@@ -1,4 +1,4 @@
-"""A text that tells a parameter's value exactly, for keys: the same value has the same text in every run."""
+"""Writes a parameter's value as text for keys: equal values have equal texts in every run."""
 
 from __future__ import annotations
 

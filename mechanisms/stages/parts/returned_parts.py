@@ -1,4 +1,4 @@
-"""What ``parts()`` returned, looked at before anything is made of it."""
+"""Checks what ``parts()`` returned before anything is made of it."""
 
 from __future__ import annotations
 

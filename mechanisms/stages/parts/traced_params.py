@@ -1,4 +1,4 @@
-"""Which parameters a function reads: so that a change of one that it does not read redoes nothing."""
+"""Finds which parameters a function reads, so that a change of any other one makes nothing anew."""
 
 from __future__ import annotations
 

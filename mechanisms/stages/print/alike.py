@@ -1,4 +1,4 @@
-"""Pieces that are equal but for where they are: made several times, drawn and listed once.
+"""Finds pieces that are equal but for their place: they are made several times, but drawn and listed once.
 
 Two pieces are equal if a turn on the bed brings each corner of one mesh to a corner of the other, as it lies or turned
 over. Mirror images are not equal unless they are also turned images of each other.

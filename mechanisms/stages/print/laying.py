@@ -1,4 +1,4 @@
-"""How a piece lies on the bed: on its largest flat face, with as little as possible that hangs in the air."""
+"""Lays a piece on the bed: on its largest flat face, with as little overhang as possible."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rectangles on as few plates as trimesh's packing finds."""
+"""Packs rectangles on as few plates as trimesh's packing finds."""
 
 from __future__ import annotations
 

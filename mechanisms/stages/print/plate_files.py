@@ -1,4 +1,4 @@
-"""A plate as 3MF and as STL: the same bytes for the same pieces, whenever and wherever they are made."""
+"""Writes a plate as 3MF and as STL: equal pieces give equal bytes, whenever and wherever they are made."""
 
 from __future__ import annotations
 

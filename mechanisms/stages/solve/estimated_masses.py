@@ -1,4 +1,4 @@
-"""Masses of bodies that have none yet: each a uniform aluminium plate through the body's markers.
+"""Estimates masses of bodies that have none yet: each counts as a uniform aluminium plate through its markers.
 
     outline       convex hull of discs of radius r about the markers: a disc, a bar with round ends, or a plate
     r             the wheel's radius where a joint rolls there; else 0.06 L; 0.12 L where there is one marker alone

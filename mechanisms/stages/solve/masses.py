@@ -1,4 +1,4 @@
-"""Where the mass of each body is from: mechanism.py, or else its parts, or else an estimate."""
+"""Takes the mass of each body from mechanism.py, else from its parts, else from an estimate."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 Source = Literal["mechanism", "parts", "estimate"]
 TOLD = 8
-"""So many masses are told in a line."""
+"""At most so many masses are listed in a line."""
 ALIKE = 1e-9
 """Masses of mechanism.py and of the parts that differ by less, relatively, are one."""
 

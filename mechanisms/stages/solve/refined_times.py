@@ -1,4 +1,4 @@
-"""Output times so close that what lies between two of them is the quintic that plots, clearance and film show.
+"""Refines output times until the motion between two of them is the quintic that plots, clearance and film use.
 
     at the middle of a step h   q = (q0 + q1) / 2 + 5 h / 32 (v0 - v1) + h^2 / 64 (a0 + a1)
 

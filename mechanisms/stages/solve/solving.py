@@ -4,7 +4,7 @@ Without ``motion(m, p)`` a mechanism whose drivers fix every freedom is swept ov
 from its start. Two numbers beside build() say more:
 
     DURATION = 2.0    how long the motion is (s); a simulation needs it, a sweep takes its period without
-    STEPS = 600       how many equal steps it is told in
+    STEPS = 600       number of equal output steps
 """
 
 from __future__ import annotations

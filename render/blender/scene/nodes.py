@@ -1,4 +1,4 @@
-"""A few words that keep shader graphs readable."""
+"""Helpers that keep the code of shader graphs readable."""
 
 from __future__ import annotations
 

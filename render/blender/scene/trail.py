@@ -1,4 +1,4 @@
-"""The trail: a thin tube of light, thick and bright at the point, thin and gone at the end of its tail."""
+"""The trace of a point: a luminous tube that is thick and bright at the point and fades towards its end."""
 
 # pyright: reportAttributeAccessIssue=false
 # bpy fills itself in when it is imported, its stubs are empty.

@@ -1,4 +1,4 @@
-"""The device Cycles renders on: a GPU where one is found, else the CPU; always told, never silent."""
+"""The device Cycles renders on: a GPU where one is found, else the CPU. The choice is always reported."""
 
 # pyright: reportAttributeAccessIssue=false
 # bpy fills itself in when it is imported, its stubs are empty.

@@ -1,4 +1,4 @@
-"""Files that Blender saves are checked before they get their name, since Blender tells nothing of a full disk."""
+"""Files that Blender saves are checked before they get their name, since Blender does not report a full disk."""
 
 from __future__ import annotations
 

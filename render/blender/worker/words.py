@@ -1,4 +1,4 @@
-"""What is written over a picture: the legend on a card in its corner, the title, the rate, the number that lives."""
+"""What is written over a picture: the legend on a card, the title, the rate, a number that follows the motion."""
 
 from __future__ import annotations
 

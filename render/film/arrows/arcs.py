@@ -1,4 +1,4 @@
-"""Curved arrows of a film: how far each reaches round its pivot, and the legend that tells it."""
+"""Curved arrows of a film: how far each reaches round its pivot, and its line in the legend."""
 
 from __future__ import annotations
 

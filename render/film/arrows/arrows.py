@@ -1,4 +1,4 @@
-"""Arrows of a film: how long each is, and the legend that tells it. One scale for the whole clip and for each unit."""
+"""Arrows of a film: how long each is, and its line in the legend. One scale for the whole clip and for each unit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is written over the picture: the legend's corner, a title, the rate of time, a number that lives."""
+"""What is written over the picture: the legend, a title, the rate of time, a number that follows the motion."""
 
 from __future__ import annotations
 

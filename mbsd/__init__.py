@@ -5,8 +5,7 @@
 Kernels are compiled and scipy is loaded only when something is solved; this import stays light.
 """
 
-from mbsd.curves import Curve, curve
-from mbsd.errors import (
+from mbsd.base.errors import (
     AssemblyError,
     BranchError,
     EquilibriumError,
@@ -19,9 +18,10 @@ from mbsd.errors import (
     SimulationError,
     SingularPoseError,
 )
-from mbsd.event import angle_reaches, distance_reaches, speed_reaches
-from mbsd.model import STANDARD_GRAVITY, Body, Joint, Marker, Mechanism
-from mbsd.motions import Motion, constant_rate, cycloidal, function, harmonic, polynomial, recorded, table
+from mbsd.mechanism import STANDARD_GRAVITY, Body, Joint, Marker, Mechanism
+from mbsd.model.event import angle_reaches, distance_reaches, speed_reaches
+from mbsd.model.laws import Motion, constant_rate, cycloidal, function, harmonic, polynomial, recorded, table
+from mbsd.model.laws.curve import Curve, curve
 
 __version__ = "0.1.0"
 

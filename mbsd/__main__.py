@@ -43,7 +43,7 @@ def _newton() -> None:
 
     import numpy as np
 
-    from mbsd.prepared import prepare
+    from mbsd.kinematics.prepared import prepare
 
     dataclasses.replace(prepare(_driven()), groups=None).march(np.linspace(0.0, 1.0, 4))
 

@@ -12,8 +12,8 @@ import mbsd
 from benchmarks.dynamics.cases import Case
 from benchmarks.dynamics.pins import GROUND, Pinned, Record
 from benchmarks.dynamics.stepping import tolerances
-from mbsd.dynamics.prepare import PreparedDynamics, prepare_dynamics
-from mbsd.dynamics.run import Run
+from mbsd.dynamics.prepare.prepare import PreparedDynamics, prepare_dynamics
+from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.simulate import integrator_named
 
 VERSION = mbsd.__version__

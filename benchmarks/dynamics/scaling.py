@@ -14,7 +14,7 @@ from benchmarks.dynamics.cases import ALONE, case
 from benchmarks.dynamics.mbsd_code import ready
 from benchmarks.dynamics.n_four_bar import exact_angle
 from benchmarks.rows import Bar, Row
-from mbsd.dynamics.run import Run
+from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.simulate import integrator_named
 
 TOLERANCE = 1e-6

@@ -9,7 +9,7 @@ import numpy as np
 
 import mbsd
 from benchmarks.four_bar import ANGLES, COUPLER, CRANK, GROUND, ROCKER, exact, worst
-from mbsd import prepared
+from mbsd.kinematics import prepared
 
 VERSION = mbsd.__version__
 SETTINGS = "closed form of its groups, found by the program, pos+vel+acc"

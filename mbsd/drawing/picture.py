@@ -7,7 +7,7 @@ import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from mbsd.errors import ModelError
+from mbsd.base.errors import ModelError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,7 +38,7 @@ class Picture:
         if suffix not in _UNDATED:
             raise ModelError(f"{os.fspath(path)}: a drawing is saved as {', '.join(_UNDATED)}; end the path with one")
         content = self._content(suffix)
-        from mbsd.saving.file import write_whole
+        from mbsd.base.files import write_whole
 
         write_whole(path, content)
 
@@ -72,7 +72,7 @@ class Svg:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the diagram as an .svg file."""
-        from mbsd.saving.file import write_whole
+        from mbsd.base.files import write_whole
 
         if not os.fspath(path).lower().endswith(".svg"):
             raise ModelError(f"{os.fspath(path)}: a topology diagram is saved as svg; end the path with .svg")

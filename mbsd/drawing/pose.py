@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.arguments import finite_number
-from mbsd.body import Marker
-from mbsd.errors import AssemblyError, ModelError
-from mbsd.model import Mechanism
-from mbsd.shown import shown
+from mbsd.base.arguments import finite_number
+from mbsd.base.errors import AssemblyError, ModelError
+from mbsd.base.shown import shown
+from mbsd.model.body import Marker
+from mbsd.model.mechanism import Model
 
 if TYPE_CHECKING:
-    from mbsd.force import Force
-    from mbsd.joint import Joint
-    from mbsd.solution import FrameView, Solution
+    from mbsd.model.force import Force
+    from mbsd.model.joint import Joint
+    from mbsd.results.solution import FrameView, Solution
 
 
 @dataclass(frozen=True)
@@ -48,10 +48,10 @@ class Pose:
         return np.array([math.cos(angle), math.sin(angle)])
 
 
-def start_pose(m: Mechanism) -> Pose:
+def start_pose(m: Model) -> Pose:
     """The closed start pose; the rough one, said not to be closed, if the links do not reach."""
-    from mbsd.packing import pack
-    from mbsd.start import assemble, rough_pose
+    from mbsd.arrays.packing import pack
+    from mbsd.kinematics.pose.close import assemble, rough_pose
 
     packed = pack(m)
     closed = True
@@ -119,7 +119,7 @@ def tracks_of(sol: Solution) -> Tracks:
     return Tracks(sol.t, views, paths, travel)
 
 
-def _markers_of(m: Mechanism) -> dict[str, Joint | Force]:
+def _markers_of(m: Model) -> dict[str, Joint | Force]:
     """All that has two markers. A force or contact may have the name of a joint, so theirs say what they are."""
     forces = {f"force {name}": force for name, force in m.forces.items()}
     return {**m.joints, **m.drivers, **forces, **{f"contact {name}": one for name, one in m.contacts.items()}}

@@ -8,22 +8,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.arguments import switch
-from mbsd.body import Marker
+from mbsd.base.arguments import switch
+from mbsd.base.errors import ModelError
+from mbsd.base.shown import shown
 from mbsd.drawing.canvas import Canvas
-from mbsd.drawing.loads import draw_force, force_reach
 from mbsd.drawing.look import AXIS_X, AXIS_Y, FAINT, INK, QUIET, colour
 from mbsd.drawing.names import place_names
-from mbsd.drawing.outline import rounded
 from mbsd.drawing.picture import Picture
 from mbsd.drawing.pose import Pose
-from mbsd.drawing.reach import reach
-from mbsd.drawing.symbols import Place, draw_joint, free_side
-from mbsd.drawing.touching import contact_reach, draw_contacts
-from mbsd.drawing.wheels import name_place
-from mbsd.errors import ModelError
-from mbsd.model import Mechanism
-from mbsd.shown import shown
+from mbsd.drawing.symbols.joints import Place, draw_joint, free_side
+from mbsd.drawing.symbols.loads import draw_force, force_reach
+from mbsd.drawing.symbols.outline import rounded
+from mbsd.drawing.symbols.reach import reach
+from mbsd.drawing.symbols.touching import contact_reach, draw_contacts
+from mbsd.drawing.symbols.wheels import name_place
+from mbsd.model.body import Marker
+from mbsd.model.mechanism import Model
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -48,7 +48,7 @@ SMALLEST = 1e-12
 SLIDING = ("prismatic", "pin_in_slot")
 
 
-def draw(m: Mechanism, pose: Pose, ax: Axes | None, frames: bool, names: bool) -> Picture:
+def draw(m: Model, pose: Pose, ax: Axes | None, frames: bool, names: bool) -> Picture:
     """Draw ``m`` in ``pose`` into ``ax``, or into a figure of its own."""
     try:
         import matplotlib.axes
@@ -78,7 +78,7 @@ def draw(m: Mechanism, pose: Pose, ax: Axes | None, frames: bool, names: bool) -
     return picture
 
 
-def measure(m: Mechanism, pose: Pose) -> tuple[np.ndarray, np.ndarray, float]:
+def measure(m: Model, pose: Pose) -> tuple[np.ndarray, np.ndarray, float]:
     """Lowest and highest x, y (m) of all that is drawn, and the unit of the symbols (m)."""
     points = {name: _points(m, pose, name) for name in m.bodies}
     wide = [reach(joint, pose) for joint in m.joints.values()]
@@ -91,7 +91,7 @@ def measure(m: Mechanism, pose: Pose) -> tuple[np.ndarray, np.ndarray, float]:
     return low, high, _unit(high - low, points)
 
 
-def measure_all(m: Mechanism, poses: Sequence[Pose]) -> tuple[np.ndarray, np.ndarray, float]:
+def measure_all(m: Model, poses: Sequence[Pose]) -> tuple[np.ndarray, np.ndarray, float]:
     """The same over several poses, in symbols of one size."""
     lows, highs, _ = zip(*(measure(m, pose) for pose in poses), strict=True)
     low, high = np.min(lows, axis=0), np.max(highs, axis=0)
@@ -101,7 +101,7 @@ def measure_all(m: Mechanism, poses: Sequence[Pose]) -> tuple[np.ndarray, np.nda
 
 def draw_on(
     canvas: Canvas,
-    m: Mechanism,
+    m: Model,
     pose: Pose,
     colours: dict[str, str],
     frames: bool,
@@ -131,7 +131,7 @@ def draw_on(
         canvas.label(name, place, clearance, colours[name], 9.5)
 
 
-def steady_sides(m: Mechanism, poses: Sequence[Pose], unit: float) -> dict[str, np.ndarray]:
+def steady_sides(m: Model, poses: Sequence[Pose], unit: float) -> dict[str, np.ndarray]:
     """By joint, the unit direction of ground's sign that has room in all of these poses."""
     leaving: dict[str, list[float]] = {}
     for pose in poses:
@@ -141,7 +141,7 @@ def steady_sides(m: Mechanism, poses: Sequence[Pose], unit: float) -> dict[str, 
     return {name: free_side(directions) for name, directions in leaving.items()}
 
 
-def _points(m: Mechanism, pose: Pose, name: str) -> np.ndarray:
+def _points(m: Model, pose: Pose, name: str) -> np.ndarray:
     """(k, 2) of all that a body carries: joints, traced points, the places where others slide on it."""
     out: list[np.ndarray] = []
     for joint in (*m.joints.values(), *m.drivers.values()):
@@ -188,7 +188,7 @@ def _unit(size: np.ndarray, points: dict[str, np.ndarray]) -> float:
     return unit if unit > SMALLEST else 1.0 / UNITS_ACROSS
 
 
-def _link(canvas: Canvas, m: Mechanism, pose: Pose, name: str, points: np.ndarray, edge: str, frames: bool) -> None:
+def _link(canvas: Canvas, m: Model, pose: Pose, name: str, points: np.ndarray, edge: str, frames: bool) -> None:
     """A body: a rounded outline around what it carries, its centre of mass and its frame."""
     body = m.bodies[name]
     sliding = any(j.kind.name == "prismatic" and j.j.body is body for j in m.joints.values())
@@ -218,7 +218,7 @@ def _frame(canvas: Canvas, pose: Pose, name: str, length: float) -> None:
         canvas.line([origin, end], ink, 1.3, order=6)
 
 
-def _leaving(m: Mechanism, pose: Pose, points: dict[str, np.ndarray], j: Marker, unit: float) -> list[float]:
+def _leaving(m: Model, pose: Pose, points: dict[str, np.ndarray], j: Marker, unit: float) -> list[float]:
     """Directions (rad) of the links that leave the pin, those of other joints there included."""
     pin = pose.place(j)
     here = [joint for joint in m.joints.values() if np.hypot(*(pose.place(joint.j) - pin)) < 0.2 * unit]

@@ -15,7 +15,7 @@ from mbsd.drawing.pose import pose_of
 from mbsd.drawing.skeleton import draw_on, measure
 
 if TYPE_CHECKING:
-    from mbsd.solution import Solution
+    from mbsd.results.solution import Solution
 
 ROLES = {
     INK: "ink",

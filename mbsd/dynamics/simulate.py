@@ -8,34 +8,34 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-import mbsd.integrators
-from mbsd.curve_following import tabulate_along
-from mbsd.dynamics.dependent import refuse_opened
-from mbsd.dynamics.joint_sticks import standing
-from mbsd.dynamics.large import MANY_COORDINATES
-from mbsd.dynamics.prepare import PreparedDynamics, prepare_dynamics
-from mbsd.dynamics.run import AUTO, FORMULATIONS, INDEPENDENT, Run
-from mbsd.dynamics.trail import Trail, follow, resumed
-from mbsd.errors import InitialConditionWarning, ModelError
-from mbsd.friction_along import friction_along
-from mbsd.integrators.kind import INTEGRATORS, Integrator
-from mbsd.inverse_dynamics import JACOBIAN_NUMBERS
-from mbsd.limits import refuse_passed
-from mbsd.loads import loads_along
-from mbsd.model import Mechanism
-from mbsd.names import no_such
-from mbsd.output_times import equal_times, rising_times
-from mbsd.reactions import generalised, times_compact, wrenches
-from mbsd.shown import shown
-from mbsd.solution import Solution, Stats
-from mbsd.warn import warn
+import mbsd.dynamics.integrators
+from mbsd.arrays.curve_branches import tabulate_along
+from mbsd.arrays.friction_along import friction_along
+from mbsd.arrays.loads_along import loads_along
+from mbsd.arrays.reactions import generalised, times_compact, wrenches
+from mbsd.base.errors import InitialConditionWarning, ModelError
+from mbsd.base.names import no_such
+from mbsd.base.shown import shown
+from mbsd.base.warn import warn
+from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
+from mbsd.dynamics.prepare.dependent import refuse_opened
+from mbsd.dynamics.prepare.prepare import PreparedDynamics, prepare_dynamics
+from mbsd.dynamics.rows.joint_sticks import standing
+from mbsd.dynamics.runs.run import AUTO, FORMULATIONS, INDEPENDENT, Run
+from mbsd.dynamics.runs.trail import Trail, follow, resumed
+from mbsd.dynamics.start.large import MANY_COORDINATES
+from mbsd.kinematics.limits import refuse_passed
+from mbsd.kinematics.multipliers import JACOBIAN_NUMBERS
+from mbsd.model.mechanism import Model
+from mbsd.model.output_times import equal_times, rising_times
+from mbsd.results.solution import Solution, Stats
 
 LEAST_TOLERANCE = 1e-16
 MOST_STEPS = 1e12
 
 
 def simulate(
-    m: Mechanism,
+    m: Model,
     duration: float | None,
     steps: int,
     times: Sequence[float] | np.ndarray | None,
@@ -47,7 +47,7 @@ def simulate(
     event_rows: bool = False,
     formulation: str = AUTO,
 ) -> Solution:
-    """See :meth:`mbsd.model.Mechanism.simulate`."""
+    """See :meth:`mbsd.mechanism.Mechanism.simulate`."""
     integrator = integrator_named(m.name, method)
     integrator.numbers(m.name, options)
     grid = output_times(m, duration, steps, times)
@@ -90,15 +90,15 @@ def simulate(
 def integrator_named(model: str, method: str) -> Integrator:
     """The integrator of this name; raises ModelError with the known names."""
     if method not in INTEGRATORS:
-        for module in pkgutil.iter_modules(mbsd.integrators.__path__):
-            importlib.import_module(f"mbsd.integrators.{module.name}")
+        for module in pkgutil.iter_modules(mbsd.dynamics.integrators.__path__):
+            importlib.import_module(f"mbsd.dynamics.integrators.{module.name}")
     if method not in INTEGRATORS:
         raise ModelError(f"{model}: {no_such('integrator', method, sorted(INTEGRATORS))}")
     return INTEGRATORS[method]
 
 
 def output_times(
-    m: Mechanism, duration: float | None, steps: int, times: Sequence[float] | np.ndarray | None
+    m: Model, duration: float | None, steps: int, times: Sequence[float] | np.ndarray | None
 ) -> np.ndarray:
     """(T,) rising output times (s). Raises ModelError for anything else."""
     if times is not None:
@@ -109,7 +109,7 @@ def output_times(
 
 
 def solution(
-    m: Mechanism, ready: PreparedDynamics, trail: Trail, between: Callable[[np.ndarray], Solution] | None = None
+    m: Model, ready: PreparedDynamics, trail: Trail, between: Callable[[np.ndarray], Solution] | None = None
 ) -> Solution:
     """The results by name, with reactions and residuals; ``between`` gives those at other times."""
     packed, out = ready.packed, trail.out

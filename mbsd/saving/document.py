@@ -17,20 +17,20 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, fields
 from typing import Any, TypeVar
 
-from mbsd.body import Body, Marker
-from mbsd.changing import law_name, with_markers
-from mbsd.contacts.kind import CONTACT_KINDS
-from mbsd.errors import ModelError
-from mbsd.force import Force
-from mbsd.forces.kind import FORCE_KINDS
-from mbsd.joint import Joint
-from mbsd.joints.kind import KINDS
-from mbsd.mechanism_base import Start, StartVelocity
-from mbsd.model import Mechanism
-from mbsd.names import no_such
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
+from mbsd.base.shown import shown
+from mbsd.mechanism import Mechanism
+from mbsd.model.body import Body, Marker
+from mbsd.model.change import law_name, with_markers
+from mbsd.model.contacts.kind import CONTACT_KINDS
+from mbsd.model.force import Force
+from mbsd.model.forces.kind import FORCE_KINDS
+from mbsd.model.joint import Joint
+from mbsd.model.joints.kind import KINDS
+from mbsd.model.mechanism import Start, StartVelocity
 from mbsd.saving.entry import Entry
 from mbsd.saving.laws import called, law_from, plain
-from mbsd.shown import shown
 
 K = TypeVar("K")
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, TypeVar
 
-from mbsd.arguments import finite_number
-from mbsd.errors import ModelError
-from mbsd.names import no_such
-from mbsd.shown import shown
+from mbsd.base.arguments import finite_number
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
+from mbsd.base.shown import shown
 
 T = TypeVar("T")
 

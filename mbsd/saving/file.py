@@ -5,21 +5,20 @@ from __future__ import annotations
 import json
 import math
 import os
-import tempfile
 from pathlib import Path
 from typing import Any
 
-from mbsd.errors import ModelError
-from mbsd.model import Mechanism
+from mbsd.base.errors import ModelError
+from mbsd.base.files import _refuse_no_path, write_whole
+from mbsd.mechanism import Mechanism
 from mbsd.saving.document import build, document
-from mbsd.shown import shown
 
 DEEPEST = 30
 """Levels of objects and lists in a file."""
 
 
 def save(m: Mechanism, path: str | os.PathLike[str]) -> None:
-    """See :meth:`mbsd.model.Mechanism.save`."""
+    """See :meth:`mbsd.mechanism.Mechanism.save`."""
     written = document(m)
     _refuse_non_finite(written, m.name)
     content = json.dumps(written, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
@@ -27,7 +26,7 @@ def save(m: Mechanism, path: str | os.PathLike[str]) -> None:
 
 
 def load(path: str | os.PathLike[str]) -> Mechanism:
-    """See :meth:`mbsd.model.Mechanism.load`."""
+    """See :meth:`mbsd.mechanism.Mechanism.load`."""
     _refuse_no_path(path)
     try:
         content = Path(path).read_bytes()
@@ -43,27 +42,6 @@ def load(path: str | os.PathLike[str]) -> Mechanism:
     return build(written, f"{path}: model")
 
 
-def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
-    """Write a file by a temporary file beside the target, then a rename: no part of a file ever has the final name."""
-    _refuse_no_path(path)
-    path, temporary = Path(path), None
-    try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
-        temporary = Path(name)
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.chmod(0o644)
-        os.replace(temporary, path)
-    except (OSError, ValueError) as error:
-        why = getattr(error, "strerror", None) or error
-        raise ModelError(f"cannot write {path}: {why}; choose another place or free some disk space") from error
-    finally:
-        if temporary is not None:
-            temporary.unlink(missing_ok=True)
-
-
 def _no_twins(pairs: list[tuple[str, Any]], path: object) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for key, value in pairs:
@@ -71,11 +49,6 @@ def _no_twins(pairs: list[tuple[str, Any]], path: object) -> dict[str, Any]:
             raise ModelError(f"{path}: there are two of the name '{key}' in one object; rename or remove one")
         found[key] = value
     return found
-
-
-def _refuse_no_path(path: object) -> None:
-    if not isinstance(path, str | os.PathLike):
-        raise ModelError(f"the path of a file is {shown(path)}; it must be a text or a path")
 
 
 def _too_deep(path: object) -> ModelError:

@@ -17,13 +17,13 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.body import Body, Marker
-from mbsd.errors import ModelError
-from mbsd.names import no_such
-from mbsd.shown import shown
-from mbsd.users_function import described
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
+from mbsd.base.shown import shown
+from mbsd.base.users_function import described
+from mbsd.model.body import Body, Marker
 
-LAW_PLACES = ("mbsd.motions", "mbsd.curves")
+LAW_PLACES = ("mbsd.model.laws",)
 """Folders and files of laws."""
 
 

@@ -12,12 +12,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from mbsd.contacts.kind import CONTACT_KINDS
-from mbsd.forces.kind import FORCE_KINDS
-from mbsd.joints.kind import KINDS
-from mbsd.model import Mechanism
+from mbsd.base.files import write_whole
+from mbsd.mechanism import Mechanism
+from mbsd.model.contacts.kind import CONTACT_KINDS
+from mbsd.model.forces.kind import FORCE_KINDS
+from mbsd.model.joints.kind import KINDS
 from mbsd.saving.document import SCHEMA, SCHEMA_VERSION
-from mbsd.saving.file import write_whole
 from mbsd.saving.laws import loadable_laws
 
 NUMBER: dict[str, Any] = {"type": "number"}

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import cos, pi
 
 from mbsd import Mechanism, function
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 
 
 @dataclass(frozen=True)

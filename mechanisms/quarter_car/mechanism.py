@@ -9,7 +9,7 @@ from math import pi
 import numpy as np
 
 from mbsd import Mechanism, constant_rate, curve
-from mbsd.curves import Curve
+from mbsd.model.laws.curve import Curve
 
 DURATION = 0.9
 

@@ -20,7 +20,7 @@ from mbsd.drawing.animation.scales import LONGEST, scales_of
 from mbsd.drawing.animation.scene import Scene, scene_of
 from mbsd.drawing.animation.words import EVERYTHING, round_below, with_unit
 from mbsd.drawing.look import PAPER
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 from tests.models.contact_models import ball
 
 SMALL = (320, 180)

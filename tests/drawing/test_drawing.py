@@ -20,14 +20,14 @@ from matplotlib.figure import Figure
 from mbsd import Mechanism, ModelError, constant_rate
 from mbsd.drawing import look
 from mbsd.drawing.canvas import Canvas
-from mbsd.drawing.outline import hull, rounded
 from mbsd.drawing.pose import pose_of, start_pose
 from mbsd.drawing.skeleton import draw_on, measure
 from mbsd.drawing.strokes import ROLES, Recorder, moved, strokes_of
-from mbsd.drawing.symbols import free_side
-from mbsd.drawing.wheels import draw_gear_pair
-from mbsd.forces.kind import ForceKind
-from mbsd.joints.kind import JointKind
+from mbsd.drawing.symbols.joints import free_side
+from mbsd.drawing.symbols.outline import hull, rounded
+from mbsd.drawing.symbols.wheels import draw_gear_pair
+from mbsd.model.forces.kind import ForceKind
+from mbsd.model.joints.kind import JointKind
 from shared.stage.paths import ROOT
 from tests.dynamics.test_simulate import n_four_bar
 from tests.equations.test_forces import all_kinds as force_kinds

@@ -10,11 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, ModelError, constant_rate, harmonic
-from mbsd.assur.groups import NAMES
-from mbsd.dynamics.prepare import prepare_dynamics
-from mbsd.embedding import run as embedded_run
-from mbsd.embedding.embed import embed
-from mbsd.solution import Solution
+from mbsd.dynamics.prepare.prepare import prepare_dynamics
+from mbsd.dynamics.runs import embedded_run
+from mbsd.dynamics.runs.embed import embed
+from mbsd.kinematics.groups.groups import NAMES
+from mbsd.results.solution import Solution
 from tests.models.assur_models import MODELS
 
 PAIRS = ("q", "v", "a")

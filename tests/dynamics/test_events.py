@@ -10,7 +10,7 @@ import pkgutil
 import numpy as np
 import pytest
 
-import mbsd.integrators
+import mbsd.dynamics.integrators
 from mbsd import (
     Mechanism,
     ModelError,
@@ -19,12 +19,12 @@ from mbsd import (
     distance_reaches,
     speed_reaches,
 )
-from mbsd.integrators.kind import INTEGRATORS
-from mbsd.solution import Solution
+from mbsd.dynamics.integrators.kind import INTEGRATORS
+from mbsd.results.solution import Solution
 from tests.models.contact_models import G, balance, ball, box, disc, times_of
 
-for module in pkgutil.iter_modules(mbsd.integrators.__path__):
-    importlib.import_module(f"mbsd.integrators.{module.name}")
+for module in pkgutil.iter_modules(mbsd.dynamics.integrators.__path__):
+    importlib.import_module(f"mbsd.dynamics.integrators.{module.name}")
 METHODS = sorted(name for name in INTEGRATORS if INTEGRATORS[name].installed)
 
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelError, SimulationError, constant_rate, polynomial, table
-from mbsd.friction_along import normals_along
-from mbsd.joint_friction import tabulate_friction
-from mbsd.loads import pack_loads
-from mbsd.packing import pack
+from mbsd.arrays.friction_along import normals_along
+from mbsd.arrays.loads import pack_loads
+from mbsd.arrays.packing import pack
+from mbsd.equations.joint_friction import tabulate_friction
 from tests.equations.test_forces import motion
 from tests.models.slider_cranks import slider_crank
 
@@ -228,7 +228,7 @@ def test_normal_forces_are_those_of_the_reactions() -> None:
     m.drive_angle("motor", m.bodies["crank"], constant_rate(20.0, math.radians(30)))
     sol = m.sweep(0.2, steps=20)
     packed = pack(m)
-    from mbsd.assembly import tabulate
+    from mbsd.equations.assembly import tabulate
 
     q, v = sol.q.reshape(21, -1), sol.v.reshape(21, -1)
     rows = len(packed.ws.phi)

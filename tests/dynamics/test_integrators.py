@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 from scipy.special import ellipj, ellipk
 
-import mbsd.integrators
+import mbsd.dynamics.integrators
 from mbsd import Mechanism, ModelError, SimulationError
-from mbsd.dynamics.prepare import prepare_dynamics
-from mbsd.integrators.kind import INTEGRATORS, Integrator, register
-from mbsd.integrators.state import NEXT, PAUSED, REACHED, TIME, output_for, start_state
+from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator, register
+from mbsd.dynamics.prepare.prepare import prepare_dynamics
+from mbsd.dynamics.state import NEXT, PAUSED, REACHED, TIME, output_for, start_state
 
-for _module in pkgutil.iter_modules(mbsd.integrators.__path__):
-    importlib.import_module(f"mbsd.integrators.{_module.name}")
+for _module in pkgutil.iter_modules(mbsd.dynamics.integrators.__path__):
+    importlib.import_module(f"mbsd.dynamics.integrators.{_module.name}")
 
 G = 9.81
 AMPLITUDE = math.radians(100)

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbsd.dynamics.lcp import lemke
+from mbsd.dynamics.events.laws.lcp import lemke
 
 
 @settings(max_examples=60, deadline=None)

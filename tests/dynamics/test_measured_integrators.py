@@ -10,16 +10,16 @@ import pkgutil
 import pytest
 from scipy.special import ellipk
 
-import mbsd.integrators
-from mbsd.integrators.kind import INTEGRATORS
+import mbsd.dynamics.integrators
+from mbsd.dynamics.integrators.kind import INTEGRATORS
 from shared.stage.paths import ROOT
 from tools.integrators.accuracy import Rung, case, cost, order
 from tools.integrators.long_runs import RUNS, swing
 from tools.integrators.mechanisms import AMPLITUDE, G, four_bar, pendulum
 from tools.integrators.tables import with_tables
 
-for _module in pkgutil.iter_modules(mbsd.integrators.__path__):
-    importlib.import_module(f"mbsd.integrators.{_module.name}")
+for _module in pkgutil.iter_modules(mbsd.dynamics.integrators.__path__):
+    importlib.import_module(f"mbsd.dynamics.integrators.{_module.name}")
 
 PAGE = (ROOT / "docs" / "integrators.md").read_text()
 MEASURED = json.loads((ROOT / "docs" / "integrators.json").read_text())

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, SimulationError
-from mbsd.dynamics import pace
+from mbsd.dynamics.runs import pace
 
 
 def pendulum() -> Mechanism:

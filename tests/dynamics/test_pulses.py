@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelError, cycloidal, function, table
-from mbsd.errors import ModelWarning
-from mbsd.fitting.look import FORCE_LOOKS, LOOKS
-from mbsd.laws import pack_laws, tabulate_law
+from mbsd.arrays.laws import pack_laws
+from mbsd.base.errors import ModelWarning
+from mbsd.equations.laws import tabulate_law
+from mbsd.model.laws.fitting.look import FORCE_LOOKS, LOOKS
 
 MASS = 2.0
 

@@ -13,9 +13,9 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
 from mbsd import AssemblyError, InitialConditionWarning, Mechanism, MobilityError, ModelError, constant_rate, harmonic
-from mbsd.dynamics import prepare
+from mbsd.compiling.jit import OFTEN
+from mbsd.dynamics.prepare import prepare
 from mbsd.dynamics.simulate import integrator_named
-from mbsd.jit import OFTEN
 
 A02 = json.loads((Path(__file__).parents[1] / "published" / "reference" / "iftomm_a02_n_four_bar_n2.json").read_text())[
     "expected"
@@ -269,7 +269,7 @@ def test_links_of_a_large_mechanism_that_do_not_close_are_named(monkeypatch: pyt
 
 
 def test_the_same_run_over_and_over_gives_the_same_bytes() -> None:
-    """After some calls the machine code is called without a look at types (mbsd/jit.py)."""
+    """After some calls the machine code is called without a look at types (mbsd/compiling/jit.py)."""
     m = Mechanism("pendulum")
     rod = m.bar("rod", 0.5, 1.2)
     m.revolute("pin", m.ground.origin, rod.start)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from mbsd import Mechanism, ModelError, constant_rate, harmonic, polynomial
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 from tests.models.slider_cranks import slider_crank
 
 G = 9.80665

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from mbsd import ModelError
-from mbsd.callback import Callback, call
-from mbsd.jit import kernel
+from mbsd.compiling.callback import Callback, call
+from mbsd.compiling.jit import kernel
 
 
 @kernel

@@ -9,7 +9,7 @@ import numba
 import pytest
 from numba.core.event import Event, EventStatus
 
-from mbsd.compile_notice import CompileNotice
+from mbsd.compiling.notice import CompileNotice
 
 
 def event(status: EventStatus, module: str) -> Event:
@@ -17,7 +17,9 @@ def event(status: EventStatus, module: str) -> Event:
     return Event("numba:compile", status, {"dispatcher": dispatcher})
 
 
-@pytest.mark.parametrize(("module", "wait", "words"), [("mbsd.loads", 0.2, 1), ("mbsd.loads", 0.0, 0), ("my", 0.2, 0)])
+@pytest.mark.parametrize(
+    ("module", "wait", "words"), [("mbsd.equations.loads", 0.2, 1), ("mbsd.equations.loads", 0.0, 0), ("my", 0.2, 0)]
+)
 def test_long_compilations_of_the_package_are_told(caplog, module: str, wait: float, words: int) -> None:
     notice = CompileNotice(patience=0.05)
     for _ in range(2):

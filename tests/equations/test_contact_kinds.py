@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelError
-from mbsd.assembly import tabulate
-from mbsd.contacts.kind import CONTACT_KINDS
-from mbsd.packing import pack
+from mbsd.arrays.packing import pack
+from mbsd.equations.assembly import tabulate
+from mbsd.model.contacts.kind import CONTACT_KINDS
 
 
 def all_kinds() -> Mechanism:

@@ -9,21 +9,25 @@ import pkgutil
 import numpy as np
 import pytest
 
-import mbsd.forces
+import mbsd.model.forces
 from mbsd import Mechanism, ModelError, curve, harmonic
-from mbsd.assembly import tabulate
-from mbsd.forces.kind import FORCE_KINDS, POTENTIAL_TERMS, PUSH, ForceKind
-from mbsd.friction_along import normals_along
-from mbsd.joint_friction import tabulate_friction
-from mbsd.loads import compiled_laws, loads_along, pack_loads, tabulate_loads
-from mbsd.packing import Packed, pack
-from mbsd.potential import potential_of
+from mbsd.arrays.friction_along import normals_along
+from mbsd.arrays.laws import compiled_laws
+from mbsd.arrays.loads import pack_loads
+from mbsd.arrays.loads_along import loads_along
+from mbsd.arrays.packing import Packed, pack
+from mbsd.base.codes import POTENTIAL_TERMS, PUSH
+from mbsd.equations.assembly import tabulate
+from mbsd.equations.joint_friction import tabulate_friction
+from mbsd.equations.loads import tabulate_loads
+from mbsd.model.forces.kind import FORCE_KINDS, ForceKind
+from mbsd.results.energy import potential_of
 
 
 def all_kinds() -> list[ForceKind]:
-    """Import every file of mbsd/forces."""
-    for module in pkgutil.iter_modules(mbsd.forces.__path__):
-        importlib.import_module(f"mbsd.forces.{module.name}")
+    """Import every file of mbsd/model/forces."""
+    for module in pkgutil.iter_modules(mbsd.model.forces.__path__):
+        importlib.import_module(f"mbsd.model.forces.{module.name}")
     return list(FORCE_KINDS.values())
 
 
@@ -68,7 +72,7 @@ KINDS = all_kinds()
 
 
 def test_each_file_registers_its_kind() -> None:
-    files = {module.name for module in pkgutil.iter_modules(mbsd.forces.__path__)} - {"kind"}
+    files = {module.name for module in pkgutil.iter_modules(mbsd.model.forces.__path__)} - {"kind"}
     assert files == {kind.name for kind in KINDS}
 
 
@@ -97,7 +101,7 @@ def test_pairs_act_and_react(kind: ForceKind, seed: int) -> None:
     t, q, v = motion(packed, seed)
     load = evaluate(packed, t, q, v)[0].reshape(len(t), -1, 3)
     if kind.outside:  # nothing feels the opposite
-        acted = {force.j.body.name} | {one.j.body.name for one in kind.interactions(force, packed)}
+        acted = {force.j.body.name} | {one.j.body.name for one in kind.interactions(force, packed.masses)}
         others = [b for b, name in enumerate(packed.body_names) if name not in acted]
         assert not load[:, others].any()
         return

@@ -11,13 +11,13 @@ import pkgutil
 import numpy as np
 import pytest
 
-import mbsd.drivers
-import mbsd.joints
+import mbsd.model.drivers
+import mbsd.model.joints
 from mbsd import Mechanism
-from mbsd.assembly import evaluate_gamma, evaluate_nu, evaluate_position
-from mbsd.jit import kernel
-from mbsd.joints.kind import KINDS, JointKind, register
-from mbsd.packing import Packed, pack
+from mbsd.arrays.packing import Packed, pack
+from mbsd.compiling.jit import kernel
+from mbsd.equations.assembly import evaluate_gamma, evaluate_nu, evaluate_position
+from mbsd.model.joints.kind import KINDS, JointKind, register
 
 SEEDS = range(5)
 
@@ -68,15 +68,15 @@ class _Path:
 
 
 def all_kinds() -> list[JointKind]:
-    for package in (mbsd.joints, mbsd.drivers):
+    for package in (mbsd.model.joints, mbsd.model.drivers):
         for module in pkgutil.iter_modules(package.__path__):
             importlib.import_module(f"{package.__name__}.{module.name}")
     return list(KINDS.values())
 
 
 def test_each_file_registers_its_kind() -> None:
-    files = {m.name for m in pkgutil.iter_modules(mbsd.joints.__path__)} - {"kind"}
-    files |= {f"drive_{m.name}" for m in pkgutil.iter_modules(mbsd.drivers.__path__)}
+    files = {m.name for m in pkgutil.iter_modules(mbsd.model.joints.__path__)} - {"kind"}
+    files |= {f"drive_{m.name}" for m in pkgutil.iter_modules(mbsd.model.drivers.__path__)}
     assert files == {kind.name for kind in all_kinds()}
 
 

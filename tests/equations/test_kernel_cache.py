@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 import mbsd
-from mbsd import kernel_cache
+from mbsd.compiling import kernel_cache
 
 ROOT = Path(__file__).parents[2]
 
@@ -26,9 +26,9 @@ def settings():
     code = cpu_target.target_context.codegen().magic_tuple()
     return [config.CPU_NAME, config.CPU_FEATURES, config.CACHE_DIR, list(code)]
 variables, before = dict(os.environ), settings()
-import mbsd.jit
-from mbsd.kernel_target import GENERIC
-@mbsd.jit.kernel
+import mbsd.compiling.jit
+from mbsd.compiling.kernel_target import GENERIC
+@mbsd.compiling.jit.kernel
 def twice(x):
     return 2.0 * x
 assert twice(1.5) == 3.0
@@ -52,7 +52,7 @@ def test_settings_of_the_user_stay_and_kernels_are_the_same_everywhere(tmp_path:
 
 
 def test_the_users_own_kernels_are_kept_where_numba_keeps_them(tmp_path: Path) -> None:
-    code = "import mbsd.jit, numba\n@numba.njit(cache=True)\ndef own(x):\n    return x + 1.0\nown(1.0)\n"
+    code = "import mbsd.compiling.jit, numba\n@numba.njit(cache=True)\ndef own(x):\n    return x + 1.0\nown(1.0)\n"
     _run(code, tmp_path, NUMBA_CACHE_DIR="")
     assert list((tmp_path / "__pycache__").glob("script.own*.nbc"))
 
@@ -68,7 +68,8 @@ print(kernels.value(1.0), sum(kernels.value.stats.cache_hits.values()))
 def test_an_edit_of_an_imported_constant_compiles_anew_and_going_back_does_not(tmp_path: Path) -> None:
     """numba alone would keep the old number."""
     (tmp_path / "kernels.py").write_text(
-        "from mbsd.jit import kernel\nfrom constants import FACTOR\n@kernel\ndef value(x):\n    return FACTOR * x\n"
+        "from mbsd.compiling.jit import kernel\nfrom constants import FACTOR\n"
+        "@kernel\ndef value(x):\n    return FACTOR * x\n"
     )
     kept = {"NUMBA_CACHE_DIR": str(tmp_path / "kept")}
 
@@ -89,21 +90,25 @@ def test_kernels_are_made_of_no_model_and_no_drawing(path: Path) -> None:
     """Or else an edit there compiles for minutes."""
     importlib.import_module(".".join(path.relative_to(ROOT).with_suffix("").parts))
     names = {kernel_cache._name(source) for source in kernel_cache._sources(str(path))}
-    assert {path.relative_to(ROOT).as_posix(), "mbsd/jit.py"} <= names
-    assert not {name for name in names if name.startswith(("mbsd/drawing", "mbsd/saving", "mbsd/model", "mbsd/adding"))}
+    assert {path.relative_to(ROOT).as_posix(), "mbsd/compiling/jit.py"} <= names
+    assert not {
+        name for name in names if name.startswith(("mbsd/drawing", "mbsd/saving", "mbsd/mechanism", "mbsd/model"))
+    }
 
 
 def test_a_kernel_is_made_of_what_its_imports_import() -> None:
-    import mbsd.integrators.dop853
+    import mbsd.dynamics.integrators.dop853.loop
 
-    names = {kernel_cache._name(source) for source in kernel_cache._sources(mbsd.integrators.dop853.__file__)}
-    assert {"mbsd/integrators/state.py", "mbsd/assembly.py", "mbsd/constraints/point.py"} <= names
+    names = {
+        kernel_cache._name(source) for source in kernel_cache._sources(mbsd.dynamics.integrators.dop853.loop.__file__)
+    }
+    assert {"mbsd/dynamics/state.py", "mbsd/equations/assembly.py", "mbsd/equations/constraints/point.py"} <= names
 
 
 def test_old_versions_go(tmp_path: Path) -> None:
     folder = tmp_path
     for k in range(kernel_cache.KEPT + 3):
-        folder = tmp_path / f"mbsd.loads-{k:016x}"
+        folder = tmp_path / f"mbsd.equations.loads-{k:016x}"
         folder.mkdir()
         os.utime(folder, (k, k))
         kernel_cache._forget_old(folder)
@@ -111,7 +116,7 @@ def test_old_versions_go(tmp_path: Path) -> None:
     kernel_cache._forget_old(folder)
     left = sorted(one.name for one in tmp_path.iterdir())
     assert left == [
-        *(f"mbsd.loads-{k:016x}" for k in range(3, kernel_cache.KEPT + 3)),
+        *(f"mbsd.equations.loads-{k:016x}" for k in range(3, kernel_cache.KEPT + 3)),
         "mbsd.loads_more-0000000000000000",
     ]
 
@@ -119,6 +124,6 @@ def test_old_versions_go(tmp_path: Path) -> None:
 def test_without_a_folder_to_write_to_the_next_one_serves(tmp_path: Path) -> None:
     blocked = tmp_path / "blocked"
     blocked.write_text("a file, where a folder should be")
-    code = "from mbsd.kernel_cache import cache_root; print(cache_root())"
+    code = "from mbsd.compiling.kernel_cache import cache_root; print(cache_root())"
     assert not Path(_run(code, tmp_path, NUMBA_CACHE_DIR=str(blocked)).strip()).is_relative_to(blocked)
     assert Path(_run(code, tmp_path, NUMBA_CACHE_DIR=str(tmp_path)).strip()) == tmp_path / "kernels"

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from mbsd import LimitError, Mechanism, ModelError, constant_rate, harmonic
-from mbsd.limits import coordinate, limits_of
-from mbsd.prepared import prepare
+from mbsd.kinematics.limits import coordinate, limits_of
+from mbsd.kinematics.prepared import prepare
 
 
 def _slider_crank(**limits: Any) -> Mechanism:

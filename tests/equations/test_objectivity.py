@@ -7,9 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from mbsd.forces.kind import ForceKind
-from mbsd.loads import compiled_laws, loads_along, pack_loads
-from mbsd.potential import potential_of
+from mbsd.arrays.laws import compiled_laws
+from mbsd.arrays.loads import pack_loads
+from mbsd.arrays.loads_along import loads_along
+from mbsd.model.forces.kind import ForceKind
+from mbsd.results.energy import potential_of
 from tests.equations.test_forces import KINDS, example, motion
 
 PAIRS = [kind for kind in KINDS if not kind.outside]

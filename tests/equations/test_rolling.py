@@ -152,8 +152,8 @@ def test_curves_and_discs_that_cannot_be_are_refused() -> None:
 @pytest.mark.parametrize("end", [0, -1])
 def test_the_foot_on_the_straight_line_beyond_an_end_is_exact(end: int) -> None:
     """Also where the point lies at the centre of curvature of the end: there the curve, not the line, has no foot."""
-    from mbsd.constraints.curve_pieces import foot
-    from mbsd.curve_numbers import curve_numbers, curve_pieces
+    from mbsd.equations.relative.curve_pieces import foot
+    from mbsd.model.plane_curves import curve_numbers, curve_pieces
 
     points = np.array([[-6, -1], [-4, -0.5], [-2, 0], [0, -0.3], [2, -0.5], [4, 0.2], [6, 0.1]], float)
     breaks, coefficients = curve_pieces(points, False)

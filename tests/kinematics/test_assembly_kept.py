@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, SingularPoseError, constant_rate, cycloidal, function, harmonic, table
-from mbsd.errors import BranchError, LimitError, MechanismError, ModelError
-from mbsd.prepared import March, prepare
+from mbsd.base.errors import BranchError, LimitError, MechanismError, ModelError
+from mbsd.kinematics.prepared import March, prepare
 from tests.models.genevas import geneva
 from tests.models.random_linkages import driven_linkage
 

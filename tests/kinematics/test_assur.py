@@ -11,8 +11,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from mbsd import AssemblyError, Marker, Mechanism, MechanismError, constant_rate, function
-from mbsd.assur.groups import NAMES
-from mbsd.prepared import Prepared, prepare
+from mbsd.kinematics.groups.groups import NAMES
+from mbsd.kinematics.prepared import Prepared, prepare
 from tests.models.assur_models import MODELS, crank, four_bar
 
 

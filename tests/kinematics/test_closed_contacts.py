@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mbsd import EquilibriumError, LimitError, Mechanism, ModelError, SimulationError, constant_rate
-from mbsd.motions import polynomial
+from mbsd.model.laws import polynomial
 
 
 def ram(way: float) -> Mechanism:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mbsd import BranchError, Mechanism, ModelError, polynomial
-from mbsd.curve_following import refuse_jumps
+from mbsd.kinematics.curve_jumps import refuse_jumps
 
 ROUND = np.linspace(0.0, 2 * math.pi, 65)[:-1]
 EIGHT = np.stack([np.sin(ROUND), 0.5 * np.sin(2 * ROUND)], axis=1)
@@ -34,7 +34,7 @@ def _branches(sol) -> np.ndarray:
     return np.min([np.abs(s[0] * v[1] - s[1] * v[0]) / np.hypot(*s) for s in slopes], axis=0)
 
 
-@pytest.mark.filterwarnings("ignore::mbsd.errors.InitialConditionWarning")
+@pytest.mark.filterwarnings("ignore::mbsd.base.errors.InitialConditionWarning")
 @pytest.mark.parametrize(
     ("method", "options", "allowed"),
     [
@@ -56,7 +56,7 @@ def test_a_bead_goes_round_an_eight(method: str, options: dict, allowed: float) 
     assert turn.max() < 1.0  # no corner
 
 
-@pytest.mark.filterwarnings("ignore::mbsd.errors.InitialConditionWarning")
+@pytest.mark.filterwarnings("ignore::mbsd.base.errors.InitialConditionWarning")
 def test_events_outputs_between_and_files_follow_it_too(tmp_path: Path) -> None:
     plain = _coaster().simulate(2.0, steps=100, tolerance=1e-9)
     watched = _coaster()
@@ -76,7 +76,7 @@ def test_events_outputs_between_and_files_follow_it_too(tmp_path: Path) -> None:
     np.testing.assert_array_equal(again.q, plain.q)
 
 
-@pytest.mark.filterwarnings("ignore::mbsd.errors.InitialConditionWarning")
+@pytest.mark.filterwarnings("ignore::mbsd.base.errors.InitialConditionWarning")
 def test_a_disc_rolls_through_a_loop() -> None:
     u = np.linspace(-6.0, 12.0, 160)
     track = np.stack([0.35 * u - 1.2 * np.sin(u), 1.2 * (1 + np.cos(u))], axis=1)[::-1] * [-1, 1]

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, ModelError, constant_rate, harmonic
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 from tests.models import four_bars
 
 Lengths = tuple[float, float, float, float]

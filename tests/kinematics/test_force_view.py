@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelError, constant_rate, harmonic
-from mbsd.force_view import Moved, force_view
-from mbsd.forces.kind import ForceKind
-from mbsd.reactions import marker_places
-from mbsd.solution import Solution
+from mbsd.arrays.reactions import marker_places
+from mbsd.model.forces.kind import ForceKind
+from mbsd.results.forces import Moved, force_view
+from mbsd.results.solution import Solution
 from tests.equations.test_forces import all_kinds, example
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from mbsd import InitialConditionWarning, Mechanism
-from mbsd.dynamics import large, prepare
-from mbsd.solution import Solution
+from mbsd.dynamics.prepare import prepare
+from mbsd.dynamics.start import large
+from mbsd.results.solution import Solution
 from tests.dynamics.test_simulate import n_four_bar
 
 

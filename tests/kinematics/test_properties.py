@@ -9,9 +9,9 @@ from hypothesis import assume, given, reject, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, SingularPoseError, harmonic, table
-from mbsd.dynamics.prepare import prepare_dynamics
-from mbsd.model import Marker
-from mbsd.solution import Solution
+from mbsd.dynamics.prepare.prepare import prepare_dynamics
+from mbsd.mechanism import Marker
+from mbsd.results.solution import Solution
 from tests.models.random_linkages import Carried, Linkage, linkage
 
 SEEDS = st.integers(0, 10**6)

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import mbsd.assur.parts
+import mbsd.kinematics.groups.parts
 from mbsd import Mechanism, MechanismError, constant_rate
-from mbsd.assur.plan import describe
-from mbsd.prepared import Prepared, prepare
+from mbsd.kinematics.groups.plan import describe
+from mbsd.kinematics.prepared import Prepared, prepare
 from tests.models.assur_models import crank
 from tests.models.random_machines import RandomMachine
 
@@ -48,7 +48,7 @@ def test_random_machines(seed: int, kinds: list[str], scale: float, duration: fl
     for kind in kinds:
         RandomMachine.KINDS[kind](machine)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(mbsd.assur.parts, "WHOLE", math.inf)  # also where the whole would be solved faster
+        patch.setattr(mbsd.kinematics.groups.parts, "WHOLE", math.inf)  # also where the whole would be solved faster
         ready = prepare(machine.m, 0.0, duration)
     assert ready.groups is not None
     times = np.linspace(0.0, duration, steps + 1)

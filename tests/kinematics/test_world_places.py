@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from mbsd import AssemblyError, Mechanism, ModelError, ModelWarning, constant_rate
-from mbsd.body import Body
+from mbsd.model.body import Body
 from tests.models import four_bars
 
 A, B, C, D = (0.0, 0.0), (0.03, 0.04), (0.15, 0.10), (0.12, 0.0)

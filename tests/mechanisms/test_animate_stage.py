@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mbsd.drawing.animation.words import QUANTITIES as DRAWN
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 from mechanisms.stages.animate import stage as animate_stage
 from mechanisms.stages.parts import stage as parts_stage
 from shared.stage.errors import UserError

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, constant_rate, curve
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 from mechanisms.stages.solve.motion_file import to_motion
 from mechanisms.stages.solve.shapes import shape_of
 from shared import contract
@@ -263,8 +263,8 @@ def test_files_of_version_1_are_read(tmp_path: Path) -> None:
 
 def _examples() -> dict[str, Mechanism]:
     """A small simulation with an example of each kind of force and contact, by name."""
-    from mbsd.contacts.kind import CONTACT_KINDS
-    from mbsd.forces.kind import FORCE_KINDS
+    from mbsd.model.contacts.kind import CONTACT_KINDS
+    from mbsd.model.forces.kind import FORCE_KINDS
 
     found = {}
     for kind in (*FORCE_KINDS.values(), *CONTACT_KINDS.values()):

@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-import mbsd.contacts
-import mbsd.forces
-import mbsd.joints
+import mbsd.model.contacts
+import mbsd.model.forces
+import mbsd.model.joints
 from mbsd import (
     Marker,
     Mechanism,
@@ -38,12 +38,12 @@ from mbsd import (
     table,
 )
 from mbsd.cams import Lift, cam_from, flat_cam, oscillating_flat_cam, oscillating_roller_cam, roller_cam
-from mbsd.contacts.kind import CONTACT_KINDS
-from mbsd.forces.kind import FORCE_KINDS
-from mbsd.joints.kind import KINDS
+from mbsd.model.contacts.kind import CONTACT_KINDS
+from mbsd.model.forces.kind import FORCE_KINDS
+from mbsd.model.joints.kind import KINDS
 from tests.models.wrong_values import NEVER, ODD
 
-for package in (mbsd.joints, mbsd.forces, mbsd.contacts):
+for package in (mbsd.model.joints, mbsd.model.forces, mbsd.model.contacts):
     for module in pkgutil.iter_modules(package.__path__):
         importlib.import_module(f"{package.__name__}.{module.name}")
 

@@ -14,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, ModelError, constant_rate
+from mbsd.base.errors import ModelWarning
 from mbsd.cams import (
     RISES,
     CamProfile,
@@ -24,7 +25,6 @@ from mbsd.cams import (
     oscillating_roller_cam,
     roller_cam,
 )
-from mbsd.errors import ModelWarning
 
 TABLE = json.loads((Path(__file__).parents[1] / "published" / "reference" / "analytic_cams.json").read_text())[
     "expected"

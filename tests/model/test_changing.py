@@ -10,16 +10,16 @@ import numpy as np
 import pytest
 from numba.core import event
 
-import mbsd.contacts
+import mbsd.model.contacts
 from mbsd import Mechanism, ModelError, constant_rate, harmonic
-from mbsd.contacts.kind import CONTACT_KINDS, ContactKind
-from mbsd.forces.kind import ForceKind
-from mbsd.joints.kind import JointKind
+from mbsd.model.contacts.kind import CONTACT_KINDS, ContactKind
+from mbsd.model.forces.kind import ForceKind
+from mbsd.model.joints.kind import JointKind
 from tests.equations.test_forces import all_kinds as force_kinds
 from tests.equations.test_joints import all_kinds as joint_kinds
 
-for module in pkgutil.iter_modules(mbsd.contacts.__path__):
-    importlib.import_module(f"mbsd.contacts.{module.name}")
+for module in pkgutil.iter_modules(mbsd.model.contacts.__path__):
+    importlib.import_module(f"mbsd.model.contacts.{module.name}")
 
 
 def oscillator(stiffness: float = 100.0) -> Mechanism:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, constant_rate
-from mbsd.kept import MOST, Kept
+from mbsd.base.kept import MOST, Kept
 
 
 def four_bar(crank: float = 0.04, start: float = 0.0, side: float = 100.0) -> Mechanism:
@@ -38,15 +38,15 @@ CHANGED: dict[str, Callable[[], Mechanism]] = {
 
 @pytest.mark.parametrize("what", CHANGED)
 def test_another_mechanism_is_not_taken_for_the_one_before(what: str) -> None:
-    import mbsd.mobility
-    import mbsd.prepared
-    import mbsd.start
+    import mbsd.kinematics.pose.close
+    import mbsd.kinematics.pose.mobility
+    import mbsd.kinematics.prepared
 
     poses(four_bar())
     after = poses(CHANGED[what]())
-    for kept in (mbsd.start._CLOSED, mbsd.prepared._SAMPLES):
+    for kept in (mbsd.kinematics.pose.close._CLOSED, mbsd.kinematics.prepared._SAMPLES):
         kept._results.clear()
-    for remembered in (mbsd.mobility._kept_independent, mbsd.mobility._kept_motion):
+    for remembered in (mbsd.kinematics.pose.mobility._kept_independent, mbsd.kinematics.pose.mobility._kept_motion):
         remembered.cache_clear()
     anew = poses(CHANGED[what]())
     assert all(np.array_equal(one, other) for one, other in zip(after, anew, strict=True))

@@ -10,9 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbsd import ModelError, constant_rate, cycloidal, function, harmonic, polynomial, recorded, table
-from mbsd.laws import pack_laws, tabulate_law
-from mbsd.motions import Motion
-from mbsd.motions.examples import EXAMPLES
+from mbsd.arrays.laws import pack_laws
+from mbsd.equations.laws import tabulate_law
+from mbsd.model.laws import Motion
+from mbsd.model.laws.examples import EXAMPLES
 
 
 def test_every_law_has_an_example() -> None:

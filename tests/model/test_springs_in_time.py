@@ -11,7 +11,7 @@ from numba.core import event
 from scipy.special import mathieu_a, mathieu_cem
 
 from mbsd import Mechanism, ModelError, harmonic, table
-from mbsd.motions import Motion, polynomial
+from mbsd.model.laws import Motion, polynomial
 
 M = 2.0
 

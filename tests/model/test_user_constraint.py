@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelError, constant_rate
-from mbsd.user_constraint import derivatives
+from mbsd.arrays.user_constraint import derivatives
 
 
 def _rod(x, y, a):

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-import mbsd.warn
-from mbsd.errors import PACKAGE, ModelWarning
+import mbsd.base.warn
+from mbsd.base.errors import PACKAGE, ModelWarning
 
 DEEP = "def finds(warn):\n    warn('off', ModelWarning)\ndef asked(warn):\n    finds(warn)\n"
 
@@ -21,8 +21,8 @@ def test_a_warning_names_the_file_outside_the_package(
 ) -> None:
     names: dict[str, Any] = {"ModelWarning": ModelWarning}
     exec(compile(DEEP, f"{PACKAGE[0]}found.py", "exec"), names)
-    monkeypatch.setattr(mbsd.warn, "sys", SimpleNamespace(version_info=version, _getframe=sys._getframe))
+    monkeypatch.setattr(mbsd.base.warn, "sys", SimpleNamespace(version_info=version, _getframe=sys._getframe))
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
-        names["asked"](mbsd.warn.warn)
+        names["asked"](mbsd.base.warn.warn)
     assert [(one.filename, str(one.message)) for one in told] == [(__file__, "off")]

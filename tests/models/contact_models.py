@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from mbsd import Mechanism
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 
 G = 9.81
 

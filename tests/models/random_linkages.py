@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mbsd import Mechanism, constant_rate, harmonic
-from mbsd.model import Body, Marker
+from mbsd.mechanism import Body, Marker
 
 GRAVITY = 9.81
 ADDS = {"three bars": 1, "two bars": 0, "bar in slot": 0, "bar and slider": 0, "bar and rod": 0}

@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, constant_rate, function
-from mbsd.contacts.kind import CONTACT_KINDS
-from mbsd.forces.kind import FORCE_KINDS
-from mbsd.joints.kind import KINDS
-from mbsd.motions.examples import EXAMPLES
+from mbsd.model.contacts.kind import CONTACT_KINDS
+from mbsd.model.forces.kind import FORCE_KINDS
+from mbsd.model.joints.kind import KINDS
+from mbsd.model.laws.examples import EXAMPLES
 from tests.models.four_bars import angles, model
 from tools.hunt import case, pool
 from tools.hunt.__main__ import hunt

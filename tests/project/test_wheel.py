@@ -38,7 +38,7 @@ ours = [one for one in gc.get_objects() if isinstance(one, Dispatcher) and one.p
 print("compiled", sum(sum(one.stats.cache_misses.values()) for one in ours))
 """
 FOLDERS = """
-from mbsd.kernel_cache import KernelCache
+from mbsd.compiling.kernel_cache import KernelCache
 opened = [one for one in gc.get_objects() if isinstance(one, KernelCache) and "_files" in vars(one)]
 print("folders", *{one.cache_path for one in opened})
 """
@@ -134,7 +134,9 @@ def test_a_wheel_with_kernels_compiles_nothing_and_writes_nothing(empty: Path, t
 
 def test_without_its_kernels_the_wheel_compiles_into_the_users_folder(tmp_path: Path) -> None:
     """A kernel of another file, so that this takes a second; the wheel's folder is one that lacks it."""
-    (tmp_path / "kernels.py").write_text("from mbsd.jit import kernel\n@kernel\ndef value(x):\n    return 2.0 * x\n")
+    (tmp_path / "kernels.py").write_text(
+        "from mbsd.compiling.jit import kernel\n@kernel\ndef value(x):\n    return 2.0 * x\n"
+    )
     (tmp_path / "shipped").mkdir()
     (tmp_path / "shipped" / "made_for.json").write_text('{"numba": "0.1"}')
     code = (

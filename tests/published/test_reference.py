@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, constant_rate
-from mbsd.model import Body, Marker
-from mbsd.solution import FrameView, Solution
+from mbsd.mechanism import Body, Marker
+from mbsd.results.solution import FrameView, Solution
 
 FOLDER = Path(__file__).parent / "reference"
 RATES = ("x", "y", "vx", "vy", "ax", "ay")

@@ -12,7 +12,7 @@ import pytest
 from scipy.special import ellipj, ellipk
 
 from mbsd import Mechanism
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 
 FOLDER = Path(__file__).parent / "reference"
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from mbsd import AssemblyError, Mechanism, constant_rate, curve
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 from tests.models.genevas import geneva
 
 FOLDER = Path(__file__).parent / "reference"

@@ -15,7 +15,7 @@ from scipy.integrate import odeint, quad, solve_ivp
 from scipy.optimize import brentq
 
 from mbsd import Mechanism
-from mbsd.model import Body, Marker
+from mbsd.mechanism import Body, Marker
 from tests.published.test_reference_dynamics import case, simulate_at
 
 G = 9.81

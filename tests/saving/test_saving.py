@@ -18,14 +18,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, ModelError, constant_rate, curve, function, harmonic, table
-from mbsd.body import Body
-from mbsd.forces.kind import FORCE_KINDS, ForceKind
-from mbsd.joints.kind import KINDS, JointKind
-from mbsd.loads import pack_loads
-from mbsd.motions import Motion
-from mbsd.motions.examples import EXAMPLES
-from mbsd.motions.function import Function
-from mbsd.packing import pack
+from mbsd.arrays.loads import pack_loads
+from mbsd.arrays.packing import pack
+from mbsd.model.body import Body
+from mbsd.model.forces.kind import FORCE_KINDS, ForceKind
+from mbsd.model.joints.kind import KINDS, JointKind
+from mbsd.model.laws import Motion
+from mbsd.model.laws.examples import EXAMPLES
+from mbsd.model.laws.function import Function
 from mbsd.saving.document import build, document
 from mbsd.saving.schema import content, schema
 from shared.stage.paths import ROOT

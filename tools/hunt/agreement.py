@@ -30,7 +30,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mbsd import Mechanism
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 from tools.hunt.described import BASE, NOWHERE, Pose
 from tools.hunt.law_error import LawError, law_error
 

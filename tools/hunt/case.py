@@ -7,8 +7,8 @@ import warnings
 
 import numpy as np
 
-from mbsd.dynamics.prepare import prepare_dynamics
-from mbsd.variants import started_at
+from mbsd.arrays.start_state import started_at
+from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from tools.hunt.agreement import Growth
 from tools.hunt.checks import closed, driven_problems, finite
 from tools.hunt.free_case import Free, nudged

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from mbsd.assembly import tabulate
-from mbsd.solution import Solution
+from mbsd import Mechanism
+from mbsd.equations.assembly import tabulate
+from mbsd.results.solution import Solution
 from tools.hunt.subject import Subject
 
 RESIDUAL = 1e-7
@@ -60,6 +61,7 @@ def smooth(sol: Solution) -> list[str]:
     if not odd or sol.work is not None or len(odd) > FEW:
         return [told for _, told in odd[:1]]
     between = [np.linspace(sol.t[k], sol.t[k + 1], FINER + 1)[1:-1] for k, _ in odd]
+    assert isinstance(sol.mechanism, Mechanism)
     fine = sol.mechanism.sweep(times=np.sort(np.concatenate([sol.t, *between])))
     apart = float(np.abs(fine.q[np.searchsorted(fine.t, sol.t)] - sol.q).max())
     still = {int(np.searchsorted(sol.t, fine.t[k], side="right")) - 1 for k, _ in odd_steps(fine)}

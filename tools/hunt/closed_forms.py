@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 
 Poses = dict[str, np.ndarray]
 """(T, 3) x, y, theta of each body's frame."""

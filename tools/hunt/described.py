@@ -18,10 +18,10 @@ from typing import Any
 import numpy as np
 
 from mbsd import Mechanism
-from mbsd.body import Body, Marker
-from mbsd.force import Force
-from mbsd.joint import Joint
-from mbsd.mechanism_base import Start, StartVelocity
+from mbsd.model.body import Body, Marker
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
+from mbsd.model.mechanism import Start, StartVelocity
 from tools.hunt.raised import raised, raised_curve
 
 Pose = tuple[float, float, float]

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from mbsd import Mechanism
-from mbsd.errors import MechanismError, SimulationError
-from mbsd.solution import Solution
+from mbsd.base.errors import MechanismError, SimulationError
+from mbsd.results.solution import Solution
 from tools.hunt.agreement import NUDGE, SAME, SLACK, Growth, Verdict, Words, compare_free
 from tools.hunt.checks import closed, finite
 from tools.hunt.described import duplicate

@@ -1,7 +1,7 @@
 """How exactly the derivatives of a driver's law are known that is a Python function alone: they come from a fit.
 
 Of a piece of the fit, w wide, the last Chebyshev coefficients are below c, and rounding hides r of f
-(mbsd/fitting/leaves.py: both are in its Leaves). T_8' = 64 and T_8'' = 1344 at the ends of -1 .. 1, so
+(mbsd/model/laws/fitting/leaves.py: both are in its Leaves). T_8' = 64 and T_8'' = 1344 at the ends of -1 .. 1, so
 
     |error of f''| <= 1344 (2 / w)^2 max(c, r),      |error of f'| <= 64 (2 / w) max(c, r)
 
@@ -15,14 +15,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.fitting.cuts import given_cuts
-from mbsd.fitting.fit import fit
-from mbsd.fitting.leaves import BEND_OF_LAST, ROUNDING
-from mbsd.fitting.look import look_times
-from mbsd.fitting.sampled import Sampled
-from mbsd.motions import Motion
-from mbsd.motions.function import Function
-from mbsd.solution import Solution
+from mbsd.model.laws import Motion
+from mbsd.model.laws.fitting.cuts import given_cuts
+from mbsd.model.laws.fitting.fit import fit
+from mbsd.model.laws.fitting.leaves import BEND_OF_LAST, ROUNDING
+from mbsd.model.laws.fitting.look import look_times
+from mbsd.model.laws.fitting.sampled import Sampled
+from mbsd.model.laws.function import Function
+from mbsd.results.solution import Solution
 from tools.hunt.raised import Raised
 
 SLOPE_OF_LAST = 64.0

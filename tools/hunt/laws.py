@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd import constant_rate, cycloidal, function, harmonic, polynomial, table
-from mbsd.motions import Motion
-from mbsd.motions.recorded import recorded
+from mbsd.model.laws import Motion
+from mbsd.model.laws.recorded import recorded
 
 TURN = 2 * math.pi
 

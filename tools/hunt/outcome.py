@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from mbsd.errors import MechanismError
+from mbsd.base.errors import MechanismError
 
 AGREED, REFUSED, UNCLEAR, WRONG, HUNG = "agreed", "refused", "not compared", "wrong", "hung"
 """refused: with an error of the package, for a reason that holds. not compared: the variation does not apply, or the

@@ -6,14 +6,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mbsd.curves import Curve
-from mbsd.motions import Motion
-from mbsd.motions.constant_rate import ConstantRate
-from mbsd.motions.cycloidal import Cycloidal
-from mbsd.motions.harmonic import Harmonic
-from mbsd.motions.polynomial import Polynomial
-from mbsd.motions.recorded import Recorded
-from mbsd.motions.table import Table
+from mbsd.model.laws import Motion
+from mbsd.model.laws.constant_rate import ConstantRate
+from mbsd.model.laws.curve import Curve
+from mbsd.model.laws.cycloidal import Cycloidal
+from mbsd.model.laws.harmonic import Harmonic
+from mbsd.model.laws.polynomial import Polynomial
+from mbsd.model.laws.recorded import Recorded
+from mbsd.model.laws.table import Table
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from mbsd import Mechanism
-from mbsd.errors import MechanismError
-from mbsd.forces.kind import FORCE_KINDS
-from mbsd.joints.kind import KINDS
-from mbsd.motions.function import Function
+from mbsd.base.errors import MechanismError
+from mbsd.model.forces.kind import FORCE_KINDS
+from mbsd.model.joints.kind import KINDS
+from mbsd.model.laws.function import Function
 from tools.hunt.raised import Raised
 
 PROMISED = (

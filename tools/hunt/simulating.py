@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from mbsd import Mechanism
+from mbsd.arrays.start_state import started_at
+from mbsd.base.errors import SimulationError
+from mbsd.dynamics.integrators.kind import INTEGRATORS
 from mbsd.dynamics.simulate import integrator_named
-from mbsd.errors import SimulationError
-from mbsd.integrators.kind import INTEGRATORS
-from mbsd.variants import started_at
 from tools.hunt.agreement import Words, turned_drivers
 from tools.hunt.changed import there_and_back
 from tools.hunt.checks import balanced, closed, finite

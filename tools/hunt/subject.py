@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mbsd import Mechanism
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 
 
 @dataclass

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from mbsd import Mechanism
-from mbsd.errors import MechanismError
-from mbsd.solution import Solution
+from mbsd.base.errors import MechanismError
+from mbsd.results.solution import Solution
 from tools.hunt.agreement import SAME, Words, compare_driven, turned_drivers
 from tools.hunt.changed import there_and_back
 from tools.hunt.checks import driven_problems
@@ -208,7 +208,7 @@ def _one(case: Driven) -> Outcome:
 
 
 def _from_here(case: Driven, k: int) -> Mechanism:
-    from mbsd.variants import started_at
+    from mbsd.arrays.start_state import started_at
 
     assert case.first is not None
     return started_at(duplicate(case.m), case.first.packed, case.first.q[k].ravel(), case.first.v[k].ravel())
@@ -266,7 +266,7 @@ def _simulated(case: Driven) -> Outcome:
     formulation = str(case.rng.choice(["auto", "reference"]))
     duration = case.subject.duration * (60 / A_TURN if case.subject.turns > 0.2 else 1.0)
     times = case.grid[case.grid <= duration]
-    from mbsd.variants import started_at
+    from mbsd.arrays.start_state import started_at
 
     first = case.first
     m = started_at(duplicate(case.m), first.packed, first.q[0].ravel(), first.v[0].ravel())

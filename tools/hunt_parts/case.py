@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.errors import MechanismError
+from mbsd.base.errors import MechanismError
 from shared.stage.errors import UserError
 from tools.hunt.case import drawn
 from tools.hunt.outcome import BASE, CaseResult, Outcome
@@ -17,7 +17,7 @@ from tools.hunt_parts.outcome import BUILT, COLLIDES, ERROR, REFUSED, STUCK, UNS
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
-    from mbsd.solution import Solution
+    from mbsd.results.solution import Solution
     from mechanisms.stages.automatic.automatic import Automatic
     from mechanisms.stages.clearance.pieces import MeshPiece
     from shared.shapes.bodies import Bodies

@@ -12,15 +12,15 @@ from typing import Any
 
 import numpy as np
 
-import mbsd.integrators
+import mbsd.dynamics.integrators
 from mbsd import Mechanism, SimulationError
-from mbsd.dynamics.prepare import prepare_dynamics
-from mbsd.integrators.kind import INTEGRATORS, Integrator
-from mbsd.integrators.state import ACCEPTED
+from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
+from mbsd.dynamics.prepare.prepare import prepare_dynamics
+from mbsd.dynamics.state import ACCEPTED
 from tools.integrators.mechanisms import four_bar, pendulum, pendulum_angle, stiff_four_bar
 
-for _module in pkgutil.iter_modules(mbsd.integrators.__path__):
-    importlib.import_module(f"mbsd.integrators.{_module.name}")
+for _module in pkgutil.iter_modules(mbsd.dynamics.integrators.__path__):
+    importlib.import_module(f"mbsd.dynamics.integrators.{_module.name}")
 
 OUTPUTS = 10
 ROUNDING = 1e-11

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from mbsd import Mechanism
-from mbsd.dynamics.prepare import prepare_dynamics
+from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.simulate import integrator_named
-from mbsd.integrators.state import EVALUATIONS
+from mbsd.dynamics.state import EVALUATIONS
 from tools.integrators.mechanisms import four_bar, pendulum
 
 PERIODS = 10_000

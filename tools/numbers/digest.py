@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from mbsd import MechanismError
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 
 ARRAYS = ("t", "q", "v", "a", "lam", "wrench", "drives", "margin", "work", "held")
 

@@ -14,18 +14,18 @@ from typing import Any
 
 import numpy as np
 
-import mbsd.drivers
-import mbsd.forces
-import mbsd.integrators
-import mbsd.joints
+import mbsd.dynamics.integrators
+import mbsd.model.drivers
+import mbsd.model.forces
+import mbsd.model.joints
 from benchmarks.dynamics import mbsd_code
 from benchmarks.dynamics.cases import case
 from mbsd import Mechanism, constant_rate, harmonic
-from mbsd.contacts.kind import CONTACT_KINDS
-from mbsd.forces.kind import FORCE_KINDS
-from mbsd.integrators.kind import INTEGRATORS
-from mbsd.joints.kind import KINDS
-from mbsd.prepared import prepare
+from mbsd.dynamics.integrators.kind import INTEGRATORS
+from mbsd.kinematics.prepared import prepare
+from mbsd.model.contacts.kind import CONTACT_KINDS
+from mbsd.model.forces.kind import FORCE_KINDS
+from mbsd.model.joints.kind import KINDS
 from tools.integrators.mechanisms import four_bar, pendulum
 
 Run = Callable[[], Any]
@@ -36,7 +36,7 @@ INTERVAL = 0.3
 
 def runs() -> Iterator[tuple[str, Run]]:
     """All, by name."""
-    for package in (mbsd.forces, mbsd.integrators, mbsd.joints, mbsd.drivers):
+    for package in (mbsd.model.forces, mbsd.dynamics.integrators, mbsd.model.joints, mbsd.model.drivers):
         for module in pkgutil.iter_modules(package.__path__):
             importlib.import_module(f"{package.__name__}.{module.name}")
     yield from _kinds()

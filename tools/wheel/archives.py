@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from importlib.metadata import distribution
 from pathlib import Path
 
-from mbsd.shipped_kernels import here
+from mbsd.compiling.shipped_kernels import here
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from tools.wheel.kernels import compile_into

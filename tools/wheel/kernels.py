@@ -32,7 +32,7 @@ m.modes()
     "integrators": """
 import mbsd.dynamics.simulate
 from mbsd import Mechanism
-from mbsd.integrators.kind import INTEGRATORS
+from mbsd.dynamics.integrators.kind import INTEGRATORS
 m = Mechanism("pendulum")
 rod = m.bar("rod", 1.0, mass=1.0)
 m.revolute("A", m.ground.at(0, 0), rod.start)

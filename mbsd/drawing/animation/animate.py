@@ -9,16 +9,16 @@ from pathlib import Path
 
 import numpy as np
 
-from mbsd.arguments import finite_number, switch
+from mbsd.base.arguments import finite_number, switch
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
+from mbsd.base.shown import shown
 from mbsd.drawing.animation.clip import HOLD, clip_of
 from mbsd.drawing.animation.encoders import ffmpeg, held, write_gif, write_mp4
 from mbsd.drawing.animation.page import Page
 from mbsd.drawing.animation.scene import scene_of
 from mbsd.drawing.animation.words import EVERYTHING, QUANTITIES
-from mbsd.errors import ModelError
-from mbsd.names import no_such
-from mbsd.shown import shown
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 
 SUFFIXES = (".mp4", ".gif")
 SIZE = {".mp4": (1280, 720), ".gif": (800, 450)}
@@ -58,7 +58,7 @@ def animate(
     names: bool,
     progress: Callable[[int, int], object] | None,
 ) -> Animation:
-    """See :meth:`mbsd.solution.Solution.animate`."""
+    """See :meth:`mbsd.results.solution.Solution.animate`."""
     name = f"{sol.mechanism.name}: animate"
     target, suffix = _target(name, path)
     groups = _groups(name, show)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.body import Marker
-from mbsd.force_view import Action
-from mbsd.solution import FrameView, Solution
+from mbsd.model.body import Marker
+from mbsd.results.forces import Action
+from mbsd.results.solution import FrameView, Solution
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 
 
 def at_times(sol: Solution, times: np.ndarray) -> Solution:

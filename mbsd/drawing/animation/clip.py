@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.errors import ModelError
-from mbsd.solution import Solution
+from mbsd.base.errors import ModelError
+from mbsd.results.solution import Solution
 
 SHORTEST, LONGEST = 1.0, 40.0
 """Seconds on the screen within which real time is kept."""

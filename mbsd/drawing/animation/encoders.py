@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.base.errors import ModelError
 from mbsd.drawing.animation.words import CARD, KINETIC, POTENTIAL, QUANTITIES, TAKEN
 from mbsd.drawing.look import INK, PAPER, QUIET
-from mbsd.errors import ModelError
 
 PLAIN = ("-movflags", "+faststart", "-map_metadata", "-1", "-fflags", "+bitexact")
 H264 = (
@@ -104,7 +104,7 @@ def write_gif(path: Path, pictures: Iterable[np.ndarray], count: int, fps: float
     drawn[0].save(
         buffer, format="GIF", save_all=True, append_images=drawn[1:], duration=times, loop=0, optimize=False, disposal=1
     )
-    from mbsd.saving.file import write_whole
+    from mbsd.base.files import write_whole
 
     write_whole(path, buffer.getvalue())
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from mbsd.drawing.animation.arrows import Arrow, acting, moving, moving_marker
 from mbsd.drawing.pose import Tracks
-from mbsd.model import Mechanism
-from mbsd.solution import Solution
+from mbsd.model.mechanism import Model
+from mbsd.results.solution import Solution
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ def balance_of(sol: Solution) -> Balance:
     return Balance(sol.energy.kinetic, potential - potential.min(), powers, bodies)
 
 
-def _middle(m: Mechanism, tracks: Tracks, name: str) -> np.ndarray:
+def _middle(m: Model, tracks: Tracks, name: str) -> np.ndarray:
     """(T, 2) of a body: its centre of mass, or the middle of its joints where it has none."""
     body = m.bodies[name]
     here = [one for joint in m.joints.values() for one in (joint.i, joint.j) if one.body is body]

@@ -8,8 +8,8 @@ import numpy as np
 
 from mbsd.drawing.animation.arrows import Arc, Arrow, acting, moving, moving_marker
 from mbsd.drawing.pose import Tracks
-from mbsd.joint import Joint
-from mbsd.solution import Solution
+from mbsd.model.joint import Joint
+from mbsd.results.solution import Solution
 
 ROLLING = ("rolling_disc", "rolling_on_curve", "rack_and_pinion")
 TOUCHING = (*ROLLING, "gear_pair", "cam_flat", "geneva", "point_on_curve", "constraint")

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbsd.body import Marker
 from mbsd.drawing.animation.arrows import Arc, Arrow, Moving, moving, moving_marker
 from mbsd.drawing.pose import Tracks
-from mbsd.model import Mechanism
+from mbsd.model.body import Marker
+from mbsd.model.mechanism import Model
 
 SAME = 1e-9
 """Of the size of the motion: points that stay closer than this are one."""
 
 
-def motion_arrows(m: Mechanism, tracks: Tracks, quantity: str) -> list[Arrow | Arc]:
+def motion_arrows(m: Model, tracks: Tracks, quantity: str) -> list[Arrow | Arc]:
     """Those of ``velocities`` or ``accelerations``; a body none of whose points move gets its turning."""
     out: list[Arrow | Arc] = []
     shown: list[Moving] = []
@@ -35,7 +35,7 @@ def motion_arrows(m: Mechanism, tracks: Tracks, quantity: str) -> list[Arrow | A
     return out
 
 
-def _markers(m: Mechanism, name: str) -> list[Marker]:
+def _markers(m: Model, name: str) -> list[Marker]:
     """Where a body has joints and traced points; its centre of mass too, or a bar's end, if these are one place."""
     joints = [*m.joints.values(), *(one for one in m.contacts.values() if one.kind.name == "rope")]
     out = [marker for joint in joints for marker in (joint.j, joint.i) if marker.body.name == name]

@@ -14,7 +14,7 @@ from mbsd.drawing.animation.still import paint_still
 from mbsd.drawing.animation.trails import trails_of
 from mbsd.drawing.animation.words import QUANTITIES
 from mbsd.drawing.look import INK, QUIET
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 
 HEADER = 50.0
 """Pixels at 100 dots an inch."""

@@ -18,7 +18,7 @@ from mbsd.drawing.animation.motions import motion_arrows
 from mbsd.drawing.look import colour
 from mbsd.drawing.pose import Pose, Tracks, tracks_of
 from mbsd.drawing.skeleton import draw_on, measure_all, steady_sides
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 
 LOOKED_AT = 24
 """Poses from which extent, sides and names are found."""

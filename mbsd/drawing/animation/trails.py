@@ -9,7 +9,7 @@ import numpy as np
 from mbsd.drawing.animation.brush import Brush, rgba
 from mbsd.drawing.animation.clip import Clip
 from mbsd.drawing.look import PALETTE
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 
 PARTS = 4
 """Pieces between two known places."""

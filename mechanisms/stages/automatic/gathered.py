@@ -19,8 +19,8 @@ from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
-    from mbsd.force import Force
-    from mbsd.joint import Joint
+    from mbsd.model.force import Force
+    from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.features import Gather
     from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Item, Levels

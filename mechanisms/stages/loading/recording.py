@@ -125,7 +125,7 @@ class Recorder:
             return False
         if place.startswith(SYSTEM) and not place.startswith(str(ROOT) + os.sep):
             return False
-        kernels = sys.modules.get("mbsd.kernel_cache")  # only once the solver compiles
+        kernels = sys.modules.get("mbsd.compiling.kernel_cache")  # only once the solver compiles
         if kernels is not None and Path(place).is_relative_to(kernels.cache_root()):
             return False
         return place not in self._made and not any(str(parent) in self._made for parent in Path(place).parents)

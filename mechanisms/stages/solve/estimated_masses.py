@@ -55,7 +55,7 @@ def estimated_masses(m: Mechanism) -> dict[str, Estimate]:
 
 def _discs(m: Mechanism) -> Iterator[tuple[Marker, float]]:
     """Every marker that is used, with the radius of the wheel about it (m), or 0."""
-    from mbsd.teeth import with_radii
+    from mbsd.model.teeth import with_radii
 
     for joint in chain(m.joints.values(), m.drivers.values(), m.contacts.values(), m.forces.values()):
         params = with_radii(joint.params)

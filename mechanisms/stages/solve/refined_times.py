@@ -14,7 +14,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
-    from mbsd.solution import Solution
+    from mbsd.results.solution import Solution
 
 CLOSE = 2e-5
 """Largest difference, in sizes of the mechanism (turned bodies count by their angle times that size)."""

@@ -15,7 +15,7 @@ POINTS = 240
 
 def shape_of(one: Joint | Force) -> Shape:
     """The shape between the two markers of a joint, force or contact."""
-    from mbsd.teeth import with_radii
+    from mbsd.model.teeth import with_radii
 
     params = dict(with_radii(one.params))
     profile, laws = params.get("profile"), getattr(one, "laws", {})
@@ -63,7 +63,7 @@ def _curve(points: Any, closed: bool) -> list[tuple[float, float]]:
     """The smooth curve through the points of a joint or terrain."""
     import numpy as np
 
-    from mbsd.curve_numbers import curve_pieces
+    from mbsd.model.plane_curves import curve_pieces
 
     breaks, coefficients = curve_pieces(np.array(points, float), closed)  # (pieces, 2, 6) by rising powers
     each = max(1, round(POINTS / len(coefficients)))

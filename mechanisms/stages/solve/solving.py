@@ -53,7 +53,7 @@ def build(name: str, module: Any, p: Any) -> Mechanism:
 def motion_of(name: str, module: Any, m: Mechanism, p: Any) -> Solution:
     """The motion of ``m`` as mechanism.py wants it. Raises UserError; warnings of the solver become lines."""
     from mbsd import MechanismError
-    from mbsd.solution import Solution
+    from mbsd.results.solution import Solution
 
     motion: Any = getattr(module, "motion", None)
     try:
@@ -97,7 +97,7 @@ def _natural(name: str, module: Any, m: Mechanism) -> Solution:
 
 def _steps_of_period(m: Mechanism) -> int:
     """Steps of a whole period: so many for each turn of its drivers."""
-    from mbsd.period import common_period
+    from mbsd.kinematics.period import common_period
 
     whole, common = m.period(), common_period(m.drivers.values())
     return SWEEP_STEPS if whole is None or common is None else min(SWEEP_STEPS * round(whole / common), MOST)
@@ -113,7 +113,7 @@ def _positive(name: str, module: Any, constant: str, form: str) -> float | None:
     return float(value)
 
 
-def _refuse_other(name: str, m: Mechanism, solved: Mechanism) -> None:
+def _refuse_other(name: str, m: Mechanism, solved: Any) -> None:
     """What motion() solved may be a variant of the model, with the same name and bodies."""
     if solved is not m and (solved.name not in (name, owner_of(name)) or set(solved.bodies) != set(m.bodies)):
         raise UserError(

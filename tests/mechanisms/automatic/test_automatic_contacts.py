@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, constant_rate
-from mbsd.curves import curve
+from mbsd.model.laws.curve import curve
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.cams.cams import Cam
 from mechanisms.stages.automatic.layout.profiles import distances

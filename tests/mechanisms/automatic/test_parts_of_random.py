@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mbsd.errors import MechanismError
+from mbsd.base.errors import MechanismError
 from mechanisms.stages.automatic.automatic import Automatic
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.layouts import meets

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 from mechanisms.bicycle_leg import mechanism as leg
 
 MEASURED = {

@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 from mechanisms.cam_follower import mechanism as cam
 from mechanisms.cam_follower_angular import mechanism as angular
 from mechanisms.quarter_car import mechanism as car

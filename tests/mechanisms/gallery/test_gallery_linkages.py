@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 from mechanisms.four_bar_bicycle import mechanism as bicycle
 from mechanisms.jansen_leg import mechanism as jansen
 from mechanisms.quick_return import mechanism as shaper

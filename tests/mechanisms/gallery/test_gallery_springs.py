@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 from mechanisms.bending_stiffness import mechanism as beam
 from mechanisms.mass_spring_damper import mechanism as oscillator
 from mechanisms.rotating_constraint import mechanism as turning

@@ -9,7 +9,7 @@ import numpy as np
 
 from mbsd import Mechanism, constant_rate, harmonic
 from mbsd.cams import RISES, Lift, flat_cam, oscillating_flat_cam, oscillating_roller_cam, roller_cam
-from mbsd.solution import Solution
+from mbsd.results.solution import Solution
 from tests.models.assur_models import MODELS
 from tests.models.random_linkages import linkage
 from tools.hunt.described import seen_from

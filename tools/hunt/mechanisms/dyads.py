@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 
 from mbsd import Mechanism, constant_rate
-from mbsd.motions import Motion
+from mbsd.model.laws import Motion
 from tools.hunt.closed_forms import Bars, ClosedForm, Crank, Point, RodAndSlider, place
 from tools.hunt.laws import Drive, swinging, turning
 from tools.hunt.subject import Subject, family

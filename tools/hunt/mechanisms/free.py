@@ -8,8 +8,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from mbsd import Mechanism, constant_rate, curve, harmonic
-from mbsd.body import Body
-from mbsd.solution import Solution
+from mbsd.model.body import Body
+from mbsd.results.solution import Solution
 from tests.models.assur_models import MODELS
 from tests.models.random_linkages import linkage
 from tools.hunt.mechanisms.machines import solid

@@ -8,8 +8,8 @@ from collections.abc import Callable
 import numpy as np
 
 from mbsd import Mechanism, harmonic
-from mbsd.body import Body
-from mbsd.solution import Solution
+from mbsd.model.body import Body
+from mbsd.results.solution import Solution
 from tools.hunt.laws import Drive, swinging, turning
 from tools.hunt.subject import Subject, family
 

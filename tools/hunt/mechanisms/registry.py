@@ -9,19 +9,19 @@ import warnings
 
 import numpy as np
 
-import mbsd.contacts
-import mbsd.drivers
-import mbsd.forces
-import mbsd.joints
+import mbsd.model.contacts
+import mbsd.model.drivers
+import mbsd.model.forces
+import mbsd.model.joints
 from mbsd import Mechanism
-from mbsd.contacts.kind import CONTACT_KINDS
-from mbsd.forces.kind import FORCE_KINDS
-from mbsd.joints.kind import KINDS
-from mbsd.motions.examples import EXAMPLES
+from mbsd.model.contacts.kind import CONTACT_KINDS
+from mbsd.model.forces.kind import FORCE_KINDS
+from mbsd.model.joints.kind import KINDS
+from mbsd.model.laws.examples import EXAMPLES
 from tools.hunt.outcome import attempt
 from tools.hunt.subject import Subject, family
 
-for _package in (mbsd.joints, mbsd.drivers, mbsd.forces, mbsd.contacts):
+for _package in (mbsd.model.joints, mbsd.model.drivers, mbsd.model.forces, mbsd.model.contacts):
     for _module in pkgutil.iter_modules(_package.__path__):
         importlib.import_module(f"{_package.__name__}.{_module.name}")
 

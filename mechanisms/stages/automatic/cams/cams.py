@@ -28,8 +28,8 @@ from shared.stage.errors import UserError
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
     from mbsd.cams import CamProfile
-    from mbsd.force import Force
-    from mbsd.joint import Joint
+    from mbsd.model.force import Force
+    from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
 

@@ -20,7 +20,7 @@ from shared.shapes.geneva import Geneva
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
-    from mbsd.joint import Joint
+    from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
 

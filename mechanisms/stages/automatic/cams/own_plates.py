@@ -8,7 +8,7 @@ from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
-    from mbsd.joint import Joint
+    from mbsd.model.joint import Joint
 
 
 def refuse_ground(m: Mechanism, joint: Joint, *bodies: str) -> None:

@@ -11,9 +11,9 @@ import numpy as np
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
-    from mbsd.body import Marker
-    from mbsd.force import Force
-    from mbsd.joint import Joint
+    from mbsd.model.body import Marker
+    from mbsd.model.force import Force
+    from mbsd.model.joint import Joint
 
 LINK, STUD = 22.0, 18.0
 """Least distances of two pins of one body, and of a spring's stud and a pin or stud beside it (rmm)."""

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
-    from mbsd.force import Force
-    from mbsd.joint import Joint
+    from mbsd.model.force import Force
+    from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.layout import Feature, Layout
     from mechanisms.stages.automatic.layout.plan import Plan

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from mbsd import Marker, Mechanism
-    from mbsd.joint import Joint
+    from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.items import Anchor, Levels, Need
     from mechanisms.stages.automatic.layout.sizes import Sizes
 

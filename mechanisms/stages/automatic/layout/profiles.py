@@ -10,7 +10,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from mbsd import Marker
-    from mbsd.curves import Curve
+    from mbsd.model.laws.curve import Curve
     from mechanisms.stages.automatic.layout.layout import Layout
 
 FINE = 240
@@ -19,7 +19,7 @@ FINE = 240
 
 def curve_path(points: Sequence[Sequence[float]], closed: bool) -> np.ndarray:
     """(n, 2) places (m) of the smooth curve through ``points``, in the axes of its marker."""
-    from mbsd.curve_numbers import curve_pieces
+    from mbsd.model.plane_curves import curve_pieces
 
     breaks, coefficients = curve_pieces(np.array(points, dtype=float), closed)
     if closed:

@@ -14,7 +14,7 @@ from mechanisms.stages.automatic.layout.extents import ROD, Extent, extent
 
 if TYPE_CHECKING:
     from mbsd import Solution
-    from mbsd.joint import Joint
+    from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.layout import Layout
     from shared.shapes.bodies import Place
 

@@ -25,8 +25,8 @@ from mechanisms.stages.automatic.pins.stretching import BALL, Stretching, Stud
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
-    from mbsd.force import Force
-    from mbsd.joint import Joint
+    from mbsd.model.force import Force
+    from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.layout import Layout
 
 RADIUS, BROAD = 9.0, 0.17

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.curves import Curve
+from mbsd.model.laws.curve import Curve
 from mechanisms.stages.automatic.cams.cams import pushing_cam, pushing_extent
 from mechanisms.stages.automatic.layout.extents import Extent, extent
 from mechanisms.stages.automatic.layout.features import contact_kind, force_kind
@@ -26,8 +26,8 @@ from mechanisms.stages.automatic.rolling.walls import NOSE, Line, roads
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
-    from mbsd.force import Force
-    from mbsd.joint import Joint
+    from mbsd.model.force import Force
+    from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.layout import Layout
 
     type Touch = Force | Joint

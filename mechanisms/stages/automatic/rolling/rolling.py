@@ -20,7 +20,7 @@ from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
-    from mbsd.joint import Joint
+    from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.layout import Layout
 
 BEYOND = 0.8

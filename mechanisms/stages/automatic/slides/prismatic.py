@@ -14,7 +14,7 @@ from mechanisms.stages.automatic.slides.slides import HALF_LENGTH, Slide
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
-    from mbsd.joint import Joint
+    from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.layout import Feature, Layout
 
 FAR = 4.0

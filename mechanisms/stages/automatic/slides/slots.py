@@ -21,7 +21,7 @@ from mechanisms.stages.automatic.layout.planar import around, disc
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
-    from mbsd.joint import Joint
+    from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from mbsd.teeth import with_radii
+from mbsd.model.teeth import with_radii
 from mechanisms.stages.automatic.layout.extents import Extent, extent
 from mechanisms.stages.automatic.wheels import pulleys
 from mechanisms.stages.automatic.wheels.pulleys import Belt, Pulley
@@ -14,7 +14,7 @@ from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
-    from mbsd.joint import Joint
+    from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.layout import Layout
 
 

@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from mbsd.teeth import with_radii
+from mbsd.model.teeth import with_radii
 from mechanisms.stages.automatic.layout.extents import Extent, extent
 from mechanisms.stages.automatic.layout.features import kind
 from mechanisms.stages.automatic.layout.layout import Feature
@@ -23,8 +23,8 @@ from mechanisms.stages.automatic.wheels.wheels import Wheel
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
-    from mbsd.body import Marker
-    from mbsd.joint import Joint
+    from mbsd.model.body import Marker
+    from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.layout import Layout
 
 GEARS, RACKS = "gear_pair", "rack_and_pinion"

@@ -20,7 +20,7 @@ from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
-    from mbsd.joint import Joint
+    from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
     from mechanisms.stages.automatic.wheels.wheels import Wheel

@@ -16,7 +16,7 @@ from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
-    from mbsd.joint import Joint
+    from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.layout import Layout
 
 type Toothed = Wheel | Rack

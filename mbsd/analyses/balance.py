@@ -1,0 +1,170 @@
+"""The search for a pose that balances, on the constraints.
+
+    g = -T^T Q,   step -|K|^-1 g along the tangent basis T, put back onto the constraints
+
+Downhill: K with its negative curvatures turned positive, steps limited in length; a step counts if the loads do work on
+it, so no potential is needed. A pose that balances but is unstable is left along its softest direction. Near the end
+this is Newton's method. Nearest: Newton on g = 0, which also finds unstable equilibria.
+
+Source: Nocedal, Wright, Numerical Optimization, ch. 3.4 (modified Newton); Haug 1989, ch. 7.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.analyses.statics import Statics
+from mbsd.analyses.tangent import tangent
+from mbsd.base.errors import EquilibriumError
+from mbsd.kinematics.pose.close import CLOSED, close
+
+LONGEST = 0.3
+"""Of one step, in sizes and rad."""
+MOST_STEPS = 400
+BALANCED = 1e-13
+"""Part of the largest load that may stay unbalanced."""
+NOISE = 1e-14
+"""Of the stiffness: what a displacement by rounding changes in the loads."""
+ACCEPTED = 1e-9
+"""What counts as balanced where rounding allows no further step."""
+FLAT = 1e-8
+"""Part of the largest stiffness below which a direction is neutral."""
+
+
+@dataclass
+class Balance:
+    """A pose as the search sees it."""
+
+    basis: np.ndarray
+    load: np.ndarray
+    lam: np.ndarray
+    slope: np.ndarray
+    """(f,) g = -T^T Q."""
+    largest: float
+
+    def balanced(self, part: float, stiffness: np.ndarray) -> bool:
+        """Whether no more than this part of the largest load is left, or rounding."""
+        noise = NOISE * float(np.abs(stiffness).max(initial=0.0))
+        return bool(np.abs(self.slope).max(initial=0.0) <= part * self.largest + noise)
+
+
+def look(ready: Statics, q: np.ndarray) -> Balance:
+    """Tangent, loads and multipliers at q (3 nb,). Raises EquilibriumError where a load is not finite."""
+    jacobian = ready.jacobian(q)
+    basis = tangent(ready.packed, jacobian)
+    load = ready.load(q)
+    ready.packed.specials.check()
+    if not np.isfinite(load).all():
+        raise EquilibriumError(
+            f"{ready.packed.name}: the load of '{_worst(ready, np.isnan(load))}' is not finite at the pose that the "
+            "search has come to; start nearer with start_near, or look at the forces of this body"
+        )
+    slope = -(basis * ready.packed.column_scale()[:, None]).T @ load
+    return Balance(basis, load, ready.multipliers(jacobian, load), slope, ready.size_of_load(q))
+
+
+def _worst(ready: Statics, generalised: np.ndarray) -> str:
+    return ready.packed.body_names[1 + int(np.argmax(np.abs(generalised * ready.packed.column_scale()))) // 3]
+
+
+def _moved(ready: Statics, q: np.ndarray, step: np.ndarray) -> np.ndarray | None:
+    """The closed pose nearest to q + step (n,), None if there is none near."""
+    trial = q.copy()
+    trial[3:] += step * ready.packed.column_scale()
+    closed, gap = close(ready.packed, trial, ready.drive)
+    back = np.linalg.norm((closed - trial)[3:] / ready.packed.column_scale())
+    return closed if gap <= CLOSED and back <= 0.5 * np.linalg.norm(step) else None
+
+
+def descend(ready: Statics, q: np.ndarray) -> tuple[np.ndarray, int]:
+    """Downhill from q (3 nb,): the stable pose and the steps taken. Raises EquilibriumError."""
+    here = look(ready, q)
+    for count in range(MOST_STEPS):
+        stiffness = ready.stiffness(q, here.lam, here.basis)
+        value, direction = np.linalg.eigh(0.5 * (stiffness + stiffness.T))
+        flat = FLAT * float(np.abs(value).max(initial=0.0))
+        if here.balanced(BALANCED, stiffness):
+            if not len(value) or value[0] >= -max(flat, 1e-9 * here.largest):
+                return q, count
+            step = LONGEST / 3.0 * direction[:, 0] * (1.0 if direction[:, 0].sum() >= 0.0 else -1.0)
+            found = _leave(ready, q, here.basis, step)
+        else:
+            step = -np.linalg.solve(stiffness, here.slope) if value[0] > flat else None
+            if step is None or step @ here.slope >= 0.0:
+                least = max(flat, 1e-3 * float(np.abs(here.slope).max()))
+                step = -direction @ (direction.T @ here.slope / np.maximum(np.abs(value), least))
+            step *= min(1.0, LONGEST / max(float(np.linalg.norm(step)), 1e-300))
+            found = _downhill(ready, q, here, step)
+        if found is None:
+            if here.balanced(ACCEPTED, stiffness):
+                return q, count
+            break
+        q, here = found
+    raise _none(ready, here)
+
+
+def _downhill(ready: Statics, q: np.ndarray, here: Balance, step: np.ndarray) -> tuple[np.ndarray, Balance] | None:
+    """The step, halved until the loads do work on it; None if they never do."""
+    part = 1.0
+    for _ in range(40):
+        moved = _moved(ready, q, here.basis @ (part * step))
+        if moved is not None:
+            there = look(ready, moved)
+            work = 0.5 * (here.load + there.load) @ (moved - q)[3:]
+            smaller = np.linalg.norm(there.slope) < 0.5 * np.linalg.norm(here.slope)
+            if work >= -1e-4 * part * (step @ here.slope) or (smaller and work > 0.0):
+                return moved, there
+            if smaller and np.linalg.norm(here.slope) < 1e-6 * here.largest:
+                return moved, there
+        part /= 2.0
+    return None
+
+
+def _leave(ready: Statics, q: np.ndarray, basis: np.ndarray, step: np.ndarray) -> tuple[np.ndarray, Balance] | None:
+    """Off an unstable pose, one way or the other."""
+    for part in (1.0, -1.0, 0.3, -0.3, 0.1, -0.1):
+        moved = _moved(ready, q, basis @ (part * step))
+        if moved is not None:
+            return moved, look(ready, moved)
+    return None
+
+
+def newton(ready: Statics, q: np.ndarray) -> tuple[np.ndarray, int]:
+    """The nearest pose that balances, stable or not, and the steps taken. Raises EquilibriumError."""
+    here = look(ready, q)
+    for count in range(MOST_STEPS):
+        stiffness = ready.stiffness(q, here.lam, here.basis)
+        if here.balanced(BALANCED, stiffness):
+            return q, count
+        step = -np.linalg.lstsq(stiffness, here.slope, rcond=1e-10)[0]
+        step *= min(1.0, LONGEST / max(float(np.linalg.norm(step)), 1e-300))
+        part, found = 1.0, None
+        for _ in range(30):
+            moved = _moved(ready, q, here.basis @ (part * step))
+            there = look(ready, moved) if moved is not None else None
+            if moved is not None and there is not None and _norm(there) < (1.0 - 1e-4 * part) * _norm(here):
+                found = moved, there
+                break
+            part /= 2.0
+        if found is None:
+            if here.balanced(ACCEPTED, stiffness):
+                return q, count
+            break
+        q, here = found
+    raise _none(ready, here)
+
+
+def _norm(here: Balance) -> float:
+    return float(np.linalg.norm(here.slope))
+
+
+def _none(ready: Statics, here: Balance) -> EquilibriumError:
+    body = _worst(ready, here.basis @ here.slope / ready.packed.column_scale())
+    left = np.abs(here.slope).max() / ready.packed.size
+    return EquilibriumError(
+        f"{ready.packed.name}: no equilibrium was found: '{body}' is still driven by {left:.3g} N (or N m over the "
+        f"size of {ready.packed.size:.3g} m) where the search has come to. If nothing holds the mechanism, add a "
+        "spring, a stop, a driver or a joint; if something does, start nearer to the equilibrium with start_near."
+    )

@@ -1,0 +1,174 @@
+"""Static equilibrium: a pose on the constraints where the loads do no work in any motion that the joints leave.
+
+    Phi(q) = 0,   T^T Q(q) = 0        T: tangent basis, Q: weight, springs and other forces at rest, drivers hold
+
+Stability by the eigenvalues of the symmetric part of K (Lagrange-Dirichlet): all positive stable, one negative
+unstable, else neutral. The search is in balance.py. Source: Haug 1989, ch. 7.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.analyses.balance import FLAT, descend, look, newton
+from mbsd.analyses.statics import Statics, statics
+from mbsd.analyses.tangent import Independent, independent_coordinates
+from mbsd.arrays.packing import pack
+from mbsd.arrays.reactions import wrenches
+from mbsd.arrays.start_state import held, started_at
+from mbsd.base.errors import ModelError, SingularPoseError
+from mbsd.equations.assembly import tabulate
+from mbsd.kinematics.closed_contacts import refuse_resting
+from mbsd.kinematics.pose.close import assemble
+from mbsd.kinematics.pose.mobility import joint_mobility
+from mbsd.kinematics.prepared import refuse_bad_laws
+from mbsd.model.mechanism import Model
+from mbsd.results.forces import ForceView
+from mbsd.results.solution import DriverView, EnergyView, FrameView, JointView, Solution, Stats
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibrium:
+    """A pose at rest where everything balances; views give single numbers."""
+
+    solution: Solution
+    """The pose as a solution with one time."""
+    stability: str
+    """``stable``, ``unstable``, ``neutral`` (it may move without a change of loads), ``fixed`` (nothing can move)."""
+    independent: Independent
+    stiffness: np.ndarray
+    """(f, f) against the independent coordinates: N/m, N, N m/rad."""
+    model: Model
+    """The mechanism that starts here, at rest, its drivers holding."""
+    steps: int
+
+    @property
+    def stable(self) -> bool:
+        """Whether it comes back after every small disturbance."""
+        return self.stability in ("stable", "fixed")
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of the independent coordinates, as ``rod.theta``."""
+        return self.independent.names
+
+    def body(self, name: str) -> FrameView:
+        """Pose of a body's frame: x, y (m), theta (rad)."""
+        return _single(self.solution.body(name))
+
+    def point(self, name: str) -> FrameView:
+        """Place of a traced point."""
+        return _single(self.solution.point(name))
+
+    def joint(self, name: str) -> JointView:
+        """Place and reaction of a joint (on its second body)."""
+        return _single(self.solution.joint(name))
+
+    def driver(self, name: str) -> DriverView:
+        """What a driver holds, and the effort it takes."""
+        return _single(self.solution.driver(name))
+
+    def force(self, name: str) -> ForceView:
+        """What a force does in this pose, at rest; see :meth:`mbsd.results.solution.Solution.force`."""
+        return _single(self.solution.force(name))
+
+    @property
+    def energy(self) -> EnergyView:
+        """Potential energy (J); kinetic is zero."""
+        return _single(self.solution.energy)
+
+    def start(self, m: Model) -> None:
+        """Let ``m`` start here: its ``start_near`` poses become those of this equilibrium."""
+        for name in self.model.starts:
+            m.known_body(name)
+        m.starts.update(self.model.starts)
+
+    def __repr__(self) -> str:
+        return (
+            f"<Equilibrium {self.solution.mechanism.name}: {self.stability}, coordinates "
+            f"{', '.join(self.coordinates) or 'none'}>"
+        )
+
+
+def _single(view):
+    """A view of one time with numbers instead of arrays."""
+    fields = {key: value[0] if isinstance(value, np.ndarray) else value for key, value in vars(view).items()}
+    return type(view)(**fields)
+
+
+def equilibrium(m: Model, time: float, nearest: bool) -> Equilibrium:
+    """See :meth:`mbsd.mechanism.Mechanism.equilibrium`."""
+    if len(m.bodies) < 2:
+        raise ModelError(f"{m.name}: there is no body beside ground; add one with m.bar(...) or m.body(...)")
+    if not math.isfinite(time):
+        raise ModelError(f"{m.name}: time is {time} s; it must be finite")
+    resting = held(m, time)
+    packed = pack(resting)
+    refuse_bad_laws(packed, time, time)
+    ready = statics(packed, time)
+    start = assemble(resting, packed, time)
+    q, steps = (newton if nearest else descend)(ready, start)
+    refuse_resting(resting, packed, start, q)
+    return _result(m, resting, ready, q, steps)
+
+
+def _result(m: Model, resting: Model, ready: Statics, q: np.ndarray, steps: int) -> Equilibrium:
+    packed = ready.packed
+    here = look(ready, q)
+    mobility = joint_mobility(packed, q)
+    drivers = len(packed.ws.phi) - packed.driver_rows
+    if here.basis.shape[1] > max(mobility.dof - drivers, 0):
+        raise SingularPoseError(
+            f"{packed.name}: the pose that balances is singular (a toggle or change point): the links can go on in "
+            f"more ways than the {max(mobility.dof - drivers, 0)} of their mobility, and it cannot be told whether it "
+            "is stable. Change a length a little, or start so that another equilibrium is nearer."
+        )
+    stiffness = ready.stiffness(q, here.lam, here.basis)
+    independent = independent_coordinates(packed, here.basis)
+    change = np.linalg.lstsq(here.basis * packed.column_scale()[:, None], independent.basis, rcond=None)[0]
+    return Equilibrium(
+        solution=_solution(m, ready, q, here.lam, mobility),
+        stability=_stability(stiffness, here.largest),
+        independent=independent,
+        stiffness=change.T @ stiffness @ change,
+        model=started_at(resting, packed, q, np.zeros_like(q)),
+        steps=steps,
+    )
+
+
+def _stability(stiffness: np.ndarray, load: float) -> str:
+    if not len(stiffness):
+        return "fixed"
+    value = np.linalg.eigvalsh(0.5 * (stiffness + stiffness.T))
+    zero = max(FLAT * float(np.abs(value).max()), 1e-9 * load)
+    if value[0] < -zero:
+        return "unstable"
+    return "stable" if value[0] > zero else "neutral"
+
+
+def _solution(m: Model, ready: Statics, q: np.ndarray, lam: np.ndarray, mobility) -> Solution:
+    packed, rows = ready.packed, len(lam)
+    phi, gamma, compact = np.zeros((1, rows)), np.zeros((1, rows)), np.zeros((1, rows, 6))
+    rest = np.zeros((1, len(q)))
+    tabulate(packed.system, ready.drive[None], q[None], rest, packed.ws, phi, compact, gamma)
+    scaled = packed.jacobian() * packed.row_scale()[:, None] * packed.column_scale()
+    singular = np.linalg.svd(scaled, compute_uv=False) if rows else np.ones(1)
+    shape = (1, -1, 3)
+    return Solution(
+        mechanism=m,
+        packed=packed,
+        t=np.array([ready.time]),
+        q=q.reshape(shape),
+        v=rest.reshape(shape),
+        a=np.zeros_like(rest).reshape(shape),
+        wrench=wrenches(packed, compact, q[None], lam[None]),
+        lam=lam[None],
+        drives=ready.drive[None],
+        margin=np.array([singular[-1] / singular[0]]),
+        stats=Stats(float(np.abs(phi).max(initial=0.0)), 0.0, 0.0, 0.0, steps=1, inserted_steps=0),
+        mobility=mobility,
+        route="equilibrium",
+    )

@@ -1,0 +1,114 @@
+"""Modes of a linearisation: eigenvalues of A, and how every body moves.
+
+    lambda = -zeta omega +- i omega sqrt(1 - zeta^2)        omega = |lambda|
+
+A pair of conjugate eigenvalues is one mode. A real eigenvalue is a mode of its own that creeps (zeta = 1) or runs away
+(zeta = -1); a pair of zeros is one motion without resistance, at frequency 0. A mode moves every body by
+
+    Re(amplitude shape e^(lambda t)),        shape: x, y, theta of the body's frame
+
+scaled so that the largest displacement of a frame, or turn times the mechanism's size, is 1 and real.
+Source: Meirovitch, Fundamentals of Vibrations, ch. 7.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
+
+if TYPE_CHECKING:
+    from mbsd.analyses.state_space import Linearisation
+
+ZERO = 1e-10
+"""Squares of eigenvalues below this part of the largest stiffness over mass are zero."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mode:
+    """One mode."""
+
+    eigenvalue: complex
+    """1/s, the one with positive imaginary part of a pair."""
+    shape: dict[str, np.ndarray]
+    """(3,) x, y (m), theta (rad) of each body's frame; real if all bodies move in step, else complex."""
+    coordinates: dict[str, complex]
+    """The same of the independent coordinates."""
+
+    @property
+    def omega(self) -> float:
+        """Natural frequency (rad/s): |lambda|."""
+        return abs(self.eigenvalue)
+
+    @property
+    def frequency(self) -> float:
+        """Natural frequency (Hz)."""
+        return self.omega / (2 * math.pi)
+
+    @property
+    def damped_frequency(self) -> float:
+        """Frequency at which it swings (Hz); 0 if it does not."""
+        return abs(self.eigenvalue.imag) / (2 * math.pi)
+
+    @property
+    def damping_ratio(self) -> float:
+        """zeta: 0 undamped, 1 and more creeps back, negative grows."""
+        return -self.eigenvalue.real / self.omega if self.omega else 0.0
+
+    def of(self, body: str) -> np.ndarray:
+        """(3,) shape of one body. Raises ModelError for a body that is not there."""
+        if body not in self.shape:
+            raise ModelError(no_such("body", body, self.shape))
+        return self.shape[body]
+
+    def __str__(self) -> str:
+        return (
+            f"{self.frequency:.6g} Hz, {self.omega:.6g} rad/s, damping ratio {self.damping_ratio:.4g}, "
+            f"largest in {max(self.shape, key=lambda name: float(np.abs(self.shape[name]).max()))}"
+        )
+
+
+def modes_of(linear: Linearisation) -> tuple[Mode, ...]:
+    """All modes, by rising frequency; one for each pair of eigenvalues, one for each real eigenvalue."""
+    f = len(linear.coordinates)
+    values, vectors = np.linalg.eig(linear.a)
+    largest = float(np.abs(linear.a[f:, :f]).max()) + float(np.abs(linear.a[f:, f:]).max()) ** 2
+    values = np.where(np.abs(values) ** 2 <= ZERO * largest, 0.0, values)
+    straight = np.abs(values.imag) <= 1e-9 * np.abs(values)
+    values = np.where(straight, values.real, values)
+    modes = [_mode(linear, 0.0, z) for z in _free(linear.a[f:, :f])]
+    for k in np.argsort(np.abs(values), kind="stable"):
+        if values[k].imag >= 0.0 and values[k] != 0.0:
+            modes.append(_mode(linear, complex(values[k]), vectors[:f, k]))
+    return tuple(modes)
+
+
+def _free(pull: np.ndarray) -> np.ndarray:
+    """(free motions, f) displacements that nothing pulls back."""
+    _, singular, right = np.linalg.svd(pull)
+    return right[singular <= ZERO * singular.max(initial=0.0)]
+
+
+def _mode(linear: Linearisation, value: complex, z: np.ndarray) -> Mode:
+    every = (linear.c @ z).reshape(-1, 3)
+    c, s = np.cos(linear.q[2::3]), np.sin(linear.q[2::3])
+    arm_x = c * linear.com[:, 0] - s * linear.com[:, 1]
+    arm_y = s * linear.com[:, 0] + c * linear.com[:, 1]
+    every[:, 0] += arm_y * every[:, 2]
+    every[:, 1] -= arm_x * every[:, 2]
+    size = np.array([1.0, 1.0, linear.size])
+    largest = np.argmax(np.abs(every * size).round(9))
+    scale = (every * size).ravel()[largest]
+    every, z = every / scale, z / scale
+    every[np.abs(every * size) < 1e-12] = 0.0
+    if np.abs(every.imag).max() <= 1e-6 * np.abs(every).max():
+        every = every.real.copy()
+        z = z.real.copy()
+    names = list(linear.model.bodies)
+    shape = {name: every[b] for b, name in enumerate(names) if b > 0}
+    return Mode(value, shape, dict(zip(linear.coordinates, z.tolist(), strict=True)))

@@ -1,0 +1,1 @@
+"""Names in, arrays out, and what Python asks of kernels along a motion."""

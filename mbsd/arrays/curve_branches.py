@@ -1,0 +1,126 @@
+"""Points on curves that cross themselves: on which branch of its curve each one is.
+
+Such a row keeps the parameter of its foot where the motion was accepted last (mbsd/equations/relative/curve_pieces.py).
+Poses that are looked at afterwards tell their branch by themselves: at a crossing it is the one along which the point
+moves.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.equations.assembly import tabulate
+from mbsd.equations.constraints.relative import AT, MARKER_I, MARKER_J
+from mbsd.equations.relative.curve_pieces import CLOSED, CX, CY, DISTANCE, DX, DY, FARTHEST, LAST, SPAN, TABLE, foot
+
+if TYPE_CHECKING:
+    from mbsd.arrays.packing import Packed
+
+CURVES = ("curve", "curve_rolling")
+NEAR = 1e-5
+"""Of the size: a branch nearer than this may be the one a point is on."""
+LOOKS = 64
+"""Parameters from which the branches near a point are looked for."""
+
+
+class CurveBranches:
+    """The rows of a packed mechanism whose curves cross themselves."""
+
+    def __init__(self, packed: Packed) -> None:
+        system, self.packed = packed.system, packed
+        self.rows: list[tuple[int, int, np.ndarray]] = []
+        """Markers i and j, and the numbers of the row."""
+        for k, name in enumerate(packed.specials.names):
+            at = int(system.special[k, AT])
+            if name in CURVES and system.numbers[at + FARTHEST] > 0.0:
+                self.rows.append(
+                    (int(system.special[k, MARKER_I]), int(system.special[k, MARKER_J]), system.numbers[at:])
+                )
+        self._scratch = np.zeros_like(packed.ws.relative)
+
+    def __bool__(self) -> bool:
+        return bool(self.rows)
+
+    def settle(self, q: np.ndarray, v: np.ndarray) -> None:
+        """Take the branches along which the points move at q, v (3 nb,)."""
+        for i, j, numbers in self.rows:
+            numbers[LAST] = math.nan
+            x, y, vx, vy = self._relative(q, v, i, j)
+            best = foot(numbers, x, y, self._scratch)
+            least = self._across(numbers, x, y, vx, vy)
+            for part in np.arange(1, LOOKS) / LOOKS:
+                numbers[LAST] = numbers[TABLE] + part * numbers[SPAN]
+                u = foot(numbers, x, y, self._scratch)
+                across = self._across(numbers, x, y, vx, vy)
+                if across < least:
+                    best, least = u, across
+            numbers[LAST] = best
+
+    def _across(self, numbers: np.ndarray, x: float, y: float, vx: float, vy: float) -> float:
+        """Speed across the curve at the foot in the scratch; infinite where the point is not on it."""
+        at = self._scratch
+        speed = math.hypot(at[DX], at[DY])
+        tx, ty = at[DX] / speed, at[DY] / speed
+        off = tx * (y - at[CY]) - ty * (x - at[CX]) - numbers[DISTANCE]
+        return abs(tx * vy - ty * vx) if abs(off) < NEAR * self.packed.size else math.inf
+
+    def moved(self, q: np.ndarray) -> tuple[list[float], float]:
+        """Parameters of the feet at q (3 nb,), and the farthest that one of them goes, as part of how far it may."""
+        feet, farthest = [], 0.0
+        for i, j, numbers in self.rows:
+            x, y, _, _ = self._relative(q, np.zeros_like(q), i, j)
+            feet.append(foot(numbers, x, y, self._scratch))
+            way = abs(feet[-1] - numbers[LAST])
+            if numbers[CLOSED]:
+                way = min(way, abs(numbers[SPAN] - way))
+            farthest = max(farthest, way / numbers[FARTHEST])
+        return feet, farthest
+
+    def accept(self, feet: list[float]) -> None:
+        """Go on from these."""
+        for (_, _, numbers), u in zip(self.rows, feet, strict=True):
+            numbers[LAST] = u
+
+    def _relative(self, q: np.ndarray, v: np.ndarray, i: int, j: int) -> tuple[float, float, float, float]:
+        """Place and velocity of marker j in the axes of marker i."""
+        (px, py, ax, ay), (qx, qy, bx, by) = self._marker(q, v, i), self._marker(q, v, j)
+        body = int(self.packed.system.marker_body[i])
+        c, s = math.cos(q[3 * body + 2]), math.sin(q[3 * body + 2])
+        ux, uy = self.packed.system.marker_axis[i]
+        ux, uy = c * ux - s * uy, s * ux + c * uy
+        dx, dy, ex, ey, omega = qx - px, qy - py, bx - ax, by - ay, v[3 * body + 2]
+        x, y = ux * dx + uy * dy, ux * dy - uy * dx
+        return x, y, ux * ex + uy * ey + omega * y, ux * ey - uy * ex - omega * x
+
+    def _marker(self, q: np.ndarray, v: np.ndarray, marker: int) -> tuple[float, float, float, float]:
+        body = int(self.packed.system.marker_body[marker])
+        c, s = math.cos(q[3 * body + 2]), math.sin(q[3 * body + 2])
+        ax, ay = self.packed.system.marker_arm[marker]
+        ax, ay = c * ax - s * ay, s * ax + c * ay
+        omega = v[3 * body + 2]
+        return q[3 * body] + ax, q[3 * body + 1] + ay, v[3 * body] - omega * ay, v[3 * body + 1] + omega * ax
+
+
+def tabulate_along(
+    packed: Packed,
+    drives: np.ndarray,
+    q: np.ndarray,
+    v: np.ndarray,
+    phi: np.ndarray,
+    compact: np.ndarray,
+    gamma: np.ndarray,
+) -> None:
+    """``tabulate`` along a motion q, v (T, 3 nb), each pose on the branches along which its points move."""
+    following = CurveBranches(packed)
+    if not following.rows:
+        tabulate(packed.system, drives, q, v, packed.ws, phi, compact, gamma)
+        return
+    kept = packed.system.numbers.copy()
+    for k in range(len(q)):
+        following.settle(q[k], v[k])
+        row = slice(k, k + 1)
+        tabulate(packed.system, drives[row], q[row], v[row], packed.ws, phi[row], compact[row], gamma[row])
+    packed.system.numbers[:] = kept

@@ -1,0 +1,45 @@
+"""Laws of drivers and forces as one table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.base.users_function import law_of, tell_missed
+from mbsd.equations.laws import Laws
+from mbsd.model.laws import Motion
+from mbsd.model.laws.numbers import (
+    ZERO,
+    Compiled,
+)
+
+if TYPE_CHECKING:
+    from mbsd.arrays.packing import Packed
+
+
+def pack_laws(laws: Sequence[Compiled]) -> Laws:
+    """One table of laws; the constant zero is put before them."""
+    everything = [ZERO, *laws]
+    sizes = [len(numbers) for _, numbers in everything]
+    return Laws(
+        np.array([kind for kind, _ in everything], np.int64),
+        np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64),
+        np.concatenate([np.asarray(numbers, float) for _, numbers in everything]),
+    )
+
+
+def compiled_laws(packed: Packed, start: float, end: float) -> Laws:
+    """The laws of drivers, then those of forces, for times ``start`` .. ``end`` (s)."""
+    laws = []
+    for name, motion in zip(packed.driver_names, packed.motions, strict=True):
+        with law_of(f"{packed.name}: driver '{name}'"):
+            laws.append(motion.compiled(start, end))
+    for force in packed.forces:
+        for what, law in force.laws.items():
+            with law_of(f"{packed.name}: force '{force.name}': {what}"):
+                ready = law.as_load(start, end) if isinstance(law, Motion) else law
+                laws.append(ready.compiled(start, end))
+                tell_missed(f"{packed.name}: force '{force.name}': {what}", ready)
+    return pack_laws(laws)

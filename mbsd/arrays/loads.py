@@ -1,0 +1,76 @@
+"""Forces as arrays: elements and terms, interactions, functions of the user, friction of joints."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.arrays.joint_friction import pack_friction
+from mbsd.arrays.user_forces import law_address, pack_user_forces
+from mbsd.equations.interactions.law import STATE, address_of
+from mbsd.equations.loads import Loads
+
+if TYPE_CHECKING:
+    from mbsd.arrays.packing import Packed
+
+
+def pack_loads(packed: Packed) -> Loads:
+    """The loads of a packed mechanism; laws of forces are numbered after those of the drivers."""
+    element, where, term, number = [], [], [], []
+    system = packed.system
+    law = len(packed.motions)
+    for force, (i, j) in zip(packed.forces, packed.force_markers, strict=True):
+        numbered = {name: law + 1 + k for k, name in enumerate(force.laws)}
+        law += len(force.laws)
+        for part in force.kind.elements(force):
+            bodies = system.marker_body[i], system.marker_body[j]
+            element.append((part.kind, *bodies, len(term), len(term) + len(part.terms)))
+            ux, uy = system.marker_axis[i]
+            axis = (-uy, ux) if part.turned else (ux, uy)
+            where.append((*system.marker_arm[i], *axis, *system.marker_arm[j]))
+            for one in part.terms:
+                term.append((one.kind, numbered[one.law] if one.law else 0))
+                number.append((one.a, one.b, one.c))
+    interaction, given = pack_interactions(packed)
+    user, user_body, user_com = pack_user_forces(packed)
+    friction, friction_number = pack_friction(packed)
+    return Loads(
+        np.array(element, np.int64).reshape(-1, 5),
+        np.array(where, float).reshape(-1, 6),
+        np.array(term, np.int64).reshape(-1, 2),
+        np.array(number, float).reshape(-1, 3),
+        np.zeros(3),
+        interaction,
+        given,
+        np.zeros(STATE),
+        user,
+        user_body,
+        user_com,
+        np.zeros((2, 6 * max(1, int(user[:, 2].max(initial=1))))),
+        friction,
+        friction_number,
+        np.zeros((4, len(friction))),
+        np.zeros(2),
+        len(element) + len(interaction) + len(user),
+    )
+
+
+def pack_interactions(packed: Packed) -> tuple[np.ndarray, np.ndarray]:
+    """The table (n, 5) and all numbers, for Loads."""
+    number = {name: b for b, name in enumerate(packed.body_names)}
+    rows, given, at, law = [], [], 0, len(packed.motions)
+    for force in packed.forces:
+        numbered = {name: law + 1 + k for k, name in enumerate(force.laws)}
+        law += len(force.laws)
+        for one in force.kind.interactions(force, packed.masses):
+            i, j = number[one.i.body.name], number[one.j.body.name]
+            arms = [(m.x - packed.com[b, 0], m.y - packed.com[b, 1]) for m, b in ((one.i, i), (one.j, j))]
+            axis = math.cos(one.i.angle), math.sin(one.i.angle)
+            called = (float(law_address(packed, force)),) if one.calls_law else ()
+            block = np.array([*arms[0], *axis, *arms[1], one.j.angle - one.i.angle, *called, *one.numbers], float)
+            rows.append((i, j, numbered[one.law] if one.law else 0, at, address_of(one.function)))
+            given.append(block)
+            at += len(block)
+    return np.array(rows, np.int64).reshape(-1, 5), np.concatenate(given) if given else np.zeros(0)

@@ -1,0 +1,246 @@
+"""Names in, arrays out: a Model as the System the kernels read.
+
+Authors place a body's frame where it is convenient; here alone it is shifted to the centre of mass.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.arrays.relative import Specials
+from mbsd.base.users_function import law_of, tell_missed
+from mbsd.equations.system import System, Workspace, workspace
+from mbsd.model.contacts.kind import ContactKind
+from mbsd.model.force import Force
+from mbsd.model.forces.kind import Masses
+from mbsd.model.joint import Joint
+from mbsd.model.joints.kind import ROWS, SPECIALS
+from mbsd.model.laws import Motion
+from mbsd.model.mechanism import Model
+
+MOST_KEPT = 60
+"""Coordinates of mechanisms whose start is kept for the next solution."""
+SMALLEST_SIZE = 1e-12
+"""Below this (m) all joints sit at the centres of mass, and 1 m serves as size."""
+
+
+@dataclass
+class Packed:
+    """A mechanism as arrays, and where its names are in them."""
+
+    name: str
+    body_names: list[str]
+    com: np.ndarray
+    """(nb, 2) in the author's frames (m)."""
+    system: System
+    ws: Workspace
+    joints: list[Joint]
+    """Joints, then drivers, then contacts if they were packed."""
+    first_row: np.ndarray
+    """(joints + 1,) of each joint in J."""
+    markers: np.ndarray
+    """(joints, 2) marker numbers i, j."""
+    forces: list[Force]
+    force_markers: np.ndarray
+    """(forces, 2) marker numbers i, j."""
+    motions: list[Motion]
+    """Of the drivers, in order; motion k of the tables is ``motions[k - 1]``."""
+    contacts: int
+    """How many of the joints are contacts."""
+    specials: Specials
+    """Constraints of relative pose by name, and the user's functions among them."""
+    size: float
+    """Characteristic length (m): the largest distance between joints, or joint and centre of mass, of one body."""
+
+    @property
+    def masses(self) -> Masses:
+        """Of the bodies, ground included."""
+        return Masses(self.body_names, self.com, self.system.mass, self.system.inertia)
+
+    @property
+    def coordinates(self) -> int:
+        """Unknowns: three per moving body."""
+        return 3 * (len(self.body_names) - 1)
+
+    @property
+    def driver_rows(self) -> int:
+        """The first row that belongs to a driver."""
+        return int(self.first_row[len(self.joints) - self.contacts - len(self.motions)])
+
+    @property
+    def contact_rows(self) -> int:
+        """The first row that belongs to a contact: all before hold always."""
+        return int(self.first_row[len(self.joints) - self.contacts])
+
+    def numbers(self) -> tuple[bytes, ...] | None:
+        """The system by its numbers; None where it is large, or has relative poses: functions of the user, phases."""
+        if len(self.system.special) or self.coordinates > MOST_KEPT:
+            return None
+        return (*(part.tobytes() for part in self.system), self.com.tobytes(), np.float64(self.size).tobytes())
+
+    def contact_gaps(self) -> dict[str, int]:
+        """Contacts by name, and the rows of their gaps; rows that hold joints at rest are none."""
+        places = range(len(self.joints) - self.contacts, len(self.joints))
+        return {
+            self.joints[k].name: int(self.first_row[k]) for k in places if isinstance(self.joints[k].kind, ContactKind)
+        }
+
+    def joint_of_row(self, row: int) -> Joint:
+        """The joint that owns a row of J."""
+        return self.joints[int(np.searchsorted(self.first_row, row, side="right")) - 1]
+
+    def motion_of(self, number: int) -> int:
+        """The motion of a joint or driver by its place in ``joints``; 0 for joints."""
+        return max(0, number + 1 - (len(self.joints) - len(self.motions)))
+
+    def drives(self, times: np.ndarray) -> np.ndarray:
+        """(T, motions + 1, 3) values, rates and accelerations of all laws; index 0 is zero."""
+        out = np.zeros((len(times), len(self.motions) + 1, 3))
+        for k, motion in enumerate(self.motions):
+            with law_of(f"{self.name}: driver '{self.driver_names[k]}'"):
+                out[:, k + 1] = motion(times)
+        return out
+
+    @property
+    def driver_names(self) -> list[str]:
+        """In the order of ``motions``."""
+        end = len(self.joints) - self.contacts
+        return [driver.name for driver in self.joints[end - len(self.motions) : end]]
+
+    def settle_laws(self, start: float, end: float) -> None:
+        """Make the laws of the drivers ready for ``start`` .. ``end`` (s). Raises ModelError naming the driver."""
+        for k, (name, law) in enumerate(zip(self.driver_names, self.motions, strict=True)):
+            with law_of(f"{self.name}: driver '{name}'"):
+                self.motions[k] = law.over(start, end)
+            tell_missed(f"{self.name}: driver '{name}'", self.motions[k])
+
+    def row_scale(self) -> np.ndarray:
+        """(m,) what makes residual rows dimensionless: 1 / size for lengths, 1 for angles."""
+        scale = np.full(int(self.first_row[-1]), 1.0 / self.size)
+        scale[self.system.angle[:, 2]] = 1.0
+        scale[self.specials.angular_rows] = 1.0
+        return scale
+
+    def column_scale(self) -> np.ndarray:
+        """(n,) size of a unit step of each coordinate: ``size`` for x and y, 1 for theta."""
+        scale = np.ones((len(self.body_names) - 1, 3))
+        scale[:, :2] = self.size
+        return scale.ravel()
+
+    def jacobian(self) -> np.ndarray:
+        """(m, n) of the last evaluation, ground's columns left out."""
+        return self.spread(self.ws.jac)
+
+    def spread(self, compact: np.ndarray) -> np.ndarray:
+        """Compact Jacobians (..., m, 6) as matrices (..., m, n), ground's columns left out."""
+        rows, bodies = np.arange(compact.shape[-2])[:, None], self.system.row_body
+        out = np.zeros((*compact.shape[:-1], self.coordinates + 3))
+        for side in (0, 1):
+            columns = 3 * bodies[:, side, None] + np.arange(3)
+            out[..., rows, columns] = compact[..., 3 * side : 3 * side + 3]
+        return out[..., 3:]
+
+
+def pack(m: Model, contacts: Sequence[Joint] = ()) -> Packed:
+    """Build the arrays of a mechanism, with rows for ``contacts`` after all others."""
+    bodies = list(m.bodies.values())
+    number = {body.name: k for k, body in enumerate(bodies)}
+    com = np.array([body.com for body in bodies], float)
+    joints = [*m.joints.values(), *m.drivers.values(), *contacts]
+    motions: list[Motion] = []
+    tables: dict[str, list[tuple[int, int, int, int]]] = {name: [] for name in ROWS if name not in SPECIALS}
+    specials = Specials(m.name)
+    offsets: list[float] = []
+    lengths: list[float] = []
+    extents: list[float] = []
+    first_row = [0]
+    marker_of = []
+    for k, joint in enumerate(joints):
+        i, j = 2 * k, 2 * k + 1
+        marker_of.append((i, j))
+        motion = 0
+        if joint.motion is not None:
+            motions.append(joint.motion)
+            motion = len(motions)
+        row = first_row[-1]
+        for constraint in joint.kind.constraints:
+            if constraint in SPECIALS:
+                specials.add(constraint, joint, (i, j, row, motion))
+            else:
+                tables[constraint].append((i, j, row, motion))
+            row += ROWS[constraint]
+            if constraint == "angle":
+                offsets.append(joint.i.angle - joint.j.angle)
+            if constraint == "distance":
+                lengths.append(joint.params.get("length", 0.0))  # a driver imposes all of it
+        extents += joint.kind.extents(joint.params)
+        first_row.append(row)
+    forces = list(m.forces.values())
+    force_markers = 2 * len(joints) + np.arange(2 * len(forces)).reshape(-1, 2)
+    markers = [marker for part in (*joints, *forces) for marker in (part.i, part.j)]
+    local = np.array([(marker.x, marker.y) for marker in markers], float).reshape(-1, 2)
+    marker_body = np.array([number[marker.body.name] for marker in markers], np.int64)
+    angles = np.array([marker.angle for marker in markers], float)
+    as_table = {name: np.array(rows, np.int64).reshape(-1, 4) for name, rows in tables.items()}
+    marker_arm = local - com[marker_body] if len(markers) else np.zeros((0, 2))
+    size = _size(marker_arm, marker_body, lengths + extents)
+    special, addresses, numbers = specials.arrays(marker_body, size)
+    system = System(
+        mass=np.array([body.mass for body in bodies], float),
+        inertia=np.array([body.inertia for body in bodies], float),
+        gravity=np.array(m.gravity, float),
+        marker_body=marker_body,
+        marker_arm=marker_arm,
+        marker_axis=np.stack([np.cos(angles), np.sin(angles)], axis=1),
+        moving=np.flatnonzero(marker_body),
+        directed=_directed(
+            marker_body, as_table["slot"][:, 0], as_table["along"][:, 0], special[:, 0], force_markers[:, 0]
+        ),
+        special=special,
+        address=addresses,
+        numbers=numbers,
+        row_body=marker_body[np.repeat(np.array(marker_of, np.int64).reshape(-1, 2), np.diff(first_row), axis=0)],
+        driven=_driven(*as_table.values(), special),
+        angle_offset=np.array(offsets, float),
+        distance_length=np.array(lengths, float),
+        **as_table,
+    )
+    return Packed(
+        name=m.name,
+        body_names=[body.name for body in bodies],
+        com=com,
+        system=system,
+        ws=workspace(system, first_row[-1]),
+        joints=joints,
+        first_row=np.array(first_row, np.int64),
+        markers=np.array(marker_of, np.int64).reshape(-1, 2),
+        forces=forces,
+        force_markers=force_markers,
+        motions=motions,
+        contacts=len(contacts),
+        specials=specials,
+        size=size,
+    )
+
+
+def _driven(*tables: np.ndarray) -> np.ndarray:
+    """(drivers, 2) row and motion of the driven rows."""
+    rows = np.concatenate([table[:, 2:4] for table in tables])
+    return rows[rows[:, 1] > 0]
+
+
+def _directed(marker_body: np.ndarray, *first_markers: np.ndarray) -> np.ndarray:
+    """Those of the first markers of slots, coordinates, relative poses and forces that are on moving bodies."""
+    first = np.concatenate(first_markers)
+    return np.unique(first[marker_body[first] > 0])
+
+
+def _size(marker_arm: np.ndarray, marker_body: np.ndarray, lengths: list[float]) -> float:
+    extents = [*lengths, *np.hypot(*marker_arm.T)]
+    for body in np.unique(marker_body):
+        extents.append(float(np.linalg.norm(np.ptp(marker_arm[marker_body == body], axis=0))))
+    largest = float(max(extents, default=0.0))
+    return largest if largest > SMALLEST_SIZE else 1.0

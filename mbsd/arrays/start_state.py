@@ -1,0 +1,50 @@
+"""Copies of a mechanism that differ in their start, their drivers or their forces; bodies and joints are shared."""
+
+from __future__ import annotations
+
+import copy
+import math
+from typing import TypeVar
+
+import numpy as np
+
+from mbsd.arrays.packing import Packed
+from mbsd.base.users_function import law_of
+from mbsd.model.laws import polynomial
+from mbsd.model.mechanism import Model, Start, StartVelocity
+
+AnyModel = TypeVar("AnyModel", bound=Model)
+
+
+def copied(m: AnyModel) -> AnyModel:
+    """A mechanism of its own with the same bodies: what is added to the copy is not in the original."""
+    out = copy.copy(m)
+    for name in ("bodies", "joints", "drivers", "forces", "contacts", "events", "traces", "starts", "velocities"):
+        setattr(out, name, dict(getattr(m, name)))
+    return out
+
+
+def held(m: AnyModel, time: float) -> AnyModel:
+    """The same mechanism with its drivers holding still where their laws are at ``time`` (s)."""
+    out = copied(m)
+    for name, driver in m.drivers.items():
+        assert driver.motion is not None
+        with law_of(f"{m.name}: driver '{name}'"):
+            value = float(driver.motion.over(time, time)(np.array([time]))[0, 0])
+        out.drivers[name] = type(driver)(driver.kind, name, driver.i, driver.j, driver.params, polynomial(value))
+    return out
+
+
+def started_at(m: AnyModel, packed: Packed, q: np.ndarray, v: np.ndarray) -> AnyModel:
+    """The same mechanism that starts exactly at q, v (3 nb,)."""
+    out = copied(m)
+    out.starts, out.velocities = {}, {}
+    for b, name in enumerate(packed.body_names[1:], start=1):
+        x, y, theta = q[3 * b : 3 * b + 3]
+        vx, vy, omega = v[3 * b : 3 * b + 3]
+        c, s = math.cos(theta), math.sin(theta)
+        arm_x = c * packed.com[b, 0] - s * packed.com[b, 1]
+        arm_y = s * packed.com[b, 0] + c * packed.com[b, 1]
+        out.starts[name] = Start(float(theta), (float(x - arm_x), float(y - arm_y)))
+        out.velocities[name] = StartVelocity(float(omega), (float(vx + omega * arm_y), float(vy - omega * arm_x)))
+    return out

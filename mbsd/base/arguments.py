@@ -1,0 +1,214 @@
+"""Arguments of the public functions: numbers that are numbers, switches that are True or False, names that are text.
+
+A public function is checked by the annotations of its parameters before it runs: ``float`` takes finite numbers,
+``bool`` True or False, ``int`` whole numbers, ``str`` text; ``| None`` allows None. What other annotations mean, the
+function checks. Text is never read as a number, nor True as 1. Raises ModelError with the mechanism or function, the
+argument and the value.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import math
+from collections.abc import Callable, Iterator
+from typing import Any, TypeVar
+
+import numpy as np
+
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
+from mbsd.base.shown import shown
+from mbsd.base.users_function import described
+
+F = TypeVar("F", bound=Callable[..., Any])
+C = TypeVar("C", bound=type)
+
+LARGEST = 1e100
+"""Of any number: squares and products of a few such numbers can still be represented."""
+
+
+def finite_number(what: str, value: object) -> float:
+    """``value`` as a float; raises ModelError if it is no finite number, or beyond 1e100."""
+    if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
+        raise ModelError(f"{what} is {shown(value)}; it must be a number")
+    if value != value or value in (math.inf, -math.inf):
+        raise ModelError(f"{what} is {value}; it must be finite")
+    if not -LARGEST <= value <= LARGEST:
+        raise ModelError(f"{what} is {shown(value)}; it must be finite and not beyond {LARGEST:g}")
+    return float(value)
+
+
+def number_pair(what: str, value: object) -> tuple[float, float]:
+    """``value`` as two floats; raises ModelError if it is anything else."""
+    first, second = several_numbers(what, value, 2, "it must be two numbers (x, y)")
+    return first, second
+
+
+def several_numbers(what: str, value: object, count: int, wanted: str) -> tuple[float, ...]:
+    """``value``, a list of ``count`` numbers, as floats; raises ModelError, which ends with what is ``wanted``."""
+    try:
+        if isinstance(value, str | bytes | dict | set | frozenset):
+            raise TypeError
+        parts = tuple(value)  # pyright: ignore[reportArgumentType]
+    except Exception:
+        raise ModelError(f"{what} is {shown(value)}; {wanted}") from None
+    if len(parts) != count:
+        raise ModelError(f"{what} is {shown(value)}; {wanted}")
+    return tuple(finite_number(what, part) for part in parts)
+
+
+def number_array(what: str, value: object, finite: bool = True) -> np.ndarray:
+    """``value``, nested lists of numbers or an array, as an array of floats of any shape.
+
+    Raises ModelError naming the place of what is no number, and where ``finite``, of what is not finite.
+    """
+    try:
+        array = np.asarray(value)
+    except Exception:
+        raise ModelError(f"{what} is {shown(value)}; it must be a list of numbers, all rows equally long") from None
+    plain = isinstance(value, list | tuple)
+    if plain or array.dtype.kind == "O":
+        for at, one in _entries(value if plain else array):
+            finite_number(f"{what}{at}", one) if finite else _number(f"{what}{at}", one)
+    if array.dtype.kind not in "fiuO":
+        raise ModelError(f"{what} is {shown(value)}; it must be numbers")
+    try:
+        out = array.astype(float)
+    except (OverflowError, TypeError, ValueError):
+        raise ModelError(f"{what} is {shown(value)}; its numbers must be finite") from None
+    if finite and not (np.abs(out) <= LARGEST).all():
+        at = np.unravel_index(int(np.argmin(np.abs(out) <= LARGEST)), out.shape)
+        finite_number(f"{what}{''.join(f'[{k}]' for k in at)}", float(out[at]))
+    return out
+
+
+def _entries(value: Any, at: str = "", level: int = 0) -> Iterator[tuple[str, Any]]:
+    """What lies within nested lists and arrays, with its place; finite floats are passed over."""
+    if isinstance(value, np.ndarray) and (value.ndim == 0 or value.dtype.kind in "fiu"):
+        yield from () if value.ndim else [(at, value.item())]
+    elif level < 4 and isinstance(value, list | tuple | np.ndarray):
+        for k, one in enumerate(value):
+            if type(one) is not float or not math.isfinite(one):
+                yield from _entries(one, f"{at}[{k}]", level + 1)
+    elif level < 4 and np.ndim(value):
+        yield from _entries(np.asarray(value), at, level + 1)
+    else:
+        yield at, value
+
+
+def _number(what: str, value: object) -> None:
+    if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
+        raise ModelError(f"{what} is {shown(value)}; it must be a number")
+
+
+def whole_number(what: str, value: object, least: int = 1) -> int:
+    """``value`` as an int; raises ModelError if it is no whole number, or below ``least``."""
+    if isinstance(value, bool | np.bool_) or not isinstance(value, int | np.integer) or value < least:
+        said = "above zero" if least == 1 else f"from {least} on"
+        raise ModelError(f"{what} is {shown(value)}; it must be a whole number {said}")
+    return int(value)
+
+
+def switch(what: str, value: object) -> bool:
+    """``value`` as a bool; raises ModelError for anything else than True or False."""
+    if not isinstance(value, bool | np.bool_):
+        raise ModelError(f"{what} is {shown(value)}; it must be True or False")
+    return bool(value)
+
+
+def text(what: str, value: object) -> str:
+    """``value``, which must be a str; raises ModelError."""
+    if not isinstance(value, str):
+        raise ModelError(f"{what} is {shown(value)}; it must be a text")
+    return value
+
+
+def _whole(what: str, value: object) -> object:
+    if isinstance(value, bool | np.bool_) or not isinstance(value, int | np.integer):
+        raise ModelError(f"{what} is {shown(value)}; it must be a whole number")
+    return value
+
+
+CHECKS: dict[str, Callable[[str, Any], object]] = {
+    "float": finite_number,
+    "int": _whole,
+    "bool": switch,
+    "str": text,
+}
+"""By annotation; they return what the function is given."""
+
+
+def checked(function: F) -> F:
+    """``function`` with its arguments checked by their annotations, before it runs."""
+    signature = inspect.signature(function)
+    parameters = list(signature.parameters.values())
+    method = bool(parameters) and parameters[0].name == "self"
+    checks = {p.name: check for p in parameters if (check := _check_of(str(p.annotation))) is not None}
+    places = [p.name for p in parameters if p.kind is p.POSITIONAL_OR_KEYWORD]
+    rest = next((p for p in parameters if p.kind is p.VAR_POSITIONAL), None)
+    named = next((p for p in parameters if p.kind is p.VAR_KEYWORD), None)
+    own = {p.name for p in parameters if p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)}
+    needed = [p.name for p in parameters if p.name in own and p.default is p.empty]
+
+    @functools.wraps(function)
+    def inner(*given: Any, **keywords: Any) -> Any:
+        where = f"{given[0].name}: {function.__name__}" if method else function.__name__
+        _refuse_misnamed(where, given, keywords)
+        given_name = given[1] if len(given) > 1 else keywords.get("name")
+        what = (
+            f"{where} '{given_name}'" if method and places[1:2] == ["name"] and isinstance(given_name, str) else where
+        )
+        positional: list[Any] = list(given)
+        for k, value in enumerate(given):
+            check = checks.get(places[k]) if k < len(places) else checks.get(rest.name) if rest is not None else None
+            if check is not None:
+                name = places[k] if k < len(places) else f"argument {k + 1}"
+                positional[k] = check(f"{what}: {name}", value)
+        for name, value in keywords.items():
+            check = checks.get(name) if name in own else checks.get(named.name) if named is not None else None
+            if check is not None:
+                keywords[name] = check(f"{what}: {name}", value)
+        try:
+            return function(*positional, **keywords)
+        except (ArithmeticError, np.linalg.LinAlgError, MemoryError, RecursionError) as error:
+            raise ModelError(
+                f"{what}: numbers go beyond what can be computed ({described(error)}). Look at the largest and "
+                "smallest lengths, masses and stiffnesses, and at how much is asked for at once"
+            ) from error
+
+    def _refuse_misnamed(where: str, given: tuple[Any, ...], keywords: dict[str, Any]) -> None:
+        if len(given) > len(places) and rest is None:
+            most = len(places) - method
+            raise ModelError(f"{where} takes {most} arguments at most, got {len(given) - method}")
+        if named is None:
+            for name in keywords:
+                if name not in own:
+                    raise ModelError(f"{where}: {no_such('argument', name, [p for p in own_names if p != 'self'])}")
+        for name in places[: len(given)]:
+            if name in keywords:
+                raise ModelError(f"{where}: {name} is given twice")
+        for name in needed:
+            if name not in keywords and name not in places[: len(given)]:
+                raise ModelError(f"{where}: {name} is missing")
+
+    own_names = [p.name for p in parameters if p.name in own]
+    return inner  # pyright: ignore[reportReturnType]
+
+
+def _check_of(annotation: str) -> Callable[[str, Any], object] | None:
+    words = [word.strip() for word in annotation.split("|")]
+    check = CHECKS.get(words[0])
+    if check is None or any(word != "None" for word in words[1:]):
+        return None
+    if len(words) == 1:
+        return check
+    return lambda what, value: None if value is None else check(what, value)
+
+
+def checked_methods(cls: C) -> C:
+    """A class whose public methods, inherited ones too, are :func:`checked`. They name the object's ``name``."""
+    for name, member in inspect.getmembers(cls, inspect.isfunction):
+        if not name.startswith("_") and not isinstance(inspect.getattr_static(cls, name), staticmethod):
+            setattr(cls, name, checked(member))
+    return cls

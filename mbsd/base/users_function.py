@@ -1,0 +1,61 @@
+"""Functions and laws of the user, called so that whatever they do wrong is told with their name and the time."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+from mbsd.base.errors import MechanismError, ModelError, ModelWarning
+from mbsd.base.shown import shown
+
+
+def value_at(function: Callable[[float], Any], t: float, what: str) -> float:
+    """``function(t)`` as a finite float; ``what`` names it in errors.
+
+    Raises ModelError with the time (s): what the function raised is its cause, what it returned is in its text.
+    """
+    try:
+        value = function(t)
+    except Exception as error:
+        raise ModelError(f"{what} fails at t = {t:g} s: {described(error)}") from error
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
+    if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
+        raise ModelError(f"{what} gives {shown(value)} at t = {t:g} s; it must be a number")
+    try:
+        value = float(value)
+    except OverflowError:
+        value = float("inf")
+    if not abs(value) <= 1.7e308:
+        raise ModelError(f"{what} gives {value} at t = {t:g} s; it must be finite")
+    return value
+
+
+@contextmanager
+def law_of(what: str) -> Iterator[None]:
+    """What a law does wrong within gets ``what`` before its text: mechanism, and driver or force."""
+    try:
+        yield
+    except ModelError as error:
+        raise ModelError(f"{what}: {error}") from error.__cause__ or error
+    except MechanismError:
+        raise
+    except Exception as error:
+        raise ModelError(f"{what}: its law fails: {described(error)}") from error
+
+
+def tell_missed(what: str, law: object) -> None:
+    """Warn of what the fit of a law could not resolve; ``what`` names the mechanism and the driver or force."""
+    missed = getattr(law, "missed", None)
+    if missed:
+        warnings.warn(f"{what}: {missed}", ModelWarning, stacklevel=5)
+
+
+def described(error: BaseException) -> str:
+    """Type and text of what a function raised, on one line."""
+    said = " ".join(str(error).split())
+    return f"{type(error).__name__}: {said}" if said else type(error).__name__

@@ -1,0 +1,235 @@
+"""User functions that kernels call: a plain Python function, or one compiled with numba, by its machine address.
+
+    void f(double t, const double *in, double *out)
+
+The user writes ``f(t, part, ...)`` and returns a number, or as many numbers as are wanted. The parts are slices of
+``in``: arrays, or numbers where a part's length is 1. A function compiled with ``numba.njit`` is compiled in; a Python
+function costs a few microseconds a call. ``numba.cfunc`` objects of the signature above are taken as they are.
+
+A C function cannot raise. What a user's function raises, and numbers that are not finite, come out as NaN and are
+remembered; whoever ran the kernel calls :meth:`Callback.check`, which raises ModelError with the time and the inputs.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import math
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import Any
+
+import numba
+import numpy as np
+from numba import types
+from numba.core import cgutils
+from numba.core.ccallback import CFunc
+from numba.core.dispatcher import Dispatcher
+from numba.extending import intrinsic
+
+from mbsd.base.errors import ModelError
+from mbsd.base.shown import shown
+from mbsd.base.users_function import described
+from mbsd.compiling import interrupts
+
+SIGNATURE = types.void(types.float64, types.CPointer(types.float64), types.CPointer(types.float64))
+PROTOTYPE = ctypes.CFUNCTYPE(None, ctypes.c_double, ctypes.c_ssize_t, ctypes.c_ssize_t)
+"""The same for ctypes, with the addresses as whole numbers."""
+
+
+class WrongValue(Exception):
+    """What a user's function gave is not what is wanted; the text goes on after "the user's function"."""
+
+
+def as_numbers(values: Any, count: int) -> np.ndarray:
+    """What a user's function gave, in a row or in rows, as (count,) numbers. Raises WrongValue for anything else."""
+    wanted = "a number" if count == 1 else f"{count} numbers"
+    try:
+        array = np.atleast_1d(np.asarray(values))
+    except ValueError as error:
+        raise WrongValue(f"gives rows of unequal length, {shown(values)}; {wanted} are wanted") from error
+    if array.dtype.kind not in "fiu":
+        raise WrongValue(f"gives {shown(values)}; it must give {wanted}")
+    if array.size != count:
+        raise WrongValue(f"gives {array.size} numbers; {count} are wanted")
+    return array.ravel()
+
+
+class Callback:
+    """A user function at an address. Keep it alive as long as kernels may call it."""
+
+    def __init__(self, function: Callable, parts: Sequence[int], outputs: int, what: str) -> None:
+        """``function(t, part, ...)`` with parts of the given lengths, giving ``outputs`` numbers.
+
+        ``what`` names the function in errors: mechanism and joint or force. Raises ModelError if it is no function, or
+        if numba cannot compile it.
+        """
+        self.function, self.parts, self.outputs, self.what = function, tuple(parts), outputs, what
+        self._failure = np.zeros(2 + sum(parts))
+        self._error: BaseException | None = None
+        self._views: dict[tuple[int, int], np.ndarray] = {}
+        if isinstance(function, CFunc):
+            self._held: Any = function
+            self.address: int = function.address
+        elif isinstance(function, Dispatcher):
+            self._held = self._compile()
+            self.address = self._held.address
+        elif callable(function):
+            self._held = PROTOTYPE(self._run)
+            self.address = ctypes.cast(self._held, ctypes.c_void_p).value or 0
+        else:
+            raise ModelError(f"{what}: {shown(function)} is no function; give one of the time and the state")
+
+    def check(self) -> None:
+        """Raise what the function raised since the last check, as a ModelError; interrupts as they are."""
+        failed, error = bool(self._failure[0]), self._error
+        self._failure[0], self._error = 0.0, None
+        if not failed:
+            return
+        t, inputs = float(self._failure[1]), self._failure[2:].copy()
+        if error is not None and not isinstance(error, Exception):
+            raise error
+        at = f"{self.what}: at t = {t:.6g} s with {np.array2string(inputs, precision=6)} the user's function"
+        if error is None:
+            try:
+                values = self._values(t, inputs)
+            except Exception as again:
+                error = again
+            else:
+                raise ModelError(f"{at} gives {values}; it must give finite numbers")
+        if isinstance(error, WrongValue):
+            raise ModelError(f"{at} {error}") from error.__cause__
+        raise ModelError(f"{at} fails: {described(error)}") from error
+
+    def _values(self, t: float, inputs: np.ndarray) -> np.ndarray:
+        """What the function gives, checked; called from Python."""
+        arguments, at = [], 0
+        for length in self.parts:
+            arguments.append(float(inputs[at]) if length == 1 else inputs[at : at + length])
+            at += length
+        return as_numbers(self.function(t, *arguments), self.outputs)
+
+    def _run(self, t: float, inputs: int, outputs: int) -> None:
+        copied, out = self._view(inputs, len(self._failure) - 2).copy(), self._view(outputs, self.outputs)
+        try:
+            out[:] = self._values(t, copied)
+            if interrupts.taken():
+                raise KeyboardInterrupt
+            if all(map(math.isfinite, out)):
+                return
+        except BaseException as error:  # kept for check(): nothing can be raised through a C function
+            self._error = self._error or error
+        out[:] = math.nan
+        if not self._failure[0]:
+            self._failure[0], self._failure[1], self._failure[2:] = 1.0, t, copied
+
+    interrupts.CALLED.update((_run.__code__,))
+
+    def _view(self, address: int, length: int) -> np.ndarray:
+        key = address, length
+        if key not in self._views:
+            buffer = (ctypes.c_double * length).from_address(address)
+            self._views[key] = np.frombuffer(buffer, np.float64) if length else np.zeros(0)
+        return self._views[key]
+
+    interrupts.CALLED.update((_view.__code__,))
+
+    def _compile(self) -> CFunc:
+        """The numba function in a frame that splits the input and remembers a failure."""
+        function, count, outputs = _spread(self.function, self.parts), sum(self.parts), self.outputs
+        scalar, failure = outputs == 1, self._failure.ctypes.data
+
+        def frame(t, inputs, out):
+            given = numba.carray(inputs, (count,))
+            good = True
+            try:
+                values = function(t, given.copy())
+                if scalar:
+                    out[0] = values
+                else:
+                    good = len(values) == outputs
+                    for k in range(outputs):
+                        out[k] = values[k] if good else math.nan
+            except Exception:
+                good = False
+            for k in range(outputs):
+                good = good and math.isfinite(out[k])
+            if not good:
+                record = numba.carray(_pointer(failure), (count + 2,))  # pyright: ignore[reportCallIssue]
+                for k in range(outputs):
+                    out[k] = math.nan
+                if record[0] == 0.0:
+                    record[0] = 1.0
+                    record[1] = t
+                    for k in range(count):
+                        record[2 + k] = given[k]
+
+        try:
+            return numba.cfunc(SIGNATURE)(frame)
+        except numba.core.errors.NumbaError as error:
+            first = str(error).strip().splitlines()
+            raise ModelError(
+                f"{self.what}: numba cannot compile the function for t and parts of {list(self.parts)} numbers "
+                f"giving {outputs}: {' '.join(first)[:400]}"
+            ) from error
+
+
+def _spread(function: Any, parts: tuple[int, ...]) -> Any:
+    """``function(t, part, ...)`` as a compiled function of t and one array."""
+    ends = [int(end) for end in np.cumsum((0, *parts))]
+    pick = tuple(_picker(a, b) for a, b in pairwise(ends))
+    if len(pick) == 0:
+        return numba.njit(lambda t, x: function(t))
+    if len(pick) == 1:
+        (first,) = pick
+        return numba.njit(lambda t, x: function(t, first(x)))
+    if len(pick) == 2:
+        first, second = pick
+        return numba.njit(lambda t, x: function(t, first(x), second(x)))
+    if len(pick) == 3:
+        first, second, third = pick
+        return numba.njit(lambda t, x: function(t, first(x), second(x), third(x)))
+    raise ModelError(f"a compiled function takes three parts at most beside the time, not {len(pick)}")
+
+
+def _picker(begin: int, end: int) -> Any:
+    if end - begin == 1:
+        return numba.njit(lambda x: x[begin])
+    return numba.njit(lambda x: x[begin:end])
+
+
+@intrinsic
+def _pointer(typing, address):  # pyright: ignore[reportUnusedParameter]
+    """A whole number as a pointer to numbers."""
+    result = types.CPointer(types.float64)
+
+    def code(context, builder, signature, arguments):  # pyright: ignore[reportUnusedParameter]
+        return builder.inttoptr(arguments[0], context.get_value_type(result))
+
+    return result(types.intp), code
+
+
+if numba.config.DISABLE_JIT:  # pyright: ignore[reportAttributeAccessIssue]
+
+    def call(address, t, inputs, outputs):  # pyright: ignore[reportRedeclaration]
+        """Call the function at ``address``: t, inputs (n,) to outputs (m,), contiguous arrays."""
+        PROTOTYPE(int(address))(t, inputs.ctypes.data, outputs.ctypes.data)
+
+else:
+
+    @intrinsic
+    def call(typing, address, t, inputs, outputs):  # pyright: ignore[reportUnusedParameter]
+        """Call the function at ``address``: t, inputs (n,) to outputs (m,), contiguous arrays or pointers."""
+
+        def code(context, builder, signature, arguments):
+            where, time, *arrays = arguments
+            data = [
+                array if isinstance(kind, types.CPointer) else context.make_array(kind)(context, builder, array).data
+                for kind, array in zip(signature.args[2:], arrays, strict=True)
+            ]
+            double = cgutils.ir.DoubleType()
+            pointer = double.as_pointer()
+            function = cgutils.ir.FunctionType(cgutils.ir.VoidType(), [double, pointer, pointer])
+            builder.call(builder.inttoptr(where, function.as_pointer()), [time, *data])
+            return context.get_dummy_value()
+
+        return types.void(types.int64, types.float64, inputs, outputs), code

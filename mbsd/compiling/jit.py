@@ -1,0 +1,116 @@
+"""The one decorator for compiled kernels.
+
+    kernel      called from Python and from kernels
+    internal    called by kernels alone: without a wrapper for Python it compiles in half the time
+    inlined     copied into the caller: passing a System by value costs more than the work
+    threaded    runs in several threads at once, each with scratch of its own
+    at_address  called through its machine address
+
+What they compile is the same machine code on every processor of a kind (kernel_target.py), kept by what it is made of
+(kernel_cache.py). Settings of numba in the user's process are neither read nor changed, but for DISABLE_JIT.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numba
+from numba.core import sigutils
+from numba.core.ccallback import CFunc
+from numba.core.dispatcher import Dispatcher
+from numba.core.registry import CPUDispatcher
+
+from mbsd.compiling.kernel_cache import KernelCache
+from mbsd.compiling.kernel_target import GENERIC
+from mbsd.compiling.notice import give_notice
+
+give_notice()
+
+COMPILED = not numba.config.DISABLE_JIT  # pyright: ignore[reportPrivateImportUsage]
+
+
+class _Kernel(CPUDispatcher):
+    """numba's dispatcher for our target and cache."""
+
+    targetdescr = GENERIC
+
+    def enable_caching(self) -> None:
+        """Keep what is compiled."""
+        self._cache = KernelCache(self.py_func)
+
+
+class _AtAddress(CFunc):
+    """numba's function at an address for our target and cache."""
+
+    _targetdescr = GENERIC
+
+    def enable_caching(self) -> None:
+        """Keep what is compiled."""
+        self._cache = KernelCache(self._pyfunc)
+
+
+_OPTIONS = {"nopython": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True, "no_rewrites": True}
+# _nrt off: kernels allocate nothing, and without it numba counts references to every array of a tuple (2x slower)
+
+
+def _compiled(**more: Any) -> Callable[[Callable[..., Any]], Any]:
+    def decorate(function: Callable[..., Any]) -> Any:
+        if not COMPILED:
+            return function
+        made = _Kernel(py_func=function, locals={}, targetoptions={**_OPTIONS, **more})
+        made.enable_caching()
+        return made
+
+    return decorate
+
+
+kernel = _compiled()
+"""Compile for float64 arrays; IEEE division, no re-association, so the numbers do not depend on the compiler.
+Kernels may not allocate: scratch comes in from outside."""
+
+internal = _compiled(no_cpython_wrapper=True)
+"""The same for kernels that only kernels call."""
+
+inlined = _compiled(inline="always")
+"""The same for kernels whose body is copied into the caller."""
+
+threaded = _compiled(nogil=True)
+"""The same for kernels that run in several threads at once, each with scratch of its own."""
+
+
+def at_address(signature: Any) -> Callable[[Callable[..., Any]], Any]:
+    """The same for functions that are called through ``.address``; without the compiler the function itself."""
+
+    def decorate(function: Callable[..., Any]) -> Any:
+        if not COMPILED:
+            return function
+        made = _AtAddress(function, sigutils.normalize_signature(signature), {}, {"error_model": "numpy"})
+        made.enable_caching()
+        made.compile()
+        return made
+
+    return decorate
+
+
+OFTEN = 20
+"""Calls after which it pays to look up types once and for all."""
+
+
+class Often:
+    """A kernel called over and over with arguments of the same types.
+
+    numba looks at the types of all arguments in each call, 8 us for the arrays of a run: as long as 120 evaluations of
+    a pendulum. After some calls this hands out the machine code itself. Arguments must then have the types, memory
+    layouts included, of the call before; nothing checks it.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self._function, self._calls = function, 0
+
+    def __call__(self, *arguments: Any) -> Any:
+        """As the kernel does."""
+        self._calls += 1
+        if self._calls == OFTEN and isinstance(self._function, Dispatcher):
+            self._function = self._function.compile(tuple(map(self._function.typeof_pyval, arguments)))
+        return self._function(*arguments)

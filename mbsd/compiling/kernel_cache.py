@@ -1,0 +1,248 @@
+"""Where machine code is kept between runs: in folders named after what a kernel is made of.
+
+numba's own cache does not notice an edit in an *imported* file (numba issue 9483): a caller would silently keep the
+old numbers. So each kernel's folder is named after a hash of its file and of all that this file imports at its top,
+files of installed packages left out. An edit that no kernel is made of compiles nothing anew; going back to
+an earlier source finds its code again.
+
+A wheel may bring compiled code along, in ``mbsd/kernels``. It is looked at first and never written to; what it lacks is
+looked for, compiled and kept in the user's folder.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache, cached_property, lru_cache
+from pathlib import Path
+from typing import Any
+
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, _Cache, _CacheLocator
+
+from mbsd.compiling.shipped_kernels import SHIPPED, tell_of_other_kernels
+
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None
+
+_PACKAGE = Path(__file__).parent.parent
+_HERE = _PACKAGE.parent
+_ABOUT_THE_CACHE = {
+    str(_PACKAGE / "compiling" / name) for name in ("kernel_cache.py", "shipped_kernels.py", "notice.py")
+}
+"""Files that decide where code is kept and what is said, not what it does."""
+KEPT = 4
+"""So many versions of one file's kernels are kept."""
+
+_IMPORT = re.compile(r"^(?:from\s+([\w.]+)\s+import\s+(\([^)]*\)|[^\n]*)|import\s+([^\n]*))", re.MULTILINE)
+
+
+@lru_cache(maxsize=1)
+def cache_root() -> Path:
+    """The first folder that is writable: numba's NUMBA_CACHE_DIR if it is set, beside the package, the user's cache."""
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    user_cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    parents = [_PACKAGE / "__pycache__", user_cache / "mbsd", Path(tempfile.gettempdir()) / "mbsd"]
+    for parent in [Path(given), *parents] if given else parents:
+        folder = parent / "kernels"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            tempfile.TemporaryFile(dir=folder).close()
+            return folder
+        except OSError:
+            continue
+    raise OSError("no folder is writable for compiled code; set XDG_CACHE_HOME to one that is")
+
+
+@cache
+def _read(path: str) -> tuple[bytes, tuple[tuple[str, tuple[str, ...]], ...]]:
+    """Hash of a source file; the modules that it imports at its top, each with the names that it takes from there."""
+    source = Path(path).read_bytes()
+    found: list[tuple[str, tuple[str, ...]]] = []
+    for match in _IMPORT.finditer(source.decode()):
+        base, members, plain = match.groups()
+        if base:
+            found.append((base, tuple(re.findall(r"\w+", re.sub(r"\bas\s+\w+|#.*", "", members)))))
+        else:
+            found += [(name.split()[0], ()) for name in plain.split(",") if name.split()]
+    return hashlib.sha256(source).digest(), tuple(found)
+
+
+def _sources(path: str) -> Iterator[str]:
+    """The file of a kernel and, over and over, what it imports: of this package and from beside that file."""
+    waiting, seen, within = [path], {path}, (str(_PACKAGE) + os.sep, str(Path(path).parent) + os.sep)
+    while waiting:
+        current = waiting.pop()
+        yield current
+        for base, members in _read(current)[1]:
+            modules = [f"{base}.{name}" for name in members if f"{base}.{name}" in sys.modules]
+            if len(modules) < max(1, len(members)):  # a package that only modules are taken from gives no value itself
+                modules.append(base)
+            for name in modules:
+                found = getattr(sys.modules.get(name), "__file__", None)
+                if found and found not in seen and found.startswith(within) and found not in _ABOUT_THE_CACHE:
+                    seen.add(found)
+                    waiting.append(found)
+
+
+@cache
+def made_of(path: str) -> str:
+    """A hash of all sources that the kernels of a file are made of."""
+    digest = hashlib.sha256()
+    for source in sorted(_sources(path), key=_name):
+        digest.update(_name(source).encode() + b"\0" + _read(source)[0])
+    return digest.hexdigest()[:16]
+
+
+def _name(path: str) -> str:
+    """A path that is the same on every machine, for files of the package."""
+    return Path(path).relative_to(_HERE).as_posix() if path.startswith(str(_PACKAGE) + os.sep) else path
+
+
+class _Locator(_CacheLocator):
+    """Says where numba keeps the code of one function."""
+
+    def __init__(self, py_func: Callable[..., Any], py_file: str, root: Path) -> None:
+        self._line = py_func.__code__.co_firstlineno
+        self._stamp = made_of(py_file)
+        name = _name(py_file).removesuffix(".py").strip(os.sep).replace(os.sep, ".").replace("/", ".")
+        self._path = str(root / f"{name[-80:]}-{self._stamp}")
+
+    def get_cache_path(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
+        """The folder."""
+        return self._path
+
+    def get_source_stamp(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
+        """What the code is made of."""
+        return self._stamp
+
+    def get_disambiguator(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
+        """Functions of one name in one file differ by their line."""
+        return str(self._line)
+
+    @classmethod
+    def from_function(cls, py_func: Callable[..., Any], py_file: str) -> _Locator | None:
+        """None for functions without a file, such as those of a notebook."""
+        if not os.path.isfile(py_file):
+            return None
+        made = cls(py_func, py_file, cache_root())
+        folder = Path(made._path)
+        if not folder.is_dir():
+            folder.mkdir(parents=True, exist_ok=True)
+            _forget_old(folder)
+        return made
+
+
+class _ShippedLocator(_Locator):
+    """The same in the wheel."""
+
+    @classmethod
+    def from_function(cls, py_func: Callable[..., Any], py_file: str) -> _ShippedLocator | None:
+        """None where the wheel has nothing of that file as it is."""
+        made = cls(py_func, py_file, SHIPPED) if os.path.isfile(py_file) else None
+        return made if made is not None and os.path.isdir(made._path) else None
+
+
+def _forget_old(folder: Path) -> None:
+    """Remove all but the newest versions of what is kept in ``folder``."""
+    same = [one for one in folder.parent.glob(f"{folder.name[:-16]}*") if len(one.name) == len(folder.name)]
+    times = []
+    for one in same:
+        try:
+            times.append((one.stat().st_mtime, one))
+        except OSError:
+            continue
+    for _, old in sorted(times, reverse=True)[KEPT:]:
+        shutil.rmtree(old, ignore_errors=True)
+
+
+class _Results(CompileResultCacheImpl):
+    _locator_classes = [_Locator, *CompileResultCacheImpl._locator_classes[-2:]]  # numba's for notebooks and archives
+
+
+class _Files(FunctionCache):
+    _impl_class = _Results
+
+
+class _ShippedResults(CompileResultCacheImpl):
+    _locator_classes = [_ShippedLocator]
+
+
+class _ShippedFiles(FunctionCache):
+    _impl_class = _ShippedResults
+
+
+@contextmanager
+def _alone_in(folder: str) -> Iterator[None]:
+    """No other process saves in ``folder`` meanwhile: numba would give two signatures the same file."""
+    if fcntl is None:
+        yield
+        return
+    os.makedirs(folder, exist_ok=True)
+    with open(os.path.join(folder, ".lock"), "ab") as held:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        yield
+
+
+class KernelCache(_Cache):
+    """numba's cache of one function, opened when the function is first compiled: by then all it imports is loaded."""
+
+    def __init__(self, py_func: Callable[..., Any]) -> None:
+        self._py_func = py_func
+        self._enabled = True
+
+    @cached_property
+    def _files(self) -> _Files | None:
+        try:
+            return _Files(self._py_func)
+        except (RuntimeError, OSError):  # no place for it: compiled in every process
+            return None
+
+    @cached_property
+    def _shipped(self) -> _ShippedFiles | None:
+        try:
+            return _ShippedFiles(self._py_func) if SHIPPED.is_dir() else None
+        except (RuntimeError, OSError):
+            return None
+
+    @property
+    def cache_path(self) -> str | None:  # pyright: ignore[reportIncompatibleMethodOverride, reportIncompatibleVariableOverride]
+        """The folder, if there is one."""
+        return None if self._files is None else self._files.cache_path
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """The compiled function, or None."""
+        if not self._enabled:
+            return None
+        found = self._shipped.load_overload(sig, target_context) if self._shipped is not None else None
+        if found is None and self._files is not None:
+            found = self._files.load_overload(sig, target_context)
+        if found is None and SHIPPED.is_dir():
+            tell_of_other_kernels()
+        return found
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep a compiled function."""
+        if self._enabled and self._files is not None:
+            with _alone_in(self._files.cache_path):
+                self._files.save_overload(sig, data)
+
+    def enable(self) -> None:
+        """Use it."""
+        self._enabled = True
+
+    def disable(self) -> None:
+        """Compile in every process."""
+        self._enabled = False
+
+    def flush(self) -> None:
+        """Forget all."""
+        if self._files is not None:
+            self._files.flush()

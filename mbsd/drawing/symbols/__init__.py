@@ -1,0 +1,1 @@
+"""Standard symbols of joints, wheels, cams, contacts and loads."""

@@ -1,0 +1,134 @@
+"""Signs of forces: a zigzag between two points, a spiral between two bodies, an arrow for a load from outside."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from mbsd.base.codes import AXIS, DAMPING, LINE, PUSH, TURN
+from mbsd.drawing.canvas import Canvas
+from mbsd.drawing.look import LOAD
+from mbsd.drawing.pose import Pose
+from mbsd.model.force import Force
+from mbsd.model.laws.curve import Curve
+
+COILS = 5, 12
+"""Fewest and most; between them one for each 1.4 units."""
+
+
+def draw_force(canvas: Canvas, force: Force, pose: Pose) -> None:
+    """The sign of what the force's first element measures."""
+    i, j = pose.place(force.i), pose.place(force.j)
+    if not force.kind.elements(force):
+        draw_special(canvas, force, pose)
+        return
+    element = force.kind.elements(force)[0]
+    if element.kind == TURN:
+        _turning(canvas, force, j)
+    elif element.kind == PUSH:
+        way = -1.0 if force.params.get("force", 0.0) < 0 else 1.0
+        _arrow(canvas, force.name, j, way * pose.axis(force.i))
+    elif force.kind.name == "gravitation":
+        canvas.line([i, j], LOAD, 1.0, order=3, linestyle=(0, (1, 2)))
+        canvas.label(force.name, (i + j) / 2, 0.4, LOAD)
+    elif element.kind == LINE or len(force.kind.elements(force)) == 1:
+        end = i + float((j - i) @ pose.axis(force.i)) * pose.axis(force.i) if element.kind == AXIS else j
+        damped = any(term.kind == DAMPING and term.a != 0.0 for term in element.terms)
+        _coil(canvas, force.name, i, end, damped)
+        for point in (i, end):
+            canvas.circle(point, 0.26, edge=LOAD, fill=LOAD, order=5.5, width=0.5)
+        canvas.label(force.name, (i + end) / 2, 1.3, LOAD)
+    else:  # springs along both axes: a bushing
+        for radius in (1.0, 0.5):
+            canvas.circle(j, radius, edge=LOAD, order=3.2, width=1.2, alpha=0.3)
+        canvas.label(force.name, j, 1.2, LOAD)
+
+
+def force_reach(force: Force, pose: Pose) -> np.ndarray:
+    """(k, 2) of what a force's sign needs beside its bodies."""
+    place = pose.place(force.j)
+    size = force.params["radius"] if "stiffness" in force.params and "radius" in force.params else 0.0
+    disc = place + size * np.array([[-1.0, -1.0], [1.0, 1.0]])
+    if "stiffness" not in force.params or isinstance(force.laws.get("profile"), Curve) or not size:
+        return disc
+    return np.vstack([disc, pose.place(force.i) + _way(force, pose, size)[:, None] * pose.axis(force.i)])
+
+
+def _way(force: Force, pose: Pose, beyond: float) -> np.ndarray:
+    """(2,) ends of the straight surface that a body touches, along its x axis (m): where the body comes, and more."""
+    here = float((pose.place(force.j) - pose.place(force.i)) @ pose.axis(force.i))
+    ways = np.append(pose.travel.get(f"force {force.name}", np.zeros(0)), here)
+    return np.array([ways.min() - beyond, ways.max() + beyond])
+
+
+def draw_special(canvas: Canvas, force: Force, pose: Pose) -> None:
+    """A ring where the force acts, on each of its bodies; with the surface and the disc if it is a contact."""
+    if "stiffness" in force.params:
+        _surface(canvas, force, pose)
+    bodies = force.params.get("bodies", ())
+    places = [pose.of(name, 0.0, 0.0) for name in bodies] or [pose.place(force.j)]
+    for place in places:
+        canvas.circle(place, 0.9, edge=LOAD, order=3.2, width=1.2, alpha=0.3)
+    canvas.label(force.name, places[0], 1.2, LOAD)
+
+
+def _surface(canvas: Canvas, force: Force, pose: Pose) -> None:
+    """The profile, or a piece of the line near the body, and the disc that touches it."""
+    origin, centre, along = pose.place(force.i), pose.place(force.j), pose.axis(force.i)
+    profile, radius = force.laws.get("profile"), force.params["radius"]
+    if isinstance(profile, Curve):
+        x = np.linspace(profile.x[0], profile.x[-1], 121)
+        y = profile(x)[:, 0]
+    else:
+        x = _way(force, pose, max(radius, 3.0 * canvas.unit))
+        y = np.zeros(2)
+    canvas.line(origin + np.outer(x, along) + np.outer(y, [-along[1], along[0]]), LOAD, 1.6, order=1.5)
+    canvas.circle(centre, radius / canvas.unit, edge=LOAD, order=1.6, width=1.2, alpha=0.1)
+
+
+def _coil(canvas: Canvas, name: str, i: np.ndarray, j: np.ndarray, damped: bool) -> None:
+    """A spring; beside it a dashpot where there is damping."""
+    length = float(np.hypot(*(j - i)))
+    if length < 0.2 * canvas.unit:
+        canvas.circle(j, 0.9, edge=LOAD, order=3.2, width=1.2, alpha=0.3)
+        return
+    along = (j - i) / length
+    across = np.array([-along[1], along[0]])
+    half = min(0.65 * canvas.unit, 0.3 * length)
+    shift = 1.1 * half * across if damped else np.zeros(2)
+    first, last = i + 0.18 * length * along, j - 0.18 * length * along
+    coils = canvas.coils.setdefault(name, int(np.clip(round(0.64 * length / (1.4 * canvas.unit)), *COILS)))
+    steps = np.linspace(0.0, 1.0, 2 * coils + 2)
+    sides = np.array([0.0, *([1.0, -1.0] * coils), 0.0])
+    zigzag = first + steps[:, None] * (last - first) + half * sides[:, None] * across + shift
+    canvas.line([i, first, *zigzag, last, j], LOAD, 1.3, order=3)
+    if damped:
+        middle = (first + last) / 2
+        cup = 0.22 * float(np.hypot(*(last - first))) * along
+        wall = 0.55 * half * across
+        pot = np.array([middle + cup + wall, middle - cup + wall, middle - cup - wall, middle + cup - wall])
+        canvas.line(pot - shift, LOAD, 1.3, order=3)
+        canvas.line([first, first - shift, middle - cup - shift], LOAD, 1.3, order=3)
+        canvas.line([last, last - shift, middle - shift], LOAD, 1.3, order=3)
+        canvas.line([middle - shift + 0.8 * wall, middle - shift - 0.8 * wall], LOAD, 1.8, order=3)
+
+
+def _turning(canvas: Canvas, force: Force, centre: np.ndarray) -> None:
+    """A spiral spring; an arrow around the centre where it is a torque from outside or a motor."""
+    spring = "stiffness" in (*force.params, *force.laws) or "of_angle" in force.laws or "law" in force.params
+    turn = np.linspace(-0.4, 5 * math.pi if spring else 1.2 * math.pi, 90)
+    radius = (0.8 + 1.2 * turn / turn[-1] if spring else np.full(len(turn), 1.7)) * canvas.unit
+    path = centre + radius[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    canvas.line(path, LOAD, 1.3, order=7)
+    if not spring:
+        canvas.head(path[-1] + (path[-1] - path[-2]), path[-1] - path[-2], LOAD)
+    canvas.label(force.name, centre, 2.2, LOAD)
+
+
+def _arrow(canvas: Canvas, name: str, at: np.ndarray, along: np.ndarray) -> None:
+    tail = at - 4.0 * canvas.unit * along
+    tip = at - 0.75 * canvas.unit * along
+    canvas.line([tail, tip - 0.5 * canvas.unit * along], LOAD, 2.0, order=9.5)
+    canvas.head(tip, along, LOAD)
+    canvas.label(name, tail, 0.4, LOAD)

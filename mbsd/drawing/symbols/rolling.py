@@ -1,0 +1,131 @@
+"""Signs of what rolls and slides on lines and curves: rack and pinion, discs, points on curves."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.drawing.canvas import Canvas
+from mbsd.drawing.look import INK, PAPER, QUIET
+from mbsd.drawing.pose import Pose
+from mbsd.drawing.symbols.reach import BESIDE, placed
+from mbsd.drawing.symbols.wheels import FEWEST, PITCH, draw_disc, draw_gear, tooth, tooth_depth
+from mbsd.model.body import Marker
+from mbsd.model.joint import Joint
+from mbsd.model.teeth import with_radii
+
+if TYPE_CHECKING:
+    from mbsd.drawing.symbols.joints import Place
+
+MOST = 40
+"""Teeth of a pinion."""
+POINTS = 12
+"""Of a rack's outline for each tooth."""
+BACK = 1.3
+"""Of a rack behind its teeth, in units."""
+
+
+def draw_rack(canvas: Canvas, place: Place) -> None:
+    """A rack along the x axis of marker i, whose teeth mesh with those of the pinion about marker j."""
+    sized, u, axis = with_radii(place.joint.params), canvas.unit, place.axis
+    radius = sized["radius"]
+    normal = np.array([-axis[1], axis[0]])
+    pinion, name = place.j, place.joint.j.body.name
+    fitting = sized.get("teeth", min(max(FEWEST, round(2 * math.pi * radius / (PITCH * u))), MOST))
+    teeth, phase = canvas.wheels.setdefault((name, radius), canvas.turned.get((name, radius), (fitting, 0.0)))
+    down = math.atan2(-normal[1], -normal[0])  # where the pinion touches, as an angle
+    depth = tooth_depth(canvas, radius, teeth)
+    foot = place.i + float((pinion - place.i) @ axis) * axis
+    a, b = (float((end - foot) @ axis) for end in place.range(BESIDE * radius))
+    along = np.linspace(a, b, max(2, math.ceil(POINTS * teeth * (b - a) / (2 * math.pi * radius))))
+    height = -depth * tooth(teeth * (down + along / radius) - phase)
+    back = BACK * u + depth
+    outline = foot + along[:, None] * axis + height[:, None] * normal
+    ends = [foot + b * axis - back * normal, foot + a * axis - back * normal]
+    colour = place.colours.get(place.joint.i.body.name, QUIET)
+    canvas.shape(np.vstack([outline, ends]), edge=colour, fill=colour, width=1.3, order=1.8, alpha=0.12)
+    canvas.line([foot + a * axis, foot + b * axis], colour, 0.7, order=1.9, linestyle=(0, (8, 2, 2, 2)))
+    if place.joint.i.body.name == "ground":
+        canvas.hatched(ends[1], ends[0], -normal)
+    draw_gear(canvas, pinion, radius, teeth, phase, place.colours.get(name, QUIET), False)
+    canvas.label(place.joint.name, foot, 0.5)
+
+
+def draw_rolling_disc(canvas: Canvas, place: Place) -> None:
+    """A disc about marker j on the x axis of marker i."""
+    radius, axis = place.joint.params["radius"], place.axis
+    a, b = place.range(BESIDE * radius)
+    draw_way(canvas, np.array([a, b]), place.joint.i.body.name, place.colours)
+    _disc(canvas, place, radius)
+    foot = place.i + float((place.j - place.i) @ axis) * axis
+    canvas.label(place.joint.name, foot, 0.6)
+
+
+def draw_rolling_on_curve(canvas: Canvas, place: Place) -> None:
+    """A disc about marker j on a curve fixed to marker i."""
+    draw_way(canvas, _curve(place), place.joint.i.body.name, place.colours)
+    _disc(canvas, place, place.joint.params["radius"])
+    canvas.label(place.joint.name, place.j, 0.6)
+
+
+def draw_point_on_curve(canvas: Canvas, place: Place) -> None:
+    """A point on a curve fixed to marker i, or a disc that slides beside it."""
+    path = _curve(place)
+    ground = place.joint.i.body.name == "ground"
+    canvas.line(path, INK if ground else place.colours[place.joint.i.body.name], 1.6, order=3.5)
+    if ground:
+        middle = len(path) // 2
+        along = path[middle] - path[middle - 1]
+        along = along / float(np.hypot(*along)) * canvas.unit
+        canvas.hatched(path[middle] - along, path[middle] + along, np.array([along[1], -along[0]]) / canvas.unit)
+    distance = abs(place.joint.params["distance"])
+    if distance > 0.0:
+        canvas.circle(place.j, distance / canvas.unit, order=1.8, width=1.2, alpha=0.0)
+    canvas.circle(place.j, 0.45, fill=PAPER, order=8, width=1.4)
+    canvas.label(place.joint.name, place.j, 0.8)
+
+
+def _disc(canvas: Canvas, place: Place, radius: float) -> None:
+    marker: Marker = place.joint.j
+    colour = place.colours.get(marker.body.name, QUIET)
+    draw_disc(canvas, place.j, radius, place.pose.frames[marker.body.name][2], colour)
+
+
+def draw_way(canvas: Canvas, path: np.ndarray, body: str, colours: dict[str, str]) -> None:
+    """A line or curve of a body that something rolls on, on its left; ground's has strokes on the other side."""
+    if body != "ground":
+        canvas.line(path, colours[body], 2.2, order=3.5)
+        return
+    canvas.line(path, order=1.5)
+    steps = np.diff(path, axis=0)
+    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*steps.T))])
+    count = max(3, round(arc[-1] / (0.62 * canvas.unit)))
+    for s in (np.arange(count) + 0.8) / count * arc[-1]:
+        k = min(int(np.searchsorted(arc, s, side="right")) - 1, len(steps) - 1)
+        along = steps[k] / (arc[k + 1] - arc[k])
+        root = path[k] + (s - arc[k]) * along
+        lean = (np.array([along[1], -along[0]]) - along) * 0.55 * canvas.unit
+        canvas.line([root, root + lean], width=0.9, order=1.5)
+
+
+def _curve(place: Place) -> np.ndarray:
+    return curve_path(place.joint, place.pose)
+
+
+def curve_path(joint: Joint, pose: Pose) -> np.ndarray:
+    """(k, 2) of the spline through the points of a joint or contact, in the world (m)."""
+    points = tuple((float(x), float(y)) for x, y in joint.params["points"])
+    return placed(pose, joint.i, _spline(points, joint.params["closed"]))
+
+
+@lru_cache(maxsize=32)
+def _spline(points: tuple[tuple[float, float], ...], closed: bool) -> np.ndarray:
+    """(k, 2) in the axes of the marker (m)."""
+    from mbsd.model.plane_curves import curve_pieces
+
+    breaks, coefficients = curve_pieces(np.array(points), closed)
+    end = (coefficients[-1] * (breaks[-1] - breaks[-2]) ** np.arange(6)).sum(axis=1)
+    return np.vstack([coefficients[:, :, 0], end])

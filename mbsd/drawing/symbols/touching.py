@@ -1,0 +1,139 @@
+"""Signs of contacts: the line, terrain or disc that is touched, the disc that touches it, ropes and stops."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from mbsd.drawing.canvas import Canvas
+from mbsd.drawing.look import INK, QUIET
+from mbsd.drawing.pose import Pose
+from mbsd.drawing.symbols.reach import ROUND, placed
+from mbsd.drawing.symbols.rolling import curve_path, draw_way
+from mbsd.drawing.symbols.wheels import draw_disc
+from mbsd.model.joint import Joint
+
+BEYOND = 3.0
+"""How far a floor goes on beyond what touches it, in units."""
+ALIKE = 1e-9
+"""Lines whose places and directions differ by less (m, rad) are one line."""
+
+
+def draw_contacts(canvas: Canvas, contacts: Sequence[Joint], pose: Pose, colours: dict[str, str]) -> None:
+    """Every contact of a mechanism; feet on the same floor share its sign."""
+    for feet in _floors(contacts):
+        _floor(canvas, feet, pose, colours)
+    for joint in contacts:
+        kind, radius = joint.kind.name, joint.params.get("radius", 0.0)
+        if kind == "rigid_terrain":
+            draw_way(canvas, curve_path(joint, pose), joint.i.body.name, colours)
+        if kind in ("rigid_contact", "rigid_terrain") and radius > 0.0:
+            _disc(canvas, joint, pose, radius, colours)
+        elif kind == "rigid_discs":
+            _discs(canvas, joint, pose, colours)
+        elif kind == "rope":
+            canvas.line(_rope(pose.place(joint.i), pose.place(joint.j), joint.params["length"]), INK, 1.5, order=5)
+        elif kind in ("coordinate_stop", "angle_stop"):
+            _stop(canvas, joint, pose, colours)
+
+
+def contact_reach(joint: Joint, pose: Pose) -> np.ndarray:
+    """(k, 2) points that a drawing of this contact must hold (m)."""
+    kind, i, j = joint.kind.name, pose.place(joint.i), pose.place(joint.j)
+    out = [j + joint.params.get("radius", joint.params.get("radius_j", 0.0)) * ROUND]
+    if kind == "rigid_contact":
+        axis = pose.axis(joint.i)
+        ends = _travel(joint, pose)
+        out.append(i + np.array([ends.min(), ends.max()])[:, None] * axis)
+    elif kind == "rigid_terrain":
+        out.append(placed(pose, joint.i, np.array(joint.params["points"], float)))
+    elif kind == "rigid_discs":
+        out.append(i + joint.params["radius_i"] * ROUND)
+    elif kind == "rope":
+        out.append(i[None])
+    return np.concatenate(out)
+
+
+def _travel(joint: Joint, pose: Pose) -> np.ndarray:
+    """Places of the second marker along the x axis of the first (m), over the motion and now."""
+    here = float((pose.place(joint.j) - pose.place(joint.i)) @ pose.axis(joint.i))
+    radius = joint.params.get("radius", 0.0)
+    ways = np.append(pose.travel.get(f"contact {joint.name}", np.zeros(0)), here)
+    return np.array([ways.min() - radius, ways.max() + radius])
+
+
+def _floors(contacts: Sequence[Joint]) -> list[list[Joint]]:
+    """Contacts with lines, together where these are the same line of a body."""
+    out: list[list[Joint]] = []
+    for joint in contacts:
+        if joint.kind.name != "rigid_contact":
+            continue
+        same = next((feet for feet in out if _same_line(feet[0], joint)), None)
+        if same is None:
+            out.append([joint])
+        else:
+            same.append(joint)
+    return out
+
+
+def _same_line(one: Joint, other: Joint) -> bool:
+    a, b = one.i, other.i
+    across = -(b.x - a.x) * math.sin(a.angle) + (b.y - a.y) * math.cos(a.angle)
+    return a.body is b.body and abs(across) < ALIKE and abs(a.angle - b.angle) < ALIKE
+
+
+def _floor(canvas: Canvas, feet: list[Joint], pose: Pose, colours: dict[str, str]) -> None:
+    first, axis = pose.place(feet[0].i), pose.axis(feet[0].i)
+    ends = np.concatenate([float((pose.place(one.i) - first) @ axis) + _travel(one, pose) for one in feet])
+    a, b = (first + way * axis for way in (ends.min() - BEYOND * canvas.unit, ends.max() + BEYOND * canvas.unit))
+    if feet[0].i.body.name == "ground":
+        canvas.hatched(a, b, np.array([axis[1], -axis[0]]))
+    else:
+        canvas.line([a, b], colours.get(feet[0].i.body.name, QUIET), 2.2, order=3.5)
+    canvas.label(feet[0].name if len(feet) == 1 else f"{feet[0].name} ...", b, 0.5)
+
+
+def _disc(canvas: Canvas, joint: Joint, pose: Pose, radius: float, colours: dict[str, str]) -> None:
+    name = joint.j.body.name
+    draw_disc(canvas, pose.place(joint.j), radius, pose.frames[name][2] + joint.j.angle, colours.get(name, QUIET))
+
+
+def _discs(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
+    """The outer one as a ring where the other is inside."""
+    for marker, key in ((joint.i, "radius_i"), (joint.j, "radius_j")):
+        name, centre, radius = marker.body.name, pose.place(marker), joint.params[key]
+        colour = colours.get(name, QUIET)
+        if joint.params["inside"] and marker is joint.i:
+            turn = np.linspace(0.0, 2 * math.pi, 97)
+            canvas.line(centre + radius * np.stack([np.cos(turn), np.sin(turn)], axis=1), colour, 2.0, order=1.8)
+        elif radius > 0.0:
+            draw_disc(canvas, centre, radius, pose.frames[name][2] + marker.angle, colour)
+
+
+def _stop(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
+    """A bar across the way of a coordinate, a spoke where an angle ends."""
+    start, axis, at = pose.place(joint.i), pose.axis(joint.i), joint.params["at"]
+    colour = colours.get(joint.i.body.name, INK)
+    if joint.kind.name == "coordinate_stop":
+        across = 1.5 * canvas.unit * np.array([-axis[1], axis[0]])
+        canvas.line([start + at * axis - across, start + at * axis + across], colour, 3.0, order=4.2)
+        return
+    angle = math.atan2(axis[1], axis[0]) + at
+    out = canvas.unit * np.array([math.cos(angle), math.sin(angle)])
+    canvas.line([start + 1.2 * out, start + 2.6 * out], colour, 3.0, order=4.2)
+
+
+def _rope(i: np.ndarray, j: np.ndarray, length: float) -> np.ndarray:
+    """(k, 2) straight where it is taut; where it is slack, a parabola of its length that hangs down."""
+    gap = j - i
+    distance = float(np.hypot(*gap))
+    s = np.linspace(0.0, 1.0, 33)
+    low, high = 0.0, length
+    for _ in range(40 if distance < length * (1 - 1e-6) else 0):
+        sag = 0.5 * (low + high)
+        path = i + s[:, None] * gap - (4 * sag * s * (1 - s))[:, None] * np.array([0.0, 1.0])
+        long = float(np.hypot(*np.diff(path, axis=0).T).sum()) > length
+        low, high = (low, sag) if long else (sag, high)
+    return i + s[:, None] * gap - (4 * low * s * (1 - s))[:, None] * np.array([0.0, 1.0])

@@ -1,0 +1,1 @@
+"""The topology of a mechanism as SVG: its graph, laid out."""

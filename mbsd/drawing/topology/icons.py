@@ -1,0 +1,84 @@
+"""Small signs of the joint kinds for the topology diagram, as SVG elements about a centre.
+
+A kind without a sign of its own gets a diamond; drivers a turning or a straight arrow, forces a zigzag.
+"""
+
+from __future__ import annotations
+
+from mbsd.drawing.look import PAPER
+from mbsd.drawing.topology.svg_text import d, tag
+from mbsd.model.forces.kind import FORCE_KINDS
+from mbsd.model.joints.kind import KINDS
+
+STROKE = 1.8
+WHEELS = ("gear_pair", "belt")
+
+
+def icon(kind: str, x: float, y: float, radius: float, colour: str) -> list[str]:
+    """The sign of a kind within ``radius`` (px) of (x, y)."""
+    return [_disc(x, y, radius - 1, colour), *_inside(kind, x, y, radius, colour)]
+
+
+def _inside(kind: str, x: float, y: float, r: float, colour: str) -> list[str]:
+    if kind == "revolute":
+        return [_disc(x, y, 0.34 * r, colour)]
+    if kind == "prismatic":
+        block = _box(x, y - 0.02 * r, 0.42 * r, 0.3 * r, colour)
+        return [_stroke(d("M", x - 0.7 * r, y + 0.36 * r, "h", 1.4 * r), colour), block]
+    if kind == "pin_in_slot":
+        slot = _box(x, y, 0.66 * r, 0.32 * r, colour, rx=0.32 * r)
+        return [slot, _disc(x, y, 0.13 * r, colour, fill=colour)]
+    if kind == "weld":
+        return [_box(x, y, 0.34 * r, 0.34 * r, colour, fill=colour)]
+    if kind == "distance":
+        ends = [_disc(x + side * 0.48 * r, y, 0.16 * r, colour) for side in (-1, 1)]
+        return [_stroke(d("M", x - 0.48 * r, y, "h", 0.96 * r), colour), *ends]
+    if kind in KINDS and KINDS[kind].driven:
+        return (_turning if KINDS[kind].units[1] == "rad" else _pushing)(x, y, r, colour)
+    if kind in WHEELS:
+        return [_disc(x - 0.26 * r, y, 0.3 * r, colour), _disc(x + 0.3 * r, y, 0.22 * r, colour)]
+    if kind in FORCE_KINDS:
+        return [_stroke(d("M", x - 0.72 * r, y, "h", 0.2 * r, *_zigzag(r), "h", 0.2 * r), colour)]
+    half = 0.5 * r
+    diamond = d("M", x - half, y, "l", half, -half, "l", half, half, "l", -half, half, "z")
+    return [_stroke(diamond, colour)]
+
+
+def _zigzag(r: float) -> list[str | float]:
+    up, step = 0.36 * r, 0.26 * r
+    return ["l", step / 2, -up, "l", step, 2 * up, "l", step, -2 * up, "l", step, 2 * up, "l", step / 2, -up]
+
+
+def _turning(x: float, y: float, r: float, colour: str) -> list[str]:
+    """Three quarters of a turn, counter-clockwise, with its head."""
+    q = 0.5 * r
+    arc = d("M", x, y + q, "A", q, q, "0 1 0", x - q, y)
+    head = d("M", x - q, y + 0.3 * r, "l", -0.26 * r, -0.4 * r, "h", 0.52 * r, "z")
+    return [_stroke(arc, colour), _filled(head, colour)]
+
+
+def _pushing(x: float, y: float, r: float, colour: str) -> list[str]:
+    """A straight arrow."""
+    head = d("M", x + 0.64 * r, y, "l", -0.46 * r, -0.3 * r, "v", 0.6 * r, "z")
+    return [_stroke(d("M", x - 0.6 * r, y, "h", 0.8 * r), colour), _filled(head, colour)]
+
+
+def _disc(x: float, y: float, radius: float, colour: str, fill: str = PAPER) -> str:
+    return tag("circle", cx=x, cy=y, r=radius, fill=fill, stroke=colour, stroke_width=STROKE)
+
+
+def _box(
+    x: float, y: float, half_width: float, half_height: float, colour: str, fill: str = PAPER, rx: float = 0.0
+) -> str:
+    return tag(
+        "rect", x=x - half_width, y=y - half_height, width=2 * half_width, height=2 * half_height, rx=rx,
+        fill=fill, stroke=colour, stroke_width=STROKE,
+    )  # fmt: skip
+
+
+def _stroke(path: str, colour: str) -> str:
+    return tag("path", d=path, fill="none", stroke=colour, stroke_width=STROKE, stroke_linecap="round")
+
+
+def _filled(path: str, colour: str) -> str:
+    return tag("path", d=path, fill=colour, stroke="none")

@@ -1,0 +1,156 @@
+"""The topology as SVG: bodies as boxes, joints, drivers and forces as signs between them, redundant ones in red."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.base.errors import AssemblyError, ModelError
+from mbsd.drawing import look
+from mbsd.drawing.picture import Svg
+from mbsd.drawing.topology.graph_layout import layout
+from mbsd.drawing.topology.icons import icon
+from mbsd.drawing.topology.svg_text import d, tag
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
+from mbsd.model.mechanism import Model
+from mbsd.results.mobility import Mobility
+
+MOST_NODES = 600
+"""Bodies, joints and drivers that one diagram can show."""
+EDGE = 74.0
+"""From a body to a joint (px)."""
+BODY_HEIGHT, JOINT = 40.0, 15.0
+MARGIN, HEADING = 26.0, 58.0
+FONT = "DejaVu Sans, Verdana, sans-serif"
+
+
+@dataclass(frozen=True)
+class Node:
+    """A body, or a joint or driver, with the room its symbol and words take (px)."""
+
+    name: str
+    below: str
+    """Second line: mass or kind."""
+    kind: str
+    """Of the joint; "body" or "ground"."""
+    colour: str
+    size: tuple[float, float]
+
+
+def topology(m: Model) -> Svg:
+    """See :meth:`mbsd.mechanism.Mechanism.topology`."""
+    joints = [*m.joints.values(), *m.drivers.values(), *m.forces.values()]
+    if len(m.bodies) + len(joints) > MOST_NODES:
+        raise ModelError(
+            f"{m.name}: {len(m.bodies) + len(joints)} bodies, joints and drivers are too many for one diagram "
+            f"(at most {MOST_NODES}); print(m.mobility()) has the counts"
+        )
+    found, said = _mobility(m)
+    redundant = set(found.redundant) if found else set()
+    nodes = [_body(m, name, k) for k, name in enumerate(m.bodies)]
+    nodes += [_joint(j, j.name in redundant) for j in joints]
+    number = {name: k for k, name in enumerate(m.bodies)}
+    edges = [(number[name], len(number) + k) for k, joint in enumerate(joints) for name in dict.fromkeys(joint.bodies)]
+    places = layout(edges, np.array([node.size for node in nodes]), EDGE) * np.array([1.0, -1.0])
+    return Svg(_svg(m.name, said, nodes, edges, places, redundant))
+
+
+def _mobility(m: Model) -> tuple[Mobility | None, str]:
+    if len(m.bodies) < 2 or not m.joints:
+        return None, f"{3 * (len(m.bodies) - 1)} degrees of freedom, no joints"
+    try:
+        found = m.mobility()
+    except AssemblyError:
+        return None, "the links do not close, so freedoms and redundant joints are unknown"
+    count = len(m.drivers)
+    driven = f"; {count} driver{'s' * (count != 1)}" if count else "; no driver"
+    return found, f"{found}{driven}"
+
+
+def _body(m: Model, name: str, k: int) -> Node:
+    if name == "ground":
+        return Node(name, "", "ground", look.INK, (max(84.0, _width(name, 13) + 30), BODY_HEIGHT + 16))
+    mass = m.bodies[name].mass
+    below = f"{mass:.3g} kg" if mass else "no mass"
+    width = max(_width(name, 13), _width(below, 10)) + 30
+    return Node(name, below, "body", look.colour(k - 1), (width, BODY_HEIGHT + 12))
+
+
+def _joint(joint: Joint | Force, redundant: bool) -> Node:
+    name, kind = joint.name, joint.kind.name
+    words = kind.replace("_", " ")
+    below = f"{words}, redundant" if redundant else words
+    colour = look.LOAD if isinstance(joint, Force) else look.MOVED if joint.kind.driven else look.INK
+    colour = look.WRONG if redundant else colour
+    width = max(2 * JOINT, _width(name, 12), _width(below, 9.5))
+    return Node(name, below, kind, colour, (width + 12, 2 * JOINT + 34))
+
+
+def _width(text: str, size: float) -> float:
+    """About what a text takes in a wide sans serif (px)."""
+    return 0.62 * size * len(text)
+
+
+def _svg(
+    name: str, said: str, nodes: list[Node], edges: list[tuple[int, int]], places: np.ndarray, redundant: set[str]
+) -> str:
+    sizes = np.array([node.size for node in nodes])
+    low = (places - sizes / 2).min(axis=0) - MARGIN
+    high = (places + sizes / 2).max(axis=0) + MARGIN
+    width = max(high[0] - low[0], _width(said, 11) + 2 * MARGIN, _width(name, 17) + 2 * MARGIN)
+    places = places - low + np.array([(width - (high[0] - low[0])) / 2, HEADING])
+    height = high[1] - low[1] + HEADING
+    out = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}" '
+        f'viewBox="0 0 {width:.0f} {height:.0f}" font-family="{FONT}">',
+        tag("rect", width="100%", height="100%", fill=look.PAPER, stroke="none"),
+        _text(MARGIN, 32, name.replace("_", " "), 17, look.INK, "start", bold=True),
+        _text(MARGIN, 51, said, 11, look.QUIET, "start"),
+    ]
+    for a, b in edges:
+        (x1, y1), (x2, y2) = places[a], _middle(nodes[b], places[b])
+        ink = look.WRONG if nodes[b].name in redundant else look.QUIET
+        loose = {"stroke_dasharray": "1.5 3.5", "stroke_linecap": "round"} if nodes[b].colour == look.LOAD else {}
+        dashes = {"stroke_dasharray": "5 4"} if nodes[b].name in redundant else loose
+        out.append(tag("line", x1=x1, y1=y1, x2=x2, y2=y2, stroke=ink, stroke_width=1.6, **dashes))
+    for node, place in zip(nodes, places, strict=True):
+        out += _drawn_body(node, place) if node.kind in ("body", "ground") else _drawn_joint(node, place)
+    return "\n".join([*out, "</svg>"]) + "\n"
+
+
+def _middle(node: Node, place: np.ndarray) -> np.ndarray:
+    """Of a joint's symbol; its words are below."""
+    return place - np.array([0.0, node.size[1] / 2 - JOINT - 2])
+
+
+def _drawn_body(node: Node, place: np.ndarray) -> list[str]:
+    x, y = place
+    half, foot = node.size[0] / 2 - 4, y + BODY_HEIGHT / 2
+    fill = look.FAINT if node.kind == "ground" else look.PAPER
+    box = {"x": x - half, "y": y - BODY_HEIGHT / 2, "width": 2 * half, "height": BODY_HEIGHT, "rx": 7.0}
+    out = [tag("rect", **box, fill=fill, stroke=node.colour, stroke_width=1.8)]
+    if node.kind == "ground":
+        strokes = [d("M", left, foot + 1, "l -6 8") for left in np.arange(x - half + 12, x + half - 2, 9)]
+        out.append(tag("path", d=" ".join(strokes), stroke=look.INK, stroke_width=1.2, fill="none"))
+    if node.below:
+        out.append(_text(x, y + 13, node.below, 10, look.QUIET))
+    return [*out, _text(x, y - 2 if node.below else y + 5, node.name, 13, node.colour, bold=True)]
+
+
+def _drawn_joint(node: Node, place: np.ndarray) -> list[str]:
+    x, y = _middle(node, place)
+    half = node.size[0] / 2 - 3
+    paper = {"fill": look.PAPER, "fill_opacity": "0.85", "stroke": "none"}
+    return [
+        tag("rect", x=x - half, y=y + JOINT + 1, width=2 * half, height=29.0, rx=4.0, **paper),
+        *icon(node.kind, float(x), float(y), JOINT, node.colour),
+        _text(x, y + JOINT + 13, node.name, 12, node.colour, bold=True),
+        _text(x, y + JOINT + 26, node.below, 9.5, look.QUIET),
+    ]
+
+
+def _text(x: float, y: float, text: str, size: float, colour: str, anchor: str = "middle", bold: bool = False) -> str:
+    weight = {"font_weight": "bold"} if bold else {}
+    return tag("text", text, x=x, y=y, font_size=size, fill=colour, stroke="none", text_anchor=anchor, **weight)

@@ -1,0 +1,148 @@
+"""Poses near those where the two poses of a group meet, continued from poses beside them on both sides.
+
+The motion passes a change point smoothly, yet near it a group's closed form loses digits: with s the sine of the angle
+between its links and e the rounding, angles lose e / s, rates e / s^2 and convective accelerations e / s^3. There poses
+and rates are those of twelve poses beside, whose coordinates lie ahead and back along the motion:
+
+    X(z) = sum W_i (X(z + x_i A z' / w) + X(z - x_i A z' / w)),   x = 1, 1.3, 1.6, 1.9, 2.2, 2.5,   A = 0.25 rad
+
+with w the rate (rad/s) of the body that turns fastest. This holds for polynomials of degree 11. The same sum without
+the outermost two tells the error. Where it is not small, as where links that nearly close keep the two poses apart, A
+is halved; then the closed form itself stands.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbsd.compiling.jit import internal
+from mbsd.dynamics.embedding.arrays import AVOID, COS, INERTIA, MASS, SIN, SPEED, TURNS, VALUE
+from mbsd.dynamics.embedding.groups.branch import FLOOR, SOLVED
+from mbsd.dynamics.embedding.groups.groups import solve_groups
+from mbsd.equations.laws import evaluate_laws
+
+
+def _weights(x: np.ndarray) -> np.ndarray:
+    """Of one value of each pair x_i, -x_i: the polynomial through all of them, at zero."""
+    square = x**2
+    return np.array([0.5 * np.prod(np.delete(square, i) / np.delete(square - square[i], i)) for i in range(len(x))])
+
+
+APART = np.array([1.0, 1.3, 1.6, 1.9, 2.2, 2.5])
+WEIGHTS = _weights(APART)
+ERROR_WEIGHTS = WEIGHTS - np.append(_weights(APART[:-1]), 0.0)
+WAY, HALVINGS = 0.25, 3
+"""A (rad), and how often it is tried."""
+CLOSE, CLOSE_RATE = 1e-10, 1e-9
+"""Errors allowed of cosines and sines, and of rates of turning, as a part of w."""
+KEPT = SIN + 1
+"""Columns of EmbeddingScratch.body that are continued."""
+
+
+@internal
+def _joined(
+    laws, group, number, gravity, body, rate, base, coordinate, drive, sums, joined_body, joined_rate, t, way, fastest
+):
+    """Fill joined_body and joined_rate from poses beside; returns whether all are clear and agree."""
+    columns = coordinate.shape[0] - 1
+    for part in range(2):
+        for b in range(1, body.shape[0]):
+            for c in range(KEPT):
+                joined_body[part, b, c] = 0.0
+            for c in range(rate.shape[1]):
+                joined_rate[part, b, c] = 0.0
+    for i in range(APART.shape[0]):
+        for side in range(2):
+            ahead = (1.0 - 2.0 * side) * APART[i] * way / fastest
+            for j in range(columns):
+                coordinate[j, VALUE] += ahead * (coordinate[j, SPEED] if columns > 1 else 1.0)
+            if drive.shape[0] > 1:
+                evaluate_laws(laws, drive.shape[0], t + ahead, drive)
+            status = solve_groups(group, number, body, rate, base, coordinate, drive, gravity, sums)
+            for j in range(columns):
+                coordinate[j, VALUE] -= ahead * (coordinate[j, SPEED] if columns > 1 else 1.0)
+            if status != SOLVED:
+                return False
+            for b in range(1, body.shape[0]):
+                for c in range(KEPT):
+                    joined_body[0, b, c] += WEIGHTS[i] * body[b, c]
+                    joined_body[1, b, c] += ERROR_WEIGHTS[i] * body[b, c]
+                for c in range(rate.shape[1]):
+                    joined_rate[0, b, c] += WEIGHTS[i] * rate[b, c]
+                    joined_rate[1, b, c] += ERROR_WEIGHTS[i] * rate[b, c]
+    for b in range(1, body.shape[0]):
+        if not abs(joined_body[1, b, COS]) + abs(joined_body[1, b, SIN]) <= CLOSE:
+            return False
+        turning = 0.0
+        for j in range(columns):
+            turning += joined_rate[1, b, 3 * j + 2] * (coordinate[j, SPEED] if columns > 1 else 1.0)
+        if not abs(turning) <= CLOSE_RATE * fastest:
+            return False
+    return True
+
+
+@internal
+def bridge(laws, group, number, gravity, body, rate, base, coordinate, drive, sums, joined_body, joined_rate, t):
+    """Fill body, rate and sums near an unclear pose; returns SOLVED or DOUBTED.
+
+    Arrays are those of Embedding and EmbeddingScratch; coordinates and drive are those of the pose, and stay.
+    """
+    columns = coordinate.shape[0] - 1
+    fastest = 0.0
+    for b in range(1, base.shape[0]):
+        turning = 0.0
+        for j in range(columns):
+            turning += base[b, TURNS + j] * (coordinate[j, SPEED] if columns > 1 else 1.0)
+        fastest = max(fastest, abs(turning))
+    found = False
+    way = WAY
+    if fastest > 0.0:
+        for _ in range(HALVINGS):
+            found = _joined(
+                laws,
+                group,
+                number,
+                gravity,
+                body,
+                rate,
+                base,
+                coordinate,
+                drive,
+                sums,
+                joined_body,
+                joined_rate,
+                t,
+                way,
+                fastest,
+            )
+            if found:
+                break
+            way *= 0.5
+        if drive.shape[0] > 1:
+            evaluate_laws(laws, drive.shape[0], t, drive)
+    if not found:
+        usual = 0.0
+        for e in range(number.shape[0]):
+            usual = number[e, AVOID]
+            number[e, AVOID] = FLOOR
+        status = solve_groups(group, number, body, rate, base, coordinate, drive, gravity, sums)
+        for e in range(number.shape[0]):
+            number[e, AVOID] = usual
+        return status
+    total = 0.0
+    push = 0.0
+    single = rate.shape[1] == 6
+    for b in range(1, body.shape[0]):
+        for c in range(KEPT):
+            body[b, c] = joined_body[0, b, c]
+        for c in range(rate.shape[1]):
+            rate[b, c] = joined_rate[0, b, c]
+        if single:
+            mass = body[b, MASS]
+            inertia = body[b, INERTIA]
+            total += mass * (rate[b, 0] * rate[b, 0] + rate[b, 1] * rate[b, 1]) + inertia * rate[b, 2] * rate[b, 2]
+            push += mass * (rate[b, 0] * (gravity[0] - rate[b, 3]) + rate[b, 1] * (gravity[1] - rate[b, 4]))
+            push -= inertia * rate[b, 2] * rate[b, 5]
+    sums[0] = total
+    sums[1] = push
+    return SOLVED

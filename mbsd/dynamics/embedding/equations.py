@@ -1,0 +1,266 @@
+"""Accelerations of the independent coordinates, and what an integrator needs beside them.
+
+    M_z = B^T M B,   M_z z'' = B^T (Q - M c)           by Cholesky's factors
+    power of loads and drivers = v^T (M a - M g)       where drivers are; else that of the loads themselves
+
+Where a group has no clear pose the power is not a number, and the step is taken again with another length.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.compiling.jit import inlined, internal, kernel
+from mbsd.dynamics.embedding.arrays import (
+    BASE,
+    BEND,
+    COS,
+    LIMIT,
+    NEAR,
+    SENSITIVITY,
+    SIN,
+    SINE,
+    SPEED,
+    THETA,
+    TURNS,
+    VALUE,
+    X,
+    Y,
+)
+from mbsd.dynamics.embedding.bridge import bridge
+from mbsd.dynamics.embedding.groups.branch import SOLVED, WIDE, predicted
+from mbsd.dynamics.embedding.groups.groups import solve_groups
+from mbsd.equations.laws import evaluate_laws
+from mbsd.equations.loads import apply_loads
+
+FLOOR = 1e-14
+"""Part of its diagonal that elimination must leave of M_z."""
+
+
+@internal
+def angle_of(body, base, coordinate, b):
+    """Angle of body b (rad), all its turns counted."""
+    guess = predicted(base, coordinate, b)
+    angle = math.atan2(body[b, SIN], body[b, COS])
+    return angle + 2.0 * math.pi * math.floor((guess - angle) / (2.0 * math.pi) + 0.5)
+
+
+@inlined
+def place_bodies(loaded, body, rate, base, coordinate, angles, q, v, cos_sin):
+    """Poses and velocities of the loaded bodies as forces read them; angles only where ``angles`` says so."""
+    columns = coordinate.shape[0] - 1
+    for b in loaded:
+        q[3 * b] = body[b, X]
+        q[3 * b + 1] = body[b, Y]
+        if angles:
+            q[3 * b + 2] = angle_of(body, base, coordinate, b)
+        cos_sin[b, 0] = body[b, COS]
+        cos_sin[b, 1] = body[b, SIN]
+        for c in range(3):
+            speed = 0.0
+            for j in range(columns):
+                speed += rate[b, 3 * j + c] * coordinate[j, SPEED]
+            v[3 * b + c] = speed
+
+
+@kernel
+def reduced(rate, inertia, weight, force, mass, a):
+    """a (3 + f,) from 3 on takes z'' of several coordinates; returns whether M_z is positive."""
+    count = mass.shape[0]
+    last = rate.shape[1] - 3
+    for i in range(count):
+        a[3 + i] = 0.0
+        for j in range(i + 1):
+            mass[i, j] = 0.0
+    for b in range(1, rate.shape[0]):
+        for c in range(3):
+            m = inertia[3 * b + c]
+            push = weight[3 * b + c] + force[3 * b + c] - m * rate[b, last + c]
+            for i in range(count):
+                one = rate[b, 3 * i + c]
+                a[3 + i] += one * push
+                for j in range(i + 1):
+                    mass[i, j] += m * one * rate[b, 3 * j + c]
+    for i in range(count):
+        for j in range(i + 1):
+            value = mass[i, j]
+            for k in range(j):
+                value -= mass[i, k] * mass[j, k]
+            if i == j:
+                if not value > FLOOR * mass[i, i]:
+                    return False
+                mass[i, i] = math.sqrt(value)
+            else:
+                mass[i, j] = value / mass[j, j]
+        for k in range(i):
+            a[3 + i] -= mass[i, k] * a[3 + k]
+        a[3 + i] /= mass[i, i]
+    for i in range(count - 1, -1, -1):
+        for k in range(i + 1, count):
+            a[3 + i] -= mass[k, i] * a[3 + k]
+        a[3 + i] /= mass[i, i]
+    return True
+
+
+@internal
+def power_of_all(rate, inertia, weight, coordinate, a):
+    """Power of loads and drivers (W), from what the bodies gain."""
+    last = rate.shape[1] - 3
+    power = 0.0
+    for b in range(1, rate.shape[0]):
+        for c in range(3):
+            value = rate[b, last + c]
+            for j in range(a.shape[0] - 3):
+                value += rate[b, 3 * j + c] * a[3 + j]
+            speed = 0.0
+            for j in range(coordinate.shape[0] - 1):
+                speed += rate[b, 3 * j + c] * coordinate[j, SPEED]
+            power += speed * (inertia[3 * b + c] * value - weight[3 * b + c])
+    return power
+
+
+@inlined
+def accelerate(dyn, scratch, t, state, a, lam):
+    """Fill a (3 + f,) at a state (2, 3 + f) and time (s); returns the power of loads and drivers (W)."""
+    coordinate = scratch.coordinate
+    rate = scratch.rate
+    force = scratch.force
+    drive = scratch.drive
+    count = scratch.mass.shape[0]
+    for j in range(count):
+        coordinate[j, VALUE] = state[0, 3 + j]
+        coordinate[j, SPEED] = state[1, 3 + j]
+    last = coordinate.shape[0] - 1
+    coordinate[last, VALUE] = t - coordinate[last, BASE]
+    if last > count:
+        coordinate[count, VALUE] = t
+        evaluate_laws(dyn.laws, drive.shape[0], t, drive)
+    power = 0.0
+    status = solve_groups(
+        dyn.group, dyn.number, scratch.body, rate, scratch.base, coordinate, drive, dyn.gravity, scratch.sums
+    )
+    if status != SOLVED:
+        status = bridge(
+            dyn.laws,
+            dyn.group,
+            dyn.number,
+            dyn.gravity,
+            scratch.body,
+            rate,
+            scratch.base,
+            coordinate,
+            drive,
+            scratch.sums,
+            scratch.joined_body,
+            scratch.joined_rate,
+            t,
+        )
+    if status == SOLVED:
+        if dyn.loads.total > 0:
+            for b in dyn.loaded:
+                force[3 * b] = 0.0
+                force[3 * b + 1] = 0.0
+                force[3 * b + 2] = 0.0
+            place_bodies(
+                dyn.loaded,
+                scratch.body,
+                rate,
+                scratch.base,
+                coordinate,
+                dyn.angles,
+                scratch.q,
+                scratch.v,
+                scratch.cos_sin,
+            )
+            power = apply_loads(dyn.loads, dyn.laws, t, scratch.q, scratch.v, scratch.cos_sin, force)
+        if count == 1 and last == 1:
+            push = scratch.sums[1]
+            for b in dyn.loaded:
+                push += rate[b, 0] * force[3 * b] + rate[b, 1] * force[3 * b + 1] + rate[b, 2] * force[3 * b + 2]
+            a[3] = push / scratch.sums[0]
+            if not scratch.sums[0] > 0.0:
+                power = math.nan
+        elif not reduced(rate, dyn.inertia, dyn.weight, force, scratch.mass, a):
+            power = math.nan
+        if last > count:
+            power = power_of_all(rate, dyn.inertia, dyn.weight, coordinate, a) + (power - power)  # keeps nan
+    else:
+        power = math.nan
+    return power
+
+
+@kernel
+def derivative(dyn, scratch, t, state, out, lam):
+    """out (2, 3 + f) = d(state)/dt; returns the power of loads and drivers (W)."""
+    for c in range(3, state.shape[1]):
+        out[0, c] = state[1, c]
+    return accelerate(dyn, scratch, t, state, out[1], lam)
+
+
+@kernel
+def keep(body, rate, base, coordinate, number, size, per_size, watch, t):
+    """Predict from the pose evaluated last; watch[0] takes the largest rate of a body for one unit of a coordinate."""
+    last = coordinate.shape[0] - 1
+    largest = 0.0
+    for b in range(1, body.shape[0]):
+        base[b, THETA] = angle_of(body, base, coordinate, b)
+    for b in range(1, body.shape[0]):
+        base[b, BEND] = rate[b, 3 * last + 2]
+        for j in range(last):
+            base[b, TURNS + j] = rate[b, 3 * j + 2]
+        for j in range(size.shape[0]):
+            for c in range(3):
+                largest = max(largest, abs(rate[b, 3 * j + c]) * per_size[3 * b + c] * size[j])
+    for j in range(last):
+        coordinate[j, BASE] = coordinate[j, VALUE]
+    coordinate[last, BASE] = t
+    for e in range(number.shape[0]):
+        number[e, NEAR] = 1.0 if number[e, SINE] < WIDE else 0.0
+    watch[SENSITIVITY] = largest
+
+
+@inlined
+def settle(dyn, scratch, t, state, fresh):
+    """Take a state, ``fresh`` if it was the last to be evaluated, as the one to predict from.
+
+    Returns whether another choice of coordinates may be better.
+    """
+    if not fresh:
+        derivative(dyn, scratch, t, state, scratch.stages[0], scratch.multipliers)
+    keep(
+        scratch.body,
+        scratch.rate,
+        scratch.base,
+        scratch.coordinate,
+        dyn.number,
+        dyn.size,
+        dyn.per_size,
+        scratch.watch,
+        t,
+    )
+    return scratch.watch[SENSITIVITY] > scratch.watch[LIMIT]
+
+
+@kernel
+def write(dyn, scratch, t, state, stage, out, k):
+    """Output k in reference coordinates from a state; stage (2, 3 + f) takes its derivative."""
+    body = scratch.body
+    rate = scratch.rate
+    coordinate = scratch.coordinate
+    power = derivative(dyn, scratch, t, state, stage, scratch.multipliers)
+    a = stage[1]
+    last = coordinate.shape[0] - 1
+    for b in range(1, body.shape[0]):
+        out.y[k, 0, 3 * b] = body[b, X]
+        out.y[k, 0, 3 * b + 1] = body[b, Y]
+        out.y[k, 0, 3 * b + 2] = angle_of(body, scratch.base, coordinate, b)
+        for c in range(3):
+            v = 0.0
+            bend = rate[b, 3 * last + c]
+            for j in range(last):
+                v += rate[b, 3 * j + c] * coordinate[j, SPEED]
+            for j in range(scratch.mass.shape[0]):
+                bend += rate[b, 3 * j + c] * a[3 + j]
+            out.y[k, 1, 3 * b + c] = v
+            out.a[k, 3 * b + c] = bend
+    return power

@@ -1,0 +1,1 @@
+"""Compiled: the groups of independent coordinates by their pins and slides."""

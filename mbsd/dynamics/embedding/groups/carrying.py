@@ -1,0 +1,61 @@
+"""Points carried by bodies, and bodies hung on points, for columns j = 0 .. C - 1 of B and for what comes after them.
+
+P' = r' + omega s_perp,   in the last column also - omega^2 s: the convective accelerations
+"""
+
+from __future__ import annotations
+
+from mbsd.compiling.jit import internal
+from mbsd.dynamics.embedding.arrays import COS, OMEGA, SIN, X, Y
+
+
+@internal
+def turned_x(body, b, x, y):
+    """World x of a vector (x, y) in the axes of body b."""
+    return body[b, COS] * x - body[b, SIN] * y
+
+
+@internal
+def turned_y(body, b, x, y):
+    """World y of a vector (x, y) in the axes of body b."""
+    return body[b, SIN] * x + body[b, COS] * y
+
+
+@internal
+def carry(body, rate, columns, j, b, x, y, part):
+    """Rate (part 0: x, 1: y) in column j of a point with arm (x, y) in world axes that body b carries."""
+    omega = rate[b, 3 * j + 2]
+    out = rate[b, 3 * j] - omega * y if part == 0 else rate[b, 3 * j + 1] + omega * x
+    if j == columns:
+        square = body[b, OMEGA] * body[b, OMEGA]
+        out -= square * (x if part == 0 else y)
+    return out
+
+
+@internal
+def hang(body, rate, columns, j, b, vx, vy, omega, x, y):
+    """Rate in column j of body b that turns with omega, whose point with arm (x, y) in world axes has (vx, vy)."""
+    rate[b, 3 * j] = vx + omega * y
+    rate[b, 3 * j + 1] = vy - omega * x
+    rate[b, 3 * j + 2] = omega
+    if j == columns:
+        square = body[b, OMEGA] * body[b, OMEGA]
+        rate[b, 3 * j] += square * x
+        rate[b, 3 * j + 1] += square * y
+
+
+@internal
+def turn(body, b, leader, c, s):
+    """Turn b as its leader, and by the angle of (c, s) more."""
+    body[b, COS] = body[leader, COS] * c - body[leader, SIN] * s
+    body[b, SIN] = body[leader, SIN] * c + body[leader, COS] * s
+
+
+@internal
+def place(body, b, x, y, lx, ly, part):
+    """Put b, whose turn is known, so that its point (lx, ly) is at (x, y); returns the arm in world axes."""
+    ax = turned_x(body, b, lx, ly)
+    ay = turned_y(body, b, lx, ly)
+    body[b, X] = x - ax
+    body[b, Y] = y - ay
+    return ax if part == 0 else ay

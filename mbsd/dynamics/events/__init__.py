@@ -1,0 +1,1 @@
+"""Events: what is watched, when it is zero, what changes then."""

@@ -1,0 +1,174 @@
+"""What changes at an event: velocities by actions and impacts; what contacts and joints that stick do from then on.
+
+action   of the user: velocities change, joints are released; velocities are brought back onto the joints
+impacts  of contacts that approach (impact.py)
+decide   which contacts are open, slide or stick from now on, and which joints stick (stick_slip.py)
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.base.errors import ModelError
+from mbsd.base.users_function import described
+from mbsd.dynamics.events.laws.compliance import Compliance
+from mbsd.dynamics.events.laws.impact import impacts
+from mbsd.dynamics.events.laws.independent import independent
+from mbsd.dynamics.events.laws.stick_slip import Case, Verdict, decide
+from mbsd.dynamics.events.moment import Moment
+from mbsd.dynamics.events.watches import HALTS, OPENS, SLIPS, Watch
+from mbsd.dynamics.reference.arrays import Scratch
+from mbsd.dynamics.reference.projection import project
+from mbsd.dynamics.rows.joint_sticks import let_go
+from mbsd.dynamics.rows.switches import OPEN, RELEASED, SLIDES, STICKS, Touch
+from mbsd.dynamics.state import TIME, State
+from mbsd.model.event import Event, Happening
+
+if TYPE_CHECKING:
+    from mbsd.dynamics.prepare.prepare import PreparedDynamics
+
+
+class Jumps:
+    """Of one run, whose ``state`` they change; ``near``, ``still`` (m,): gaps and rates that count as zero."""
+
+    def __init__(
+        self, ready: PreparedDynamics, scratch: Scratch, state: State, near: np.ndarray, still: np.ndarray
+    ) -> None:
+        self.packed, self.dynamics = ready.packed, ready.dynamics
+        self.switches, self.sticks = ready.switches, ready.sticks
+        self.scratch, self.state, self.near, self.still = scratch, state, near, still
+        self.signs = [0.0] * len(self.switches.touches)
+        """Of sliding, by contact."""
+        self.happenings: list[Happening] = []
+
+    def compliance(self, time: float, q: np.ndarray) -> Compliance:
+        """Of a pose q (3 nb,) with the joints that hold now."""
+        return Compliance(self.packed, self.dynamics, self.switches, float(time), q.copy())
+
+    def act(self, event: Event) -> None:
+        """Let the action of an event of the user change velocities and release joints."""
+        moment = Moment(self.packed, float(self.state.clock[TIME]), self.state.y[0].copy(), self.state.y[1].copy())
+        assert event.action is not None
+        try:
+            event.action(moment)
+        except Exception as error:
+            raise ModelError(
+                f"{self.packed.name}: event '{event.name}': its action fails at t = {moment.t:.6g} s: "
+                f"{described(error)}"
+            ) from error
+        for joint in moment.released:
+            self.switches.release(joint)
+            let_go(self.dynamics.loads, self.sticks, int(self.packed.first_row[joint]))
+        if moment.released:
+            self.switches.stand_in(self.state.y[0])
+        for row in range(self.packed.contact_rows, len(self.packed.ws.phi)):
+            self.switches.let_go(row)  # contacts push back by impacts, not by this projection; friction is no impact
+        self.state.y[1] = moment.v
+        self.state.y[1, :3] = 0.0
+        project(self.dynamics, self.scratch, moment.t, self.state.y, 2)
+
+    def resolve(self, watch: Watch | None) -> None:
+        """Impacts, and what every contact and joint does from now on; ``watch``: what fell through zero."""
+        touches = self.switches.touches
+        if touches or self.sticks:
+            at = self.compliance(self.state.clock[TIME], self.state.y[0])
+            fired = watch.touch if watch is not None else None
+            closed = [
+                touch
+                for touch in touches
+                if touch.always_closed or touch is fired or at.phi[touch.gap] <= self._close(touch)
+            ]
+            self._strike(at, closed)
+            v = self.state.y[1]
+            rates = at.rates([touch.gap for touch in closed], v)
+            staying = [t for t, rate in zip(closed, rates, strict=True) if rate <= max(t.settle, self.still[t.gap])]
+            forced: dict[str, float] = {}
+            if watch is not None and fired is not None:
+                if watch.what == OPENS and fired in staying:
+                    staying.remove(fired)
+                if watch.what == SLIPS:
+                    forced[fired.name] = float(np.sign(self.state.lam[fired.way or 0]))
+                if watch.what == HALTS:
+                    forced[fired.name] = 0.0
+            before = [stick.state for stick in self.sticks]
+            self._set(at, decide(at, self._case(watch, staying, forced)), before)
+
+    def _case(self, watch: Watch | None, staying: list[Touch], forced: dict[str, float]) -> Case:
+        case = Case(staying, self.sticks, self.state.y[1], self.still, forced)
+        if watch is not None and watch.stick is not None:
+            case.slipping = watch.what == SLIPS
+            case.halted = watch.stick.name if watch.what == HALTS else None
+        return case
+
+    def _close(self, touch: Touch) -> float:
+        return 1e2 * self.near[touch.gap]
+
+    def _strike(self, at: Compliance, closed: list[Touch]) -> None:
+        inertia = self.dynamics.inertia
+        before = 0.5 * float(inertia @ self.state.y[1] ** 2)
+        after, given = impacts(at, closed, self.state.y[1], self.still)
+        if not given:
+            return
+        self.state.y[1] = after
+        change = 0.5 * float(inertia @ after**2) - before
+        for impulse in given:
+            self.tell(impulse.touch.name, "impact", impulse.normal, change)
+            change = 0.0
+
+    def _set(self, at: Compliance, verdict: Verdict, before: list[str]) -> None:
+        sliding, sticking = self.dynamics.sliding.table[:, 0], []
+        by_name = {decision.touch.name: decision for decision in verdict.contacts if decision.normal > 0.0}
+        sliding[:] = 0.0
+        rows: list[int] = []
+        for k, touch in enumerate(self.switches.touches):
+            old = touch.state
+            self.switches.let_go(touch.gap)
+            if touch.way is not None:
+                self.switches.let_go(touch.way)
+            decision = by_name.get(touch.name)
+            self.signs[k] = 0.0
+            if decision is None:
+                touch.state = OPEN
+            else:
+                rows.append(touch.gap)
+                if touch.always_closed:
+                    self.switches.move_zero(touch.gap, at.phi[touch.gap])
+                touch.state, self.signs[k] = SLIDES, decision.sliding
+                if touch.way is not None and decision.sliding == 0.0:
+                    touch.state = STICKS
+                    if old != STICKS:
+                        self.switches.move_zero(touch.way, at.phi[touch.way])
+                    sticking.append(touch.way)
+                elif touch.way is not None:
+                    sliding[touch.sliding] = touch.friction * decision.sliding
+            self._tell_change(touch, old)
+        for row in independent(at, rows + sticking + self._set_joints(at, verdict.joints, before)):
+            self.switches.take_up(row)
+
+    def _set_joints(self, at: Compliance, signs: dict[str, float], before: list[str]) -> list[int]:
+        """The rows of the joints that stick from now on; their states ``before``."""
+        rows: list[int] = []
+        for stick, old in zip(self.sticks, before, strict=True):
+            self.switches.let_go(stick.way)
+            if stick.state == RELEASED:
+                continue
+            sign = signs[stick.name]
+            stick.set(SLIDES if sign else STICKS, sign)
+            if stick.state == STICKS:
+                rows.append(stick.way)
+                if old != STICKS:
+                    self.switches.move_zero(stick.way, at.phi[stick.way])
+            if old != stick.state:
+                self.tell(stick.name, stick.state)
+        return rows
+
+    def _tell_change(self, touch: Touch, old: str) -> None:
+        new = touch.state
+        if old != new:
+            self.tell(touch.name, "opens" if new == OPEN else "closes" if old == OPEN else new)
+
+    def tell(self, name: str, what: str, impulse: float = 0.0, energy: float = 0.0) -> None:
+        """One more of what happened, now."""
+        self.happenings.append(Happening(float(self.state.clock[TIME]), name, what, impulse, energy))

@@ -1,0 +1,1 @@
+"""Laws of impact, contact and friction at events, as complementarity problems."""

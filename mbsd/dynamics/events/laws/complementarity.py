@@ -1,0 +1,96 @@
+"""Normal forces and friction of closed contacts and of joints that stick, as a linear complementarity problem.
+
+In accelerations, or in velocities for impulses; without N and T gaps open with g, ways go on with s:
+
+    0 <= N complementary to g + G_n N + G_nt T >= 0;    |T| <= mu N + L, and the way rests or goes against T
+
+in N, T = T+ - T-, and the slack l of the friction limit:
+
+    w  = G_n N + G_nt T + g                  w+ = G_tn N + G_t T + l + s
+    w_l = mu N + L - T+ - T-                 w- = -(G_tn N + G_t T) + l - s
+
+L is the limit of friction of a joint, whose normal force is none of N.
+
+Source: Pfeiffer, Glocker, Multibody Dynamics with Unilateral Contacts, ch. 5; Stewart, Trinkle 1996, Int. J. Numer.
+Meth. Eng. 39.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mbsd.base.errors import SimulationError
+from mbsd.dynamics.events.laws.compliance import Compliance
+from mbsd.dynamics.events.laws.lcp import lemke
+from mbsd.dynamics.rows.switches import Touch
+
+STIFF = 1e-12
+"""Compliance of a row, as part of that of its bodies alone, below which nothing gives way."""
+
+
+def complementarity(
+    at: Compliance,
+    taking: Sequence[Touch],
+    ways: Sequence[int],
+    compliance: np.ndarray,
+    rates: np.ndarray,
+    pick: np.ndarray,
+    limits: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """N (c,) and T (k,) for the gaps of ``taking`` and the rows ``ways``. Raises SimulationError if there are none.
+
+    ``compliance`` (c + k, c + k) and ``rates`` (c + k,) are those of gaps and ways without N and T; the limit of
+    friction is ``pick`` (k, c) N + ``limits`` (k,).
+    """
+    _refuse_driven(at, taking, compliance)
+    c, k = len(taking), len(ways)
+    n, t = slice(0, c), slice(c, c + k)
+    unit = 1.0 / np.sqrt(_alone(at, [*(touch.gap for touch in taking), *ways]))
+    g = compliance * unit * unit[:, None]
+    size = float(np.abs(np.diag(g)).max(initial=0.0)) or 1.0
+    g /= size
+    pick, limits = pick * unit[n] / unit[t, None], limits / unit[t]
+    rates = rates * unit
+    fastest = float(np.abs(rates).max(initial=0.0)) or 1.0
+    b = rates / fastest
+    one = np.eye(k)
+    matrix = np.block(
+        [
+            [g[n, n], g[n, t], -g[n, t], np.zeros((c, k))],
+            [g[t, n], g[t, t], -g[t, t], one],
+            [-g[t, n], -g[t, t], g[t, t], one],
+            [pick, -one, -one, np.zeros((k, k))],
+        ]
+    )
+    z = lemke(matrix, np.concatenate([b[n], b[t], -b[t], limits * size / fastest]))
+    if z is None:
+        names = ", ".join(f"'{touch.name}'" for touch in taking) or "of joints that stick"
+        raise SimulationError(
+            f"{at.packed.name}: at t = {at.time:.6g} s the contacts {names} allow no motion with rigid bodies and this "
+            "friction (jamming, Painleve's paradox). Use less friction, or a contact that yields."
+        )
+    z *= fastest / size
+    return z[:c] * unit[n], (z[c : c + k] - z[c + k : c + 2 * k]) * unit[t]
+
+
+def _alone(at: Compliance, rows: Sequence[int]) -> np.ndarray:
+    """(k,) compliance of rows that their bodies would have without joints."""
+    out = at.dynamics.inverse[3:] @ at.generalised(rows) ** 2
+    return np.where(out > 0.0, out, 1.0)
+
+
+def gives_way(at: Compliance, row: int, compliance: float) -> bool:
+    """Whether a force along ``row`` moves anything, its compliance with the joints being ``compliance``."""
+    return compliance > STIFF * float(_alone(at, [row])[0])
+
+
+def _refuse_driven(at: Compliance, taking: Sequence[Touch], compliance: np.ndarray) -> None:
+    """A contact that no force can open: joints and drivers alone decide its gap."""
+    for k, touch in enumerate(taking):
+        if not gives_way(at, touch.gap, compliance[k, k]):
+            raise SimulationError(
+                f"{at.packed.name}: at t = {at.time:.6g} s joints and drivers move '{touch.name}' against its stop, "
+                "and nothing can give way. Drive less far, move the stop, or put a spring between."
+            )

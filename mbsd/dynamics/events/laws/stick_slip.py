@@ -1,0 +1,226 @@
+"""What closed contacts and joints that stick by events do from now on: open, slide or stick.
+
+For contacts that do not separate and joints at rest, in accelerations (complementarity.py):
+
+    0 <= N complementary to g'' >= 0;   sliding: T = -mu N sign(s');   s' = 0: |T| <= L, s'' = 0 or against T
+
+L = mu_s N of a contact, mu_s (N + N_0) of a joint, whose N is the size of a reaction and no unknown of that problem: it
+is solved again with the N of the joints that it gives, until both agree, by the iteration of joint_friction.py. T that
+several joints at rest can share is shared (sharing.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mbsd.arrays.friction_along import friction_under, normals_along
+from mbsd.base.errors import SimulationError
+from mbsd.dynamics.events.laws.complementarity import complementarity, gives_way
+from mbsd.dynamics.events.laws.compliance import Compliance
+from mbsd.dynamics.events.laws.sharing import share
+from mbsd.dynamics.rows.joint_sticks import JointStick
+from mbsd.dynamics.rows.switches import RELEASED, SLIDES, Touch
+from mbsd.equations.joint_friction import FAINT, MOST_PASSES, SETTLED, X
+
+AT_LIMIT = 1e-10
+"""Part of the limit of friction: closer to it a contact slides."""
+HAIR = 1e-9
+"""Part of their limits that joints at rest lack when one of them has just come to its limit."""
+ROUNDING, PATIENCE = 1e-9, 20
+"""Part of the largest normal force of a joint that may be left after so many passes."""
+
+
+@dataclass
+class Decision:
+    """What a closed contact does from now on."""
+
+    touch: Touch
+    normal: float
+    """N (N or N m); 0: it opens."""
+    sliding: float
+    """Sign of the way's rate; 0 where it sticks or has no friction."""
+
+
+@dataclass
+class Verdict:
+    """Of all contacts that may stay closed, and the signs of sliding of all joints that may stick, 0: it sticks."""
+
+    contacts: list[Decision]
+    joints: dict[str, float]
+
+
+@dataclass
+class Case:
+    """What is known: velocities (3 nb,), rates below ``still`` (m,) are zero."""
+
+    closed: Sequence[Touch]
+    sticks: Sequence[JointStick]
+    v: np.ndarray
+    still: np.ndarray
+    forced: Mapping[str, float]
+    """Contacts by name that leave a sticking point with the sign of their sliding, or come to it (0)."""
+    halted: str | None = None
+    """The joint that has just come to rest."""
+    slipping: bool = False
+    """A joint at rest has just come to the limit of its friction."""
+
+
+def decide(at: Compliance, case: Case) -> Verdict:
+    """For contacts that neither approach nor separate. Raises SimulationError where nothing is possible."""
+    sticks = [stick for stick in case.sticks if stick.state != RELEASED]
+    if not case.closed and not sticks:
+        return Verdict([], {})
+    return _Moment(at, case, sticks).verdict()
+
+
+class _Moment:
+    """One event: gaps (c,) and ways at rest (k,), those of contacts first."""
+
+    def __init__(self, at: Compliance, case: Case, sticks: Sequence[JointStick]) -> None:
+        self.at, self.case = at, case
+        closed, v, still = case.closed, case.v, case.still
+        self.gamma = at.gamma(v)
+        self.loads = at.loads(v)
+        self.gaps = [touch.gap for touch in closed]
+        rates = self._rates(sticks)
+        self.sliding = np.zeros(len(closed))
+        for k, touch in enumerate(closed):
+            if touch.way is not None:
+                rate = rates[touch.way]
+                self.sliding[k] = case.forced.get(touch.name, np.sign(rate) if abs(rate) > still[touch.way] else 0.0)
+        self.rough = [k for k, touch in enumerate(closed) if touch.way is not None and self.sliding[k] == 0.0]
+        self.signs: dict[str, float] = {}
+        self.resting = []
+        for stick in sticks:
+            sign = self._moving(stick, rates[stick.way])
+            if sign == 0.0:
+                self.resting.append(stick)
+            else:
+                self.signs[stick.name] = sign
+            stick.set(SLIDES, sign)
+        self.ways = [closed[k].way or 0 for k in self.rough] + [stick.way for stick in self.resting]
+        directions = at.generalised([*self.gaps, *self.ways])
+        pushed = directions.copy()
+        for k, touch in enumerate(closed):
+            if self.sliding[k] != 0.0:
+                pushed[:, k] -= touch.friction * self.sliding[k] * at.generalised([touch.way or 0])[:, 0]
+        self.directions = directions
+        dv, self.lam_of = at.answers(pushed)
+        self.compliance = directions.T @ dv
+        self.free = np.zeros(len(self.compliance))
+        """(c + k,) accelerations of gaps and ways without N and T."""
+
+    def _rates(self, sticks: Sequence[JointStick]) -> dict[int, float]:
+        """Of all ways by row, those at rest taken to be so exactly: others may be at rest with them."""
+        case, at = self.case, self.at
+        rows = {touch.way: touch.name for touch in case.closed if touch.way is not None}
+        rows |= {stick.way: stick.name for stick in sticks}
+        ways = np.array([*rows], np.int64)
+        halted = np.array([name == case.halted or case.forced.get(name) == 0.0 for name in rows.values()], bool)
+        moved, rates = np.array([self._gives(way) for way in ways], bool), at.rates(ways, case.v)
+        resting, known = moved & (halted | (np.abs(rates) <= case.still[ways])), np.zeros_like(halted)
+        while not np.array_equal(resting, known):
+            known = resting
+            directions = at.generalised(ways[resting])
+            dv, v = at.answer(directions), case.v.copy()
+            v[3:] -= dv @ np.linalg.lstsq(directions.T @ dv, at.rates(ways[resting], case.v), rcond=1e-12)[0]
+            rates = at.rates(ways, v)
+            resting = resting | moved & (np.abs(rates) <= case.still[ways])
+        return dict(zip(rows, np.where(halted, 0.0, rates).tolist(), strict=True))
+
+    def _gives(self, way: int) -> bool:
+        """False for a way that joints and drivers alone move, or at a turning point of it."""
+        direction = self.at.generalised([way])
+        return gives_way(self.at, way, float((direction.T @ self.at.answer(direction))[0, 0]))
+
+    def _moving(self, stick: JointStick, rate: float) -> float:
+        """The sign of the sliding of a joint, 0 where forces decide it.
+
+        One that they do not move keeps its sign, or has just passed a turning point.
+        """
+        if abs(rate) > self.case.still[stick.way]:
+            return float(np.sign(rate))
+        if self._gives(stick.way):
+            return 0.0
+        return -stick.sign if stick.name == self.case.halted else stick.sign or 1.0
+
+    def verdict(self) -> Verdict:
+        closed, rough, c = self.case.closed, self.rough, len(self.gaps)
+        pick = np.zeros((len(self.ways), c))
+        pick[np.arange(len(rough)), rough] = [closed[k].static_friction for k in rough]
+        forces, limits, largest = self._agreed(pick)
+        normal, along = forces[:c], forces[c:]
+        limits = pick @ normal + limits
+        left = self._left(forces, limits)
+        contacts = []
+        for k, touch in enumerate(closed):
+            holds = normal[k] > 1e-12 * largest
+            direction = self.sliding[k]
+            if k in rough and holds:
+                w = rough.index(k)
+                if abs(along[w]) >= limits[w] * (1.0 - AT_LIMIT):
+                    direction = -float(np.sign(along[w]))
+            contacts.append(Decision(touch, float(normal[k]) if holds else 0.0, direction))
+        breaking = {
+            one.touch.name: one.sliding
+            for k, one in enumerate(contacts)
+            if k in rough and one.sliding != 0.0 and one.touch.static_friction > one.touch.friction
+        }
+        if breaking:
+            return decide(self.at, replace(self.case, forced={**self.case.forced, **breaking}))
+        for w, stick in enumerate(self.resting, len(rough)):
+            self.signs[stick.name] = float(np.sign(left[w]))
+        return Verdict(contacts, self.signs)
+
+    def _left(self, forces: np.ndarray, limits: np.ndarray) -> np.ndarray:
+        """(k,) accelerations of the ways under N and T (c + k,), zero where friction up to ``limits`` (k,) holds."""
+        c = len(self.gaps)
+        left = (self.compliance @ forces + self.free)[c:]
+        by_limit = np.diag(self.compliance)[c:] * limits
+        return np.where(np.abs(left) <= AT_LIMIT * np.maximum(by_limit, np.abs(self.free[c:])), 0.0, left)
+
+    def _agreed(self, pick: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+        """N and T (c + k,), the limits (k,) of joints at rest under them, and the largest load."""
+        at, v = self.at, self.case.v
+        packed, loads = at.packed, at.dynamics.loads
+        x = np.nan_to_num(loads.normal[X].copy())
+        last, weight = np.zeros_like(x), 1.0
+        hair = 1.0 - HAIR if self.case.slipping else 1.0
+        for passes in range(MOST_PASSES):
+            load = self.loads + friction_under(packed, loads, at.q[None], v[None], x[None])[0]
+            a, lam = at.accelerations(load, self.gamma)
+            self.free = self.directions.T @ a - self.gamma[[*self.gaps, *self.ways]]
+            limits = np.array([0.0] * len(self.rough) + [hair * stick.limit(x) for stick in self.resting])
+            forces = np.concatenate(
+                complementarity(at, self.case.closed, self.ways, self.compliance, self.free, pick, limits)
+            )
+            forces = self._shared(forces, limits)
+            found = normals_along(packed, loads, at.q[None], at.compact[None], (lam + self.lam_of @ forces)[None])[0]
+            gap = found - x
+            largest = float(np.abs(load[3:]).max(initial=0.0))
+            part = SETTLED if passes < PATIENCE else ROUNDING
+            if not len(x) or np.abs(gap).max() <= part * max(found.max(), FAINT * largest):
+                return forces, limits, largest
+            bend = gap - last
+            square = float(bend @ bend)
+            weight = float(np.clip(-weight * (last @ bend) / square, -10.0, 10.0)) if passes and square else 1.0
+            last = gap
+            x = np.maximum(x + weight * gap, 0.0)
+        raise SimulationError(
+            f"{packed.name}: at t = {at.time:.6g} s friction and reactions of the joints at rest do not agree; joints "
+            "jam. Lower the friction, or guide sliders over a longer length."
+        )
+
+    def _shared(self, forces: np.ndarray, limits: np.ndarray) -> np.ndarray:
+        """T of joints that stay at rest, shared among them where that changes no motion."""
+        c = len(self.gaps)
+        still = np.flatnonzero(self._left(forces, limits) == 0.0)
+        within = still[still >= len(self.rough)]
+        out = forces.copy()
+        if len(within) > 1:
+            rows = c + within
+            out[rows] = share(self.compliance[np.ix_(rows, rows)], forces[rows], limits[within])[0]
+        return out

@@ -1,0 +1,113 @@
+"""The motion at one time, as event functions and actions see it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
+from mbsd.model.body import Marker, finite_number
+
+if TYPE_CHECKING:
+    from mbsd.arrays.packing import Packed
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A frame now: m, rad, m/s, rad/s."""
+
+    x: float
+    y: float
+    theta: float
+    vx: float
+    vy: float
+    omega: float
+
+
+class Moment:
+    """``moment.t``, ``moment.body("crank").omega``, ``moment.point(marker).x``; actions may also change it."""
+
+    def __init__(self, packed: Packed, t: float, q: np.ndarray, v: np.ndarray) -> None:
+        self.packed = packed
+        self.t = t
+        """s"""
+        self.q = q
+        """(3 nb,) centres of mass (m) and angles (rad)."""
+        self.v = v
+        """(3 nb,)"""
+        self.released: list[int] = []
+        """Joints that an action let go, by number."""
+
+    def body(self, name: str) -> Frame:
+        """A body's frame."""
+        return self._frame(self._number(name), (0.0, 0.0), 0.0)
+
+    def point(self, marker: Marker) -> Frame:
+        """A marker."""
+        return self._frame(self._number(marker.body.name), (marker.x, marker.y), marker.angle)
+
+    # -- for actions --------------------------------------------------------------------------------------------
+
+    def set_velocity(self, name: str, vx: float, vy: float, omega: float) -> None:
+        """Give a body's frame a velocity (m/s, m/s, rad/s); what the joints forbid of it is then taken away."""
+        what = f"{self.packed.name}: velocity of '{name}' in an event"
+        vx, vy, omega = (finite_number(what, value) for value in (vx, vy, omega))
+        b = self._number(name, moving=True)
+        x, y = self._arm(b, (0.0, 0.0))
+        self.v[3 * b : 3 * b + 3] = vx + omega * y, vy - omega * x, omega
+
+    def push(self, marker: Marker, px: float, py: float, turning: float = 0.0) -> None:
+        """Give an impulse (N s) at a marker and a turning impulse (N m s) to its body alone.
+
+        Its joints are served afterwards, by the smallest change of velocities in the metric of the masses, which is
+        what their impulses do. Raises ModelError for a body without mass.
+        """
+        what = f"{self.packed.name}: impulse on '{marker.body.name}' in an event"
+        px, py, turning = (finite_number(what, value) for value in (px, py, turning))
+        b = self._number(marker.body.name, moving=True)
+        mass, inertia = self.packed.system.mass[b], self.packed.system.inertia[b]
+        x, y = self._arm(b, (marker.x, marker.y))
+        torque = turning + x * py - y * px
+        if (mass == 0.0 and (px or py)) or (inertia == 0.0 and torque):
+            raise ModelError(f"{what}: the body has mass {mass:g} kg and inertia {inertia:g} kg m^2; give it both")
+        self.v[3 * b] += px / mass if px else 0.0
+        self.v[3 * b + 1] += py / mass if py else 0.0
+        self.v[3 * b + 2] += torque / inertia if torque else 0.0
+
+    def release(self, joint: str) -> None:
+        """Let a joint or driver go for good, as if it broke."""
+        names = [one.name for one in self.packed.joints[: len(self.packed.joints) - self.packed.contacts]]
+        if not isinstance(joint, str) or joint not in names:
+            raise ModelError(f"{self.packed.name}: {no_such('joint to release', joint, names)}")
+        self.released.append(names.index(joint))
+
+    # -----------------------------------------------------------------------------------------------------------
+
+    def _number(self, name: str, moving: bool = False) -> int:
+        names = self.packed.body_names[1 if moving else 0 :]
+        if not isinstance(name, str) or name not in names:
+            raise ModelError(f"{self.packed.name}: {no_such('body', name, names)}")
+        return self.packed.body_names.index(name)
+
+    def _arm(self, b: int, place: tuple[float, float]) -> tuple[float, float]:
+        """World axes, from the centre of mass to a place in the author's frame."""
+        x, y = place[0] - self.packed.com[b, 0], place[1] - self.packed.com[b, 1]
+        c, s = math.cos(self.q[3 * b + 2]), math.sin(self.q[3 * b + 2])
+        return c * x - s * y, s * x + c * y
+
+    def _frame(self, b: int, place: tuple[float, float], turned: float) -> Frame:
+        x, y = self._arm(b, place)
+        qx, qy, theta = self.q[3 * b : 3 * b + 3]
+        vx, vy, omega = self.v[3 * b : 3 * b + 3]
+        return Frame(
+            float(qx + x),
+            float(qy + y),
+            float(theta + turned),
+            float(vx - omega * y),
+            float(vy + omega * x),
+            float(omega),
+        )

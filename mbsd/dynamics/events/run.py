@@ -1,0 +1,336 @@
+"""A simulation with events: step by step, back to the start of the step where one happens, and on from there.
+
+    step     one step of the integrator; do watched scalars fall through zero within it?
+    root     from the state before the step, integrate to shorter and shorter ends, until the scalar is zero
+    jump     what changes there: jumps.py
+    restart  from the new state
+
+The integrator itself steps to the event, so that it is met as exactly as the motion is known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.base.errors import SimulationError
+from mbsd.dynamics.events.crossing import first_crossing
+from mbsd.dynamics.events.dense import Quintic
+from mbsd.dynamics.events.jumps import Jumps
+from mbsd.dynamics.events.laws.resting import carried
+from mbsd.dynamics.events.moment import Moment
+from mbsd.dynamics.events.watches import (
+    Samples,
+    Watch,
+    checked,
+    event_watch,
+    stick_watches,
+    touch_watches,
+)
+from mbsd.dynamics.prepare.exchange import LOOK, exchange_rows
+from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.rows.switches import STICKS
+from mbsd.dynamics.runs.pace import Pace
+from mbsd.dynamics.runs.trail import Snapshot
+from mbsd.dynamics.state import (
+    EVALUATIONS,
+    NEXT,
+    POWER,
+    REACHED,
+    STARTED,
+    STEP,
+    TIME,
+    WORK,
+    Output,
+    State,
+    copied,
+)
+from mbsd.equations.joint_friction import SENSE
+from mbsd.model.event import Event
+
+if TYPE_CHECKING:
+    from mbsd.dynamics.prepare.prepare import PreparedDynamics
+    from mbsd.dynamics.runs.run import Run
+
+NEAR = 1e-11
+"""Gaps below this part of the size (rad) are closed; rates below it by 1 s are zero where bodies rest."""
+STILL = 1e-9
+INSIDE = 1e-6
+"""A contact that starts deeper than this part of the size (rad) inside is refused."""
+EVENT_STEPS = 20
+"""Steps that an event is worth where the pace of a run is looked at."""
+AT_ONE_TIME = 500
+"""Events that may happen without time going on."""
+
+
+class EventRun:
+    """One run from ``state``; what happened is in ``happenings``, points to go on from in ``snapshots``."""
+
+    def __init__(self, ready: PreparedDynamics, run: Run, state: State, out: Output, events: list[Event]) -> None:
+        self.ready, self.packed, self.dynamics, self.switches = ready, ready.packed, ready.dynamics, ready.switches
+        self.sticks = ready.sticks
+        self.run, self.state, self.out, self.events = run, state, out, events
+        scale = 1.0 / self.packed.row_scale()
+        self.near, self.still = NEAR * scale, STILL * scale
+        self.jumps = Jumps(ready, run.scratch, state, self.near, self.still)
+        self.sides: dict[str, float] = {}
+        """Sign of the value of each event of the user."""
+        self.watches: list[Watch] = []
+        self.happenings = self.jumps.happenings
+        self.snapshots: list[Snapshot] = []
+        self.held = np.zeros((len(out.t), len(self.packed.ws.phi)), bool)
+        """(T, m) rows that held at each output."""
+        self.rows: list[tuple] = []
+        """Outputs right before and after each event: the parts of an Output, and the rows that hold."""
+        self.ended = False
+        self._told = 0
+        self._times: list[float] = []
+
+    # -- going on -----------------------------------------------------------------------------------------------
+
+    def begin(self) -> None:
+        """At the start of a simulation: what is closed, and impacts of velocities that contacts forbid."""
+        self._refuse_inside()
+        for event in self.events:
+            self.sides[event.name] = float(np.sign(self._value(event)))
+        self.jumps.resolve(None)
+        self._restart()
+
+    def resume(self, snapshot: Snapshot, work: float) -> None:
+        """Go on from where another run was, with its contacts as they were."""
+        self.dynamics.schur.rows[:] = snapshot.rows
+        self.dynamics.sliding.table[:, 0] = snapshot.factor
+        self.dynamics.loads.rub_number[:, SENSE] = snapshot.senses
+        self.packed.system.numbers[:] = snapshot.numbers
+        self.ready.following.settle(*self.state.y)
+        for stick, (state, sign) in zip(self.sticks, snapshot.joints, strict=True):
+            stick.state, stick.sign = state, sign
+        for touch, status in zip(self.switches.touches, snapshot.states, strict=True):
+            touch.state = status
+        self.jumps.signs, self.sides = list(snapshot.signs), dict(snapshot.sides)
+        self.switches.released = set(snapshot.released)
+        self.state.clock[WORK] = work
+        self._restart()
+
+    def to(self, end: float, progress: Callable[[float], None] | None = None) -> bool:
+        """Go on to ``end`` (s); False if a terminal event came before."""
+        state = self.state
+        pace = Pace(self.run, state, end, progress)
+        turn = 0
+        while not self.ended:
+            if turn % LOOK == 0:
+                exchange_rows(self.ready, state)
+            turn += 1
+            self.ready.stops.cross(state)
+            self._make_valid()
+            before = copied(state)
+            status = self.run.advance(state, self.out, end, 1)
+            found = self._crossing(before) if state.clock[TIME] > before.clock[TIME] else None
+            pace.note(extra=0 if found is None else EVENT_STEPS)
+            if found is None:
+                self._note_rows()
+                if status == REACHED and state.clock[TIME] >= end:
+                    return True
+                continue
+            watch, first, last = found
+            self._find(watch, before, first, last)
+            self._note_rows()
+            if watch.stops:
+                self._make_valid()
+                before_it, told = self._row(), len(self.happenings)
+                self._happen(watch)
+                if len(self.happenings) > told:  # a gap that only rounding closes is no event
+                    self.rows += [before_it] if self.ended else [before_it, self._row()]
+            else:
+                self._turn_side(watch)
+                self._restart()
+        return False
+
+    def _make_valid(self) -> None:
+        state = self.state
+        if state.count[STARTED] == 0:
+            state.clock[POWER] = derivative(
+                self.dynamics, self.run.scratch, state.clock[TIME], state.y, state.dy, state.lam
+            )
+            state.count[EVALUATIONS] += 1
+            state.count[STARTED] = 1
+
+    def _note_rows(self) -> None:
+        """Outputs written since the last call were written with the rows that hold now."""
+        following = int(self.state.count[NEXT])
+        if following > self._told:
+            self.held[self._told : following] = self.switches.held()
+            if self._sharing:
+                for k in range(self._told, following):
+                    self.out.lam[k] = self._carried(self.out.t[k], self.out.y[k, 0], self.out.lam[k])[0]
+            self._told = following
+
+    # -- joints at rest that share their friction ---------------------------------------------------------------
+
+    @property
+    def _sharing(self) -> bool:
+        held = self.switches.held() if self.sticks else None
+        return held is not None and any(one.state == STICKS and not held[one.way] for one in self.sticks)
+
+    def _carried(self, time: float, q: np.ndarray, lam: np.ndarray) -> tuple[np.ndarray, float]:
+        return carried(self.jumps.compliance(time, q), self.sticks, lam)
+
+    def _spare(self, samples: Samples) -> np.ndarray:
+        """(S,) 1 - s"""
+        along = zip(samples.t, samples.q, samples.multipliers(), strict=True)
+        return np.array([1.0 - self._carried(*one)[1] for one in along])
+
+    # -- finding ------------------------------------------------------------------------------------------------
+
+    def _crossing(self, before: State) -> tuple[Watch, float, float] | None:
+        if not self.watches:
+            return None
+        quintic = Quintic(before, self.state)
+
+        def samples(x: np.ndarray) -> Samples:
+            q, v = quintic.at(x)
+            return Samples(self.packed, self.dynamics, self.run.scratch, quintic.times(x), q, v)
+
+        watches = list(self.watches)
+        while watches:
+            found = first_crossing(watches, samples)
+            if found is None:
+                return None
+            watch, where, negative = found
+            times = quintic.times(np.array([where, negative]))
+            if where == 0.0 or self._true(watch, before, float(times[1])) < -watch.still:
+                return watch, float(times[0]), float(times[1])
+            watches.remove(watch)  # the quintic dips below zero, the motion does not
+        return None
+
+    def _true(self, watch: Watch, before: State, time: float) -> float:
+        """The watched scalar of the motion itself at a time (s) within the step; the state is left before it."""
+        trial = copied(before)
+        if time > before.clock[TIME]:
+            nowhere = self.run.nowhere
+            trial.count[NEXT] = len(nowhere.t)
+            self.run.advance(trial, nowhere, time)
+        at = np.array([trial.clock[TIME]])
+        sample = Samples(self.packed, self.dynamics, self.run.scratch, at, trial.y[0][None], trial.y[1][None])
+        return float(watch.value(sample)[0])
+
+    def _find(self, watch: Watch, before: State, first: float, last: float) -> None:
+        """Bring the state to the root, which the quintic puts at ``first`` (s) and ``last`` is beyond."""
+        from scipy.optimize import brentq
+
+        start = float(before.clock[TIME])
+        root = first
+        if first > start:
+            low, high = start, last
+            reach = 1e-3 * (last - start)
+            values: dict[float, float] = {}
+
+            def value(time: float) -> float:
+                if time not in values:
+                    values[time] = self._true(watch, before, time)
+                return values[time]
+
+            if value(max(first - reach, low)) > 0.0 and first - reach > low:
+                low = first - reach
+            if first + reach < high and value(first + reach) < 0.0:
+                high = first + reach
+            above = value(low)
+            if above > 0.0:
+                root = float(brentq(value, low, high, xtol=1e-15))  # pyright: ignore[reportArgumentType]
+            elif low == start:
+                root = first  # it left zero at the start of the step: the quintic's root stands
+        for target, source in zip(self.state, before, strict=True):
+            target[...] = source
+        if root > start:
+            self.run.advance(self.state, self.out, root)
+
+    def _turn_side(self, watch: Watch) -> None:
+        self.sides[watch.name] = -(self.sides[watch.name] or 1.0)
+
+    # -- jumps --------------------------------------------------------------------------------------------------
+
+    def _happen(self, watch: Watch) -> None:
+        time = float(self.state.clock[TIME])
+        self._times = [one for one in self._times if one == time] + [time]
+        if len(self._times) > AT_ONE_TIME:
+            raise SimulationError(
+                f"{self.packed.name}: more than {AT_ONE_TIME} events at t = {time:.6g} s, the last of '{watch.name}' "
+                f"({watch.what}). Change its restitution or friction, or what an action does there."
+            )
+        if watch.event is not None:
+            self._turn_side(watch)
+            self.jumps.tell(watch.name, "end" if watch.event.terminal else "event")
+            if watch.event.terminal:
+                self.ended = True
+                return
+            if watch.event.action is not None:
+                self.jumps.act(watch.event)
+        self.jumps.resolve(watch)
+        self._restart()
+
+    def _restart(self) -> None:
+        """Forget the derivative and what was watched: both belong to the motion before."""
+        state = self.state
+        state.count[STARTED] = 0
+        state.clock[STEP] = 0.0
+        self._make_valid()
+        load = max(float(np.abs(self.dynamics.weight[3:]).max()), float(np.abs(state.lam).max(initial=0.0)), 1e-300)
+        self.watches = []
+        for touch, sign in zip(self.switches.touches, self.jumps.signs, strict=True):
+            self.watches += touch_watches(touch, sign, self.near, self.still, load)
+        together = self._spare if self._sharing else None
+        self.watches += stick_watches(self.sticks, together, self.still, load)
+        for event in self.events:
+            if self.sides[event.name] == 0.0:
+                self.sides[event.name] = float(np.sign(self._value(event)))
+            self.watches.append(event_watch(self.packed, event, self.sides[event.name] or 1.0))
+        self.snapshots.append(self.snapshot())
+
+    def snapshot(self) -> Snapshot:
+        """This moment, to go on from."""
+        return Snapshot(
+            self.state.y.copy(),
+            float(self.state.clock[TIME]),
+            float(self.state.clock[WORK]),
+            self.dynamics.schur.rows.copy(),
+            self.dynamics.sliding.table[:, 0].copy(),
+            self.packed.system.numbers.copy(),
+            [touch.state for touch in self.switches.touches],
+            list(self.jumps.signs),
+            dict(self.sides),
+            set(self.switches.released),
+            [(stick.state, stick.sign) for stick in self.sticks],
+            self.dynamics.loads.rub_number[:, SENSE].copy(),
+        )
+
+    def _row(self) -> tuple:
+        state = self.state
+        return (
+            float(state.clock[TIME]),
+            state.y.copy(),
+            state.dy[1].copy(),
+            self._carried(state.clock[TIME], state.y[0], state.lam)[0] if self._sharing else state.lam.copy(),
+            float(state.clock[WORK]),
+            float(self.run.scratch.report[0]),
+            self.switches.held(),
+        )
+
+    # -- at the start -------------------------------------------------------------------------------------------
+
+    def _value(self, event: Event) -> float:
+        state = self.state
+        return checked(self.packed, event, Moment(self.packed, float(state.clock[TIME]), state.y[0], state.y[1]))
+
+    def _refuse_inside(self) -> None:
+        state, scale = self.state, self.packed.row_scale()
+        time = np.array([state.clock[TIME]])
+        sample = Samples(self.packed, self.dynamics, self.run.scratch, time, state.y[0][None], state.y[1][None])
+        for touch in self.switches.touches:
+            gap = float(sample.residuals()[0, touch.gap])
+            if not touch.always_closed and gap * scale[touch.gap] < -INSIDE:
+                raise SimulationError(
+                    f"{self.packed.name}: contact '{touch.name}' starts {-gap:.3g} (m or rad) inside; "
+                    "move the start with start_near, or turn the contact's marker"
+                )

@@ -1,0 +1,185 @@
+"""What is watched along a step: scalars that are not negative now, and mean an event where they fall through zero.
+
+open contact       its gap                      open clutch        its rate
+closed contact     its normal force N           sticking contact   mu N - |T|; of a joint its limit less |T|
+sliding contact    its speed, sign kept         event of the user  its value, sign kept
+joints at rest that share their friction        1 - s, the part of their limits that they need (sharing.py)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.arrays.friction_along import normals_along
+from mbsd.arrays.packing import Packed
+from mbsd.arrays.reactions import times_compact
+from mbsd.base.arguments import LARGEST
+from mbsd.base.errors import ModelError
+from mbsd.base.shown import shown
+from mbsd.base.users_function import described
+from mbsd.dynamics.events.moment import Moment
+from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.reference.arrays import Dynamics, Scratch
+from mbsd.dynamics.rows.joint_sticks import JointStick
+from mbsd.dynamics.rows.switches import OPEN, SLIDES, STICKS, Touch
+from mbsd.equations.assembly import tabulate
+from mbsd.model.event import Event
+
+ROUNDING = 1e-10
+"""Of forces, as part of the largest."""
+CLOSES, LOCKS, OPENS, SLIPS, HALTS, USER = "closes", "locks", "opens", "slips", "halts", "event"
+
+
+class Samples:
+    """Times (S,) with coordinates and velocities (S, 3 nb), and all that watches read there, computed when asked."""
+
+    def __init__(
+        self, packed: Packed, dynamics: Dynamics, scratch: Scratch, t: np.ndarray, q: np.ndarray, v: np.ndarray
+    ) -> None:
+        self.packed, self.dynamics, self.scratch = packed, dynamics, scratch
+        self.t, self.q, self.v = t, np.ascontiguousarray(q), np.ascontiguousarray(v)
+        self._rows: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
+        self._lam: np.ndarray | None = None
+        self._gamma: np.ndarray | None = None
+
+    def residuals(self) -> np.ndarray:
+        """(S, m)"""
+        return self._tabulated()[0]
+
+    def rates(self) -> np.ndarray:
+        """(S, m) J v"""
+        return self._tabulated()[1]
+
+    def multipliers(self) -> np.ndarray:
+        """(S, m)"""
+        if self._lam is None:
+            self._lam = np.zeros((len(self.t), len(self.packed.ws.phi)))
+            out = np.zeros((2, self.q.shape[1]))
+            for k, t in enumerate(self.t):
+                derivative(self.dynamics, self.scratch, t, np.stack([self.q[k], self.v[k]]), out, self._lam[k])
+        return self._lam
+
+    def bends(self) -> np.ndarray:
+        """(S, m) J a - gamma: second derivatives of the residuals."""
+        _, _, compact = self._tabulated()
+        a, out, lam = np.zeros_like(self.v), np.zeros((2, self.q.shape[1])), np.zeros(len(self.packed.ws.phi))
+        for k, t in enumerate(self.t):
+            derivative(self.dynamics, self.scratch, t, np.stack([self.q[k], self.v[k]]), out, lam)
+            a[k] = out[1]
+        assert self._gamma is not None
+        return times_compact(self.packed, compact, a) - self._gamma
+
+    def normals(self) -> np.ndarray:
+        """(S, f) normal forces of the joints with friction."""
+        return normals_along(self.packed, self.dynamics.loads, self.q, self._tabulated()[2], self.multipliers())
+
+    def _tabulated(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        if self._rows is None:
+            rows = len(self.packed.ws.phi)
+            phi, gamma = np.zeros((2, len(self.t), rows))
+            compact = np.zeros((len(self.t), rows, 6))
+            drives = self.packed.drives(self.t)
+            tabulate(self.packed.system, drives, self.q, self.v, self.packed.ws, phi, compact, gamma)
+            self._gamma = gamma
+            self._rows = phi, times_compact(self.packed, compact, self.v), compact
+        return self._rows
+
+
+@dataclass
+class Watch:
+    """One scalar."""
+
+    name: str
+    what: str
+    value: Callable[[Samples], np.ndarray]
+    """(S,)"""
+    still: float
+    """Values above minus this are rounding."""
+    touch: Touch | None = None
+    stick: JointStick | None = None
+    event: Event | None = None
+    stops: bool = True
+    """False for an event of the user that passes zero the other way: it is only noted."""
+    leaves: Callable[[Samples], bool] | None = None
+    """From the begin and the end of a step: whether the scalar rises away from zero there, by its rates."""
+
+
+def touch_watches(touch: Touch, sign: float, near: np.ndarray, still: np.ndarray, load: float) -> list[Watch]:
+    """Of a contact in its present state; ``sign`` of its sliding. ``near``, ``still`` (m,): rounding."""
+    gap, way, name = touch.gap, touch.way or 0, touch.name
+    if touch.state == OPEN:
+        if touch.always_closed:
+            return [Watch(name, LOCKS, lambda s: s.rates()[:, gap], still[gap], touch)]
+
+        def leaves(s: Samples) -> bool:
+            return bool((s.rates()[:, gap] > -still[gap]).all() and (s.bends()[0, gap] > 0.0))
+
+        return [Watch(name, CLOSES, lambda s: s.residuals()[:, gap], near[gap], touch, leaves=leaves)]
+    out = [Watch(name, OPENS, lambda s: -s.multipliers()[:, gap], ROUNDING * load, touch)]
+    if touch.way is None:
+        return out
+    mu = touch.static_friction
+    if touch.state == STICKS:
+
+        def reserve(s: Samples) -> np.ndarray:
+            return -mu * s.multipliers()[:, gap] - np.abs(s.multipliers()[:, way])
+
+        out.append(Watch(name, SLIPS, reserve, ROUNDING * load, touch))
+    elif touch.state == SLIDES:
+        out.append(Watch(name, HALTS, lambda s: sign * s.rates()[:, way], still[way], touch))
+    return out
+
+
+def stick_watches(
+    sticks: Sequence[JointStick], together: Callable[[Samples], np.ndarray] | None, still: np.ndarray, load: float
+) -> list[Watch]:
+    """Of joints that stick by events; ``together`` (S,): 1 - s of those at rest, if they share their friction."""
+    out, resting = [], []
+    for stick in sticks:
+        if stick.state == SLIDES:
+            out.append(Watch(stick.name, HALTS, _speed(stick), still[stick.way], stick=stick))
+        elif stick.state == STICKS:
+            resting.append(stick)
+    if together is not None:
+        return [*out, Watch(resting[0].name, SLIPS, together, ROUNDING, stick=resting[0])]
+    return out + [Watch(stick.name, SLIPS, _reserve(stick), ROUNDING * load, stick=stick) for stick in resting]
+
+
+def _speed(stick: JointStick) -> Callable[[Samples], np.ndarray]:
+    return lambda s: stick.sign * s.rates()[:, stick.way]
+
+
+def _reserve(stick: JointStick) -> Callable[[Samples], np.ndarray]:
+    return lambda s: stick.limit(s.normals()) - np.abs(s.multipliers()[:, stick.way])
+
+
+def event_watch(packed: Packed, event: Event, side: float) -> Watch:
+    """Of an event of the user whose value now has the sign ``side``."""
+
+    def value(s: Samples) -> np.ndarray:
+        return np.array(
+            [
+                side * checked(packed, event, Moment(packed, float(t), q, v))
+                for t, q, v in zip(s.t, s.q, s.v, strict=True)
+            ]
+        )
+
+    return Watch(event.name, USER, value, 0.0, event=event, stops=event.direction in (0, -int(side)))
+
+
+def checked(packed: Packed, event: Event, moment: Moment) -> float:
+    """The value of an event; raises ModelError where the function fails or gives no finite number."""
+    what = f"{packed.name}: event '{event.name}'"
+    try:
+        value = event.value(moment.t, moment)
+    except Exception as error:
+        raise ModelError(f"{what}: its function fails at t = {moment.t:.6g} s: {described(error)}") from error
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
+    number = not isinstance(value, bool) and isinstance(value, int | float | np.floating | np.integer)
+    if not number or not -LARGEST <= value <= LARGEST:
+        raise ModelError(f"{what} is {shown(value)} at t = {moment.t:.6g} s; it must be a finite number")
+    return float(value)

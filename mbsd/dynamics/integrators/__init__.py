@@ -1,0 +1,1 @@
+"""Integrators, one file a method. All step along :func:`mbsd.dynamics.reference.acceleration.derivative`."""

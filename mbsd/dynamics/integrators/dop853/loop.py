@@ -1,0 +1,304 @@
+"""Dormand-Prince of order 8(5,3) with variable step, each accepted step projected twice onto the constraints.
+
+    k_s = f(t + c_s h, y + h sum A_sj k_j)        s = 1 .. 12
+    y1  = y + h sum B_s k_s,   then q and v are projected
+    err = h |e5|^2 / sqrt((|e5|^2 + 0.01 |e3|^2) n),   e5 = sum E5_s k_s,  e3 = sum E3_s k_s
+    h  *= 0.7 err^(-0.117) err_0^0.04, within 0.2 .. 10;    err_0 of the step before
+
+Outputs come from the method's own interpolant of order 7 (three evaluations more, in steps that hold an output), and
+are projected too. A step whose projection does not contract is taken again with half the length.
+
+Source: Hairer, Norsett, Wanner, Solving ODEs I, II.4 to II.6; the two projections: see projection.py.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.compiling.jit import internal, kernel
+from mbsd.dynamics.integrators.dop853.tableau import E3, E5, A, B, C, D
+from mbsd.dynamics.integrators.formulation import (
+    accelerate,
+    begin,
+    derivative,
+    join_rows,
+    keep_row,
+    project,
+    record,
+    record_here,
+    settle,
+)
+from mbsd.dynamics.integrators.kind import Integrator, register
+from mbsd.dynamics.integrators.step_size import allowed, first_step
+from mbsd.dynamics.state import (
+    ACCEPTED,
+    CHOOSE,
+    ERROR,
+    EVALUATIONS,
+    NEXT,
+    NOT_FINITE,
+    PAUSED,
+    POWER,
+    REACHED,
+    REJECTED,
+    STEP,
+    STEP_TOO_SMALL,
+    TIME,
+    UNCLEAR,
+    WORK,
+)
+
+STAGES = 16
+EXPONENT = 0.125
+SAFETY, BETA = 0.7, 0.04
+"""Of the step-size control. Cautious: a rejected step costs eleven evaluations, more than longer steps save."""
+SMALL = -9.0
+"""Logarithm of the least error that steers the next steps."""
+FEW = 9
+"""Columns of a state below which it is summed entry by entry."""
+UNCLEAR_STEP = 0.7
+"""How a step is shortened within which independent coordinates have no clear pose."""
+BESIDE = 1e-3
+"""Part of a step by which poses beside an unclear one are looked for, doubled until both are clear."""
+CONTRACTION = 0.1
+"""The second projection must change the pose by less than this part of the first."""
+ROUNDING = 1e-9
+"""Changes below this (sizes, rad) are rounding in an ill-conditioned pose, and accepted."""
+
+
+@kernel
+def _interpolant(dyn, scratch, state, h, work):
+    """Coefficients of the dense output of the step that ends in scratch.state and does ``work`` (J)."""
+    power = scratch.power
+    k = scratch.stages
+    dense = scratch.dense
+    n3 = state.y.shape[1]
+    t = state.clock[TIME]
+    for part in range(2):
+        for c in range(3, n3):
+            rise = scratch.state[part, c] - state.y[part, c]
+            dense[0, part, c] = rise
+            dense[1, part, c] = h * k[0, part, c] - rise
+            dense[2, part, c] = 2.0 * rise - h * (k[12, part, c] + k[0, part, c])
+    for s in range(13, 16):
+        for part in range(2):
+            for c in range(3, n3):
+                change = 0.0
+                for j in range(s):
+                    change += A[s, j] * k[j, part, c]
+                dense[7, part, c] = state.y[part, c] + h * change
+        power[s] = derivative(dyn, scratch, t + C[s] * h, dense[7], k[s], scratch.multipliers)
+    for row in range(4):
+        for part in range(2):
+            for c in range(3, n3):
+                change = 0.0
+                for j in range(16):
+                    change += D[row, j] * k[j, part, c]
+                dense[3 + row, part, c] = h * change
+        change = 0.0
+        for j in range(16):
+            change += D[row, j] * power[j]
+        scratch.dense_work[3 + row] = h * change
+    scratch.dense_work[0] = work
+    scratch.dense_work[1] = h * power[0] - work
+    scratch.dense_work[2] = 2.0 * work - h * (power[12] + power[0])
+
+
+@internal
+def _interpolate(dense, dense_work, y, x, out):
+    """out (2, n) at the part x of the step that began at y; returns the work so far (J).
+
+    Not inlined: numba 0.68 mixes up its copies where it is called more than once.
+    """
+    for part in range(2):
+        for c in range(3, y.shape[1]):
+            value = 0.0
+            for row in range(6, -1, -1):
+                value = (value + dense[row, part, c]) * (x if row % 2 == 0 else 1.0 - x)
+            out[part, c] = y[part, c] + value
+    work = 0.0
+    for row in range(6, -1, -1):
+        work = (work + dense_work[row]) * (x if row % 2 == 0 else 1.0 - x)
+    return work
+
+
+@kernel
+def _output(dyn, scratch, state, out, k, x, h):
+    """Write output k at the part x of the step; returns whether its pose, or poses beside it, are clear."""
+    t = state.clock[TIME]
+    so_far = state.clock[WORK] + _interpolate(scratch.dense, scratch.dense_work, state.y, x, scratch.state)
+    if record(dyn, scratch, out, k, t + x * h, so_far):
+        return True
+    beside = BESIDE
+    while beside < 1.0:
+        _interpolate(scratch.dense, scratch.dense_work, state.y, x - beside, scratch.state)
+        before = record(dyn, scratch, out, k, t + (x - beside) * h, so_far)
+        keep_row(dyn, scratch, out, k)
+        _interpolate(scratch.dense, scratch.dense_work, state.y, x + beside, scratch.state)
+        after = record(dyn, scratch, out, k, t + (x + beside) * h, so_far)
+        if before and after:
+            join_rows(dyn, scratch, out, k, 2.0 * beside * h)
+            return True
+        beside *= 2.0
+    return False
+
+
+@kernel
+def advance(dyn, scratch, state, out, settings, end, max_steps):
+    """Go on to ``end`` (s), ``max_steps`` accepted steps at most, writing the outputs passed. Returns a status."""
+    y = state.y
+    k = scratch.stages
+    trial = scratch.state
+    n3 = y.shape[1]
+    count = max(2 * (n3 - 3), 1)
+    begin(dyn, scratch, state)
+    if state.clock[STEP] == 0.0:
+        state.clock[STEP] = first_step(dyn, scratch, state, settings, 0.125)
+    while state.count[NEXT] < out.t.shape[0] and out.t[state.count[NEXT]] <= state.clock[TIME]:
+        record_here(dyn, scratch, state, out)
+    for c in range(3, n3):
+        k[0, 0, c] = state.dy[0, c]
+        k[0, 1, c] = state.dy[1, c]
+    scratch.power[0] = state.clock[POWER]
+    accepted = 0
+    rejected = False
+    while state.clock[TIME] < end:
+        if accepted == max_steps:
+            return PAUSED
+        t = state.clock[TIME]
+        h = min(state.clock[STEP], settings.longest)
+        last = t + h >= end
+        if last:
+            h = end - t
+        elif h < settings.smallest:
+            return STEP_TOO_SMALL
+        reached = end if last else t + h
+        work = 0.0
+        error = 0.0
+        shorter = 1.0
+        for s in range(1, 13):
+            if s < 12:
+                if n3 < FEW:  # sums stay in registers
+                    for c in range(3, n3):
+                        rise = 0.0
+                        gain = 0.0
+                        for j in range(s):
+                            rise += A[s, j] * k[j, 0, c]
+                            gain += A[s, j] * k[j, 1, c]
+                        trial[0, c] = y[0, c] + h * rise
+                        trial[1, c] = y[1, c] + h * gain
+                else:
+                    for part in range(2):
+                        for c in range(3, n3):
+                            trial[part, c] = A[s, 0] * k[0, part, c]
+                        for j in range(1, s):
+                            factor = A[s, j]
+                            if factor != 0.0:
+                                for c in range(3, n3):
+                                    trial[part, c] += factor * k[j, part, c]
+                        for c in range(3, n3):
+                            trial[part, c] = y[part, c] + h * trial[part, c]
+            else:
+                for j in range(12):
+                    work += h * B[j] * scratch.power[j]
+                fifth = 0.0
+                third = 0.0
+                for part in range(2):
+                    for c in range(3, n3):
+                        change = 0.0
+                        e5 = 0.0
+                        e3 = 0.0
+                        for j in range(12):
+                            change += B[j] * k[j, part, c]
+                            e5 += E5[j] * k[j, part, c]
+                            e3 += E3[j] * k[j, part, c]
+                        trial[part, c] = y[part, c] + h * change
+                        scale = allowed(settings, y, trial, part, c)
+                        fifth += (e5 / scale) ** 2
+                        third += (e3 / scale) ** 2
+                if fifth > 0.0 or third > 0.0:
+                    error = h * fifth / math.sqrt((fifth + 0.01 * third) * count)
+                if not error < 1.0:
+                    shorter = max(0.2, SAFETY * error**-EXPONENT) if math.isfinite(error) else 0.2
+                    break
+                project(dyn, scratch, reached, trial, 2)
+                if not scratch.report[2] <= max(CONTRACTION * scratch.report[1], ROUNDING):
+                    shorter = 0.5
+                    break
+            for c in range(3, n3):
+                k[s, 0, c] = trial[1, c]
+            state.count[EVALUATIONS] += 1
+            at = t + C[s] * h if s < 12 else reached
+            scratch.power[s] = accelerate(dyn, scratch, at, trial, k[s, 1], scratch.multipliers)
+            if scratch.power[s] != scratch.power[s]:
+                shorter = UNCLEAR_STEP
+                break
+        if shorter < 1.0:
+            if h < settings.smallest:
+                return NOT_FINITE
+            state.clock[STEP] = h * shorter
+            state.count[REJECTED] += 1
+            rejected = True
+            continue
+        margin = scratch.report[0]
+        for c in range(3, n3):
+            state.dy[0, c] = k[12, 0, c]
+            state.dy[1, c] = k[12, 1, c]
+        for r in range(state.lam.shape[0]):
+            state.lam[r] = scratch.multipliers[r]
+        following = state.count[NEXT]
+        fresh = True
+        if following < out.t.shape[0] and out.t[following] < reached:
+            fresh = False
+            _interpolant(dyn, scratch, state, h, work)
+            state.count[EVALUATIONS] += 3
+            if scratch.dense_work[3] != scratch.dense_work[3]:
+                if h < settings.smallest:
+                    return NOT_FINITE
+                state.clock[STEP] = UNCLEAR_STEP * h
+                state.count[REJECTED] += 1
+                rejected = True
+                continue
+            for part in range(2):  # record and the interpolant use trial: the end of the step waits in dense[7]
+                for c in range(3, n3):
+                    scratch.dense[7, part, c] = y[part, c] + scratch.dense[0, part, c]
+            while following < out.t.shape[0] and out.t[following] < reached:
+                if not _output(dyn, scratch, state, out, following, (out.t[following] - t) / h, h):
+                    return UNCLEAR
+                following += 1
+                state.count[NEXT] = following
+            for part in range(2):
+                for c in range(3, n3):
+                    trial[part, c] = scratch.dense[7, part, c]
+        for part in range(2):
+            for c in range(3, n3):
+                y[part, c] = trial[part, c]
+                k[0, part, c] = state.dy[part, c]
+        state.clock[TIME] = reached
+        state.clock[WORK] += work
+        state.clock[POWER] = scratch.power[12]
+        scratch.power[0] = scratch.power[12]
+        scratch.report[0] = margin
+        if following < out.t.shape[0] and out.t[following] <= reached:
+            record_here(dyn, scratch, state, out)
+            fresh = False
+        other = settle(dyn, scratch, reached, trial, fresh)
+        growth = 10.0
+        if error > 0.0:
+            growth = math.log(error)
+            before = state.clock[ERROR] if state.clock[ERROR] < 0.0 else growth
+            state.clock[ERROR] = max(growth, SMALL)
+            growth = min(10.0, SAFETY * math.exp(BETA * before - (EXPONENT - 0.2 * BETA) * growth))
+        if rejected:
+            growth = min(growth, 1.0)
+        if not last or growth < 1.0:
+            state.clock[STEP] = min(h * growth, settings.longest)
+        rejected = False
+        accepted += 1
+        state.count[ACCEPTED] += 1
+        if other:
+            return CHOOSE
+    return REACHED
+
+
+DOP853 = register(Integrator("dop853", advance, STAGES, order=8, fixed_step=False, embeds=True))

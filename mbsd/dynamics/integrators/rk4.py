@@ -1,0 +1,90 @@
+"""The classical Runge-Kutta method of order 4 with a fixed step, each step projected twice onto the constraints.
+
+    k1 = f(t, y),  k2 = f(t + h/2, y + h/2 k1),  k3 = f(t + h/2, y + h/2 k2),  k4 = f(t + h, y + h k3)
+    y1 = y + h/6 (k1 + 2 k2 + 2 k3 + k4),   then q and v are projected
+
+The steps between two outputs are equal and hit both. Source: Kutta 1901; Hairer, Norsett, Wanner, Solving ODEs I, II.1.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.compiling.jit import internal, kernel
+from mbsd.dynamics.integrators.kind import Integrator, register
+from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.reference.projection import project
+from mbsd.dynamics.state import (
+    ACCEPTED,
+    EVALUATIONS,
+    NEXT,
+    NOT_FINITE,
+    PAUSED,
+    POWER,
+    REACHED,
+    TIME,
+    WORK,
+    begin,
+    fixed_step,
+    record_here,
+)
+
+STAGES = 4
+
+
+@internal
+def march(dyn, scratch, state, out, settings, end, max_steps, projections):
+    """``advance`` with so many projections after each step."""
+    y = state.y
+    k = scratch.stages
+    trial = scratch.state
+    n3 = y.shape[1]
+    begin(dyn, scratch, state)
+    accepted = 0
+    while True:
+        t = state.clock[TIME]
+        if state.count[NEXT] < out.t.shape[0] and out.t[state.count[NEXT]] <= t:
+            record_here(scratch, state, out)
+            continue
+        if t >= end:
+            return REACHED
+        if accepted == max_steps:
+            return PAUSED
+        h, reached = fixed_step(state, out, settings, end)
+        for part in range(2):
+            for c in range(3, n3):
+                k[0, part, c] = state.dy[part, c]
+        scratch.power[0] = state.clock[POWER]
+        for s in range(1, 4):
+            ahead = h if s == 3 else 0.5 * h
+            for part in range(2):
+                for c in range(3, n3):
+                    trial[part, c] = y[part, c] + ahead * k[s - 1, part, c]
+            scratch.power[s] = derivative(dyn, scratch, t + ahead, trial, k[s], scratch.ws.right[1])
+        for part in range(2):
+            for c in range(3, n3):
+                y[part, c] += h / 6.0 * (k[0, part, c] + 2.0 * (k[1, part, c] + k[2, part, c]) + k[3, part, c])
+        state.clock[WORK] += (
+            h / 6.0 * (scratch.power[0] + 2.0 * (scratch.power[1] + scratch.power[2]) + scratch.power[3])
+        )
+        if projections > 0:
+            project(dyn, scratch, reached, y, projections)
+        state.clock[POWER] = derivative(dyn, scratch, reached, y, state.dy, state.lam)
+        state.clock[TIME] = reached
+        state.count[EVALUATIONS] += 4
+        state.count[ACCEPTED] += 1
+        accepted += 1
+        total = 0.0
+        for c in range(3, n3):
+            total += abs(state.dy[1, c])
+        if not math.isfinite(total):
+            return NOT_FINITE
+
+
+@kernel
+def advance(dyn, scratch, state, out, settings, end, max_steps):
+    """Go on to ``end`` (s), ``max_steps`` steps at most, writing the outputs passed. Returns a status."""
+    return march(dyn, scratch, state, out, settings, end, max_steps, 2)
+
+
+RK4 = register(Integrator("rk4", advance, STAGES, order=4, fixed_step=True))

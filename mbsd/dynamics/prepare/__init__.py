@@ -1,0 +1,1 @@
+"""All that a simulation needs before its first step."""

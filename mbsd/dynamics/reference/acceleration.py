@@ -1,0 +1,116 @@
+"""Accelerations and multipliers at a state, and the derivative that integrators step along.
+
+    M a + J^T lam = Q                  S lam = J W^-1 Q - gamma,   S = J W^-1 J^T
+    J a = gamma                        a = W^-1 (Q - J^T lam)
+
+W is M. Where bodies lack mass, W is M lifted by a small inertia, and the solution is refined: each pass solves for
+what the last one left of both equations, and shrinks the error by the lift over the inertia that the joints lend.
+
+    Baumgarte   J a = gamma - 2 alpha (J v - nu) - beta^2 Phi
+
+Friction of joints depends on lam: it is added to Q and solved for again until both agree (joint_friction.py). That of
+sliding contacts is in each of these solutions (sliding.py).
+
+Source: Haug 1989, ch. 6; Baumgarte 1972, Comp. Meth. Appl. Mech. Eng. 1.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.compiling.jit import inlined, kernel
+from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
+from mbsd.dynamics.reference.sliding import begin_sliding, slide
+from mbsd.equations.assembly import evaluate_gamma, evaluate_position
+from mbsd.equations.joint_friction import CHANGE, FAILED, MOST_PASSES, begin_rubbing, note_friction, rub, settle
+from mbsd.equations.laws import evaluate_laws
+from mbsd.equations.loads import apply_loads
+
+
+@inlined
+def accelerate(dyn, scratch, t, state, a, lam):
+    """Fill a (3 nb,) and lam (m,) at a state (2, 3 nb) and time (s).
+
+    Returns the power of loads and drivers, gravity left out (W).
+    """
+    system = dyn.system
+    schur = dyn.schur
+    ws = scratch.ws
+    factors = scratch.factors
+    drive = scratch.drive
+    force = scratch.force
+    y = factors.side
+    gamma = ws.right[0]
+    q = state[0]
+    v = state[1]
+    n3 = q.shape[0]
+    power = 0.0
+    evaluate_laws(dyn.laws, drive.shape[0], t, drive)
+    evaluate_position(system, q, drive, ws)
+    evaluate_gamma(system, v, drive, ws, gamma)
+    scratch.report[0] = factor_schur(schur, dyn.inverse, ws.jac, factors, 0.0)
+    for c in range(n3):
+        force[c] = dyn.weight[c]
+        a[c] = 0.0
+    for r in range(lam.shape[0]):
+        lam[r] = 0.0
+    if dyn.loads.total > 0:
+        power = apply_loads(dyn.loads, dyn.laws, t, q, v, ws.cos_sin, force)
+    rubbing = dyn.loads.rub.shape[0] > 0
+    sliding = dyn.sliding.rows.shape[0] > 0
+    if rubbing:
+        power += begin_rubbing(system, dyn.loads, v, ws, force)
+    alpha = dyn.baumgarte[0]
+    beta = dyn.baumgarte[1]
+    if alpha > 0.0:
+        for k in range(schur.rows.shape[0]):
+            for s in range(2):
+                r = schur.rows[k, s]
+                if r >= 0:
+                    gamma[r] -= 2.0 * alpha * times_jacobian(factors, schur, k, s, v) + beta * beta * ws.phi[r]
+        for k in range(system.driven.shape[0]):
+            gamma[system.driven[k, 0]] += 2.0 * alpha * drive[system.driven[k, 1], 1]
+    for done in range(dyn.passes + MOST_PASSES):
+        for c in range(3, n3):
+            ws.pose[c] = a[c] + dyn.inverse[c] * (force[c] - dyn.inertia[c] * a[c])
+        for k in range(schur.rows.shape[0]):
+            for s in range(2):
+                r = schur.rows[k, s]
+                y[k, s, 0] = times_jacobian(factors, schur, k, s, ws.pose) - gamma[r] if r >= 0 else 0.0
+        solve_schur(schur, factors, 1)
+        subtract_forces(factors, schur, 0, force)
+        for c in range(3, n3):
+            a[c] += dyn.inverse[c] * (force[c] - dyn.inertia[c] * a[c])
+        for k in range(schur.rows.shape[0]):
+            for s in range(2):
+                r = schur.rows[k, s]
+                if r >= 0:
+                    lam[r] += y[k, s, 0]
+        if done + 1 >= dyn.passes:
+            if sliding:
+                if done + 1 == dyn.passes:
+                    begin_sliding(dyn, scratch)
+                power += slide(dyn, scratch, v, a, lam)
+            if not rubbing:
+                break
+            if settle(dyn, ws, a, lam):
+                break
+            if done + 1 == dyn.passes + MOST_PASSES:
+                dyn.loads.rubbing[FAILED] = 1.0
+                for c in range(3, n3):
+                    a[c] = math.nan
+                break
+            power += rub(system, dyn.loads, v, ws, dyn.loads.normal[CHANGE], 0.0, force)
+    if rubbing:
+        note_friction(system, dyn.loads, v, ws, lam)
+    for k in range(system.driven.shape[0]):
+        power -= lam[system.driven[k, 0]] * drive[system.driven[k, 1], 1]
+    return power
+
+
+@kernel
+def derivative(dyn, scratch, t, state, out, lam):
+    """out (2, 3 nb) = d(state)/dt, lam (m,); returns the power of loads and drivers (W)."""
+    for c in range(3, state.shape[1]):
+        out[0, c] = state[1, c]
+    return accelerate(dyn, scratch, t, state, out[1], lam)

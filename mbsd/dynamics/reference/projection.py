@@ -1,0 +1,58 @@
+"""Projection of a state onto its constraints, smallest change in the metric of the masses.
+
+    q -= W^-1 J^T S^-1 Phi          v -= W^-1 J^T S^-1 (J v - nu),     S = J W^-1 J^T
+
+Source: Eich 1993, SIAM J. Numer. Anal. 30 (projection after each step); Hairer, Wanner, Solving ODEs II, VII.2.
+"""
+
+from __future__ import annotations
+
+from mbsd.compiling.jit import kernel
+from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
+from mbsd.equations.assembly import evaluate_nu, evaluate_position
+from mbsd.equations.laws import evaluate_laws
+
+LIFT = 1e-11
+"""Of the diagonal of S, relative: where joints nearly depend (singular poses), rounding in Phi is not blown up."""
+
+
+@kernel
+def project(dyn, scratch, t, state, passes):
+    """Project coordinates and velocities of a state (2, 3 nb) in place, ``passes`` times.
+
+    The largest changes of coordinates in the first and last pass (sizes, rad) go to scratch.report[1:3].
+    """
+    system = dyn.system
+    schur = dyn.schur
+    ws = scratch.ws
+    factors = scratch.factors
+    drive = scratch.drive
+    change = scratch.change
+    y = factors.side
+    nu = ws.right[1]
+    n3 = state.shape[1]
+    evaluate_laws(dyn.laws, drive.shape[0], t, drive)
+    evaluate_nu(system, drive, nu)
+    for step in range(passes):
+        evaluate_position(system, state[0], drive, ws)
+        factor_schur(schur, dyn.metric, ws.jac, factors, LIFT)
+        for k in range(schur.rows.shape[0]):
+            for s in range(2):
+                r = schur.rows[k, s]
+                y[k, s, 0] = ws.phi[r] if r >= 0 else 0.0
+                y[k, s, 1] = times_jacobian(factors, schur, k, s, state[1]) - nu[r] if r >= 0 else 0.0
+        solve_schur(schur, factors, 2)
+        for c in range(n3):
+            change[0, c] = 0.0
+            change[1, c] = 0.0
+        subtract_forces(factors, schur, 0, change[0])
+        subtract_forces(factors, schur, 1, change[1])
+        largest = 0.0
+        for c in range(3, n3):
+            moved = dyn.metric[c] * change[0, c]
+            state[0, c] += moved
+            state[1, c] += dyn.metric[c] * change[1, c]
+            largest = max(largest, abs(moved) * dyn.per_size[c]) if moved == moved else moved
+        scratch.report[2] = largest
+        if step == 0:
+            scratch.report[1] = largest

@@ -1,0 +1,102 @@
+"""Joints that stick and slide by events: the row of J that holds one while it sticks, and what it does now.
+
+    slides   s' != 0     friction of joint_friction.py with the sign of s', which stays until s' = 0
+    sticks   s' = 0      s = const is a row of J;  |T| <= mu_s (N + N_0), of a pin |T| <= mu_s r (N + N_0)
+
+s: angle of marker j against marker i of a pin (rad), place of marker j along the x axis of marker i (m).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mbsd.arrays.packing import Packed
+from mbsd.base.codes import FRICTION_JOINTS
+from mbsd.dynamics.rows.switches import RELEASED, SLIDES
+from mbsd.equations.joint_friction import BY_RATE, FIRST, NONE, PIN, PRELOAD, SENSE, SHAPE, SIZE, STATIC, WAY
+from mbsd.equations.loads import Loads
+from mbsd.model.joint import Joint
+from mbsd.model.joints.kind import JointKind
+
+
+def _example(m: Any, i: Any, j: Any) -> None:
+    m.revolute("pin", i, j)
+    m.friction("example", "pin", 0.3, radius=0.2, sticks=True)
+
+
+STUCK_ANGLE = JointKind("stuck_angle", ("turn",), example=_example, numbers=lambda params: ((0.0, 0.0, 1.0, 0.0),))
+STUCK_PLACE = JointKind("stuck_place", ("linear",), example=_example, numbers=lambda params: ((1.0, 0.0, 0.0, 0.0),))
+
+
+def stuck_rows(packed: Packed) -> list[Joint]:
+    """What holds the joints with such friction while they stick, by the names of the frictions."""
+    pins = {joint.name for joint in packed.joints if joint.kind.name == FRICTION_JOINTS[PIN]}
+    return [
+        Joint(STUCK_ANGLE if force.params["joint"] in pins else STUCK_PLACE, force.name, force.i, force.j, {})
+        for force in packed.forces
+        if force.kind.name == "friction" and force.params["sticks"]
+    ]
+
+
+@dataclass
+class JointStick:
+    """One joint of a run that may stick."""
+
+    name: str
+    """Of its friction."""
+    way: int
+    """Row of s in J."""
+    at: int
+    """Row of Loads.rub."""
+    loads: Loads
+    state: str = SLIDES
+    sign: float = 1.0
+    """Of its sliding."""
+
+    @property
+    def number(self) -> np.ndarray:
+        """Row of Loads.rub_number."""
+        return self.loads.rub_number[self.at]
+
+    def limit(self, normal: np.ndarray) -> np.ndarray:
+        """Largest friction (N, N m) of the joint at rest under normal forces (..., f) of all joints (N)."""
+        lever = self.number[SIZE] if self.loads.rub[self.at, SHAPE] == PIN else 1.0
+        return self.number[STATIC] * lever * (normal[..., self.at] + self.number[PRELOAD])
+
+    def set(self, state: str, sign: float) -> None:
+        """Slide with this sign, stick (0), or be let go for good."""
+        self.state, self.sign = state, sign
+        self.number[SENSE] = sign if state == SLIDES else NONE
+
+
+def joint_sticks(packed: Packed, loads: Loads) -> list[JointStick]:
+    """Of a packed mechanism with the rows of ``stuck_rows``."""
+    name_of = {int(packed.first_row[k]): joint.name for k, joint in enumerate(packed.joints)}
+    return [JointStick(name_of[int(way)], int(way), at, loads) for at, way in enumerate(loads.rub[:, WAY]) if way >= 0]
+
+
+def let_go(loads: Loads, sticks: Sequence[JointStick], first_row: int) -> None:
+    """The joint whose rows begin at ``first_row`` holds no more, and has no friction."""
+    for at in np.flatnonzero(loads.rub[:, FIRST] == first_row):
+        loads.rub_number[at, SENSE] = NONE
+        for stick in sticks:
+            if stick.at == at:
+                stick.set(RELEASED, 0.0)
+
+
+def standing(loads: Loads, held: np.ndarray) -> Iterator[tuple[Loads, np.ndarray]]:
+    """Loads with the friction that a known motion with rows ``held`` (T, m) has, and the times (t,) where they act.
+
+    What multipliers hold, and friction of joints that an action let go, is none of it.
+    """
+    if not len(loads.rub):
+        return
+    patterns, which = np.unique(held[:, loads.rub[:, FIRST]], axis=0, return_inverse=True)
+    for k, there in enumerate(patterns):
+        number = loads.rub_number.copy()
+        number[:, SENSE] = np.where((loads.rub[:, WAY] < 0) & there, BY_RATE, NONE)
+        yield loads._replace(rub_number=number), np.flatnonzero(which.ravel() == k)

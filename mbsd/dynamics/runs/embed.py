@@ -1,0 +1,199 @@
+"""A mechanism ready for forward dynamics, put into independent coordinates where that can be done."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.base.codes import LAW_VALUE, LINEAR, POWER, TURN
+from mbsd.dynamics.embedding.arrays import (
+    AVOID,
+    BASE,
+    COS,
+    INERTIA,
+    LIMIT,
+    MASS,
+    NEAR,
+    SENSITIVITY,
+    SPEED,
+    THETA,
+    TURNS,
+    Embedding,
+    EmbeddingScratch,
+)
+from mbsd.dynamics.embedding.bridge import KEPT
+from mbsd.dynamics.embedding.coordinates import MOST, Coordinate, choices, coordinates_of
+from mbsd.dynamics.embedding.equations import derivative, settle
+from mbsd.dynamics.embedding.groups.branch import FLOOR
+from mbsd.dynamics.embedding.numbers import group_numbers, group_table
+from mbsd.dynamics.state import Settings
+from mbsd.kinematics.groups.plan import Plan
+
+if TYPE_CHECKING:
+    from mbsd.dynamics.prepare.prepare import PreparedDynamics
+
+GOOD = 3.0
+"""A choice under which no body moves faster than this for one unit of a coordinate is taken at once."""
+POOR = 20.0
+"""A choice under which some body moves faster than this is not begun with, and left where it is the best."""
+SMALLEST_STEP = 1e-6
+"""Part of the longest step at which a run leaves its coordinates."""
+ROUNDING = 5e-14
+"""Of a step's accelerations, in rad/s^2 by rad, times the cubed sine of the angle between a group's two links: where it
+passes the tolerance the closed form gives way to poses beside."""
+WIDEST = 0.1**2
+"""Squared sine above which closed forms always stand."""
+DOUBLED = 2.0
+"""Another choice is looked for when some body moves this much faster than when the coordinates were chosen."""
+
+
+@dataclass
+class Embedded:
+    """Arrays and coordinates of one choice."""
+
+    arrays: Embedding
+    coordinates: list[Coordinate]
+    drivers: int
+    sensitivity: float
+    """The largest rate of a body for one unit of a coordinate, dimensionless, at the pose of the choice."""
+
+    def copied(self, tolerance: float = math.inf) -> Embedding:
+        """Arrays of one run, which changes branches, at a relative tolerance."""
+        number = self.arrays.number.copy()
+        number[:, AVOID] = min(max((ROUNDING / tolerance) ** (2.0 / 3.0), FLOOR), WIDEST)
+        return self.arrays._replace(number=number)
+
+    def state(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """(2, 3 + f) of q, v (3 nb,)."""
+        out = np.zeros((2, 3 + len(self.coordinates)))
+        for k, one in enumerate(self.coordinates):
+            out[0, 3 + k], out[1, 3 + k] = one.at(q), one.rate(q, v)
+        return out
+
+    def settings(self, settings: Settings) -> Settings:
+        """The same tolerances for the coordinates."""
+        size = np.concatenate([np.ones(3), 1.0 / self.arrays.size])
+        angle = np.concatenate([np.ones(3, bool), [one.slide is None for one in self.coordinates]])
+        absolute = np.stack([size, size]) * settings.relative
+        growing = np.stack([np.where(angle, 0.0, settings.relative), np.full(len(size), settings.relative)])
+        return settings._replace(absolute=absolute, growing=growing, smallest=SMALLEST_STEP * settings.longest)
+
+
+NO_PLAN = "it does not fall apart into driven bodies and groups of one or two, or its start is near a singular pose"
+
+
+def can_embed(ready: PreparedDynamics) -> str | None:
+    """Why a mechanism must stay in reference coordinates, or None."""
+    packed, dynamics = ready.packed, ready.dynamics
+    count = ready.mobility.dof - len(packed.motions)
+    if ready.following:
+        return "a point is on a curve that crosses itself"
+    if ready.switches.touches:
+        return "it has contacts or limits"
+    if ready.mobility.redundant_rows or ready.mobility.singular:
+        return "joints are redundant, or the start is singular"
+    if len(dynamics.loads.rub):
+        return "friction of joints depends on their reactions"
+    if not 0 < count <= MOST:
+        return f"it has {count} degrees of freedom beside its drivers; 1 to {MOST} are possible"
+    return None
+
+
+def embed(ready: PreparedDynamics, q: np.ndarray, v: np.ndarray, time: float) -> Embedded | None:
+    """The best choice of coordinates at a consistent q, v (3 nb,), or None where there is none."""
+    count = ready.mobility.dof - len(ready.packed.motions)
+    best = None
+    for plan in choices(ready.packed, q, count):
+        made = _made(ready, plan, count)
+        made.sensitivity = _sensitivity(ready, made, q, v, time)
+        if made.sensitivity < POOR and (best is None or made.sensitivity < best.sensitivity):
+            best = made
+        if best is not None and best.sensitivity <= GOOD:
+            break
+    return best
+
+
+def scratch_for(ready: PreparedDynamics, made: Embedded, stages: int, q: np.ndarray) -> EmbeddingScratch:
+    """Scratch for one run that begins at q (3 nb,), and predicts from there."""
+    bodies, count = len(ready.packed.body_names), len(made.coordinates)
+    columns = count + (made.drivers > 0)
+    body = np.zeros((bodies, INERTIA + 1))
+    body[0, COS] = 1.0
+    body[:, MASS], body[:, INERTIA] = ready.packed.system.mass, ready.packed.system.inertia
+    base = np.zeros((bodies, TURNS + columns))
+    base[:, THETA] = q[2::3]
+    return EmbeddingScratch(
+        cos_sin=np.repeat([[1.0, 0.0]], bodies, axis=0),
+        body=body,
+        rate=np.zeros((bodies, 3 * columns + 3)),
+        base=base,
+        coordinate=np.zeros((columns + 1, 3)),
+        q=np.zeros(3 * bodies),
+        v=np.zeros(3 * bodies),
+        mass=np.zeros((count, count)),
+        sums=np.zeros(2),
+        drive=np.zeros((made.drivers + 1, 3)),
+        force=np.zeros(3 * bodies),
+        watch=np.full(2, np.inf),
+        before=np.zeros((3, 3 * bodies)),
+        joined_body=np.zeros((2, bodies, KEPT)),
+        joined_rate=np.zeros((2, bodies, 3 * columns + 3)),
+        multipliers=np.zeros(0),
+        state=np.zeros((2, 3 + count)),
+        stages=np.zeros((stages, 2, 3 + count)),
+        power=np.zeros(stages),
+        dense=np.zeros((8, 2, 3 + count)),
+        dense_work=np.zeros(7),
+        report=np.zeros(4),
+    )
+
+
+def begin_at(arrays: Embedding, scratch: EmbeddingScratch, state: np.ndarray, time: float, limit: float) -> None:
+    """Let predictions begin at a state (2, 3 + f) and time (s)."""
+    arrays.number[:, NEAR] = 1.0
+    count = state.shape[1] - 3
+    scratch.coordinate[:, SPEED] = 1.0
+    scratch.coordinate[:count, BASE] = state[0, 3:]
+    scratch.coordinate[count:, BASE] = time
+    scratch.watch[LIMIT] = limit
+
+
+def _made(ready: PreparedDynamics, plan: Plan, count: int) -> Embedded:
+    packed, dynamics = ready.packed, ready.dynamics
+    groups, loads, size = plan.groups(), dynamics.loads, packed.size
+    coordinates = coordinates_of(plan, count)
+    reading = [
+        kind == TURN and any(loads.term[k, 0] in (LINEAR, POWER, LAW_VALUE) for k in range(first, end))
+        for kind, _, _, first, end in loads.element
+    ]
+    functions = bool(len(loads.interaction) or len(loads.user))
+    loaded = np.arange(1, len(packed.body_names)) if functions else np.unique(loads.element[:, 1:3])
+    arrays = Embedding(
+        laws=dynamics.laws,
+        loads=loads,
+        inertia=dynamics.inertia,
+        weight=dynamics.weight,
+        gravity=packed.system.gravity,
+        group=group_table(groups),
+        number=group_numbers(groups),
+        size=np.array([1.0 if one.slide is None else size for one in coordinates]),
+        per_size=dynamics.per_size,
+        loaded=loaded[loaded > 0],
+        angles=functions or any(reading),
+    )
+    return Embedded(arrays, coordinates, len(packed.motions), math.inf)
+
+
+def _sensitivity(ready: PreparedDynamics, made: Embedded, q: np.ndarray, v: np.ndarray, time: float) -> float:
+    arrays, scratch = made.copied(), scratch_for(ready, made, 1, q)
+    state = made.state(q, v)
+    begin_at(arrays, scratch, state, time, math.inf)
+    power = derivative(arrays, scratch, time, state, scratch.stages[0], scratch.multipliers)
+    ready.packed.specials.check()
+    if math.isnan(power):
+        return math.inf
+    settle(arrays, scratch, time, state, True)
+    return float(scratch.watch[SENSITIVITY])

@@ -1,0 +1,99 @@
+"""How fast a run advances: steps between two looks at the keyboard, word of long runs, and an end to stuck ones.
+
+A run is examined when it would take many more steps at its present pace. It ends where a force is found that jumps, or
+one so stiff that the steps are far shorter than the motion needs (stuck.py), and where the end is out of reach.
+Legitimate runs of many steps go on, with word of where they are. What is decided depends on steps alone, never on the
+clock.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from mbsd.base.errors import SimulationError
+from mbsd.dynamics.runs.stuck import diagnosis
+from mbsd.dynamics.state import ACCEPTED, REJECTED, TIME, State
+
+if TYPE_CHECKING:
+    from mbsd.dynamics.runs.run import Run
+
+LOG = logging.getLogger("mbsd")
+STEPS_AT_ONCE = 2000
+"""Between two looks, of small mechanisms."""
+WORK_AT_ONCE = 3e6
+"""Coordinates times evaluations between two looks: a fraction of a second."""
+EVALUATIONS = 12
+"""Of a step."""
+CHECKED = 2000
+"""Steps, the refused among them, between two looks at the pace."""
+MANY = 2e5
+"""Steps still to do at which a run is examined."""
+PATIENCE = 10.0
+"""s before the first word of a long run; the gaps double."""
+
+
+def steps_at_once(coordinates: int, matrices: bool) -> int:
+    """Steps for one call of a compiled loop, so that it comes back within a second or so."""
+    work = max(coordinates, 1) * (EVALUATIONS + (6 * coordinates if matrices else 0))
+    return int(min(max(WORK_AT_ONCE / work, 1), STEPS_AT_ONCE))
+
+
+class Pace:
+    """Of one run from where ``state`` stands to ``end`` (s)."""
+
+    def __init__(self, run: Run, state: State, end: float, progress: Callable[[float], None] | None) -> None:
+        self.run, self.state, self.end, self.progress = run, state, end, progress
+        self.start = self.last = float(state.clock[TIME])
+        self._told = PATIENCE
+        self._began = time.monotonic()
+        self._done = self._steps()
+        self._checks, self._next = 0, 1
+
+    def note(self, current: Callable[[], State] | None = None, extra: int = 0) -> None:
+        """After some steps: report progress, and look at the pace now and then.
+
+        ``current`` gives the state in reference coordinates, if not that of the start of the run; ``extra`` counts work
+        that is no step, as many steps as it is worth. Raises SimulationError if the run is stuck.
+        """
+        at = float(self.state.clock[TIME])
+        if self.progress is not None:
+            if self.end > self.start:
+                self.progress((at - self.start) / (self.end - self.start))
+        elif time.monotonic() - self._began > self._told:
+            self._tell(at)
+        self._done -= extra
+        steps = self._steps() - self._done
+        if steps < CHECKED or at >= self.end:
+            return
+        advance = (at - self.last) / steps
+        self.last, self._done = at, self._steps()
+        left = (self.end - at) / advance if advance > 0.0 else float("inf")
+        if self.run.method.fixed_step and not extra:
+            return
+        if left < MANY:
+            self._checks, self._next = 0, 1
+            return
+        self._checks += 1
+        if self._checks < self._next:
+            return
+        self._next *= 2
+        found = diagnosis(self.run, current() if current else self.state, advance, left)
+        if found is not None:
+            raise SimulationError(
+                f"{self.run.ready.packed.name}: {self.run.method.name} no longer advances at t = {at:.6g} s: the last "
+                f"{steps} steps took {advance * steps:.2g} s of {self.end - at:.3g} s that are left; {found}"
+            )
+
+    def _steps(self) -> int:
+        return int(self.state.count[ACCEPTED] + self.state.count[REJECTED])
+
+    def _tell(self, at: float) -> None:
+        waited = time.monotonic() - self._began
+        self._told = 2.0 * waited
+        LOG.warning(
+            "mbsd: %s: t = %.4g of %.4g s after %.0f s and %d steps", self.run.ready.packed.name, at, self.end, waited,
+            self._steps(),
+        )  # fmt: skip

@@ -1,0 +1,182 @@
+"""Why a run hardly advances: which force jumps at its state, or which one is stiff.
+
+Forces are evaluated one by one along the motion through the state, y + s y' with s up to 10 and up to 1000 steps h to
+both sides: a smooth force changes a hundred times more in the second, one that jumps does not. The stiffness of a force
+is the rate (1/s) at which it would stop or swing bodies that no joints hold,
+
+    lambda = max(|W^-1 dQ/dv|, sqrt |W^-1 dQ/dq|)
+
+Steps of explicit methods that are no longer than a few 1 / lambda are short for stability's sake, not for accuracy's.
+Source: Hairer, Wanner, Solving ODEs II, IV.2.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mbsd.arrays.friction_along import friction_under
+from mbsd.arrays.loads import pack_loads
+from mbsd.arrays.loads_along import loads_along
+from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.state import TIME, State
+from mbsd.equations.joint_friction import X
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from mbsd.dynamics.runs.run import Run
+    from mbsd.model.force import Force
+
+NEAR, FAR = np.array([1.0, 3.0, 10.0]), np.array([30.0, 100.0, 300.0, 1000.0])
+"""Steps ahead and back at which forces are evaluated."""
+JUMP = 0.3
+"""Part of a force's change over FAR that happens over NEAR already where it jumps."""
+SLIGHT = 1e-6
+"""Part of the largest load below which a change does not matter."""
+STABILITY = 0.1, 30.0
+"""h lambda of explicit methods whose steps are limited by stability."""
+NEEDLESS = 1e-5
+"""Part of the time in which bodies move by the mechanism's size: shorter steps are not what the motion needs."""
+HOPELESS = 1e9
+"""Steps of that sort that no one waits for."""
+DIFFERENCE = 1e-6
+"""Of velocities and coordinates, in sizes and rad."""
+MANY_BODIES = 100
+"""Beyond, stiffness is looked for along the motion alone."""
+
+
+class Stiffest(NamedTuple):
+    """A force and its lambda (1/s)."""
+
+    force: Force
+    rate: float
+
+
+def diagnosis(run: Run, state: State, h: float, left: float) -> str | None:
+    """What keeps steps at h (s), with the remedy, or None if the run may go on; ``left`` steps are still to do."""
+    found = jump(run, state, h)
+    slope = _slope(run, state)
+    if found is not None or slope is None:
+        return found
+    if h > NEEDLESS * _own_time(run, state, slope):
+        return None
+    stiff = _stiffest(run, float(state.clock[TIME]), state.y, slope)
+    if stiff is None or not STABILITY[0] < h * stiff.rate < STABILITY[1]:
+        if left < HOPELESS:
+            return None
+        return "no force jumps or is stiff there. Look for a pose that is singular, or loosen the tolerance."
+    joint = stiff.force.params.get("joint")
+    where = f" of joint '{joint}'" if joint else ""
+    return (
+        f"force '{stiff.force.name}'{where} is stiff, it acts within {1.0 / stiff.rate:.1e} s, and about {left:.1e} "
+        "steps would follow. Take method='radau', or lower its damping, friction or stiffness."
+    )
+
+
+def jump(run: Run, state: State, h: float) -> str | None:
+    """The force that jumps within some steps of h (s), with the remedy, or None."""
+    slope = _slope(run, state)
+    found = None if slope is None else _jumping(run, float(state.clock[TIME]), state.y, slope, h)
+    if found is None:
+        return None
+    force, size = found
+    return (
+        f"force '{force.name}' jumps there, by {size:.3g} (N or N m). Make it smooth, say with "
+        "tanh(speed / slip_speed) in place of sign(speed), or take friction of a joint with sticks=True."
+    )
+
+
+def _slope(run: Run, state: State) -> np.ndarray | None:
+    """(2, 3 nb) d(state)/dt, or None where it is not finite."""
+    slope, time = np.zeros_like(state.y), float(state.clock[TIME])
+    derivative(run.ready.dynamics, run.scratch, time, state.y, slope, np.zeros_like(state.lam))
+    return slope if np.isfinite(slope).all() else None
+
+
+def _own_time(run: Run, state: State, slope: np.ndarray) -> float:
+    """Time (s) in which bodies move by the mechanism's size or turn by 1 rad."""
+    dynamics, packed = run.ready.dynamics, run.ready.packed
+    speed = float(np.abs(state.y[1] * dynamics.per_size)[3:].max())
+    bend = float(np.abs(slope[1] * dynamics.per_size)[3:].max())
+    fall = float(np.hypot(*packed.system.gravity)) / packed.size
+    return 1.0 / max(speed, math.sqrt(bend), math.sqrt(fall), 1.0 / (run.ready.end - run.ready.start))
+
+
+def _jumping(run: Run, time: float, y: np.ndarray, slope: np.ndarray, h: float) -> tuple[Force, float] | None:
+    """The force that jumps most, and by how much."""
+    ahead = h * np.concatenate([-FAR[::-1], -NEAR[::-1], [0.0], NEAR, FAR])
+    states = y + ahead[:, None, None] * slope
+    times = np.full(len(ahead), time)
+    close = slice(len(FAR), -len(FAR))
+    inverse = run.ready.dynamics.inverse
+    largest = max(float(np.abs(run.ready.dynamics.weight * inverse).max()), 1e-300)
+    best: tuple[Force, float] | None = None
+    worst = 0.0
+    for force, loads in _each(run, times, states):
+        effect = loads * inverse
+        largest = max(largest, float(np.abs(effect).max()))
+        wide, near = np.ptp(effect, axis=0), np.ptp(effect[close], axis=0)
+        column = int(np.argmax(near))
+        if near[column] > JUMP * wide[column] and near[column] > max(worst, SLIGHT * largest):
+            worst, best = near[column], (force, float(np.ptp(loads[close, column])))
+    return best
+
+
+def _stiffest(run: Run, time: float, y: np.ndarray, slope: np.ndarray) -> Stiffest | None:
+    dynamics = run.ready.dynamics
+    per_size, inverse = dynamics.per_size, dynamics.inverse
+    n3 = y.shape[1]
+    if n3 <= 3 * MANY_BODIES:
+        ways = np.concatenate(
+            [np.stack([np.eye(n3) * 0.0, np.eye(n3)], 1), np.stack([np.eye(n3), np.eye(n3) * 0.0], 1)]
+        )
+        ways = ways[np.r_[3:n3, n3 + 3 : 2 * n3]]
+    else:
+        ways = np.stack([np.stack([0.0 * y[1], slope[1]]), np.stack([y[1], 0.0 * y[1]])])
+        ways /= np.maximum(np.abs(ways * per_size).max(axis=(1, 2), keepdims=True), 1e-300)
+    ways = ways * (DIFFERENCE / np.where(per_size > 0.0, per_size, 1.0))
+    states = np.concatenate([y + ways, y - ways])
+    times = np.full(len(states), time)
+    best = None
+    for force, loads in _each(run, times, states):
+        change = 0.5 * (loads[: len(ways)] - loads[len(ways) :]) * inverse * per_size / DIFFERENCE
+        rates = np.abs(change).max(axis=1)
+        half = len(ways) // 2
+        rate = max(float(rates[:half].max()), math.sqrt(float(rates[half:].max())))
+        if best is None or rate > best.rate:
+            best = Stiffest(force, rate)
+    return best
+
+
+def _each(run: Run, times: np.ndarray, states: np.ndarray) -> Iterator[tuple[Force, np.ndarray]]:
+    """Each force and its loads (T, 3 nb) at times (T,) and states (T, 2, 3 nb).
+
+    Friction of joints is that under the last normal forces.
+    """
+    packed, own = run.ready.packed, run.ready.dynamics.loads
+    q, v = np.ascontiguousarray(states[:, 0]), np.ascontiguousarray(states[:, 1])
+    at = np.zeros(4, np.int64)
+    for force, markers in zip(packed.forces, packed.force_markers, strict=True):
+        alone = copy.copy(packed)
+        alone.forces, alone.force_markers = [force], np.array([markers])
+        lone = pack_loads(alone)
+        size = [len(part) for part in (lone.element, lone.interaction, lone.user, lone.rub)]
+        elements, interactions, users, rubs = (slice(a, a + n) for a, n in zip(at, size, strict=True))
+        at += size
+        loads = own._replace(
+            element=own.element[elements],
+            place=own.place[elements],
+            interaction=own.interaction[interactions],
+            user=own.user[users],
+            rub=own.rub[rubs],
+            rub_number=own.rub_number[rubs],
+            total=sum(size[:3]),
+        )
+        if size[3]:
+            yield force, friction_under(packed, loads, q, v, np.tile(own.normal[X, rubs], (len(q), 1)))
+        else:
+            yield force, loads_along(packed, loads, run.ready.dynamics.laws, times, q, v)

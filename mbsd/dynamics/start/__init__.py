@@ -1,0 +1,1 @@
+"""Start, rank and mobility of large mechanisms."""

@@ -1,0 +1,152 @@
+"""What integrators work on: the running state, the results at output times, and the tolerances."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mbsd.compiling.jit import inlined, kernel
+from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.reference.projection import project
+
+REACHED, PAUSED, STEP_TOO_SMALL, NOT_FINITE, NO_CONVERGENCE, CHOOSE, UNCLEAR = 0, 1, 2, 3, 4, 5, 6
+"""What ``advance`` returns: the end was reached, the allowed steps were used, or why it cannot go on.
+
+Of independent coordinates: other ones may be better, or an output falls on a pose that they do not tell clearly.
+"""
+TIME, STEP, WORK, POWER, ERROR = 0, 1, 2, 3, 4
+"""Entries of State.clock."""
+NEXT, ACCEPTED, REJECTED, EVALUATIONS, STARTED = 0, 1, 2, 3, 4
+"""Entries of State.count."""
+
+
+class State(NamedTuple):
+    """Where a run stands; enough to go on from, so a copy is a point to return to."""
+
+    y: Any
+    """(2, 3 nb) coordinates and velocities."""
+    dy: Any
+    """(2, 3 nb) their derivative; valid once STARTED."""
+    lam: Any
+    """(m,)"""
+    memory: Any
+    """(2, 3 nb) what a method itself remembers from step to step; a restart makes it anew."""
+    clock: Any
+    """(8,) time (s), next step (s), work of loads and drivers so far (J), their power (W), last error."""
+    count: Any
+    """(8,) next output, steps accepted and rejected, evaluations, whether dy is valid."""
+
+
+class Output(NamedTuple):
+    """Results at the output times."""
+
+    t: Any
+    """(T,) s, rising."""
+    y: Any
+    """(T, 2, 3 nb)"""
+    a: Any
+    """(T, 3 nb)"""
+    lam: Any
+    """(T, m)"""
+    work: Any
+    """(T,) of loads and drivers since the start (J)."""
+    margin: Any
+    """(T,) least part of a block's determinant left by elimination."""
+
+
+class Settings(NamedTuple):
+    """What steers the steps."""
+
+    absolute: Any
+    """(2, 3 nb) absolute tolerance of coordinates and velocities."""
+    relative: float
+    """Relative tolerance of velocities and of x and y."""
+    growing: Any
+    """(2, 3 nb) the same for each entry; 0 for angles, which are no less exact after many turns."""
+    longest: float
+    """s"""
+    smallest: float
+    """Step (s) at which a method with an error estimate gives up."""
+    step: float
+    """Of methods with a fixed step (s)."""
+    options: Any
+    """(options,) of the method itself, see Integrator.options."""
+
+
+def start_state(y: np.ndarray, rows: int, time: float) -> State:
+    """A run that begins at a consistent y (2, 3 nb)."""
+    state = State(y.copy(), np.zeros_like(y), np.zeros(rows), np.zeros_like(y), np.zeros(8), np.zeros(8, np.int64))
+    state.clock[TIME] = time
+    return state
+
+
+def copied(state: State) -> State:
+    """A point to return to."""
+    return State(*(part.copy() for part in state))
+
+
+def output_for(times: np.ndarray, coordinates: int, rows: int) -> Output:
+    """Room for the results at ``times``."""
+    count = len(times)
+    return Output(
+        np.ascontiguousarray(times, float),
+        np.zeros((count, 2, coordinates)),
+        np.zeros((count, coordinates)),
+        np.zeros((count, rows)),
+        np.zeros(count),
+        np.zeros(count),
+    )
+
+
+@kernel
+def record(dyn, scratch, out, k, work):
+    """Write output k from scratch.state, projected first."""
+    state = scratch.state
+    t = out.t[k]
+    project(dyn, scratch, t, state, 2)
+    derivative(dyn, scratch, t, state, scratch.stages[0], out.lam[k])
+    for c in range(state.shape[1]):
+        out.y[k, 0, c] = state[0, c]
+        out.y[k, 1, c] = state[1, c]
+        out.a[k, c] = scratch.stages[0, 1, c]
+    out.work[k] = work
+    out.margin[k] = scratch.report[0]
+
+
+@kernel
+def record_here(scratch, state, out):
+    """Write the next output from the state itself, which stands at its time and is projected."""
+    k = state.count[NEXT]
+    for c in range(state.y.shape[1]):
+        out.y[k, 0, c] = state.y[0, c]
+        out.y[k, 1, c] = state.y[1, c]
+        out.a[k, c] = state.dy[1, c]
+    for r in range(state.lam.shape[0]):
+        out.lam[k, r] = state.lam[r]
+    out.work[k] = state.clock[WORK]
+    out.margin[k] = scratch.report[0]
+    state.count[NEXT] = k + 1
+
+
+@inlined
+def begin(dyn, scratch, state):
+    """Make dy valid at a start or restart."""
+    if state.count[STARTED] == 0:
+        state.clock[POWER] = derivative(dyn, scratch, state.clock[TIME], state.y, state.dy, state.lam)
+        state.count[EVALUATIONS] += 1
+        state.count[STARTED] = 1
+
+
+@inlined
+def fixed_step(state, out, settings, end):
+    """The next step (s) of a method with a fixed one, and where it ends: equal steps up to the next output or end."""
+    t = state.clock[TIME]
+    target = end
+    if state.count[NEXT] < out.t.shape[0] and out.t[state.count[NEXT]] < end:
+        target = out.t[state.count[NEXT]]
+    left = math.ceil((target - t) / settings.step * (1.0 - 1e-9))
+    if left <= 1.0:
+        return target - t, target
+    return (target - t) / left, t + (target - t) / left

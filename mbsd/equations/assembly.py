@@ -1,0 +1,66 @@
+"""The compiled evaluation: residual, Jacobian, velocity and acceleration right-hand sides of all constraints.
+
+Phi(q, t) = 0,   J v = nu,   J a = gamma
+"""
+
+from __future__ import annotations
+
+from mbsd.compiling.jit import inlined, kernel
+from mbsd.equations.constraints import along, angle, distance, point, slot
+from mbsd.equations.constraints import relative as special
+from mbsd.equations.markers import move, place
+
+
+@inlined
+def evaluate_position(system, q, drive, ws):
+    """Fill ws.phi and ws.jac at q (3 nb,). ``drive`` is (motions, 3): f, f', f'' now; row 0 is zero."""
+    place(system, q, ws)
+    point.rows(system, ws)
+    angle.rows(system, q, drive, ws)
+    slot.rows(system, ws)
+    along.rows(system, drive, ws)
+    distance.rows(system, drive, ws)
+    if system.special.shape[0] > 0:
+        special.rows(system, q, drive, ws)
+
+
+@inlined
+def evaluate_nu(system, drive, nu):
+    """Fill nu (m,): f' in driven rows, else zero."""
+    for r in range(nu.shape[0]):
+        nu[r] = 0.0
+    for k in range(system.driven.shape[0]):
+        nu[system.driven[k, 0]] = drive[system.driven[k, 1], 1]
+
+
+@inlined
+def evaluate_gamma(system, v, drive, ws, gamma):
+    """Fill gamma (m,) at velocities v (3 nb,), after evaluate_position at the same pose."""
+    move(system, v, ws)
+    point.gamma_rows(system, ws, gamma)
+    angle.gamma_rows(system, gamma)
+    slot.gamma_rows(system, v, ws, gamma)
+    along.gamma_rows(system, v, ws, gamma)
+    distance.gamma_rows(system, ws, gamma)
+    if system.special.shape[0] > 0:
+        special.gamma_rows(system, v, ws, gamma)
+    for k in range(system.driven.shape[0]):
+        gamma[system.driven[k, 0]] += drive[system.driven[k, 1], 2]
+
+
+@kernel
+def residual_and_jacobian(system, q, drive, ws):
+    """evaluate_position as a function of its own, for callers outside the compiled loops."""
+    evaluate_position(system, q, drive, ws)
+
+
+@kernel
+def tabulate(system, drives, q, v, ws, phi, jacobians, gamma):
+    """phi, gamma (T, m) and compact Jacobians (T, m, 6) along a motion q, v (T, 3 nb)."""
+    for k in range(q.shape[0]):
+        residual_and_jacobian(system, q[k], drives[k], ws)
+        evaluate_gamma(system, v[k], drives[k], ws, gamma[k])
+        for r in range(ws.phi.shape[0]):
+            phi[k, r] = ws.phi[r]
+            for c in range(6):
+                jacobians[k, r, c] = ws.jac[r, c]

@@ -1,0 +1,72 @@
+"""The compiled evaluation of interactions: the relative state in, force and torque out.
+
+d  = p_j - p_i;   u unit axis of marker i, n = u_perp;   x = u . d,  y = n . d,  a = theta_j - theta_i + offset
+x' = u . d' + omega_i y,   y' = n . d' - omega_i x,   a' = omega_j - omega_i
+on body j: F at marker j and T; on body i: -F at the same point and -T;   power = F . (x', y') + T a'
+"""
+
+from __future__ import annotations
+
+from mbsd.compiling.jit import internal
+from mbsd.equations.interactions.law import FX, FY, LAW, LAW_RATE, OMEGA, TIME, TORQUE, VX, VY
+from mbsd.equations.laws import evaluate_law
+from mbsd.equations.relative.equation import OWN, A, X, Y, evaluate
+
+GEOMETRY = 7
+"""Numbers of an interaction before its own."""
+
+
+@internal
+def apply_interactions(loads, laws, t, q, v, cos_sin, load):
+    """Add the generalised forces of all interactions to load (3 nb,); cos_sin (nb, 2) turns the bodies.
+
+    Returns their power (W).
+    """
+    state = loads.state
+    out = loads.exchange[1]
+    power = 0.0
+    for k in range(loads.interaction.shape[0]):
+        first = loads.interaction[k, 0]
+        second = loads.interaction[k, 1]
+        at = loads.interaction[k, 3]
+        i = 3 * first
+        j = 3 * second
+        c = cos_sin[first, 0]
+        s = cos_sin[first, 1]
+        arm_ix = c * loads.given[at] - s * loads.given[at + 1]
+        arm_iy = s * loads.given[at] + c * loads.given[at + 1]
+        ux = c * loads.given[at + 2] - s * loads.given[at + 3]
+        uy = s * loads.given[at + 2] + c * loads.given[at + 3]
+        c = cos_sin[second, 0]
+        s = cos_sin[second, 1]
+        arm_jx = c * loads.given[at + 4] - s * loads.given[at + 5]
+        arm_jy = s * loads.given[at + 4] + c * loads.given[at + 5]
+        dx = q[j] + arm_jx - q[i] - arm_ix
+        dy = q[j + 1] + arm_jy - q[i + 1] - arm_iy
+        omega = v[i + 2]
+        vx = v[j] - v[j + 2] * arm_jy - v[i] + omega * arm_iy
+        vy = v[j + 1] + v[j + 2] * arm_jx - v[i + 1] - omega * arm_ix
+        x = ux * dx + uy * dy
+        y = ux * dy - uy * dx
+        state[X] = x
+        state[Y] = y
+        state[A] = q[j + 2] - q[i + 2] + loads.given[at + 6]
+        state[VX] = ux * vx + uy * vy + omega * y
+        state[VY] = ux * vy - uy * vx - omega * x
+        state[OMEGA] = v[j + 2] - omega
+        state[TIME] = t
+        evaluate_law(laws, loads.interaction[k, 2], t, loads.law)
+        state[LAW] = loads.law[0]
+        state[LAW_RATE] = loads.law[1]
+        # functions count their own numbers from OWN
+        evaluate(loads.interaction[k, 4], loads.given[at + GEOMETRY - OWN :], state, out)
+        power += out[FX] * state[VX] + out[FY] * state[VY] + out[TORQUE] * state[OMEGA]
+        fx = out[FX] * ux - out[FY] * uy
+        fy = out[FX] * uy + out[FY] * ux
+        load[j] += fx
+        load[j + 1] += fy
+        load[j + 2] += out[TORQUE] + arm_jx * fy - arm_jy * fx
+        load[i] -= fx
+        load[i + 1] -= fy
+        load[i + 2] -= out[TORQUE] + (arm_ix + dx) * fy - (arm_iy + dy) * fx
+    return power

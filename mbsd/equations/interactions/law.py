@@ -1,0 +1,35 @@
+"""What the function of an interaction reads and fills; it is compiled only when a model uses it.
+
+    void force(const double *numbers, const double *state, double *out)
+
+``state`` holds the pose of marker j in the axes of marker i, its rate as seen there, the time and a law of time;
+``out`` takes the force on body j at the point of marker j, in the axes of marker i, and the torque on body j. Body i
+feels the opposite at the same point of space, so power and reaction follow for all kinds at once.
+
+``numbers`` begin at OWN, as those of constraints, and places 4 to 13 of the state are scratch of curve_pieces.py.
+"""
+
+from __future__ import annotations
+
+import importlib
+
+from mbsd.compiling.jit import COMPILED
+from mbsd.equations.relative.equation import _PYTHON, OWN, A, X, Y, equation
+
+VX, VY, OMEGA, TIME, LAW, LAW_RATE = 14, 15, 16, 17, 18, 19
+"""Of ``state`` beside X, Y, A: rates (m/s, m/s, rad/s), time (s), value and rate of the law of time, 0 without one."""
+STATE = 24
+"""Numbers of a state."""
+FX, FY, TORQUE = 0, 1, 2
+"""Of ``out``."""
+
+__all__ = ["FX", "FY", "LAW", "LAW_RATE", "OMEGA", "OWN", "STATE", "TIME", "TORQUE", "VX", "VY", "A", "X", "Y"]
+
+interaction = equation
+"""Decorator: a force at an address."""
+
+
+def address_of(name: str) -> int:
+    """Where the force of this file of mbsd/equations/interactions is; compiles it at first."""
+    made = importlib.import_module(f"mbsd.equations.interactions.{name}").force
+    return made.address if COMPILED else _PYTHON.index(made)

@@ -1,0 +1,23 @@
+"""A part of a spring whose stiffness, damping or free length is a law of time; forces/spring.py says which."""
+
+from __future__ import annotations
+
+from mbsd.base.codes import DAMPER, STIFFNESS
+from mbsd.equations.interactions.law import FX, FY, LAW, OWN, TORQUE, interaction
+from mbsd.equations.interactions.way import measure
+
+
+@interaction
+def force(numbers, state, out):
+    """Own numbers: which of the three the law is, the free value or the stiffness, and 1 for a torsion spring."""
+    turning = numbers[OWN + 2] > 0.0
+    x, rate, ux, uy = measure(turning, state)
+    if numbers[OWN] == STIFFNESS:
+        size = -state[LAW] * (x - numbers[OWN + 1])
+    elif numbers[OWN] == DAMPER:
+        size = -state[LAW] * rate
+    else:
+        size = numbers[OWN + 1] * state[LAW]
+    out[FX] = ux * size
+    out[FY] = uy * size
+    out[TORQUE] = size if turning else 0.0

@@ -1,0 +1,21 @@
+"""Spring by a law of the user; forces/spring_law.py says which."""
+
+from __future__ import annotations
+
+from mbsd.compiling.callback import call
+from mbsd.equations.interactions.law import FX, FY, OWN, TIME, TORQUE, X, Y, interaction
+from mbsd.equations.interactions.way import measure
+
+
+@interaction
+def force(numbers, state, out):
+    """Own numbers: the address of the law, a function of value and rate, and 1 for a torsion spring."""
+    turning = numbers[OWN + 1] > 0.0
+    value, rate, ux, uy = measure(turning, state)
+    state[X] = value  # the place is not read again
+    state[Y] = rate
+    call(int(numbers[OWN]), state[TIME], state, out)  # pyright: ignore[reportCallIssue]
+    size = out[0]
+    out[FX] = ux * size
+    out[FY] = uy * size
+    out[TORQUE] = size if turning else 0.0

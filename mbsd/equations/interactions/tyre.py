@@ -1,0 +1,35 @@
+"""Wheel on a road; the law is in forces/tyre.py."""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.equations.interactions.law import FX, FY, OMEGA, TORQUE, VX, VY, interaction
+from mbsd.equations.interactions.surface import DISTANCE, TX, TY, after, stand
+
+RADIUS, STIFFNESS, DAMPING, GRIP, SLOPE, SHAPE, CURVATURE, STANDSTILL = range(8)
+
+
+@interaction
+def force(numbers, state, out):
+    """Own numbers by the names above."""
+    stand(numbers, state)
+    own = after(numbers)
+    out[FX] = 0.0
+    out[FY] = 0.0
+    out[TORQUE] = 0.0
+    depth = numbers[own + RADIUS] - state[DISTANCE]
+    if depth > 0.0:
+        tx = state[TX]
+        ty = state[TY]
+        rate = ty * state[VX] - tx * state[VY]
+        normal = max(numbers[own + STIFFNESS] * depth + numbers[own + DAMPING] * rate, 0.0)
+        speed = tx * state[VX] + ty * state[VY]
+        low = numbers[own + STANDSTILL]
+        slip = -(speed + state[OMEGA] * state[DISTANCE]) / math.sqrt(speed * speed + low * low)
+        stretched = numbers[own + SLOPE] * slip
+        bent = stretched - numbers[own + CURVATURE] * (stretched - math.atan(stretched))
+        along = normal * numbers[own + GRIP] * math.sin(numbers[own + SHAPE] * math.atan(bent))
+        out[FX] = along * tx - normal * ty
+        out[FY] = along * ty + normal * tx
+        out[TORQUE] = along * state[DISTANCE]

@@ -1,0 +1,227 @@
+"""Friction of joints, found by iteration together with the reactions it comes from.
+
+The friction of a joint is linear in its normal force N, which comes from the multipliers, which the friction changes:
+
+    r = N(lam(x)) - x = 0        x: the normal forces that the friction was computed from
+    x += w r,   w <- -w r_old . (r - r_old) / |r - r_old|^2,   w = 1 at first
+
+For one joint this is the secant method, which also converges where plain repetition diverges (long levers, jamming).
+It begins with the normal forces of the last evaluation. Where friction presses a joint harder than it was pressed there
+may be no solution, which is an error, or two, of which one is found (Painleve 1895).
+
+Source: Irons, Tuck 1969, Int. J. Num. Meth. Eng. 1.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.compiling.jit import internal, kernel
+from mbsd.equations.markers import move, place
+
+PIN, GUIDE = 0, 1
+"""Places in FRICTION_JOINTS; the third is a pin in a slot."""
+SHAPE, MARKER_I, MARKER_J, FIRST, END, SECOND, WAY = range(7)
+"""Of a row: shape, markers, rows of the joint, 1 where body j moves (else the reaction on body i is read), the row that
+holds the joint while it sticks, -1 where there is none."""
+COEFFICIENT, STATIC, STRIBECK, VISCOUS, SLIP_SPEED, PRELOAD, SIZE, SENSE = range(8)
+"""Of its numbers; SIZE: radius of a pin, length of a guide; SENSE: see BY_RATE."""
+BY_RATE, NONE = 2.0, 0.0
+"""Senses beside 1 and -1, the sign of a sliding that an event ends: friction by the rate alone; none (it sticks, or its
+joint is let go)."""
+X, LAST, FOUND, CHANGE = range(4)
+"""Of ``normal``: used now, last residual, what the multipliers give, change to be applied."""
+WEIGHT, FAILED = 0, 1
+"""Of ``rubbing``."""
+SETTLED, FAINT = 1e-12, 0.1
+"""Part of the largest normal force that may be left; no less than this part of the largest weight counts as largest."""
+MOST_PASSES = 100
+
+
+@internal
+def normal_forces(loads, ws, jac, lam, out):
+    """out (f,) normal forces (N) at the multipliers lam (m,) and compact J (m, 6), after place."""
+    for k in range(loads.rub.shape[0]):
+        i = loads.rub[k, MARKER_I]
+        j = loads.rub[k, MARKER_J]
+        side = 3 * loads.rub[k, SECOND]
+        fx = 0.0
+        fy = 0.0
+        torque = 0.0
+        for r in range(loads.rub[k, FIRST], loads.rub[k, END]):
+            fx += jac[r, side] * lam[r]
+            fy += jac[r, side + 1] * lam[r]
+            torque += jac[r, side + 2] * lam[r]
+        shape = loads.rub[k, SHAPE]
+        if shape == PIN:
+            out[k] = math.sqrt(fx * fx + fy * fy)
+            continue
+        across = ws.axis[i, 0] * fy - ws.axis[i, 1] * fx
+        out[k] = abs(across)
+        length = loads.rub_number[k, SIZE]
+        if shape == GUIDE and length > 0.0:
+            own = j if side == 3 else i
+            x = ws.position[j, 0] - ws.position[own, 0] + ws.arm[own, 0]
+            y = ws.position[j, 1] - ws.position[own, 1] + ws.arm[own, 1]
+            tilt = torque - x * fy + y * fx
+            out[k] = max(out[k], 2.0 * abs(tilt) / length)
+
+
+@internal
+def rate_of(system, loads, v, ws, k):
+    """Rate (rad/s or m/s) at which joint k with friction turns or slides, after place and move."""
+    i = loads.rub[k, MARKER_I]
+    j = loads.rub[k, MARKER_J]
+    bi = 3 * system.marker_body[i]
+    bj = 3 * system.marker_body[j]
+    if loads.rub[k, SHAPE] == PIN:
+        return v[bj + 2] - v[bi + 2]
+    dx = ws.position[j, 0] - ws.position[i, 0]
+    dy = ws.position[j, 1] - ws.position[i, 1]
+    vx = ws.velocity[j, 0] - ws.velocity[i, 0]
+    vy = ws.velocity[j, 1] - ws.velocity[i, 1]
+    ux = ws.axis[i, 0]
+    uy = ws.axis[i, 1]
+    return ux * vx + uy * vy + v[bi + 2] * (ux * dy - uy * dx)
+
+
+@internal
+def friction_of(loads, k, rate, normal, whole):
+    """Friction (N m of a pin, else N) on body j of joint k; see rub."""
+    number = loads.rub_number[k]
+    sense = number[SENSE]
+    if sense == NONE:
+        return 0.0
+    lever = number[SIZE] if loads.rub[k, SHAPE] == PIN else 1.0
+    slip = lever * rate
+    if sense == BY_RATE:
+        sense = math.tanh(slip / number[SLIP_SPEED])
+    over = slip / number[STRIBECK]
+    coefficient = number[COEFFICIENT] + (number[STATIC] - number[COEFFICIENT]) * math.exp(-over * over)
+    return -coefficient * sense * (normal + whole * number[PRELOAD]) * lever - whole * number[VISCOUS] * rate
+
+
+@internal
+def rub(system, loads, v, ws, normal, whole, load):
+    """Add the friction under normal forces (f,) to load (3 nb,), after place and move; returns its power (W).
+
+    ``whole`` is 1, or 0 for a change of normal forces: then preload and viscous part are left out.
+    """
+    power = 0.0
+    for k in range(loads.rub.shape[0]):
+        rate = rate_of(system, loads, v, ws, k)
+        force = friction_of(loads, k, rate, normal[k], whole)
+        power += force * rate
+        i = loads.rub[k, MARKER_I]
+        j = loads.rub[k, MARKER_J]
+        bi = 3 * system.marker_body[i]
+        bj = 3 * system.marker_body[j]
+        if loads.rub[k, SHAPE] == PIN:
+            load[bj + 2] += force
+            load[bi + 2] -= force
+            continue
+        fx = force * ws.axis[i, 0]
+        fy = force * ws.axis[i, 1]
+        load[bj] += fx
+        load[bj + 1] += fy
+        load[bj + 2] += ws.arm[j, 0] * fy - ws.arm[j, 1] * fx
+        load[bi] -= fx
+        load[bi + 1] -= fy
+        x = ws.arm[i, 0] + ws.position[j, 0] - ws.position[i, 0]
+        y = ws.arm[i, 1] + ws.position[j, 1] - ws.position[i, 1]
+        load[bi + 2] -= x * fy - y * fx
+    return power
+
+
+@internal
+def note_friction(system, loads, v, ws, lam):
+    """Set lam of the ways of sliding joints that may stick: J^T lam holds their friction, as it does in sticking."""
+    for k in range(loads.rub.shape[0]):
+        way = loads.rub[k, WAY]
+        if way >= 0 and loads.rub_number[k, SENSE] != NONE:
+            lam[way] = -friction_of(loads, k, rate_of(system, loads, v, ws, k), loads.normal[X, k], 1.0)
+
+
+@internal
+def begin_rubbing(system, loads, v, ws, load):
+    """Add the friction under the normal forces of the last evaluation; returns its power (W)."""
+    x = loads.normal[X]
+    for k in range(x.shape[0]):
+        if not math.isfinite(x[k]):
+            x[k] = 0.0
+    loads.rubbing[WEIGHT] = 0.0
+    return rub(system, loads, v, ws, x, 1.0, load)
+
+
+@internal
+def settle(dyn, ws, a, lam):
+    """Compare with the normal forces at a (3 nb,) and lam (m,): True if they agree.
+
+    Else the change to apply stands in normal[CHANGE].
+    """
+    loads = dyn.loads
+    x = loads.normal[X]
+    last = loads.normal[LAST]
+    found = loads.normal[FOUND]
+    change = loads.normal[CHANGE]
+    normal_forces(loads, ws, ws.jac, lam, found)
+    largest = 0.0
+    for c in range(3, a.shape[0]):  # joints that carry nothing, as in free flight, have normal forces of rounding
+        if c % 3 != 2:
+            largest = max(largest, FAINT * max(abs(dyn.weight[c]), abs(dyn.inertia[c] * a[c])))
+    worst = 0.0
+    product = 0.0
+    square = 0.0
+    for k in range(x.shape[0]):
+        if loads.rub_number[k, SENSE] == NONE:
+            x[k] = found[k]
+        gap = found[k] - x[k]
+        if not math.isfinite(gap):
+            return True
+        largest = max(largest, found[k])
+        worst = max(worst, abs(gap))
+        product += last[k] * (gap - last[k])
+        square += (gap - last[k]) ** 2
+    if worst <= SETTLED * largest:
+        loads.rubbing[FAILED] = 0.0
+        return True
+    weight = loads.rubbing[WEIGHT]
+    if weight == 0.0 or square == 0.0:
+        weight = 1.0
+    else:
+        weight = min(max(-weight * product / square, -10.0), 10.0)
+    loads.rubbing[WEIGHT] = weight
+    for k in range(x.shape[0]):
+        gap = found[k] - x[k]
+        last[k] = gap
+        moved = max(x[k] + weight * gap, 0.0)
+        change[k] = moved - x[k]
+        x[k] = moved
+    return False
+
+
+@kernel
+def tabulate_normals(system, loads, q, compact, lam, ws, out):
+    """out (T, f) normal forces along poses q (T, 3 nb) with compact J (T, m, 6) and multipliers lam (T, m)."""
+    for k in range(q.shape[0]):
+        place(system, q[k], ws)
+        normal_forces(loads, ws, compact[k], lam[k], out[k])
+
+
+@kernel
+def tabulate_friction(system, loads, q, v, normal, ws, out, power):
+    """Add the friction under normal forces (T, f) to out (T, 3 nb) and its power to power (T,)."""
+    for k in range(q.shape[0]):
+        place(system, q[k], ws)
+        move(system, v[k], ws)
+        power[k] += rub(system, loads, v[k], ws, normal[k], 1.0, out[k])
+
+
+@kernel
+def tabulate_rates(system, loads, k, q, v, normal, ws, rate, force):
+    """Rate (T,) of joint k with friction along a motion, and the friction (T,) under its normal forces (T,)."""
+    for i in range(q.shape[0]):
+        place(system, q[i], ws)
+        move(system, v[i], ws)
+        rate[i] = rate_of(system, loads, v[i], ws, k)
+        force[i] = friction_of(loads, k, rate[i], normal[i], 1.0)

@@ -1,0 +1,3 @@
+"""Constraints F(x, y, a) of the relative pose of two markers, one file an equation, compiled when a model first uses
+it.
+"""

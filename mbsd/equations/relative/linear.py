@@ -1,0 +1,24 @@
+"""Linear constraint: a sum of the relative coordinates has a fixed value.
+
+F     = g_x x + g_y y + g_a a - c
+
+It serves the rack (x + r a), the height of a disc over a line (y = r) and whatever else is linear.
+"""
+
+from __future__ import annotations
+
+from mbsd.equations.relative.equation import FA, FX, FXX, FY, OWN, PHASE, A, F, X, Y, equation
+
+
+@equation
+def residual(numbers, relative, out):
+    """F (m); own numbers g_x, g_y, g_a, and b, which counts to c."""
+    gx = numbers[OWN]
+    gy = numbers[OWN + 1]
+    ga = numbers[OWN + 2]
+    out[F] = gx * relative[X] + gy * relative[Y] + ga * relative[A] - numbers[OWN + 3] - numbers[PHASE]
+    out[FX] = gx
+    out[FY] = gy
+    out[FA] = ga
+    for k in range(FXX, FXX + 6):
+        out[k] = 0.0

@@ -1,0 +1,33 @@
+"""Radial constraint of the relative pose: how far two points are apart, less or more than a length.
+
+F   = s (l - c),   l = sqrt(x^2 + y^2)
+F_x = s x / l,  F_y = s y / l;   F_xx = s y^2 / l^3,  F_xy = -s x y / l^3,  F_yy = s x^2 / l^3
+
+s = 1: outside of each other; s = -1: a rope, or one disc inside another. l = 0 has no direction.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA, FYY, OWN, PHASE, F, X, Y, equation
+
+
+@equation
+def residual(numbers, relative, out):
+    """F (m); own numbers s, c."""
+    x = relative[X]
+    y = relative[Y]
+    s = numbers[OWN]
+    length = math.sqrt(x * x + y * y)
+    cube = length * length * length
+    out[F] = s * (length - numbers[OWN + 1]) - numbers[PHASE]
+    out[FX] = s * x / length if length > 0.0 else 0.0
+    out[FY] = s * y / length if length > 0.0 else 0.0
+    out[FA] = 0.0
+    out[FXX] = s * y * y / cube if length > 0.0 else 0.0
+    out[FXY] = -s * x * y / cube if length > 0.0 else 0.0
+    out[FXA] = 0.0
+    out[FYY] = s * x * x / cube if length > 0.0 else 0.0
+    out[FYA] = 0.0
+    out[FAA] = 0.0

@@ -1,0 +1,107 @@
+"""Arrays that the kernels work on: System (constant), Workspace (scratch). Made by model.py, changed by nobody else.
+
+Bodies are numbered 0 .. nb-1; body 0 is ground. A row of the Jacobian touches two bodies, so six numbers hold it.
+A constraint table has one row per constraint: marker i, marker j, first row in J, motion (0: none, constant 0).
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+
+class System(NamedTuple):
+    """A mechanism as constant arrays (SI). nb bodies, nm markers."""
+
+    mass: Any
+    """(nb,) kg; ground 0."""
+    inertia: Any
+    """(nb,) kg m^2 about the centre of mass; ground 0."""
+    gravity: Any
+    """(2,) m/s^2."""
+    marker_body: Any
+    """(nm,) body of each marker."""
+    marker_arm: Any
+    """(nm, 2) from the centre of mass, body axes (m)."""
+    marker_axis: Any
+    """(nm, 2) unit x axis of the marker, body axes."""
+    moving: Any
+    """Markers on moving bodies."""
+    directed: Any
+    """Those of them whose axis a constraint uses."""
+    point: Any
+    angle: Any
+    slot: Any
+    along: Any
+    distance: Any
+    """(k, 4) int constraint tables."""
+    special: Any
+    """(k, 7) int table of the constraints of relative pose; columns in mbsd/equations/constraints/relative.py."""
+    address: Any
+    """(k,) of their equations."""
+    numbers: Any
+    """All numbers of all of them; those that the start pose decides are set when it is closed."""
+    driven: Any
+    """(drivers, 2) row and motion of each driven constraint."""
+    row_body: Any
+    """(m, 2) first and second body of each row."""
+    angle_offset: Any
+    """(k,) rad, for the rows of ``angle``."""
+    distance_length: Any
+    """(k,) m, for the rows of ``distance``."""
+
+
+class Workspace(NamedTuple):
+    """Scratch of one evaluation; every kernel call overwrites it."""
+
+    cos_sin: Any
+    """(nb, 2) of the body angles."""
+    arm: Any
+    """(nm, 2) from the centre of mass, world axes."""
+    position: Any
+    """(nm, 2) world."""
+    axis: Any
+    """(nm, 2) unit, world."""
+    velocity: Any
+    """(nm, 2) world."""
+    convective: Any
+    """(nm, 2) convective acceleration -omega^2 arm, world."""
+    relative: Any
+    """(16,) relative pose of one special constraint, then scratch of its equation."""
+    equation: Any
+    """(k, 10) value, gradient and second derivatives of the special constraints."""
+    phi: Any
+    """(m,) residual."""
+    jac: Any
+    """(m, 6) dPhi/dq on the first body (x, y, theta), then on the second; what falls on ground is not used."""
+    right: Any
+    """(2, m) right-hand sides: -Phi and nu, then gamma."""
+    pose: Any
+    """(3 nb,) of the Newton iteration."""
+    delta: Any
+    """(2, 3 nb) its correction, and the velocities."""
+
+
+def workspace(system: System, rows: int) -> Workspace:
+    """Scratch for ``rows`` constraint rows. Entries of ``jac`` that no constraint writes stay zero for ever."""
+    bodies = len(system.mass)
+    cos_sin = np.zeros((bodies, 2))
+    cos_sin[:, 0] = 1.0
+    on_ground = system.marker_body == 0
+    at_rest = np.where(on_ground[:, None], system.marker_arm, 0.0)
+    return Workspace(
+        cos_sin=cos_sin,
+        arm=at_rest.copy(),
+        position=at_rest.copy(),
+        axis=np.where(on_ground[:, None], system.marker_axis, 0.0),
+        velocity=np.zeros_like(at_rest),
+        convective=np.zeros_like(at_rest),
+        relative=np.zeros(16),
+        equation=np.zeros((len(system.special), 10)),
+        phi=np.zeros(rows),
+        jac=np.zeros((rows, 6)),
+        right=np.zeros((2, rows)),
+        pose=np.zeros(3 * bodies),
+        delta=np.zeros((2, 3 * bodies)),
+    )

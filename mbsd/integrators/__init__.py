@@ -1,1 +1,0 @@
-"""Integrators, one file a method. All step along :func:`mbsd.dynamics.acceleration.derivative`."""

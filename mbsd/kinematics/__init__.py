@@ -1,0 +1,1 @@
+"""The start pose and its rank; the driven motion, in closed form or by Newton-Raphson."""

@@ -1,0 +1,98 @@
+"""Rigid contacts, stops and limits where nothing pushes back: sweeps, statics, linearisation, inverse dynamics.
+
+Only a simulation knows the forces of contacts. Elsewhere a motion or pose that needs them is refused here, by name.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.base.errors import EquilibriumError, LimitError, ModelError
+
+if TYPE_CHECKING:
+    from mbsd.arrays.packing import Packed
+    from mbsd.model.mechanism import Model
+    from mbsd.results.solution import Solution
+
+INSIDE = 1e-9
+"""In sizes and rad: bodies that are so far inside each other still only touch."""
+
+
+@dataclass(frozen=True)
+class Gap:
+    """A contact's gap along a motion: (T,) in ``unit``, and what counts as touching."""
+
+    name: str
+    value: np.ndarray
+    slack: float
+    unit: str
+
+
+def gaps(m: Model, packed: Packed, q: np.ndarray, limits: bool) -> list[Gap]:
+    """Of the contacts, and of the ``limits`` of joints, along poses q (T, 3 nb). A one-way clutch is always closed."""
+    from mbsd.equations.assembly import tabulate
+    from mbsd.kinematics.contact_rows import all_contacts, with_contacts
+
+    contacts = all_contacts(m, packed, q[0]) if limits else list(m.contacts.values())
+    if not contacts:
+        return []
+    wide = with_contacts(m, packed, contacts)
+    count, rows = len(q), len(wide.ws.phi)
+    phi, gamma, compact = np.zeros((count, rows)), np.zeros((count, rows)), np.zeros((count, rows, 6))
+    drives = np.zeros((count, len(wide.motions) + 1, 3))
+    tabulate(wide.system, drives, q, np.zeros_like(q), wide.ws, phi, compact, gamma)
+    first, angular, scale = len(wide.joints) - wide.contacts, set(wide.specials.angular_rows), wide.row_scale()
+    found = []
+    for contact, row in zip(contacts, wide.first_row[first:-1], strict=True):
+        value = np.zeros(count) if getattr(contact.kind, "always_closed", False) else phi[:, row]
+        found.append(Gap(contact.name, value, float(INSIDE / scale[row]), "rad" if row in angular else "m"))
+    return found
+
+
+def refuse_passed_contacts(m: Model, packed: Packed, times: np.ndarray, q: np.ndarray) -> None:
+    """Raise LimitError where a driven motion q (T, 3 nb) goes through a contact."""
+    for gap in gaps(m, packed, q, limits=False):
+        if gap.value.min() < -gap.slack:
+            at = int(np.flatnonzero(gap.value < -gap.slack)[0])
+            before = max(at - 1, 0)
+            share = max(gap.value[before], 0.0) / (gap.value[before] - gap.value[at]) if at else 1.0
+            time = times[before] + share * (times[at] - times[before])
+            raise LimitError(
+                f"{m.name}: at t = {time:.6g} s the motion is beyond contact '{gap.name}', at the furthest by "
+                f"{-gap.value.min():.3g} {gap.unit}. Drive less far, or simulate, where contacts push back."
+            )
+
+
+def refuse_resting(m: Model, packed: Packed, start: np.ndarray, q: np.ndarray) -> None:
+    """Raise EquilibriumError for a pose q (3 nb,), found from ``start``, that is beyond a contact or limit."""
+    for gap in gaps(m, packed, np.stack([start, q]), limits=True):
+        if gap.value[1] < -gap.slack:
+            raise EquilibriumError(
+                f"{m.name}: the pose that balances is {-gap.value[1]:.3g} {gap.unit} beyond '{gap.name}'. Rest on a "
+                "contact or at a limit is not looked for: simulate with damping until it rests, or start nearer to a "
+                "pose that is free of it."
+            )
+
+
+def refuse_closed(m: Model, packed: Packed, q: np.ndarray) -> None:
+    """Raise ModelError for a state q (3 nb,) in which a contact is closed: it has no linear neighbourhood."""
+    for gap in gaps(m, packed, q[None], limits=True):
+        if gap.value[0] <= gap.slack:
+            raise ModelError(
+                f"{m.name}: '{gap.name}' is closed in this state, and a contact pushes to one side only, so there is "
+                "no linear motion about it. Linearise where it is open, or put a joint or spring in its place."
+            )
+
+
+def refuse_pushing(m: Model, motion: Solution) -> None:
+    """Raise ModelError for a motion during which a contact pushes: its forces would be put on the actuators."""
+    for name in motion.packed.contact_gaps():
+        closed = motion.contact(name).closed
+        if closed.any():
+            raise ModelError(
+                f"{m.name}: contact '{name}' pushes at t = {motion.t[int(np.argmax(closed))]:.6g} s of this "
+                "motion. Efforts are found for motions without contact alone; cut the motion there."
+            )

@@ -1,0 +1,219 @@
+"""One block of a plan at one time by Newton-Raphson in its few unknowns, with the branch guard of newton.py.
+
+    predict   poses from the quintic through the last two
+    correct   G du = -F,  G = J B;  B the rates of the bodies for unit rates of the unknowns
+    then      G u' = f' - J v,   G u'' = gamma + f'' - J a      v, a of the block with its unknowns held
+
+It is reached by its machine address, and compiled when a plan with blocks is first solved.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import carray
+
+from mbsd.compiling.jit import COMPILED, at_address
+from mbsd.kinematics.groups.block_call import PYTHON, SIGNATURE
+from mbsd.kinematics.groups.block_matrix import factor, held, solve
+from mbsd.kinematics.groups.block_pinned import in_doubt, predicted, solve_pinned
+from mbsd.kinematics.groups.block_rows import begin, bend_of, evaluate_row, fill_columns, move
+from mbsd.kinematics.groups.blocks import (
+    BODIES,
+    BODY,
+    EQUATIONS,
+    FREE,
+    HANGS,
+    LARGEST,
+    LAWS,
+    MOTION,
+    MOVING,
+    NEAR,
+    PIN,
+    PLACE_I,
+    PLACE_J,
+    SIZE,
+    SLIDE,
+    STRIDE,
+    UNKNOWN,
+    UNKNOWNS,
+)
+from mbsd.kinematics.groups.fused import fused
+from mbsd.kinematics.groups.points import DOUBTED, MEETING, SOLVED
+from mbsd.kinematics.law_step import jumps
+from mbsd.kinematics.newton import MAX_ITERATIONS, ROUNDING, TOLERANCE
+
+LONG = 1 << 40
+"""For arrays whose length does not matter."""
+COLUMNS = LARGEST * LARGEST
+"""Where the columns of unknowns begin in the scratch, after the matrix."""
+
+
+@fused
+def predict(tree, count, times, k, q, v, a, start):
+    """Fill row k of q for the block's bodies."""
+    if k == 0:
+        for e in range(count):
+            for c in range(3 * tree[e, BODY], 3 * tree[e, BODY] + 3):
+                q[0, c] = start[c]
+        return
+    for e in range(count):
+        for c in range(3 * tree[e, BODY], 3 * tree[e, BODY] + 3):
+            q[k, c] = predicted(times, k, q, v, a, c)
+
+
+@fused
+def linearise(head, tree, rows, frame, arms, q, turn, numbers, jac, out, values, scratch):
+    """values (n,) of the equations, their rows jac (n, 6) with derivatives out (n, 10), and G in the scratch."""
+    count = head[BODIES]
+    n = head[EQUATIONS]
+    fill_columns(tree, frame, count, n, q, turn, scratch[COLUMNS:])
+    relative = scratch[COLUMNS + 3 * n * count :]
+    for r in range(n):
+        values[r] = evaluate_row(rows[r], arms[r], q, turn, numbers, relative, out[r], jac[r])
+        first = rows[r, PLACE_I]
+        second = rows[r, PLACE_J]
+        for j in range(n):
+            rate = 0.0
+            for c in range(3):
+                if first >= 0:
+                    rate += jac[r, c] * scratch[COLUMNS + 3 * (n * first + j) + c]
+                if second >= 0:
+                    rate += jac[r, 3 + c] * scratch[COLUMNS + 3 * (n * second + j) + c]
+            scratch[n * r + j] = rate
+
+
+@fused
+def correction(head, tree, du, per_metre):
+    """Largest of a change of the unknowns, in sizes and rad; NaN counts as infinite."""
+    largest = 0.0
+    for e in range(head[BODIES]):
+        c = tree[e, UNKNOWN]
+        hangs = tree[e, HANGS]
+        for i in range(UNKNOWNS[hangs]):
+            part = abs(du[c + i])
+            if hangs == SLIDE or (hangs == FREE and i < 2):
+                part *= per_metre
+            if not part <= largest:
+                largest = part if part == part else math.inf
+    return largest
+
+
+@fused
+def solve_arrays(
+    k, head, tree, rows, near, frame, arms, times, drives, q, v, a, turn, start, numbers, determinant, point,
+    unknown, jac, out, du, scratch,
+):  # fmt: skip
+    """Fill row k of q, v, a (T, 3 nb) for the bodies of one block; returns SOLVED, or why not."""
+    count = head[BODIES]
+    n = head[EQUATIONS]
+    per_metre = 1.0 / arms[0, SIZE]
+    qk = q[k]
+    vk = v[k]
+    ak = a[k]
+    drive = drives[k]
+    h = times[k] - times[k - 1] if k > 0 else 0.0
+    for r in range(n):
+        motion = rows[r, MOTION]
+        if k > 0 and motion > 0 and jumps(drive[motion], drives[k - 1, motion], h, arms[r, STRIDE]):
+            return DOUBTED
+    predict(tree, count, times, k, q, v, a, start)
+    begin(tree, frame, count, qk, turn, unknown[0])
+    for c in range(n):
+        unknown[1, c] = 0.0
+        unknown[2, c] = 0.0
+    first = 0.0
+    second = 0.0
+    last = math.inf
+    change = math.inf
+    for iteration in range(MAX_ITERATIONS):
+        move(tree, frame, count, unknown, iteration == 0, qk, vk, ak, turn, point)
+        linearise(head, tree, rows, frame, arms, qk, turn, numbers, jac, out, du[0], scratch)
+        determinant[k, 0] = factor(scratch, du[1], n)
+        if determinant[k, 0] == 0.0:
+            return MEETING
+        for r in range(n):
+            du[0, r] = drive[rows[r, MOTION], 0] - du[0, r]
+        solve(scratch, du[1], n, du[0])
+        for c in range(n):
+            unknown[0, c] += du[0, c]
+        change = correction(head, tree, du[0], per_metre)
+        if iteration == 0:
+            first = change
+        elif iteration == 1:
+            second = change
+        if change <= TOLERANCE:
+            break
+        if iteration > 0 and not change < 0.5 * last:
+            break
+        last = change
+    if not change <= ROUNDING:
+        return DOUBTED
+    for r in range(n):
+        unknown[1, r] = drive[rows[r, MOTION], 1] - held(jac[r], rows[r], vk)
+    solve(scratch, du[1], n, unknown[1])
+    move(tree, frame, count, unknown, False, qk, vk, ak, turn, point)
+    for r in range(n):
+        bend = bend_of(rows[r], arms[r], qk, vk, turn, out[r])
+        unknown[2, r] = bend + drive[rows[r, MOTION], 2] - held(jac[r], rows[r], ak)
+    solve(scratch, du[1], n, unknown[2])
+    move(tree, frame, count, unknown, True, qk, vk, ak, turn, point)
+    return in_doubt(head, tree, near, times, q, v, a, determinant, k, h, per_metre, first, second) if k > 0 else SOLVED
+
+
+def _at_address(
+    k, head, tree, rows, near, frame, arms, times, drives, q, v, a, turn, start, numbers, determinant, point,
+    unknown, jac, out, du, scratch,
+):  # fmt: skip
+    """The same with pointers."""
+    sizes = carray(head, (MOVING + 1,))
+    count = sizes[BODIES]
+    n = sizes[EQUATIONS]
+    bodies = sizes[MOVING]
+    rows_known = k + 1
+    tree_of = carray(tree, (count, 5))
+    rows_of = carray(rows, (n, 9))
+    near_of = carray(near, (sizes[NEAR],))
+    frame_of = carray(frame, (count, 7))
+    arms_of = carray(arms, (n, 9))
+    at = carray(times, (rows_known,))
+    laws = carray(drives, (rows_known, sizes[LAWS], 3))
+    qs = carray(q, (rows_known, 3 * bodies))
+    vs = carray(v, (rows_known, 3 * bodies))
+    bends = carray(a, (rows_known, 3 * bodies))
+    turned = carray(turn, (bodies, 2))
+    before = carray(start, (3 * bodies,))
+    all_numbers = carray(numbers, (LONG,))
+    determinants = carray(determinant, (rows_known, 1))
+    points = carray(point, (4, 8))
+    jacobian = carray(jac, (LARGEST, 6))
+    values = carray(out, (LARGEST, 10))
+    work = carray(scratch, (LONG,))
+    return solve_any(
+        k, sizes, tree_of, rows_of, near_of, frame_of, arms_of, at, laws, qs, vs, bends, turned, before, all_numbers,
+        determinants, points, carray(unknown, (3, LARGEST)), jacobian, values, carray(du, (2, LARGEST)), work,
+    )  # fmt: skip
+
+
+@fused
+def solve_any(
+    k, head, tree, rows, near, frame, arms, times, drives, q, v, a, turn, start, numbers, determinant, point,
+    unknown, jac, out, du, scratch,
+):  # fmt: skip
+    """Fill row k of q, v, a (T, 3 nb) for the bodies of one block; returns SOLVED, or why not."""
+    if head[EQUATIONS] == 1 and head[BODIES] == 1 and tree[0, HANGS] == PIN:
+        return solve_pinned(
+            k, head, tree, rows, near, frame, arms, times, drives, q, v, a, turn, start, numbers, determinant, point,
+            jac, out, scratch,
+        )  # fmt: skip
+    return solve_arrays(
+        k, head, tree, rows, near, frame, arms, times, drives, q, v, a, turn, start, numbers, determinant, point,
+        unknown, jac, out, du, scratch,
+    )  # fmt: skip
+
+
+if COMPILED:
+    ADDRESS = at_address(SIGNATURE)(_at_address).address
+else:
+    PYTHON[:] = [solve_any]
+    ADDRESS = 0

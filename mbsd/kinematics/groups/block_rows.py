@@ -1,0 +1,220 @@
+"""Places, columns of unknowns and equations of one block; tables as in mbsd/kinematics/groups/blocks.py.
+
+Equations are those of mbsd/equations/constraints/relative.py with the bodies of the block alone unknown.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA, FYY, TURN, A, F, X, Y, evaluate
+from mbsd.kinematics.groups.blocks import (
+    ACROSS,
+    ADDRESS,
+    ALONG,
+    ARM,
+    AT,
+    BODY,
+    BODY_I,
+    BODY_J,
+    EQUATION,
+    FREE,
+    HANGS,
+    PARENT,
+    PARENT_PLACE,
+    PIN,
+    SLIDE,
+    SPECIAL,
+    TURNED,
+    UNKNOWN,
+)
+from mbsd.kinematics.groups.fused import fused
+from mbsd.kinematics.groups.points import carried, follow, hang
+from mbsd.kinematics.groups.slides import solve_slide
+
+
+@fused
+def begin(tree, frame, count, q, turn, u):
+    """Unknowns u (n,) of the pose q (3 nb,) of the block's bodies; turns them too."""
+    for e in range(count):
+        body = tree[e, BODY]
+        turn[body, 0] = math.cos(q[3 * body + 2])
+        turn[body, 1] = math.sin(q[3 * body + 2])
+    for e in range(count):
+        body = tree[e, BODY]
+        parent = tree[e, PARENT]
+        c = tree[e, UNKNOWN]
+        if tree[e, HANGS] == PIN:
+            u[c] = q[3 * body + 2]
+        elif tree[e, HANGS] == FREE:
+            for i in range(3):
+                u[c + i] = q[3 * body + i]
+        elif tree[e, HANGS] == SLIDE:
+            n = frame[e]
+            x = q[3 * body] - q[3 * parent] + turn[body, 0] * n[5] - turn[body, 1] * n[6]
+            y = q[3 * body + 1] - q[3 * parent + 1] + turn[body, 1] * n[5] + turn[body, 0] * n[6]
+            ex = turn[parent, 0] * x + turn[parent, 1] * y - n[0]
+            ey = turn[parent, 0] * y - turn[parent, 1] * x - n[1]
+            u[c] = n[2] * ex + n[3] * ey
+
+
+@fused
+def move(tree, frame, count, u, turned, q, v, a, turn, point):
+    """Place the block's bodies by the unknowns u (3, n) with their rates; ``turned``: pins' angles are in ``turn``."""
+    for e in range(count):
+        body = tree[e, BODY]
+        parent = tree[e, PARENT]
+        c = tree[e, UNKNOWN]
+        n = frame[e]
+        hangs = tree[e, HANGS]
+        if hangs == FREE:
+            for i in range(3):
+                q[3 * body + i] = u[0, c + i]
+                v[3 * body + i] = u[1, c + i]
+                a[3 * body + i] = u[2, c + i]
+            turn[body, 0] = math.cos(q[3 * body + 2])
+            turn[body, 1] = math.sin(q[3 * body + 2])
+        elif hangs == SLIDE:
+            solve_slide(tree[e], n, u[:, c], q, v, a, turn, point)
+        else:
+            if hangs == PIN:
+                q[3 * body + 2] = u[0, c]
+                v[3 * body + 2] = u[1, c]
+                a[3 * body + 2] = u[2, c]
+                if not turned:
+                    turn[body, 0] = math.cos(u[0, c])
+                    turn[body, 1] = math.sin(u[0, c])
+            else:
+                follow(q, v, a, turn, body, parent, n[4])
+            carried(q, v, a, turn, parent, n[0], n[1], point[0])
+            hang(q, v, a, turn, body, point[0], n[5], n[6])
+
+
+@fused
+def fill_columns(tree, frame, count, unknowns, q, turn, columns):
+    """columns: (bodies, unknowns, 3) rates of each body for a unit rate of each unknown."""
+    for e in range(count):
+        body = tree[e, BODY]
+        parent = tree[e, PARENT]
+        place = tree[e, PARENT_PLACE]
+        c = tree[e, UNKNOWN]
+        hangs = tree[e, HANGS]
+        n = frame[e]
+        own = 3 * unknowns * e
+        for j in range(3 * unknowns):
+            columns[own + j] = 0.0
+        if hangs == FREE:
+            for i in range(3):
+                columns[own + 3 * (c + i) + i] = 1.0
+            continue
+        sx = turn[body, 0] * n[5] - turn[body, 1] * n[6]
+        sy = turn[body, 1] * n[5] + turn[body, 0] * n[6]
+        if place >= 0:
+            rx = q[3 * body] + sx - q[3 * parent]
+            ry = q[3 * body + 1] + sy - q[3 * parent + 1]
+            of_parent = 3 * unknowns * place
+            for j in range(unknowns):
+                omega = columns[of_parent + 3 * j + 2]
+                turning = omega if hangs != PIN else 0.0
+                columns[own + 3 * j] = columns[of_parent + 3 * j] - omega * ry + turning * sy
+                columns[own + 3 * j + 1] = columns[of_parent + 3 * j + 1] + omega * rx - turning * sx
+                columns[own + 3 * j + 2] = turning
+        if hangs == PIN:
+            columns[own + 3 * c] += sy
+            columns[own + 3 * c + 1] -= sx
+            columns[own + 3 * c + 2] += 1.0
+        elif hangs == SLIDE:
+            columns[own + 3 * c] += turn[parent, 0] * n[2] - turn[parent, 1] * n[3]
+            columns[own + 3 * c + 1] += turn[parent, 1] * n[2] + turn[parent, 0] * n[3]
+
+
+@fused
+def evaluate_row(row, n, q, turn, numbers, relative, out, jac):
+    """F of one equation; out (10,) takes it with its derivatives, jac (6,) its row on bodies i and j."""
+    i = row[BODY_I]
+    j = row[BODY_J]
+    six = turn[i, 0] * n[0] - turn[i, 1] * n[1]
+    siy = turn[i, 1] * n[0] + turn[i, 0] * n[1]
+    ux = turn[i, 0] * n[2] - turn[i, 1] * n[3]
+    uy = turn[i, 1] * n[2] + turn[i, 0] * n[3]
+    sjx = turn[j, 0] * n[4] - turn[j, 1] * n[5]
+    sjy = turn[j, 1] * n[4] + turn[j, 0] * n[5]
+    dx = q[3 * j] + sjx - q[3 * i] - six
+    dy = q[3 * j + 1] + sjy - q[3 * i + 1] - siy
+    x = ux * dx + uy * dy
+    y = ux * dy - uy * dx
+    angle = q[3 * j + 2] - q[3 * i + 2]
+    kind = row[EQUATION]
+    if kind == SPECIAL:
+        relative[X] = x
+        relative[Y] = y
+        relative[A] = angle + numbers[row[AT]]
+        relative[TURN] = q[3 * row[ARM] + 2] - q[3 * i + 2]
+        evaluate(row[ADDRESS], numbers[row[AT] :], relative, out)
+    else:
+        for c in range(FX, FAA + 1):
+            out[c] = 0.0
+        if kind == ALONG:
+            out[F] = x - n[6]
+            out[FX] = 1.0
+        elif kind == ACROSS:
+            out[F] = y - n[6]
+            out[FY] = 1.0
+        elif kind == TURNED:
+            out[F] = angle - n[6]
+            out[FA] = 1.0
+        else:
+            length = math.sqrt(x * x + y * y)
+            cube = length * length * length
+            out[F] = length - n[6]
+            out[FX] = x / length
+            out[FY] = y / length
+            out[FXX] = y * y / cube
+            out[FXY] = -x * y / cube
+            out[FYY] = x * x / cube
+    gx = out[FX] * ux - out[FY] * uy
+    gy = out[FX] * uy + out[FY] * ux
+    jac[0] = -gx
+    jac[1] = -gy
+    jac[2] = out[FX] * y - out[FY] * x + gx * siy - gy * six - out[FA]
+    jac[3] = gx
+    jac[4] = gy
+    jac[5] = -gx * sjy + gy * sjx + out[FA]
+    return out[F]
+
+
+@fused
+def bend_of(row, n, q, v, turn, out):
+    """gamma of one equation without f'', after evaluate_row at the same pose."""
+    i = row[BODY_I]
+    j = row[BODY_J]
+    omega = v[3 * i + 2]
+    other = v[3 * j + 2]
+    six = turn[i, 0] * n[0] - turn[i, 1] * n[1]
+    siy = turn[i, 1] * n[0] + turn[i, 0] * n[1]
+    ux = turn[i, 0] * n[2] - turn[i, 1] * n[3]
+    uy = turn[i, 1] * n[2] + turn[i, 0] * n[3]
+    sjx = turn[j, 0] * n[4] - turn[j, 1] * n[5]
+    sjy = turn[j, 1] * n[4] + turn[j, 0] * n[5]
+    dx = q[3 * j] + sjx - q[3 * i] - six
+    dy = q[3 * j + 1] + sjy - q[3 * i + 1] - siy
+    vx = v[3 * j] - other * sjy - v[3 * i] + omega * siy
+    vy = v[3 * j + 1] + other * sjx - v[3 * i + 1] - omega * six
+    cx = omega * omega * six - other * other * sjx
+    cy = omega * omega * siy - other * other * sjy
+    x = ux * dx + uy * dy
+    y = ux * dy - uy * dx
+    along = ux * vx + uy * vy
+    across = ux * vy - uy * vx
+    gamma_x = -(ux * cx + uy * cy + 2.0 * omega * across - omega * omega * x)
+    gamma_y = -(ux * cy - uy * cx - 2.0 * omega * along - omega * omega * y)
+    x_rate = along + omega * y
+    y_rate = across - omega * x
+    a_rate = other - omega
+    bend = (
+        out[FXX] * x_rate * x_rate
+        + out[FYY] * y_rate * y_rate
+        + out[FAA] * a_rate * a_rate
+        + 2.0 * (out[FXY] * x_rate * y_rate + out[FXA] * x_rate * a_rate + out[FYA] * y_rate * a_rate)
+    )
+    return out[FX] * gamma_x + out[FY] * gamma_y - bend

@@ -1,0 +1,10 @@
+"""A decorator for the small kernels of a block (mbsd/kinematics/groups/block.py): LLVM copies them into their caller.
+
+Each has one or two callers, and handing ten arrays on costs more than the work.
+"""
+
+from __future__ import annotations
+
+from mbsd.compiling.jit import _compiled  # pyright: ignore[reportPrivateUsage]
+
+fused = _compiled(no_cpython_wrapper=True, forceinline=True)

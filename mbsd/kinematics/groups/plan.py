@@ -1,0 +1,222 @@
+"""Takes a mechanism apart into groups, beginning at ground: each time the first group whose neighbours are known.
+
+A mechanism with anything that no group covers (a gear, a redundant joint, three bodies rigid only together) has no
+such plan; parts.py puts blocks between the groups.
+"""
+
+from __future__ import annotations
+
+import copy
+import heapq
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from mbsd.arrays.packing import Packed
+from mbsd.kinematics.groups.blocks import BLOCK, BODIES, BODY, TRAIN, TREE_AT, Blocks
+from mbsd.kinematics.groups.groups import NAMES, NUMBERS, Groups
+from mbsd.kinematics.groups.numbers import Link, Numbers
+from mbsd.model.joint import Joint
+
+COVERED = {
+    ("point",): "R",
+    ("slot", "angle"): "P",
+    ("point", "angle"): "W",
+    ("slot",): "S",
+    ("angle",): "D",
+    ("distance",): "L",
+    ("along",): "A",
+}
+DRIVERS = "DA"
+"""What only a driver is made of; a distance is a rod or an actuator."""
+
+
+def plan_groups(packed: Packed, q0: np.ndarray, redundant_rows: int) -> Groups | None:
+    """The groups of a mechanism at its closed pose q0 (3 nb,), or None where it has no such plan."""
+    if redundant_rows:
+        return None
+    links = links_of(packed)
+    if links is None:
+        return None
+    plan = Plan(packed, q0.reshape(-1, 3), links)
+    plan.grow()
+    return plan.groups() if plan.complete else None
+
+
+def describe(groups: Groups, blocks: Blocks, names: list[str]) -> str:
+    """What the plan is, for people: ``driven crank; RRR coupler, rocker``."""
+    parts = []
+    for kind, bodies, motion in zip(groups.kind, groups.body, groups.motion, strict=True):
+        if kind == BLOCK:
+            head = blocks.head[motion]
+            own = blocks.tree[head[TREE_AT] : head[TREE_AT] + head[BODIES], BODY]
+            parts.append(f"Newton-Raphson {', '.join(names[b] for b in sorted(own))}")
+        elif kind == TRAIN:
+            parts.append(f"train {names[bodies[0]]}")
+        else:
+            parts.append(f"{NAMES[kind]} {', '.join(names[b] for b in bodies[:2] if b >= 0)}")
+    return "; ".join(parts)
+
+
+def links_of(packed: Packed) -> list[list[Link]] | None:
+    """(nb,) links of each body; None if a joint is of a kind that no group covers."""
+    everything = range(len(packed.joints))
+    if any(link_kind(packed.joints[number]) is None for number in everything):
+        return None
+    return links_of_joints(packed, everything)
+
+
+def link_kind(joint: Joint) -> str | None:
+    """How groups call a joint or driver; None if none covers it."""
+    kind = COVERED.get(tuple(joint.kind.constraints))
+    return None if kind is None or ((kind in DRIVERS) != joint.kind.driven and kind != "L") else kind
+
+
+def links_of_joints(packed: Packed, numbers: Iterable[int]) -> list[list[Link]]:
+    """(nb,) links of each body by these joints, as far as groups cover them."""
+    system = packed.system
+    links: list[list[Link]] = [[] for _ in packed.body_names]
+    angle_at = {int(row[2]): k for k, row in enumerate(system.angle)}
+    rod_at = {int(row[2]): k for k, row in enumerate(system.distance)}
+    for number in numbers:
+        kind = link_kind(packed.joints[number])
+        if kind is None:
+            continue
+        i, j = (int(marker) for marker in packed.markers[number])
+        offset, motion = 0.0, packed.motion_of(number)
+        for row in range(packed.first_row[number], packed.first_row[number + 1]):
+            if row in angle_at:
+                offset = float(system.angle_offset[angle_at[row]])
+            if row in rod_at:
+                offset = float(system.distance_length[rod_at[row]])
+        bi, bj = int(system.marker_body[i]), int(system.marker_body[j])
+        links[bi].append(Link(number, kind, i, j, True, bj, offset, motion))
+        links[bj].append(Link(number, kind, j, i, False, bi, offset, motion))
+    return links
+
+
+class Plan:
+    """The plan as it grows: ``known`` bodies have their place in ``taken`` groups, ``used`` joints hold them.
+
+    Only bodies near to which something has become known are looked at again.
+    """
+
+    def __init__(self, packed: Packed, pose: np.ndarray, links: list[list[Link]]) -> None:
+        self.packed, self.links, self.numbers = packed, links, Numbers(packed.system, pose)
+        self.known, self.used = {0}, set[int]()
+        self.taken: list[tuple[int, tuple[int, int, int, int], int, list[float]]] = []
+        self.singles = list(range(1, len(links)))
+        self.pairs = list(self.singles)
+
+    def copy(self) -> Plan:
+        """A plan of its own to go on with."""
+        out = copy.copy(self)
+        out.links = list(self.links)
+        out.known, out.used, out.taken = set(self.known), set(self.used), list(self.taken)
+        out.singles, out.pairs = list(self.singles), list(self.pairs)
+        return out
+
+    @property
+    def complete(self) -> bool:
+        """Whether all bodies are known and all joints used."""
+        return len(self.known) == len(self.links) and self.used.issuperset(range(len(self.packed.joints)))
+
+    def grow(self) -> None:
+        """Add groups until there is none to add."""
+        while len(self.known) < len(self.links) and (self.add_single() or self.add_pair()):
+            pass
+
+    def hold(self, body: int, links: list[Link]) -> None:
+        """Add links of an unknown body, e.g. one that drives it."""
+        self.links[body] = [*self.links[body], *links]
+        heapq.heappush(self.singles, body)
+
+    def groups(self) -> Groups:
+        """As tables."""
+        return Groups(
+            np.array([kind for kind, _, _, _ in self.taken], np.int64),
+            np.array([bodies for _, bodies, _, _ in self.taken], np.int64).reshape(-1, 4),
+            np.array([motion for _, _, motion, _ in self.taken], np.int64),
+            np.array([numbers + [0.0] * (NUMBERS - len(numbers)) for _, _, _, numbers in self.taken], float),
+        )
+
+    def add_single(self) -> bool:
+        """Add a group of one body, if there is one."""
+        while self.singles:
+            body = heapq.heappop(self.singles)
+            if body in self.known:
+                continue
+            links = [link for link in self.links[body] if link.other in self.known]
+            kinds = "".join(sorted(link.kind for link in links))
+            by_kind = {link.kind: link for link in links}
+            made = None
+            if kinds == "DR":
+                made = self.numbers.driven(body, by_kind["R"], by_kind["D"])
+            elif kinds == "W":
+                made = self.numbers.welded(body, by_kind["W"])
+            elif kinds == "RS":
+                pin, slot = by_kind["R"], by_kind["S"]
+                made = (
+                    self.numbers.rpr(body, pin, slot, None)
+                    if slot.first
+                    else self.numbers.rrp(body, pin, None, slot, None)
+                )
+            elif kinds == "PS" and by_kind["S"].first:
+                made = self.numbers.yoke(body, by_kind["P"], by_kind["S"])
+            elif kinds == "PS":
+                made = self.numbers.prp(body, by_kind["P"], None, by_kind["S"], None)
+            elif kinds == "LR":
+                made = self.numbers.rod(body, by_kind["R"], by_kind["L"])
+            elif kinds == "AP" and by_kind["A"].other == by_kind["P"].other:
+                made = self.numbers.slide(body, by_kind["P"], by_kind["A"])
+            if made is not None:
+                self._take(made, (body,), links)
+                return True
+        return False
+
+    def add_pair(self) -> bool:
+        """Add a group of two bodies, if there is one."""
+        while self.pairs:
+            a = heapq.heappop(self.pairs)
+            if a in self.known:
+                continue
+            outer_a = [link for link in self.links[a] if link.other in self.known]
+            if len(outer_a) != 1:
+                continue
+            for inner in self.links[a]:
+                b = inner.other
+                if b in self.known or b == a:
+                    continue
+                outer_b = [link for link in self.links[b] if link.other in self.known]
+                between = [link for link in self.links[a] if link.other == b]
+                if len(outer_b) != 1 or len(between) != 1:
+                    continue
+                made = None
+                kinds = outer_a[0].kind + inner.kind + outer_b[0].kind
+                if kinds == "RRR":
+                    made = self.numbers.rrr(a, b, outer_a[0], inner, outer_b[0])
+                elif kinds == "RRP":
+                    made = self.numbers.rrp(a, outer_a[0], inner, outer_b[0], b)
+                elif kinds == "RPR":
+                    made = self.numbers.rpr(a, outer_a[0], inner, outer_b[0])
+                elif kinds == "PRP":
+                    made = self.numbers.prp(a, outer_a[0], inner, outer_b[0], b)
+                if made is not None:
+                    self._take(made, (a, b), [*outer_a, inner, *outer_b])
+                    return True
+        return False
+
+    def _take(self, made: tuple, bodies: tuple[int, ...], links: list[Link]) -> None:
+        self.used.update(link.joint for link in links)
+        self.take(made, bodies)
+
+    def take(self, made: tuple, bodies: Sequence[int]) -> None:
+        """Add a group, whose bodies are then known."""
+        self.taken.append(made)
+        self.known.update(bodies)
+        near = {link.other for body in bodies for link in self.links[body]} - self.known
+        for body in near:
+            heapq.heappush(self.singles, body)
+        beside = {link.other for body in near for link in self.links[body]} - self.known
+        for body in near | beside:
+            heapq.heappush(self.pairs, body)

@@ -1,0 +1,122 @@
+"""Points carried by bodies, for the closed forms, and when a step between two poses is doubted.
+
+p = r + s,   p' = r' + omega s_perp,   p'' = r'' + alpha s_perp - omega^2 s;   s_perp = (-s_y, s_x)
+
+The sign of a group's root is that of the start as long as its discriminant D stays above zero, at the poses and
+between them. Between two poses D is the cubic through both ends with their rates: where it has a minimum there and
+falls by more than half, a pose at the minimum decides. Bodies turn by less than ``WOUND`` from pose to pose, so whole
+turns are counted, and the quintic through both ends is the motion between them.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.compiling.jit import internal
+
+SOLVED, DOUBTED, OPEN, MEETING = 0, 1, 2, 3
+"""Solved; a pose between is needed; out of reach; the two branches meet within rounding."""
+FLAT = 1e-12
+"""Discriminant over its scale at which branches meet: lengths that agree to this part count as equal."""
+DEEP = 0.5
+"""Part of the lower end below which the discriminant must not fall between two poses."""
+WOUND = 1.0
+"""Angle (rad) by which a body may turn from pose to pose."""
+UNEXPLAINED = 0.02
+"""Part of it (rad) that the rates at both ends may leave unexplained."""
+
+
+@internal
+def carried(q, v, a, turn, b, x, y, out):
+    """Point with arm (x, y) of body b into out (8,): place, velocity, acceleration, arm in world axes."""
+    c = turn[b, 0]
+    s = turn[b, 1]
+    sx = c * x - s * y
+    sy = s * x + c * y
+    at = 3 * b
+    omega = v[at + 2]
+    alpha = a[at + 2]
+    square = omega * omega
+    out[0] = q[at] + sx
+    out[1] = q[at + 1] + sy
+    out[2] = v[at] - omega * sy
+    out[3] = v[at + 1] + omega * sx
+    out[4] = a[at] - alpha * sy - square * sx
+    out[5] = a[at + 1] + alpha * sx - square * sy
+    out[6] = sx
+    out[7] = sy
+
+
+@internal
+def hang(q, v, a, turn, b, p, x, y):
+    """Place body b, whose turn, omega and alpha are known, so that its point with arm (x, y) is p (8,)."""
+    c = turn[b, 0]
+    s = turn[b, 1]
+    sx = c * x - s * y
+    sy = s * x + c * y
+    at = 3 * b
+    omega = v[at + 2]
+    alpha = a[at + 2]
+    square = omega * omega
+    q[at] = p[0] - sx
+    q[at + 1] = p[1] - sy
+    v[at] = p[2] + omega * sy
+    v[at + 1] = p[3] - omega * sx
+    a[at] = p[4] + alpha * sy + square * sx
+    a[at + 1] = p[5] - alpha * sx + square * sy
+
+
+@internal
+def aim(turn, q, before, b, x, y, lx, ly):
+    """Turn body b so that its direction (lx, ly) points along (x, y); the angle goes on from ``before``."""
+    scale = 1.0 / math.sqrt((x * x + y * y) * (lx * lx + ly * ly))
+    c = (x * lx + y * ly) * scale
+    s = (y * lx - x * ly) * scale
+    turn[b, 0] = c
+    turn[b, 1] = s
+    angle = math.atan2(s, c)
+    q[3 * b + 2] = angle + 2.0 * math.pi * math.floor((before - angle) / (2.0 * math.pi) + 0.5)
+
+
+@internal
+def follow(q, v, a, turn, b, leader, angle):
+    """Body b turns with its leader, at a fixed angle to it."""
+    q[3 * b + 2] = q[3 * leader + 2] + angle
+    v[3 * b + 2] = v[3 * leader + 2]
+    a[3 * b + 2] = a[3 * leader + 2]
+    turn[b, 0] = math.cos(q[3 * b + 2])
+    turn[b, 1] = math.sin(q[3 * b + 2])
+
+
+@internal
+def wound(q, last, v, v_last, a, a_last, h, c):
+    """Whether angle c turns too far to be counted on from the pose and rates h seconds before, or unexplained."""
+    turned = q[c] - last[c]
+    gap = turned - h * (0.5 * (v[c] + v_last[c]) - h / 12.0 * (a[c] - a_last[c]))
+    return not (abs(turned) <= WOUND and abs(gap) <= UNEXPLAINED)
+
+
+@internal
+def reach(discriminant, scale):
+    """SOLVED above zero, OPEN below, MEETING where it is zero beside ``scale``, what it is a difference of."""
+    if discriminant > FLAT * scale:
+        return SOLVED
+    return OPEN if discriminant < -FLAT * scale else MEETING
+
+
+@internal
+def dip(fall, before, rise, after):
+    """Where between two poses the discriminant has a low minimum, as a part of the step; 0 if nowhere.
+
+    ``fall`` and ``rise``: its rates at both ends times the step. Source: cubic Hermite interpolation.
+    """
+    if not (fall < 0.0 and rise > 0.0):
+        return 0.0
+    change = after - before
+    second = 3.0 * change - 2.0 * fall - rise
+    third = fall + rise - 2.0 * change
+    s = -fall / (second + math.sqrt(max(second * second - 3.0 * third * fall, 0.0)))
+    low = before + s * (fall + s * (second + s * third))
+    if low > DEEP * min(before, after):
+        return 0.0
+    return min(max(s, 1e-6), 1.0 - 1e-6)

@@ -1,0 +1,140 @@
+"""Inverse dynamics along a known motion: multipliers, reactions, efforts, and how exact the motion is.
+
+    J^T lam = Q - M a                  Q: gravity and forces
+    reaction on body b = -J_b^T lam, given at the joint's second marker: fx, fy, torque
+    effort of a driver = -lam of its row;  power = effort f'
+
+M is constant and diagonal because q holds centres of mass. Where joints are redundant the loads share in many ways;
+the multipliers of least norm are taken. Friction of joints joins Q and depends on lam: both are found by repetition.
+Source: Haug 1989, ch. 6.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.arrays.friction_along import with_friction
+from mbsd.arrays.laws import compiled_laws
+from mbsd.arrays.loads import pack_loads
+from mbsd.arrays.loads_along import loads_along
+from mbsd.arrays.packing import Packed
+from mbsd.arrays.reactions import wrenches
+from mbsd.equations.assembly import tabulate
+from mbsd.kinematics.prepared import Prepared
+
+JACOBIAN_NUMBERS = 4_000_000
+"""How many numbers of Jacobians are held at once."""
+JUMPED = 1e-6
+"""Part of the largest acceleration that is open where an output is taken for one on a jump."""
+BESIDE = 1e-9
+"""How far beside it is looked, in sizes and rad."""
+
+
+@dataclass
+class Efforts:
+    """Over the times of a motion."""
+
+    lam: np.ndarray
+    """(T, m) multipliers."""
+    wrench: np.ndarray
+    """(T, joints, 3) fx, fy, torque on the second body at its marker."""
+    residuals: np.ndarray
+    """(4,) largest |Phi|, |J v - nu|, |J a - gamma| and |d(T + V)/dt - power of the drivers|."""
+
+
+def inverse_dynamics(
+    ready: Prepared, times: np.ndarray, drives: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray
+) -> Efforts:
+    """Solve for the multipliers of the motion q, v, a (T, 3 nb) and check it against its equations."""
+    packed, system = ready.packed, ready.packed.system
+    count, rows = len(q), len(packed.ws.phi)
+    inertia = np.stack([system.mass, system.mass, system.inertia], axis=1).ravel()
+    weight = np.zeros((len(system.mass), 3))
+    weight[:, :2] = system.mass[:, None] * system.gravity
+    loads, rubbing = weight.ravel() - inertia * a, None
+    if packed.forces:
+        laws = compiled_laws(packed, float(times[0]), float(times[-1]))
+        rubbing = pack_loads(packed)
+        loads += loads_along(packed, rubbing, laws, times, q, v)
+    nu = np.zeros((count, rows))
+    nu[:, packed.driver_rows :] = drives[:, 1:, 1]
+    out = Efforts(np.zeros((count, rows)), np.zeros((count, len(packed.joints), 3)), np.zeros(4))
+    for at in _chunks(packed, count):
+        phi, compact, gamma = _tabulated(packed, drives[at], q[at], v[at])
+        jac = packed.spread(compact)
+        lam = out.lam[at]
+        if rubbing is None:
+            lam[:] = _multipliers(ready, jac, loads[at])
+        else:
+            applied, motion = loads[at].copy(), (times[at], q[at], v[at])
+            [found], friction = with_friction(
+                packed, rubbing, motion, compact, lambda f, j=jac, q=applied: (_multipliers(ready, j, q + f),)
+            )
+            lam[:] = found
+            loads[at] += friction
+        out.wrench[at] = wrenches(packed, compact, q[at], lam)
+        rate = np.einsum("trc,tc->tr", jac, v[at, 3:]) - nu[at]
+        bend = np.einsum("trc,tc->tr", jac, a[at, 3:]) - gamma
+        _take_nearer_side(packed, drives[at], q[at], v[at], a[at], bend)
+        power = (loads[at] * v[at]).sum(axis=1) - (lam * nu[at]).sum(axis=1)
+        worst = [np.abs(error).max(initial=0.0) for error in (phi, rate, bend, power)]
+        out.residuals = np.maximum(out.residuals, worst)
+    return out
+
+
+def singularity_margin(packed: Packed, rows: np.ndarray, drives: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """(T,) smallest over largest singular value of the scaled rows (n,) of J along a motion q (T, 3 nb)."""
+    kept, found = rows.astype(np.int64), np.zeros(len(q))
+    scale = packed.row_scale()[kept, None] * packed.column_scale()
+    for at in _chunks(packed, len(q)):
+        _, compact, _ = _tabulated(packed, drives[at], q[at], np.zeros_like(q[at]))
+        singular = np.linalg.svd(packed.spread(compact)[:, kept] * scale, compute_uv=False)
+        found[at] = singular[:, -1] / singular[:, 0]
+    return found
+
+
+def _chunks(packed: Packed, count: int) -> Iterator[slice]:
+    """Of the outputs, so that not too many Jacobians are held at once."""
+    size = max(1, JACOBIAN_NUMBERS // max(1, len(packed.ws.phi) * packed.coordinates))
+    return (slice(start, min(start + size, count)) for start in range(0, count, size))
+
+
+def _tabulated(
+    packed: Packed, drives: np.ndarray, q: np.ndarray, v: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Phi (T, m), compact J (T, m, 6) and gamma (T, m) along a motion."""
+    count, rows = len(q), len(packed.ws.phi)
+    phi, gamma = np.zeros((2, count, rows))
+    compact = np.zeros((count, rows, 6))
+    tabulate(packed.system, drives, q, v, packed.ws, phi, compact, gamma)
+    return phi, compact, gamma
+
+
+def _take_nearer_side(
+    packed: Packed, drives: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray, bend: np.ndarray
+) -> None:
+    """Where accelerations jump, as a Geneva's pin enters its slot, that of either side is right: bend (T, m) follows a.
+
+    Rounding decides on which side of the jump an output on it is.
+    """
+    if not len(packed.system.special):
+        return
+    odd = np.flatnonzero(np.abs(bend).max(axis=1, initial=0.0) > JUMPED * np.abs(a).max(initial=0.0))
+    for k in odd:
+        reach = BESIDE / max(float(np.abs(v[k, 3:] / packed.column_scale()).max()), 1e-300)
+        near = q[k] + np.outer([-reach, reach], v[k])
+        _, compact, gamma = _tabulated(packed, np.stack([drives[k], drives[k]]), near, np.stack([v[k], v[k]]))
+        sides = np.einsum("trc,c->tr", packed.spread(compact), a[k, 3:]) - gamma
+        for side in sides:
+            if np.abs(side).max() < np.abs(bend[k]).max():
+                bend[k] = side
+
+
+def _multipliers(ready: Prepared, jac: np.ndarray, loads: np.ndarray) -> np.ndarray:
+    """(T, m) of J (T, m, n) and loads (T, 3 nb)."""
+    if ready.mobility.redundant_rows:
+        return np.array([np.linalg.lstsq(one.T, load[3:], rcond=1e-9)[0] for one, load in zip(jac, loads, strict=True)])
+    return np.linalg.solve(jac.transpose(0, 2, 1), loads[:, 3:, None])[..., 0]

@@ -1,0 +1,203 @@
+"""Positions, velocities and accelerations along a driven motion: Newton-Raphson with a predictor.
+
+    predict   q from the quintic through the last two (q, v, a)
+    correct   J dq = -Phi, until |dq| is below the tolerance
+    then      J v = nu,  J a = gamma  with the factors of the last Newton step
+
+The last Newton step moves q by less than ``TOLERANCE``, so its factors serve velocities and accelerations too.
+
+Branch guard: a step is refused, and the caller puts a pose into it, when
+
+- a driver goes further than its stride or jumps (motions between two poses would go unseen);
+- Newton does not contract well, or corrects a large part of what was predicted;
+- the step is not the one that the rates at both ends make,  dq = h (v_0 + v_1) / 2 - h^2 (a_1 - a_0) / 12,
+  so that equations which hold again after a pitch or a turn cannot be met on another one;
+- the determinant of an irreducible block of J changes sign, shrinks fast, or would on a straight line through its last
+  two values: near such a pose two assemblies come close, and steps shorter than the way to it tell them apart.
+
+Two assemblies that meet within a step of ``CROSSING`` are a change point. It is passed along the smooth motion, which
+the prediction must confirm on both sides; lengths that agree to 1e-12 or so count as equal.
+
+Source: Haug 1989, ch. 4 (Newton-Raphson); Hairer, Norsett, Wanner, Solving ODEs I, II.6 (Hermite interpolation).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbsd.compiling.jit import inlined, kernel
+from mbsd.equations.assembly import evaluate_gamma, evaluate_nu, evaluate_position
+from mbsd.kinematics.elimination import factorise, solve
+from mbsd.kinematics.law_step import jumps
+from mbsd.kinematics.predictor import quintic_factors
+
+TOLERANCE = 1e-12
+"""Of a Newton correction, relative to the mechanism's size (m) and to 1 rad."""
+ROUNDING = 1e-9
+"""A correction that stops shrinking below this has met rounding in an ill-conditioned pose, and is accepted."""
+MAX_ITERATIONS = 12
+CONFIRMED = 1e-3
+"""A correction below this part of the predicted step confirms the branch, even past a change point."""
+SUSPICIOUS = 0.25
+"""A correction above this part of the step may have left the branch."""
+CONTRACTS = 0.1
+"""A second correction above this part of the first was not made near the solution."""
+UNEXPLAINED = 0.02
+"""Part of a step, in sizes and rad, that the rates at its ends may leave unexplained."""
+SHRINKS = 0.1
+"""A determinant that falls to this part of its last value, or heads for it, may vanish in between."""
+CROSSING = 1e-5
+"""Length of a step, in sizes and rad, within which two assemblies meet at a change point."""
+
+DONE, NO_CONTRACTION, BRANCH_DOUBT, SINGULAR = 0, 1, 2, 3
+
+
+@inlined
+def _predict(q, v, a, t, k, time, out):
+    """Pose at ``time`` from results 0 .. k-1: the quintic through the last two, or the last alone."""
+    from_q, from_v, from_a, earlier_v, earlier_a = quintic_factors(t, k, time)
+    last = k - 1
+    before = max(k - 2, 0)
+    for c in range(3, q.shape[1]):
+        out[c] = (
+            q[last, c]
+            + from_q * (q[before, c] - q[last, c])
+            + from_v * v[last, c]
+            + earlier_v * v[before, c]
+            + from_a * a[last, c]
+            + earlier_a * a[before, c]
+        )
+
+
+@kernel
+def _extent(delta, per_metre):
+    """Largest part of a change of pose (3 nb,): lengths in sizes, angles in rad; NaN counts as infinite."""
+    largest = 0.0
+    for b in range(3, delta.shape[0], 3):
+        part = max(abs(delta[b]) * per_metre, abs(delta[b + 1]) * per_metre, abs(delta[b + 2]))
+        if not part <= largest:
+            largest = part if part == part else np.inf
+    return largest
+
+
+@inlined
+def heads_for_zero(determinants, times, k, first):
+    """Index of the step in which a determinant may have vanished: k, or the one after row ``first``; 0 if in none.
+
+    ``first``: the row at which the determinants begin.
+    """
+    for d in range(determinants.shape[1]):
+        now = determinants[k, d]
+        before = determinants[k - 1, d]
+        if not now * before > SHRINKS * before * before:
+            return k
+        if k > first + 1:
+            slope = (before - determinants[k - 2, d]) / (times[k - 1] - times[k - 2])
+            if (before + slope * (times[k] - times[k - 1])) * before < SHRINKS * before * before:
+                return k
+        if k == first + 2:  # seen backwards, for the first step has nothing before it
+            slope = (now - before) / (times[k] - times[k - 1])
+            if (before - slope * (times[k - 1] - times[k - 2])) * before < SHRINKS * before * before:
+                return k - 1
+    return 0
+
+
+@inlined
+def _unexplained(q, v, a, k, h, per_metre):
+    """Largest part of step k that the rates at its ends do not explain, in sizes and rad; NaN counts as infinite."""
+    largest = 0.0
+    half = 0.5 * h
+    twelfth = h * h / 12.0
+    now, before, rate, rate_before, bend, bend_before = q[k], q[k - 1], v[k], v[k - 1], a[k], a[k - 1]
+    for b in range(3, q.shape[1], 3):
+        for c in range(b, b + 3):
+            gap = now[c] - before[c] - half * (rate[c] + rate_before[c]) + twelfth * (bend[c] - bend_before[c])
+            gap = abs(gap) * (per_metre if c < b + 2 else 1.0)
+            if not gap <= largest:
+                largest = gap if gap == gap else np.inf
+    return largest
+
+
+@kernel
+def sweep(system, seq, fac, ws, size, times, drives, stride, q, v, a, residual, determinant, start, chosen):
+    """Solve positions, velocities and accelerations at ``times[start:]``; rows before ``start`` are known.
+
+    The rows of J in ``seq`` are those chosen for times from ``chosen`` on.
+
+    times (T,), drives (T, motions + 1, 3), stride (motions + 1,) how far each law may go in a step; q, v, a (T, 3 nb),
+    residual (T,) largest |Phi| and determinant (T, d) of each block of J are filled. With ``start`` 0, q[0] must hold
+    the assembled pose. ``size`` is the mechanism's length (m).
+    Returns (status, index): DONE and T, or why and at which index the step was refused.
+    """
+    n3 = q.shape[1]
+    per_metre = 1.0 / size
+    pose = ws.pose
+    delta = ws.delta
+    right = ws.right
+    for k in range(start, times.shape[0]):
+        h = 0.0
+        if k > 0:
+            h = times[k] - times[k - 1]
+            for motion in range(1, drives.shape[1]):
+                if jumps(drives[k, motion], drives[k - 1, motion], h, stride[motion]):
+                    return BRANCH_DOUBT, k
+            _predict(q, v, a, times, k, times[k], pose)
+        else:
+            for c in range(n3):
+                pose[c] = q[0, c]
+        first = 0.0
+        second = 0.0
+        last = np.inf
+        evaluate_nu(system, drives[k], right[1])
+        for iteration in range(MAX_ITERATIONS):
+            evaluate_position(system, pose, drives[k], ws)
+            margin = factorise(seq, ws.jac, fac)
+            if margin < 1e-12:
+                return SINGULAR, k
+            for r in range(ws.phi.shape[0]):
+                right[0, r] = -ws.phi[r]
+            solve(seq, fac, 2, right, delta)
+            for c in range(3, n3):
+                pose[c] += delta[0, c]
+            change = _extent(delta[0], per_metre)
+            if iteration == 0:
+                first = change
+            elif iteration == 1:
+                second = change
+            if change <= TOLERANCE:
+                break
+            if iteration > 0 and not change < 0.5 * last:
+                break
+            last = change
+        if not change <= ROUNDING:
+            return NO_CONTRACTION, k
+        for c in range(n3):
+            q[k, c] = pose[c]
+        for d in range(determinant.shape[1]):
+            determinant[k, d] = fac.determinant[d]
+        worst = 0.0
+        for r in range(ws.phi.shape[0]):
+            worst = max(worst, abs(ws.phi[r]))
+        residual[k] = worst
+        for c in range(3, n3):
+            v[k, c] = delta[1, c]
+        if k > 0:
+            for c in range(3, n3):
+                delta[0, c] = pose[c] - q[k - 1, c]
+            step = _extent(delta[0], per_metre)
+            if first > SUSPICIOUS * step + 1e-9 or second > CONTRACTS * first + 1e-9:
+                return BRANCH_DOUBT, k
+            refused = heads_for_zero(determinant, times, k, chosen) if k > chosen else 0
+            if 0 < refused < k:
+                for c in range(3, n3):
+                    delta[0, c] = q[refused, c] - q[refused - 1, c]
+                step = _extent(delta[0], per_metre)
+            if refused > 0 and (step > CROSSING or first > CONFIRMED * step + 1e-9):
+                return BRANCH_DOUBT, refused
+        evaluate_gamma(system, v[k], drives[k], ws, right[0])
+        solve(seq, fac, 1, right, delta)
+        for c in range(3, n3):
+            a[k, c] = delta[0, c]
+        if k > 0 and _unexplained(q, v, a, k, h, per_metre) > UNEXPLAINED:
+            return BRANCH_DOUBT, k
+    return DONE, times.shape[0]

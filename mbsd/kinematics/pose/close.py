@@ -1,0 +1,209 @@
+"""The assembled pose at the start: rough angles, a walk over the joints for places, then Gauss-Newton closes it.
+
+Steps are damped (least norm, limited length, halved until the residual falls), so the pose closes near where the
+author put it. Bodies without a rough angle are tried at several angles.
+"""
+
+from __future__ import annotations
+
+import heapq
+import math
+
+import numpy as np
+
+from mbsd.arrays.packing import Packed
+from mbsd.arrays.relative import let_phases_go, refuse_impossible, take_phases
+from mbsd.base.errors import AssemblyError
+from mbsd.base.kept import Kept
+from mbsd.equations.assembly import residual_and_jacobian
+from mbsd.kinematics.pose.open_loops import turned, why_open
+from mbsd.model.mechanism import Model
+
+CLOSED = 1e-10
+"""Largest residual of a closed pose, in sizes (m) and rad."""
+ATTEMPTS = 24
+MANY_ROWS = 100
+"""From here on the shortest step is found without singular values where rows are well apart."""
+WELL_CONDITIONED = 1e-4
+_CLOSED: Kept[tuple[np.ndarray, np.ndarray]] = Kept()
+"""Closed poses, and the angle offsets that go with them."""
+LONGEST_STEP = 0.5
+"""Of one Gauss-Newton step, in sizes and rad."""
+
+
+def assemble(m: Model, packed: Packed, time: float) -> np.ndarray:
+    """(3 nb,) closed pose at ``time``, centre-of-mass coordinates. Raises AssemblyError naming the open joint."""
+    drive = packed.drives(np.array([time]))[0]
+    numbers = packed.numbers()
+    if numbers is None:
+        return _assembled(m, packed, drive, time)
+
+    def closed() -> tuple[np.ndarray, np.ndarray]:
+        q = _assembled(m, packed, drive, time)
+        return q.copy(), packed.system.angle_offset.copy()  # the turns of welds are taken to suit the pose
+
+    key = (*numbers, tuple(packed.body_names), repr(m.starts), drive[:, 0].tobytes())
+    q, packed.system.angle_offset[:] = _CLOSED.get(key, closed)
+    return q.copy()
+
+
+def _assembled(m: Model, packed: Packed, drive: np.ndarray, time: float) -> np.ndarray:
+    """The same, found anew; drive (motions + 1, 3) at ``time``."""
+    best: tuple[float, np.ndarray] | None = None
+    for attempt in range(ATTEMPTS):
+        q = rough_pose(m, packed, drive, attempt)
+        unwind_angles(packed, q)
+        q, worst = _close_with_phases(packed, q, drive)
+        if worst <= CLOSED:
+            refuse_impossible(packed, q)
+            return q
+        if best is None or worst < best[0]:
+            best = worst, q
+    assert best is not None
+    packed.specials.check()
+    raise AssemblyError(why_open(m, packed, best[1], drive, time))
+
+
+def _close_with_phases(packed: Packed, q: np.ndarray, drive: np.ndarray) -> tuple[np.ndarray, float]:
+    """Close all rows that say where bodies are; the others mesh as they then stand."""
+    let_phases_go(packed)
+    q, worst = close(packed, q, drive)
+    if worst <= CLOSED and take_phases(packed, q, drive):
+        q, worst = close(packed, q, drive)
+    return q, worst
+
+
+def close(packed: Packed, q: np.ndarray, drive: np.ndarray, rows: int | None = None) -> tuple[np.ndarray, float]:
+    """Gauss-Newton on the first ``rows`` rows (all by default) from q; returns the pose and its scaled residual."""
+    q = q.copy()
+    rows = len(packed.ws.phi) if rows is None else rows
+    row_scale, column_scale = packed.row_scale()[:rows], packed.column_scale()
+
+    def scaled() -> np.ndarray:
+        residual_and_jacobian(packed.system, q, drive, packed.ws)
+        return packed.ws.phi[:rows] * row_scale
+
+    phi = scaled()
+    if rows == 0:
+        return q, 0.0
+    for _ in range(200):
+        jac = packed.jacobian()[:rows] * row_scale[:, None] * column_scale
+        if not (np.isfinite(jac).all() and np.isfinite(phi).all()):
+            return q, math.inf
+        step = _least(jac, -phi)
+        longest = float(np.abs(step).max(initial=0.0))
+        step *= min(1.0, LONGEST_STEP / longest) if longest > 0 else 1.0
+        before, old = float(np.linalg.norm(phi)), q.copy()
+        for _ in range(12):
+            q[3:] = old[3:] + step * column_scale
+            phi = scaled()
+            if np.linalg.norm(phi) < before or longest < 1e-9:
+                break
+            step /= 2
+        if longest < 1e-13 or not np.linalg.norm(phi) < before:
+            break
+    return q, float(np.abs(phi).max())
+
+
+def _least(jac: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """The shortest x with J x nearest to ``right``; singular values below 1e-9 of the largest count as zero."""
+    if len(jac) >= MANY_ROWS:
+        square = jac @ jac.T
+        try:
+            pivots = np.diag(np.linalg.cholesky(square))
+        except np.linalg.LinAlgError:  # rows that repeat others
+            pivots = np.zeros(1)
+        if pivots.min() > WELL_CONDITIONED * pivots.max():
+            step = jac.T @ np.linalg.solve(square, right)
+            return step + jac.T @ np.linalg.solve(square, right - jac @ step)
+    return np.linalg.lstsq(jac, right, rcond=1e-9)[0]
+
+
+def rough_pose(m: Model, packed: Packed, drive: np.ndarray, attempt: int) -> np.ndarray:
+    """(3 nb,) from ``start_near``, the drivers and a walk over the joints; attempts after the first vary angles."""
+    angle = _rough_angles(m, packed, drive, attempt)
+    q = np.zeros((len(packed.body_names), 3))
+    q[:, 2] = angle
+    placed = {0}
+    for name, start in m.starts.items():
+        if start.place is not None:
+            b = packed.body_names.index(name)
+            q[b, :2] = start.place + turned(angle[b], packed.com[b])
+            placed.add(b)
+    for reach in ("point", "distance", "slot", "along", "angle"):
+        _place_along(packed, q, placed, reach)
+    return q.ravel()
+
+
+def _rough_angles(m: Model, packed: Packed, drive: np.ndarray, attempt: int) -> np.ndarray:
+    random = np.random.default_rng(attempt)
+    angle = np.zeros(len(packed.body_names))
+    known = {0}
+    for b, name in enumerate(packed.body_names):
+        if name in m.starts:
+            vary = 0.15 * random.standard_normal() if attempt else 0.0
+            angle[b] = m.starts[name].angle + vary
+            known.add(b)
+    system = packed.system
+    for _ in packed.body_names:  # angles pass on along welds, sliders and driven angles
+        before = len(known)
+        for (i, j, _row, motion), offset in zip(system.angle, system.angle_offset, strict=True):
+            bi, bj = system.marker_body[i], system.marker_body[j]
+            turn = offset + drive[motion, 0]
+            if motion and bi == 0:  # a driver's angle is exact, start_near only rough
+                angle[bj] = turn
+                known.add(bj)
+            elif bi in known and bj not in known:
+                angle[bj] = angle[bi] + turn
+                known.add(bj)
+            elif bj in known and bi not in known:
+                angle[bi] = angle[bj] - turn
+                known.add(bi)
+        if len(known) == before:
+            break
+    for b in range(len(angle)):
+        if b not in known and attempt:
+            angle[b] = random.uniform(-math.pi, math.pi)
+    return angle
+
+
+def _place_along(packed: Packed, q: np.ndarray, placed: set[int], constraint: str) -> None:
+    """Place bodies by joints of the given constraint to placed ones, always the first such joint of the table."""
+    system = packed.system
+    table = getattr(system, constraint)
+    pairs = [(int(system.marker_body[i]), int(system.marker_body[j])) for i, j, _row, _motion in table]
+    at_body: dict[int, list[int]] = {}
+    for k, pair in enumerate(pairs):
+        for body in pair:
+            at_body.setdefault(body, []).append(k)
+    queue = [k for k, (bi, bj) in enumerate(pairs) if (bi in placed) != (bj in placed)]
+    heapq.heapify(queue)
+    while queue:
+        k = heapq.heappop(queue)
+        bi, bj = pairs[k]
+        if (bi in placed) == (bj in placed):
+            continue
+        i, j, _row, _motion = table[k]
+        base, new = (i, j) if bi in placed else (j, i)
+        body = bj if bi in placed else bi
+        target = _marker_place(packed, q, base)
+        if constraint == "distance":
+            target = target + np.array([system.distance_length[k], 0.0])
+        q[body, :2] = target - turned(q[body, 2], system.marker_arm[new])
+        placed.add(body)
+        for other in at_body[body]:
+            heapq.heappush(queue, other)
+
+
+def _marker_place(packed: Packed, q: np.ndarray, marker: int) -> np.ndarray:
+    b = packed.system.marker_body[marker]
+    return q[b, :2] + turned(q[b, 2], packed.system.marker_arm[marker])
+
+
+def unwind_angles(packed: Packed, q: np.ndarray) -> None:
+    """Angles of welds and sliders hold up to whole turns: take the turn nearest to the rough pose."""
+    system = packed.system
+    for k, (i, j, _row, motion) in enumerate(system.angle):
+        if motion == 0:
+            gap = q[3 * system.marker_body[j] + 2] - q[3 * system.marker_body[i] + 2] - system.angle_offset[k]
+            system.angle_offset[k] += 2 * math.pi * round(gap / (2 * math.pi))

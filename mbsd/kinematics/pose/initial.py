@@ -1,0 +1,199 @@
+"""Consistent initial conditions: a closed pose and velocities that the joints allow, near what was given.
+
+Pose: what ``start_near`` gives is held exactly as far as the joints leave it free, first given first held; the rest
+moves until everything closes. Velocities: what ``start_moving`` gives is held likewise,
+
+    J v = nu,   P v = given,   kinetic energy of what was left open as small as it can be.
+
+What could not be held is told.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.arrays.packing import Packed
+from mbsd.arrays.relative import let_phases_go, take_phases
+from mbsd.equations.assembly import residual_and_jacobian
+from mbsd.kinematics.pose.close import CLOSED, LONGEST_STEP, assemble, close
+from mbsd.kinematics.pose.mobility import independent_rows
+from mbsd.model.mechanism import Model
+
+TOLD = 1e-6
+"""Smallest change of a given value that is told: sizes, rad, and the same by seconds relative to the given speeds."""
+COORDINATES = ("x", "y", "angle")
+
+
+@dataclass(frozen=True)
+class Initial:
+    """Consistent conditions and what had to be changed for them."""
+
+    q: np.ndarray
+    """(3 nb,) centres of mass (m) and angles (rad)."""
+    v: np.ndarray
+    """(3 nb,) m/s, rad/s."""
+    poses: tuple[str, ...]
+    """One sentence for each start_near value that was moved to close the links."""
+    velocities: tuple[str, ...]
+    """One sentence for each start_moving value that the joints forbid."""
+
+
+def consistent(m: Model, packed: Packed, time: float, metric: np.ndarray) -> Initial:
+    """Initial conditions at ``time`` (s). Raises AssemblyError where the links cannot be closed.
+
+    ``metric`` (3 nb,) is the inverse of the masses that weigh velocities which were not given.
+    """
+    drive = packed.drives(np.array([time]))[0]
+    q, told = start_pose(m, packed, time, drive)
+    v, told_velocities = _velocities(m, packed, q, drive, metric)
+    return Initial(q, v, tuple(told), tuple(told_velocities))
+
+
+def start_pose(m: Model, packed: Packed, time: float, drive: np.ndarray) -> tuple[np.ndarray, list[str]]:
+    """(3 nb,) closed pose that holds what start_near gives where the joints leave it, and a sentence where not.
+
+    drive (motions + 1, 3) at ``time`` (s). Raises AssemblyError.
+    """
+    q = assemble(m, packed, time)
+    given = given_coordinates(m, packed)
+    if not given:
+        return q, []
+    let_phases_go(packed)
+    size = np.concatenate([np.ones(3), packed.column_scale()])
+    targets = np.array([nearest_turn(q, c, value) for c, value in given])
+    wanted = np.array([c for c, _ in given])
+    if (np.abs(q[wanted] - targets) / size[wanted]).max() > 1e-12:
+        residual_and_jacobian(packed.system, q, drive, packed.ws)
+        rows = packed.jacobian() * packed.row_scale()[:, None] * packed.column_scale()
+        units = np.zeros((len(given), packed.coordinates))
+        units[np.arange(len(given)), wanted - 3] = 1.0
+        kept = independent_rows(np.vstack([rows, units]))
+        held = [k - len(rows) for k in kept if k >= len(rows)]
+        q = _close_holding(packed, q, drive, wanted[held], targets[held])
+    if take_phases(packed, q, drive):
+        q = close(packed, q, drive)[0]
+    return q, tell_coordinates(packed, q, list(zip(wanted, targets, strict=True)))
+
+
+def tell_coordinates(packed: Packed, q: np.ndarray, given: list[tuple[int, float]]) -> list[str]:
+    """A sentence for each given (coordinate, value) that the pose q (3 nb,) does not hold."""
+    size = np.concatenate([np.ones(3), packed.column_scale()])
+    told = []
+    for c, target in given:
+        gap = q[c] - target
+        if abs(gap) / size[c] > TOLD:
+            body, what = packed.body_names[c // 3], COORDINATES[c % 3]
+            if c % 3 == 2:
+                told.append(
+                    f"the angle of '{body}' is {math.degrees(q[c]):.6g} degrees, not {math.degrees(target):.6g}"
+                )
+            else:
+                told.append(f"the {what} of the centre of mass of '{body}' is {q[c]:.6g} m, not {target:.6g}")
+    return told
+
+
+def given_coordinates(m: Model, packed: Packed) -> list[tuple[int, float]]:
+    """Coordinates (index in (3 nb,), value) that start_near gives, in its order."""
+    given = []
+    number = {name: b for b, name in enumerate(packed.body_names)}
+    for name, start in m.starts.items():
+        b = number[name]
+        given.append((3 * b + 2, start.angle))
+        if start.place is not None:
+            c, s = math.cos(start.angle), math.sin(start.angle)
+            x, y = packed.com[b]
+            given += [(3 * b, start.place[0] + c * x - s * y), (3 * b + 1, start.place[1] + s * x + c * y)]
+    return given
+
+
+def nearest_turn(q: np.ndarray, c: int, value: float) -> float:
+    """``value`` of coordinate c, for an angle up to whole turns."""
+    return value + 2 * math.pi * round((q[c] - value) / (2 * math.pi)) if c % 3 == 2 else value
+
+
+def _close_holding(
+    packed: Packed, q: np.ndarray, drive: np.ndarray, held: np.ndarray, targets: np.ndarray
+) -> np.ndarray:
+    """The closed pose with coordinates ``held`` at ``targets``; the given pose if there is none near it."""
+    closed, row_scale, column_scale = q, packed.row_scale(), packed.column_scale()
+    size = column_scale[held - 3]
+    units = np.zeros((len(held), packed.coordinates))
+    units[np.arange(len(held)), held - 3] = 1.0
+    q = q.copy()
+    for _ in range(50):
+        residual_and_jacobian(packed.system, q, drive, packed.ws)
+        phi = np.concatenate([packed.ws.phi * row_scale, (q[held] - targets) / size])
+        if np.abs(phi).max() <= 1e-13:
+            break
+        jac = np.vstack([packed.jacobian() * row_scale[:, None] * column_scale, units])
+        step = np.linalg.lstsq(jac, -phi, rcond=1e-10)[0]
+        longest = float(np.abs(step).max(initial=0.0))
+        if longest < 1e-15:
+            break
+        q[3:] += step * min(1.0, LONGEST_STEP / longest) * column_scale
+    residual_and_jacobian(packed.system, q, drive, packed.ws)
+    return q if np.abs(packed.ws.phi * row_scale).max(initial=0.0) <= CLOSED else closed
+
+
+def _velocities(
+    m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray, metric: np.ndarray
+) -> tuple[np.ndarray, list[str]]:
+    residual_and_jacobian(packed.system, q, drive, packed.ws)
+    scale = packed.row_scale()
+    jac = packed.jacobian() * scale[:, None]
+    nu = np.zeros(len(scale))
+    nu[packed.driver_rows :] = drive[1:, 1]
+    v = np.zeros(len(q))
+    if not m.velocities and not nu.any():
+        return v, []
+    given, values, names = given_velocities(m, packed, q)
+    rows = _as_matrix(given, packed.coordinates)
+    column_scale = packed.column_scale()
+    kept = independent_rows(np.vstack([jac * column_scale, rows * column_scale]))
+    everything = np.vstack([jac, rows])[kept]
+    wanted = np.concatenate([nu * scale, values])[kept]
+    root = np.sqrt(metric[3:])
+    v[3:] = root * np.linalg.lstsq(everything * root, wanted, rcond=1e-13)[0]
+    fastest = max(float(np.abs(values).max(initial=0.0)), float(np.abs(nu).max(initial=0.0)), 1e-300)
+    told = [
+        f"{name} is {row @ v[3:]:.6g} {unit}, not {value:.6g}"
+        for row, value, (name, unit) in zip(rows, values, names, strict=True)
+        if abs(row @ v[3:] - value) > TOLD * fastest
+    ]
+    return v, told
+
+
+def given_velocities(
+    m: Model, packed: Packed, q: np.ndarray
+) -> tuple[list[dict[int, float]], np.ndarray, list[tuple[str, str]]]:
+    """What start_moving gives: rows as {coordinate: factor}, values (k,), names and units, in the order given.
+
+    The velocity is that of a body's frame, not of its centre of mass.
+    """
+    rows: list[dict[int, float]] = []
+    values, names = [], []
+    number = {name: b for b, name in enumerate(packed.body_names)}
+    for name, velocity in m.velocities.items():
+        b = number[name]
+        c, s = math.cos(q[3 * b + 2]), math.sin(q[3 * b + 2])
+        x, y = packed.com[b]
+        rows.append({3 * b + 2: 1.0})
+        values.append(velocity.omega)
+        names.append((f"the angular velocity of '{name}'", "rad/s"))
+        if velocity.place is None:
+            continue
+        rows += [{3 * b: 1.0, 3 * b + 2: s * x + c * y}, {3 * b + 1: 1.0, 3 * b + 2: -(c * x - s * y)}]
+        values += velocity.place
+        names += [(f"vx of '{name}'", "m/s"), (f"vy of '{name}'", "m/s")]
+    return rows, np.array(values, float), names
+
+
+def _as_matrix(rows: list[dict[int, float]], coordinates: int) -> np.ndarray:
+    out = np.zeros((len(rows), coordinates))
+    for k, row in enumerate(rows):
+        for c, factor in row.items():
+            out[k, c - 3] = factor
+    return out

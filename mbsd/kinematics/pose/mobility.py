@@ -1,0 +1,206 @@
+"""Mobility: degrees of freedom by count and by rank, redundant joints, undriven and doubly driven freedoms.
+
+    nominal  3 (nb - 1) - rows of all joints          (Gruebler)
+    dof      n - rank J of the joints
+
+The rank at one pose may be low by accident (a toggle, a change point), so it is also taken at closed poses nearby
+and the largest counts.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from mbsd.arrays.packing import Packed
+from mbsd.arrays.relative import let_phases_go, take_phases
+from mbsd.base.errors import MobilityError, SingularPoseError
+from mbsd.equations.assembly import residual_and_jacobian
+from mbsd.kinematics.pose.close import CLOSED, close, rough_pose
+from mbsd.model.mechanism import Model
+from mbsd.results.mobility import Mobility
+
+RANK_TOLERANCE = 1e-8
+"""A row that adds less than this part of itself to the others repeats them."""
+SMALL = 4000
+"""Up to so many numbers of J, its rank is kept for the next call with the same J."""
+BETTER = 4.0
+"""Rows are exchanged for others whose least singular value is this many times larger."""
+
+
+def joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
+    """Mobility of the joints alone at the closed pose q (3 nb,)."""
+    rows = packed.driver_rows
+    here = scaled_jacobian(packed, q)[:rows]
+    best, start = here, len(independent_rows(here))
+    kept = independent_rows(best)
+    for tries, seed in ((3, 1), (9, 2)):
+        if len(kept) == rows or (seed > 1 and start == len(kept)):
+            break  # no rank is higher; more are tried where branches of other rank meet at the start
+        for near in _nearby(packed, q, tries, seed):
+            jac = scaled_jacobian(packed, near)[:rows]
+            rank = independent_rows(jac)
+            if len(rank) > len(kept):
+                best, kept = jac, rank
+    dropped = [row for row in range(rows) if row not in set(kept)]
+    free = packed.coordinates - len(kept)
+    return Mobility(
+        nominal=packed.coordinates - rows,
+        dof=free,
+        redundant_rows=len(dropped),
+        redundant=tuple(dict.fromkeys(packed.joint_of_row(row).name for row in dropped)),
+        singular=start < len(kept),
+        free_bodies=_moving(packed, best),
+    )
+
+
+def refuse_overdriven(m: Model, packed: Packed, time: float) -> None:
+    """If the joints close without the drivers, see whether these are too many; raises MobilityError if so."""
+    none = np.zeros((len(packed.motions) + 1, 3))
+    let_phases_go(packed)
+    q, worst = close(packed, rough_pose(m, packed, none, 0), none, packed.driver_rows)
+    take_phases(packed, q, none)
+    if worst <= CLOSED:
+        _refuse_idle_drivers(packed, joint_mobility(packed, q), _best_rows(packed, q)[1], time)
+
+
+def choose_rows(packed: Packed, q: np.ndarray, time: float, joints: Mobility) -> np.ndarray:
+    """(n,) independent rows that fix all coordinates, drivers included. ``joints``: mobility of the joints at q.
+
+    Raises MobilityError for a missing or superfluous driver, SingularPoseError where only this pose is at fault.
+    """
+    here, kept, best = _best_rows(packed, q)
+    _refuse_idle_drivers(packed, joints, kept, time)
+    if len(kept) < packed.coordinates:
+        missing = packed.coordinates - len(kept)
+        free = _moving(packed, scaled_jacobian(packed, best))
+        raise MobilityError(
+            f"{packed.name}: at t = {time:.6g} s {missing} of {joints.dof} degrees of freedom "
+            f"{'is' if missing == 1 else 'are'} not driven: {', '.join(free)} can still move. "
+            f"Add {'a driver' if missing == 1 else f'{missing} drivers'}, "
+            "for example m.drive_angle(...)."
+        )
+    if len(here) < len(kept):
+        raise SingularPoseError(
+            f"{packed.name}: the start pose at t = {time:.6g} s is singular (a toggle or change point): "
+            "the drivers do not fix the motion here. Start a little before or after it, or drive another body."
+        )
+    return np.array(kept)
+
+
+def best_rows(packed: Packed, known: np.ndarray) -> np.ndarray | None:
+    """(n,) rows of the last evaluated J that are furthest from dependent; None if ``known`` (n,) are nearly as good.
+
+    Where joints repeat each other, rows that serve at one pose may be dependent at another.
+    """
+    return better_rows(packed.jacobian() * packed.row_scale()[:, None] * packed.column_scale(), known)
+
+
+def better_rows(jac: np.ndarray, known: Sequence[int] | np.ndarray, better: float = BETTER) -> np.ndarray | None:
+    """(r,) rows of a dimensionless jac (m, n) whose least singular value is ``better`` times that of ``known`` (r,).
+
+    None if there are none. Source: pivoted QR.
+    """
+    from scipy.linalg import qr, svdvals
+
+    chosen = np.sort(qr(jac.T, mode="r", pivoting=True)[-1][: len(known)])
+    if svdvals(jac[chosen])[-1] <= better * svdvals(jac[known])[-1]:
+        return None
+    return chosen
+
+
+def _best_rows(packed: Packed, q: np.ndarray) -> tuple[list[int], list[int], np.ndarray]:
+    """Independent rows at q, at the pose near it (or q) that has most of them, and that pose."""
+    here = independent_rows(scaled_jacobian(packed, q))
+    if len(here) == min(packed.coordinates, len(packed.ws.phi)):
+        return here, here, q
+    poses = [q, *_nearby(packed, q)]
+    ranked = [here, *(independent_rows(scaled_jacobian(packed, pose)) for pose in poses[1:])]
+    best = max(range(len(poses)), key=lambda k: len(ranked[k]))
+    return ranked[0], ranked[best], poses[best]
+
+
+def _refuse_idle_drivers(packed: Packed, joints: Mobility, kept: list[int], time: float) -> None:
+    drivers = packed.joints[len(packed.joints) - len(packed.motions) :]
+    idle = [d for k, d in enumerate(drivers) if packed.driver_rows + k not in set(kept)]
+    if not idle:
+        return
+    others = [f"'{d.name}'" for d in drivers if d not in idle]
+    fixed = "the joints" + (f" and driver{'s' * (len(others) > 1)} {', '.join(others)}" if others else "")
+    raise MobilityError(
+        f"{packed.name}: at t = {time:.6g} s driver '{idle[0].name}' drives a freedom that {fixed} already fix: "
+        f"{joints.dof} degree{'s' * (joints.dof != 1)} of freedom, {len(drivers)} drivers. "
+        "Remove one driver or free a joint."
+    )
+
+
+def scaled_jacobian(packed: Packed, q: np.ndarray) -> np.ndarray:
+    """(m, n) dimensionless Jacobian at q, ground's columns left out."""
+    residual_and_jacobian(packed.system, q, np.zeros((len(packed.motions) + 1, 3)), packed.ws)
+    return packed.jacobian() * packed.row_scale()[:, None] * packed.column_scale()
+
+
+def independent_rows(jac: np.ndarray) -> list[int]:
+    """Rows that are independent of those before them (Gram-Schmidt, done twice for rounding)."""
+    if jac.size > SMALL:
+        return _independent(jac)
+    return list(_kept_independent(jac.tobytes(), jac.shape))
+
+
+@lru_cache(maxsize=64)
+def _kept_independent(numbers: bytes, shape: tuple[int, int]) -> tuple[int, ...]:
+    return tuple(_independent(np.frombuffer(numbers).reshape(shape).copy()))
+
+
+def _independent(jac: np.ndarray) -> list[int]:
+    basis = np.zeros((min(jac.shape), jac.shape[1]))
+    kept: list[int] = []
+    lengths = np.sqrt(np.einsum("rc,rc->r", jac, jac))
+    for row in np.flatnonzero(lengths > 0):
+        if len(kept) == len(basis):
+            break
+        rest, before = jac[row] / lengths[row], basis[: len(kept)]
+        for _ in range(2):
+            rest = rest - (before @ rest) @ before
+        length = math.sqrt(rest @ rest)
+        if length > RANK_TOLERANCE:
+            basis[len(kept)] = rest / length
+            kept.append(int(row))
+    return kept
+
+
+def _nearby(packed: Packed, q: np.ndarray, tries: int = 3, seed: int = 1) -> list[np.ndarray]:
+    """Closed poses near q; the drivers are let go."""
+    random = np.random.default_rng(seed)
+    scale = packed.column_scale()
+    none = np.zeros((len(packed.motions) + 1, 3))
+    poses = []
+    for _ in range(tries):
+        moved = q.copy()
+        moved[3:] += 0.1 * scale * random.standard_normal(packed.coordinates)
+        moved, worst = close(packed, moved, none, packed.driver_rows)
+        if worst <= CLOSED:
+            poses.append(moved)
+    return poses
+
+
+def _moving(packed: Packed, jac: np.ndarray) -> tuple[str, ...]:
+    """Bodies that the null space of J moves."""
+    size = _kept_motion(jac.tobytes(), jac.shape) if jac.size <= SMALL else _motion(jac)
+    return tuple(name for name, moved in zip(packed.body_names[1:], size, strict=True) if moved > 1e-6)
+
+
+@lru_cache(maxsize=64)
+def _kept_motion(numbers: bytes, shape: tuple[int, int]) -> np.ndarray:
+    return _motion(np.frombuffer(numbers).reshape(shape).copy())
+
+
+def _motion(jac: np.ndarray) -> np.ndarray:
+    """(bodies,) largest number of each body in unit vectors that span the null space of J."""
+    _, singular, v = np.linalg.svd(jac, full_matrices=True)
+    rank = int((singular > RANK_TOLERANCE * max(1.0, singular.max(initial=0.0))).sum())
+    null = v[rank:]
+    return np.linalg.norm(null, axis=0).reshape(-1, 3).max(axis=1)

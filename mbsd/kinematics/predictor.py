@@ -1,0 +1,34 @@
+"""Where a pose is looked for first: the quintic through the last two poses with their velocities and accelerations."""
+
+from __future__ import annotations
+
+from mbsd.compiling.jit import inlined
+
+LONGEST_STRETCH = 4.0
+"""Beyond this ratio of step lengths the quintic is not trusted; the last (q, v, a) alone predicts."""
+
+
+@inlined
+def quintic_factors(t, k, time):
+    """What the data of poses k - 1 and k - 2 count at ``time``: q apart, v and a of the last, v and a of the other.
+
+    With s = ahead / h the quintic is linear in the six data, so its five factors are found once for all coordinates.
+    """
+    ahead = time - t[k - 1]
+    h = t[k - 1] - t[k - 2] if k > 1 else 0.0
+    from_q = 0.0
+    from_v = ahead
+    from_a = 0.5 * ahead * ahead
+    earlier_v = 0.0
+    earlier_a = 0.0
+    if ahead < LONGEST_STRETCH * h:
+        s = ahead / h
+        cube = s * s * s
+        from_q = -cube * (10.0 + s * (15.0 + 6.0 * s))
+        p1 = -cube * (4.0 + s * (7.0 + 3.0 * s))
+        p2 = -cube * (0.5 + s * (1.0 + 0.5 * s))
+        from_v = h * (s + from_q - p1)
+        from_a = h * h * (0.5 * s * s - 0.5 * from_q + p1 - p2)
+        earlier_v = h * p1
+        earlier_a = h * h * p2
+    return from_q, from_v, from_a, earlier_v, earlier_a

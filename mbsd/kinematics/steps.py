@@ -1,0 +1,140 @@
+"""The steps of a driven motion: the times asked for, and those that the program puts between them.
+
+Output times are the user's and may be few. A driver goes at most one stride in a step, so that no motion between two
+outputs passes unseen, and a step that the solver doubts is divided further.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from mbsd.arrays.packing import Packed
+from mbsd.base.errors import ModelError
+
+TURN = 0.18
+"""Stride (rad) of a driven angle: 35 steps a turn."""
+LENGTH = 0.1
+"""Stride of a driven length, in sizes of the mechanism."""
+SHORTEST = 1e-7
+"""A step divided to this part of its length that is still refused is not cured by dividing it."""
+MOST = 20_000_000
+"""Numbers of a motion, steps times coordinates, beyond which a sweep is refused."""
+ASTRAY = 0.01
+"""Part of a stride by which a law may be off the cubic through both ends of a step."""
+AT_ONCE = 64
+"""Parts into which a step is divided before its laws are looked at again."""
+
+
+def strides(packed: Packed) -> np.ndarray:
+    """(motions + 1,) how far each law may go in one step (rad or m); entry 0 is the law that is always zero."""
+    drivers = packed.joints[len(packed.joints) - len(packed.motions) :]
+    return np.array([np.inf, *(TURN if driver.kind.angular else LENGTH * packed.size for driver in drivers)])
+
+
+def divisions(packed: Packed, times: np.ndarray) -> int:
+    """Equal parts of the steps of ``times`` (T,), themselves equal, in which no law goes further than its stride."""
+    first, last, steps = float(times[0]), float(times[-1]), len(times) - 1
+    stride = strides(packed)
+    crowd = np.diff(np.flatnonzero(Steps(packed, times).wanted))  # outputs and knots within each step
+    parts = 2 * int(crowd.max(initial=1)) - 1
+    for _ in range(8):
+        refuse_endless(packed, np.linspace(first, last, 2), parts * steps)
+        inner = np.linspace(first, last, parts * steps + 1)
+        need = _strides_taken(inner, packed.drives(inner), stride).max(initial=0.0)
+        if need <= 1.0 + 1e-9:
+            break
+        parts = math.ceil(parts * need)
+    return parts
+
+
+def _strides_taken(times: np.ndarray, drives: np.ndarray, stride: np.ndarray) -> np.ndarray:
+    """(T - 1,) strides that the furthest law goes in each step, by its values or by its rates."""
+    value, rate = drives[:, 1:, 0], np.abs(drives[:, 1:, 1])
+    by_rate = np.diff(times)[:, None] * np.maximum(rate[1:], rate[:-1])
+    return (np.maximum(np.abs(np.diff(value, axis=0)), by_rate) / stride[1:]).max(axis=1, initial=0.0)
+
+
+def refuse_endless(packed: Packed, times: np.ndarray, steps: float) -> None:
+    """Raise ModelError where following the drivers over ``times`` (T,) takes more steps than there is room for."""
+    if steps * 3 * len(packed.body_names) <= MOST:
+        return
+    drives = packed.drives(times)
+    way = np.abs(np.diff(drives[:, 1:, 0], axis=0)).sum(axis=0) / strides(packed)[1:]
+    driver = packed.joints[len(packed.joints) - len(packed.motions) + int(np.argmax(way))]
+    raise ModelError(
+        f"{packed.name}: following the drivers from t = {times[0]:.6g} s to {times[-1]:.6g} s takes {steps:.2g} steps, "
+        f"most of them for driver '{driver.name}'. Sweep a shorter time, or drive it more slowly."
+    )
+
+
+class Steps:
+    """Times of a motion (T,), the laws' values there (T, motions + 1, 3), and which of them were asked for."""
+
+    def __init__(self, packed: Packed, times: np.ndarray) -> None:
+        self.packed, self.stride = packed, strides(packed)
+        self.times = np.ascontiguousarray(times, float)
+        self.wanted = np.ones(len(self.times), bool)
+        self.out_of_reach: float | None = None
+        """Time (s) at which a group was found that cannot close."""
+        self._shortest = np.full(len(self.times), SHORTEST)
+        self._shortest[1:] *= np.diff(self.times)
+        knots = [law.knots(float(times[0]), float(times[-1])) for law in packed.motions]
+        self.drives = packed.drives(self.times)
+        if any(len(times_of) for times_of in knots):
+            self._put_knots(np.unique(np.concatenate(knots)))
+
+    @property
+    def inserted(self) -> int:
+        """How many times were put between those asked for."""
+        return int(len(self.wanted) - np.count_nonzero(self.wanted))
+
+    def divide(self, index: int, part: float = 0.5) -> bool:
+        """Put a time into the step that ends at ``index``, at the given part of it; False if it is too short."""
+        start, end = self.times[index - 1], self.times[index]
+        middle = start + part * (end - start)
+        if not (end - start > self._shortest[index] and start < middle < end):
+            return False
+        self._put(np.array([index]), np.array([middle]))
+        return True
+
+    def follow_laws(self) -> bool:
+        """Divide all steps in which a law goes further than its stride; returns whether there were any."""
+        count = len(self.times)
+        for _ in range(64):
+            h = np.diff(self.times)
+            need = np.ceil(_strides_taken(self.times, self.drives, self.stride) * (1.0 - 1e-9))
+            need[h <= self._shortest[1:]] = 1
+            parts = np.clip(need, 1, AT_ONCE).astype(np.int64)
+            if (parts == 1).all():
+                break
+            refuse_endless(self.packed, self.times, float(need.sum()))
+            at = np.repeat(np.arange(1, len(self.times)), parts - 1)
+            first = np.cumsum(parts - 1) - (parts - 1)
+            number = np.arange(len(at)) - np.repeat(first, parts - 1) + 1
+            self._put(at, self.times[at - 1] + h[at - 1] * number / parts[at - 1])
+        return len(self.times) > count
+
+    def _put_knots(self, knots: np.ndarray) -> None:
+        """Take those at which a law is not where the ends of its step lead: it may go and come back in that step."""
+        knots = knots[~np.isin(knots, self.times) & (knots > self.times[0]) & (knots < self.times[-1])]
+        if not len(knots):
+            return
+        at = np.searchsorted(self.times, knots)
+        h = (self.times[at] - self.times[at - 1])[:, None]
+        u = (knots - self.times[at - 1])[:, None] / h
+        start, end = self.drives[at - 1], self.drives[at]
+        way = end[..., 0] - start[..., 0]
+        rise, fall = h * start[..., 1] - way, way - h * end[..., 1]
+        led = start[..., 0] + u * (way + (1.0 - u) * ((1.0 - u) * rise + u * fall))  # cubic Hermite interpolation
+        astray = np.abs(self.packed.drives(knots)[..., 0] - led) > ASTRAY * self.stride
+        taken = astray.any(axis=1)
+        if taken.any():
+            self._put(at[taken], knots[taken])
+
+    def _put(self, at: np.ndarray, times: np.ndarray) -> None:
+        self.drives = np.insert(self.drives, at, self.packed.drives(times), axis=0)
+        self.wanted = np.insert(self.wanted, at, False)
+        self._shortest = np.insert(self._shortest, at, self._shortest[at])
+        self.times = np.insert(self.times, at, times)

@@ -1,0 +1,107 @@
+"""A driven motion from start to end, as a Solution."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+
+from mbsd.arrays.curve_branches import CurveBranches
+from mbsd.base.errors import ModelError, ModelWarning
+from mbsd.base.warn import warn
+from mbsd.kinematics.closed_contacts import refuse_passed_contacts
+from mbsd.kinematics.curve_jumps import refuse_jumps
+from mbsd.kinematics.limits import limits_of, refuse_passed
+from mbsd.kinematics.multipliers import inverse_dynamics, singularity_margin
+from mbsd.kinematics.period import MOST_TURNS, common_period, repetition
+from mbsd.kinematics.prepared import March, Prepared, prepare
+from mbsd.model.mechanism import Model
+from mbsd.model.output_times import equal_times, rising_times
+from mbsd.results.returned import returned
+from mbsd.results.solution import Solution, Stats
+
+
+def sweep(m: Model, duration: float | None, steps: int, times: Sequence[float] | np.ndarray | None) -> Solution:
+    """See :meth:`mbsd.mechanism.Mechanism.sweep`."""
+    grid = sweep_times(m, duration, steps, times)
+    ready = prepare(m, float(grid[0]), float(grid[-1]))
+    march = ready.march(grid)
+    if duration is None and times is None and m.drivers:
+        whole = _whole_period(m, ready, march, float(grid[-1]))
+        if whole is not None:
+            grid = equal_times(m, whole, steps)
+            ready = prepare(m, 0.0, whole)
+            march = ready.march(grid)
+    q, v, a, packed = march.q, march.v, march.a, ready.packed
+    drives = packed.drives(grid)
+    if m.contacts or limits_of(packed):
+        inner, poses = march.closely()
+        refuse_passed(packed, inner, poses, smooth=True)
+        refuse_passed_contacts(m, packed, inner, poses)
+    if CurveBranches(packed).rows:
+        refuse_jumps(packed, *march.closely())
+    loads = inverse_dynamics(ready, grid, drives, q, v, a)
+    shape = (len(grid), -1, 3)
+    return Solution(
+        mechanism=m,
+        packed=packed,
+        t=grid,
+        q=q.reshape(shape),
+        v=v.reshape(shape),
+        a=a.reshape(shape),
+        wrench=loads.wrench,
+        lam=loads.lam,
+        drives=drives,
+        margin=partial(singularity_margin, packed, ready.sequence.rows, drives, q),
+        stats=Stats(*(float(r) for r in loads.residuals), steps=len(grid), inserted_steps=march.steps.inserted),
+        mobility=ready.mobility,
+        route=ready.route if march.closed else "Newton-Raphson",
+    )
+
+
+def sweep_times(m: Model, duration: float | None, steps: int, times: Sequence[float] | np.ndarray | None) -> np.ndarray:
+    """(T,) rising times (s) of a sweep. Raises ModelError."""
+    if times is not None:
+        return rising_times(m, times, 1)
+    if duration is None:
+        duration = _law_duration(m)
+    return equal_times(m, duration, steps)
+
+
+def _law_duration(m: Model) -> float:
+    """The common period of the laws (s), or the longest of theirs where there is none. Raises ModelError for none."""
+    if not m.drivers:
+        return 1.0  # mobility will name the missing driver
+    common = common_period(m.drivers.values())
+    if common is not None:
+        return common
+    periods = {name: d.motion.period for name, d in m.drivers.items() if d.motion is not None and d.motion.period}
+    if not periods:
+        raise ModelError(f"{m.name}: no driver repeats, so there is no natural duration; say sweep(duration=...)")
+    return max(periods.values())
+
+
+def _whole_period(m: Model, ready: Prepared, march: March, duration: float) -> float | None:
+    """The mechanism's period (s) where it is longer than the one just swept; None where that one serves.
+
+    Warns where no pose repeats.
+    """
+    shape = (len(march.q), -1, 3)
+    q, v, a = (part.reshape(shape) for part in (march.q, march.v, march.a))
+    if returned(((q[0], v[0], a[0]), (q[-1], v[-1], a[-1]))):
+        return None
+    common = common_period(m.drivers.values())
+    if common is None:
+        why = "the laws of its drivers have no common period"
+    else:
+        found = repetition(m, common, ready).period
+        if found is not None:
+            return found
+        why = f"its bodies are not back within {MOST_TURNS} times {common:.6g} s, after which its drivers repeat"
+    warn(
+        f"{m.name}: {why}, so the motion does not repeat, and {duration:.6g} s of it are swept; "
+        "say sweep(duration=...) for more or less",
+        ModelWarning,
+    )
+    return None

@@ -1,0 +1,310 @@
+"""A mechanism by name: bodies, markers, joints, drivers, traces. Numbers in SI; angles in radians.
+
+    m = Mechanism("pendulum")
+    rod = m.bar("rod", 0.5, mass=1.0)
+    m.revolute("A", m.ground.at(0, 0), rod.start)
+
+Everything wrong is refused here, by name, before anything is solved.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mbsd.base.arguments import checked_methods, several_numbers
+from mbsd.base.errors import ModelError
+from mbsd.base.shown import shown
+from mbsd.model.adding_contacts import AddingContacts
+from mbsd.model.adding_forces import Amount
+from mbsd.model.adding_interactions import AddingInteractions
+from mbsd.model.adding_machine_joints import AddingMachineJoints
+from mbsd.model.body import Body, Marker
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
+from mbsd.model.mechanism import STANDARD_GRAVITY, Start, StartVelocity
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from mbsd.analyses.efforts import ActuatedMotion
+    from mbsd.analyses.equilibrium import Equilibrium
+    from mbsd.analyses.modes import Mode
+    from mbsd.analyses.state_space import Linearisation
+    from mbsd.analyses.suspicious_units import Finding
+    from mbsd.drawing.picture import Picture, Svg
+    from mbsd.kinematics.batch import Batch
+    from mbsd.results.mobility import Mobility
+    from mbsd.results.solution import Solution
+
+__all__ = ["STANDARD_GRAVITY", "Body", "Force", "Joint", "Marker", "Mechanism", "Start"]
+
+
+@checked_methods
+class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
+    """Bodies, joints, drivers and traced points, by name. ``gravity`` in m/s^2; None turns it off."""
+
+    def trace(self, name: str, marker: Marker) -> Marker:
+        """Follow a point: its path, velocity and acceleration are in the solution."""
+        self._new_name(name, "trace", self.traces)
+        if not isinstance(marker, Marker):
+            raise ModelError(f"{self.name}: trace '{name}' needs a marker, got {shown(marker)}; write body.at(x, y)")
+        self._own_body(marker.body, f"trace '{name}'")
+        self.traces[name] = marker
+        return marker
+
+    def start_near(self, **poses: float | Sequence[float]) -> None:
+        """Rough start poses that pick the assembly branch, in DEGREES: ``crank=0, coupler=45``.
+
+        A body that no joint places, such as a slider, may be given as (x, y, degrees).
+        """
+        for name, pose in poses.items():
+            self.known_body(name)
+            if isinstance(pose, int | float | np.number):
+                self.starts[name] = Start(math.radians(self._number(f"start of '{name}'", pose)))
+                continue
+            x, y, degrees = several_numbers(
+                f"{self.name}: start of '{name}'", pose, 3, "give degrees, or (x, y, degrees)"
+            )
+            self.starts[name] = Start(math.radians(degrees), (x, y))
+
+    def start_moving(self, **velocities: float | Sequence[float]) -> None:
+        """Velocities at the start of a simulation: rad/s, or (vx, vy, omega) of the body's frame in m/s and rad/s.
+
+        Bodies that are not named move as their joints make them, with the least kinetic energy. Where joints and
+        drivers forbid a given value, it is changed and the simulation warns.
+        """
+        for name, velocity in velocities.items():
+            self.known_body(name)
+            what = f"start velocity of '{name}'"
+            if isinstance(velocity, int | float | np.number):
+                self.velocities[name] = StartVelocity(self._number(what, velocity))
+                continue
+            vx, vy, omega = several_numbers(f"{self.name}: {what}", velocity, 3, "give rad/s, or (vx, vy, omega)")
+            self.velocities[name] = StartVelocity(omega, (vx, vy))
+
+    def marker_in_world(self, body: Body, x: float, y: float, angle: float) -> Marker:
+        """See :meth:`mbsd.model.body.Body.at_world`."""
+        from mbsd.kinematics.pose.world_places import marker_in_world
+
+        return marker_in_world(self, body, x, y, angle)
+
+    def change(self, name: str, **values: Any) -> None:
+        """Change numbers or laws of a body, joint, driver, force or contact; the next solution has them.
+
+            m.change("spring", stiffness=250.0)
+            m.change("crank", mass=1.2)
+            m.change("motor", law=constant_rate(20.0))
+
+        ``values`` are the arguments of the method that added it, but for its markers and bodies; of a body its mass
+        (kg), com (m) and inertia (kg m^2). Nothing is compiled anew. Raises ModelError, and changes nothing, for what
+        that method refuses.
+        """
+        from mbsd.model.change import change
+
+        change(self, name, values)
+
+    def check(self) -> list[Finding]:
+        """Numbers that look like a mixed-up unit, with remedies; the first solution warns of them (ModelWarning)."""
+        from mbsd.analyses.suspicious_units import check
+
+        return check(self)
+
+    # -- what it can compute ------------------------------------------------------------------------------------
+
+    def mobility(self) -> Mobility:
+        """Degrees of freedom, nominal and by rank, and redundant joints; does not need drivers."""
+        from mbsd.dynamics.mobility import mobility
+
+        return mobility(self)
+
+    def sweep(
+        self, duration: float | None = None, steps: int = 360, times: Sequence[float] | np.ndarray | None = None
+    ) -> Solution:
+        """Solve the driven motion: positions, velocities, accelerations, reactions, driver efforts, energy.
+
+        ``steps`` equal steps over ``duration`` seconds, both ends included; by default over one :meth:`period`, and
+        where there is none over that of the laws, with a ModelWarning. ``times`` (s), rising, replaces both.
+        """
+        from mbsd.analyses.suspicious_units import tell
+        from mbsd.kinematics.sweep import sweep
+
+        tell(self)
+        return sweep(self, duration, steps, times)
+
+    def period(self) -> float | None:
+        """The time (s) after which every body is back but for whole turns, with its velocity and acceleration.
+
+        It is a whole multiple of the common period of all drivers, which gears, belts and indexed wheels make longer:
+        two turns of a driver that turns a gear at half its speed. None where no law repeats, or within 100 of these
+        nothing does. Raises what :meth:`sweep` raises.
+        """
+        from mbsd.kinematics.period import period
+
+        return period(self)
+
+    def batch(
+        self,
+        lengths: Mapping[str, Sequence[float] | np.ndarray] | None = None,
+        places: Mapping[str, Sequence[Sequence[float]] | np.ndarray] | None = None,
+        angles: Sequence[str] = (),
+        duration: float | None = None,
+        steps: int = 360,
+        threads: int | None = None,
+    ) -> Batch:
+        """Sweep n designs of this mechanism at once, tens of thousands a second: traced points, and angles asked for.
+
+        ``lengths``: bar names to (n,) lengths (m), which move the bar's ``end``, or rods (distance joints) to their
+        lengths. ``places``: joint names to (n, 2) places (m) of the joint's marker on ground, or else of its first
+        marker, in that body's frame; or names of traced points to their places. Times are those of :meth:`sweep`.
+        Designs share the branch of the mechanism itself. Raises ModelError for a mechanism that is not made of driven
+        bodies and dyads.
+        """
+        from mbsd.kinematics.batch import batch
+
+        return batch(
+            self, {} if lengths is None else lengths, {} if places is None else places, angles, duration, steps, threads
+        )
+
+    def simulate(
+        self,
+        duration: float | None = None,
+        steps: int = 360,
+        times: Sequence[float] | np.ndarray | None = None,
+        method: str = "dop853",
+        tolerance: float = 1e-7,
+        step: float | None = None,
+        progress: Callable[[float], None] | None = None,
+        event_rows: bool = False,
+        formulation: str = "auto",
+        **options: float,
+    ) -> Solution:
+        """Forward dynamics from ``start_near`` and ``start_moving``: M a + J^T lam = Q, J a = gamma.
+
+        ``steps`` equal output steps over ``duration`` seconds, both ends included; ``times`` (s), rising, replaces
+        both. ``method`` names an integrator (mbsd/dynamics/integrators). Methods with an error estimate keep to
+        ``tolerance`` (relative to the mechanism's size, to 1 rad, and to speeds); those with a fixed step take ``step``
+        (s), by default the time between outputs. ``progress`` is called with the part done (0 .. 1); what it
+        raises ends the run.
+        ``event_rows`` adds two rows at every event, right before and after it (contacts, stops: docs/events.md).
+        ``formulation``: "reference" integrates all coordinates and projects them onto the joints; "independent" only
+        as many as there are degrees of freedom, where the mechanism falls apart into driven bodies and Assur groups:
+        several times faster. "auto" takes the latter where it can (``solution.stats.independent``).
+        ``options`` are numbers of the method itself, such as ``rho`` of "generalized_alpha".
+
+        Raises AssemblyError where the links do not close, SimulationError where the integration cannot go on.
+        """
+        from mbsd.analyses.suspicious_units import tell
+        from mbsd.dynamics.simulate import simulate
+
+        tell(self)
+        return simulate(
+            self, duration, steps, times, method, tolerance, step, progress, options, event_rows, formulation
+        )
+
+    def equilibrium(self, time: float = 0.0, nearest: bool = False) -> Equilibrium:
+        """Static equilibrium: pose, reactions, efforts of the drivers, stiffness and stability.
+
+        Found from ``start_near``, downhill to a stable pose; ``nearest`` takes the nearest pose that balances, stable
+        or not. Drivers hold where they are at ``time`` (s), laws of forces have the value of then.
+
+        Raises AssemblyError where the links do not close, EquilibriumError where nothing balances, SingularPoseError
+        where the pose that balances is a toggle or change point.
+        """
+        from mbsd.analyses.equilibrium import equilibrium
+        from mbsd.analyses.suspicious_units import tell
+
+        tell(self)
+        return equilibrium(self, time, nearest)
+
+    def linearise(
+        self,
+        at: Equilibrium | Solution | str = "equilibrium",
+        t: float | None = None,
+        inputs: Sequence[str] = (),
+    ) -> Linearisation:
+        """A, B, eigenvalues and modes of the motion near a state: dx' = A dx + B du.
+
+        ``at``: ``"equilibrium"`` (the stable one, found from start_near), ``"start"`` (start_near and start_moving),
+        an equilibrium, or a solution and its output nearest to ``t`` (s). ``inputs`` are efforts: names of drivers,
+        which let go and keep their effort, or of torques, forces and actuators.
+
+        Raises MobilityError if nothing can move, SingularPoseError at a toggle or change point.
+        """
+        from mbsd.analyses.linearise import linearise
+        from mbsd.analyses.suspicious_units import tell
+
+        tell(self)
+        return linearise(self, at, t, inputs)
+
+    def modes(self) -> tuple[Mode, ...]:
+        """Natural frequencies, damping and shapes about the stable equilibrium, by rising frequency."""
+        return self.linearise().modes
+
+    # -- efforts and motions ------------------------------------------------------------------------------------
+
+    def inverse_dynamics(self, motion: Solution, actuators: Sequence[str]) -> ActuatedMotion:
+        """Efforts of ``actuators`` that make a known motion, and the reactions under them.
+
+        ``motion`` comes from sweep() or simulate(). ``actuators`` are names of drivers, torques, forces or actuators;
+        the other drivers only gave the motion its shape and carry nothing. With more actuators than degrees of
+        freedom the efforts share with the least norm. Raises MobilityError where the actuators cannot make the motion.
+        """
+        from mbsd.analyses.efforts import inverse_dynamics
+
+        return inverse_dynamics(self, motion, actuators)
+
+    def with_efforts(self, **efforts: Amount | None) -> Mechanism:
+        """A copy moved by efforts: each named driver lets go and gives this effort instead of imposing its law.
+
+        An effort is a number, a law of time (``table(sol.t, sol.driver("motor").effort)``) or a function, in N or
+        N m; None leaves the driver or force out. Torques, forces and actuators are given another law alike.
+        """
+        from mbsd.analyses.efforts import with_efforts
+
+        return with_efforts(self, efforts)
+
+    # -- pictures -----------------------------------------------------------------------------------------------
+
+    def draw(self, ax: Axes | None = None, frames: bool = True, names: bool = True) -> Picture:
+        """The skeleton at the start, with joints by their standard symbols, into ``ax`` or a figure of its own.
+
+        ``frames`` shows the bodies' axes (x red, y green). Links that do not close are shown where they were put.
+        A notebook shows the result, ``.save(path)`` writes it. Needs the extra ``draw``.
+        """
+        from mbsd.drawing.pose import start_pose
+        from mbsd.drawing.skeleton import draw
+
+        return draw(self, start_pose(self), ax, frames, names)
+
+    def topology(self) -> Svg:
+        """Bodies and joints as a diagram, redundant joints in red; a notebook shows it, ``.save(path)`` writes SVG."""
+        from mbsd.drawing.topology.topology import topology
+
+        return topology(self)
+
+    # -- files --------------------------------------------------------------------------------------------------
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the model as JSON (docs/schema/model.schema.json), whole, the same bytes for the same model.
+
+        Raises ModelError for what a file cannot hold, a Python function, and when it cannot be written.
+        """
+        from mbsd.saving.file import save
+
+        save(self, path)
+
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> Mechanism:
+        """The model that :meth:`save` wrote. Raises ModelError naming the file, the field and the remedy."""
+        from mbsd.saving.file import load
+
+        return load(path)
+
+    def __repr__(self) -> str:
+        bodies, joints, drivers = len(self.bodies) - 1, len(self.joints), len(self.drivers)
+        return f"<Mechanism {self.name}: {bodies} bodies, {joints} joints, {drivers} drivers>"

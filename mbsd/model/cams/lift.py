@@ -1,0 +1,174 @@
+"""Lift of a follower over the cam's angle: segments of rises, falls and dwells, or a periodic table.
+
+A lift is a length (m) for a translating follower, an angle (rad) for an oscillating one. Derivatives are by the cam's
+angle: multiply by omega, omega^2, omega^3 for those by time at constant speed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from mbsd.base.arguments import finite_number, number_array
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
+from mbsd.base.shown import shown
+from mbsd.model.cams.rises import INNER, RISES
+
+TURN = 2 * math.pi
+PIECES = 720
+"""Quintic pieces of a whole turn, about."""
+RISE_PIECES = 288
+"""Of a rise or fall, however narrow: a quintic piece of width h misses s'' by s^(6) h^4 / 1920, here by less than
+3e-9 of the peak of each law."""
+LEAST_ROWS = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Lift:
+    """Lift over one turn of the cam. Made by :meth:`of` or :meth:`table`."""
+
+    segments: tuple[tuple[float, float, str], ...] = ()
+    """Width (rad), height at its end (m or rad), and rise of each segment."""
+    start: float = 0.0
+    """Height at cam angle 0."""
+    angles: tuple[float, ...] = ()
+    heights: tuple[float, ...] = ()
+    """Of a table."""
+
+    @staticmethod
+    def of(*segments: Sequence[Any], start: float = 0.0) -> Lift:
+        """Segments (width in rad, height at the end, rise), one after the other; of a dwell only the first two.
+
+        The widths add up to a turn and the last height is ``start``. Raises ModelError otherwise.
+        """
+        start = finite_number("lift: start", start)
+        rows, height = [], start
+        for k, segment in enumerate(segments):
+            if not isinstance(segment, list | tuple) or len(segment) not in (2, 3):
+                raise ModelError(f"lift: segment {k} is {shown(segment)}; give (width, height at its end, rise)")
+            width, end = (finite_number(f"lift: segment {k}", value) for value in segment[:2])
+            rise = segment[2] if len(segment) == 3 else "cycloidal"
+            if width <= 0:
+                raise ModelError(f"lift: segment {k} has width {width:g} rad; it must be positive")
+            if not isinstance(rise, str) or rise not in RISES:
+                raise ModelError(f"lift: segment {k}: {no_such('rise', rise, RISES)}")
+            if len(segment) == 2 and end != height:
+                raise ModelError(f"lift: segment {k} ends at {end:g}, not at {height:g}; name its rise")
+            rows.append((width, end, rise))
+            height = end
+        turn = sum(row[0] for row in rows)
+        if abs(turn - TURN) > 1e-9:
+            raise ModelError(f"lift: the segments add up to {math.degrees(turn):.6g} degrees, not to 360; add a dwell")
+        if height != start:
+            raise ModelError(f"lift: the last segment ends at {height:g}, the first begins at {start:g}; let it return")
+        return Lift(segments=tuple(rows), start=start)
+
+    @staticmethod
+    def table(angles: Sequence[float] | np.ndarray, heights: Sequence[float] | np.ndarray) -> Lift:
+        """A periodic quintic spline through heights at rising cam angles (rad), eight rows or more within one turn."""
+        theta, s = number_array("lift: angles", angles), number_array("lift: heights", heights)
+        if theta.ndim != 1 or theta.shape != s.shape or len(theta) < LEAST_ROWS:
+            raise ModelError(
+                f"lift: angles {theta.shape} and heights {s.shape} must be two lists of {LEAST_ROWS} numbers or more"
+            )
+        if abs(theta[-1] - theta[0] - TURN) < 1e-9:
+            if abs(s[-1] - s[0]) > 1e-12 * max(1.0, float(np.abs(s).max())):
+                raise ModelError(f"lift: after a turn the height is {s[-1]:g}, not {s[0]:g} as at its begin")
+            theta, s = theta[:-1], s[:-1]
+        if not (np.diff(theta) > 0).all() or not theta[-1] - theta[0] < TURN:
+            raise ModelError("lift: angles must rise within one turn; they are in rad")
+        return Lift(angles=tuple(theta.tolist()), heights=tuple(s.tolist()))
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """Plain data, from which :meth:`from_data` makes the same lift."""
+        if self.angles:
+            return {"angles": list(self.angles), "heights": list(self.heights)}
+        return {"segments": [list(segment) for segment in self.segments], "start": self.start}
+
+    @staticmethod
+    def from_data(data: Mapping[str, Any]) -> Lift:
+        """The lift of plain data."""
+        if isinstance(data, Mapping) and set(data) == {"angles", "heights"}:
+            return Lift.table(data["angles"], data["heights"])
+        if not isinstance(data, Mapping) or set(data) != {"segments", "start"}:
+            raise ModelError(f"lift: {shown(data)} is no lift; it must hold angles and heights, or segments and start")
+        segments = data["segments"]
+        if not isinstance(segments, list | tuple):
+            raise ModelError(f"lift: segments are {shown(segments)}; give a list of (width, height at its end, rise)")
+        return Lift.of(*segments, start=data["start"])
+
+    def __call__(self, angles: np.ndarray) -> np.ndarray:
+        """(T,) cam angles (rad) to (T, 4): lift and three derivatives by the angle."""
+        angles = np.atleast_1d(number_array("lift: angles", angles))
+        if self.angles:
+            first = self.angles[0]
+            inside = first + np.mod(angles - first, TURN)
+            return np.stack([self._spline(inside, order) for order in range(4)], axis=1)
+        inside = np.mod(angles, TURN)
+        edges = self.edges
+        segment = np.clip(np.searchsorted(edges, inside, side="right") - 1, 0, len(self.segments) - 1)
+        out = np.zeros((len(angles), 4))
+        for k in range(len(self.segments)):
+            mine = segment == k
+            out[mine] = self._within(k, inside[mine])
+        return out
+
+    @property
+    def edges(self) -> np.ndarray:
+        """Cam angles (rad) where segments begin, and the last ends; of a table one turn."""
+        if self.angles:
+            return np.array([self.angles[0], self.angles[0] + TURN])
+        return np.concatenate([[0.0], np.cumsum([segment[0] for segment in self.segments])])
+
+    def pieces(self) -> tuple[np.ndarray, np.ndarray]:
+        """Breaks (p + 1,) over one turn, and (p, 2, 4) lift and derivatives at both ends of each piece.
+
+        Both ends belong to the same segment, so that a jump of acceleration between segments stays a jump. Nodes stand
+        where the arcs of a rise join, and at the rows of a table.
+        """
+        breaks, ends = [], []
+        edges = self.edges
+        for k, (a, b) in enumerate(pairwise(edges)):
+            nodes = self._nodes(k, a, b)
+            values = self(nodes) if self.angles else self._within(k, nodes)
+            if self.angles:
+                values[-1] = values[0]
+            breaks.append(nodes[:-1])
+            ends.append(np.stack([values[:-1], values[1:]], axis=1))
+        return np.append(np.concatenate(breaks), edges[-1]), np.concatenate(ends)
+
+    def _nodes(self, k: int, a: float, b: float) -> np.ndarray:
+        """Cam angles from a to b that cut segment k, or a table, into pieces; arcs that join within it are nodes."""
+        if self.angles:
+            arcs, count = np.append(self.angles, b), PIECES
+        else:
+            _, end, rise = self.segments[k]
+            moves = end != (self.segments[k - 1][1] if k else self.start)
+            arcs = a + (b - a) * np.array([0.0, *(INNER.get(rise, ()) if moves else ()), 1.0])
+            count = max(RISE_PIECES if moves else 8, math.ceil(PIECES * (b - a) / TURN))
+        parts = np.maximum(1, np.ceil(count * np.diff(arcs) / (b - a) * (1 - 1e-12))).astype(int)
+        inner = [np.linspace(c, d, n, endpoint=False) for (c, d), n in zip(pairwise(arcs), parts, strict=True)]
+        return np.append(np.concatenate(inner), b)
+
+    def _within(self, k: int, angles: np.ndarray) -> np.ndarray:
+        width, end, rise = self.segments[k]
+        begin = self.segments[k - 1][1] if k else self.start
+        u = np.clip((angles - self.edges[k]) / width, 0.0, 1.0)
+        out = (end - begin) * RISES[rise](u) / width ** np.arange(4)
+        out[:, 0] += begin
+        return out
+
+    @cached_property
+    def _spline(self) -> Any:
+        from scipy.interpolate import make_interp_spline
+
+        theta = np.array([*self.angles, self.angles[0] + TURN])
+        return make_interp_spline(theta, np.array([*self.heights, self.heights[0]]), k=5, bc_type="periodic")

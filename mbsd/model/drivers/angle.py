@@ -1,0 +1,21 @@
+"""Angle driver: imposes the absolute angle of a body, the same as its angle against ground.
+
+    Phi = theta_j - f(t)        constraint `angle`, 1 row; nu = f', gamma = f''
+
+Effort: the torque the driver gives to the body.
+"""
+
+from __future__ import annotations
+
+from mbsd.model.joints.kind import JointKind, register
+from mbsd.model.laws import harmonic
+
+DRIVE_ANGLE = register(
+    JointKind(
+        "drive_angle",
+        ("angle",),
+        example=lambda m, i, j: m.drive_angle("example", j.body, harmonic(0.3, 1.7, 0.2, 0.9)),
+        driven=True,
+        units=("N m", "rad"),
+    )
+)

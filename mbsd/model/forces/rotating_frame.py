@@ -1,0 +1,46 @@
+"""Forces of a turning frame: ground turns about a point at a rate W(t), and every body feels it.
+
+    F = m (W^2 d - 2 W k x v - W' k x d)       at the centre of mass: centrifugal, Coriolis, Euler
+    T = -I W'                                  d: centre of mass from the centre of turning, v its velocity on ground
+
+At a constant rate the potential energy is -W^2 sum m d^2 / 2; a law of time does work instead.
+Places, velocities and joints of ground are all those on the turning frame. Gravity keeps its direction there; turn it
+off or write it as a law where the plane is upright. Source: Goldstein, Classical Mechanics, ch. 4.10.
+"""
+
+from __future__ import annotations
+
+from mbsd.model.body import Body, Marker
+from mbsd.model.forces.kind import ForceKind, Interaction, register
+from mbsd.model.laws.harmonic import harmonic
+
+
+def _interactions(force, masses):
+    law = "rate" if "rate" in force.laws else None
+    return [
+        Interaction(
+            "rotating_frame",
+            force.i,
+            Marker(Body(name), *masses.com[b]),
+            (masses.mass[b], masses.inertia[b], force.params.get("rate", 0.0)),
+            law,
+        )
+        for b, name in enumerate(masses.names)
+        if b > 0
+    ]
+
+
+def _potential(force, masses, q):
+    place = q.reshape(len(q), -1, 3)[..., :2] - force.params["centre"]
+    return -0.5 * force.params.get("rate", 0.0) ** 2 * (masses.mass * (place**2).sum(axis=-1)).sum(axis=-1)
+
+
+ROTATING_FRAME = register(
+    ForceKind(
+        "rotating_frame",
+        interactions=_interactions,
+        potential=_potential,
+        outside=True,
+        example=lambda m, i, j: m.rotating_frame("example", harmonic(2.0, 3.0), (0.3, -0.4)),
+    )
+)

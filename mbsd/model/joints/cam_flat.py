@@ -1,0 +1,24 @@
+"""Cam and flat face: a straight face (the x axis of marker j) touches the cam's outline (marker i its frame).
+
+    Phi = (p_j - p_i) . n - h(phi)        constraint `support`, 1 row, n the face's normal, h the cam's support function
+
+The y axis of marker j points away from the cam. The follower may translate or oscillate; the cam's profile must be made
+for it. Contact is kept from both sides. The reaction on body j is the contact force along n, and its torque.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.model.joints.kind import JointKind, cam_numbers, register
+
+_LIFT = {"segments": [[math.pi, 0.2, "cycloidal"], [math.pi, 0.0, "3-4-5"]], "start": 0.0}
+
+CAM_FLAT = register(
+    JointKind(
+        "cam_flat",
+        ("support",),
+        example=lambda m, i, j: m.cam_flat("example", i, j, {"follower": "flat", "lift": _LIFT, "base_radius": 1.5}),
+        numbers=lambda params: [cam_numbers(params["profile"])],
+    )
+)

@@ -1,0 +1,29 @@
+"""Cam and roller: the roller's centre (marker j) stays on the pitch curve of the cam (marker i its frame).
+
+    Phi = n . (p_j - c(u))        constraint `curve`, 1 row, c the pitch curve
+
+The follower may translate (a guide) or oscillate (a pin); the cam's profile must be made for it. Contact is kept from
+both sides, as in a grooved cam. The reaction on body j is the contact force, along the common normal.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.model.joints.kind import JointKind, cam_numbers, register
+
+_LIFT = {"segments": [[math.pi, 0.5, "cycloidal"], [math.pi, 0.0, "3-4-5"]], "start": 0.0}
+
+CAM_ROLLER = register(
+    JointKind(
+        "cam_roller",
+        ("curve",),
+        example=lambda m, i, j: m.cam_roller(
+            "example",
+            i,
+            j,
+            {"follower": "roller", "lift": _LIFT, "base_radius": 1.5, "roller_radius": 0.3, "offset": 0.1},
+        ),
+        numbers=lambda params: [cam_numbers(params["profile"])],
+    )
+)

@@ -1,0 +1,43 @@
+"""Geneva: a pin on the crank i indexes the slotted wheel j and locks it in between.
+
+    driven   Phi = a - (direction of the pin as seen from the wheel)     constraint `geneva`, 1 row
+    dwell    Phi = a - (direction of the crank as seen from the wheel) - pi / n
+
+both up to whole slot pitches 2 pi / n. Marker i is the crank's centre with its x axis through the pin, marker j the
+wheel's centre with its x axis along a slot; pins hold both centres. Position and velocity are smooth; acceleration
+jumps where the pin enters and leaves. The pin's circle must meet the slots along them: radius = distance sin(pi / n).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from mbsd.model.joints.kind import JointKind, register
+
+ENTRY = 1e-6
+"""Part of the centre distance by which the pin's radius may be off."""
+
+
+def _problem(params: Mapping[str, Any], x: float, y: float) -> str | None:
+    distance = math.hypot(x, y)
+    wanted = distance * math.sin(math.pi / params["slots"])
+    if abs(wanted - params["radius"]) <= ENTRY * distance:
+        return None
+    return (
+        f"the pin would hit the slots: with {params['slots']} slots and centres {distance:.6g} m apart its radius must "
+        f"be distance sin(pi / slots) = {wanted:.6g} m, not {params['radius']:.6g}"
+    )
+
+
+GENEVA = register(
+    JointKind(
+        "geneva",
+        ("geneva",),
+        example=lambda m, i, j: m.geneva("example", i, j, slots=5, radius=0.3),
+        numbers=lambda params: [(params["slots"], params["radius"])],
+        problem=_problem,
+        lengths=("radius",),
+    )
+)

@@ -1,0 +1,47 @@
+"""Point on curve: the point of marker j lies on a smooth curve fixed to marker i, or beside it at a fixed distance.
+
+    Phi = n . (p_j - c(u)) - D        constraint `curve`, 1 row, c(u) the curve's point nearest to p_j
+
+The curve is a quintic spline through points in the axes of marker i. D > 0 is on its left: the centre of a roller or a
+disc of radius D that slides. The reaction on body j is a force across the curve. Where the curve crosses itself, a
+simulation goes on along the branch the point is on (mbsd/arrays/curve_branches.py), and a sweep that may have left it
+is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from mbsd.model.joints.kind import JointKind, register
+
+if TYPE_CHECKING:
+    import numpy as np
+
+
+def _numbers(params: Mapping[str, Any]) -> list[np.ndarray]:
+    import numpy as np
+
+    from mbsd.model.plane_curves import curve_numbers, curve_pieces, farthest_step
+
+    closed, distance = params["closed"], params["distance"]
+    pieces = curve_pieces(np.array(params["points"], float), closed)
+    return [curve_numbers(*pieces, closed, distance, 0.0, farthest_step(*pieces, closed, distance))]
+
+
+POINT_ON_CURVE = register(
+    JointKind(
+        "point_on_curve",
+        ("curve",),
+        example=lambda m, i, j: m.point_on_curve(
+            "example",
+            i,
+            j,
+            [(3, 0.1), (1.6, 2.1), (-0.8, 2.8), (-2.9, 1.2), (-2.5, -1.3), (-0.4, -2.6), (1.9, -2)],
+            closed=True,
+            distance=-0.1,
+        ),
+        numbers=_numbers,
+        lengths=("points",),
+    )
+)

@@ -1,0 +1,63 @@
+"""What every motion law is: f, f', f'' as functions of time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.base.arguments import finite_number
+
+if TYPE_CHECKING:
+    from mbsd.model.laws.numbers import Compiled
+
+Times = np.ndarray
+
+
+def refuse_non_finite(law: str, **numbers: float) -> None:
+    """Raise ModelError naming the first that is no finite number."""
+    for name, value in numbers.items():
+        finite_number(f"{law}: {name}", value)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Base of the laws. ``period`` (s) is the time after which the motion repeats, or None."""
+
+    @property
+    def period(self) -> float | None:
+        """Time (s) of one turn or one swing; None if the law does not repeat."""
+        return None
+
+    def knots(self, first: float, last: float) -> np.ndarray:
+        """Rising times (s) in ``first`` .. ``last`` so close that the law does not turn back between two.
+
+        A sweep looks at them where several lie between two of its outputs. A law of which nothing is known is looked at
+        513 times.
+        """
+        return np.linspace(first, last, 513)
+
+    def over(self, first: float, last: float) -> Motion:
+        """The law made ready for times ``first`` .. ``last`` (s)."""
+        return self
+
+    def as_load(self, first: float, last: float) -> Motion:
+        """The law made ready for ``first`` .. ``last`` (s) as a force or torque, of which f alone counts."""
+        return self.over(first, last)
+
+    def compiled(self, first: float, last: float) -> Compiled:
+        """The law as kernels evaluate it over ``first`` .. ``last`` (s): quintic pieces unless the law knows better.
+
+        Raises ModelError where f or f' jumps, and where f' and f'' are not the derivatives of f.
+        """
+        from mbsd.model.laws.fitting.exact import exact_pieces
+        from mbsd.model.laws.fitting.look import look_times
+
+        last = last if last > first else first + 1.0
+        looks = look_times(first, last)
+        return exact_pieces(self, first, last, (), looks, self(looks)[:, 2])
+
+    def __call__(self, times: Times) -> np.ndarray:
+        """(T,) times to (T, 3): f, f', f''."""
+        raise NotImplementedError

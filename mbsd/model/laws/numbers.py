@@ -1,0 +1,84 @@
+"""Laws as numbers that kernels evaluate; the forms are those of mbsd/equations/laws.py."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from mbsd.base.codes import PERIODIC, PIECES, POLYNOMIAL, TANGENT
+
+Compiled = tuple[int, np.ndarray]
+"""Code and numbers of one law."""
+
+
+ZERO: Compiled = (POLYNOMIAL, np.zeros(1))
+
+
+def pieces(breaks: np.ndarray, coefficients: np.ndarray, periodic: bool = False) -> Compiled:
+    """Piecewise polynomials: breaks (p + 1,), coefficients (p, 6), lowest power of x - break first."""
+    rows = np.column_stack([breaks[:-1], coefficients])
+    return PIECES, np.concatenate([[len(rows), PERIODIC if periodic else TANGENT, breaks[-1]], rows.ravel()])
+
+
+def breaks_of(law: Compiled) -> np.ndarray:
+    """(p + 1,) rising breaks of pieces; none of another law."""
+    kind, numbers = law
+    return np.append(numbers[3::7], numbers[2]) if kind == PIECES else np.zeros(0)
+
+
+def hermite_pieces(x: np.ndarray, samples: np.ndarray, periodic: bool = False) -> Compiled:
+    """The quintic through value, first and second derivative, samples (p + 1, 3), at rising x (p + 1,)."""
+    return pieces(x, hermite_coefficients(np.diff(x), samples[:-1], samples[1:]), periodic)
+
+
+def hermite_coefficients(h: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """(p, 6) quintics over widths h (p,) from value and two derivatives (p, 3) at both ends, lowest power first."""
+    f, df, ddf = left.T
+    rise = right[:, 0] - f - h * df - h**2 * ddf / 2
+    return quintic_coefficients(h, left, rise, (right[:, 1] - df - h * ddf) * h, (right[:, 2] - ddf) * h**2)
+
+
+def quintic_coefficients(
+    h: np.ndarray, left: np.ndarray, rise: np.ndarray, slope: np.ndarray, bend: np.ndarray
+) -> np.ndarray:
+    """(p, 6) from what the right ends have beyond the parabola at the left: f, h f' and h^2 f'', each (p,)."""
+    c3, c4, c5 = 10 * rise - 4 * slope + bend / 2, -15 * rise + 7 * slope - bend, 6 * rise - 3 * slope + bend / 2
+    f, df, ddf = left.T
+    return np.column_stack([f, df, ddf / 2, c3 / h**3, c4 / h**4, c5 / h**5])
+
+
+def spline_pieces(spline: Any, periodic: bool = False) -> Compiled:
+    """A scipy BSpline of degree 5 or less, piece by piece."""
+    from scipy.interpolate import PPoly
+
+    poly = PPoly.from_spline(spline)
+    long_enough = np.flatnonzero(np.diff(poly.x) > 0)
+    coefficients = np.zeros((len(long_enough), 6))
+    coefficients[:, : len(poly.c)] = poly.c[::-1, long_enough].T
+    breaks = np.append(poly.x[long_enough], poly.x[long_enough[-1] + 1])
+    return pieces(breaks, coefficients, periodic)
+
+
+def evaluated(law: Compiled, x: np.ndarray) -> np.ndarray:
+    """(T, 3) value, first and second derivative of pieces or a polynomial at x (T,), to the bit as by kernels."""
+    kind, numbers = law
+    assert kind in (PIECES, POLYNOMIAL), "other laws evaluate themselves"
+    beyond = np.zeros(len(x))
+    if kind == POLYNOMIAL:
+        s, rows = x, np.broadcast_to(numbers, (len(x), len(numbers)))
+    else:
+        begin, end = numbers[3], numbers[2]
+        if numbers[1] == PERIODIC:
+            x = begin + (x - begin) % (end - begin)
+        inside = np.clip(x, begin, end)
+        beyond = x - inside
+        table = numbers[3:].reshape(-1, 7)
+        at = np.maximum(np.searchsorted(table[:, 0], inside, side="right") - 1, 0)
+        s, rows = inside - table[at, 0], table[at, 1:]
+    value, slope, bend = np.zeros((3, len(x)))
+    for c in range(rows.shape[1] - 1, -1, -1):
+        bend = bend * s + 2.0 * slope
+        slope = slope * s + value
+        value = value * s + rows[:, c]
+    return np.column_stack([value + slope * beyond, slope, np.where(beyond == 0.0, bend, 0.0)])

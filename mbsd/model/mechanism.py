@@ -1,0 +1,162 @@
+"""What a mechanism holds: named bodies, joints, drivers, traces and rough starts; bodies and shared checks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from mbsd.base.arguments import finite_number, number_pair
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
+from mbsd.base.shown import shown
+from mbsd.model.body import Body, Marker
+from mbsd.model.event import Event
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
+
+STANDARD_GRAVITY = (0.0, -9.80665)
+"""m/s^2, ISO 80000-3."""
+
+SHORTEST = 1e-12
+"""Below this (m) two places count as one; see mbsd/arrays/packing.py."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """Rough pose of a body at the start: angle (rad) and, if given, place of its frame (m)."""
+
+    angle: float
+    place: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class StartVelocity:
+    """Given velocity of a body at the start: rad/s and, if given, m/s of its frame."""
+
+    omega: float
+    place: tuple[float, float] | None = None
+
+
+@dataclass(eq=False)
+class Model:
+    """What a mechanism holds, and the checks that all its methods share. See :class:`mbsd.mechanism.Mechanism`."""
+
+    name: str
+    gravity: tuple[float, float] | None = STANDARD_GRAVITY
+    bodies: dict[str, Body] = field(default_factory=dict)
+    joints: dict[str, Joint] = field(default_factory=dict)
+    drivers: dict[str, Joint] = field(default_factory=dict)
+    forces: dict[str, Force] = field(default_factory=dict)
+    contacts: dict[str, Joint] = field(default_factory=dict)
+    events: dict[str, Event] = field(default_factory=dict)
+    traces: dict[str, Marker] = field(default_factory=dict)
+    starts: dict[str, Start] = field(default_factory=dict)
+    velocities: dict[str, StartVelocity] = field(default_factory=dict)
+
+    findings_told = False
+    """Whether suspicious units were told; see mbsd/analyses/suspicious_units.py."""
+
+    def __post_init__(self) -> None:
+        self._new_name(self.name, "mechanism")
+        self.bodies["ground"] = Body("ground", self.name)
+        self.ground.belong(self)
+        self.world_markers: tuple[tuple[Marker, tuple[float, float, float]], ...] = ()
+        """Markers that at_world placed, and where in the world (m, m, rad)."""
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if name == "name" and not isinstance(value, str):
+            raise ModelError(f"a mechanism needs a name, got {shown(value)}")
+        if name == "gravity":
+            value = number_pair(f"{self.name}: gravity (m/s^2)", (0.0, 0.0) if value is None else value)
+        super().__setattr__(name, value)
+
+    # -- bodies -------------------------------------------------------------------------------------------------
+
+    @property
+    def ground(self) -> Body:
+        """The frame that does not move."""
+        return self.bodies["ground"]
+
+    def body(
+        self, name: str, mass: float | None = None, com: Sequence[float] = (0.0, 0.0), inertia: float = 0.0
+    ) -> Body:
+        """Add a body. Without a mass it has none here; in a mechanism's folder it then gets that of its parts.
+
+        Raises ModelError on a name already used or an impossible mass.
+        """
+        self._new_name(name, "body", self.bodies)
+        known = 0.0 if mass is None else mass
+        body = self.bodies[name] = Body(name, self.name, known, com, inertia)  # pyright: ignore[reportArgumentType]
+        body.mass_given = mass is not None
+        body.belong(self)
+        return body
+
+    def bar(
+        self,
+        name: str,
+        length: float,
+        mass: float | None = None,
+        com: Sequence[float] | None = None,
+        inertia: float | None = None,
+    ) -> Body:
+        """Add a bar from ``start`` (0, 0) to ``end`` (length, 0).
+
+        With a mass and nothing else it is a uniform slender rod: com at the middle, inertia m l^2 / 12.
+        """
+        length = self._length(f"bar '{name}' has length", length)
+        com = (length / 2, 0.0) if com is None else com
+        mass = None if mass is None else self._number(f"mass of body '{name}'", mass)
+        inertia = (mass or 0.0) * length**2 / 12 if inertia is None else inertia
+        body = self.body(name, mass, com, inertia)
+        body.length = length
+        return body
+
+    def set_mass(self, name: str, mass: float, com: Sequence[float], inertia: float) -> None:
+        """Set mass (kg), centre of mass (m, body frame) and inertia about it (kg m^2), as from CAD."""
+        body = self.known_body(name)
+        wanted = Body(name, self.name, mass, com, inertia)  # pyright: ignore[reportArgumentType]
+        body.mass, body.com, body.inertia = wanted.mass, wanted.com, wanted.inertia
+
+    def known_body(self, name: str) -> Body:
+        """The body of this name; raises ModelError with the known names."""
+        if not isinstance(name, str) or name not in self.bodies:
+            raise ModelError(f"{self.name}: {no_such('body', name, self.bodies)}")
+        return self.bodies[name]
+
+    def marker_in_world(self, body: Body, x: float, y: float, angle: float) -> Marker:
+        """See :meth:`mbsd.model.body.Body.at_world`; it takes the equations, which a Mechanism knows."""
+        raise ModelError(f"{self.name}: {body.name}.at_world needs a Mechanism")
+
+    # -- checks -------------------------------------------------------------------------------------------------
+
+    def _own_body(self, body: Body, what: str) -> None:
+        if not isinstance(body, Body):
+            raise ModelError(f"{self.name}: {what} needs a body, got {shown(body)}")
+        if self.bodies.get(body.name) is not body:
+            raise ModelError(f"{self.name}: {what} uses body '{body.name}' of another mechanism; take one of this one")
+
+    @property
+    def _connections(self) -> tuple[Mapping[str, object], ...]:
+        """What shares one set of names: whatever connects two bodies."""
+        return self.joints, self.drivers, self.forces, self.contacts
+
+    def _new_name(self, name: str, what: str, *taken: Mapping[str, object]) -> None:
+        if not isinstance(name, str) or not name or name != name.strip() or not name.isprintable():
+            where = "" if what == "mechanism" else f"{self.name}: "
+            raise ModelError(f"{where}a {what} needs a name without spaces around it, got {shown(name)}")
+        if any(name in names for names in taken):
+            raise ModelError(f"{self.name}: there are two of the name '{name}'; the {what} needs another")
+
+    def _length(self, what: str, value: object) -> float:
+        """A length (m) that is above zero, and no smaller than what counts as a length."""
+        length = self._number(what, value)
+        if length <= 0:
+            raise ModelError(f"{self.name}: {what} {length:g} m; it must be positive")
+        if length < SHORTEST:
+            raise ModelError(
+                f"{self.name}: {what} {length:g} m; it must be {SHORTEST:g} m or more: lengths are in metres"
+            )
+        return length
+
+    def _number(self, what: str, value: object) -> float:
+        return finite_number(f"{self.name}: {what}", value)

@@ -1,0 +1,1 @@
+"""Arrays in, names out: what a motion was."""

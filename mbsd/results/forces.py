@@ -1,0 +1,349 @@
+"""What a force did along a motion: its wrench on each of its bodies, where it acts, what it measures, its power.
+
+    effort > 0 makes the measured value grow: it pushes points apart, turns the second body counter-clockwise,
+    pushes along the axis, opens the gap;  power = effort * rate where the force is nothing but its effort
+
+The wrenches are the generalised forces of the compiled loops themselves, moved from the centres of mass to the points
+of action. A pair of bodies feels the same force with opposite signs at one point, or on one line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.arrays.laws import compiled_laws
+from mbsd.arrays.loads import pack_loads
+from mbsd.arrays.reactions import marker_axes, marker_places, relative_velocity
+from mbsd.base.codes import AXIS, LINE, PUSH, TURN
+from mbsd.base.errors import ModelError
+from mbsd.equations.loads import tabulate_loads
+from mbsd.model.forces.kind import Element
+from mbsd.results.energy import potential_of
+from mbsd.results.friction import friction_view
+from mbsd.results.measured import measured
+from mbsd.results.surface import foot_of
+
+if TYPE_CHECKING:
+    from mbsd.arrays.packing import Packed
+    from mbsd.model.body import Marker
+    from mbsd.model.force import Force
+
+UNITS: Mapping[str, str] = {"length": "m", "angle": "rad", "coordinate": "m", "gap": "m"}
+"""Of what a force may measure."""
+MEASURES = {LINE: "length", TURN: "angle", AXIS: "coordinate"}
+
+
+@dataclass(frozen=True)
+class Action:
+    """What a force does to one body, (T,) arrays: N along the world's axes, N m about the point (m)."""
+
+    body: str
+    x: np.ndarray
+    y: np.ndarray
+    fx: np.ndarray
+    fy: np.ndarray
+    torque: np.ndarray
+
+    @property
+    def force(self) -> np.ndarray:
+        """(T, 2) N."""
+        return np.stack([self.fx, self.fy], axis=-1)
+
+    @property
+    def magnitude(self) -> np.ndarray:
+        """(T,) of the force (N), never negative."""
+        return np.hypot(self.fx, self.fy)
+
+
+@dataclass(frozen=True)
+class ForceView:
+    """A force along a motion, (T, ...) arrays; x, y, fx, fy, force, torque and magnitude are those on the second body.
+
+    A load from outside acts on one body, which is the second. One that acts on several bodies (a user's function, a
+    rotating frame) has no second body: ask ``on(body)``.
+    """
+
+    name: str
+    kind: str
+    bodies: tuple[str, ...]
+    """That feel it: first and second of a pair, else those on which it acts."""
+    points: np.ndarray
+    """(T, bodies, 2) where it acts on each (m, world)."""
+    wrenches: np.ndarray
+    """(T, bodies, 3) fx, fy (N, world axes) and torque (N m) about the point, on each."""
+    power: np.ndarray
+    """(T,) what it gives to the motion (W); negative where it takes."""
+    potential: np.ndarray
+    """(T,) potential energy (J) that it holds; 0 of a force without."""
+    measures: str | None
+    """``length``, ``angle`` (second body against first), ``coordinate`` (along the x axis of marker i), ``gap`` (of a
+    contact or tyre, negative where pressed in), or None: there is no one such value."""
+    value: np.ndarray | None
+    """(T,) what it measures (m or rad); None where ``measures`` is None."""
+    rate: np.ndarray | None
+    """(T,) of the value (m/s or rad/s); of a load in one direction the speed of its point that way; else None."""
+    effort: np.ndarray | None
+    """(T,) its size with a sign (N or N m): positive where it makes the value grow, or acts in its direction; of a
+    contact or tyre the normal force, without friction. None where neither value nor direction is one."""
+    several: bool = False
+    """Whether it acts on several bodies, none of which is the second."""
+
+    def on(self, body: str) -> Action:
+        """What it does to the body of this name. Raises ModelError for one that does not feel it."""
+        if body not in self.bodies:
+            raise ModelError(f"force '{self.name}' does not act on '{body}'; it acts on: {', '.join(self.bodies)}")
+        return self._action(self.bodies.index(body))
+
+    @property
+    def second(self) -> Action:
+        """What it does to the second body. Raises ModelError for one without."""
+        if self.several:
+            raise ModelError(
+                f"force '{self.name}' ({self.kind}) acts on {', '.join(self.bodies)} and has no second body; "
+                f"ask sol.force('{self.name}').on(body)"
+            )
+        return self._action(len(self.bodies) - 1)
+
+    @property
+    def x(self) -> np.ndarray:
+        """(T,) of its point on the second body (m)."""
+        return self.second.x
+
+    @property
+    def y(self) -> np.ndarray:
+        """(T,) of its point on the second body (m)."""
+        return self.second.y
+
+    @property
+    def fx(self) -> np.ndarray:
+        """(T,) on the second body (N)."""
+        return self.second.fx
+
+    @property
+    def fy(self) -> np.ndarray:
+        """(T,) on the second body (N)."""
+        return self.second.fy
+
+    @property
+    def force(self) -> np.ndarray:
+        """(T, 2) on the second body, world axes (N)."""
+        return self.second.force
+
+    @property
+    def torque(self) -> np.ndarray:
+        """(T,) on the second body about (x, y) (N m)."""
+        return self.second.torque
+
+    @property
+    def magnitude(self) -> np.ndarray:
+        """(T,) of the force (N), never negative; the sign is that of ``effort``."""
+        return self.second.magnitude
+
+    @property
+    def length(self) -> np.ndarray:
+        """(T,) distance of its points (m). Raises ModelError for a force that measures another value or none."""
+        return self._measured("length")
+
+    @property
+    def angle(self) -> np.ndarray:
+        """(T,) of the second body against the first (rad). Raises ModelError as ``length`` does."""
+        return self._measured("angle")
+
+    @property
+    def coordinate(self) -> np.ndarray:
+        """(T,) of marker j along the x axis of marker i (m). Raises ModelError as ``length`` does."""
+        return self._measured("coordinate")
+
+    @property
+    def gap(self) -> np.ndarray:
+        """(T,) between disc and surface (m), negative where pressed in. Raises ModelError as ``length`` does."""
+        return self._measured("gap")
+
+    def columns(self, title: str) -> dict[str, np.ndarray]:
+        """Its results as (T,) arrays named with units, ``spring.fx [N]``; of several bodies ``wind on cart.fx [N]``."""
+        out: dict[str, np.ndarray] = {}
+        if self.measures is not None and self.value is not None:
+            out[f"{title}.{self.measures} [{UNITS[self.measures]}]"] = self.value
+        if self.effort is not None:
+            out[f"{title}.effort [{'N m' if self.measures == 'angle' else 'N'}]"] = self.effort
+        for action in [self.on(body) for body in self.bodies] if self.several else [self.second]:
+            whole = f"{title} on {action.body}" if self.several else title
+            out |= {f"{whole}.fx [N]": action.fx, f"{whole}.fy [N]": action.fy, f"{whole}.torque [N m]": action.torque}
+        return out | {f"{title}.power [W]": self.power}
+
+    def _action(self, k: int) -> Action:
+        point, wrench = self.points[..., k, :], self.wrenches[..., k, :]
+        return Action(self.bodies[k], point[..., 0], point[..., 1], wrench[..., 0], wrench[..., 1], wrench[..., 2])
+
+    def _measured(self, what: str) -> np.ndarray:
+        if self.measures != what or self.value is None:
+            has = f"has {_article(self.measures)}" if self.measures else "measures no one value"
+            raise ModelError(f"force '{self.name}' ({self.kind}) {has}, not {_article(what)}")
+        return self.value
+
+
+def _article(what: str) -> str:
+    return f"an {what}" if what[0] in "aeiou" else f"a {what}"
+
+
+@dataclass(frozen=True)
+class Moved:
+    """What a view is made from: a motion of T times, and what was found together with it."""
+
+    packed: Packed
+    t: np.ndarray
+    q: np.ndarray
+    """(T, 3 nb)"""
+    v: np.ndarray
+    lam: np.ndarray
+    """(T, m)"""
+    held: np.ndarray | None
+    """(T, m) rows that held; None: all."""
+    span: tuple[float, float]
+    """Times (s) over which the run prepared its laws."""
+
+
+def force_view(moved: Moved, name: str, effort: np.ndarray | None = None) -> ForceView:
+    """Of the force ``name``; ``effort`` (T,) replaces what its own law says. Raises ModelError for a failing law."""
+    packed = moved.packed
+    k = [force.name for force in packed.forces].index(name)
+    force, markers = packed.forces[k], (int(packed.force_markers[k, 0]), int(packed.force_markers[k, 1]))
+    way = _way(moved, force, *markers)
+    if force.kind.of_reactions:
+        effort = friction_view(packed, name, moved.q, moved.v, moved.lam, moved.held).force
+    if effort is None:
+        load, power = _loads(moved, k)
+        places = _places(moved, force, *markers)
+        wrenches = np.stack([_wrench(load, moved.q, b, point) for b, point in places], axis=1)
+        effort = None if way is None else way.effort(wrenches[:, -1])
+    else:
+        assert way is not None, "friction and efforts have one direction"
+        assert way.rate is not None
+        places, power = _places(moved, force, *markers), effort * way.rate
+        wrenches = np.stack([sign * way.wrench(effort) for sign in (-1.0, 1.0)][-len(places) :], axis=1)
+    return ForceView(
+        name=name,
+        kind=force.kind.name,
+        bodies=tuple(packed.body_names[b] for b, _point in places),
+        points=np.stack([point for _b, point in places], axis=1),
+        wrenches=wrenches,
+        power=power,
+        potential=potential_of(packed, force, moved.q),
+        measures=None if way is None else way.measures,
+        value=None if way is None else way.value,
+        rate=None if way is None else way.rate,
+        effort=effort,
+        several=force.kind.outside and len(places) > 1,
+    )
+
+
+@dataclass(frozen=True)
+class _Way:
+    """The one direction of a force: a unit vector on its second body, or its turning."""
+
+    measures: str | None
+    value: np.ndarray | None
+    rate: np.ndarray
+    unit: np.ndarray | None
+    """(T, 2); None: it turns."""
+
+    def effort(self, wrench: np.ndarray) -> np.ndarray:
+        """(T,) of a wrench (T, 3) on the second body."""
+        return wrench[:, 2].copy() if self.unit is None else (wrench[:, :2] * self.unit).sum(axis=1)
+
+    def wrench(self, effort: np.ndarray) -> np.ndarray:
+        """(T, 3) on the second body, of an effort (T,)."""
+        out = np.zeros((len(effort), 3))
+        if self.unit is None:
+            out[:, 2] = effort
+        else:
+            out[:, :2] = effort[:, None] * self.unit
+        return out
+
+
+def _way(moved: Moved, force: Force, i: int, j: int) -> _Way | None:
+    """None where several elements, or none, make up the force."""
+    packed, q, v = moved.packed, moved.q, moved.v
+    if force.kind.surface is not None:
+        foot = foot_of(packed, force, q)
+        return _Way("gap", foot.gap, (foot.normal * relative_velocity(packed, q, v, i, j)).sum(axis=1), foot.normal)
+    elements = _elements(packed, force)
+    if len(elements) != 1:
+        return None
+    [element] = elements
+    if element.kind == TURN:
+        bi, bj = 3 * packed.system.marker_body[[i, j]]
+        return _Way("angle", measured(packed, element, i, j, q), v[:, bj + 2] - v[:, bi + 2], None)
+    speed = relative_velocity(packed, q, v, None if element.kind == PUSH else i, j)
+    if element.kind == LINE:
+        gap = marker_places(packed, q, j) - marker_places(packed, q, i)
+        length = np.hypot(*gap.T)[:, None]
+        unit = np.divide(gap, length, out=np.zeros_like(gap), where=length > 0.0)
+    else:
+        unit = marker_axes(packed, q, i, element.turned)
+    value = None if element.kind == PUSH else measured(packed, element, i, j, q)
+    return _Way(MEASURES.get(element.kind), value, (unit * speed).sum(axis=1), unit)
+
+
+def _elements(packed: Packed, force: Force) -> tuple[Element, ...]:
+    """Those of a force; a friction has that along which its joint moves."""
+    if not force.kind.of_reactions:
+        return force.kind.elements(force)
+    [joint] = [joint for joint in packed.joints if joint.name == force.params["joint"]]
+    return (Element(TURN if joint.kind.name == "revolute" else AXIS, ()),)
+
+
+def _places(moved: Moved, force: Force, i: int, j: int) -> list[tuple[int, np.ndarray]]:
+    """Each body that feels the force, by number, and where (T, 2), world (m); the second body is the last."""
+    packed, q = moved.packed, moved.q
+    if "bodies" in force.params:
+        return [(b, _place(packed, q, b, (0.0, 0.0))) for b in map(packed.body_names.index, force.params["bodies"])]
+    others = [one.j for one in force.kind.interactions(force, packed.masses)]
+    if force.kind.outside and others:
+        return [(b, _place(packed, q, b, (one.x, one.y))) for one in others for b in [_number(packed, one)]]
+    bi, bj = (int(b) for b in packed.system.marker_body[[i, j]])
+    second = marker_places(packed, q, j)
+    if force.kind.outside:
+        return [(bj, second)]
+    if force.kind.surface is not None:
+        foot = foot_of(packed, force, q).place
+        return [(bi, foot), (bj, foot)]
+    elements = _elements(packed, force)
+    on_line = bool(elements) and all(element.kind in (LINE, TURN) for element in elements)
+    return [(bi, marker_places(packed, q, i) if on_line else second), (bj, second)]
+
+
+def _number(packed: Packed, marker: Marker) -> int:
+    return packed.body_names.index(marker.body.name)
+
+
+def _place(packed: Packed, q: np.ndarray, b: int, place: tuple[float, float]) -> np.ndarray:
+    """(T, 2) of a place in the author's frame of body b."""
+    x, y = np.array(place) - packed.com[b]
+    c, s = np.cos(q[:, 3 * b + 2]), np.sin(q[:, 3 * b + 2])
+    return q[:, 3 * b : 3 * b + 2] + np.stack([c * x - s * y, s * x + c * y], axis=1)
+
+
+def _loads(moved: Moved, k: int) -> tuple[np.ndarray, np.ndarray]:
+    """(T, 3 nb) generalised forces of force number k alone, those on ground too, and its power (T,)."""
+    packed = moved.packed
+    alone = replace(packed, forces=[packed.forces[k]], force_markers=packed.force_markers[k : k + 1], motions=[])
+    loads, laws = pack_loads(alone), compiled_laws(alone, *moved.span)
+    load, power = np.zeros_like(moved.q), np.zeros(len(moved.t))
+    none = np.zeros(0, np.int64)  # loads look at no markers
+    system = packed.system._replace(moving=none, directed=none)
+    tabulate_loads(system, loads, laws, moved.t, moved.q, moved.v, packed.ws, load, power)
+    packed.specials.check()
+    return load, power
+
+
+def _wrench(load: np.ndarray, q: np.ndarray, b: int, point: np.ndarray) -> np.ndarray:
+    """(T, 3) of body b, moved from its centre of mass to a point (T, 2)."""
+    out = load[:, 3 * b : 3 * b + 3].copy()
+    arm = point - q[:, 3 * b : 3 * b + 2]
+    out[:, 2] -= arm[:, 0] * out[:, 1] - arm[:, 1] * out[:, 0]
+    return out

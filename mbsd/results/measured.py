@@ -1,0 +1,22 @@
+"""The scalar that an element of a force measures between its markers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbsd.arrays.packing import Packed
+from mbsd.arrays.reactions import marker_axes, marker_places
+from mbsd.base.codes import AXIS, LINE, TURN
+from mbsd.model.forces.kind import Element
+
+
+def measured(packed: Packed, element: Element, i: int, j: int, q: np.ndarray) -> np.ndarray:
+    """(T,) the scalar x (m or rad) of an element between markers i and j along poses q (T, 3 nb)."""
+    bi, bj = packed.system.marker_body[i], packed.system.marker_body[j]
+    if element.kind == TURN:
+        return q[:, 3 * bj + 2] - q[:, 3 * bi + 2]
+    gap = marker_places(packed, q, j) - marker_places(packed, q, i)
+    if element.kind == LINE:
+        return np.hypot(gap[:, 0], gap[:, 1])
+    assert element.kind == AXIS, "a push measures nothing"
+    return (marker_axes(packed, q, i, element.turned) * gap).sum(axis=1)

@@ -1,0 +1,30 @@
+"""Mobility: what the joints of a mechanism leave free."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Mobility:
+    """What the joints leave free."""
+
+    nominal: int
+    """By counting rows."""
+    dof: int
+    """By rank."""
+    redundant_rows: int
+    """How many rows repeat others: the nominal count is wrong by this many."""
+    redundant: tuple[str, ...]
+    """Joints those rows belong to: one removable set."""
+    singular: bool
+    """The start pose has a lower rank than poses near it."""
+    free_bodies: tuple[str, ...]
+    """Bodies that can move."""
+
+    def __str__(self) -> str:
+        text = f"{self.dof} degree{'s' * (self.dof != 1)} of freedom ({self.nominal} nominal)"
+        if self.redundant:
+            rows = f"{self.redundant_rows} redundant row{'s' * (self.redundant_rows != 1)}"
+            text += f", {rows}, removable at {', '.join(self.redundant)}"
+        return text + (", start pose singular" if self.singular else "")

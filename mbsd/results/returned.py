@@ -1,0 +1,25 @@
+"""Whether a mechanism is back where it was, moving as it moved."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+RETURNED = 1e-7
+"""Largest difference between both ends of a period: m, rad and their rates, relative above 1."""
+
+
+Ends = tuple[tuple[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
+
+
+def returned(ends: Ends) -> bool:
+    """Whether poses, velocities and accelerations (nb, 3) of both ends are the same but for whole turns."""
+    first, last = ends
+    for order, (start, end) in enumerate(zip(first, last, strict=True)):
+        gap = end - start
+        if order == 0:
+            gap = gap - np.stack([0 * gap[:, 0], 0 * gap[:, 1], 2 * math.pi * np.round(gap[:, 2] / 2 / math.pi)], 1)
+        if np.abs(gap).max() > RETURNED * max(1.0, float(np.abs(start).max())):
+            return False
+    return True

@@ -1,0 +1,394 @@
+"""Results by name: arrays over time in the author's body frames, SI units.
+
+sol.t                              (T,) s
+sol.body("coupler").theta          also x, y, vx, vy, omega, ax, ay, alpha
+sol.joint("B").reaction            (T, 2) force on the joint's second body; fx, fy, torque, x, y, magnitude
+sol.driver("motor").torque         also effort, force, value, rate, power
+sol.force("spring").force          (T, 2) on its second body; torque, length, rate, effort, power and more
+sol.friction("rub").force          of joints, with normal and rate; sol.contact("floor").normal and more
+sol.point("P").x                   of traced points
+sol.energy.kinetic, .potential
+"""
+
+from __future__ import annotations
+
+import html
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.base.arguments import number_array
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
+from mbsd.base.shown import shown
+from mbsd.model.event import Happening
+from mbsd.results.columns import columns
+from mbsd.results.contacts import ContactView, contact_view
+from mbsd.results.energy import potential_of
+from mbsd.results.forces import ForceView, Moved, force_view
+from mbsd.results.friction import FrictionView, friction_view
+from mbsd.results.returned import returned
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.axes import Axes
+
+    from mbsd.arrays.packing import Packed
+    from mbsd.drawing.of_solution import Animation, Picture
+    from mbsd.model.body import Marker
+    from mbsd.model.mechanism import Model
+    from mbsd.results.mobility import Mobility
+
+
+@dataclass(frozen=True)
+class Stats:
+    """How well the motion fulfils its equations: largest residuals over all times and rows."""
+
+    position_residual: float
+    """|Phi| (m or rad)."""
+    velocity_residual: float
+    """|J v - nu| (m/s or rad/s)."""
+    acceleration_residual: float
+    """|J a - gamma| (m/s^2 or rad/s^2)."""
+    power_residual: float
+    """|d(T + V)/dt - power of the drivers| (W)."""
+    steps: int
+    inserted_steps: int
+    """Steps added between outputs to stay on the branch."""
+    independent: bool = False
+    """Whether a simulation was integrated in independent coordinates (mbsd/dynamics/embedding)."""
+
+
+@dataclass(frozen=True)
+class FrameView:
+    """Motion of a frame: (T,) arrays, m and rad by s."""
+
+    x: np.ndarray
+    y: np.ndarray
+    theta: np.ndarray
+    vx: np.ndarray
+    vy: np.ndarray
+    omega: np.ndarray
+    ax: np.ndarray
+    ay: np.ndarray
+    alpha: np.ndarray
+
+
+@dataclass(frozen=True)
+class JointView:
+    """A joint: place of its second marker (m) and what it does to its second body (N, N m), (T,) arrays."""
+
+    x: np.ndarray
+    y: np.ndarray
+    fx: np.ndarray
+    fy: np.ndarray
+    torque: np.ndarray
+
+    @property
+    def reaction(self) -> np.ndarray:
+        """(T, 2) force on the second body, world axes (N)."""
+        return np.stack([self.fx, self.fy], axis=-1)
+
+    @property
+    def magnitude(self) -> np.ndarray:
+        """(T,) of the force (N)."""
+        return np.hypot(self.fx, self.fy)
+
+
+@dataclass(frozen=True)
+class DriverView:
+    """A driver: imposed value and its rates (m or rad by s), effort (N or N m), power (W), (T,) arrays."""
+
+    name: str
+    angular: bool
+    value: np.ndarray
+    rate: np.ndarray
+    acceleration: np.ndarray
+    effort: np.ndarray
+
+    @property
+    def power(self) -> np.ndarray:
+        """(T,) effort times rate: what the driver puts into the mechanism."""
+        return self.effort * self.rate
+
+    @property
+    def torque(self) -> np.ndarray:
+        """(T,) the effort of an angle driver (N m)."""
+        if not self.angular:
+            raise ModelError(f"driver '{self.name}' imposes a length: it has a force, not a torque")
+        return self.effort
+
+    @property
+    def force(self) -> np.ndarray:
+        """(T,) the effort of a length driver (N)."""
+        if self.angular:
+            raise ModelError(f"driver '{self.name}' imposes an angle: it has a torque, not a force")
+        return self.effort
+
+
+@dataclass(frozen=True)
+class EnergyView:
+    """(T,) J."""
+
+    kinetic: np.ndarray
+    potential: np.ndarray
+
+    @property
+    def total(self) -> np.ndarray:
+        """(T,) J."""
+        return self.kinetic + self.potential
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """The motion of one mechanism. q, v, a hold centres of mass, (T, nb, 3); the views give the author's frames."""
+
+    mechanism: Model
+    packed: Packed
+    t: np.ndarray
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    wrench: np.ndarray
+    lam: np.ndarray
+    drives: np.ndarray
+    margin: np.ndarray | Callable[[], np.ndarray] = field(repr=False)
+    """``singularity_margin``, or what finds it when it is asked for."""
+    stats: Stats
+    mobility: Mobility
+    route: str = "integration"
+    """How positions were found: in closed form group by group, by Newton-Raphson, or by integration."""
+    work: np.ndarray | None = None
+    """(T,) of forces and drivers since the start (J), gravity left out, of a simulation."""
+
+    changes: tuple[str, ...] = ()
+    """What was changed of the given start of a simulation to make it consistent."""
+    events: tuple[Happening, ...] = ()
+    """What contacts, stops and events did during a simulation."""
+    held: np.ndarray | None = field(default=None, repr=False)
+    """(T, m) which rows of J held, of a simulation; None: all."""
+    span: tuple[float, float] | None = None
+    """Times (s) over which a simulation prepared the laws of its forces; None: those of ``t``."""
+    efforts: Mapping[str, np.ndarray] = field(default_factory=dict, repr=False)
+    """(T,) of forces that act by these instead of by their own laws (inverse dynamics)."""
+    between: Callable[[np.ndarray], Solution] | None = field(default=None, repr=False)
+    """Of a simulation: the motion at other times; see :meth:`at`."""
+
+    @cached_property
+    def singularity_margin(self) -> np.ndarray:
+        """(T,) smallest over largest singular value of the scaled Jacobian; 0 at a singular pose."""
+        return self.margin() if callable(self.margin) else self.margin
+
+    def at(self, times: float | Sequence[float] | np.ndarray) -> Solution:
+        """A simulation at any rising times (s) it covers, as exact as at its outputs: integrated from the last one.
+
+        At the time of an event it is the motion after it. Raises ModelError for a sweep and for times outside.
+        """
+        wanted = np.atleast_1d(number_array(f"{self.mechanism.name}: times", times))
+        if self.between is None:
+            raise ModelError(f"{self.mechanism.name}: only a simulation goes on to other times; sweep(times=...)")
+        if wanted.ndim != 1 or not len(wanted) or not (np.diff(wanted) > 0).all():
+            raise ModelError(f"{self.mechanism.name}: times must be rising numbers, got {shown(times)}")
+        if not (self.t[0] <= wanted[0] and wanted[-1] <= self.t[-1]):
+            raise ModelError(
+                f"{self.mechanism.name}: the simulation covers {self.t[0]:g} .. {self.t[-1]:g} s, "
+                f"not {wanted[0]:g} .. {wanted[-1]:g} s; simulate longer"
+            )
+        return self.between(wanted)
+
+    def contact(self, name: str) -> ContactView:
+        """Gap and forces of a contact, stop or rope of a simulation."""
+        rows = self.packed.contact_gaps()
+        self._index(name, list(rows), "contact of a simulation")
+        return contact_view(self.packed, rows[name], self.q, self.v, self.lam)
+
+    def friction(self, name: str) -> FrictionView:
+        """Friction of a joint, by the name that ``m.friction`` gave it."""
+        names = [force.name for force in self.packed.forces if force.kind.of_reactions]
+        self._index(name, names, "friction of a joint")
+        return friction_view(self.packed, name, self.q, self.v, self.lam, self.held)
+
+    def force(self, name: str) -> ForceView:
+        """What a force did: force, torque and point on each of its bodies, what it measures, its power.
+
+        Of every force of ``m.forces``: springs, contacts by penalty, friction, functions of the user. A contact
+        without give is ``contact(name)``, a joint ``joint(name)``. Raises ModelError where a user's function fails.
+        """
+        self._index(name, [force.name for force in self.packed.forces], "force")
+        flat_q, flat_v = (np.ascontiguousarray(part.reshape(len(self.t), -1)) for part in (self.q, self.v))
+        span = self.span or (float(self.t[0]), float(self.t[-1]))
+        moved = Moved(self.packed, self.t, flat_q, flat_v, self.lam, self.held, span)
+        return force_view(moved, name, self.efforts.get(name))
+
+    @property
+    def forces(self) -> dict[str, ForceView]:
+        """All forces by name, in the order they were added."""
+        return {force.name: self.force(force.name) for force in self.packed.forces}
+
+    def body(self, name: str) -> FrameView:
+        """Motion of a body's frame."""
+        return self._frame(self._index(name, self.packed.body_names, "body"), (0.0, 0.0))
+
+    def point(self, name: str) -> FrameView:
+        """Motion of a traced point (and of its marker's direction)."""
+        names = list(self.mechanism.traces)
+        self._index(name, names, "traced point")
+        marker = self.mechanism.traces[name]
+        return self._frame(self.packed.body_names.index(marker.body.name), (marker.x, marker.y), marker.angle)
+
+    def place(self, marker: Marker) -> FrameView:
+        """Motion of a marker of the mechanism, also of one that is not traced."""
+        self._index(marker.body.name, self.packed.body_names, "body")
+        return self._frame(self.packed.body_names.index(marker.body.name), (marker.x, marker.y), marker.angle)
+
+    def joint(self, name: str) -> JointView:
+        """Place and reaction of a joint."""
+        k = self._index(name, list(self.mechanism.joints), "joint")
+        marker = self.mechanism.joints[name].j
+        place = self._frame(self.packed.body_names.index(marker.body.name), (marker.x, marker.y))
+        fx, fy, torque = self.wrench[:, k].T
+        return JointView(place.x, place.y, fx, fy, torque)
+
+    def driver(self, name: str) -> DriverView:
+        """Value, effort and power of a driver."""
+        k = self._index(name, list(self.mechanism.drivers), "driver")
+        row = self.packed.driver_rows + k
+        value, rate, acceleration = self.drives[:, k + 1].T
+        angular = self.mechanism.drivers[name].kind.angular
+        return DriverView(name, angular, value, rate, acceleration, -self.lam[:, row])
+
+    @cached_property
+    def energy(self) -> EnergyView:
+        """Kinetic and potential energy of the whole mechanism, springs included; weight counts from the origin."""
+        mass, inertia, gravity = self.packed.system.mass, self.packed.system.inertia, self.packed.system.gravity
+        kinetic = 0.5 * (mass * (self.v[..., 0] ** 2 + self.v[..., 1] ** 2) + inertia * self.v[..., 2] ** 2).sum(axis=1)
+        potential = -(mass[:, None] * self.q[..., :2] @ gravity[:, None]).sum(axis=(1, 2))
+        for force in self.packed.forces:
+            potential = potential + potential_of(self.packed, force, self.q.reshape(len(self.t), -1))
+        return EnergyView(kinetic, potential)
+
+    @cached_property
+    def audit(self) -> np.ndarray | None:
+        """(T,) T + V - work of what has no potential (J), of a simulation: constant but for the integrator's error.
+
+        V holds gravity, springs and other forces with a potential; drivers, dampers and loads from outside do work.
+        """
+        if self.work is None:
+            return None
+        elastic = np.zeros(len(self.t))
+        for force in self.packed.forces:
+            elastic = elastic + potential_of(self.packed, force, self.q.reshape(len(self.t), -1))
+        return self.energy.total - (self.work + elastic - elastic[0])
+
+    @cached_property
+    def period(self) -> float | None:
+        """The time spanned (s) if pose, velocity and acceleration return to those of the start; else None."""
+        ends = ((part[0], part[-1]) for part in (self.q, self.v, self.a))
+        first, last = zip(*ends, strict=True)
+        if not returned((first, last)):
+            return None
+        return float(self.t[-1] - self.t[0])
+
+    def to_frame(self) -> pandas.DataFrame:
+        """All results as a pandas DataFrame indexed by time; columns name their units. Needs the extra ``pandas``."""
+        try:
+            import pandas
+        except ImportError as error:
+            raise ModelError("to_frame needs pandas: install mbsd[pandas]") from error
+        return pandas.DataFrame(self.columns(), index=pandas.Index(self.t, name="t [s]"))
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """All results as (T,) arrays, named ``coupler.theta [rad]``.
+
+        Where a trace, joint, driver or force has the name of something else, its columns say what it is:
+        ``joint A.fx [N]``.
+        """
+        return columns(self)
+
+    def draw(
+        self,
+        t: float | None = None,
+        step: int | None = None,
+        ax: Axes | None = None,
+        frames: bool = False,
+        names: bool = True,
+    ) -> Picture:
+        """The skeleton at time ``t`` (s, the nearest output) or at an output ``step``, with the paths of traced points.
+
+        See :meth:`mbsd.mechanism.Mechanism.draw`.
+        """
+        from mbsd.drawing.of_solution import draw_at
+
+        return draw_at(self, t, step, ax, frames, names)
+
+    def animate(
+        self,
+        path: str | os.PathLike[str],
+        show: str | Sequence[str] = "all",
+        rate: float | None = None,
+        fps: float = 30.0,
+        size: tuple[int, int] | None = None,
+        names: bool = True,
+        progress: Callable[[int, int], object] | None = None,
+    ) -> Animation:
+        """The moving skeleton as a film, MP4 or GIF by the path's ending; traced points leave trails.
+
+        ``show``: one or more of ``velocities``, ``accelerations``, ``forces``, ``reactions`` and ``energy`` over one
+        another, ``()`` for the machine alone, or ``"all"``: each in a picture of its own, side by side. Arrows have one
+        scale for the whole film, told by one of a round number. ``rate``: seconds of the motion in a second of the
+        film; by default real time, or a round part or multiple of it, told in the picture, where that would be too
+        short or too long to see. ``fps``: pictures a second; ``size``: pixels, (1280, 720) by default, (800, 450) of a
+        GIF. A motion that repeats (``period``) loops; others play once. ``progress`` is called with the number of
+        pictures drawn, and of all. Needs the extra ``animate``; raises ModelError for what cannot be drawn or written.
+        """
+        from mbsd.drawing.of_solution import animate
+
+        return animate(self, path, show, rate, fps, size, names, progress)
+
+    def __repr__(self) -> str:
+        return (
+            f"<Solution {self.mechanism.name}: {len(self.t)} times, t = {self.t[0]:g} .. {self.t[-1]:g} s, "
+            f"largest residual {self.stats.position_residual:.1e}>"
+        )
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (name, f"{view.min():.6g}", f"{view.max():.6g}")
+            for name, view in self.columns().items()
+            if not name.endswith((".ax [m/s^2]", ".ay [m/s^2]", ".vx [m/s]", ".vy [m/s]"))
+        ]
+        body = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in rows)
+        return (
+            f"<p><b>{html.escape(self.mechanism.name)}</b>: {html.escape(str(self.mobility))}; "
+            f"{len(self.t)} times from {self.t[0]:g} to {self.t[-1]:g} s; "
+            f"largest residual {self.stats.position_residual:.1e}</p>"
+            f"<table><tr><th>quantity</th><th>min</th><th>max</th></tr>{body}</table>"
+        )
+
+    def _frame(self, b: int, place: tuple[float, float], turned: float = 0.0) -> FrameView:
+        """The frame at ``place`` of body b's author frame: moved from the centre of mass."""
+        q, v, a = self.q[:, b], self.v[:, b], self.a[:, b]
+        local = np.array(place) - self.packed.com[b]
+        c, s = np.cos(q[:, 2]), np.sin(q[:, 2])
+        arm_x, arm_y = c * local[0] - s * local[1], s * local[0] + c * local[1]
+        omega, alpha = v[:, 2], a[:, 2]
+        return FrameView(
+            x=q[:, 0] + arm_x,
+            y=q[:, 1] + arm_y,
+            theta=q[:, 2] + turned,
+            vx=v[:, 0] - omega * arm_y,
+            vy=v[:, 1] + omega * arm_x,
+            omega=omega,
+            ax=a[:, 0] - alpha * arm_y - omega**2 * arm_x,
+            ay=a[:, 1] + alpha * arm_x - omega**2 * arm_y,
+            alpha=alpha,
+        )
+
+    def _index(self, name: str, names: list[str], what: str) -> int:
+        if not isinstance(name, str) or name not in names:
+            raise ModelError(f"{self.mechanism.name}: {no_such(what, name, names)}")
+        return names.index(name)

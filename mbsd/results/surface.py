@@ -1,0 +1,47 @@
+"""Where the disc of a contact by penalty, or of a tyre, stands to its surface."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mbsd.arrays.reactions import marker_axes, marker_places
+from mbsd.base.codes import AXIS
+from mbsd.equations.interactions.law import OWN, STATE
+from mbsd.equations.interactions.surface import tabulate_stand
+from mbsd.model.forces.kind import Element
+from mbsd.results.measured import measured
+
+if TYPE_CHECKING:
+    from mbsd.arrays.packing import Packed
+    from mbsd.model.force import Force
+
+
+class Foot(NamedTuple):
+    """Where a disc stands to a surface, (T, ...) arrays in the world's axes."""
+
+    gap: np.ndarray
+    """(T,) distance of the surface less the disc's radius (m)."""
+    place: np.ndarray
+    """(T, 2) nearest point of the surface (m)."""
+    normal: np.ndarray
+    """(T, 2) unit, out of the surface."""
+
+
+def foot_of(packed: Packed, force: Force, q: np.ndarray) -> Foot:
+    """Where the disc of a force whose kind has a ``surface`` stands to it along poses q (T, 3 nb)."""
+    assert force.kind.surface is not None
+    i, j = packed.force_markers[packed.forces.index(force)]
+    numbers, found = np.array([0.0] * OWN + force.kind.surface(force)), np.zeros((len(q), 3))
+    x, y = (measured(packed, Element(AXIS, (), turned), i, j, q) for turned in (False, True))
+    tabulate_stand(numbers, x, y, np.zeros(STATE), found)
+    distance, tx, ty = found.T[:, :, None]
+    normal = -ty * marker_axes(packed, q, i) + tx * marker_axes(packed, q, i, turned=True)
+    place = marker_places(packed, q, j) - distance * normal
+    return Foot(distance[:, 0] - force.params["radius"], place, normal)
+
+
+def depths(packed: Packed, force: Force, q: np.ndarray) -> np.ndarray:
+    """(T,) depth (m) of the disc in the surface, 0 where they do not touch, along poses q (T, 3 nb)."""
+    return (-foot_of(packed, force, q).gap).clip(min=0.0)

@@ -1,6 +1,7 @@
 """``make bench``: every code on every problem, the tables of docs/benchmarks.md, and out/bench.json.
 
 python -m benchmarks                  all of it
+python -m benchmarks calls            the calls as users make them alone, only shown
 python -m benchmarks dynamics         the dynamics problems alone, only shown
 python -m benchmarks start            the table of start-up (make bench-start)
 python -m benchmarks table            the tables again from the last run
@@ -16,6 +17,7 @@ import sys
 
 from benchmarks import film, rows, table
 from benchmarks.batch import measure as batch
+from benchmarks.calls import measure as calls
 from benchmarks.dynamics import measure as dynamics
 from benchmarks.dynamics import scaling
 from benchmarks.dynamics.settings import tune_all
@@ -38,8 +40,8 @@ def main() -> int:
     match sys.argv[1:]:
         case []:
             return _all()
-        case ["dynamics"]:
-            found, bars = dynamics.measured()
+        case ["calls" | "dynamics" as part]:
+            found, bars = (calls if part == "calls" else dynamics).measured()
             rows.show_all(found)
             return _tell(bars)
         case ["start"]:
@@ -50,7 +52,7 @@ def main() -> int:
             tune_all(names)
         case other:
             raise UserError(
-                f"bench: {' '.join(other)}? There is: dynamics, start, table, tune [names], or nothing for all"
+                f"bench: {' '.join(other)}? There is: calls, dynamics, start, table, tune [names], or nothing for all"
             )
     return 0
 
@@ -70,7 +72,7 @@ def _all() -> int:
         ratio = best[code].seconds / found[0].seconds
         bars.append(Bar(found[0].problem, wanted, ratio, code, best[code].settings, exact and ratio >= wanted))
     everything = list(found)
-    for part in (batch.measured, dynamics.measured, scaling.measured):
+    for part in (calls.measured, batch.measured, dynamics.measured, scaling.measured):
         more, more_bars = part()
         everything += more
         bars += more_bars

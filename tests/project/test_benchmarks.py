@@ -20,6 +20,29 @@ MARGIN = 3.0
 """Other machines round otherwise, and the cheapest settings lie close to the limits."""
 
 
+def test_our_calls_solve_what_the_peers_calls_solve() -> None:
+    from benchmarks.calls import BARS
+    from benchmarks.calls.mbsd_code import calls
+
+    errors = {one.problem: one.error(one.call()) for one in calls()}
+    assert set(errors) == set(BARS)
+    sweep, changed, simulation = errors.values()
+    assert max(sweep, changed) < 1e-12
+    assert 0.0 < simulation < 1e-5
+
+
+def test_the_error_of_a_call_sees_what_is_wrong() -> None:
+    from benchmarks.calls import energy_drift, rocker_error
+    from benchmarks.four_bar import ANGLES, exact
+
+    assert rocker_error(ANGLES, exact(ANGLES)[1]) == 0.0
+    assert rocker_error(ANGLES, exact(ANGLES)[1] + 1e-3) == pytest.approx(1e-3)
+    angle = np.linspace(0.0, -np.pi, 50)
+    speed = np.sqrt(3.0 * 9.81 * -np.sin(angle).clip(max=0.0))  # inertia l^2 / 3 of a rod of 1 m
+    assert energy_drift(angle, speed) < 1e-12
+    assert energy_drift(angle, 1.01 * speed) > 0.05
+
+
 @pytest.mark.parametrize("name", BESIDE_PEERS)
 def test_the_start_is_consistent(name: str) -> None:
     model = case(name).model

@@ -1,0 +1,37 @@
+"""MuJoCo: one hinge, its rollout of all steps with the state at each."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mujoco
+import numpy as np
+from mujoco.rollout import rollout
+
+from benchmarks.calls import DURATION, GRAVITY, LENGTH, MASS, OUTPUTS, SIMULATION, energy_drift
+from benchmarks.calls.call import Call
+
+VERSION = mujoco.__version__
+INERTIA = MASS * LENGTH**2 / 12
+
+
+def calls() -> list[Call]:
+    """The simulation; a linkage can only be driven softly."""
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><option timestep="{DURATION / OUTPUTS}" integrator="RK4" gravity="0 {-GRAVITY} 0"/><worldbody>'
+        f'<body><joint type="hinge" axis="0 0 1"/><inertial pos="{LENGTH / 2} 0 0" mass="{MASS}" '
+        f'diaginertia="{INERTIA / 2!r} {INERTIA / 2!r} {INERTIA!r}"/></body></worldbody></mujoco>'
+    )
+    data = mujoco.MjData(model)
+    kind = mujoco.mjtState.mjSTATE_FULLPHYSICS
+    start = np.zeros(mujoco.mj_stateSize(model, kind))
+
+    def again() -> np.ndarray:
+        mujoco.mj_resetData(model, data)
+        mujoco.mj_getState(model, data, start, kind)
+        return rollout(model, data, start, nstep=OUTPUTS)[0][0]
+
+    def error(states: Any) -> float:
+        return energy_drift(states[:, 1], states[:, 2])  # after the time
+
+    return [Call(SIMULATION, f"rollout, RK4, steps {OUTPUTS}", again, error)]

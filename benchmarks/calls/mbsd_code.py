@@ -20,6 +20,7 @@ from benchmarks.calls import (
 )
 from benchmarks.calls.call import Call
 from benchmarks.four_bar.mbsd_code import model
+from mbsd.results.solution import Solution
 
 VERSION = mbsd.__version__
 
@@ -28,11 +29,11 @@ def calls() -> list[Call]:
     """By problem."""
     linkage, changing, speeds = model(), model(), itertools.count()
 
-    def changed() -> mbsd.solution.Solution:
+    def changed() -> Solution:
         changing.change("motor", law=mbsd.constant_rate(1.0 + 1e-3 * next(speeds)))
         return changing.sweep(steps=STEPS)
 
-    def rocker(sol: mbsd.solution.Solution) -> float:
+    def rocker(sol: Solution) -> float:
         return rocker_error(sol.body("crank").theta, sol.body("rocker").theta)
 
     pendulum = mbsd.Mechanism("pendulum", gravity=(0.0, -GRAVITY))
@@ -40,7 +41,7 @@ def calls() -> list[Call]:
     pendulum.revolute("A", pendulum.ground.at(0, 0), rod.start)
     pendulum.start_near(rod=0)
 
-    def drift(sol: mbsd.solution.Solution) -> float:
+    def drift(sol: Solution) -> float:
         return energy_drift(sol.body("rod").theta, sol.body("rod").omega)
 
     return [

@@ -26,11 +26,12 @@ ball = m.body("ball", mass=0.2, inertia=1e-5)
 m.rigid_contact("floor", m.ground.origin, ball.origin, radius=0.01)
 m.start_near(ball=(0.0, 0.1, 0.0))
 m.simulate(0.5)
-m.equilibrium()
-m.modes()
 """,
     "integrators": """
-import mbsd.dynamics.simulate
+import importlib, pkgutil
+import mbsd.dynamics.integrators as methods
+for module in pkgutil.iter_modules(methods.__path__, methods.__name__ + "."):
+    importlib.import_module(module.name)
 from mbsd import Mechanism
 from mbsd.dynamics.integrators.kind import INTEGRATORS
 m = Mechanism("pendulum")

@@ -7,6 +7,8 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 WIDTH = 960
 LARGEST = 120_000
 """Bytes."""
@@ -16,6 +18,8 @@ TILE = 320, 180
 BESIDE = 4
 """Pictures in a row of it."""
 ON_STRIP = 16
+LOOK = 24, 14
+"""Pixels in which two pictures are compared."""
 
 
 def small_poster(path: Path) -> bytes:
@@ -42,15 +46,14 @@ def small_poster(path: Path) -> bytes:
 def strip(posters: Sequence[bytes]) -> bytes:
     """Small posters in rows, as one JPEG; the last row is filled from its middle.
 
-    More than ``ON_STRIP`` are too many for one look: some are taken, at equal distances.
+    More than ``ON_STRIP`` are too many for one look: those are taken that are least like each other.
     """
     from PIL import Image, ImageOps
 
-    if len(posters) > ON_STRIP:
-        posters = [posters[k * len(posters) // ON_STRIP] for k in range(ON_STRIP)]
     wide, high = TILE
-    rows = math.ceil(len(posters) / BESIDE)
     tiles = [ImageOps.fit(Image.open(io.BytesIO(poster)), TILE, Image.Resampling.LANCZOS) for poster in posters]
+    tiles = [tiles[k] for k in unlike([np.asarray(tile.convert("RGB").resize(LOOK), float) for tile in tiles])]
+    rows = math.ceil(len(tiles) / BESIDE)
     sheet = Image.new("RGB", (BESIDE * wide, rows * high), tiles[0].getpixel((2, 2)))
     for row in range(rows):
         beside = tiles[row * BESIDE : (row + 1) * BESIDE]
@@ -65,3 +68,15 @@ def strip(posters: Sequence[bytes]) -> bytes:
         if len(content) <= 2 * LARGEST:
             break
     return content
+
+
+def unlike(looks: Sequence[np.ndarray]) -> list[int]:
+    """Numbers of ON_STRIP pictures in their order: each next one is the one least like all that are taken already."""
+    flat = np.stack([look.ravel() for look in looks])
+    if len(flat) <= ON_STRIP:
+        return list(range(len(flat)))
+    taken = [int(((flat - flat.mean(axis=0)) ** 2).sum(axis=1).argmax())]
+    while len(taken) < ON_STRIP:
+        off = ((flat[:, None] - flat[taken]) ** 2).sum(axis=2).min(axis=1)
+        taken.append(int(off.argmax()))
+    return sorted(taken)

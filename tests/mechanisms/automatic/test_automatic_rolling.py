@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 
@@ -12,7 +10,6 @@ from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.layout.profiles import distances
 from mechanisms.stages.automatic.rolling.roads import Road
 from mechanisms.stages.automatic.rolling.rounds import Round
-from shared.stage.errors import UserError
 
 HILLS = [(-0.2, 0.0), (-0.1, 0.01), (0.0, 0.0), (0.1, -0.01), (0.2, 0.0), (0.3, 0.01), (0.4, 0.0)]
 
@@ -67,15 +64,3 @@ def test_wheel_tyre_and_road_are_sound() -> None:
     assert box.xlen > np.ptp(path[:, 0]) - 1e-6
     outer = 0.5 * tyre.shape.val().BoundingBox().xlen
     assert outer == pytest.approx(wheel.made, abs=0.05)
-
-
-def test_roads_that_move_and_closed_ones_are_refused() -> None:
-    m = Mechanism("ring")
-    wheel = m.body("wheel")
-    angle = np.linspace(0, 2 * math.pi, 24, endpoint=False)
-    points = [(0.2 * math.cos(a), 0.2 * math.sin(a)) for a in angle]
-    m.rolling_on_curve("ring", m.ground.origin, wheel.origin, points, 0.04, closed=True)
-    m.drive_angle("motor", wheel, constant_rate(1.0))
-    m.start_near(wheel=(0.16, 0, 0))
-    with pytest.raises(UserError, match="joint 'ring' rolls on a closed curve"):
-        _ = Automatic(m, m.sweep(0.5, 50)).levels

@@ -40,6 +40,11 @@ def on_body(path: np.ndarray, marker: Marker, layout: Layout) -> np.ndarray:
     return layout.sizes.of_metres(1.0) * path @ np.array([[c, s], [-s, c]]) + layout.place(marker)
 
 
+def farthest(points: Sequence[Sequence[float]]) -> float:
+    """How far a curve through points reaches from its marker (m), about."""
+    return max(math.hypot(x, y) for x, y in points)
+
+
 def distances(places: np.ndarray, path: np.ndarray) -> np.ndarray:
     """(T,) from places (T, 2) to the nearest place of a path (n, 2)."""
     start, way = path[:-1], np.diff(path, axis=0)

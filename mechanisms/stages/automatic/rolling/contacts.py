@@ -1,9 +1,9 @@
-"""Contacts of discs with surfaces of ground and with each other: walls, roads, balls, wheels and discs.
+"""Contacts of discs with surfaces and with each other: walls, roads, tracks, balls, wheels and discs.
 
 A surface is where the model has it. What touches is smaller by a clearance (cams.py), and where a contact hardly yields
 also by as much as it presses in; where one sees that, the two may touch by design. A body without joints is a ball, or
-where there is friction, which turns it, a wheel with a tyre; a body with joints gets a disc. Other contacts have no
-parts.
+where there is friction, which turns it, a wheel with a tyre; a body with joints gets a disc. What touches a disc that
+is itself on ground, or a yielding profile of a moving body, has no parts.
 """
 
 from __future__ import annotations
@@ -19,9 +19,10 @@ from mechanisms.stages.automatic.cams.cams import pushing_cam, pushing_extent
 from mechanisms.stages.automatic.layout.extents import Extent, extent
 from mechanisms.stages.automatic.layout.features import contact_kind, force_kind
 from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.profiles import curve_path, distances, on_body, profile_path
+from mechanisms.stages.automatic.layout.profiles import curve_path, distances, farthest, on_body, profile_path
 from mechanisms.stages.automatic.rolling.roads import along
 from mechanisms.stages.automatic.rolling.rounds import Look, Round, round_at
+from mechanisms.stages.automatic.rolling.tracks import circle, normals, track, turns_left
 from mechanisms.stages.automatic.rolling.walls import NOSE, Line, roads
 
 if TYPE_CHECKING:
@@ -64,19 +65,21 @@ def terrains(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature
     found: list[Feature] = []
     for touch in touches:
         closed = touch.params["closed"]
-        if _is_on_ground(touch) and not closed:
-            found += _on_road(m, touch, curve_path(touch.params["points"], False), layout)
-        elif closed and touch.params["radius"] > 0 and "ground" not in touch.bodies:
+        cam = _pushes(touch) and touch.params["radius"] > 0
+        if cam:
             found += pushing_cam(touch, layout)
+        elif touch.j.body.name != "ground":
+            found += _on_road(m, touch, curve_path(touch.params["points"], closed), layout, closed)
     return found
 
 
 @contact_kind("rigid_discs")
 def discs(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature]:
-    """Two balls or discs of moving bodies, on one layer; a disc in a ring, or on ground, has none."""
+    """Two balls or discs of moving bodies, on one layer; rings round discs, and discs on ground, are tracks."""
     found: list[Feature] = []
     for touch in touches:
         if touch.params["inside"] or "ground" in touch.bodies:
+            found += _in_ring(m, touch, layout)
             continue
         for marker, other, radius in ((touch.i, touch.j, "radius_i"), (touch.j, touch.i, "radius_j")):
             body, long = marker.body.name, max(layout.sizes.of_metres(touch.params[radius]), NOSE)
@@ -92,7 +95,7 @@ def _on_lines(m: Mechanism, touches: Sequence[Touch], layout: Layout) -> list[Fe
     found: list[Feature] = []
     lines: list[Line] = []
     for touch in touches:
-        if not _is_on_ground(touch):
+        if touch.j.body.name == "ground":
             continue
         places = _places(touch, layout)
         way = np.array([math.cos(touch.i.angle), math.sin(touch.i.angle)])
@@ -101,6 +104,11 @@ def _on_lines(m: Mechanism, touches: Sequence[Touch], layout: Layout) -> list[Fe
         part, new = _round(m, touch, layout, float(gap.min()))
         line.start = line.start - _set_back(touch, layout) * line.free
         found += [part] if new else []
+        if not _is_on_ground(touch):
+            line.carry(part, places)
+            ends = np.array(line.travel[0])
+            found.append(track(touch.name, touch.i.body.name, part, line.start + ends[:, None] * way, False))
+            continue
         line = next((other for other in lines if other.is_same(line)), line)
         lines += [] if line in lines else [line]
         line.carry(part, places)
@@ -117,12 +125,46 @@ def _on_profile(m: Mechanism, touch: Force, profile: Curve, layout: Layout) -> l
     return _on_road(m, touch, profile_path(profile, float(first), float(last)), layout)
 
 
-def _on_road(m: Mechanism, touch: Touch, path: np.ndarray, layout: Layout) -> list[Feature]:
+def _in_ring(m: Mechanism, touch: Joint, layout: Layout) -> list[Feature]:
+    """A disc inside a ring, or one that touches a disc of ground."""
+    inside, (ring, disc) = touch.params["inside"], ("radius_i", "radius_j")
+    i, j = touch.i, touch.j
+    if not inside and j.body.name == "ground":
+        i, j, ring, disc = j, i, disc, ring
+    if j.body.name == "ground":
+        return []
+    radius, short = (layout.sizes.of_metres(touch.params[name]) for name in (ring, disc))
+    look = _look(m, j.body.name, touch.params["friction"] > 0.0)
+    part, new = round_at(layout, touch.name, j.body.name, layout.place(j), max(short, NOSE), look)
+    wide = radius + (1 if inside else -1) * max(0.0, NOSE - short)
+    if wide < NOSE:
+        return [part] if new else []
+    path = circle(layout.place(i), wide, inside)
+    return [*([part] if new else []), track(touch.name, i.body.name, part, path, True)]
+
+
+def _on_road(m: Mechanism, touch: Touch, path: np.ndarray, layout: Layout, closed: bool = False) -> list[Feature]:
     path = on_body(path, touch.i, layout)
+    if closed or not _is_on_ground(touch):
+        return _on_track(m, touch, path, closed, layout)
     gap = distances(_places(touch, layout), path) - layout.sizes.of_metres(touch.params["radius"])
     part, new = _round(m, touch, layout, float(gap.min()))
     path = path - _set_back(touch, layout) * _normals(path)
     return [*([part] if new else []), along(touch.name, [part], path)]
+
+
+def _on_track(m: Mechanism, touch: Touch, path: np.ndarray, closed: bool, layout: Layout) -> list[Feature]:
+    whole = np.vstack([path, path[:1]]) if closed else path
+    gap = distances(_places(touch, layout), whole) - layout.sizes.of_metres(touch.params["radius"])
+    part, new = _round(m, touch, layout, float(gap.min()))
+    path = path - _set_back(touch, layout) * (normals(path) if closed else _normals(path))
+    return [*([part] if new else []), track(touch.name, touch.i.body.name, part, path, closed)]
+
+
+def _pushes(touch: Touch) -> bool:
+    """Whether a closed curve of a moving body has what touches it outside, as a cam has."""
+    closed = touch.params["closed"] and "ground" not in touch.bodies
+    return closed and not turns_left(np.array(touch.params["points"], dtype=float))
 
 
 def _round(m: Mechanism, touch: Touch, layout: Layout, gap: float) -> tuple[Round, bool]:
@@ -152,7 +194,7 @@ def _set_back(touch: Touch, layout: Layout) -> float:
 
 
 def _places(touch: Touch, layout: Layout) -> np.ndarray:
-    return layout.seen(touch.j.body.name, layout.place(touch.j), "ground")
+    return layout.seen(touch.j.body.name, layout.place(touch.j), touch.i.body.name)
 
 
 def _is_on_ground(touch: Touch) -> bool:
@@ -169,7 +211,7 @@ def _normals(path: np.ndarray) -> np.ndarray:
 def extent_of_discs(touch: Joint, solution: Solution) -> Extent:
     """Both discs."""
     radii = ((touch.i, touch.params["radius_i"]), (touch.j, touch.params["radius_j"]))
-    return Extent(radii, tuple((radius, DISC) for _, radius in radii if radius > 0))
+    return Extent(radii, tuple((radius, DISC) for _, radius in radii if radius > 0))  # a ring is larger than its disc
 
 
 @extent("rigid_contact")
@@ -179,7 +221,9 @@ def extent_of_discs(touch: Joint, solution: Solution) -> Extent:
 def extent_of(touch: Touch, solution: Solution) -> Extent:
     """What touches."""
     radius = touch.params["radius"]
-    if touch.params.get("closed", False):
+    closed = touch.params.get("closed", False)
+    if closed and _pushes(touch):
         return pushing_extent(touch)
     least = WHEEL if touch.kind.name == "tyre" or touch.params.get("friction", 0.0) > 0.0 else BALL
-    return Extent(((touch.j, radius),), ((radius, least),) if radius > 0 else ())
+    round_it = ((touch.i, farthest(touch.params["points"])),) if closed else ()
+    return Extent(((touch.j, radius), *round_it), ((radius, least),) if radius > 0 else ())

@@ -1,4 +1,5 @@
-"""Discs that roll on a line or a terrain of ground: a wheel with a tyre, and the road as a wall on the base.
+"""Discs that roll on a line or a curve: a wheel with a tyre, and the road as a wall on the base, or on a moving body;
+closed curves are rings round the wheel, or discs (tracks.py).
 
 Wheel and road touch by design; they are made with the clearance of a cam and its roller.
 """
@@ -13,9 +14,10 @@ import numpy as np
 from mechanisms.stages.automatic.layout.extents import Extent, extent
 from mechanisms.stages.automatic.layout.features import kind
 from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.profiles import curve_path, on_body
+from mechanisms.stages.automatic.layout.profiles import curve_path, farthest, on_body
 from mechanisms.stages.automatic.rolling.roads import along
 from mechanisms.stages.automatic.rolling.rounds import round_at
+from mechanisms.stages.automatic.rolling.tracks import track
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
@@ -25,8 +27,8 @@ if TYPE_CHECKING:
 
 BEYOND = 0.8
 """How far a straight road goes on beyond the wheel's travel, in the wheel's radii."""
-LEAST = 16.0
-"""Least radius of a wheel (rmm)."""
+LEAST = 17.0
+"""Least radius of a wheel (rmm): an eye lies within its tyre."""
 
 
 @kind("rolling_disc")
@@ -37,10 +39,10 @@ def on_lines(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]
         _refuse(m, joint)
         start, angle = np.array(layout.place(joint.i)), joint.i.angle
         way = np.array([math.cos(angle), math.sin(angle)])
-        travel = (layout.seen(joint.j.body.name, layout.place(joint.j), "ground") - start) @ way
+        travel = (layout.seen(joint.j.body.name, layout.place(joint.j), joint.i.body.name) - start) @ way
         beyond = BEYOND * layout.sizes.of_metres(joint.params["radius"])
         ends = np.array([travel.min() - beyond, travel.max() + beyond])
-        found += _rolling(joint, start + ends[:, None] * way, layout)
+        found += _rolling(joint, start + ends[:, None] * way, False, layout)
     return found
 
 
@@ -50,26 +52,26 @@ def on_curves(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature
     found: list[Feature] = []
     for joint in joints:
         _refuse(m, joint)
-        if joint.params["closed"]:
-            raise UserError(
-                f"{m.name}: joint '{joint.name}' rolls on a closed curve, which has no parts by itself yet; "
-                f"write mechanisms/{m.name}/parts.py"
-            )
-        path = on_body(curve_path(joint.params["points"], False), joint.i, layout)
-        found += _rolling(joint, path, layout)
+        closed = bool(joint.params["closed"])
+        path = on_body(curve_path(joint.params["points"], closed), joint.i, layout)
+        found += _rolling(joint, path, closed, layout)
     return found
 
 
-def _rolling(joint: Joint, path: np.ndarray, layout: Layout) -> list[Feature]:
+def _rolling(joint: Joint, path: np.ndarray, closed: bool, layout: Layout) -> list[Feature]:
     radius = layout.sizes.of_metres(joint.params["radius"])
     wheel, new = round_at(layout, joint.name, joint.j.body.name, layout.place(joint.j), radius, "wheel")
-    return [*([wheel] if new else []), along(joint.name, [wheel], path)]
+    body = joint.i.body.name
+    road = (
+        track(joint.name, body, wheel, path, closed) if closed or body != "ground" else along(joint.name, [wheel], path)
+    )
+    return [*([wheel] if new else []), road]
 
 
 def _refuse(m: Mechanism, joint: Joint) -> None:
-    if joint.i.body.name != "ground" or joint.j.body.name == "ground":
+    if joint.j.body.name == "ground":
         raise UserError(
-            f"{m.name}: joint '{joint.name}' is a {joint.kind.name.replace('_', ' ')} whose road is not on ground; "
+            f"{m.name}: joint '{joint.name}' is a {joint.kind.name.replace('_', ' ')} whose disc is on ground; "
             f"it has no parts by itself yet; write mechanisms/{m.name}/parts.py"
         )
 
@@ -77,6 +79,7 @@ def _refuse(m: Mechanism, joint: Joint) -> None:
 @extent("rolling_disc")
 @extent("rolling_on_curve")
 def extent_of(joint: Joint, solution: Solution) -> Extent:
-    """The wheel."""
+    """The wheel, and a closed curve."""
     radius = joint.params["radius"]
-    return Extent(((joint.j, radius),), ((radius, LEAST),))
+    round_it = ((joint.i, farthest(joint.params["points"])),) if joint.params.get("closed") else ()
+    return Extent(((joint.j, radius), *round_it), ((radius, LEAST),))

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 type Look = Literal["ball", "wheel", "disc"]
 
+ROLLING = ("rolling_disc", "rolling_on_curve")
+"""Kinds of joints that put no pin through the middle."""
 HUB = 0.3
 """Radius of the hub of a wheel without an axle, in its own."""
 WITHIN = 0.8
@@ -90,7 +92,8 @@ def round_at(
     short = CLEAR * layout.sizes.pivot.fit.running + pressed
     key = (body, round(at[0], 3), round(at[1], 3))
     if key not in layout.rounds:
-        ends = [marker for joint in layout.m.joints.values() for marker in (joint.i, joint.j)]
+        held = [joint for joint in layout.m.joints.values() if joint.kind.name not in ROLLING]
+        ends = [marker for joint in held for marker in (joint.i, joint.j)]
         pinned = any(marker.body.name == body and math.dist(layout.place(marker), at) < 0.01 for marker in ends)
         new = layout.rounds[key] = Round(name, body, at, radius, short, look, pinned)
         return new, True

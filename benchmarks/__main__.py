@@ -3,6 +3,7 @@
 python -m benchmarks                  all of it
 python -m benchmarks calls            the calls as users make them alone, only shown
 python -m benchmarks dynamics         the dynamics problems alone, only shown
+python -m benchmarks machines         gears, a Geneva, a cam and a stiff contact alone, only shown
 python -m benchmarks start            the table of start-up (make bench-start)
 python -m benchmarks table            the tables again from the last run
 python -m benchmarks tune [names]     the sweeps for the best settings, of some codes or problems
@@ -22,6 +23,7 @@ from benchmarks.dynamics import measure as dynamics
 from benchmarks.dynamics import scaling
 from benchmarks.dynamics.settings import tune_all
 from benchmarks.four_bar import STEPS
+from benchmarks.machines import measure as machines
 from benchmarks.rows import Bar, Row
 from benchmarks.start import measure as start
 from shared.stage.console import run_cli, say
@@ -40,8 +42,8 @@ def main() -> int:
     match sys.argv[1:]:
         case []:
             return _all()
-        case ["calls" | "dynamics" as part]:
-            found, bars = (calls if part == "calls" else dynamics).measured()
+        case ["calls" | "dynamics" | "machines" as part]:
+            found, bars = {"calls": calls, "dynamics": dynamics, "machines": machines}[part].measured()
             rows.show_all(found)
             return _tell(bars)
         case ["start"]:
@@ -52,7 +54,8 @@ def main() -> int:
             tune_all(names)
         case other:
             raise UserError(
-                f"bench: {' '.join(other)}? There is: calls, dynamics, start, table, tune [names], or nothing for all"
+                f"bench: {' '.join(other)}? There is: calls, dynamics, machines, start, table, tune [names], "
+                "or nothing for all"
             )
     return 0
 
@@ -72,7 +75,7 @@ def _all() -> int:
         ratio = best[code].seconds / found[0].seconds
         bars.append(Bar(found[0].problem, wanted, ratio, code, best[code].settings, exact and ratio >= wanted))
     everything = list(found)
-    for part in (calls.measured, batch.measured, dynamics.measured, scaling.measured):
+    for part in (calls.measured, batch.measured, machines.measured, dynamics.measured, scaling.measured):
         more, more_bars = part()
         everything += more
         bars += more_bars

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from benchmarks.dynamics import n_four_bar, pendulum, squeezer
+from benchmarks.dynamics import chain, n_four_bar, pendulum, squeezer
 from benchmarks.dynamics.pins import Pinned, Record
 
 
@@ -37,13 +37,13 @@ def _n_four_bar(loops: int) -> Case:
 
 
 def case(name: str) -> Case:
-    """By its name: "A01 pendulum", "A02 N=10" with any number of loops, "A03 squeezer"."""
+    """By its name: "A01 pendulum", "A02 N=10" with any number of loops, "A03 squeezer", "chain of 100 links"."""
     if name.startswith("A02 N="):
         return _n_four_bar(int(name.removeprefix("A02 N=")))
-    module = {pendulum.NAME: pendulum, squeezer.NAME: squeezer}[name]
+    module = {pendulum.NAME: pendulum, squeezer.NAME: squeezer, chain.NAME: chain}[name]
     return Case(name, module.model(), module.DURATION, module.LIMITS, module.BAR, module.errors)
 
 
-BESIDE_PEERS = (pendulum.NAME, "A02 N=1", "A02 N=10", "A02 N=40", squeezer.NAME)
+BESIDE_PEERS = (pendulum.NAME, "A02 N=1", "A02 N=10", "A02 N=40", squeezer.NAME, chain.NAME)
 ALONE = ("A02 N=40", "A02 N=400", "A02 N=4000")
 """Where only the growth of our own cost with the number of bodies is looked at."""

@@ -7,11 +7,12 @@ import importlib
 import numpy as np
 import pytest
 
-from benchmarks import table
-from benchmarks.dynamics import CODES, n_four_bar, pins, squeezer
+from benchmarks import machines, table
+from benchmarks.dynamics import CODES, chain, n_four_bar, pins, squeezer
 from benchmarks.dynamics.cases import BESIDE_PEERS, case
 from benchmarks.dynamics.equations import Chain, Equations
 from benchmarks.dynamics.settings import load
+from benchmarks.machines import mbsd_code
 from benchmarks.rows import Bar, Row
 
 PACKAGES = {"exudyn": "exudyn", "mujoco": "mujoco", "sundials": "sksundae"}
@@ -145,3 +146,34 @@ def test_the_table_says_what_was_missed() -> None:
     text = table.text(rows, [Bar("A03", 50.0, 2.0, "peer", "step 1", met=False)])
     assert "| A03 | 50x | 2x | peer | step 1 | **no** |" in text
     assert "| A03 | peer | 2 | 2 ms | 2 | angle (rad) 1.0e+00; **beyond the limits** | step 1 |" in text
+
+
+@pytest.mark.parametrize("links", [1, 5])
+def test_the_chains_equations_are_those_of_its_bars(links: int) -> None:
+    """The written equations against the chain solved in reference coordinates."""
+    from mbsd import Mechanism
+
+    m = Mechanism("chain", gravity=(0.0, -chain.GRAVITY))
+    above = m.ground.origin
+    for k in range(links):
+        link = m.bar(f"link{k}", chain.LENGTH, chain.MASS)
+        m.revolute(f"pin{k}", above, link.start)
+        m.start_near(**{link.name: np.degrees(chain.SLANT)})
+        above = link.end
+    found = m.simulate(0.3, steps=2, tolerance=1e-10)
+    wanted = chain.angles(links, 0.3)
+    assert [found.body(f"link{k}").theta[-1] for k in range(links)] == pytest.approx(wanted, abs=1e-7)
+
+
+@pytest.mark.parametrize("problem", machines.PROBLEMS)
+def test_our_machines_are_exact(problem: str) -> None:
+    """Every machine within its limit, the sweeps to rounding."""
+    fresh, error = mbsd_code.prepare(problem)
+    assert error(fresh()()) < (machines.LIMITS[problem] if problem == machines.CONTACT else 1e-12)
+
+
+def test_the_ball_comes_back() -> None:
+    """Between bounces it is as high as it was let go from, less nothing."""
+    tops = [machines.height(t) for t in np.linspace(0.8, 1.0, 20_001)]
+    assert max(tops) == pytest.approx(machines.HEIGHT, abs=1e-6)
+    assert machines.height(0.0) == machines.HEIGHT

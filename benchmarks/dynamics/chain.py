@@ -3,7 +3,7 @@
 Errors after 1 s: drift of the energy (J) and the worst angle (rad) against the equations in absolute angles, written
 out and integrated by themselves:
 
-    sum_j A_ij (cos(theta_i - theta_j) theta_j'' + sin(theta_i - theta_j) theta_j'^2) = -m g L (n - i + 1/2) cos(theta_i)
+  sum_j A_ij (cos(theta_i - theta_j) theta_j'' + sin(theta_i - theta_j) theta_j'^2) = -m g L (n - i + 1/2) cos theta_i
     A_ij = m L^2 (n - max(i, j) + 1/2),  A_ii = m L^2 (n - i + 1/3)
 """
 

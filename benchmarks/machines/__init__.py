@@ -31,7 +31,7 @@ RATIO = SUN / (2 * SUN + 2 * PLANET)
 SLOTS, DISTANCE = 4, 1.0
 RADIUS = DISTANCE * math.sin(math.pi / SLOTS)
 INDEX = 0.78
-"""The crank goes from this far before the line of centres to as far behind it (rad); to pi / 4 the pin is in its slot."""
+"""The crank goes from this far before the line of centres to as far behind it (rad), its pin in the slot."""
 ECCENTRIC, DISC, ARM, PIVOT = 0.3, 1.0, 1.5, 2.0
 """A disc turns about a point off its centre; the roller's centre on an arm stays at DISC from it (m)."""
 STIFFNESS, HEIGHT, GRAVITY, DURATION = 1e8, 1.0, 10.0, 3.0

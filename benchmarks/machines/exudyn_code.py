@@ -22,7 +22,7 @@ from exudyn import utilities as u  # noqa: E402
 exu.config.printToConsole = False
 VERSION = metadata.version("exudyn")
 CONTACT_SOLVER, CONTACT_STEPS, CONTACT_TOLERANCE = "DOPRI5", 100, 1e-7
-"""The quickest of its explicit and implicit methods that keeps the limit; as few steps at most, the method takes more."""
+"""The quickest of its methods that keeps the limit; steps are the fewest that it takes."""
 
 
 def settings(problem: str) -> str:

@@ -10,10 +10,10 @@ import numpy as np
 
 import mbsd
 from benchmarks import four_bar, machines
-from mbsd.dynamics.prepare import prepare_dynamics
-from mbsd.dynamics.run import Run
+from mbsd.dynamics.prepare.prepare import prepare_dynamics
+from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.simulate import integrator_named
-from mbsd.prepared import prepare as prepared
+from mbsd.kinematics.prepared import prepare as prepared
 
 VERSION = mbsd.__version__
 TOLERANCE = 1e-7

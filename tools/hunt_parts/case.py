@@ -57,9 +57,11 @@ def _outcome(subject: Subject, solids: bool) -> Outcome:
 
 def moved(subject: Subject, steps: int = STEPS) -> Solution:
     """The motion, a few turns of it at most. Raises MechanismError where it cannot move so."""
+    from mechanisms.stages.solve.refined_times import swept_closely
+
     duration = min(subject.duration, MOST * (subject.turn or subject.duration))
     if subject.driven:
-        return subject.m.sweep(times=np.linspace(0.0, duration, steps + 1))
+        return swept_closely(subject.m, np.linspace(0.0, duration, steps + 1))
     return subject.m.simulate(duration, steps=steps, event_rows=True)
 
 
@@ -86,6 +88,8 @@ def parts_of(m: Mechanism, solution: Solution, solids: bool = True) -> Outcome:
     try:
         proof = proven(m, solution, bodies, pieces)
     except UserError as error:
+        if "is proven, required" in str(error):
+            return Outcome(BASE, REFUSED, reason(str(error)), str(error))
         return Outcome(BASE, COLLIDES, "", str(error))
     return Outcome(BASE, BUILT, _bridges(made), f"{found}; {proof}")
 

@@ -200,8 +200,9 @@ class Automatic:
         from mechanisms.stages.automatic.layout.plan import Plan
 
         rods = dict.fromkeys(self.layout.rods, ROD)
-        plan = Plan(self.layout, materials(self.m) | rods | self._materials)
-        plan.reserve([*self.m.bodies, *rods, "base_plate"])
+        named = materials(self.m) | rods | self._materials
+        plan = Plan(self.layout, named | {web: named[body] for web, body in self.layout.webs.items()})
+        plan.reserve([*self.m.bodies, *rods, "base_plate", *self.layout.webs])
         for feature in self.layout.features:
             build(feature, plan, self.heights)
         place(self._marks, plan)

@@ -1,26 +1,33 @@
 """What is decided before anything is built: the size of the pins, the layers, springs, and bridges over pivots.
 
 Pins as thick as the links allow come first. Where these leave no order of layers, thinner ones are tried, down to half
-of that; then pivots hang from bridges; then springs are left out, and that is told.
+of that; then pivots are sunk into their links where something passes close above; then pivots hang from bridges; then a
+body is built up of two webs; then springs are left out, and that is told.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import product
+from dataclasses import dataclass, field
+from itertools import islice, product
 from typing import TYPE_CHECKING
 
 from mechanisms.stages.automatic.layout.layers import find_layers
 from mechanisms.stages.automatic.layout.layout import Springs
-from mechanisms.stages.automatic.pins.bridges import bridges_over, may_hang
-from mechanisms.stages.automatic.refusal import refusal
+from mechanisms.stages.automatic.pins.bridges import Bridge, bridges_over, may_hang
+from mechanisms.stages.automatic.pins.webs import webbed
+from mechanisms.stages.automatic.refusal import in_the_way, refusal
 from shared.stage.console import warn
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.layout import Layout
     from mechanisms.stages.automatic.layout.sizes import Sizes
+
+DEVICES = ((False, False), (True, False), (True, True))
+"""Whether pivots may be flush with their links, and whether they may hang from bridges."""
+MOST_WEBS = 60
+"""So many ways to build a body of two webs are tried."""
 
 type LayoutOf = Callable[[Sizes, Springs, bool], Layout]
 """The layout with pins of a size, with springs, and with tall styluses or flush ones."""
@@ -32,11 +39,14 @@ def decided(layout_of: LayoutOf, wishes: Sequence[Sizes], fixed: Mapping[str, in
     are asked for. Raises UserError that names what cannot pass each other if there is no order with any of them.
     """
     tried = _Tried(layout_of, fixed)
-    for bridges, sizes, above in product((False, True), wishes, (True, False)):
-        found = tried.found(sizes, Springs(above), bridges)
+    for (flush, bridges), sizes, above in product(DEVICES, wishes, (True, False)):
+        found = tried.found(sizes, Springs(above), flush, bridges)
         if found is not None:
             return tried.with_styluses(found) if not bridges else found
-    last = tried.layout(wishes[-1], Springs(False))
+    found = tried.with_webs(wishes)
+    if found is not None:
+        return found
+    last = tried.layout(wishes[-1], Springs(False)).with_flush_pivots()
     if last.springs.found:
         for bridges in (False, True):
             found = tried.with_some_springs(wishes[0], last.springs.found, bridges)
@@ -49,30 +59,54 @@ def decided(layout_of: LayoutOf, wishes: Sequence[Sizes], fixed: Mapping[str, in
 class _Tried:
     layout_of: LayoutOf
     fixed: Mapping[str, int]
+    known: dict[tuple[float, Springs], Layout] = field(default_factory=dict)
 
     def layout(self, sizes: Sizes, springs: Springs) -> Layout:
         """With flush styluses."""
-        return self.layout_of(sizes, springs, False)
+        key = sizes.scale, springs
+        if key not in self.known:
+            self.known[key] = self.layout_of(sizes, springs, False)
+        return self.known[key]
 
-    def found(self, sizes: Sizes, springs: Springs, bridges: bool) -> Found | None:
+    def found(self, sizes: Sizes, springs: Springs, flush: bool, bridges: bool) -> Found | None:
         """None where there is no order of layers."""
         layout = self.layout(sizes, springs)
         if not springs.above and not springs.left_out and not layout.springs.found:
             return None  # without springs it was tried before
+        return self.ordered(layout.with_flush_pivots() if flush else layout, bridges)
+
+    def ordered(self, layout: Layout, bridges: bool) -> Found | None:
+        """A layout with its layers, and with the bridges that these need."""
         levels = find_layers(layout.problem(self.fixed, may_hang(layout) if bridges else frozenset()))
         if levels is None:
             return None
         layout.features += bridges_over(layout, levels)
         return layout, levels
 
+    def with_webs(self, wishes: Sequence[Sizes]) -> Found | None:
+        """With one body of two webs, the thickest and then the thinnest pins: the fewest bridges, then layers.
+
+        One of the bodies that leave no order must be the one; none is tried where there are too many ways.
+        """
+        for sizes in dict.fromkeys((wishes[0], wishes[-1])):
+            layout = self.layout(sizes, Springs()).with_flush_pivots()
+            bodies = in_the_way(layout, self.fixed)
+            ways = list(islice(webbed(layout, bodies), MOST_WEBS + 1))
+            if len(ways) > MOST_WEBS:
+                return None
+            found = [one for one in (self.ordered(way, True) for way in ways) if one is not None]
+            if found:
+                return min(found, key=_cost)
+        return None
+
     def with_some_springs(self, sizes: Sizes, names: Sequence[str], bridges: bool) -> Found | None:
         """Those springs, one after the other, that leave an order of layers; of the others it is told."""
         left_out = frozenset(names)
-        best = self.found(sizes, Springs(False, left_out), bridges)
+        best = self.found(sizes, Springs(False, left_out), True, bridges)
         if best is None:
             return None
         for name in names:
-            more = self.found(sizes, Springs(False, left_out - {name}), bridges)
+            more = self.found(sizes, Springs(False, left_out - {name}), True, bridges)
             if more is not None:
                 best, left_out = more, left_out - {name}
         warn(
@@ -88,7 +122,13 @@ class _Tried:
         if not layout.m.traces:
             return low
         high = self.layout_of(layout.sizes, layout.springs, True)
+        high = high.with_flush_pivots() if layout.flush else high
         levels = find_layers(high.problem(self.fixed))
         if levels is None or max(levels[b] for b in high.layered) > max(least[b] for b in layout.layered):
             return low
         return high, levels
+
+
+def _cost(found: Found) -> tuple[int, int]:
+    layout, levels = found
+    return sum(isinstance(one, Bridge) for one in layout.features), max(levels[body] for body in layout.layered)

@@ -8,7 +8,7 @@ from mechanisms.stages.automatic.cams import (  # noqa: F401
 )
 from mechanisms.stages.automatic.pins import (  # noqa: F401
     bridge_solids,
-    pin_solids,
+    pin_hardware,
     pins,  # revolute, and the ends of rods
     springs,  # springs, dampers and actuators between points
     stud_solids,

@@ -17,19 +17,32 @@ TOLD = 4
 
 def refusal(layout: Layout, fixed: Mapping[str, int]) -> str:
     """A sentence or two, of meetings that together leave no order: without any one of them there would be one."""
-    items, moving = layout.items, layout.layered
-    problem = layout.problem(fixed, may_hang(layout))
-    pairs = set(blocking(problem, [_pair(layout, rule) for rule in layout.conflicts]))
-    kept = [rule for rule in layout.conflicts if _pair(layout, rule) in pairs]
-    bodies = sorted({body for rule in kept for k in rule for body in items[k].reach.bodies}, key=moving.index)
+    items, kept = layout.items, _kept(layout, fixed)
+    bodies = _bodies(layout, kept)
     pins = [rule for rule in kept if any(items[k].source is not None for k in rule)] or kept
     meetings = [_meeting(layout, rule) for rule in _first_of_each(layout, pins)[:TOLD]]
     return (
         f"{layout.m.name}: no order of layers lets {_listed(bodies)} pass each other with pins of "
-        f"{layout.sizes.pin:g} mm, on the base or on bridges: {'; '.join(meetings)}. Make links shorter or move joints "
+        f"{layout.sizes.pin:g} mm, on the base or on bridges, with one of them built up of "
+        f"two webs: {'; '.join(meetings)}. Make links shorter or move joints "
         "apart so that one stays clear of the other, make pins thinner still (automatic(m, pin=...)), or shape them by "
         "hand in parts.py"
     )
+
+
+def in_the_way(layout: Layout, fixed: Mapping[str, int]) -> list[str]:
+    """Bodies that leave no order of layers. Raises ValueError where there is one."""
+    return _bodies(layout, _kept(layout, fixed))
+
+
+def _kept(layout: Layout, fixed: Mapping[str, int]) -> list[tuple[int, int]]:
+    pairs = set(blocking(layout.problem(fixed, may_hang(layout)), [_pair(layout, rule) for rule in layout.conflicts]))
+    return [rule for rule in layout.conflicts if _pair(layout, rule) in pairs]
+
+
+def _bodies(layout: Layout, kept: Sequence[tuple[int, int]]) -> list[str]:
+    found = {body for rule in kept for k in rule for body in layout.items[k].reach.bodies}
+    return sorted(found, key=layout.layered.index)
 
 
 def _pair(layout: Layout, rule: tuple[int, int]) -> frozenset[str]:

@@ -40,15 +40,40 @@ def simulated_closely(m: Mechanism, duration: float, steps: int) -> Solution:
     return solution
 
 
+def swept_closely(m: Mechanism, times: np.ndarray) -> Solution:
+    """``m.sweep`` at ``times`` (s) and at more where the motion needs them: where a link flies past a dead point."""
+    for _ in range(2 * ROUNDS):
+        both = np.empty(2 * len(times) - 1)
+        both[::2], both[1::2] = times, (times[:-1] + times[1:]) / 2
+        finer = m.sweep(times=both)
+        starts = np.arange(0, len(both) - 1, 2)
+        closer = _divided(times, np.flatnonzero(_leaves(finer, starts, starts + 2, finer.q[1::2])))
+        if len(closer) == len(times):
+            break
+        times = closer
+    return m.sweep(times=times)
+
+
+def _divided(times: np.ndarray, coarse: np.ndarray) -> np.ndarray:
+    """Times with some of their steps divided; the same where these are too many."""
+    if len(times) + (PARTS - 1) * len(coarse) > MOST:
+        return times
+    starts, ends = times[coarse], times[coarse + 1]
+    inner = (starts[:, None] + (ends - starts)[:, None] * np.arange(1, PARTS) / PARTS).ravel()
+    return np.unique(np.concatenate([times, inner]))
+
+
 def coarse_steps(solution: Solution) -> np.ndarray:
     """Numbers of the rows after which the quintic leaves the motion, by the motion at the middle of each step."""
-    t, size = solution.t, solution.packed.size
+    t = solution.t
     steps = np.flatnonzero(np.diff(t) > 1e-9 * (t[-1] - t[0]))
-    middles = (t[steps] + t[steps + 1]) / 2
-    h = np.diff(t)[steps][:, None, None]
+    return steps[_leaves(solution, steps, steps + 1, solution.at((t[steps] + t[steps + 1]) / 2).q)]
+
+
+def _leaves(solution: Solution, first: np.ndarray, last: np.ndarray, middle: np.ndarray) -> np.ndarray:
+    """(n,) bool: whether the quintic between two rows leaves the motion, ``middle`` (n, bodies, 3) half way."""
+    h, size = (solution.t[last] - solution.t[first])[:, None, None], solution.packed.size
     q, v, a = solution.q, solution.v, solution.a
-    between = (
-        (q[steps] + q[steps + 1]) / 2 + 5 / 32 * h * (v[steps] - v[steps + 1]) + h * h / 64 * (a[steps] + a[steps + 1])
-    )
-    gap = np.abs(between - solution.at(middles).q) * np.array([1.0, 1.0, size])
-    return steps[gap.max(axis=(1, 2)) > CLOSE * size]
+    between = (q[first] + q[last]) / 2 + 5 / 32 * h * (v[first] - v[last]) + h * h / 64 * (a[first] + a[last])
+    gap = np.abs(between - middle) * np.array([1.0, 1.0, size])
+    return gap.max(axis=(1, 2)) > CLOSE * size

@@ -28,14 +28,14 @@ if TYPE_CHECKING:
 
 def built(plan: Plan, heights: Heights) -> dict[str, list[Solid]]:
     """All solids by body, in mm."""
-    made = {"ground": [*base(plan), *plan.solids.get("ground", [])]}
+    made: dict[str, list[Solid]] = {"ground": [*base(plan), *plan.solids.get("ground", [])]}
     for body in plan.layout.moving:
         shape, holes = _plate(plan, body, heights.thickness)
         for tool, through in plan.cuts.get(body, []):
             shape, holes = shape.cut(tool), holes + through
         shape = marked(shape, plan, body, heights.thickness)
         plate = Solid(plan.main[body], placed(shape, z=heights.bottom(body)), plan.materials[body], holes)
-        made[body] = [plate, *plan.solids.get(body, [])]
+        made.setdefault(plan.layout.webs.get(body, body), []).extend([plate, *plan.solids.get(body, [])])
     return {body: [_scaled(solid, plan.layout.sizes) for solid in solids] for body, solids in made.items()}
 
 

@@ -85,17 +85,18 @@ class PinReach:
 class PivotReach:
     """A pin on ground that stands on the base (``choice`` 0), or hangs from a bridge above all layers (1).
 
-    Of pivots that may do either, one that is ``driven`` stands.
+    Of pivots that may do either, one that is ``driven`` stands. One that is ``flush`` may end in its body's plate.
     """
 
     bodies: tuple[str, ...]
     choice: str
     driven: bool = False
+    flush: bool = False
 
     @property
     def ends(self) -> dict[str | None, tuple[Ends, ...]]:
         """As :attr:`Reach.ends`."""
-        return {self.choice: ((None, 1), (-1, None))}
+        return {self.choice: ((None, 0 if self.flush else 1), (-1, None))}
 
     def span(self, levels: Levels) -> tuple[int, int] | None:
         """As :meth:`Reach.span`; while the choice is open, what both have in common."""

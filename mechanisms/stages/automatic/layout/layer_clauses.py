@@ -71,6 +71,14 @@ class Clauses:
                     self.add(-literal, -self.at_least(low, level), self.at_least(high, level + by))
         return self._differences[key]
 
+    def between(self, low: str, high: str, runners: Sequence[str]) -> None:
+        """One of two bodies is below all ``runners``, the other above them."""
+        up = self.new()
+        for runner in runners:
+            for given, under, over in ((-up, low, high), (up, high, low)):
+                self.add(given, self.above(under, runner, 1))
+                self.add(given, self.above(runner, over, 1))
+
     def apart(self, first: AnyReach, second: AnyReach, key: Hashable = None) -> None:
         """Two items share no height; with a ``key`` only where its literal is true."""
         one, other = self.new(), self.new()

@@ -40,6 +40,9 @@ class Problem:
     hanging: frozenset[str] = frozenset()
     """Choices of those pivots on ground that may hang from a bridge."""
 
+    between: Sequence[tuple[str, str, tuple[str, ...]]] = ()
+    """Two of which one is below some others and the other above these."""
+
     @property
     def heads(self) -> dict[str, str]:
         """The first of the bodies that share a layer, by body."""
@@ -68,6 +71,8 @@ class Problem:
         for pivot in self._pivots:
             if pivot.choice not in self.hanging:
                 made.add(-made.choices[pivot.choice])
+        for low, high, runners in self.between:
+            made.between(low, high, runners)
         for k, (i, j) in enumerate(self.conflicts):
             made.apart(self.items[i].reach, self.items[j].reach, told[k] if told else None)
         return made

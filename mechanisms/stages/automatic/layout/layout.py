@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol
 
@@ -87,6 +87,10 @@ class Layout:
     """Pairs of bodies that may touch by design; a feature adds those of its own when it is gathered."""
     pressing: set[frozenset[str]] = field(default_factory=set)
     """Such pairs whose contact yields: the order of layers keeps all else of them apart."""
+    flush: bool = False
+    """Whether pivots on ground may end flush with the one link that turns on them."""
+    webs: dict[str, str] = field(default_factory=dict)
+    """Further plates of bodies, by name, each with its body."""
     rounds: dict[tuple[str, float, float], Feature] = field(default_factory=dict)
     """By body and place: balls, wheels and discs, which several contacts may share."""
 
@@ -142,8 +146,8 @@ class Layout:
 
     @cached_property
     def moving(self) -> list[str]:
-        """The bodies and rods that need a layer."""
-        return [*self.bodies, *self.rods]
+        """The bodies, rods and webs that need a layer."""
+        return [*self.bodies, *self.rods, *self.webs]
 
     def outline(self, body: str) -> Rounded:
         """The shape that holds a body's plate."""
@@ -174,7 +178,18 @@ class Layout:
 
     def problem(self, fixed: Mapping[str, int] | None = None, hanging: frozenset[str] = frozenset()) -> Problem:
         """What the search for layers is asked."""
-        return Problem(self.layered, self.items, self.conflicts, fixed or {}, self.together, hanging)
+        between = [feature.order for feature in self.features if getattr(feature, "order", None)]
+        return Problem(self.layered, self.items, self.conflicts, fixed or {}, self.together, hanging, between)
+
+    def with_flush_pivots(self) -> Layout:
+        """The same with other pivots, and as they meet the same in the plane, with all that was found of that."""
+        found = replace(self, flush=True, features=list(self.features))
+        found.__dict__["conflicts"] = self.conflicts
+        return found
+
+    def is_held(self, pin: object) -> bool:
+        """Whether something stands on a pin."""
+        return any(getattr(feature, "pin", None) is pin for feature in self.features)
 
     def gap(self, first: Item, second: Item) -> tuple[float, float]:
         """Least gap in the plane (rmm), and its time (s)."""
@@ -193,7 +208,7 @@ class Layout:
             or (second.only and first.what not in second.only)
             or (first.spared and first.body in second.spares)
             or (second.spared and second.body in first.spares)
-            or frozenset((first.body, second.body)) in self.touching
+            or frozenset(self.webs.get(item.body, item.body) for item in (first, second)) in self.touching
         )
 
     def is_covered(self, source: object, half_layer: int, levels: Levels) -> bool:

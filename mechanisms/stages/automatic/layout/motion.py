@@ -11,6 +11,8 @@ if TYPE_CHECKING:
 
 POSES = 1000
 """About so many poses are looked at."""
+TURN, MOST = 0.05, 60
+"""And more where a body turns by more than this (rad) from one to the next; at most so many in a step."""
 
 
 def poses_of(solution: Solution, to_length: float) -> dict[str, np.ndarray]:
@@ -18,8 +20,7 @@ def poses_of(solution: Solution, to_length: float) -> dict[str, np.ndarray]:
 
     Between outputs they follow the cubic through places and velocities, except where a jump makes two times equal.
     """
-    t = solution.t
-    parts = max(1, round(POSES / max(len(t), 1)))
+    t, parts = solution.t, _parts(solution)
     found = {}
     for name in solution.mechanism.bodies:
         if name == "ground":
@@ -38,16 +39,26 @@ def poses_of(solution: Solution, to_length: float) -> dict[str, np.ndarray]:
 def times_of(solution: Solution) -> np.ndarray:
     """(T,) the times (s) of :func:`poses_of`."""
     t = solution.t
-    parts = max(1, round(POSES / max(len(t), 1)))
-    return _between(t, t[:, None], np.ones((len(t), 1)), parts)[:, 0]
+    return _between(t, t[:, None], np.ones((len(t), 1)), _parts(solution))[:, 0]
 
 
-def _between(t: np.ndarray, value: np.ndarray, rate: np.ndarray, parts: int) -> np.ndarray:
+def _parts(solution: Solution) -> np.ndarray:
+    """(n,) how many poses of each step are looked at: more where a body turns far in it."""
+    counts = np.full(len(solution.t) - 1, max(1, round(POSES / max(len(solution.t), 1))))
+    for name in solution.mechanism.bodies:
+        if name != "ground":
+            turned = np.abs(np.diff(solution.body(name).theta)) / TURN
+            counts = np.maximum(counts, np.minimum(np.ceil(turned), MOST).astype(int))
+    return counts
+
+
+def _between(t: np.ndarray, value: np.ndarray, rate: np.ndarray, parts: np.ndarray) -> np.ndarray:
     """Hermite's cubic at ``parts`` places of every step, and the last value."""
-    if len(t) < 2 or parts == 1:
+    if len(t) < 2 or (parts == 1).all():
         return value.astype(float).copy()
-    u = (np.arange(parts) / parts)[None, :, None]
-    step = np.diff(t)[:, None, None]
-    p, q, v, w = value[:-1, None], value[1:, None], rate[:-1, None] * step, rate[1:, None] * step
+    at = np.repeat(np.arange(len(parts)), parts)
+    u = ((np.arange(len(at)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[at])[:, None]
+    step = np.diff(t)[:, None]
+    p, q, v, w = value[:-1][at], value[1:][at], (rate[:-1] * step)[at], (rate[1:] * step)[at]
     shape = (2 * u**3 - 3 * u**2 + 1) * p + (u**3 - 2 * u**2 + u) * v + (3 * u**2 - 2 * u**3) * q + (u**3 - u**2) * w
-    return np.concatenate([shape.reshape(-1, value.shape[1]), value[-1:]])
+    return np.concatenate([shape, value[-1:]])

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mechanisms.stages.automatic.layout.features import build
 from mechanisms.stages.automatic.layout.plan import BOLT_HOLE, Foot
-from mechanisms.stages.automatic.pins.pins import Pin
 from shared.shapes.base import bolt_circle, column, pedestal
 from shared.shapes.link import Eye
 from shared.shapes.pin import pin, washer
@@ -17,27 +15,13 @@ from shared.shapes.standards import screw_length, screw_name
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
+    from mechanisms.stages.automatic.pins.pins import Pin
 
 FLANGE, CIRCLE = 39.0, 31.0
 """Diameters of a pedestal's flange and of the circle of its screws."""
 FLANGE_THICKNESS = 4.0
 TOP, FOOT = 17.0, 20.0
 """Diameters of a pedestal's column."""
-
-
-@build.register(Pin)
-def pin_solids(joint: Pin, plan: Plan, heights: Heights) -> None:
-    """Eyes and hardware; a bridge builds what hangs from it."""
-    stack = sorted(joint.movers, key=heights.bottom)
-    hangs = heights.levels[joint.choice] == 1
-    if joint.on_ground and hangs:
-        return
-    if joint.on_ground:
-        ground_pin(joint, stack, plan, heights)
-    elif hangs:
-        hanging_pin(joint, stack, plan, heights)
-    else:
-        moving_pin(joint, stack, plan, heights)
 
 
 def moving_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> None:

@@ -2,7 +2,8 @@
 turn about a pin at either end.
 
 Joints that share a place on a body share their pin. The lowest body holds it and its head is on top, or the highest
-holds it and it hangs down, kept by a circlip; on ground a pedestal holds it, or a bridge (bridges.py)."""
+holds it and it hangs down, kept by a circlip; on ground a pedestal holds it, or a bridge (bridges.py). Where something
+passes close above a pivot, its head is sunk into its link; a pin may join two webs of a crank (webs.py)."""
 
 from __future__ import annotations
 
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from mechanisms.stages.automatic.layout.extents import ROD
 from mechanisms.stages.automatic.layout.features import kind
-from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Anchor, Item, Need, PinReach, PivotReach
+from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Anchor, Item, Need, PinReach, PivotReach, Reach
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.planar import disc
 from mechanisms.stages.automatic.pins.rods import ends as rod_ends
@@ -37,6 +38,8 @@ class Pin:
     """Of its first joint; of a rod alone its name and that of the end, 1 or 2."""
     m: Mechanism
     places: dict[str, tuple[float, float]]
+    webs: tuple[str, str] | None = None
+    """Two plates of one body that it joins (webs.py); all others on it turn between these."""
 
     @cached_property
     def movers(self) -> tuple[str, ...]:
@@ -64,6 +67,24 @@ class Pin:
         return f"pin {self.name}"
 
     @property
+    def order(self) -> tuple[str, str, tuple[str, ...]] | None:
+        """Its webs, and what is between them."""
+        if self.webs is None:
+            return None
+        return *self.webs, tuple(body for body in self.movers if body not in self.webs)
+
+    def is_flush(self, levels: Levels, layout: Layout) -> bool:
+        """Whether it ends in the plate of the one body on it, because something passes close above."""
+        if not self._may_be_flush(layout) or levels[self.choice] == 1:
+            return False
+        return layout.is_covered(self, 2 * levels[self.movers[0]] + 1, levels)
+
+    def _may_be_flush(self, layout: Layout) -> bool:
+        if not layout.flush or not self.on_ground or len(self.movers) > 1 or layout.is_held(self):
+            return False
+        return all(getattr(feature, "slot", None) != self.movers[0] for feature in layout.features)  # pins run in slots
+
+    @property
     def driven(self) -> bool:
         """Whether a driver turns what is on it against ground."""
         drivers = self.m.drivers.values()
@@ -78,27 +99,30 @@ class Pin:
         x, y = self.places[self.home]
         shape, on_it = disc(x, y, layout.sizes.hardware), frozenset(self.places)
         if self.on_ground:
-            reach = PivotReach(self.movers, self.choice, self.driven)
+            reach = PivotReach(self.movers, self.choice, self.driven, self._may_be_flush(layout))
             return [Item(self.what, self.home, shape, reach, on_it, self, stands=PIVOT)]
-        return [Item(self.what, self.home, shape, PinReach(self.movers, self.choice), on_it, self)]
+        ends = PinReach(self.movers, self.choice) if self.webs is None else Reach(self.movers, 1, -1)
+        return [Item(self.what, self.home, shape, ends, on_it, self)]
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """Room for washers and flanges between neighbours on the pin, and for its head or circlip on top."""
         sizes, pivot = layout.sizes, layout.sizes.pivot
         running = pivot.fit.axial + pivot.flange_room
         stack = sorted(levels[body] for body in self.movers)
-        hangs = levels[self.choice] == 1
+        hangs = levels.get(self.choice) == 1
+        held = {0, len(stack) - 2} if self.webs else {} if self.on_ground else {len(stack) - 2 if hangs else 0}
         for k, (low, high) in enumerate(pairwise(stack)):
             if high == low + 1:
-                held = not self.on_ground and k == (len(stack) - 2 if hangs else 0)
-                yield Need(low, pivot.washer_room + running * (1 if held else 2))
+                yield Need(low, pivot.washer_room + running * (1 if k in held else 2))
         top = stack[-1]
+        if self.webs:
+            return
         if hangs:
             if self.on_ground:
                 yield Need(top, pivot.washer_room + running)
             if stack[0] == 0 or layout.is_covered(self, 2 * (stack[0] - 1), levels):
                 yield Need(stack[0] - 1, sizes.clip_room)
-        elif layout.is_covered(self, 2 * (top + 1), levels):
+        elif not self.is_flush(levels, layout) and layout.is_covered(self, 2 * (top + 1), levels):
             yield Need(top, sizes.clip_room if self.on_ground else sizes.end_room)
         if self.on_ground and not hangs and stack[0] == 0:
             yield Need(BASE, sizes.pedestal + pivot.washer_room + running)

@@ -1,0 +1,54 @@
+"""Cases that a hunt has looked at, a line each as they end: one that is killed goes on from there, on any night."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+
+from shared.stage.files import sources_hash, write_bytes
+from shared.stage.paths import ROOT
+from tools.hunt.outcome import BASE, CaseResult, Outcome
+
+SOURCES = [*(ROOT / room for room in ("mbsd", "mechanisms/stages", "shared")), ROOT / "tools" / "hunt_parts"]
+
+
+class Kept:
+    """The lines of a file; the seed decides a case, so one that is there is not looked at again."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.sources = sources_hash(*SOURCES)[:12]
+        """Of the program as it is; each line tells that of its own."""
+        self.others = 0
+        """How many of the lines that were read are of another program."""
+
+    def read(self, seeds: Iterable[int]) -> list[CaseResult]:
+        """Of these cases. A last line that was cut is taken off the file."""
+        if not self.path.exists():
+            return []
+        content = self.path.read_bytes()
+        whole = content[: content.rfind(b"\n") + 1]
+        if whole != content:
+            write_bytes(self.path, whole)
+        wanted, found = set(seeds), {}
+        for line in whole.splitlines():
+            one = json.loads(line)
+            if one["seed"] in wanted:
+                found[one["seed"]] = one
+        self.others = sum(one["sources"] != self.sources for one in found.values())
+        return [_result(one) for one in found.values()]
+
+    def add(self, result: CaseResult) -> None:
+        """One more line."""
+        last = result.outcomes[-1]
+        told = {"seed": result.seed, "kind": result.family, "state": last.state, "reason": last.reason}
+        told |= {"detail": last.detail, "seconds": round(result.seconds, 2), "sources": self.sources}
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        with self.path.open("ab") as file:
+            file.write(json.dumps(told).encode() + b"\n")
+
+
+def _result(line: dict[str, str]) -> CaseResult:
+    outcome = Outcome(BASE, line["state"], line["reason"], line["detail"])
+    return CaseResult(int(line["seed"]), line["kind"], [outcome], float(line["seconds"]))

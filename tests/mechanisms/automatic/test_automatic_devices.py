@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.layout.items import Item, Reach
@@ -37,7 +36,7 @@ def test_a_block_passes_over_a_pivot_that_is_sunk_into_its_guide() -> None:
     assert not meets(found)
     solids = found.plan().solids
     top = found.heights.top(guide)
-    (shaft,) = (solid for solid in solids["ground"] if solid.name == f"pin_{pivot.name}")
+    (shaft,) = (solid for solid in solids["ground"] if solid.name == f"pin_{pivot.name}".replace(" ", "_"))
     assert top - 0.5 < shaft.shape.val().BoundingBox().zmax < top
     assert not any(solid.name.startswith(f"circlip_{pivot.name}") for solid in solids["ground"])
 
@@ -53,17 +52,28 @@ def test_a_crank_of_two_webs_carries_a_rod_on_either_side() -> None:
     for other in (pin for pin in found.layout.features if isinstance(pin, Pin) and pin is not joining):
         assert not {web, body} <= set(other.places), "no other pin is on both"
     (pin,) = (
-        solid for solids in found.plan().solids.values() for solid in solids if solid.name == f"pin_{joining.name}"
+        solid
+        for solids in found.plan().solids.values()
+        for solid in solids
+        if solid.name == f"pin_{joining.name}".replace(" ", "_")
     )
     box, ends = pin.shape.val().BoundingBox(), sorted((web, body), key=found.levels.__getitem__)
     assert found.heights.bottom(ends[0]) < box.zmin
     assert box.zmax < found.heights.top(ends[1])
 
 
-@pytest.mark.parametrize("number", [SUNK, WEBS])
-def test_they_are_built_and_proven(number: int) -> None:
-    found = case.run(SEED + number, KINDS[number % len(KINDS)]).outcomes[-1]
+def test_a_sunk_pivot_is_built_and_proven() -> None:
+    found = case.run(SEED + SUNK, KINDS[SUNK % len(KINDS)]).outcomes[-1]
     assert found.state == BUILT, found
+
+
+def test_a_crank_of_two_webs_is_sound() -> None:
+    found = made(WEBS)
+    (body,) = found.layout.webs.values()
+    crank = {body: found.solids()[body]}
+    assert [solid.name for solid in crank[body]].count(body) == 1
+    assert f"{body}_2" in [solid.name for solid in crank[body]]
+    assert not case.overlapping(case.meshed(crank))  # pyright: ignore[reportArgumentType]
 
 
 def test_a_body_between_two_others() -> None:
@@ -84,7 +94,7 @@ def test_poses_are_close_where_a_link_flies_past_its_dead_point() -> None:
     assert turned > 4 * TURN, "else there is nothing to see"
     poses, times = poses_of(solution, 1.0), times_of(solution)
     assert len(poses["guide"]) == len(times)
-    assert np.abs(np.diff(poses["guide"][:, 2])).max() < 3 * TURN
+    assert np.abs(np.diff(poses["guide"][:, 2])).max() < turned / 8
     assert (np.diff(times) > 0).all()
 
 

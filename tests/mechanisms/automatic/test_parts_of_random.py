@@ -15,9 +15,11 @@ from shared.stage.errors import UserError
 from tests.mechanisms.automatic.layouts import meets
 from tests.models.four_bars import angles, model
 from tools.hunt.case import drawn
+from tools.hunt.loop import seeds
 from tools.hunt.outcome import CaseResult
 from tools.hunt_parts import case
 from tools.hunt_parts.__main__ import hunt
+from tools.hunt_parts.kept import Kept
 from tools.hunt_parts.outcome import BUILT, COLLIDES, ERROR, STUCK, UNSOUND, reason
 
 SEED = 4_000_000
@@ -55,8 +57,8 @@ def test_a_hundred_random_mechanisms_get_layers_or_a_reason() -> None:
         assert not meets(made), f"case {SEED + k}"
         came[BUILT] += 1
     assert set(came) <= {BUILT, STUCK, *REASONS}, came
-    assert came[BUILT] >= 70, came
-    assert came["no order of layers lets"] <= 20, came
+    assert came[BUILT] >= 88, came
+    assert came["no order of layers lets"] <= 5, came
 
 
 def test_every_four_bar_whose_crank_turns_gets_an_order() -> None:
@@ -83,6 +85,26 @@ def test_a_short_hunt_for_parts_writes_its_report(out_root: Path) -> None:
     assert hunt(3, seed=4, jobs=1, kind="four-bar, crank turns", solids=False) == 0
     report = json.loads((out_root / "hunt_parts.json").read_text())
     assert report["cases"][BUILT] == sum(report["cases"].values()) == 3
+
+
+def test_a_hunt_goes_on_where_it_was_stopped(out_root: Path) -> None:
+    asked = {"seed": 4, "jobs": 1, "kind": "four-bar, crank turns", "solids": False}
+    hunt(2, **asked)
+    (lines,) = (out_root / "hunt_parts").iterdir()
+    before = lines.read_bytes()
+    first, second = before.splitlines()
+    lines.write_bytes(first.replace(b'"sources": "', b'"sources": "x') + b"\n" + second[:20])
+    kept = Kept(lines)
+    assert [result.seed for result in kept.read(seeds(4, 3))] == [json.loads(first)["seed"]]
+    assert kept.others == 1
+    hunt(3, **asked)
+    told = [json.loads(line) for line in lines.read_bytes().splitlines()]
+    assert [one["seed"] for one in told] == list(seeds(4, 3))
+    assert told[0]["sources"].startswith("x"), "it is not looked at again"
+    assert json.loads((out_root / "hunt_parts.json").read_text())["cases"][BUILT] == 3
+    hunt(1, **asked, anew=True)
+    (line,) = lines.read_bytes().splitlines()
+    assert json.loads(line)["sources"] == kept.sources
 
 
 def test_one_is_built_and_proven() -> None:

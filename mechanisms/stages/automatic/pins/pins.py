@@ -80,7 +80,7 @@ class Pin:
         return layout.is_covered(self, 2 * levels[self.movers[0]] + 1, levels)
 
     def _may_be_flush(self, layout: Layout) -> bool:
-        if not layout.flush or not self.on_ground or len(self.movers) > 1 or layout.is_held(self):
+        if not layout.flush or not self.on_ground or len(self.movers) != 1 or layout.is_held(self):
             return False
         return all(getattr(feature, "slot", None) != self.movers[0] for feature in layout.features)  # pins run in slots
 

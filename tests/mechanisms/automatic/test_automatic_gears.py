@@ -142,3 +142,18 @@ def test_posts_of_a_ring_stay_under_its_rim() -> None:
         box = post.shape.val().BoundingBox()
         centre = np.array([box.center.x, box.center.y])
         assert np.linalg.norm(centre - [ring.x, ring.y]) - box.xlen / 2 > ring.root + 0.2
+
+
+def test_a_pivot_on_the_axis_of_a_wheel_of_ground_stands_on_that_wheel() -> None:
+    m = Mechanism("standing", gravity=None)
+    carrier, planet = m.bar("carrier", 0.1), m.body("planet")
+    m.revolute("O", m.ground.origin, carrier.start)
+    m.revolute("P", carrier.end, planet.origin)
+    m.gear_pair("g", m.ground.origin, planet.origin, teeth=(30, 20), module=0.004)
+    m.drive_angle("motor", carrier, constant_rate(2.0))
+    m.start_near(carrier=0, planet=(0.1, 0, 0))
+    made = Automatic(m, m.sweep(steps=90))
+    boxes = {one.name: one.shape.val().BoundingBox() for one in made.solids()["ground"]}
+    assert boxes["pedestal_O"].zmin > boxes["gear_g"].zmax
+    assert boxes["pedestal_O"].zmax < made.span("carrier")[0]
+    assert boxes["pedestal_O"].zlen > made.sizes.scale

@@ -63,6 +63,11 @@ class Carrier(Protocol):
         """Radius where its teeth begin (rmm)."""
         ...
 
+    @property
+    def layer(self) -> str:
+        """What decides its layer: its body, or itself."""
+        ...
+
 
 @dataclass(eq=False)
 class Layout:
@@ -122,6 +127,11 @@ class Layout:
                 elif anchor.radius > places[same[0]].radius:
                     places[same[0]] = anchor
         return {body: [a for a in places if not self._on_wheel(a)] for body, places in found.items()}
+
+    def wheel_at(self, x: float, y: float) -> Carrier | None:
+        """The wheel of ground about a place on it (rmm): what turns there stands on that wheel."""
+        here = [wheel for wheel in self.wheels.get("ground", []) if math.hypot(wheel.x - x, wheel.y - y) < 0.02]
+        return next((wheel for wheel in here if not wheel.ring), None)
 
     def _on_wheel(self, anchor: Anchor) -> bool:
         """Whether the wheel in its body's layer carries it."""

@@ -75,7 +75,14 @@ def ground_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> No
     pivot, fit = sizes.pivot, sizes.pivot.fit
     x, y = joint.places["ground"]
     height = heights.bottom(stack[0]) - pivot.flange_room - fit.axial - pivot.washer_room
-    standing(name, (x, y), height, plan, dial=joint.driven)
+    wheel = plan.layout.wheel_at(x, y)
+    if wheel is None:
+        standing(name, (x, y), height, plan, dial=joint.driven)
+    else:  # the wheel and its post carry it
+        foot = heights.top(wheel.layer) + fit.seat
+        post = column(height - foot, pivot.held, TOP, TOP)
+        plan.make("ground", f"pedestal_{name}", placed(post, x, y, foot), "aluminium", 1)
+        plan.feet.append(Foot(name, x, y, wheel.root, dial=joint.driven))
     run(joint, stack, "ground", plan, heights)
     clip = heights.top(stack[-1]) + pivot.flange_room + pivot.retainer_room - pivot.clip_thickness
     bolt = pin(pivot.pin, clip + pivot.clip_thickness + sizes.pin_end - 0.5, None, pivot.groove(clip - 0.5))

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
 
+LEAST_COLUMN = 2.5
+"""Height of what carries a pivot over a wheel of ground (rmm)."""
 SAME = 0.02
 """Places on a body that are nearer than this (rmm) are one."""
 
@@ -124,6 +126,9 @@ class Pin:
                 yield Need(stack[0] - 1, sizes.clip_room)
         elif not self.is_flush(levels, layout) and layout.is_covered(self, 2 * (top + 1), levels):
             yield Need(top, sizes.clip_room if self.on_ground else sizes.end_room)
+        wheel = layout.wheel_at(*self.places["ground"]) if self.on_ground and not hangs else None
+        if wheel is not None and stack[0] == levels[wheel.layer] + 1:
+            yield Need(levels[wheel.layer], LEAST_COLUMN + pivot.washer_room + running)
         if self.on_ground and not hangs and stack[0] == 0:
             yield Need(BASE, sizes.pedestal + pivot.washer_room + running)
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from mechanisms.stages.automatic.layout.features import build
 from mechanisms.stages.automatic.layout.plan import Foot
+from mechanisms.stages.automatic.pins.pins import SAME, Pin
 from mechanisms.stages.automatic.wheels.wheels import TUBE, Wheel
 from shared.shapes.build import extruded, turned
 from shared.shapes.involute import toothed, wire
@@ -54,7 +55,10 @@ def _on_ground(wheel: Wheel, plan: Plan, heights: Heights) -> None:
     z = heights.bottom(wheel.layer)
     shape, holes = shape_of(wheel, thickness, [])
     if not wheel.ring:
-        bore = plan.layout.sizes.pivot.bushing + 1.0
+        pivot, here = plan.layout.sizes.pivot, (wheel.x, wheel.y)
+        grounded = [pin for pin in plan.layout.features if isinstance(pin, Pin) and pin.on_ground]
+        pinned = any(math.dist(pin.places["ground"], here) < SAME for pin in grounded)
+        bore = pivot.held if pinned else pivot.bushing + 1.0
         shape = shape.cut(extruded(circle(0, 0, bore / 2), thickness + 2, -1.0))
         post = extruded(circle(0, 0, wheel.root - 1.5), z - 2 * seat, seat, [circle(0, 0, bore / 2)])
         plan.make("ground", f"post_{wheel.name}", placed(post, wheel.x, wheel.y), "aluminium", 1)

@@ -215,7 +215,7 @@ hunt: install ## N random mechanisms (1000), each solved again in other words; S
 	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.hunt --n "$${N:-1000}" --seed "$$SEED"
 
-hunt-parts: install ## parts of N random mechanisms (1000), and the proof that none touch; SEED=1; goes on where it stopped: out/hunt_parts.json
+hunt-parts: install ## parts of N random mechanisms (1000), goes on where it stopped; SEED=1: out/hunt_parts.json
 	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.hunt_parts --n "$${N:-1000}" --seed "$$SEED"
 

@@ -43,7 +43,12 @@ SECTIONS = (
     (
         "Positions, velocities, accelerations",
         "",
-        ("mbsd/kinematics/newton.py", "mbsd/kinematics/elimination.py", "mbsd/kinematics/groups"),
+        (
+            "mbsd/kinematics/newton.py",
+            "mbsd/kinematics/elimination.py",
+            "mbsd/kinematics/groups",
+            "mbsd/kinematics/groups/newton/block.py",
+        ),
     ),
     ("Mobility", "", ("mbsd/kinematics/pose/mobility.py",)),
     ("Inverse dynamics", "", ("mbsd/kinematics/multipliers.py",)),

@@ -43,7 +43,7 @@ class Blocks(NamedTuple):
     """All blocks of a plan; the group of kind BLOCK has the number of its block as ``motion``."""
 
     address: Any
-    """(1,) of the compiled solution (mbsd/kinematics/groups/block.py)."""
+    """(1,) of the compiled solution (mbsd/kinematics/groups/newton/block.py)."""
     head: Any
     """(blocks, 9)"""
     tree: Any

@@ -206,7 +206,7 @@ class _Parts:
         """As the kernels read them."""
         address = 0
         if self.head:
-            from mbsd.kinematics.groups.block import ADDRESS
+            from mbsd.kinematics.groups.newton.block import ADDRESS
 
             address = ADDRESS
         carriers = {int(body) for kind, bodies, _, _ in self.plan.taken if kind < BLOCK for body in bodies[2:]}

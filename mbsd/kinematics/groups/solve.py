@@ -1,6 +1,6 @@
 """The compiled closed forms: positions, velocities and accelerations of all groups at all times.
 
-PRP, ROD, SLIDE and trains are in slides.py, blocks of Newton-Raphson in block.py, carried points in points.py.
+PRP, ROD, SLIDE and trains are in slides.py, blocks of Newton-Raphson in newton/, carried points in points.py.
 
     RRR   C where the circles about P and Q meet;  with u = C - P, w = C - Q:
           omega_A u_perp - omega_B w_perp = q' - p'
@@ -28,9 +28,9 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import kernel
-from mbsd.kinematics.groups.block_call import call_block
 from mbsd.kinematics.groups.blocks import BLOCK, CARRIES_ON, DOUBTED_BEFORE, NEAR_AT, ROWS_AT, TRAIN, TREE_AT
 from mbsd.kinematics.groups.groups import DRIVEN, PRP, RPR, RRP, RRR, SLIDE, WELDED, YOKE
+from mbsd.kinematics.groups.newton.call import call_block
 from mbsd.kinematics.groups.points import DOUBTED, MEETING, SOLVED, aim, carried, dip, follow, hang, reach, wound
 from mbsd.kinematics.groups.slides import solve_prp, solve_rod, solve_slide, solve_train
 from mbsd.kinematics.law_step import jumps

@@ -28,7 +28,7 @@ from mbsd.kinematics.groups.blocks import (
     TURNED,
     UNKNOWN,
 )
-from mbsd.kinematics.groups.fused import fused
+from mbsd.kinematics.groups.newton.fused import fused
 from mbsd.kinematics.groups.points import carried, follow, hang
 from mbsd.kinematics.groups.slides import solve_slide
 

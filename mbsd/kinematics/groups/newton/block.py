@@ -14,10 +14,6 @@ import math
 from numba import carray
 
 from mbsd.compiling.jit import COMPILED, at_address
-from mbsd.kinematics.groups.block_call import PYTHON, SIGNATURE
-from mbsd.kinematics.groups.block_matrix import factor, held, solve
-from mbsd.kinematics.groups.block_pinned import in_doubt, predicted, solve_pinned
-from mbsd.kinematics.groups.block_rows import begin, bend_of, evaluate_row, fill_columns, move
 from mbsd.kinematics.groups.blocks import (
     BODIES,
     BODY,
@@ -38,7 +34,11 @@ from mbsd.kinematics.groups.blocks import (
     UNKNOWN,
     UNKNOWNS,
 )
-from mbsd.kinematics.groups.fused import fused
+from mbsd.kinematics.groups.newton.call import PYTHON, SIGNATURE
+from mbsd.kinematics.groups.newton.fused import fused
+from mbsd.kinematics.groups.newton.matrix import factor, held, solve
+from mbsd.kinematics.groups.newton.pinned import in_doubt, predicted, solve_pinned
+from mbsd.kinematics.groups.newton.rows import begin, bend_of, evaluate_row, fill_columns, move
 from mbsd.kinematics.groups.points import DOUBTED, MEETING, SOLVED
 from mbsd.kinematics.law_step import jumps
 from mbsd.kinematics.newton import MAX_ITERATIONS, ROUNDING, TOLERANCE

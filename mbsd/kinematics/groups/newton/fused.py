@@ -1,4 +1,4 @@
-"""A decorator for the small kernels of a block (mbsd/kinematics/groups/block.py): LLVM copies them into their caller.
+"""A decorator for the small kernels of a block (block.py): LLVM copies them into their caller.
 
 Each has one or two callers, and handing ten arrays on costs more than the work.
 """

@@ -19,14 +19,56 @@ import numpy as np
 from mbsd.base.arguments import checked_methods, several_numbers
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
-from mbsd.model.adding_contacts import AddingContacts
-from mbsd.model.adding_forces import Amount
-from mbsd.model.adding_interactions import AddingInteractions
-from mbsd.model.adding_machine_joints import AddingMachineJoints
+from mbsd.model.adding.forces import Amount
 from mbsd.model.body import Body, Marker
+from mbsd.model.contacts.discs import rigid_discs
+from mbsd.model.contacts.line import rigid_contact
+from mbsd.model.contacts.one_way import one_way
+from mbsd.model.contacts.rope import rope
+from mbsd.model.contacts.stops import angle_stop, coordinate_stop, stop
+from mbsd.model.contacts.terrain import rigid_terrain
+from mbsd.model.drivers.angle import drive_angle
+from mbsd.model.drivers.coordinate import drive_coordinate
+from mbsd.model.drivers.distance import drive_distance
+from mbsd.model.drivers.relative_angle import drive_relative_angle
+from mbsd.model.event import Event
 from mbsd.model.force import Force
+from mbsd.model.forces.actuator import actuator
+from mbsd.model.forces.bushing import bushing
+from mbsd.model.forces.contact import contact
+from mbsd.model.forces.curve_of_angle import curve_of_angle, motor
+from mbsd.model.forces.curve_of_length import curve_of_length
+from mbsd.model.forces.drag import drag
+from mbsd.model.forces.force import force
+from mbsd.model.forces.friction import friction
+from mbsd.model.forces.gas import gas
+from mbsd.model.forces.gravitation import gravitation
+from mbsd.model.forces.rotating_frame import rotating_frame
+from mbsd.model.forces.spring import spring
+from mbsd.model.forces.spring_law import spring_law
+from mbsd.model.forces.torque import torque
+from mbsd.model.forces.torsion_spring import torsion_spring
+from mbsd.model.forces.torsion_spring_law import torsion_spring_law
+from mbsd.model.forces.tyre import tyre
+from mbsd.model.forces.user_force import user_force
 from mbsd.model.joint import Joint
-from mbsd.model.mechanism import STANDARD_GRAVITY, Start, StartVelocity
+from mbsd.model.joints.angle_lock import angle_lock
+from mbsd.model.joints.belt import belt
+from mbsd.model.joints.cam_flat import cam_flat
+from mbsd.model.joints.cam_roller import cam_roller
+from mbsd.model.joints.constraint import constraint
+from mbsd.model.joints.distance import distance
+from mbsd.model.joints.gear_pair import gear_pair
+from mbsd.model.joints.geneva import geneva
+from mbsd.model.joints.pin_in_slot import pin_in_slot
+from mbsd.model.joints.point_on_curve import point_on_curve
+from mbsd.model.joints.prismatic import prismatic
+from mbsd.model.joints.rack_and_pinion import rack_and_pinion
+from mbsd.model.joints.revolute import revolute
+from mbsd.model.joints.rolling_disc import rolling_disc
+from mbsd.model.joints.rolling_on_curve import rolling_on_curve
+from mbsd.model.joints.weld import weld
+from mbsd.model.mechanism import STANDARD_GRAVITY, Model, Start, StartVelocity, new_name, number_given, own_body
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,15 +87,76 @@ __all__ = ["STANDARD_GRAVITY", "Body", "Force", "Joint", "Marker", "Mechanism", 
 
 
 @checked_methods
-class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
+class Mechanism(Model):
     """Bodies, joints, drivers and traced points, by name. ``gravity`` in m/s^2; None turns it off."""
+
+    # -- joints --------------------------------------------------------------------------------------------------------
+
+    revolute = revolute
+    prismatic = prismatic
+    weld = weld
+    distance = distance
+    pin_in_slot = pin_in_slot
+    gear_pair = gear_pair
+    belt = belt
+    rack_and_pinion = rack_and_pinion
+    rolling_disc = rolling_disc
+    rolling_on_curve = rolling_on_curve
+    point_on_curve = point_on_curve
+    cam_roller = cam_roller
+    cam_flat = cam_flat
+    geneva = geneva
+    angle_lock = angle_lock
+    constraint = constraint
+
+    # -- drivers -------------------------------------------------------------------------------------------------------
+
+    drive_angle = drive_angle
+    drive_relative_angle = drive_relative_angle
+    drive_coordinate = drive_coordinate
+    drive_distance = drive_distance
+
+    # -- forces --------------------------------------------------------------------------------------------------------
+
+    spring = spring
+    torsion_spring = torsion_spring
+    spring_law = spring_law
+    torsion_spring_law = torsion_spring_law
+    bushing = bushing
+    torque = torque
+    force = force
+    actuator = actuator
+    curve_of_length = curve_of_length
+    curve_of_angle = curve_of_angle
+    motor = motor
+    gravitation = gravitation
+    gas = gas
+    contact = contact
+    tyre = tyre
+    drag = drag
+    rotating_frame = rotating_frame
+    friction = friction
+    user_force = user_force
+
+    # -- unilateral contacts and stops, which act in simulations alone -------------------------------------------------
+
+    rigid_contact = rigid_contact
+    rigid_discs = rigid_discs
+    rigid_terrain = rigid_terrain
+    rope = rope
+    angle_stop = angle_stop
+    coordinate_stop = coordinate_stop
+    stop = stop
+    one_way = one_way
+
+    # -- points, starts, events -------------------------------------------------------------------------------------
 
     def trace(self, name: str, marker: Marker) -> Marker:
         """Follow a point: its path, velocity and acceleration are in the solution."""
-        self._new_name(name, "trace", self.traces)
+        new_name(self, name, "trace", self.traces)
         if not isinstance(marker, Marker):
             raise ModelError(f"{self.name}: trace '{name}' needs a marker, got {shown(marker)}; write body.at(x, y)")
-        self._own_body(marker.body, f"trace '{name}'")
+        own_body(self, marker.body, f"trace '{name}'")
         self.traces[name] = marker
         return marker
 
@@ -65,7 +168,7 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
         for name, pose in poses.items():
             self.known_body(name)
             if isinstance(pose, int | float | np.number):
-                self.starts[name] = Start(math.radians(self._number(f"start of '{name}'", pose)))
+                self.starts[name] = Start(math.radians(number_given(self, f"start of '{name}'", pose)))
                 continue
             x, y, degrees = several_numbers(
                 f"{self.name}: start of '{name}'", pose, 3, "give degrees, or (x, y, degrees)"
@@ -82,10 +185,32 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
             self.known_body(name)
             what = f"start velocity of '{name}'"
             if isinstance(velocity, int | float | np.number):
-                self.velocities[name] = StartVelocity(self._number(what, velocity))
+                self.velocities[name] = StartVelocity(number_given(self, what, velocity))
                 continue
             vx, vy, omega = several_numbers(f"{self.name}: {what}", velocity, 3, "give rad/s, or (vx, vy, omega)")
             self.velocities[name] = StartVelocity(omega, (vx, vy))
+
+    def event(
+        self,
+        name: str,
+        value: Callable[[float, Any], float],
+        direction: int = 0,
+        terminal: bool = False,
+        action: Callable[[Any], object] | None = None,
+    ) -> Event:
+        """Something to watch: ``value(t, moment)`` passes zero, rising (direction 1), falling (-1) or either (0).
+
+        ``moment`` shows the motion now (mbsd/dynamics/events/moment.py). ``terminal`` ends the simulation there;
+        ``action`` is called with the moment and may change velocities and let joints go.
+        """
+        new_name(self, name, "event", self.events)
+        for what, function in (("value", value), ("action", action)):
+            if not callable(function) and not (what == "action" and function is None):
+                raise ModelError(f"{self.name}: event '{name}': {what} is {shown(function)}; it must be a function")
+        if direction not in (-1, 0, 1):
+            raise ModelError(f"{self.name}: event '{name}': direction is {shown(direction)}; it must be 1, -1 or 0")
+        event = self.events[name] = Event(name, value, direction, bool(terminal), action)
+        return event
 
     def marker_in_world(self, body: Body, x: float, y: float, angle: float) -> Marker:
         """See :meth:`mbsd.model.body.Body.at_world`."""
@@ -114,7 +239,7 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
 
         return check(self)
 
-    # -- what it can compute ------------------------------------------------------------------------------------
+    # -- what it can compute -----------------------------------------------------------------------------------
 
     def mobility(self) -> Mobility:
         """Degrees of freedom, nominal and by rank, and redundant joints; does not need drivers."""
@@ -245,7 +370,7 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
         """Natural frequencies, damping and shapes about the stable equilibrium, by rising frequency."""
         return self.linearise().modes
 
-    # -- efforts and motions ------------------------------------------------------------------------------------
+    # -- efforts and motions -----------------------------------------------------------------------------------
 
     def inverse_dynamics(self, motion: Solution, actuators: Sequence[str]) -> ActuatedMotion:
         """Efforts of ``actuators`` that make a known motion, and the reactions under them.
@@ -268,7 +393,7 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
 
         return with_efforts(self, efforts)
 
-    # -- pictures -----------------------------------------------------------------------------------------------
+    # -- pictures ----------------------------------------------------------------------------------------------
 
     def draw(self, ax: Axes | None = None, frames: bool = True, names: bool = True) -> Picture:
         """The skeleton at the start, with joints by their standard symbols, into ``ax`` or a figure of its own.
@@ -287,7 +412,7 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
 
         return topology(self)
 
-    # -- files --------------------------------------------------------------------------------------------------
+    # -- files -------------------------------------------------------------------------------------------------
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the model as JSON (docs/schema/model.schema.json), whole, the same bytes for the same model.
@@ -303,7 +428,7 @@ class Mechanism(AddingMachineJoints, AddingInteractions, AddingContacts):
         """The model that :meth:`save` wrote. Raises ModelError naming the file, the field and the remedy."""
         from mbsd.saving.file import load
 
-        return load(path)
+        return load(path, Mechanism)
 
     def __repr__(self) -> str:
         bodies, joints, drivers = len(self.bodies) - 1, len(self.joints), len(self.drivers)

@@ -9,7 +9,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "theory.md"
 FORCES = (
-    "mbsd/model/forces/kind.py",
+    "mbsd/model/force.py",
     "mbsd/model/forces",
     "mbsd/equations/interactions/apply.py",
     "mbsd/equations/joint_friction.py",

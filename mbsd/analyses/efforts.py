@@ -26,10 +26,9 @@ from mbsd.base.errors import MobilityError, ModelError
 from mbsd.base.names import names_in, no_such
 from mbsd.base.shown import shown
 from mbsd.kinematics.closed_contacts import refuse_pushing
-from mbsd.model.adding_forces import Amount
-from mbsd.model.force import Force
+from mbsd.model.adding.forces import Amount, add_force, amount_given
+from mbsd.model.force import Force, ForceKind
 from mbsd.model.forces.actuator import ACTUATOR
-from mbsd.model.forces.kind import ForceKind
 from mbsd.model.forces.torque import TORQUE
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
@@ -86,8 +85,8 @@ def with_efforts(m: AnyModel, efforts: Mapping[str, Amount | None]) -> AnyModel:
 
 
 def _put(m: Model, kind: ForceKind, name: str, i, j, params: Mapping, effort: Amount) -> None:
-    own, laws = m._amount(name, "torque" if kind is TORQUE else "force", effort)
-    m._add_force(kind, name, i, j, {**params, **own}, laws, same_body=True)
+    own, laws = amount_given(m, name, "torque" if kind is TORQUE else "force", effort)
+    add_force(m, kind, name, i, j, {**params, **own}, laws, same_body=True)
 
 
 def _actuator_of(m: Model, driver: Joint) -> tuple[ForceKind, dict[str, bool]]:

@@ -15,15 +15,52 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any, Protocol
 
 import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 
-if TYPE_CHECKING:
-    from mbsd.analyses.state_space import Linearisation
+
+class Linear(Protocol):
+    """What modes follow from: a linear state space; see :class:`mbsd.analyses.state_space.Linearisation`."""
+
+    @property
+    def model(self) -> Any:
+        """The mechanism."""
+        ...
+
+    @property
+    def a(self) -> np.ndarray:
+        """(2 f, 2 f) z' and z'' by z and z'."""
+        ...
+
+    @property
+    def c(self) -> np.ndarray:
+        """(3 nb, f) change of all coordinates by the independent ones."""
+        ...
+
+    @property
+    def q(self) -> np.ndarray:
+        """The pose."""
+        ...
+
+    @property
+    def com(self) -> np.ndarray:
+        """(nb, 2) m."""
+        ...
+
+    @property
+    def size(self) -> float:
+        """Of the mechanism (m)."""
+        ...
+
+    @property
+    def coordinates(self) -> Any:
+        """Names of the f independent coordinates."""
+        ...
+
 
 ZERO = 1e-10
 """Squares of eigenvalues below this part of the largest stiffness over mass are zero."""
@@ -73,7 +110,7 @@ class Mode:
         )
 
 
-def modes_of(linear: Linearisation) -> tuple[Mode, ...]:
+def modes_of(linear: Linear) -> tuple[Mode, ...]:
     """All modes, by rising frequency; one for each pair of eigenvalues, one for each real eigenvalue."""
     f = len(linear.coordinates)
     values, vectors = np.linalg.eig(linear.a)
@@ -94,7 +131,7 @@ def _free(pull: np.ndarray) -> np.ndarray:
     return right[singular <= ZERO * singular.max(initial=0.0)]
 
 
-def _mode(linear: Linearisation, value: complex, z: np.ndarray) -> Mode:
+def _mode(linear: Linear, value: complex, z: np.ndarray) -> Mode:
     every = (linear.c @ z).reshape(-1, 3)
     c, s = np.cos(linear.q[2::3]), np.sin(linear.q[2::3])
     arm_x = c * linear.com[:, 0] - s * linear.com[:, 1]

@@ -13,11 +13,9 @@ import numpy as np
 from mbsd.arrays.relative import Specials
 from mbsd.base.users_function import law_of, tell_missed
 from mbsd.equations.system import System, Workspace, workspace
-from mbsd.model.contacts.kind import ContactKind
-from mbsd.model.force import Force
-from mbsd.model.forces.kind import Masses
-from mbsd.model.joint import Joint
-from mbsd.model.joints.kind import ROWS, SPECIALS
+from mbsd.model.contact import ContactKind
+from mbsd.model.force import Force, Masses
+from mbsd.model.joint import ROWS, SPECIALS, Joint
 from mbsd.model.laws import Motion
 from mbsd.model.mechanism import Model
 

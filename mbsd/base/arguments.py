@@ -139,12 +139,20 @@ CHECKS: dict[str, Callable[[str, Any], object]] = {
 """By annotation; they return what the function is given."""
 
 
+def annotation_of(parameter: inspect.Parameter) -> str:
+    """The type of a parameter as it is written, whether or not its file postpones annotations."""
+    given = parameter.annotation
+    return given.__name__ if isinstance(given, type) else str(given)
+
+
 def checked(function: F) -> F:
     """``function`` with its arguments checked by their annotations, before it runs."""
+    if getattr(function, "arguments_checked", False):
+        return function
     signature = inspect.signature(function)
     parameters = list(signature.parameters.values())
-    method = bool(parameters) and parameters[0].name == "self"
-    checks = {p.name: check for p in parameters if (check := _check_of(str(p.annotation))) is not None}
+    method = bool(parameters) and parameters[0].name in ("self", "m")
+    checks = {p.name: check for p in parameters if (check := _check_of(annotation_of(p))) is not None}
     places = [p.name for p in parameters if p.kind is p.POSITIONAL_OR_KEYWORD]
     rest = next((p for p in parameters if p.kind is p.VAR_POSITIONAL), None)
     named = next((p for p in parameters if p.kind is p.VAR_KEYWORD), None)
@@ -184,7 +192,9 @@ def checked(function: F) -> F:
         if named is None:
             for name in keywords:
                 if name not in own:
-                    raise ModelError(f"{where}: {no_such('argument', name, [p for p in own_names if p != 'self'])}")
+                    raise ModelError(
+                        f"{where}: {no_such('argument', name, [p for p in own_names if p not in ('self', 'm')])}"
+                    )
         for name in places[: len(given)]:
             if name in keywords:
                 raise ModelError(f"{where}: {name} is given twice")
@@ -193,6 +203,7 @@ def checked(function: F) -> F:
                 raise ModelError(f"{where}: {name} is missing")
 
     own_names = [p.name for p in parameters if p.name in own]
+    inner.arguments_checked = True  # pyright: ignore[reportAttributeAccessIssue]
     return inner  # pyright: ignore[reportReturnType]
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 LINE, TURN, AXIS, PUSH = 0, 1, 2, 3
-"""What an element of a force measures and acts along: see mbsd/model/forces/kind.py."""
+"""What an element of a force measures and acts along: see mbsd/model/force.py."""
 CONSTANT, LINEAR, DAMPING, POWER, LAW_VALUE, LAW_RATE, LAW_TIME, DRY = 0, 1, 2, 3, 4, 5, 6, 7
 """Terms of an element's magnitude."""
 POTENTIAL_TERMS = (LINEAR, POWER, LAW_VALUE)

@@ -17,12 +17,13 @@ from mbsd.base.errors import InitialConditionWarning, ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
 from mbsd.base.warn import warn
+from mbsd.dynamics.follow import follow, resumed
 from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
 from mbsd.dynamics.prepare.dependent import refuse_opened
 from mbsd.dynamics.prepare.prepare import PreparedDynamics, prepare_dynamics
 from mbsd.dynamics.rows.joint_sticks import standing
 from mbsd.dynamics.runs.run import AUTO, FORMULATIONS, INDEPENDENT, Run
-from mbsd.dynamics.runs.trail import Trail, follow, resumed
+from mbsd.dynamics.runs.trail import Trail
 from mbsd.dynamics.start.large import MANY_COORDINATES
 from mbsd.kinematics.limits import refuse_passed
 from mbsd.kinematics.multipliers import JACOBIAN_NUMBERS

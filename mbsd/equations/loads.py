@@ -1,6 +1,6 @@
 """The compiled evaluation of all forces.
 
-Elements and terms as mbsd/model/forces/kind.py defines them; interactions and forces of the user by the address of a
+Elements and terms as mbsd/model/force.py defines them; interactions and forces of the user by the address of a
 function, so that nobody compiles what his model does not use.
 """
 

@@ -2,16 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from mbsd.base.arguments import finite_number, number_pair
 from mbsd.base.errors import ModelError
 
-if TYPE_CHECKING:
-    from mbsd.model.mechanism import Model
-
 __all__ = ["Body", "Marker", "finite_number", "number_pair"]
+
+
+class Owner(Protocol):
+    """The mechanism of a body, as far as the body knows it."""
+
+    name: str
+
+    @property
+    def bodies(self) -> Mapping[str, Body]:
+        """By name."""
+        ...
+
+    def marker_in_world(self, body: Body, x: float, y: float, angle: float) -> Marker:
+        """See :meth:`Body.at_world`."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,12 +94,12 @@ class Body:
             raise ModelError(f"{what}: '{self.name}' belongs to no mechanism; use m.body(...)")
         return self.mechanism.marker_in_world(self, *numbers)
 
-    def belong(self, mechanism: Model) -> None:
+    def belong(self, mechanism: Owner) -> None:
         """Let this be a body of ``mechanism``."""
         self.__dict__["_mechanism"] = mechanism
 
     @property
-    def mechanism(self) -> Model | None:
+    def mechanism(self) -> Owner | None:
         """That this body was made for."""
         return self.__dict__.get("_mechanism")
 

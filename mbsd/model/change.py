@@ -12,11 +12,13 @@ from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
+from mbsd.base.arguments import annotation_of
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.model.body import Marker
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
+from mbsd.model.mechanism import connections
 
 if TYPE_CHECKING:
     from mbsd.model.mechanism import Model
@@ -24,45 +26,41 @@ if TYPE_CHECKING:
 BODY = ("mass", "com", "inertia")
 
 
-def with_markers(method: Callable[..., Any], markers: list[Marker], named: Mapping[str, Any]) -> dict[str, Any]:
-    """Arguments of a method that adds a joint, driver, force or contact: those ``named``, and its markers or bodies.
+def with_markers(add: Callable[..., Any], markers: list[Marker], named: Mapping[str, Any]) -> dict[str, Any]:
+    """Arguments of the function that adds a joint, driver, force or contact: those ``named``, its markers and bodies.
 
     Parameters that must be markers or bodies take the last of ``markers`` (i and j) in order, a body that may be given
     (``against``, ``frame``) takes what is left.
     """
     out = dict(named)
-    slots = [p for p in _parameters(method) if p.name not in named]
-    needed = [p for p in slots if str(p.annotation) in ("Marker", "Body")]
-    given = [p for p in slots if str(p.annotation) == "Body | None"]
+    slots = [p for p in _parameters(add) if p.name not in named]
+    needed = [p for p in slots if annotation_of(p) in ("Marker", "Body")]
+    given = [p for p in slots if annotation_of(p) == "Body | None"]
     left = markers[: len(markers) - len(needed)]
     for slot, marker in [*zip(needed, markers[len(left) :], strict=False), *zip(given, left, strict=False)]:
-        out[slot.name] = marker if str(slot.annotation) == "Marker" else marker.body
+        out[slot.name] = marker if annotation_of(slot) == "Marker" else marker.body
     return out
 
 
-def _parameters(method: Callable[..., Any]) -> tuple[inspect.Parameter, ...]:
-    """Of a method of a mechanism, ``self`` left out."""
-    return _parameters_of(method.__func__)[1:]  # pyright: ignore[reportFunctionMemberAccess]
-
-
 @lru_cache(maxsize=256)
-def _parameters_of(function: Callable[..., Any]) -> tuple[inspect.Parameter, ...]:
-    return tuple(inspect.signature(function).parameters.values())
+def _parameters(add: Callable[..., Any]) -> tuple[inspect.Parameter, ...]:
+    """Of a function that adds one, the mechanism left out."""
+    return tuple(inspect.signature(add).parameters.values())[1:]
 
 
-def law_name(method: Callable[..., Any]) -> str:
-    """The argument of a driver's method that is its law."""
-    [law] = [p.name for p in _parameters(method) if str(p.annotation) == "Law"]
+def law_name(add: Callable[..., Any]) -> str:
+    """The argument of a driver's function that is its law."""
+    [law] = [p.name for p in _parameters(add) if annotation_of(p) == "Law"]
     return law
 
 
 def change(m: Model, name: str, values: Mapping[str, Any]) -> None:
     """See :meth:`mbsd.mechanism.Mechanism.change`."""
-    for table in m._connections:
+    for table in connections(m):
         if isinstance(name, str) and name in table:
             return _change(m, table, name, values)  # pyright: ignore[reportArgumentType]
     if not isinstance(name, str) or name not in m.bodies or name == "ground":
-        known = [*(key for table in m._connections for key in table), *(body for body in m.bodies if body != "ground")]
+        known = [*(key for table in connections(m) for key in table), *(body for body in m.bodies if body != "ground")]
         raise ModelError(f"{m.name}: {no_such('body, joint, driver, force or contact', name, known)}")
     body = m.bodies[name]
     _refuse_others(m, f"body '{name}'", values, BODY)
@@ -72,9 +70,10 @@ def change(m: Model, name: str, values: Mapping[str, Any]) -> None:
 
 def _change(m: Model, table: dict[str, Any], name: str, values: Mapping[str, Any]) -> None:
     old: Joint | Force = table[name]
-    method = getattr(m, old.kind.name)
-    parameters = _parameters(method)[1:]
-    own = [p.name for p in parameters if str(p.annotation) not in ("Marker", "Body", "Body | None")]
+    add = old.kind.add
+    assert add is not None
+    parameters = _parameters(add)[1:]
+    own = [p.name for p in parameters if annotation_of(p) not in ("Marker", "Body", "Body | None")]
     if any(p.kind is p.VAR_POSITIONAL for p in parameters):
         own = []
     what = f"{old.kind.name} '{name}'"
@@ -85,11 +84,11 @@ def _change(m: Model, table: dict[str, Any], name: str, values: Mapping[str, Any
     if isinstance(old, Force):
         named |= old.laws
     elif old.motion is not None:
-        named[law_name(method)] = old.motion
+        named[law_name(add)] = old.motion
     before = dict(table)
     del table[name]
     try:
-        method(name, **with_markers(method, [old.i, old.j], named | dict(values)))
+        add(m, name, **with_markers(add, [old.i, old.j], named | dict(values)))
     except BaseException:
         table.clear()
         table.update(before)

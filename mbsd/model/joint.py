@@ -1,14 +1,125 @@
-"""A joint or driver of a mechanism: its kind, its two markers, its numbers."""
+"""What a joint or driver is made of, and the registry that one test walks through.
+
+A kind names its constraints in the order of its rows. It must bring an example, so that none escapes the test.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
+from mbsd.base.arguments import checked
 from mbsd.model.body import Marker
-from mbsd.model.joints.kind import JointKind
 from mbsd.model.laws import Motion
+from mbsd.model.teeth import with_radii
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from mbsd.model.body import Marker
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+@dataclass(frozen=True)
+class Special:
+    """A constraint F(x, y, a) of the relative pose, one row; see mbsd/equations/constraints/relative.py."""
+
+    equation: str
+    """File in mbsd/equations/relative."""
+    unit: str
+    """Of the residual: m or rad."""
+    phased: bool = False
+    """Its constant is taken from the closed start pose: it holds how the bodies roll on each other, not where."""
+
+
+SPECIALS: dict[str, Special] = {
+    "gear": Special("gear", "m", phased=True),
+    "rack": Special("linear", "m", phased=True),
+    "height": Special("linear", "m"),
+    "curve": Special("curve", "m"),
+    "curve_rolling": Special("curve_rolling", "m", phased=True),
+    "support": Special("support", "m"),
+    "geneva": Special("geneva", "rad"),
+    "user": Special("user", "m"),
+    "linear": Special("linear", "m"),
+    "turn": Special("linear", "rad"),
+    "radial": Special("radial", "m"),
+}
+ROWS = {"point": 2, "angle": 1, "slot": 1, "along": 1, "distance": 1} | dict.fromkeys(SPECIALS, 1)
+"""Rows that each constraint takes in J."""
+
+
+@dataclass(frozen=True)
+class JointKind:
+    """A kind of joint, or of driver where ``driven``."""
+
+    name: str
+    constraints: tuple[str, ...]
+    example: Callable[[Any, Marker, Marker], object]
+    """Adds one of this kind between two markers of different bodies."""
+    driven: bool = False
+    units: tuple[str, str] = ("N", "N m")
+    """Units of a driver's effort and, unused for joints, of its value."""
+    numbers: Callable[[Mapping[str, Any]], Sequence[Sequence[float] | np.ndarray]] | None = None
+    """From a joint's params: the numbers of each special constraint, in their order."""
+    problem: Callable[[Mapping[str, Any], float, float], str | None] | None = None
+    """From params and the place (x, y) of marker j against marker i at the start: why this joint cannot be."""
+    lengths: tuple[str, ...] = ()
+    """Params that are lengths (m), or places of a curve, and tell how large the mechanism is."""
+    saved: bool = True
+    """Whether a file can hold its params; a Python function cannot be saved."""
+    add: Callable[..., Any] | None = field(default=None, init=False, compare=False)
+    """The function ``add(m, name, ...)`` that adds one of this kind, with its arguments checked; see :meth:`adds`."""
+
+    def adds(self, function: F) -> F:
+        """Decorator of that function: it is what change(), a saved file and the schema go by."""
+        made = checked(function)
+        object.__setattr__(self, "add", made)
+        return made
+
+    def extents(self, params: Mapping[str, Any]) -> list[float]:
+        """Lengths (m) among the params that tell how large the mechanism is."""
+        sized = with_radii(params)
+        values = [sized[key] for key in self.lengths]
+        return [
+            value if isinstance(value, float) else max(max(x) - min(x) for x in zip(*value, strict=True))
+            for value in values
+        ]
+
+    @property
+    def angular(self) -> bool:
+        """Whether a driver of this kind imposes an angle."""
+        return self.units[1] == "rad"
+
+    @property
+    def rows(self) -> int:
+        """Rows in J: freedoms taken away."""
+        return sum(ROWS[name] for name in self.constraints)
+
+
+def cam_numbers(profile: Mapping[str, Any]) -> np.ndarray:
+    """Numbers of the constraint of a cam, from its plain data."""
+    from mbsd.model.cams import cam_from
+
+    return cam_from(profile).numbers
+
+
+KINDS: dict[str, JointKind] = {}
+
+
+def register(kind: JointKind) -> JointKind:
+    """Enter a kind; raises ValueError if its name is taken, a constraint unknown or the example missing."""
+    unknown = [name for name in kind.constraints if name not in ROWS]
+    if unknown or not kind.constraints:
+        raise ValueError(f"{kind.name}: constraints {unknown or 'are missing'}; there are {', '.join(ROWS)}")
+    if not callable(kind.example):
+        raise ValueError(f"{kind.name}: an example is missing; the registry test needs one")
+    if kind.name in KINDS:
+        raise ValueError(f"{kind.name}: registered twice")
+    KINDS[kind.name] = kind
+    return kind
 
 
 @dataclass(frozen=True, eq=False)

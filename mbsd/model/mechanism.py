@@ -17,9 +17,6 @@ from mbsd.model.joint import Joint
 STANDARD_GRAVITY = (0.0, -9.80665)
 """m/s^2, ISO 80000-3."""
 
-SHORTEST = 1e-12
-"""Below this (m) two places count as one; see mbsd/arrays/packing.py."""
-
 
 @dataclass(frozen=True)
 class Start:
@@ -57,7 +54,7 @@ class Model:
     """Whether suspicious units were told; see mbsd/analyses/suspicious_units.py."""
 
     def __post_init__(self) -> None:
-        self._new_name(self.name, "mechanism")
+        new_name(self, self.name, "mechanism")
         self.bodies["ground"] = Body("ground", self.name)
         self.ground.belong(self)
         self.world_markers: tuple[tuple[Marker, tuple[float, float, float]], ...] = ()
@@ -84,7 +81,7 @@ class Model:
 
         Raises ModelError on a name already used or an impossible mass.
         """
-        self._new_name(name, "body", self.bodies)
+        new_name(self, name, "body", self.bodies)
         known = 0.0 if mass is None else mass
         body = self.bodies[name] = Body(name, self.name, known, com, inertia)  # pyright: ignore[reportArgumentType]
         body.mass_given = mass is not None
@@ -103,9 +100,9 @@ class Model:
 
         With a mass and nothing else it is a uniform slender rod: com at the middle, inertia m l^2 / 12.
         """
-        length = self._length(f"bar '{name}' has length", length)
+        length = length_given(self, f"bar '{name}' has length", length)
         com = (length / 2, 0.0) if com is None else com
-        mass = None if mass is None else self._number(f"mass of body '{name}'", mass)
+        mass = None if mass is None else number_given(self, f"mass of body '{name}'", mass)
         inertia = (mass or 0.0) * length**2 / 12 if inertia is None else inertia
         body = self.body(name, mass, com, inertia)
         body.length = length
@@ -127,36 +124,43 @@ class Model:
         """See :meth:`mbsd.model.body.Body.at_world`; it takes the equations, which a Mechanism knows."""
         raise ModelError(f"{self.name}: {body.name}.at_world needs a Mechanism")
 
-    # -- checks -------------------------------------------------------------------------------------------------
 
-    def _own_body(self, body: Body, what: str) -> None:
-        if not isinstance(body, Body):
-            raise ModelError(f"{self.name}: {what} needs a body, got {shown(body)}")
-        if self.bodies.get(body.name) is not body:
-            raise ModelError(f"{self.name}: {what} uses body '{body.name}' of another mechanism; take one of this one")
+SHORTEST = 1e-12
+"""Below this (m) two places count as one; see mbsd/arrays/packing.py."""
 
-    @property
-    def _connections(self) -> tuple[Mapping[str, object], ...]:
-        """What shares one set of names: whatever connects two bodies."""
-        return self.joints, self.drivers, self.forces, self.contacts
 
-    def _new_name(self, name: str, what: str, *taken: Mapping[str, object]) -> None:
-        if not isinstance(name, str) or not name or name != name.strip() or not name.isprintable():
-            where = "" if what == "mechanism" else f"{self.name}: "
-            raise ModelError(f"{where}a {what} needs a name without spaces around it, got {shown(name)}")
-        if any(name in names for names in taken):
-            raise ModelError(f"{self.name}: there are two of the name '{name}'; the {what} needs another")
+def connections(m: Model) -> tuple[Mapping[str, object], ...]:
+    """What shares one set of names: whatever connects two bodies."""
+    return m.joints, m.drivers, m.forces, m.contacts
 
-    def _length(self, what: str, value: object) -> float:
-        """A length (m) that is above zero, and no smaller than what counts as a length."""
-        length = self._number(what, value)
-        if length <= 0:
-            raise ModelError(f"{self.name}: {what} {length:g} m; it must be positive")
-        if length < SHORTEST:
-            raise ModelError(
-                f"{self.name}: {what} {length:g} m; it must be {SHORTEST:g} m or more: lengths are in metres"
-            )
-        return length
 
-    def _number(self, what: str, value: object) -> float:
-        return finite_number(f"{self.name}: {what}", value)
+def own_body(m: Model, body: Body, what: str) -> None:
+    """Raise ModelError unless ``body`` is one of this mechanism; ``what`` uses it."""
+    if not isinstance(body, Body):
+        raise ModelError(f"{m.name}: {what} needs a body, got {shown(body)}")
+    if m.bodies.get(body.name) is not body:
+        raise ModelError(f"{m.name}: {what} uses body '{body.name}' of another mechanism; take one of this one")
+
+
+def new_name(m: Model, name: str, what: str, *taken: Mapping[str, object]) -> None:
+    """Raise ModelError for a name that is none, or is already in one of the tables ``taken``."""
+    if not isinstance(name, str) or not name or name != name.strip() or not name.isprintable():
+        where = "" if what == "mechanism" else f"{m.name}: "
+        raise ModelError(f"{where}a {what} needs a name without spaces around it, got {shown(name)}")
+    if any(name in names for names in taken):
+        raise ModelError(f"{m.name}: there are two of the name '{name}'; the {what} needs another")
+
+
+def length_given(m: Model, what: str, value: object) -> float:
+    """A length (m) that is above zero, and no smaller than what counts as a length."""
+    length = number_given(m, what, value)
+    if length <= 0:
+        raise ModelError(f"{m.name}: {what} {length:g} m; it must be positive")
+    if length < SHORTEST:
+        raise ModelError(f"{m.name}: {what} {length:g} m; it must be {SHORTEST:g} m or more: lengths are in metres")
+    return length
+
+
+def number_given(m: Model, what: str, value: object) -> float:
+    """A finite number; raises ModelError."""
+    return finite_number(f"{m.name}: {what}", value)

@@ -14,8 +14,7 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.base.codes import LAW_VALUE, LINEAR, POTENTIAL_TERMS, POWER
-from mbsd.model.force import Force
-from mbsd.model.forces.kind import Term
+from mbsd.model.force import Force, Term
 from mbsd.model.laws.curve import Curve
 from mbsd.results.measured import measured
 from mbsd.results.surface import depths

@@ -21,7 +21,7 @@ from mbsd.arrays.reactions import marker_axes, marker_places, relative_velocity
 from mbsd.base.codes import AXIS, LINE, PUSH, TURN
 from mbsd.base.errors import ModelError
 from mbsd.equations.loads import tabulate_loads
-from mbsd.model.forces.kind import Element
+from mbsd.model.force import Element
 from mbsd.results.energy import potential_of
 from mbsd.results.friction import friction_view
 from mbsd.results.measured import measured

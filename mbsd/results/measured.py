@@ -7,7 +7,7 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import marker_axes, marker_places
 from mbsd.base.codes import AXIS, LINE, TURN
-from mbsd.model.forces.kind import Element
+from mbsd.model.force import Element
 
 
 def measured(packed: Packed, element: Element, i: int, j: int, q: np.ndarray) -> np.ndarray:

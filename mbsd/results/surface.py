@@ -10,7 +10,7 @@ from mbsd.arrays.reactions import marker_axes, marker_places
 from mbsd.base.codes import AXIS
 from mbsd.equations.interactions.law import OWN, STATE
 from mbsd.equations.interactions.surface import tabulate_stand
-from mbsd.model.forces.kind import Element
+from mbsd.model.force import Element
 from mbsd.results.measured import measured
 
 if TYPE_CHECKING:

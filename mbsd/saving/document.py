@@ -6,7 +6,7 @@
      "contacts": the same, "drivers": the same with "law", "forces": the same with "laws", "traces": {"P": marker},
      "starts": {"crank": {"angle", "place"}}, "velocities": {"crank": {"omega", "place"}}}
 
-Kinds and laws are those of the registries: a joint or force is rebuilt by the method of its kind's name, from its
+Kinds and laws are those of the registries: a joint or force is rebuilt by its kind's ``add``, from its
 markers, its params and its laws, so a new kind needs no word here. What does not come back equal is refused when it
 is saved.
 """
@@ -20,36 +20,34 @@ from typing import Any, TypeVar
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
-from mbsd.mechanism import Mechanism
 from mbsd.model.body import Body, Marker
 from mbsd.model.change import law_name, with_markers
-from mbsd.model.contacts.kind import CONTACT_KINDS
-from mbsd.model.force import Force
-from mbsd.model.forces.kind import FORCE_KINDS
-from mbsd.model.joint import Joint
-from mbsd.model.joints.kind import KINDS
-from mbsd.model.mechanism import Start, StartVelocity
+from mbsd.model.contact import CONTACT_KINDS
+from mbsd.model.force import FORCE_KINDS, Force, ForceKind
+from mbsd.model.joint import KINDS, Joint, JointKind
+from mbsd.model.mechanism import Model, Start, StartVelocity
 from mbsd.saving.entry import Entry
 from mbsd.saving.laws import called, law_from, plain
 
 K = TypeVar("K")
+M = TypeVar("M", bound=Model)
 
 SCHEMA, SCHEMA_VERSION = "mbsd.model", 1
 
 
-def document(m: Mechanism) -> dict[str, Any]:
+def document(m: Model) -> dict[str, Any]:
     """The mechanism as JSON types. Raises ModelError naming what a file cannot hold."""
     written = _write(m)
-    if _write(build(written)) != written:
+    if _write(build(written, type(m))) != written:
         raise ModelError(f"{m.name}: the model does not come back from a file as it is; build it in Python instead")
     return written
 
 
-def build(written: Mapping[str, Any], where: str = "model") -> Mechanism:
+def build(written: Mapping[str, Any], make: type[M], where: str = "model") -> M:
     """The mechanism of a document. Raises ModelError naming the field (``where`` is the file) and the remedy."""
     top = Entry(written, where)
     _refuse_other_version(top)
-    m = top.within(lambda: Mechanism(top.text("name"), top.numbers("gravity", 2)))
+    m = top.within(lambda: make(top.text("name"), top.numbers("gravity", 2)))
     for name, entry in top.entries("bodies"):
         _read_body(m, name, entry)
     for part in ("joints", "drivers"):
@@ -65,14 +63,14 @@ def build(written: Mapping[str, Any], where: str = "model") -> Mechanism:
         m.starts[name] = Start(*_read_state(m, name, entry, "angle"))
     for name, entry in top.entries("velocities"):
         m.velocities[name] = StartVelocity(*_read_state(m, name, entry, "omega"))
-    top.refuse_others("schema", "schema_version", *(field.name for field in fields(Mechanism)))
+    top.refuse_others("schema", "schema_version", *(field.name for field in fields(make)))
     return m
 
 
 # -- writing ----------------------------------------------------------------------------------------------------
 
 
-def _write(m: Mechanism) -> dict[str, Any]:
+def _write(m: Model) -> dict[str, Any]:
     parts = {
         "name": m.name,
         "gravity": list(m.gravity or ()),
@@ -96,7 +94,7 @@ def _body(body: Body) -> dict[str, Any]:
     return {"mass": mass, "com": list(body.com), "inertia": body.inertia, "length": body.length}
 
 
-def _joint(m: Mechanism, joint: Joint, part: str = "joint") -> dict[str, Any]:
+def _joint(m: Model, joint: Joint, part: str = "joint") -> dict[str, Any]:
     what = f"{m.name}: {'driver' if joint.kind.driven else part} '{joint.name}'"
     out = {"kind": joint.kind.name, "i": plain(joint.i, what), "j": plain(joint.j, what)}
     out["params"] = {key: plain(value, f"{what}: {key}") for key, value in joint.params.items()}
@@ -105,7 +103,7 @@ def _joint(m: Mechanism, joint: Joint, part: str = "joint") -> dict[str, Any]:
     return out
 
 
-def _force(m: Mechanism, force: Force) -> dict[str, Any]:
+def _force(m: Model, force: Force) -> dict[str, Any]:
     what = f"{m.name}: force '{force.name}'"
     out = {"kind": force.kind.name, "i": plain(force.i, what), "j": plain(force.j, what)}
     out["params"] = {key: plain(value, f"{what}: {key}") for key, value in force.params.items()}
@@ -129,7 +127,7 @@ def _refuse_other_version(top: Entry) -> None:
             )
 
 
-def _read_body(m: Mechanism, name: str, entry: Entry) -> None:
+def _read_body(m: Model, name: str, entry: Entry) -> None:
     mass = entry.number_or_none("mass")
     inertia, com = entry.number("inertia"), entry.numbers("com", 2)
     entry.refuse_others("mass", "com", "inertia", "length")
@@ -139,40 +137,46 @@ def _read_body(m: Mechanism, name: str, entry: Entry) -> None:
         entry.within(lambda: m.bar(name, entry.number("length"), mass, com, inertia))
 
 
-def _read_marker(m: Mechanism, entry: Entry) -> Marker:
+def _read_marker(m: Model, entry: Entry) -> Marker:
     body = entry.within(lambda: m.known_body(entry.text("body")))
     entry.refuse_others("body", "x", "y", "angle")
     return body.at(entry.number("x"), entry.number("y"), entry.number("angle"))
 
 
-def _read_state(m: Mechanism, name: str, entry: Entry, turn: str) -> tuple[float, tuple[float, float] | None]:
+def _read_state(m: Model, name: str, entry: Entry, turn: str) -> tuple[float, tuple[float, float] | None]:
     """A start pose or velocity: about the angle, and of the body's frame if given."""
     entry.within(lambda: m.known_body(name))
     entry.refuse_others(turn, "place")
     return entry.number(turn), entry.numbers("place", 2) if entry.get("place") is not None else None
 
 
-def _read_joint(m: Mechanism, part: str, name: str, entry: Entry) -> None:
+def _read_joint(m: Model, part: str, name: str, entry: Entry) -> None:
     kind = _kind(entry, part[:-1], {key: kind for key, kind in KINDS.items() if kind.driven == (part == "drivers")})
     entry.refuse_others("kind", "i", "j", "params", *(["law"] if kind.driven else []))
-    method = getattr(m, kind.name)
+    add = _adds(kind)
     named = _params(m, entry)
     if kind.driven:
-        named[law_name(method)] = law_from(entry.entry("law").data, entry.where)
-    _add(m, method, name, entry, named)
+        named[law_name(add)] = law_from(entry.entry("law").data, entry.where)
+    _add(m, add, name, entry, named)
 
 
-def _read_force(m: Mechanism, name: str, entry: Entry) -> None:
+def _read_force(m: Model, name: str, entry: Entry) -> None:
     kind = _kind(entry, "force", FORCE_KINDS)
     entry.refuse_others("kind", "i", "j", "params", "laws")
     laws = {key: law_from(law.data, law.where) for key, law in entry.entries("laws")}
-    _add(m, getattr(m, kind.name), name, entry, _params(m, entry) | laws)
+    _add(m, _adds(kind), name, entry, _params(m, entry) | laws)
 
 
-def _read_contact(m: Mechanism, name: str, entry: Entry) -> None:
+def _read_contact(m: Model, name: str, entry: Entry) -> None:
     kind = _kind(entry, "contact", CONTACT_KINDS)
     entry.refuse_others("kind", "i", "j", "params")
-    _add(m, getattr(m, kind.name), name, entry, _params(m, entry))
+    _add(m, _adds(kind), name, entry, _params(m, entry))
+
+
+def _adds(kind: JointKind | ForceKind) -> Callable[..., Any]:
+    """The function that adds one of a kind."""
+    assert kind.add is not None
+    return kind.add
 
 
 def _kind(entry: Entry, what: str, kinds: Mapping[str, K]) -> K:
@@ -182,11 +186,11 @@ def _kind(entry: Entry, what: str, kinds: Mapping[str, K]) -> K:
     return kind
 
 
-def _params(m: Mechanism, entry: Entry) -> dict[str, Any]:
+def _params(m: Model, entry: Entry) -> dict[str, Any]:
     return {key: _value(m, value, entry) for key, value in entry.entry("params").data.items()}
 
 
-def _value(m: Mechanism, value: Any, entry: Entry) -> Any:
+def _value(m: Model, value: Any, entry: Entry) -> Any:
     """A parameter: numbers as they are, a law, a body or a marker from its object."""
     if isinstance(value, dict) and "law" in value:
         return law_from(value, entry.where)
@@ -197,7 +201,7 @@ def _value(m: Mechanism, value: Any, entry: Entry) -> Any:
     return value
 
 
-def _add(m: Mechanism, method: Callable[..., Any], name: str, entry: Entry, named: dict[str, Any]) -> None:
-    """Call a method of Mechanism that adds a joint, driver, force or contact."""
+def _add(m: Model, add: Callable[..., Any], name: str, entry: Entry, named: dict[str, Any]) -> None:
+    """Call the function that adds a joint, driver, force or contact."""
     markers = [_read_marker(m, entry.entry(key)) for key in ("i", "j")]
-    called(method, entry.where, [name], with_markers(method, markers, named))
+    called(add, entry.where, [m, name], with_markers(add, markers, named))

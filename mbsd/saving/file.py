@@ -10,14 +10,14 @@ from typing import Any
 
 from mbsd.base.errors import ModelError
 from mbsd.base.files import _refuse_no_path, write_whole
-from mbsd.mechanism import Mechanism
-from mbsd.saving.document import build, document
+from mbsd.model.mechanism import Model
+from mbsd.saving.document import M, build, document
 
 DEEPEST = 30
 """Levels of objects and lists in a file."""
 
 
-def save(m: Mechanism, path: str | os.PathLike[str]) -> None:
+def save(m: Model, path: str | os.PathLike[str]) -> None:
     """See :meth:`mbsd.mechanism.Mechanism.save`."""
     written = document(m)
     _refuse_non_finite(written, m.name)
@@ -25,7 +25,7 @@ def save(m: Mechanism, path: str | os.PathLike[str]) -> None:
     write_whole(path, content.encode())
 
 
-def load(path: str | os.PathLike[str]) -> Mechanism:
+def load(path: str | os.PathLike[str], make: type[M]) -> M:
     """See :meth:`mbsd.mechanism.Mechanism.load`."""
     _refuse_no_path(path)
     try:
@@ -39,7 +39,7 @@ def load(path: str | os.PathLike[str]) -> Mechanism:
     except ValueError as error:
         raise ModelError(f"{path}: not a whole JSON file ({error}); save the model again") from error
     _refuse_non_finite(written, f"{path}: ")
-    return build(written, f"{path}: model")
+    return build(written, make, f"{path}: model")
 
 
 def _no_twins(pairs: list[tuple[str, Any]], path: object) -> dict[str, Any]:

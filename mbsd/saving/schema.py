@@ -12,11 +12,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from mbsd.base.arguments import annotation_of
 from mbsd.base.files import write_whole
-from mbsd.mechanism import Mechanism
-from mbsd.model.contacts.kind import CONTACT_KINDS
-from mbsd.model.forces.kind import FORCE_KINDS
-from mbsd.model.joints.kind import KINDS
+from mbsd.model.contact import CONTACT_KINDS
+from mbsd.model.force import FORCE_KINDS
+from mbsd.model.joint import KINDS
 from mbsd.saving.document import SCHEMA, SCHEMA_VERSION
 from mbsd.saving.laws import loadable_laws
 
@@ -63,10 +63,12 @@ def schema() -> dict[str, Any]:
         "velocities": _table("velocity"),
     }
     definitions = {"marker": marker, "body": body, "start": start, "velocity": velocity, "law": {"oneOf": laws}}
-    definitions["joint"] = {"oneOf": [_kind(name) for name, kind in KINDS.items() if kind.saved and not kind.driven]}
-    definitions["driver"] = {"oneOf": [_kind(name) for name, kind in KINDS.items() if kind.driven]}
-    definitions["force"] = {"oneOf": [_force(name) for name, kind in FORCE_KINDS.items() if kind.saved]}
-    definitions["contact"] = {"oneOf": [_contact(name) for name in CONTACT_KINDS]}
+    definitions["joint"] = {
+        "oneOf": [_kind(name) for name, kind in sorted(KINDS.items()) if kind.saved and not kind.driven]
+    }
+    definitions["driver"] = {"oneOf": [_kind(name) for name, kind in sorted(KINDS.items()) if kind.driven]}
+    definitions["force"] = {"oneOf": [_force(name) for name, kind in sorted(FORCE_KINDS.items()) if kind.saved]}
+    definitions["contact"] = {"oneOf": [_contact(name) for name in sorted(CONTACT_KINDS)]}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Model",
@@ -81,10 +83,17 @@ def content() -> bytes:
     return (json.dumps(schema(), indent=2) + "\n").encode()
 
 
+def _adds(name: str) -> Callable[..., Any]:
+    """The function that adds one of a kind of joint, driver, force or contact."""
+    kind = (KINDS | CONTACT_KINDS | FORCE_KINDS)[name]
+    assert kind.add is not None
+    return kind.add
+
+
 def _kind(name: str) -> dict[str, Any]:
     reference = {"$ref": "#/$defs/marker"}
     fixed: dict[str, Any] = {"kind": {"const": name}, "i": reference, "j": reference}
-    fixed["params"] = _object({}, _parameters(getattr(Mechanism, name)))
+    fixed["params"] = _object({}, _parameters(_adds(name)))
     if KINDS[name].driven:
         fixed["law"] = {"$ref": "#/$defs/law"}
     return _object(fixed)
@@ -92,13 +101,13 @@ def _kind(name: str) -> dict[str, Any]:
 
 def _contact(name: str) -> dict[str, Any]:
     reference = {"$ref": "#/$defs/marker"}
-    params = _object({}, _parameters(getattr(Mechanism, name)))
+    params = _object({}, _parameters(_adds(name)))
     return _object({"kind": {"const": name}, "i": reference, "j": reference, "params": params})
 
 
 def _force(name: str) -> dict[str, Any]:
     reference = {"$ref": "#/$defs/marker"}
-    method = getattr(Mechanism, name)
+    method = _adds(name)
     params, law = _parameters(method), ({"$ref": "#/$defs/law"}, False)
     laws = {p.name: law for p in inspect.signature(method).parameters.values() if _words(p)[0] in ("Amount", "Curve")}
     amounts = {key: (NUMBER, False) for key in laws if key in params}
@@ -108,7 +117,7 @@ def _force(name: str) -> dict[str, Any]:
 
 def _words(p: inspect.Parameter) -> list[str]:
     """The types of a parameter."""
-    return [word.strip() for word in str(p.annotation).split("|")]
+    return [word.strip() for word in annotation_of(p).split("|")]
 
 
 def _parameters(function: Callable[..., Any]) -> dict[str, tuple[dict[str, Any], bool]]:
@@ -116,7 +125,7 @@ def _parameters(function: Callable[..., Any]) -> dict[str, tuple[dict[str, Any],
     out = {}
     for p in inspect.signature(function).parameters.values():
         words = _words(p)
-        if p.name in ("self", "name") or words[0] in ("Marker", "Body", "Law", "Curve"):
+        if p.name in ("m", "name") or words[0] in ("Marker", "Body", "Law", "Curve"):
             continue
         types = [TYPES[word] for word in words if word in TYPES]
         known = types[0] if len(types) == 1 else {"anyOf": types} if types else {}

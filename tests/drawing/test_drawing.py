@@ -26,8 +26,8 @@ from mbsd.drawing.strokes import ROLES, Recorder, moved, strokes_of
 from mbsd.drawing.symbols.joints import free_side
 from mbsd.drawing.symbols.outline import hull, rounded
 from mbsd.drawing.symbols.wheels import draw_gear_pair
-from mbsd.model.forces.kind import ForceKind
-from mbsd.model.joints.kind import JointKind
+from mbsd.model.force import ForceKind
+from mbsd.model.joint import JointKind
 from shared.stage.paths import ROOT
 from tests.dynamics.test_simulate import n_four_bar
 from tests.equations.test_forces import all_kinds as force_kinds

@@ -10,7 +10,7 @@ import pytest
 from mbsd import Mechanism, ModelError
 from mbsd.arrays.packing import pack
 from mbsd.equations.assembly import tabulate
-from mbsd.model.contacts.kind import CONTACT_KINDS
+from mbsd.model.contact import CONTACT_KINDS
 
 
 def all_kinds() -> Mechanism:

@@ -20,7 +20,7 @@ from mbsd.base.codes import POTENTIAL_TERMS, PUSH
 from mbsd.equations.assembly import tabulate
 from mbsd.equations.joint_friction import tabulate_friction
 from mbsd.equations.loads import tabulate_loads
-from mbsd.model.forces.kind import FORCE_KINDS, ForceKind
+from mbsd.model.force import FORCE_KINDS, ForceKind
 from mbsd.results.energy import potential_of
 
 

@@ -17,7 +17,7 @@ from mbsd import Mechanism
 from mbsd.arrays.packing import Packed, pack
 from mbsd.compiling.jit import kernel
 from mbsd.equations.assembly import evaluate_gamma, evaluate_nu, evaluate_position
-from mbsd.model.joints.kind import KINDS, JointKind, register
+from mbsd.model.joint import KINDS, JointKind, register
 
 SEEDS = range(5)
 

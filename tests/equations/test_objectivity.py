@@ -10,7 +10,7 @@ import pytest
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
-from mbsd.model.forces.kind import ForceKind
+from mbsd.model.force import ForceKind
 from mbsd.results.energy import potential_of
 from tests.equations.test_forces import KINDS, example, motion
 

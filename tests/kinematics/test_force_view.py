@@ -9,7 +9,7 @@ import pytest
 
 from mbsd import Mechanism, ModelError, constant_rate, harmonic
 from mbsd.arrays.reactions import marker_places
-from mbsd.model.forces.kind import ForceKind
+from mbsd.model.force import ForceKind
 from mbsd.results.forces import Moved, force_view
 from mbsd.results.solution import Solution
 from tests.equations.test_forces import all_kinds, example

@@ -38,9 +38,10 @@ from mbsd import (
     table,
 )
 from mbsd.cams import Lift, cam_from, flat_cam, oscillating_flat_cam, oscillating_roller_cam, roller_cam
-from mbsd.model.contacts.kind import CONTACT_KINDS
-from mbsd.model.forces.kind import FORCE_KINDS
-from mbsd.model.joints.kind import KINDS
+from mbsd.model.contact import CONTACT_KINDS
+from mbsd.model.force import FORCE_KINDS
+from mbsd.model.joint import KINDS
+from mbsd.model.mechanism import connections
 from tests.models.wrong_values import NEVER, ODD
 
 for package in (mbsd.model.joints, mbsd.model.forces, mbsd.model.contacts):
@@ -160,13 +161,13 @@ def test_methods_that_add_take_nothing_that_is_not_what_they_need(method: str) -
         m, arguments = _call(method)
         declared = inspect.signature(getattr(m, method)).parameters[parameter]
         what = f"{method}({parameter}={bad})"
-        before = [len(part) for part in (*m._connections, m.bodies, m.traces, m.events)]
+        before = [len(part) for part in (*connections(m), m.bodies, m.traces, m.events)]
         try:
             _given(getattr(m, method), arguments | {parameter: make()})
         except MechanismError as error:
             assert len(str(error)) < 1200, f"{what}: {error}"  # noqa: PT017
             assert m.name in str(error), f"{what}: {error}"  # noqa: PT017
-            after = [len(part) for part in (*m._connections, m.bodies, m.traces, m.events)]
+            after = [len(part) for part in (*connections(m), m.bodies, m.traces, m.events)]
             assert after == before, f"{what} left something behind"
             continue
         except Exception as error:

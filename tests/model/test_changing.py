@@ -12,9 +12,9 @@ from numba.core import event
 
 import mbsd.model.contacts
 from mbsd import Mechanism, ModelError, constant_rate, harmonic
-from mbsd.model.contacts.kind import CONTACT_KINDS, ContactKind
-from mbsd.model.forces.kind import ForceKind
-from mbsd.model.joints.kind import JointKind
+from mbsd.model.contact import CONTACT_KINDS, ContactKind
+from mbsd.model.force import ForceKind
+from mbsd.model.joint import JointKind
 from tests.equations.test_forces import all_kinds as force_kinds
 from tests.equations.test_joints import all_kinds as joint_kinds
 

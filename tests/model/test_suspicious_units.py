@@ -161,7 +161,7 @@ def test_places_equal_but_for_rounding_are_one() -> None:
 @pytest.mark.parametrize("seed", range(12))
 def test_a_model_in_millimetres_is_told_in_one_sentence(seed: int) -> None:
     written = document(random_linkages.linkage(seed, 1 + seed % 4).m)
-    assert build(written).check() == []
+    assert build(written, Mechanism).check() == []
     for body in written["bodies"].values():
         body["com"] = [1000 * x for x in body["com"]]
     for joint in (*written["joints"].values(), *written["forces"].values()):
@@ -169,7 +169,7 @@ def test_a_model_in_millimetres_is_told_in_one_sentence(seed: int) -> None:
             marker["x"], marker["y"] = 1000 * marker["x"], 1000 * marker["y"]
         if "length" in joint["params"]:
             joint["params"]["length"] *= 1000
-    (found,) = build(written).check()
+    (found,) = build(written, Mechanism).check()
     assert "they look like millimetres" in found.problem
 
 

@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, constant_rate, function
-from mbsd.model.contacts.kind import CONTACT_KINDS
-from mbsd.model.forces.kind import FORCE_KINDS
-from mbsd.model.joints.kind import KINDS
+from mbsd.model.contact import CONTACT_KINDS
+from mbsd.model.force import FORCE_KINDS
+from mbsd.model.joint import KINDS
 from mbsd.model.laws.examples import EXAMPLES
 from tests.models.four_bars import angles, model
 from tools.hunt import case, pool

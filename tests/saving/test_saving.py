@@ -21,8 +21,8 @@ from mbsd import Mechanism, ModelError, constant_rate, curve, function, harmonic
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import pack
 from mbsd.model.body import Body
-from mbsd.model.forces.kind import FORCE_KINDS, ForceKind
-from mbsd.model.joints.kind import KINDS, JointKind
+from mbsd.model.force import FORCE_KINDS, ForceKind
+from mbsd.model.joint import KINDS, JointKind
 from mbsd.model.laws import Motion
 from mbsd.model.laws.examples import EXAMPLES
 from mbsd.model.laws.function import Function
@@ -129,7 +129,7 @@ def test_random_models_come_back_number_for_number(lengths: Any, masses: Any, tu
     m.start_near(rocker=(1.0, 2.0, 30.0))
     m.start_moving(crank=turned, coupler=(0.1, turned, -2.0))
     written = document(m)
-    assert document(build(json.loads(json.dumps(written)))) == written
+    assert document(build(json.loads(json.dumps(written)), Mechanism)) == written
 
 
 def test_a_mass_that_was_not_given_stays_so() -> None:
@@ -140,7 +140,7 @@ def test_a_mass_that_was_not_given_stays_so() -> None:
     written = document(m)
     jsonschema.validate(written, schema())
     assert [written["bodies"][name]["mass"] for name in ("none", "zero", "some")] == [None, 0.0, 0.3]
-    assert [body.mass_given for body in build(written).bodies.values()] == [False, False, True, True]
+    assert [body.mass_given for body in build(written, Mechanism).bodies.values()] == [False, False, True, True]
 
 
 def test_a_loaded_model_moves_as_the_first(tmp_path: Path) -> None:

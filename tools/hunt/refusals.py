@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from mbsd import Mechanism
 from mbsd.base.errors import MechanismError
-from mbsd.model.forces.kind import FORCE_KINDS
-from mbsd.model.joints.kind import KINDS
+from mbsd.model.force import FORCE_KINDS
+from mbsd.model.joint import KINDS
 from mbsd.model.laws.function import Function
 from tools.hunt.raised import Raised
 

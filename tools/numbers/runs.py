@@ -23,9 +23,9 @@ from benchmarks.dynamics.cases import case
 from mbsd import Mechanism, constant_rate, harmonic
 from mbsd.dynamics.integrators.kind import INTEGRATORS
 from mbsd.kinematics.prepared import prepare
-from mbsd.model.contacts.kind import CONTACT_KINDS
-from mbsd.model.forces.kind import FORCE_KINDS
-from mbsd.model.joints.kind import KINDS
+from mbsd.model.contact import CONTACT_KINDS
+from mbsd.model.force import FORCE_KINDS
+from mbsd.model.joint import KINDS
 from tools.integrators.mechanisms import four_bar, pendulum
 
 Run = Callable[[], Any]

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from mbsd.drawing.look import PAPER
 from mbsd.drawing.topology.svg_text import d, tag
-from mbsd.model.forces.kind import FORCE_KINDS
-from mbsd.model.joints.kind import KINDS
+from mbsd.model.force import FORCE_KINDS
+from mbsd.model.joint import KINDS
 
 STROKE = 1.8
 WHEELS = ("gear_pair", "belt")

@@ -19,8 +19,7 @@ from mbsd.base.codes import FRICTION_JOINTS
 from mbsd.dynamics.rows.switches import RELEASED, SLIDES
 from mbsd.equations.joint_friction import BY_RATE, FIRST, NONE, PIN, PRELOAD, SENSE, SHAPE, SIZE, STATIC, WAY
 from mbsd.equations.loads import Loads
-from mbsd.model.joint import Joint
-from mbsd.model.joints.kind import JointKind
+from mbsd.model.joint import Joint, JointKind
 
 
 def _example(m: Any, i: Any, j: Any) -> None:

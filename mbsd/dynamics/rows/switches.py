@@ -14,7 +14,7 @@ from mbsd.arrays.packing import Packed
 from mbsd.dynamics.reference.schur import Schur
 from mbsd.equations.constraints.relative import AT, ROW
 from mbsd.kinematics.pose.mobility import independent_rows, scaled_jacobian
-from mbsd.model.contacts.kind import ContactKind
+from mbsd.model.contact import ContactKind
 from mbsd.model.joint import Joint
 
 OPEN, SLIDES, STICKS, RELEASED = "open", "slides", "sticks", "released"

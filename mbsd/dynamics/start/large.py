@@ -22,7 +22,6 @@ import numpy as np
 from mbsd.arrays.laws import pack_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
-from mbsd.arrays.relative import active_rows, let_phases_go, refuse_impossible, take_phases
 from mbsd.arrays.start_state import copied
 from mbsd.base.errors import AssemblyError
 from mbsd.dynamics.reference.arrays import Dynamics, scratch_for
@@ -33,6 +32,7 @@ from mbsd.dynamics.start.row_strength import factor_at
 from mbsd.kinematics.pose.close import CLOSED, LONGEST_STEP, rough_pose, unwind_angles
 from mbsd.kinematics.pose.initial import Initial, given_coordinates, given_velocities, nearest_turn, tell_coordinates
 from mbsd.kinematics.pose.open_loops import why_open
+from mbsd.kinematics.pose.phases import active_rows, let_phases_go, refuse_impossible, take_phases
 from mbsd.model.mechanism import Model
 from mbsd.results.mobility import Mobility
 

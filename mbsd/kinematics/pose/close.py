@@ -12,11 +12,11 @@ import math
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.arrays.relative import let_phases_go, refuse_impossible, take_phases
 from mbsd.base.errors import AssemblyError
 from mbsd.base.kept import Kept
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.open_loops import turned, why_open
+from mbsd.kinematics.pose.phases import let_phases_go, refuse_impossible, take_phases
 from mbsd.model.mechanism import Model
 
 CLOSED = 1e-10

@@ -16,10 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.arrays.relative import let_phases_go, take_phases
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.close import CLOSED, LONGEST_STEP, assemble, close
 from mbsd.kinematics.pose.mobility import independent_rows
+from mbsd.kinematics.pose.phases import let_phases_go, take_phases
 from mbsd.model.mechanism import Model
 
 TOLD = 1e-6

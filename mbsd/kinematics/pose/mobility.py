@@ -16,10 +16,10 @@ from functools import lru_cache
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.arrays.relative import let_phases_go, take_phases
 from mbsd.base.errors import MobilityError, SingularPoseError
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.close import CLOSED, close, rough_pose
+from mbsd.kinematics.pose.phases import let_phases_go, take_phases
 from mbsd.model.mechanism import Model
 from mbsd.results.mobility import Mobility
 

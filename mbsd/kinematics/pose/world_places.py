@@ -93,10 +93,10 @@ def _around(m: Model, body: Body) -> Model:
 
 def _start(m: Model, packed: Packed) -> np.ndarray:
     """(3 nb,) the closed pose at time 0, with what start_near gives held where the joints leave it."""
-    from mbsd.arrays.relative import let_phases_go
     from mbsd.equations.assembly import residual_and_jacobian
     from mbsd.kinematics.pose.close import CLOSED, rough_pose, unwind_angles
     from mbsd.kinematics.pose.initial import start_pose
+    from mbsd.kinematics.pose.phases import let_phases_go
 
     drive = packed.drives(np.zeros(1))[0]
     rough = rough_pose(m, packed, drive, 0)

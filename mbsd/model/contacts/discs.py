@@ -6,7 +6,12 @@ s = rolling way         constraint `gear` of radii r_i and r_j; see mbsd/equatio
 
 from __future__ import annotations
 
-from mbsd.model.contacts.kind import ContactKind, register
+from mbsd.base.errors import ModelError
+from mbsd.model.adding.contacts import add_contact, amounts_given, frictions_given
+from mbsd.model.body import Marker
+from mbsd.model.contact import ContactKind, register
+from mbsd.model.joint import Joint
+from mbsd.model.mechanism import Model
 
 
 def _numbers(params):
@@ -25,3 +30,28 @@ DISCS = register(
         lengths=("radius_i", "radius_j"),
     )
 )
+
+
+@DISCS.adds
+def rigid_discs(
+    m: Model,
+    name: str,
+    i: Marker,
+    j: Marker,
+    radius_i: float,
+    radius_j: float,
+    inside: bool = False,
+    restitution: float = 0.0,
+    friction: float = 0.0,
+    static_friction: float | None = None,
+) -> Joint:
+    """Discs of two radii (m) around two markers do not enter each other; ``inside``: j is inside the ring i."""
+    params = amounts_given(m, name, radius_i=radius_i, radius_j=radius_j) | {"inside": bool(inside)}
+    params |= frictions_given(m, name, friction, static_friction)
+    reach = radius_i - radius_j if inside else radius_i + radius_j
+    if reach <= 0:
+        raise ModelError(
+            f"{m.name}: contact '{name}': radii {radius_i:g} m and {radius_j:g} m leave no distance of the "
+            "centres; " + ("the ring i must be larger than the disc j" if inside else "one must be positive")
+        )
+    return add_contact(m, DISCS, name, i, j, restitution, params)

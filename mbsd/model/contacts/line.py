@@ -8,7 +8,11 @@ N pushes marker j to the positive side. The line has no ends.
 
 from __future__ import annotations
 
-from mbsd.model.contacts.kind import ContactKind, register
+from mbsd.model.adding.contacts import add_contact, amounts_given, frictions_given
+from mbsd.model.body import Marker
+from mbsd.model.contact import ContactKind, register
+from mbsd.model.joint import Joint
+from mbsd.model.mechanism import Model
 
 
 def _numbers(params):
@@ -25,3 +29,22 @@ LINE = register(
         lengths=("radius",),
     )
 )
+
+
+@LINE.adds
+def rigid_contact(
+    m: Model,
+    name: str,
+    line: Marker,
+    point: Marker,
+    radius: float = 0.0,
+    restitution: float = 0.0,
+    friction: float = 0.0,
+    static_friction: float | None = None,
+) -> Joint:
+    """A point, or a disc of ``radius`` (m) around it, stays on the positive side of the x axis of ``line``.
+
+    ``friction`` is Coulomb's coefficient; ``static_friction``, the same if not given, holds what sticks.
+    """
+    params = amounts_given(m, name, radius=radius) | frictions_given(m, name, friction, static_friction)
+    return add_contact(m, LINE, name, line, point, restitution, params)

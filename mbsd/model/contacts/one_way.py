@@ -7,7 +7,11 @@ Locked, it holds the angle at which it locked; it lets go as soon as its torque 
 
 from __future__ import annotations
 
-from mbsd.model.contacts.kind import ContactKind, register
+from mbsd.model.adding.contacts import add_contact
+from mbsd.model.body import Body
+from mbsd.model.contact import ContactKind, register
+from mbsd.model.joint import Joint
+from mbsd.model.mechanism import Model, own_body
 
 ONE_WAY = register(
     ContactKind(
@@ -18,3 +22,11 @@ ONE_WAY = register(
         always_closed=True,
     )
 )
+
+
+@ONE_WAY.adds
+def one_way(m: Model, name: str, first: Body, second: Body, clockwise: bool = False) -> Joint:
+    """A one-way clutch: ``second`` turns against ``first`` only counter-clockwise, or only clockwise."""
+    for body in (first, second):
+        own_body(m, body, f"contact '{name}'")
+    return add_contact(m, ONE_WAY, name, first.origin, second.origin, None, {"clockwise": bool(clockwise)})

@@ -9,10 +9,14 @@ curve is nearest to its centre, at one point; the model refuses discs that bends
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from mbsd.model.contacts.kind import ContactKind, register
+from mbsd.model.adding.contacts import add_contact, amounts_given, frictions_given
+from mbsd.model.body import Marker
+from mbsd.model.contact import ContactKind, register
+from mbsd.model.joint import Joint
+from mbsd.model.mechanism import Model
 
 if TYPE_CHECKING:
     import numpy as np
@@ -35,3 +39,32 @@ TERRAIN = register(
         lengths=("radius", "points"),
     )
 )
+
+
+@TERRAIN.adds
+def rigid_terrain(
+    m: Model,
+    name: str,
+    terrain: Marker,
+    point: Marker,
+    points: Sequence[Sequence[float]],
+    radius: float = 0.0,
+    closed: bool = False,
+    restitution: float = 0.0,
+    friction: float = 0.0,
+    static_friction: float | None = None,
+) -> Joint:
+    """A point, or a disc of ``radius`` (m) around it, stays on the left of a smooth curve.
+
+    It goes through ``points`` (k, 2) in the axes of marker ``terrain`` (m), for a ground from left to right; beyond
+    its ends an open curve goes on straight.
+    """
+    from mbsd.model.plane_curves import checked_points, refuse_crossing, refuse_tight
+
+    what = f"{m.name}: contact '{name}'"
+    params = amounts_given(m, name, radius=radius) | frictions_given(m, name, friction, static_friction)
+    plain = checked_points(what, points, closed)
+    refuse_crossing(what, plain, closed)
+    refuse_tight(what, plain, closed, params["radius"])
+    params |= {"points": plain, "closed": bool(closed)}
+    return add_contact(m, TERRAIN, name, terrain, point, restitution, params)

@@ -7,8 +7,11 @@ Effort: the torque the driver gives to the body.
 
 from __future__ import annotations
 
-from mbsd.model.joints.kind import JointKind, register
+from mbsd.model.adding.joints import Law, join
+from mbsd.model.body import Body
+from mbsd.model.joint import Joint, JointKind, register
 from mbsd.model.laws import harmonic
+from mbsd.model.mechanism import Model, own_body
 
 DRIVE_ANGLE = register(
     JointKind(
@@ -19,3 +22,10 @@ DRIVE_ANGLE = register(
         units=("N m", "rad"),
     )
 )
+
+
+@DRIVE_ANGLE.adds
+def drive_angle(m: Model, name: str, body: Body, law: Law) -> Joint:
+    """Impose the absolute angle of a body (rad)."""
+    own_body(m, body, f"driver '{name}'")
+    return join(m, DRIVE_ANGLE, name, m.ground.origin, body.origin, law=law)

@@ -7,8 +7,11 @@ Effort: the force the driver gives to body j along the axis.
 
 from __future__ import annotations
 
-from mbsd.model.joints.kind import JointKind, register
+from mbsd.model.adding.joints import Law, join
+from mbsd.model.body import Marker
+from mbsd.model.joint import Joint, JointKind, register
 from mbsd.model.laws import harmonic
+from mbsd.model.mechanism import Model
 
 DRIVE_COORDINATE = register(
     JointKind(
@@ -19,3 +22,9 @@ DRIVE_COORDINATE = register(
         units=("N", "m"),
     )
 )
+
+
+@DRIVE_COORDINATE.adds
+def drive_coordinate(m: Model, name: str, i: Marker, j: Marker, law: Law) -> Joint:
+    """Impose how far marker j lies along the x axis of marker i (m)."""
+    return join(m, DRIVE_COORDINATE, name, i, j, law=law)

@@ -7,8 +7,11 @@ Effort: the force the actuator pushes with, positive when it pushes the markers 
 
 from __future__ import annotations
 
-from mbsd.model.joints.kind import JointKind, register
+from mbsd.model.adding.joints import Law, join
+from mbsd.model.body import Marker
+from mbsd.model.joint import Joint, JointKind, register
 from mbsd.model.laws import harmonic
+from mbsd.model.mechanism import Model
 
 DRIVE_DISTANCE = register(
     JointKind(
@@ -19,3 +22,9 @@ DRIVE_DISTANCE = register(
         units=("N", "m"),
     )
 )
+
+
+@DRIVE_DISTANCE.adds
+def drive_distance(m: Model, name: str, i: Marker, j: Marker, law: Law) -> Joint:
+    """Impose the distance of the points of markers i and j (m), as a linear actuator does."""
+    return join(m, DRIVE_DISTANCE, name, i, j, law=law)

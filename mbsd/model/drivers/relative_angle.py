@@ -7,8 +7,11 @@ Effort: the torque the driver gives to body j; body i gets the opposite.
 
 from __future__ import annotations
 
-from mbsd.model.joints.kind import JointKind, register
+from mbsd.model.adding.joints import Law, join
+from mbsd.model.body import Body
+from mbsd.model.joint import Joint, JointKind, register
 from mbsd.model.laws import harmonic
+from mbsd.model.mechanism import Model, own_body
 
 DRIVE_RELATIVE_ANGLE = register(
     JointKind(
@@ -19,3 +22,11 @@ DRIVE_RELATIVE_ANGLE = register(
         units=("N m", "rad"),
     )
 )
+
+
+@DRIVE_RELATIVE_ANGLE.adds
+def drive_relative_angle(m: Model, name: str, first: Body, second: Body, law: Law) -> Joint:
+    """Impose the angle of body ``second`` against body ``first`` (rad)."""
+    own_body(m, first, f"driver '{name}'")
+    own_body(m, second, f"driver '{name}'")
+    return join(m, DRIVE_RELATIVE_ANGLE, name, first.origin, second.origin, law=law)

@@ -8,7 +8,14 @@ Positive F pushes the points apart, or marker j along the axis; body i feels the
 from __future__ import annotations
 
 from mbsd.base.codes import AXIS, CONSTANT, LAW_TIME, LINE
-from mbsd.model.forces.kind import Element, ForceKind, Term, register
+from mbsd.model.adding.forces import (
+    Amount,
+    add_force,
+    amount_given,
+)
+from mbsd.model.body import Marker
+from mbsd.model.force import Element, Force, ForceKind, Term, register
+from mbsd.model.mechanism import Model
 
 
 def _elements(force):
@@ -19,3 +26,10 @@ def _elements(force):
 ACTUATOR = register(
     ForceKind("actuator", _elements, example=lambda m, i, j: m.actuator("example", i, j, 12.0, along_axis=True))
 )
+
+
+@ACTUATOR.adds
+def actuator(m: Model, name: str, i: Marker, j: Marker, force: Amount, along_axis: bool = False) -> Force:
+    """Force (N) between two points, a constant or a law of time: apart, or on j along the x axis of marker i."""
+    params, laws = amount_given(m, name, "force", force)
+    return add_force(m, ACTUATOR, name, i, j, {**params, "along_axis": bool(along_axis)}, laws)

@@ -8,8 +8,18 @@ Elements AXIS, AXIS (turned), TURN. Source: ADAMS/Solver, BUSHING (diagonal stif
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
+from mbsd.base.arguments import several_numbers
 from mbsd.base.codes import AXIS, DAMPING, LINEAR, TURN
-from mbsd.model.forces.kind import Element, ForceKind, Term, register
+from mbsd.model.adding.forces import (
+    add_force,
+    not_negative,
+)
+from mbsd.model.body import Marker
+from mbsd.model.force import Element, Force, ForceKind, Term, register
+from mbsd.model.mechanism import Model, number_given
 
 
 def _elements(force):
@@ -28,3 +38,21 @@ BUSHING = register(
         example=lambda m, i, j: m.bushing("example", i, j, (90.0, 140.0, 6.0), damping=(2.0, 3.0, 0.1)),
     )
 )
+
+
+@BUSHING.adds
+def bushing(
+    m: Model,
+    name: str,
+    i: Marker,
+    j: Marker,
+    stiffness: Sequence[float],
+    damping: Sequence[float] = (0.0, 0.0, 0.0),
+    free_angle: float = 0.0,
+) -> Force:
+    """Springs and dampers along x and y of marker i and in turning (N/m, N/m, N m/rad), damping alike."""
+    params: dict[str, Any] = {"free_angle": number_given(m, f"force '{name}': free_angle", free_angle)}
+    for what, values in (("stiffness", stiffness), ("damping", damping)):
+        values = several_numbers(f"{m.name}: force '{name}': {what}", values, 3, "give (x, y, turning)")
+        params[what] = tuple(not_negative(m, name, **{f"{what}[{k}]": v for k, v in enumerate(values)}).values())
+    return add_force(m, BUSHING, name, i, j, params)

@@ -19,8 +19,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mbsd.model.forces.kind import ForceKind, Interaction, register
+from mbsd.base.errors import ModelError
+from mbsd.model.adding.forces import above_zero, add_force, curves_given, not_negative
+from mbsd.model.body import Marker
+from mbsd.model.force import Force, ForceKind, Interaction, register
 from mbsd.model.laws.curve import Curve, curve
+from mbsd.model.mechanism import Model
 
 if TYPE_CHECKING:
     from mbsd.model.force import Force
@@ -68,3 +72,33 @@ CONTACT = register(
     )
 )
 """A disc so large that it touches wherever the test puts it."""
+
+
+@CONTACT.adds
+def contact(
+    m: Model,
+    name: str,
+    surface: Marker,
+    body: Marker,
+    stiffness: float,
+    exponent: float = 1.5,
+    damping: float = 0.0,
+    friction: float = 0.0,
+    radius: float = 0.0,
+    profile: Curve | None = None,
+    slip_speed: float = 1e-3,
+) -> Force:
+    """Contact of a disc of ``radius`` (m; 0: a point) about a marker with a surface, never pulling.
+
+    The surface is the x axis of marker ``surface`` with matter below it (turn the marker for a wall), or a
+    ``profile`` y(x) in its axes. Normal force stiffness * depth^exponent * (1 + damping * rate of depth); the
+    friction coefficient is reached at some ``slip_speed`` (m/s).
+    """
+    params = not_negative(
+        m, name, stiffness=stiffness, exponent=exponent, damping=damping, friction=friction, radius=radius
+    )
+    if params["exponent"] < 1.0:
+        raise ModelError(f"{m.name}: force '{name}': exponent is {exponent:g}; it must be 1 or more")
+    params["slip_speed"] = above_zero(m, name, "slip_speed", slip_speed)
+    laws = {} if profile is None else curves_given(m, name, profile=profile)
+    return add_force(m, CONTACT, name, surface, body, params, laws)

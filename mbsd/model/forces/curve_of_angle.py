@@ -8,8 +8,15 @@ f is elastic: its integral is potential energy. A motor's torque-speed curve is 
 from __future__ import annotations
 
 from mbsd.base.codes import LAW_RATE, LAW_VALUE, TURN
-from mbsd.model.forces.kind import Element, ForceKind, Term, register
-from mbsd.model.laws.curve import curve
+from mbsd.model.adding.forces import (
+    add_force,
+    curves_given,
+    origins,
+)
+from mbsd.model.body import Body
+from mbsd.model.force import Element, Force, ForceKind, Term, register
+from mbsd.model.laws.curve import Curve, curve
+from mbsd.model.mechanism import Model
 
 
 def _elements(force):
@@ -31,3 +38,17 @@ CURVE_OF_ANGLE = register(
         ),
     )
 )
+
+
+@CURVE_OF_ANGLE.adds
+def curve_of_angle(
+    m: Model, name: str, first: Body, second: Body, of_angle: Curve | None = None, of_rate: Curve | None = None
+) -> Force:
+    """Torque (N m) on ``second`` by characteristic curves of its angle against ``first`` (rad) and of the rate."""
+    laws = curves_given(m, name, of_angle=of_angle, of_rate=of_rate)
+    return add_force(m, CURVE_OF_ANGLE, name, *origins(m, name, first, second), {}, laws)
+
+
+def motor(m: Model, name: str, first: Body, second: Body, torque_speed: Curve) -> Force:
+    """A motor on body ``first`` that turns ``second``: its torque (N m) over their relative speed (rad/s)."""
+    return curve_of_angle(m, name, first, second, of_rate=torque_speed)

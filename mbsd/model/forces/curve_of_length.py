@@ -8,8 +8,14 @@ f is elastic: its integral is potential energy. Source: Haug 1989, ch. 6.2.
 from __future__ import annotations
 
 from mbsd.base.codes import LAW_RATE, LAW_VALUE, LINE
-from mbsd.model.forces.kind import Element, ForceKind, Term, register
-from mbsd.model.laws.curve import curve
+from mbsd.model.adding.forces import (
+    add_force,
+    curves_given,
+)
+from mbsd.model.body import Marker
+from mbsd.model.force import Element, Force, ForceKind, Term, register
+from mbsd.model.laws.curve import Curve, curve
+from mbsd.model.mechanism import Model
 
 
 def _elements(force):
@@ -31,3 +37,11 @@ CURVE_OF_LENGTH = register(
         ),
     )
 )
+
+
+@CURVE_OF_LENGTH.adds
+def curve_of_length(
+    m: Model, name: str, i: Marker, j: Marker, of_length: Curve | None = None, of_rate: Curve | None = None
+) -> Force:
+    """Force (N, apart positive) by curves of the distance (m) of two points and of its rate (m/s)."""
+    return add_force(m, CURVE_OF_LENGTH, name, i, j, {}, curves_given(m, name, of_length=of_length, of_rate=of_rate))

@@ -8,7 +8,18 @@ The air moves with wind * gust(t). Nothing feels the opposite. Source: Batchelor
 
 from __future__ import annotations
 
-from mbsd.model.forces.kind import ForceKind, Interaction, register
+from collections.abc import Sequence
+
+from mbsd.base.arguments import number_pair
+from mbsd.model.adding.forces import (
+    Amount,
+    add_force,
+    amount_given,
+    not_negative,
+)
+from mbsd.model.body import Marker
+from mbsd.model.force import Force, ForceKind, Interaction, register
+from mbsd.model.mechanism import Model
 
 
 def _interactions(force, packed):
@@ -25,3 +36,24 @@ DRAG = register(
         example=lambda m, i, j: m.drag("example", j, 0.7, turning=0.2, wind=(1.0, -2.0), gust=0.5),
     )
 )
+
+
+@DRAG.adds
+def drag(
+    m: Model,
+    name: str,
+    at: Marker,
+    coefficient: float,
+    turning: float = 0.0,
+    wind: Sequence[float] = (0.0, 0.0),
+    gust: Amount = 1.0,
+) -> Force:
+    """Quadratic drag at a marker: coefficient (N s^2/m^2) times the square of its speed against the air.
+
+    ``turning`` (N m s^2) brakes the body's turning likewise; ``body.at(*body.com)`` is its centre of mass. The air
+    moves with ``wind`` (m/s, world axes) times ``gust``, a constant or a law of time.
+    """
+    params, laws = amount_given(m, name, "gust", gust)
+    params |= not_negative(m, name, coefficient=coefficient, turning=turning)
+    params["wind"] = number_pair(f"{m.name}: force '{name}': wind", wind)
+    return add_force(m, DRAG, name, m.ground.origin, at, params, laws, same_body=True)

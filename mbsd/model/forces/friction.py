@@ -21,7 +21,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from mbsd.model.forces.kind import ForceKind, register
+from mbsd.base.codes import FRICTION_JOINTS
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
+from mbsd.model.adding.forces import above_zero, add_force, not_negative
+from mbsd.model.force import Force, ForceKind, register
+from mbsd.model.joint import Joint
+from mbsd.model.mechanism import Model
 
 
 def _example(m: Any, i: Any, j: Any) -> None:
@@ -30,3 +36,53 @@ def _example(m: Any, i: Any, j: Any) -> None:
 
 
 FRICTION = register(ForceKind("friction", example=_example, of_reactions=True))
+
+
+@FRICTION.adds
+def friction(
+    m: Model,
+    name: str,
+    joint: Joint | str,
+    coefficient: float,
+    static: float | None = None,
+    stribeck: float = 0.01,
+    viscous: float = 0.0,
+    radius: float = 0.0,
+    length: float = 0.0,
+    preload: float = 0.0,
+    slip_speed: float | None = None,
+    sticks: bool = False,
+) -> Force:
+    """Friction of a revolute, prismatic or pin-in-slot joint from its actual reaction.
+
+    ``coefficient`` while sliding and ``static`` (the same by default) near rest, between them the speed
+    ``stribeck`` (m/s); ``viscous`` N s/m or N m s; ``radius`` of a pin (m); ``length`` over which a slider is
+    guided (m), 0 where tilting presses nothing; ``preload`` (N) is added to the normal force; ``slip_speed``
+    (m/s, 1 mm/s if not given) is where it comes near its full size, below it the joint creeps. With ``sticks`` it
+    does not: a simulation finds when the joint sticks and slides, and holds it meanwhile.
+    """
+    what = f"{m.name}: force '{name}'"
+    key = joint.name if isinstance(joint, Joint) else joint
+    known = m.joints.get(key) if isinstance(key, str) else None
+    if known is None or (known is not joint and isinstance(joint, Joint)):
+        raise ModelError(f"{what}: {no_such('joint', key, m.joints)}")
+    if known.kind.name not in FRICTION_JOINTS:
+        raise ModelError(
+            f"{what}: '{known.name}' is a {known.kind.name}; friction needs one of {', '.join(FRICTION_JOINTS)}"
+        )
+    params = not_negative(
+        m, name, coefficient=coefficient, viscous=viscous, radius=radius, length=length, preload=preload
+    )
+    params["static"] = params["coefficient"] if static is None else not_negative(m, name, static=static)["static"]
+    params["stribeck"] = above_zero(m, name, "stribeck", stribeck)
+    params["sticks"] = bool(sticks)
+    if not sticks:
+        params["slip_speed"] = above_zero(m, name, "slip_speed", 1e-3 if slip_speed is None else slip_speed)
+    elif slip_speed is not None:
+        raise ModelError(f"{what}: a joint that sticks does not creep; give slip_speed or sticks=True, not both")
+    if (params["radius"] > 0) != (known.kind.name == "revolute"):
+        raise ModelError(f"{what}: a revolute joint needs the radius of its pin (m), and no other has one")
+    if params["length"] > 0 and known.kind.name != "prismatic":
+        raise ModelError(f"{what}: a length of guide (m) is of prismatic joints alone")
+    params["joint"] = known.name
+    return add_force(m, FRICTION, name, known.i, known.j, params)

@@ -8,7 +8,12 @@ Potential energy -a l^(n + 1) / (n + 1). Source: Newton; Goldstein, Classical Me
 from __future__ import annotations
 
 from mbsd.base.codes import LINE, POWER
-from mbsd.model.forces.kind import Element, ForceKind, Term, register
+from mbsd.model.adding.forces import (
+    add_force,
+)
+from mbsd.model.body import Marker
+from mbsd.model.force import Element, Force, ForceKind, Term, register
+from mbsd.model.mechanism import Model, number_given
 
 
 def _elements(force):
@@ -18,3 +23,13 @@ def _elements(force):
 GRAVITATION = register(
     ForceKind("gravitation", _elements, example=lambda m, i, j: m.gravitation("example", i, j, -2.3))
 )
+
+
+@GRAVITATION.adds
+def gravitation(m: Model, name: str, i: Marker, j: Marker, factor: float, exponent: float = -2.0) -> Force:
+    """Force factor * distance^exponent (N, apart positive) between two points; masses attract: -G m1 m2 and -2."""
+    params = {
+        "factor": number_given(m, f"force '{name}': factor", factor),
+        "exponent": number_given(m, f"force '{name}': exponent", exponent),
+    }
+    return add_force(m, GRAVITATION, name, i, j, params)

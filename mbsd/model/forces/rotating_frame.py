@@ -10,9 +10,18 @@ off or write it as a law where the plane is upright. Source: Goldstein, Classica
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from mbsd.base.arguments import number_pair
+from mbsd.model.adding.forces import (
+    Amount,
+    add_force,
+    amount_given,
+)
 from mbsd.model.body import Body, Marker
-from mbsd.model.forces.kind import ForceKind, Interaction, register
+from mbsd.model.force import Force, ForceKind, Interaction, register
 from mbsd.model.laws.harmonic import harmonic
+from mbsd.model.mechanism import Model
 
 
 def _interactions(force, masses):
@@ -44,3 +53,12 @@ ROTATING_FRAME = register(
         example=lambda m, i, j: m.rotating_frame("example", harmonic(2.0, 3.0), (0.3, -0.4)),
     )
 )
+
+
+@ROTATING_FRAME.adds
+def rotating_frame(m: Model, name: str, rate: Amount, centre: Sequence[float] = (0.0, 0.0)) -> Force:
+    """Ground turns about ``centre`` (m) at ``rate`` (rad/s, a constant or a law of time); all bodies feel it."""
+    params, laws = amount_given(m, name, "rate", rate)
+    params["centre"] = number_pair(f"{m.name}: force '{name}': centre", centre)
+    middle = m.ground.at(*params["centre"])
+    return add_force(m, ROTATING_FRAME, name, middle, m.ground.origin, params, laws, same_body=True)

@@ -10,8 +10,14 @@ k l0(t) of one with l0(t). Source: Haug 1989, ch. 6.2.
 from __future__ import annotations
 
 from mbsd.base.codes import DAMPER, DAMPING, FREE, LINE, LINEAR, STIFFNESS
-from mbsd.model.force import Force
-from mbsd.model.forces.kind import Element, ForceKind, Interaction, Term, register
+from mbsd.model.adding.forces import (
+    Amount,
+    add_force,
+    spring_amounts,
+)
+from mbsd.model.body import Marker
+from mbsd.model.force import Element, Force, ForceKind, Interaction, Term, register
+from mbsd.model.mechanism import Model
 
 
 def constant_terms(force: Force, free: str) -> tuple[Term, Term]:
@@ -41,3 +47,15 @@ SPRING = register(
         example=lambda m, i, j: m.spring("example", i, j, 120.0, damping=3.0, free_length=0.4),
     )
 )
+
+
+@SPRING.adds
+def spring(
+    m: Model, name: str, i: Marker, j: Marker, stiffness: Amount, damping: Amount = 0.0, free_length: Amount = 0.0
+) -> Force:
+    """Spring (N/m) and damper (N s/m) between the points of two markers; ``free_length`` in m.
+
+    Each is a constant or a law of time.
+    """
+    params, laws = spring_amounts(m, name, stiffness=stiffness, damping=damping, free_length=free_length)
+    return add_force(m, SPRING, name, i, j, params, laws)

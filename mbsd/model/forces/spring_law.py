@@ -9,10 +9,14 @@ compiled with numba.njit is compiled in. Source: Haug 1989, ch. 6.2.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from mbsd.base.codes import LINE, TURN
-from mbsd.model.forces.kind import Element, ForceKind, Interaction, register
+from mbsd.model.adding.forces import add_force, law_given
+from mbsd.model.body import Marker
+from mbsd.model.force import Element, Force, ForceKind, Interaction, register
+from mbsd.model.mechanism import Model
 
 
 def law_of(force: Any, masses: Any) -> tuple[Interaction, ...]:
@@ -35,3 +39,13 @@ SPRING_LAW = register(
     )
 )
 """The element measures; its size comes from the interaction."""
+
+
+@SPRING_LAW.adds
+def spring_law(m: Model, name: str, i: Marker, j: Marker, law: Callable[[float, float], float]) -> Force:
+    """Spring between the points of two markers by any function ``law(length, rate)`` (m, m/s) that gives N.
+
+    Positive pushes the points apart: ``lambda length, rate: -k * (length - free) - c * rate`` is a linear spring
+    and damper. Python or compiled with numba.njit. What it gives counts as work, not as potential energy.
+    """
+    return add_force(m, SPRING_LAW, name, i, j, law_given(m, name, law, "the length and its rate"))

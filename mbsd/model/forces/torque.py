@@ -6,7 +6,15 @@ T = T(t)        on body j, -T on body i; element TURN; counter-clockwise positiv
 from __future__ import annotations
 
 from mbsd.base.codes import CONSTANT, LAW_TIME, TURN
-from mbsd.model.forces.kind import Element, ForceKind, Term, register
+from mbsd.model.adding.forces import (
+    Amount,
+    add_force,
+    amount_given,
+    origins,
+)
+from mbsd.model.body import Body
+from mbsd.model.force import Element, Force, ForceKind, Term, register
+from mbsd.model.mechanism import Model
 
 
 def _elements(force):
@@ -18,3 +26,10 @@ def _elements(force):
 TORQUE = register(
     ForceKind("torque", _elements, example=lambda m, i, j: m.torque("example", j.body, 1.7, against=i.body))
 )
+
+
+@TORQUE.adds
+def torque(m: Model, name: str, body: Body, torque: Amount, against: Body | None = None) -> Force:
+    """Torque (N m) on a body, a constant or a law of time; ``against`` (ground by default) takes the opposite."""
+    params, laws = amount_given(m, name, "torque", torque)
+    return add_force(m, TORQUE, name, *origins(m, name, m.ground if against is None else against, body), params, laws)

@@ -8,11 +8,19 @@ counted as work. Source: Haug 1989, ch. 6.2.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from mbsd.base.codes import TURN
-from mbsd.model.forces.kind import Element, ForceKind, register
+from mbsd.model.adding.forces import (
+    add_force,
+    law_given,
+    origins,
+)
+from mbsd.model.body import Body
+from mbsd.model.force import Element, Force, ForceKind, register
 from mbsd.model.forces.spring_law import law_of
+from mbsd.model.mechanism import Model
 
 
 def _example_law(angle: Any, rate: Any) -> Any:
@@ -28,3 +36,13 @@ TORSION_SPRING_LAW = register(
         saved=False,
     )
 )
+
+
+@TORSION_SPRING_LAW.adds
+def torsion_spring_law(m: Model, name: str, first: Body, second: Body, law: Callable[[float, float], float]) -> Force:
+    """Torsion spring by any function ``law(angle, rate)`` (rad, rad/s) that gives the torque on ``second`` (N m).
+
+    The angle is that of second against first: ``lambda angle, rate: -k * angle - c * rate`` is a linear one.
+    """
+    params = law_given(m, name, law, "the angle and its rate")
+    return add_force(m, TORSION_SPRING_LAW, name, *origins(m, name, first, second), params)

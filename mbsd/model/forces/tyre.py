@@ -13,8 +13,17 @@ Source: Pacejka, Bakker 1993, Vehicle System Dynamics 21, suppl. 1 (longitudinal
 
 from __future__ import annotations
 
+from mbsd.model.adding.forces import (
+    above_zero,
+    add_force,
+    curves_given,
+    not_negative,
+)
+from mbsd.model.body import Marker
+from mbsd.model.force import Force, ForceKind, Interaction, register
 from mbsd.model.forces.contact import surface
-from mbsd.model.forces.kind import ForceKind, Interaction, register
+from mbsd.model.laws.curve import Curve
+from mbsd.model.mechanism import Model, number_given
 
 OWN = ("radius", "stiffness", "damping", "grip", "slope", "shape", "curvature", "standstill")
 
@@ -37,3 +46,32 @@ TYRE = register(
         example=lambda m, i, j: m.tyre("example", i, j, 4.0, 300.0, damping=3.0, grip=0.9, standstill=0.3),
     )
 )
+
+
+@TYRE.adds
+def tyre(
+    m: Model,
+    name: str,
+    road: Marker,
+    hub: Marker,
+    radius: float,
+    stiffness: float,
+    damping: float = 0.0,
+    grip: float = 1.0,
+    slope: float = 10.0,
+    shape: float = 1.65,
+    curvature: float = 0.97,
+    standstill: float = 0.1,
+    profile: Curve | None = None,
+) -> Force:
+    """Wheel of ``radius`` (m) about marker ``hub`` on a road: the x axis of a marker, or a profile y(x) there.
+
+    ``stiffness`` (N/m) and ``damping`` (N s/m) carry; ``grip`` D, ``slope`` B, ``shape`` C and ``curvature`` E of
+    the magic formula pull by longitudinal slip, which is kept finite below ``standstill`` (m/s).
+    """
+    params = not_negative(m, name, stiffness=stiffness, damping=damping, grip=grip, slope=slope, shape=shape)
+    params["radius"] = above_zero(m, name, "radius", radius)
+    params["standstill"] = above_zero(m, name, "standstill", standstill)
+    params["curvature"] = number_given(m, f"force '{name}': curvature", curvature)
+    laws = {} if profile is None else curves_given(m, name, profile=profile)
+    return add_force(m, TYRE, name, road, hub, params, laws)

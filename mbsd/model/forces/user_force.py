@@ -9,9 +9,16 @@ A function compiled with numba.njit is compiled in; a Python function costs a fe
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import Any
 
-from mbsd.model.forces.kind import ForceKind, register
+from mbsd.base.errors import ModelError
+from mbsd.base.shown import shown
+from mbsd.model.adding.forces import add_force
+from mbsd.model.body import Body
+from mbsd.model.force import Force, ForceKind, register
+from mbsd.model.laws.function import checked_pulses
+from mbsd.model.mechanism import Model, own_body
 
 
 def _wind_and_spring(t: Any, q: Any, v: Any) -> Any:
@@ -26,3 +33,34 @@ USER_FORCE = register(
         saved=False,
     )
 )
+
+
+@USER_FORCE.adds
+def user_force(
+    m: Model,
+    name: str,
+    function: Callable[..., Any],
+    *bodies: Body,
+    breaks: Sequence[float] = (),
+    shortest: float | None = None,
+) -> Force:
+    """Forces on bodies by a function of the user, ``function(t, q, v)``, Python or compiled with numba.njit.
+
+    q and v hold x, y, theta and their rates of the bodies' frames, three numbers a body in the order given; the
+    function returns fx, fy (N, at the frame's origin) and torque (N m) of each body in that order.
+
+    A simulation looks at it at 2583 times before, with the bodies as they start, so that steps end where it jumps
+    or is short. ``breaks`` (s): where else it jumps. ``shortest`` (s): how long the shortest thing in it lasts, if
+    that depends on the motion or is less than 1/2000 of the duration; no step is longer.
+    """
+    what = f"force '{name}'"
+    if not callable(function):
+        raise ModelError(f"{m.name}: {what} needs a function of t, q and v, got {shown(function)}")
+    for body in bodies:
+        own_body(m, body, what)
+    if not bodies or len(set(map(id, bodies))) < len(bodies):
+        raise ModelError(f"{m.name}: {what} needs the bodies it acts on, each once")
+    at, least = checked_pulses(f"{m.name}: {what}", breaks, shortest)
+    params: dict[str, Any] = {"function": function, "bodies": [body.name for body in bodies]}
+    params |= ({"breaks": at} if at else {}) | ({"shortest": least} if least else {})
+    return add_force(m, USER_FORCE, name, m.ground.origin, bodies[0].origin, params, same_body=True)

@@ -10,11 +10,17 @@ pulleys and sprockets given by teeth and pitch have r = pitch z / (2 pi).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
-from mbsd.model.joints.kind import JointKind, register
+from mbsd.model.body import Marker
+from mbsd.model.joint import Joint, JointKind, register
 from mbsd.model.teeth import with_radii
+
+if TYPE_CHECKING:
+    pass
+from mbsd.model.adding.joints import join, phase_given, wheels_given
+from mbsd.model.mechanism import Model
 
 
 def _numbers(params: Mapping[str, Any]) -> list[tuple[float, float]]:
@@ -31,3 +37,24 @@ BELT = register(
         lengths=("radius_i", "radius_j"),
     )
 )
+
+
+@BELT.adds
+def belt(
+    m: Model,
+    name: str,
+    i: Marker,
+    j: Marker,
+    radius_i: float | None = None,
+    radius_j: float | None = None,
+    crossed: bool = False,
+    phase: Sequence[float] | None = None,
+    teeth: Sequence[int] | None = None,
+    pitch: float | None = None,
+) -> Joint:
+    """A belt or chain over pulleys with centres at i and j, open or crossed; ``phase`` as in gear_pair.
+
+    By pitch radii (m), or by ``teeth`` (z_i, z_j) and the belt's ``pitch`` (m from tooth to tooth).
+    """
+    wheels = wheels_given(m, name, {"radius_i": radius_i, "radius_j": radius_j}, teeth, pitch=pitch)
+    return join(m, BELT, name, i, j, None, **wheels, crossed=bool(crossed), phase=phase_given(m, name, phase))

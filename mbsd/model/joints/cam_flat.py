@@ -9,8 +9,16 @@ for it. Contact is kept from both sides. The reaction on body j is the contact f
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
-from mbsd.model.joints.kind import JointKind, cam_numbers, register
+from mbsd.model.body import Marker
+from mbsd.model.joint import Joint, JointKind, cam_numbers, register
+
+if TYPE_CHECKING:
+    from mbsd.model.cams import CamProfile
+from mbsd.model.adding.joints import cam_given, join
+from mbsd.model.mechanism import Model
 
 _LIFT = {"segments": [[math.pi, 0.2, "cycloidal"], [math.pi, 0.0, "3-4-5"]], "start": 0.0}
 
@@ -22,3 +30,12 @@ CAM_FLAT = register(
         numbers=lambda params: [cam_numbers(params["profile"])],
     )
 )
+
+
+@CAM_FLAT.adds
+def cam_flat(m: Model, name: str, cam: Marker, face: Marker, profile: CamProfile | Mapping[str, Any]) -> Joint:
+    """A flat face (x axis of marker ``face``, its y axis away from the cam) on a cam with frame at marker ``cam``.
+
+    ``profile``: from mbsd.cams.flat_cam or oscillating_flat_cam. Warns (ModelWarning) of an undercut.
+    """
+    return join(m, CAM_FLAT, name, cam, face, None, profile=cam_given(m, name, profile, flat=True))

@@ -9,8 +9,16 @@ both sides, as in a grooved cam. The reaction on body j is the contact force, al
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
-from mbsd.model.joints.kind import JointKind, cam_numbers, register
+from mbsd.model.body import Marker
+from mbsd.model.joint import Joint, JointKind, cam_numbers, register
+
+if TYPE_CHECKING:
+    from mbsd.model.cams import CamProfile
+from mbsd.model.adding.joints import cam_given, join
+from mbsd.model.mechanism import Model
 
 _LIFT = {"segments": [[math.pi, 0.5, "cycloidal"], [math.pi, 0.0, "3-4-5"]], "start": 0.0}
 
@@ -27,3 +35,12 @@ CAM_ROLLER = register(
         numbers=lambda params: [cam_numbers(params["profile"])],
     )
 )
+
+
+@CAM_ROLLER.adds
+def cam_roller(m: Model, name: str, cam: Marker, roller: Marker, profile: CamProfile | Mapping[str, Any]) -> Joint:
+    """The centre of a roller follower (marker ``roller``) on a cam with its frame at marker ``cam``.
+
+    ``profile``: from mbsd.cams.roller_cam or oscillating_roller_cam. Warns (ModelWarning) of an undercut.
+    """
+    return join(m, CAM_ROLLER, name, cam, roller, None, profile=cam_given(m, name, profile, flat=False))

@@ -9,9 +9,18 @@ function does not take complex numbers. A function compiled with numba.njit is c
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
-from mbsd.model.joints.kind import JointKind, register
+from mbsd.base.errors import ModelError
+from mbsd.base.shown import shown
+from mbsd.model.body import Marker
+from mbsd.model.joint import Joint, JointKind, register
+
+if TYPE_CHECKING:
+    pass
+from mbsd.model.adding.joints import join
+from mbsd.model.mechanism import Model
 
 
 def _ellipse(x: Any, y: Any, a: Any) -> Any:
@@ -27,3 +36,18 @@ CONSTRAINT = register(
         saved=False,
     )
 )
+
+
+@CONSTRAINT.adds
+def constraint(
+    m: Model, name: str, i: Marker, j: Marker, function: Callable[[float, float, float], float], unit: str = "m"
+) -> Joint:
+    """``function(x, y, a)`` of the pose of marker j in the axes of marker i (m, rad) is zero.
+
+    Python or numba.njit; its derivatives are found. ``unit`` is that of its value, "m" or "rad".
+    """
+    if not callable(function):
+        raise ModelError(f"{m.name}: joint '{name}' needs a function of x, y and the angle, got {shown(function)}")
+    if unit not in ("m", "rad"):
+        raise ModelError(f"{m.name}: joint '{name}' has the unit {shown(unit)}; it must be 'm' or 'rad'")
+    return join(m, CONSTRAINT, name, i, j, None, function=function, unit=unit)

@@ -11,11 +11,18 @@ teeth and module have r = module z / 2 (teeth.py) and must stand as far apart as
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
-from mbsd.model.joints.kind import JointKind, register
+from mbsd.base.errors import ModelError
+from mbsd.model.body import Marker
+from mbsd.model.joint import Joint, JointKind, register
 from mbsd.model.teeth import gear_problem, with_radii
+
+if TYPE_CHECKING:
+    pass
+from mbsd.model.adding.joints import join, phase_given, wheels_given
+from mbsd.model.mechanism import Model
 
 
 def _numbers(params: Mapping[str, Any]) -> list[tuple[float, float]]:
@@ -33,3 +40,37 @@ GEAR_PAIR = register(
         lengths=("radius_i", "radius_j"),
     )
 )
+
+
+@GEAR_PAIR.adds
+def gear_pair(
+    m: Model,
+    name: str,
+    i: Marker,
+    j: Marker,
+    radius_i: float | None = None,
+    radius_j: float | None = None,
+    internal: bool = False,
+    phase: Sequence[float] | None = None,
+    teeth: Sequence[int] | None = None,
+    module: float | None = None,
+) -> Joint:
+    """Two gears with centres at i and j, by pitch radii (m), or by ``teeth`` (z_i, z_j) and ``module`` (m).
+
+    ``internal``: i is the ring around j. They mesh as they stand at the start; ``phase`` gives angles of both
+    bodies (rad) that belong together. Gears by teeth must stand module (z_i + z_j) / 2 apart at the start, of a
+    ring and its pinion the difference (AssemblyError).
+    """
+    wheels = wheels_given(m, name, {"radius_i": radius_i, "radius_j": radius_j}, teeth, module=module)
+    sized = with_radii(wheels)
+    if internal and sized["radius_i"] <= sized["radius_j"]:
+        first, second = (
+            [f"{count} teeth" for count in wheels["teeth"]]
+            if "teeth" in wheels
+            else [f"{key} = {wheels[key]:g} m" for key in wheels]
+        )
+        raise ModelError(
+            f"{m.name}: gear_pair '{name}' is internal, so {first} is the ring's and must be "
+            f"above {second}; give the ring first"
+        )
+    return join(m, GEAR_PAIR, name, i, j, None, **wheels, internal=bool(internal), phase=phase_given(m, name, phase))

@@ -12,9 +12,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from mbsd.model.joints.kind import JointKind, register
+from mbsd.base.errors import ModelError
+from mbsd.base.shown import shown
+from mbsd.model.body import Marker
+from mbsd.model.joint import Joint, JointKind, register
+
+if TYPE_CHECKING:
+    pass
+from mbsd.model.adding.joints import join, radii_given
+from mbsd.model.mechanism import Model
 
 ENTRY = 1e-6
 """Part of the centre distance by which the pin's radius may be off."""
@@ -41,3 +49,18 @@ GENEVA = register(
         lengths=("radius",),
     )
 )
+
+MOST_SLOTS = 1000
+
+
+@GENEVA.adds
+def geneva(m: Model, name: str, crank: Marker, wheel: Marker, slots: int, radius: float) -> Joint:
+    """A Geneva: the pin at ``radius`` (m) on the x axis of marker ``crank`` indexes a wheel with ``slots`` slots.
+
+    The x axis of marker ``wheel`` is a slot. The radius must be the distance of the centres times sin(pi / slots).
+    """
+    if not 3 <= slots <= MOST_SLOTS:
+        raise ModelError(
+            f"{m.name}: joint '{name}' has slots = {shown(slots)}; it must be a whole number, 3 .. {MOST_SLOTS}"
+        )
+    return join(m, GENEVA, name, crank, wheel, None, slots=int(slots), **radii_given(m, name, radius=radius))

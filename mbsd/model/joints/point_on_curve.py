@@ -10,10 +10,18 @@ is refused.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from mbsd.model.joints.kind import JointKind, register
+import numpy as np
+
+from mbsd.model.body import Marker
+from mbsd.model.joint import Joint, JointKind, register
+
+if TYPE_CHECKING:
+    pass
+from mbsd.model.adding.joints import join
+from mbsd.model.mechanism import Model, number_given
 
 if TYPE_CHECKING:
     import numpy as np
@@ -45,3 +53,25 @@ POINT_ON_CURVE = register(
         lengths=("points",),
     )
 )
+
+
+@POINT_ON_CURVE.adds
+def point_on_curve(
+    m: Model,
+    name: str,
+    curve: Marker,
+    point: Marker,
+    points: Sequence[Sequence[float]],
+    closed: bool = False,
+    distance: float = 0.0,
+) -> Joint:
+    """Marker ``point`` moves on a curve through ``points`` (k, 2) in the axes of marker ``curve`` (m).
+
+    ``distance`` (m) is how far it stays to the left of the curve; beyond its ends an open curve goes on straight.
+    """
+    from mbsd.model.plane_curves import checked_points
+
+    what = f"{m.name}: joint '{name}'"
+    plain = checked_points(what, points, closed)
+    distance = number_given(m, f"joint '{name}': distance", distance)
+    return join(m, POINT_ON_CURVE, name, curve, point, None, points=plain, closed=bool(closed), distance=distance)

@@ -9,8 +9,17 @@ reaction on body j is the tooth force along the rack as a force at its centre an
 
 from __future__ import annotations
 
-from mbsd.model.joints.kind import JointKind, register
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from mbsd.model.body import Marker
+from mbsd.model.joint import Joint, JointKind, register
 from mbsd.model.teeth import rack_problem, with_radii
+
+if TYPE_CHECKING:
+    pass
+from mbsd.model.adding.joints import join, phase_given, wheels_given
+from mbsd.model.mechanism import Model
 
 RACK_AND_PINION = register(
     JointKind(
@@ -22,3 +31,22 @@ RACK_AND_PINION = register(
         lengths=("radius",),
     )
 )
+
+
+@RACK_AND_PINION.adds
+def rack_and_pinion(
+    m: Model,
+    name: str,
+    rack: Marker,
+    pinion: Marker,
+    radius: float | None = None,
+    phase: Sequence[float] | None = None,
+    teeth: int | None = None,
+    module: float | None = None,
+) -> Joint:
+    """A pinion about marker ``pinion`` on the x axis of marker ``rack``, by its pitch radius (m), or by teeth.
+
+    By ``teeth`` and ``module`` (m) its centre must stand module z / 2 above that axis at the start (AssemblyError).
+    """
+    wheels = wheels_given(m, name, {"radius": radius}, teeth, module=module)
+    return join(m, RACK_AND_PINION, name, rack, pinion, None, **wheels, phase=phase_given(m, name, phase))

@@ -10,7 +10,16 @@ Dynamics, 2018, disc joint.
 
 from __future__ import annotations
 
-from mbsd.model.joints.kind import JointKind, register
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from mbsd.model.body import Marker
+from mbsd.model.joint import Joint, JointKind, register
+
+if TYPE_CHECKING:
+    pass
+from mbsd.model.adding.joints import join, phase_given, radii_given
+from mbsd.model.mechanism import Model
 
 ROLLING_DISC = register(
     JointKind(
@@ -21,3 +30,12 @@ ROLLING_DISC = register(
         lengths=("radius",),
     )
 )
+
+
+@ROLLING_DISC.adds
+def rolling_disc(
+    m: Model, name: str, line: Marker, disc: Marker, radius: float, phase: Sequence[float] | None = None
+) -> Joint:
+    """A disc of the given radius (m) about marker ``disc`` rolls on the y side of marker ``line``'s x axis."""
+    radii = radii_given(m, name, radius=radius)
+    return join(m, ROLLING_DISC, name, line, disc, None, **radii, phase=phase_given(m, name, phase))

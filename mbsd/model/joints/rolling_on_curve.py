@@ -10,10 +10,18 @@ bent tighter than the disc it would touch twice; the model refuses that.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from mbsd.model.joints.kind import JointKind, register
+import numpy as np
+
+from mbsd.model.body import Marker
+from mbsd.model.joint import Joint, JointKind, register
+
+if TYPE_CHECKING:
+    pass
+from mbsd.model.adding.joints import join, radii_given
+from mbsd.model.mechanism import Model
 
 if TYPE_CHECKING:
     import numpy as np
@@ -36,3 +44,25 @@ ROLLING_ON_CURVE = register(
         lengths=("radius", "points"),
     )
 )
+
+
+@ROLLING_ON_CURVE.adds
+def rolling_on_curve(
+    m: Model,
+    name: str,
+    curve: Marker,
+    disc: Marker,
+    points: Sequence[Sequence[float]],
+    radius: float,
+    closed: bool = False,
+) -> Joint:
+    """A disc of the given radius (m) about marker ``disc`` rolls on the left of a curve through ``points`` (k, 2).
+
+    The points are in the axes of marker ``curve`` (m); beyond its ends an open curve goes on straight.
+    """
+    from mbsd.model.plane_curves import checked_points, refuse_tight
+
+    what = f"{m.name}: joint '{name}'"
+    radii, plain = radii_given(m, name, radius=radius), checked_points(what, points, closed)
+    refuse_tight(what, plain, closed, radii["radius"])
+    return join(m, ROLLING_ON_CURVE, name, curve, disc, None, points=plain, closed=bool(closed), **radii)

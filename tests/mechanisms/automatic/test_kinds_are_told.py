@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 
-import mechanisms.stages.automatic.kinds  # noqa: F401  (enters them)
 from mbsd.model.contacts.kind import CONTACT_KINDS
 from mbsd.model.forces.kind import FORCE_KINDS
 from mbsd.model.joints.kind import KINDS
+
+import mechanisms.stages.automatic.kinds  # noqa: F401  (enters them)
 from mechanisms.stages.automatic.layout import features
 from shared.stage.paths import ROOT
 

@@ -14,9 +14,9 @@ import mbsd.model.drivers
 import mbsd.model.forces
 import mbsd.model.joints
 from mbsd import Mechanism
-from mbsd.model.contacts.kind import CONTACT_KINDS
-from mbsd.model.forces.kind import FORCE_KINDS
-from mbsd.model.joints.kind import KINDS
+from mbsd.model.contact import CONTACT_KINDS
+from mbsd.model.force import FORCE_KINDS
+from mbsd.model.joint import KINDS
 from mbsd.model.laws.examples import EXAMPLES
 from tools.hunt.outcome import attempt
 from tools.hunt.subject import Subject, family

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from mbsd.model.joints.kind import ROWS, SPECIALS, JointKind
+from mbsd.model.joint import ROWS, SPECIALS, JointKind
 
 
 @dataclass(frozen=True)

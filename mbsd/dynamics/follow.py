@@ -1,0 +1,95 @@
+"""Follow a run to its end, with or without events, and go on from where it was."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from mbsd.base.errors import SimulationError
+from mbsd.compiling.interrupts import kept
+from mbsd.dynamics.events.run import EventRun
+from mbsd.dynamics.prepare.prepare import PreparedDynamics
+from mbsd.dynamics.runs.run import Run
+from mbsd.dynamics.runs.trail import Trail
+from mbsd.dynamics.state import ACCEPTED, NEXT, TIME, WORK, Output
+from mbsd.model.event import Event
+
+Progress = Callable[[float], None] | None
+
+
+def follow(
+    ready: PreparedDynamics, run: Run, times: np.ndarray, events: list[Event], event_rows: bool, progress: Progress
+) -> Trail:
+    """Simulate from the consistent start to the last of ``times`` (s)."""
+    with kept():
+        return _followed(ready, run, times, events, event_rows, progress)
+
+
+def trail_of(met: EventRun, event_rows: bool = False) -> Trail:
+    """Of an event run that has ended: outputs that were reached, with rows at events if asked for."""
+    written = int(met.state.count[NEXT])
+    out, held = Output(*(part[:written] for part in met.out)), met.held[:written]
+    rows = met.rows if event_rows else met.rows[-1:] if met.ended else []
+    if rows:
+        parts = [np.stack(column) for column in zip(*(row[:-1] for row in rows), strict=True)]
+        both = [np.concatenate([a, b]) for a, b in zip(out, parts, strict=True)]
+        order = np.argsort(both[0], kind="stable")
+        out = Output(*(part[order] for part in both))
+        held = np.concatenate([held, np.stack([row[-1] for row in rows])])[order]
+    return Trail(out, held, int(met.state.count[ACCEPTED]), met.happenings, met.snapshots)
+
+
+def resumed(ready: PreparedDynamics, run: Run, trail: Trail, times: np.ndarray, events: list[Event]) -> Trail:
+    """The motion at other times (T,), rising and within the trail: each from the last point known before it."""
+    began = np.array([snapshot.time for snapshot in trail.snapshots])
+    which = np.maximum(np.searchsorted(began, times, side="right") - 1, 0)
+    outputs = np.searchsorted(trail.out.t, times, side="right") - 1
+    starts = [
+        (int(s), int(k) if k >= 0 and trail.out.t[k] > began[s] else -1) for s, k in zip(which, outputs, strict=True)
+    ]
+    pieces, steps, first = [], 0, 0
+    while first < len(times):
+        last = first
+        while last < len(times) and starts[last] == starts[first]:
+            last += 1
+        s, k = starts[first]
+        snapshot = trail.snapshots[s]
+        state, out = ready.begun(times[first:last])
+        state.clock[TIME] = snapshot.time if k < 0 else trail.out.t[k]
+        state.y[...] = snapshot.y if k < 0 else trail.out.y[k]
+        met = EventRun(ready, run, state, out, events)
+        met.resume(snapshot, snapshot.work if k < 0 else float(trail.out.work[k]))
+        try:
+            met.to(float(times[last - 1]))
+            pieces.append(trail_of(met))
+        except SimulationError:
+            if events or ready.switches.touches or ready.sticks:
+                raise
+            # near a singular pose, which independent coordinates pass
+            state, out = ready.begun(times[first:last])
+            state.clock[TIME] = snapshot.time if k < 0 else trail.out.t[k]
+            state.y[...] = snapshot.y if k < 0 else trail.out.y[k]
+            state.clock[WORK] = snapshot.work if k < 0 else trail.out.work[k]
+            run.to_end(state, out)
+            held = np.broadcast_to(ready.switches.held(), out.lam.shape)
+            pieces.append(Trail(out, held, int(state.count[ACCEPTED]), independent=True))
+        steps += pieces[-1].steps
+        first = last
+    out = Output(*(np.concatenate(parts) for parts in zip(*(piece.out for piece in pieces), strict=True)))
+    return Trail(out, np.concatenate([piece.held for piece in pieces]), steps)
+
+
+def _followed(
+    ready: PreparedDynamics, run: Run, times: np.ndarray, events: list[Event], event_rows: bool, progress: Progress
+) -> Trail:
+    state, out = ready.begun(times)
+    met = EventRun(ready, run, state, out, events)
+    if not events and not ready.switches.touches and not ready.sticks:
+        met.snapshots.append(met.snapshot())
+        independent = run.to_end(state, out, progress)
+        steps, held = int(state.count[ACCEPTED]), met.held | ready.switches.held()
+        return Trail(out, held, steps, [], met.snapshots, independent)
+    met.begin()
+    met.to(float(times[-1]), progress)
+    return trail_of(met, event_rows)

@@ -1,0 +1,69 @@
+"""What joints, forces, contacts and integrators of one's own are made of; docs/extending.md uses nothing else.
+
+Rooms below may move; these names stay.
+"""
+
+from mbsd.base.codes import (
+    AXIS,
+    CONSTANT,
+    DAMPING,
+    DRY,
+    LAW_RATE,
+    LAW_TIME,
+    LAW_VALUE,
+    LINE,
+    LINEAR,
+    POWER,
+    PUSH,
+    TURN,
+)
+from mbsd.model.adding.contacts import add_contact
+from mbsd.model.adding.forces import Amount, add_force, amount_given, not_negative
+from mbsd.model.adding.joints import Law, join, radii_given
+from mbsd.model.body import Body, Marker
+from mbsd.model.contact import ContactKind
+from mbsd.model.contact import register as register_contact
+from mbsd.model.force import Element, Force, ForceKind, Interaction, Term
+from mbsd.model.force import register as register_force
+from mbsd.model.joint import Joint, JointKind
+from mbsd.model.joint import register as register_joint
+from mbsd.model.mechanism import Model, length_given, number_given
+
+__all__ = [
+    "AXIS",
+    "CONSTANT",
+    "DAMPING",
+    "DRY",
+    "LAW_RATE",
+    "LAW_TIME",
+    "LAW_VALUE",
+    "LINE",
+    "LINEAR",
+    "POWER",
+    "PUSH",
+    "TURN",
+    "Amount",
+    "Body",
+    "ContactKind",
+    "Element",
+    "Force",
+    "ForceKind",
+    "Interaction",
+    "Joint",
+    "JointKind",
+    "Law",
+    "Marker",
+    "Model",
+    "Term",
+    "add_contact",
+    "add_force",
+    "amount_given",
+    "join",
+    "length_given",
+    "not_negative",
+    "number_given",
+    "radii_given",
+    "register_contact",
+    "register_force",
+    "register_joint",
+]

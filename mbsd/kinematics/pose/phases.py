@@ -1,0 +1,109 @@
+"""What the closed start pose decides about constraints of relative pose.
+
+Gears, racks and belts hold how bodies roll on each other, not where they stand: the constant of such a *phased* row
+is the value that F has when all other constraints are closed, unless the joint gives angles that belong together.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.base.errors import AssemblyError
+from mbsd.equations.constraints.relative import ACTIVE, ARM, AT, MARKER_I, MARKER_J, ROW
+
+if TYPE_CHECKING:
+    from mbsd.arrays.packing import Packed
+
+
+SAME_PLACE = 1e-6
+"""Pins within this part of the mechanism's size are at one place."""
+
+
+def let_phases_go(packed: Packed) -> None:
+    """Leave the phased rows out, so that all others can be closed."""
+    packed.system.special[packed.specials.phased, ACTIVE] = 0
+
+
+def active_rows(packed: Packed) -> set[int]:
+    """All rows but those that are left out."""
+    special = packed.system.special
+    return set(range(len(packed.ws.phi))) - {int(row) for row in special[special[:, ACTIVE] == 0, ROW]}
+
+
+def take_phases(packed: Packed, q: np.ndarray, drive: np.ndarray) -> bool:
+    """Set the constants of the phased rows from the pose q (3 nb,), where all other rows are closed.
+
+    Returns whether joints gave angles that belong together, so that the pose must be closed again.
+    """
+    from mbsd.equations.assembly import residual_and_jacobian
+    from mbsd.equations.relative.equation import DIRECTION, PHASE, WRAPS
+
+    system, given = packed.system, False
+    for k in packed.specials.phased:
+        i, j, at = (int(system.special[k, column]) for column in (MARKER_I, MARKER_J, AT))
+        arm = _arm_of(packed, q, i, j)
+        if arm is not None:
+            system.special[k, ARM] = arm
+            line = _place(packed, q, j) - _place(packed, q, i)
+            system.numbers[at + DIRECTION] = math.atan2(line[1], line[0]) - q[3 * arm + 2]
+            # relative to the arm; the equation works in the axes of marker i
+            system.numbers[at + DIRECTION] -= packed.specials.joints[k].i.angle
+            system.numbers[at + WRAPS] = 0.0
+        system.special[k, ACTIVE] = 1
+        system.numbers[at + PHASE] = 0.0
+        pose, phase = q, packed.specials.joints[k].params.get("phase")
+        if phase is not None:
+            given, pose = True, _turned_to(packed, q, (i, j), phase)
+        residual_and_jacobian(system, pose, drive, packed.ws)
+        system.numbers[at + PHASE] = packed.ws.equation[k, 0]
+    return given
+
+
+def refuse_impossible(packed: Packed, q: np.ndarray) -> None:
+    """Raise AssemblyError for a joint that cannot be with its markers as they stand in the closed pose q (3 nb,)."""
+    for joint, place in zip(packed.specials.joints, packed.specials.places, strict=True):
+        if joint.kind.problem is None:
+            continue
+        i, j = place[:2]
+        dx, dy = _place(packed, q, j) - _place(packed, q, i)
+        turn = q[3 * packed.system.marker_body[i] + 2] + joint.i.angle
+        c, s = math.cos(turn), math.sin(turn)
+        problem = joint.kind.problem(joint.params, c * dx + s * dy, c * dy - s * dx)
+        if problem is not None:
+            raise AssemblyError(f"{packed.name}: {joint.kind.name} '{joint.name}': {problem}")
+
+
+def _place(packed: Packed, q: np.ndarray, marker: int) -> np.ndarray:
+    body = packed.system.marker_body[marker]
+    c, s = math.cos(q[3 * body + 2]), math.sin(q[3 * body + 2])
+    x, y = packed.system.marker_arm[marker]
+    return q[3 * body : 3 * body + 2] + np.array([c * x - s * y, s * x + c * y])
+
+
+def _arm_of(packed: Packed, q: np.ndarray, i: int, j: int) -> int | None:
+    """The body with pins at the centres i and j: it carries the line of centres, ground too. None if there is none."""
+    centres = _place(packed, q, i), _place(packed, q, j)
+    pins: list[set[int]] = []
+    for centre, own in zip(centres, (i, j), strict=True):
+        found = {int(packed.system.marker_body[own])}
+        for joint, markers in zip(packed.joints, packed.markers, strict=True):
+            if joint.kind.name == "revolute":
+                near = np.linalg.norm(_place(packed, q, markers[0]) - centre) < SAME_PLACE * packed.size
+                found |= {int(packed.system.marker_body[marker]) for marker in markers} if near else set()
+        pins.append(found)
+    return min(pins[0] & pins[1], default=None)
+
+
+def _turned_to(packed: Packed, q: np.ndarray, markers: tuple[int, int], angles: tuple[float, float]) -> np.ndarray:
+    """The pose with both bodies turned about their markers to the given angles (rad)."""
+    out = q.copy()
+    for marker, angle in zip(markers, angles, strict=True):
+        body = int(packed.system.marker_body[marker])
+        if body:
+            centre = _place(packed, q, marker)
+            out[3 * body + 2] = angle
+            out[3 * body : 3 * body + 2] += centre - _place(packed, out, marker)
+    return out

@@ -1,0 +1,1 @@
+"""What the functions that add joints, drivers, forces and contacts share: their checks, and the entries they make."""

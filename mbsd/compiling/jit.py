@@ -1,8 +1,10 @@
 """The one decorator for compiled kernels.
 
-    kernel      called from Python and from kernels
-    internal    called by kernels alone: without a wrapper for Python it compiles in half the time
-    inlined     copied into the caller: passing a System by value costs more than the work
+    kernel      called from Python and from kernels; its callers do not contain it (kernel_library.py)
+    apart       the same for kernels alone: without a wrapper for Python it compiles in half the time
+    internal    small, called by kernels alone, whose machine code contains it
+    inlined     copied into the caller by numba: passing a System by value costs more than the work
+    merged      copied into the caller by LLVM, so that numba reads it once: for large ones
     threaded    runs in several threads at once, each with scratch of its own
     at_address  called through its machine address
 
@@ -22,6 +24,8 @@ from numba.core.dispatcher import Dispatcher
 from numba.core.registry import CPUDispatcher
 
 from mbsd.compiling.kernel_cache import KernelCache
+from mbsd.compiling.kernel_library import Apart
+from mbsd.compiling.kernel_pipeline import KernelCompiler
 from mbsd.compiling.kernel_target import GENERIC
 from mbsd.compiling.notice import give_notice
 
@@ -34,10 +38,18 @@ class _Kernel(CPUDispatcher):
     """numba's dispatcher for our target and cache."""
 
     targetdescr = GENERIC
+    apart = False
+    """Whether callers call it where it stands and do not take its code in."""
 
     def enable_caching(self) -> None:
         """Keep what is compiled."""
         self._cache = KernelCache(self.py_func)
+
+    def add_overload(self, cres: Any) -> None:
+        """Add what was compiled or loaded."""
+        if self.apart and "<" not in self.py_func.__qualname__:
+            cres.library.apart = Apart(cres.fndesc.llvm_func_name, self, tuple(cres.signature.args))
+        super().add_overload(cres)
 
 
 class _AtAddress(CFunc):
@@ -54,28 +66,35 @@ _OPTIONS = {"nopython": True, "error_model": "numpy", "_nrt": False, "no_cfunc_w
 # _nrt off: kernels allocate nothing, and without it numba counts references to every array of a tuple (2x slower)
 
 
-def _compiled(**more: Any) -> Callable[[Callable[..., Any]], Any]:
+def _compiled(apart: bool, **more: Any) -> Callable[[Callable[..., Any]], Any]:
     def decorate(function: Callable[..., Any]) -> Any:
         if not COMPILED:
             return function
-        made = _Kernel(py_func=function, locals={}, targetoptions={**_OPTIONS, **more})
+        made = _Kernel(py_func=function, locals={}, targetoptions={**_OPTIONS, **more}, pipeline_class=KernelCompiler)
+        made.apart = apart
         made.enable_caching()
         return made
 
     return decorate
 
 
-kernel = _compiled()
+kernel = _compiled(True)
 """Compile for float64 arrays; IEEE division, no re-association, so the numbers do not depend on the compiler.
 Kernels may not allocate: scratch comes in from outside."""
 
-internal = _compiled(no_cpython_wrapper=True)
-"""The same for kernels that only kernels call."""
+internal = _compiled(False, no_cpython_wrapper=True)
+"""The same for small kernels that only kernels call."""
 
-inlined = _compiled(inline="always")
+apart = _compiled(True, no_cpython_wrapper=True)
+"""The same for large ones: callers do not contain them, so that each is optimised once."""
+
+inlined = _compiled(False, inline="always")
 """The same for kernels whose body is copied into the caller."""
 
-threaded = _compiled(nogil=True)
+merged = _compiled(False, no_cpython_wrapper=True, forceinline=True)
+"""The same for large kernels whose body is copied into the caller: by LLVM, so that numba reads it once."""
+
+threaded = _compiled(True, nogil=True)
 """The same for kernels that run in several threads at once, each with scratch of its own."""
 
 
@@ -85,7 +104,9 @@ def at_address(signature: Any) -> Callable[[Callable[..., Any]], Any]:
     def decorate(function: Callable[..., Any]) -> Any:
         if not COMPILED:
             return function
-        made = _AtAddress(function, sigutils.normalize_signature(signature), {}, {"error_model": "numpy"})
+        made = _AtAddress(
+            function, sigutils.normalize_signature(signature), {}, {"error_model": "numpy"}, KernelCompiler
+        )
         made.enable_caching()
         made.compile()
         return made

@@ -12,6 +12,7 @@ looked for, compiled and kept in the user's folder.
 from __future__ import annotations
 
 import hashlib
+import importlib
 import os
 import re
 import shutil
@@ -25,6 +26,7 @@ from typing import Any
 
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _Cache, _CacheLocator
 
+from mbsd.compiling.kernel_library import Apart
 from mbsd.compiling.shipped_kernels import SHIPPED, tell_of_other_kernels
 
 try:
@@ -164,14 +166,36 @@ def _forget_old(folder: Path) -> None:
 
 
 class _Results(CompileResultCacheImpl):
+    """With the kernels that one calls and that stand apart: they are loaded before it."""
+
     _locator_classes = [_Locator, *CompileResultCacheImpl._locator_classes[-2:]]  # numba's for notebooks and archives
+
+    def reduce(self, cres: Any) -> Any:
+        """What is written."""
+        called = {
+            name: (one.dispatcher.py_func.__module__, one.dispatcher.py_func.__qualname__, one.arguments)
+            for name, one in cres.library.calls.items()
+        }
+        return called, super().reduce(cres)
+
+    def rebuild(self, target_context: Any, payload: Any) -> Any:
+        """From what was read."""
+        called, own = payload
+        calls = {}
+        for name, (module, function, arguments) in called.items():
+            calls[name] = Apart(name, getattr(importlib.import_module(module), function), arguments)
+            if calls[name].library is None:
+                return None
+        cres = super().rebuild(target_context, own)
+        cres.library.calls = calls
+        return cres
 
 
 class _Files(FunctionCache):
     _impl_class = _Results
 
 
-class _ShippedResults(CompileResultCacheImpl):
+class _ShippedResults(_Results):
     _locator_classes = [_ShippedLocator]
 
 

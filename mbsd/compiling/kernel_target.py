@@ -10,21 +10,35 @@ import copy
 import threading
 from typing import Any
 
-from numba.core import registry
-from numba.core.codegen import JITCPUCodegen
+from numba.core import registry, types
 from numba.core.registry import CPUTarget
+from numba.core.targetconfig import ConfigStack
+from numba.core.typing import Context
+
+from mbsd.compiling.kernel_library import KernelCode
 
 _LOCK = threading.Lock()
 
 
-class _GenericCode(JITCPUCodegen):
-    """Asks no processor what it can."""
+class _Types(Context):
+    """numba's own types; what a call in one function gives is found once for the same arguments.
 
-    def _get_host_cpu_name(self) -> str:
-        return "generic"
+    numba looks through all that is known of ``+`` and ``[]`` at each place where they stand.
+    """
 
-    def _get_host_cpu_features(self) -> str:
-        return ""
+    def __init__(self, shared: Any) -> None:
+        self.__dict__.update(shared.__dict__)
+        self._found: dict[Any, Any] = {}
+
+    def resolve_function_type(self, func: Any, args: Any, kws: Any) -> Any:
+        """The signature of a call."""
+        if kws or isinstance(func, types.Dispatcher):
+            return super().resolve_function_type(func, args, kws)
+        flags = ConfigStack.top_or_none()
+        key = id(flags), func, tuple(args)
+        if key not in self._found:
+            self._found[key] = super().resolve_function_type(func, args, kws), flags  # flags stay, and so does their id
+        return self._found[key][0]
 
 
 class _GenericTarget(CPUTarget):
@@ -33,21 +47,27 @@ class _GenericTarget(CPUTarget):
     def __init__(self) -> None:
         super().__init__("cpu")
         self._context: Any = None
+        self._types: Any = None
 
     @property
     def typing_context(self) -> Any:
-        """Shared with numba's own target."""
-        return registry.cpu_target.typing_context
+        """Shares all it knows with that of numba's own target."""
+        with _LOCK:
+            if self._types is None:
+                self._types = _Types(registry.cpu_target.typing_context)
+            return self._types
 
     @property
     def target_context(self) -> Any:
         """Made at first use: a copy that shares all definitions with numba's own, and generates other code."""
+        types_ = self.typing_context
         with _LOCK:
             if self._context is None:
                 context = copy.copy(registry.cpu_target.target_context)
                 context.cached_internal_func = {}
                 context.__dict__.pop("nrt", None)  # it knows the context that it was made for
-                context._internal_codegen = _GenericCode("mbsd.exec")
+                context._internal_codegen = KernelCode("mbsd.exec")
+                context.typing_context = types_
                 self._context = context
             return self._context
 

@@ -14,7 +14,7 @@ import math
 from typing import Any, NamedTuple
 
 from mbsd.base.codes import CYCLOIDAL, HARMONIC, PERIODIC, POLYNOMIAL
-from mbsd.compiling.jit import inlined, kernel
+from mbsd.compiling.jit import apart, inlined, kernel
 
 
 class Laws(NamedTuple):
@@ -64,7 +64,7 @@ def evaluate_law(laws, k, x, out):
         _evaluate_pieces(laws, at, x, out)
 
 
-@kernel
+@apart
 def _evaluate_pieces(laws, at, x, out):
     numbers = laws.numbers
     count = int(numbers[at])

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from mbsd.compiling.callback import call
-from mbsd.compiling.jit import internal
+from mbsd.compiling.jit import apart
 
 
-@internal
+@apart
 def apply_user_forces(loads, t, q, v, cos_sin, load):
     """Add the generalised forces of all functions to load (3 nb,); cos_sin (nb, 2) turns the bodies.
 

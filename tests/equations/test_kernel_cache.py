@@ -81,7 +81,46 @@ def test_an_edit_of_an_imported_constant_compiles_anew_and_going_back_does_not(t
     assert [value(factor) for factor in (2.0, 2.0, 3.0, 2.0)] == ["2.0 0", "2.0 1", "3.0 0", "2.0 1"]
 
 
-KERNEL = re.compile(r"^@(kernel|internal|inlined|threaded|equation|interaction)\b", re.MULTILINE)
+CALLED = """
+from mbsd.compiling.jit import apart, kernel, merged
+@merged
+def twice(x):
+    return 2.0 * x
+@apart
+def inner(x, y):
+    return twice(x) + y
+@kernel
+def outer(x):
+    return inner(x, 1.0) * inner(x, 2.0)
+"""
+CALLS = """
+import sys
+sys.path.insert(0, {folder!r})
+import numba, called
+@numba.njit(cache=True)
+def own(x):
+    return called.outer(x) + 1.0
+print({call}(3.0), sum(called.outer.stats.cache_hits.values()), sum(called.inner.stats.cache_hits.values()))
+"""
+
+
+def test_a_kernel_calls_one_that_is_compiled_apart_also_when_both_or_one_of_them_are_kept(tmp_path: Path) -> None:
+    (tmp_path / "called.py").write_text(CALLED)
+    kept = {"NUMBA_CACHE_DIR": str(tmp_path / "kept")}
+
+    def told(call: str = "called.outer") -> str:
+        return _run(CALLS.format(folder=str(tmp_path), call=call), tmp_path, **kept).strip()
+
+    assert told() == "56.0 0 0"
+    assert told() == "56.0 1 1"
+    for path in (tmp_path / "kept").rglob("called.inner*"):
+        path.unlink()
+    assert told() == "56.0 1 0"
+    assert told("own") == "57.0 1 1"
+    assert told("own") == "57.0 0 0", "the user's function is kept with all that it calls"
+
+
+KERNEL = re.compile(r"^@(kernel|internal|apart|inlined|merged|threaded|equation|interaction)\b", re.MULTILINE)
 FILES = [path for path in sorted(Path(mbsd.__file__).parent.rglob("*.py")) if KERNEL.search(path.read_text())]
 
 

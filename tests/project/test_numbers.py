@@ -28,7 +28,7 @@ def test_an_error_counts_as_a_result() -> None:
 
 
 def test_runs_are_as_recorded() -> None:
-    command = [sys.executable, "-m", "tools.numbers", "check", "joint revolute"]
+    command = [sys.executable, "-m", "tools.numbers", "check", "force spring_law"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "0 of 1 differ" in done.stdout

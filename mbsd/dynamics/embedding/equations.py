@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import inlined, internal, kernel
+from mbsd.compiling.jit import apart, inlined, internal, kernel, merged
 from mbsd.dynamics.embedding.arrays import (
     BASE,
     BEND,
@@ -63,7 +63,7 @@ def place_bodies(loaded, body, rate, base, coordinate, angles, q, v, cos_sin):
             v[3 * b + c] = speed
 
 
-@kernel
+@internal
 def reduced(rate, inertia, weight, force, mass, a):
     """a (3 + f,) from 3 on takes z'' of several coordinates; returns whether M_z is positive."""
     count = mass.shape[0]
@@ -119,7 +119,7 @@ def power_of_all(rate, inertia, weight, coordinate, a):
     return power
 
 
-@inlined
+@merged
 def accelerate(dyn, scratch, t, state, a, lam):
     """Fill a (3 + f,) at a state (2, 3 + f) and time (s); returns the power of loads and drivers (W)."""
     coordinate = scratch.coordinate
@@ -197,7 +197,7 @@ def derivative(dyn, scratch, t, state, out, lam):
     return accelerate(dyn, scratch, t, state, out[1], lam)
 
 
-@kernel
+@apart
 def keep(body, rate, base, coordinate, number, size, per_size, watch, t):
     """Predict from the pose evaluated last; watch[0] takes the largest rate of a body for one unit of a coordinate."""
     last = coordinate.shape[0] - 1

@@ -10,12 +10,12 @@ a little before and after it, H seconds apart:
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import kernel
+from mbsd.compiling.jit import apart, inlined
 from mbsd.dynamics.embedding.equations import write
 from mbsd.dynamics.state import NEXT, TIME, WORK
 
 
-@kernel
+@apart
 def record(dyn, scratch, out, k, t, work):
     """Write output k from scratch.state at t (s); returns whether its pose is clear."""
     out.work[k] = work
@@ -23,8 +23,8 @@ def record(dyn, scratch, out, k, t, work):
     return power + work == power + work
 
 
-@kernel
-def keep_row(scratch, out, k):
+@inlined
+def keep_row(dyn, scratch, out, k):
     """Keep output k as the pose before an unclear one."""
     for c in range(scratch.before.shape[1]):
         scratch.before[0, c] = out.y[k, 0, c]
@@ -32,9 +32,9 @@ def keep_row(scratch, out, k):
         scratch.before[2, c] = out.a[k, c]
 
 
-@kernel
-def join_rows(scratch, out, k, apart):
-    """Put output k in the middle between the pose kept and its own, ``apart`` seconds later."""
+@inlined
+def join_rows(dyn, scratch, out, k, between):
+    """Put output k in the middle between the pose kept and its own, ``between`` seconds later."""
     before = scratch.before
     for c in range(before.shape[1]):
         q = out.y[k, 0, c]
@@ -42,18 +42,18 @@ def join_rows(scratch, out, k, apart):
         a = out.a[k, c]
         out.y[k, 0, c] = (
             0.5 * (before[0, c] + q)
-            + 5.0 / 32.0 * apart * (before[1, c] - v)
-            + apart * apart / 64.0 * (before[2, c] + a)
+            + 5.0 / 32.0 * between * (before[1, c] - v)
+            + between * between / 64.0 * (before[2, c] + a)
         )
         out.y[k, 1, c] = (
-            15.0 / 8.0 * (q - before[0, c]) / apart
+            15.0 / 8.0 * (q - before[0, c]) / between
             - 7.0 / 16.0 * (before[1, c] + v)
-            + apart / 32.0 * (a - before[2, c])
+            + between / 32.0 * (a - before[2, c])
         )
-        out.a[k, c] = 1.5 * (v - before[1, c]) / apart - 0.25 * (before[2, c] + a)
+        out.a[k, c] = 1.5 * (v - before[1, c]) / between - 0.25 * (before[2, c] + a)
 
 
-@kernel
+@apart
 def record_here(dyn, scratch, state, out):
     """Write the next output from the state itself, which stands at its time."""
     k = state.count[NEXT]

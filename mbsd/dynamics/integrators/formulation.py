@@ -1,78 +1,134 @@
 """What explicit integrators call, for either formulation: reference coordinates (Dynamics) or independent (Embedding).
 
-Which one is meant is known when a loop is compiled, from the type of its first argument: nothing is asked at run time.
+A loop is written once, in the words below, and compiled for each formulation with that formulation's kernels in their
+place: nothing is asked at run time, and no loop contains what the other one needs.
+
+    accelerate(dyn, scratch, t, state, a, lam)    fill a (n,) and, in reference coordinates, lam (m,) at a state (2, n)
+                                                  and time (s); returns the power of loads and drivers (W), not a
+                                                  number where independent coordinates have no clear pose
+    derivative(dyn, scratch, t, state, out, lam)  out (2, n) = d(state)/dt; otherwise as accelerate
+    project(dyn, scratch, t, state, passes)       bring a state onto its constraints; independent coordinates are never
+                                                  off them
+    settle(dyn, scratch, t, state, fresh)         take a state as accepted, ``fresh`` if it was the last to be
+                                                  evaluated; returns whether other coordinates should be looked for
+    record(dyn, scratch, out, k, t, work)         write output k from scratch.state; returns whether its pose is clear
+    keep_row(dyn, scratch, out, k)                keep output k as the pose before an unclear one
+    join_rows(dyn, scratch, out, k, apart)        put output k between the pose kept and its own
+    record_here(dyn, scratch, state, out)         write the next output from the state itself, which stands at its time
+    begin(dyn, scratch, state)                    make dy valid at a start or restart
 """
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from types import FunctionType
 from typing import Any
-
-from numba.extending import overload
 
 from mbsd.compiling.jit import inlined
 from mbsd.dynamics import state as run_state
 from mbsd.dynamics.embedding import equations, records
-from mbsd.dynamics.embedding.arrays import Embedding
 from mbsd.dynamics.reference import acceleration, projection
 from mbsd.dynamics.state import EVALUATIONS, POWER, STARTED, TIME
 
 
-def accelerate(dyn: Any, scratch: Any, t: float, state: Any, a: Any, lam: Any) -> float:
-    """Fill a (n,) and, in reference coordinates, lam (m,) at a state (2, n) and time (s).
-
-    Returns the power of loads and drivers (W); not a number where independent coordinates have no clear pose.
-    """
-    return (equations if isinstance(dyn, Embedding) else acceleration).accelerate(dyn, scratch, t, state, a, lam)
+@inlined
+def _stay(dyn, scratch, t, state, passes):
+    pass
 
 
-def derivative(dyn: Any, scratch: Any, t: float, state: Any, out: Any, lam: Any) -> float:
-    """out (2, n) = d(state)/dt; otherwise as ``accelerate``."""
-    return (equations if isinstance(dyn, Embedding) else acceleration).derivative(dyn, scratch, t, state, out, lam)
+@inlined
+def _go_on(dyn, scratch, t, state, fresh):
+    return False
 
 
-def project(dyn: Any, scratch: Any, t: float, state: Any, passes: int) -> None:
-    """Bring a state onto its constraints; independent coordinates are never off them."""
-    if not isinstance(dyn, Embedding):
-        projection.project(dyn, scratch, t, state, passes)
-
-
-def settle(dyn: Any, scratch: Any, t: float, state: Any, fresh: bool) -> bool:
-    """Take a state as accepted; ``fresh`` if it was the last to be evaluated.
-
-    Returns whether other independent coordinates should be looked for.
-    """
-    return bool(equations.settle(dyn, scratch, t, state, fresh)) if isinstance(dyn, Embedding) else False
-
-
-def record(dyn: Any, scratch: Any, out: Any, k: int, t: float, work: float) -> bool:
-    """Write output k from scratch.state at t (s); returns whether its pose is clear."""
-    if isinstance(dyn, Embedding):
-        return bool(records.record(dyn, scratch, out, k, t, work))
+@inlined
+def _record(dyn, scratch, out, k, t, work):
     run_state.record(dyn, scratch, out, k, work)
     return True
 
 
-def keep_row(dyn: Any, scratch: Any, out: Any, k: int) -> None:
-    """Keep output k as the pose before an unclear one."""
-    if isinstance(dyn, Embedding):
-        records.keep_row(scratch, out, k)
-
-
-def join_rows(dyn: Any, scratch: Any, out: Any, k: int, apart: float) -> None:
-    """Put output k in the middle between the pose kept and its own, ``apart`` seconds later."""
-    if isinstance(dyn, Embedding):
-        records.join_rows(scratch, out, k, apart)
-
-
-def record_here(dyn: Any, scratch: Any, state: Any, out: Any) -> None:
-    """Write the next output from the state itself, which stands at its time."""
-    if isinstance(dyn, Embedding):
-        records.record_here(dyn, scratch, state, out)
-    else:
-        run_state.record_here(scratch, state, out)
+@inlined
+def _record_here(dyn, scratch, state, out):
+    run_state.record_here(scratch, state, out)
 
 
 @inlined
+def _keep_row(dyn, scratch, out, k):
+    pass
+
+
+@inlined
+def _join_rows(dyn, scratch, out, k, apart):
+    pass
+
+
+REFERENCE: dict[str, Any] = {
+    "accelerate": acceleration.accelerate,
+    "derivative": acceleration.derivative,
+    "project": projection.project,
+    "settle": _go_on,
+    "record": _record,
+    "keep_row": _keep_row,
+    "join_rows": _join_rows,
+    "record_here": _record_here,
+}
+INDEPENDENT: dict[str, Any] = {
+    "accelerate": equations.accelerate,
+    "derivative": equations.derivative,
+    "project": _stay,
+    "settle": equations.settle,
+    "record": records.record,
+    "keep_row": records.keep_row,
+    "join_rows": records.join_rows,
+    "record_here": records.record_here,
+}
+
+
+@dataclass(frozen=True)
+class Both:
+    """A kernel for either formulation."""
+
+    reference: Any
+    independent: Any
+
+    def __call__(self, *arguments: Any) -> Any:
+        """For the eye of a type checker alone: loops call one of the two."""
+        raise TypeError("call .reference or .independent")
+
+
+def for_both(decorate: Callable[[Any], Any]) -> Callable[[Callable[..., Any]], Both]:
+    """Decorator: a function in the words above, decorated for each formulation."""
+
+    def twice(function: Any) -> Both:
+        return Both(*(_made(decorate, function, one) for one in ("reference", "independent")))
+
+    return twice
+
+
+def _made(decorate: Callable[[Any], Any], function: Any, formulation: str) -> Any:
+    names = {
+        name: getattr(value, formulation) if isinstance(value, Both) else value
+        for name, value in function.__globals__.items()
+    }
+    names |= REFERENCE if formulation == "reference" else INDEPENDENT
+    own = FunctionType(function.__code__, names, f"{function.__name__}_{formulation}")
+    own.__qualname__, own.__module__, own.__doc__ = own.__name__, function.__module__, function.__doc__
+    made = decorate(own)
+    setattr(sys.modules[own.__module__], own.__name__, made)  # where the cache finds it
+    return made
+
+
+def _in_place(*_: Any) -> Any:
+    """What stands in a loop for a formulation's kernel."""
+    raise TypeError("a loop is called for one formulation")
+
+
+accelerate = derivative = project = settle = record = keep_row = join_rows = record_here = _in_place
+
+
+@for_both(inlined)
 def begin(dyn, scratch, state):
     """Make dy valid at a start or restart."""
     if state.count[STARTED] == 0:
@@ -80,69 +136,3 @@ def begin(dyn, scratch, state):
         settle(dyn, scratch, state.clock[TIME], state.y, True)
         state.count[EVALUATIONS] += 1
         state.count[STARTED] = 1
-
-
-@overload(accelerate, inline="always")
-def _accelerate(dyn, scratch, t, state, a, lam):
-    # the function itself: handing both tuples on to another one costs more than the work
-    return (equations if dyn.instance_class is Embedding else acceleration).accelerate.py_func
-
-
-@overload(derivative, inline="always")
-def _derivative(dyn, scratch, t, state, out, lam):
-    chosen = (equations if dyn.instance_class is Embedding else acceleration).derivative
-    return lambda dyn, scratch, t, state, out, lam: chosen(dyn, scratch, t, state, out, lam)
-
-
-@overload(project, inline="always")
-def _project(dyn, scratch, t, state, passes):
-    if dyn.instance_class is Embedding:
-        return lambda dyn, scratch, t, state, passes: None
-    chosen = projection.project
-    return lambda dyn, scratch, t, state, passes: chosen(dyn, scratch, t, state, passes)
-
-
-@overload(settle, inline="always")
-def _settle(dyn, scratch, t, state, fresh):
-    if dyn.instance_class is Embedding:
-        return equations.settle.py_func
-    return lambda dyn, scratch, t, state, fresh: False
-
-
-@overload(record, inline="always")
-def _record(dyn, scratch, out, k, t, work):
-    if dyn.instance_class is Embedding:
-        chosen = records.record
-        return lambda dyn, scratch, out, k, t, work: chosen(dyn, scratch, out, k, t, work)
-    plain = run_state.record
-
-    def run(dyn, scratch, out, k, t, work):
-        plain(dyn, scratch, out, k, work)
-        return True
-
-    return run
-
-
-@overload(keep_row, inline="always")
-def _keep_row(dyn, scratch, out, k):
-    if dyn.instance_class is Embedding:
-        chosen = records.keep_row
-        return lambda dyn, scratch, out, k: chosen(scratch, out, k)
-    return lambda dyn, scratch, out, k: None
-
-
-@overload(join_rows, inline="always")
-def _join_rows(dyn, scratch, out, k, apart):
-    if dyn.instance_class is Embedding:
-        chosen = records.join_rows
-        return lambda dyn, scratch, out, k, apart: chosen(scratch, out, k, apart)
-    return lambda dyn, scratch, out, k, apart: None
-
-
-@overload(record_here, inline="always")
-def _record_here(dyn, scratch, state, out):
-    if dyn.instance_class is Embedding:
-        chosen = records.record_here
-        return lambda dyn, scratch, state, out: chosen(dyn, scratch, state, out)
-    plain = run_state.record_here
-    return lambda dyn, scratch, state, out: plain(scratch, state, out)

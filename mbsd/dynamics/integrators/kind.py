@@ -48,12 +48,17 @@ class Integrator:
     """Numbers that ``simulate`` takes by name for this method; in this order they stand in Settings.options."""
     matrices: tuple[int, int] = (0, 0)
     """Full matrices it needs, and their rows for each coordinate (see mbsd/dynamics/reference/full_matrix.py)."""
-    embeds: bool = False
-    """``advance`` takes an Embedding as well as a Dynamics."""
+    independent: Callable[..., int] | None = None
+    """``advance`` of an Embedding, of methods that know independent coordinates."""
     refusal: Callable[[Dynamics], str | None] = lambda dynamics: None
     """Why this method cannot simulate a mechanism, or None."""
     package: str = ""
     """Another library's, by the name it is imported by; needed for this method alone."""
+
+    @property
+    def embeds(self) -> bool:
+        """Whether it integrates independent coordinates as well."""
+        return self.independent is not None
 
     @property
     def installed(self) -> bool:

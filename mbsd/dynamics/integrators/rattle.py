@@ -15,7 +15,7 @@ Source: Andersen 1983, J. Comput. Phys. 52; Hairer, Lubich, Wanner, Geometric Nu
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import inlined, internal, kernel
+from mbsd.compiling.jit import apart, inlined, internal, kernel
 from mbsd.dynamics.integrators.kind import Integrator, register, without_sliding
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.projection import LIFT
@@ -117,7 +117,7 @@ def _driver_work(dyn, scratch, lam):
     return work
 
 
-@internal
+@apart
 def rattle_step(dyn, scratch, t, h, y, power):
     """One step of y (2, 3 nb) from t to t + h (s), h of either sign; _stand was called at its start, and is at its end.
 
@@ -201,7 +201,7 @@ def rattle_step(dyn, scratch, t, h, y, power):
     return found
 
 
-@internal
+@apart
 def march(dyn, scratch, state, out, settings, end, max_steps, parts):
     """``advance`` by RATTLE (1 part) or by its composition of order 4 (5 parts)."""
     y = state.y

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import internal, kernel
+from mbsd.compiling.jit import apart, kernel
 from mbsd.dynamics.integrators.kind import Integrator, register
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.projection import project
@@ -32,7 +32,7 @@ from mbsd.dynamics.state import (
 STAGES = 4
 
 
-@internal
+@apart
 def march(dyn, scratch, state, out, settings, end, max_steps, projections):
     """``advance`` with so many projections after each step."""
     y = state.y

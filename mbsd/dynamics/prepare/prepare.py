@@ -87,10 +87,12 @@ class PreparedDynamics:
         return state, out
 
     def advance(self, method: Integrator, arrays: Any, *rest: Any) -> int:
-        """``method.advance`` in reference coordinates (arrays: Dynamics) or in independent ones (Embedding)."""
+        """Go on with ``method`` in reference coordinates (arrays: Dynamics) or in independent ones (Embedding)."""
         key = method.name, type(arrays)
         if key not in self.advancing:
-            self.advancing[key] = Often(method.advance)
+            chosen = method.advance if isinstance(arrays, Dynamics) else method.independent
+            assert chosen is not None, method.name
+            self.advancing[key] = Often(chosen)
         advancing = self.advancing[key]
         if self.following and isinstance(arrays, Dynamics):
             return self.following.through(partial(self.stops.through, advancing), arrays, *rest)

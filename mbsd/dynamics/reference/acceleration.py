@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import inlined, kernel
+from mbsd.compiling.jit import kernel, merged
 from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
 from mbsd.dynamics.reference.sliding import begin_sliding, slide
 from mbsd.equations.assembly import evaluate_gamma, evaluate_position
@@ -27,7 +27,7 @@ from mbsd.equations.laws import evaluate_laws
 from mbsd.equations.loads import apply_loads
 
 
-@inlined
+@merged
 def accelerate(dyn, scratch, t, state, a, lam):
     """Fill a (3 nb,) and lam (m,) at a state (2, 3 nb) and time (s).
 

@@ -8,7 +8,7 @@ coordinate, and full matrices; Newton's method needs no more than a few digits o
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import internal
+from mbsd.compiling.jit import apart
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import Dynamics
 
@@ -29,7 +29,7 @@ def too_large(dynamics: Dynamics) -> str | None:
     )
 
 
-@internal
+@apart
 def differentiate(dyn, scratch, t, y, a, trial, out):
     """Fill scratch.full.value[0] with A and [1] with B (n, n) at y (2, 3 nb), where the acceleration is a (3 nb,).
 

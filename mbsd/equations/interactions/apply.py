@@ -7,7 +7,7 @@ on body j: F at marker j and T; on body i: -F at the same point and -T;   power 
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import internal
+from mbsd.compiling.jit import apart
 from mbsd.equations.interactions.law import FX, FY, LAW, LAW_RATE, OMEGA, TIME, TORQUE, VX, VY
 from mbsd.equations.laws import evaluate_law
 from mbsd.equations.relative.equation import OWN, A, X, Y, evaluate
@@ -16,7 +16,7 @@ GEOMETRY = 7
 """Numbers of an interaction before its own."""
 
 
-@internal
+@apart
 def apply_interactions(loads, laws, t, q, v, cos_sin, load):
     """Add the generalised forces of all interactions to load (3 nb,); cos_sin (nb, 2) turns the bodies.
 

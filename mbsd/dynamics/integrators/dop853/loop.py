@@ -15,12 +15,13 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import internal, kernel
+from mbsd.compiling.jit import apart, internal, kernel
 from mbsd.dynamics.integrators.dop853.tableau import E3, E5, A, B, C, D
 from mbsd.dynamics.integrators.formulation import (
     accelerate,
     begin,
     derivative,
+    for_both,
     join_rows,
     keep_row,
     project,
@@ -66,7 +67,7 @@ ROUNDING = 1e-9
 """Changes below this (sizes, rad) are rounding in an ill-conditioned pose, and accepted."""
 
 
-@kernel
+@for_both(apart)
 def _interpolant(dyn, scratch, state, h, work):
     """Coefficients of the dense output of the step that ends in scratch.state and does ``work`` (J)."""
     power = scratch.power
@@ -122,7 +123,7 @@ def _interpolate(dense, dense_work, y, x, out):
     return work
 
 
-@kernel
+@for_both(apart)
 def _output(dyn, scratch, state, out, k, x, h):
     """Write output k at the part x of the step; returns whether its pose, or poses beside it, are clear."""
     t = state.clock[TIME]
@@ -143,7 +144,7 @@ def _output(dyn, scratch, state, out, k, x, h):
     return False
 
 
-@kernel
+@for_both(kernel)
 def advance(dyn, scratch, state, out, settings, end, max_steps):
     """Go on to ``end`` (s), ``max_steps`` accepted steps at most, writing the outputs passed. Returns a status."""
     y = state.y
@@ -301,4 +302,6 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
     return REACHED
 
 
-DOP853 = register(Integrator("dop853", advance, STAGES, order=8, fixed_step=False, embeds=True))
+DOP853 = register(
+    Integrator("dop853", advance.reference, STAGES, order=8, fixed_step=False, independent=advance.independent)
+)

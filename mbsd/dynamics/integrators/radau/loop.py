@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import internal, kernel
+from mbsd.compiling.jit import apart, internal, kernel
 from mbsd.dynamics.integrators.kind import Integrator, register
 from mbsd.dynamics.integrators.radau.newton import (
     AFTER,
@@ -51,6 +51,7 @@ from mbsd.dynamics.state import (
     record_here,
 )
 
+_first_step = first_step.reference
 STAGES = 13
 SMALLEST_STEP = 1e-13
 """Part of the longest step at which a run gives up."""
@@ -82,7 +83,7 @@ def _extrapolate(scratch, ratio):
                 k[Z + i, part, c] = x * (first + x * (second + x * third)) - end
 
 
-@internal
+@apart
 def _estimate(dyn, scratch, state, settings, h, again):
     """Error of the step in tolerances; ``again`` filters it once more, after a step was refused."""
     k = scratch.stages
@@ -112,7 +113,7 @@ def _estimate(dyn, scratch, state, settings, h, again):
     return size
 
 
-@internal
+@apart
 def _outputs(dyn, scratch, state, out, h, reached):
     """Write the outputs within the step, from the polynomial through its stages."""
     k = scratch.stages
@@ -144,7 +145,7 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
     newton = max(2.3e-15 / settings.relative, min(0.03, math.sqrt(settings.relative)))
     begin(dyn, scratch, state)
     if state.clock[STEP] == 0.0:
-        state.clock[STEP] = first_step(dyn, scratch, state, settings, 0.25)
+        state.clock[STEP] = _first_step(dyn, scratch, state, settings, 0.25)
     accepted = 0
     refused = False
     current = False  # A and B belong to this step

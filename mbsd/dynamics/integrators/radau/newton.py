@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import inlined, internal
+from mbsd.compiling.jit import apart, inlined, internal
 from mbsd.dynamics.integrators.radau.tableau import PART, REAL, TI, TURN, C, T
 from mbsd.dynamics.integrators.step_size import allowed
 from mbsd.dynamics.reference.acceleration import derivative
@@ -108,7 +108,7 @@ def norm(settings, y, after, x):
     return math.sqrt(total / max(2 * (y.shape[1] - 3), 1))
 
 
-@internal
+@apart
 def find_stages(dyn, scratch, state, settings, h, tolerance):
     """Improve the increments Z of the three stages until they fulfil their equations.
 

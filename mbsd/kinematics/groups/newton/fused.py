@@ -5,6 +5,6 @@ Each has one or two callers, and handing ten arrays on costs more than the work.
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import _compiled  # pyright: ignore[reportPrivateUsage]
+from mbsd.compiling.jit import merged
 
-fused = _compiled(no_cpython_wrapper=True, forceinline=True)
+fused = merged

@@ -1,0 +1,116 @@
+"""Machine code of one kernel: what it calls is called where it stands, and not copied in and optimised again.
+
+numba links the code of every callee into every caller and optimises all of it again, for each compiled function; the
+derivative of a motion is in twenty of them. Here a kernel that stands apart is a name, which the engine resolves to
+the one copy. Such names must be the same in every process (kernel_pipeline.py), and who reads a caller from the cache
+reads its callees first (kernel_cache.py).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
+
+
+@dataclass(frozen=True)
+class Apart:
+    """A kernel that stands apart, for one signature."""
+
+    name: str
+    """In machine code."""
+    dispatcher: Any
+    arguments: tuple[Any, ...]
+    """numba's types."""
+
+    @property
+    def library(self) -> KernelLibrary | None:
+        """Its machine code, which is there from now on; None if it has another name."""
+        self.dispatcher.compile(self.arguments)
+        made = self.dispatcher.overloads[self.arguments]
+        return made.library if made.fndesc.llvm_func_name == self.name else None
+
+
+class _WithoutCallees:
+    """A library as ours link it: kernels that it calls and that stand apart are left out."""
+
+    def __init__(self, library: Any) -> None:
+        self._reload_init = library._reload_init
+        self._library = library
+
+    def _get_module_for_linking(self) -> Any:
+        return self._library.own_module()
+
+
+class KernelLibrary(JITCodeLibrary):
+    """numba's library but for kernels that stand apart."""
+
+    def __init__(self, codegen: Any, name: str) -> None:
+        super().__init__(codegen, name)
+        self.apart: Apart | None = None
+        """What this library is to its callers, if it is not linked into them."""
+        self.calls: dict[str, Apart] = {}
+        """Kernels that must be loaded before this one, by name."""
+
+    def finalize(self) -> None:
+        """Optimise it together with what does not stand apart, and make machine code."""
+        linked = []
+        for library in dict.fromkeys(self._linking_libraries):
+            if not isinstance(library, KernelLibrary):
+                linked.append(library)
+            elif library.apart is not None:
+                self.calls[library.apart.name] = library.apart
+            else:
+                self.calls.update(library.calls)
+                linked.append(_WithoutCallees(library))
+        self._linking_libraries = linked
+        super().finalize()
+
+    def own_module(self) -> Any:
+        """For linking into another library of ours."""
+        return super()._get_module_for_linking()
+
+    def _get_module_for_linking(self) -> Any:
+        """For linking into another engine's: with all that it calls."""
+        whole = self.own_module()
+        if self.calls:
+            whole = whole.clone()
+            for one in self.calls.values():
+                library = one.library
+                assert library is not None, one.name
+                whole.link_in(library._get_module_for_linking(), preserve=True)
+        return whole
+
+    def serialize_using_object_code(self) -> Any:
+        """Without what it calls, which has a file of its own."""
+        self._ensure_finalized()
+        return self.name, "object", (self._get_compiled_object(), self.own_module().as_bitcode())
+
+    def _optimize_functions(self, ll_module: Any) -> None:
+        """Not here: the whole module is optimised once, at the end."""
+        ll_module.data_layout = self._codegen._data_layout
+
+    def _optimize_final_module(self) -> None:
+        """Once: numba's first, cheap round serves reference counts, of which kernels have none."""
+        manager = self._codegen._module_pass_manager()
+        if isinstance(manager, tuple):
+            manager[0].run(self._final_module, manager[1])
+        else:  # numba before 0.62
+            manager.run(self._final_module)
+
+
+class KernelCode(JITCPUCodegen):
+    """Asks no processor what it can."""
+
+    _library_class = KernelLibrary
+
+    def _get_host_cpu_name(self) -> str:
+        return "generic"
+
+    def _get_host_cpu_features(self) -> str:
+        return ""
+
+    def _pass_builder(self, **options: Any) -> Any:
+        """Without vectors: loops of three to twelve turns gain nothing from two numbers at a time."""
+        return super()._pass_builder(**options | {"loop_vectorize": False, "slp_vectorize": False})

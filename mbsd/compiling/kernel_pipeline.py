@@ -1,0 +1,154 @@
+"""How numba reads a kernel: names that are the same in every process, and each inlined function read once.
+
+numba numbers the functions that it compiles, and the number is part of a function's name in machine code. Kernels that
+call one another by name need a number that depends on the function alone, because the caller's code is kept and read by
+another process.
+
+A function that is copied into its callers passes the untyped part of the pipeline once, not once for each call: numba
+copies the result anyway.
+"""
+
+from __future__ import annotations
+
+import copy
+import hashlib
+from collections.abc import Callable
+from typing import Any, Literal
+
+from numba.core import bytecode, compiler, ir, ir_utils
+from numba.core.analysis import compute_cfg_from_blocks
+from numba.core.compiler_machinery import register_pass
+from numba.core.inline_closurecall import (
+    InlineWorker,
+    _add_definitions,
+    _created_inlined_var_name,
+    _get_callee_args,
+    _replace_args_with,
+    _replace_returns,
+)
+from numba.core.ir_utils import add_offset_to_labels, find_topo_order, guard, next_label, replace_vars, simplify_CFG
+from numba.core.postproc import PostProcessor
+from numba.core.untyped_passes import ExtractByteCode, InlineInlinables
+
+_READ: dict[Any, Any] = {}
+"""Untyped code of the functions that are copied into others."""
+
+
+class _Worker(InlineWorker):
+    """Reads each function once."""
+
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self._compiler_pipeline = _untyped
+
+    def inline_ir(self, caller_ir: Any, block: Any, i: int, callee_ir: Any, *_: Any, **__: Any) -> Any:
+        """Put a copy of ``callee_ir`` in place of call ``i`` of a block, by numba's own steps.
+
+        numba makes two copies, each of which takes all variables of the function along with every block.
+        """
+        copied: dict[int, Any] = {}
+        blocks = {label: copy.deepcopy(one, copied) for label, one in callee_ir.blocks.items()}
+        scope, statement = block.scope, block.body[i]
+        blocks = add_offset_to_labels(blocks, max(ir_utils._the_max_label.next(), *caller_ir.blocks) + 1)
+        blocks = simplify_CFG(blocks)
+        first = min(blocks)
+        ir_utils._the_max_label.update(max(blocks))
+        (own,) = {id(one.scope): one.scope for one in blocks.values()}.values()
+        renamed = {}
+        for variable in tuple(own.localvars._con.values()):
+            name = _created_inlined_var_name(callee_ir.func_id.unique_name, variable.name)
+            renamed[variable.name] = scope.redefine(name, loc=variable.loc)
+        replace_vars(blocks, renamed)
+        call = statement.value
+        _replace_args_with(blocks, _get_callee_args(call, callee_ir.func_id.func, statement.loc, caller_ir))
+        rest = ir.Block(scope, block.loc)
+        rest.body = block.body[i + 1 :]
+        after = next_label()
+        caller_ir.blocks[after] = rest
+        block.body = [*block.body[:i], ir.Jump(first, statement.loc)]
+        order = find_topo_order(blocks)
+        _replace_returns(blocks, statement.target, after)
+        definitions = caller_ir._definitions
+        if call in definitions.get(statement.target.name, ()):
+            definitions[statement.target.name].remove(call)
+        new = [(after, rest)]
+        for label in order:
+            blocks[label].scope = scope
+            _add_definitions(caller_ir, blocks[label])
+            caller_ir.blocks[label] = blocks[label]
+            new.append((label, blocks[label]))
+        return callee_ir, blocks, renamed, new
+
+    def run_untyped_passes(self, func: Callable[..., Any], enable_ssa: bool = False) -> Any:
+        """The code of ``func``, which callers copy."""
+        if func not in _READ:
+            flags = self.flags
+            self.flags = flags.copy()  # numba switches SSA off in them
+            try:
+                _READ[func] = super().run_untyped_passes(func, enable_ssa)
+            finally:
+                self.flags = flags
+        return _READ[func]
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _Inline(InlineInlinables):
+    """numba's pass, with our worker."""
+
+    _name = "mbsd_inline_inlinables"
+
+    def run_pass(self, state: Any) -> Literal[True]:
+        """As numba's."""
+        worker = _Worker(state.typingctx, state.targetctx, state.locals, state.pipeline, state.flags, None)
+        blocks, modified = state.func_ir.blocks, False
+        waiting = list(blocks.items())
+        while waiting:
+            _, block = waiting.pop()
+            for i, statement in enumerate(block.body):
+                value = statement.value if isinstance(statement, ir.Assign) else None
+                if not isinstance(value, ir.Expr) or value.op != "call":
+                    continue
+                if guard(self._do_work, state, waiting, block, i, value, worker):
+                    modified = True
+                    break
+        if modified:
+            for dead in compute_cfg_from_blocks(blocks).dead_nodes():
+                del blocks[dead]
+            PostProcessor(state.func_ir).run()
+            state.func_ir.blocks = simplify_CFG(blocks)
+        return True
+
+
+def _with_ours(manager: Any) -> Any:
+    manager.passes = [
+        (_Inline, description) if one is InlineInlinables else (one, description) for one, description in manager.passes
+    ]
+    return manager
+
+
+def _untyped(state: Any) -> Any:
+    return _with_ours(compiler.DefaultPassBuilder.define_untyped_pipeline(state))
+
+
+class KernelCompiler(compiler.Compiler):
+    """numba's pipeline but for names and inlining."""
+
+    def define_pipelines(self) -> list[Any]:
+        """One."""
+        managers = [_with_ours(manager) for manager in super().define_pipelines()]
+        for manager in managers:
+            manager.finalize()
+        return managers
+
+    def compile_extra(self, func: Callable[..., Any]) -> Any:
+        """As numba, under a name that only depends on the function where it stands at the top of a module."""
+        identity = bytecode.FunctionIdentity.from_function(func)
+        if "<" not in identity.func_qualname:
+            where = f"{identity.modname}.{identity.func_qualname}:{identity.firstlineno}"
+            identity.unique_id = int(hashlib.sha256(where.encode()).hexdigest()[:12], 16)
+            identity.unique_name = f"{identity.func_qualname}${identity.unique_id}"
+        self.state.func_id = identity
+        ExtractByteCode().run_pass(self.state)
+        self.state.lifted = ()
+        self.state.lifted_from = None
+        return self._compile_bytecode()

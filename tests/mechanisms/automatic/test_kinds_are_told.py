@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import re
 
-from mbsd.model.contacts.kind import CONTACT_KINDS
-from mbsd.model.forces.kind import FORCE_KINDS
-from mbsd.model.joints.kind import KINDS
-
 import mechanisms.stages.automatic.kinds  # noqa: F401  (enters them)
+from mbsd.model.contact import CONTACT_KINDS
+from mbsd.model.force import FORCE_KINDS
+from mbsd.model.joint import KINDS
 from mechanisms.stages.automatic.layout import features
 from shared.stage.paths import ROOT
 

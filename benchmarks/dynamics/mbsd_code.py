@@ -12,8 +12,9 @@ import mbsd
 from benchmarks.dynamics.cases import Case
 from benchmarks.dynamics.pins import GROUND, Pinned, Record
 from benchmarks.dynamics.stepping import tolerances
-from mbsd.dynamics.prepare.prepare import PreparedDynamics, prepare_dynamics
-from mbsd.dynamics.runs.run import Run
+from mbsd.dynamics.prepare.prepare import prepare_dynamics
+from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.runs.choose import ChoosingRun, integrate
 from mbsd.dynamics.simulate import integrator_named
 
 VERSION = mbsd.__version__
@@ -57,13 +58,13 @@ def prepare(case: Case, settings: dict[str, Any]) -> tuple[Callable[[], Callable
 
     def fresh() -> Callable[[], Any]:
         state, out = prepared.begun(ends)
-        run = Run(prepared, method, settings["tolerance"], case.duration, case.duration, {})
+        run = ChoosingRun(prepared, method, settings["tolerance"], case.duration, case.duration, {})
         begun = run.embedded(state) or run
         return lambda: begun.in_one_go(state, out)
 
     def record() -> Record:
         times = np.linspace(0.0, case.duration, SAMPLES + 1)
-        _, out = prepared.run(method, times, settings["tolerance"], case.duration)
+        _, out = integrate(prepared, method, times, settings["tolerance"], case.duration)
         states = out.y.reshape(len(times), 2, -1, 3)[:, :, 1:]  # without the ground
         return Record(out.t, states[:, 0], states[:, 1])
 

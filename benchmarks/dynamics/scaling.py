@@ -14,7 +14,7 @@ from benchmarks.dynamics.cases import ALONE, case
 from benchmarks.dynamics.mbsd_code import ready
 from benchmarks.dynamics.n_four_bar import exact_angle
 from benchmarks.rows import Bar, Row
-from mbsd.dynamics.runs.run import Run
+from mbsd.dynamics.runs.choose import ChoosingRun
 from mbsd.dynamics.simulate import integrator_named
 
 TOLERANCE = 1e-6
@@ -32,7 +32,7 @@ def measured() -> tuple[list[Row], list[Bar]]:
     for repeat in range(1 + ROUNDS):
         for k, (one, system) in enumerate(zip(cases, prepared, strict=True)):
             state, out = system.begun(np.array([0.0, one.duration]))
-            run = Run(system, method, TOLERANCE, one.duration, one.duration, {})
+            run = ChoosingRun(system, method, TOLERANCE, one.duration, one.duration, {})
             begun = run.embedded(state) or run
             started = time.perf_counter()
             begun.in_one_go(state, out)

@@ -11,7 +11,7 @@ import numpy as np
 import mbsd
 from benchmarks import four_bar, machines
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
-from mbsd.dynamics.runs.run import Run
+from mbsd.dynamics.runs.choose import ChoosingRun
 from mbsd.dynamics.simulate import integrator_named
 from mbsd.kinematics.prepared import prepare as prepared
 
@@ -106,7 +106,7 @@ def _falling() -> tuple[Callable[[], Callable[[], Any]], Callable[[Any], float]]
 
     def fresh() -> Callable[[], Any]:
         state, out = ready.begun(ends)
-        run = Run(ready, method, TOLERANCE, machines.DURATION, machines.DURATION, {})
+        run = ChoosingRun(ready, method, TOLERANCE, machines.DURATION, machines.DURATION, {})
         begun = run.embedded(state) or run
         return lambda: (begun.in_one_go(state, out), out)
 

@@ -1,4 +1,4 @@
-"""Efforts and motions: which efforts make a given motion, and a mechanism moved by efforts instead of laws.
+"""Efforts and motions: the efforts that a given motion takes, and a mechanism moved by efforts instead of laws.
 
     M a + J^T lam = Q + P e        J: joints alone;  P: unit directions of the actuators;  lam, e of least norm
 

@@ -25,7 +25,8 @@ from mbsd.analyses.tangent import Independent, independent_coordinates, tangent
 from mbsd.arrays.joint_friction import SHARP
 from mbsd.base.errors import MobilityError, ModelError, SingularPoseError
 from mbsd.base.names import no_such
-from mbsd.dynamics.prepare.prepare import PreparedDynamics, prepare_dynamics
+from mbsd.dynamics.prepare.prepare import prepare_dynamics
+from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import scratch_for
 from mbsd.kinematics.closed_contacts import refuse_closed

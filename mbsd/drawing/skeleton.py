@@ -16,9 +16,10 @@ from mbsd.drawing.look import AXIS_X, AXIS_Y, FAINT, INK, QUIET, colour
 from mbsd.drawing.names import place_names
 from mbsd.drawing.picture import Picture
 from mbsd.drawing.pose import Pose
-from mbsd.drawing.symbols.joints import Place, draw_joint, free_side
+from mbsd.drawing.symbols.joints import draw_joint
 from mbsd.drawing.symbols.loads import draw_force, force_reach
 from mbsd.drawing.symbols.outline import rounded
+from mbsd.drawing.symbols.place import Place, free_side
 from mbsd.drawing.symbols.reach import reach
 from mbsd.drawing.symbols.touching import contact_reach, draw_contacts
 from mbsd.drawing.symbols.wheels import name_place

@@ -9,8 +9,8 @@ import numpy as np
 from mbsd.base.errors import SimulationError
 from mbsd.compiling.interrupts import kept
 from mbsd.dynamics.events.run import EventRun
-from mbsd.dynamics.prepare.prepare import PreparedDynamics
-from mbsd.dynamics.runs.run import Run
+from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.runs.choose import ChoosingRun
 from mbsd.dynamics.runs.trail import Trail
 from mbsd.dynamics.state import ACCEPTED, NEXT, TIME, WORK, Output
 from mbsd.model.event import Event
@@ -19,7 +19,12 @@ Progress = Callable[[float], None] | None
 
 
 def follow(
-    ready: PreparedDynamics, run: Run, times: np.ndarray, events: list[Event], event_rows: bool, progress: Progress
+    ready: PreparedDynamics,
+    run: ChoosingRun,
+    times: np.ndarray,
+    events: list[Event],
+    event_rows: bool,
+    progress: Progress,
 ) -> Trail:
     """Simulate from the consistent start to the last of ``times`` (s)."""
     with kept():
@@ -40,7 +45,7 @@ def trail_of(met: EventRun, event_rows: bool = False) -> Trail:
     return Trail(out, held, int(met.state.count[ACCEPTED]), met.happenings, met.snapshots)
 
 
-def resumed(ready: PreparedDynamics, run: Run, trail: Trail, times: np.ndarray, events: list[Event]) -> Trail:
+def resumed(ready: PreparedDynamics, run: ChoosingRun, trail: Trail, times: np.ndarray, events: list[Event]) -> Trail:
     """The motion at other times (T,), rising and within the trail: each from the last point known before it."""
     began = np.array([snapshot.time for snapshot in trail.snapshots])
     which = np.maximum(np.searchsorted(began, times, side="right") - 1, 0)
@@ -81,7 +86,12 @@ def resumed(ready: PreparedDynamics, run: Run, trail: Trail, times: np.ndarray, 
 
 
 def _followed(
-    ready: PreparedDynamics, run: Run, times: np.ndarray, events: list[Event], event_rows: bool, progress: Progress
+    ready: PreparedDynamics,
+    run: ChoosingRun,
+    times: np.ndarray,
+    events: list[Event],
+    event_rows: bool,
+    progress: Progress,
 ) -> Trail:
     state, out = ready.begun(times)
     met = EventRun(ready, run, state, out, events)

@@ -20,9 +20,11 @@ from mbsd.base.warn import warn
 from mbsd.dynamics.follow import follow, resumed
 from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
 from mbsd.dynamics.prepare.dependent import refuse_opened
-from mbsd.dynamics.prepare.prepare import PreparedDynamics, prepare_dynamics
+from mbsd.dynamics.prepare.prepare import prepare_dynamics
+from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.rows.joint_sticks import standing
-from mbsd.dynamics.runs.run import AUTO, FORMULATIONS, INDEPENDENT, Run
+from mbsd.dynamics.runs.choose import ChoosingRun
+from mbsd.dynamics.runs.running import AUTO, FORMULATIONS, INDEPENDENT
 from mbsd.dynamics.runs.trail import Trail
 from mbsd.dynamics.start.large import MANY_COORDINATES
 from mbsd.kinematics.limits import refuse_passed
@@ -73,7 +75,7 @@ def simulate(
             InitialConditionWarning,
         )
     longest = step or float(np.diff(grid).max())
-    run = Run(ready, integrator, tolerance, longest, float(grid[-1] - grid[0]), options, formulation)
+    run = ChoosingRun(ready, integrator, tolerance, longest, float(grid[-1] - grid[0]), options, formulation)
     events = list(m.events.values())
     if formulation == INDEPENDENT and (events or ready.switches.touches or ready.sticks):
         raise ModelError(

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from mbsd.results.solution import Solution
 
 FRAME = {
     "x": "m",
@@ -23,8 +20,8 @@ FRAME = {
 JOINT = {"x": "m", "y": "m", "fx": "N", "fy": "N", "torque": "N m"}
 
 
-def columns(sol: Solution) -> dict[str, np.ndarray]:
-    """See :meth:`mbsd.results.solution.Solution.columns`."""
+def columns(sol: Any) -> dict[str, np.ndarray]:
+    """See :meth:`mbsd.results.solution.Solution.columns`; ``sol`` is that Solution."""
     m, bodies, traced = sol.mechanism, set(sol.packed.body_names), set(sol.mechanism.traces)
     forces = [force.name for force in sol.packed.forces]
     joined = {*m.joints, *m.drivers, *forces}

@@ -17,7 +17,7 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -40,7 +40,6 @@ if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
     from mbsd.drawing.of_solution import Animation, Picture
     from mbsd.model.body import Marker
-    from mbsd.model.mechanism import Model
     from mbsd.results.mobility import Mobility
 
 
@@ -147,7 +146,8 @@ class EnergyView:
 class Solution:
     """The motion of one mechanism. q, v, a hold centres of mass, (T, nb, 3); the views give the author's frames."""
 
-    mechanism: Model
+    mechanism: Any
+    """The Mechanism that was solved."""
     packed: Packed
     t: np.ndarray
     q: np.ndarray

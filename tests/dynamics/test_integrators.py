@@ -16,6 +16,7 @@ import mbsd.dynamics.integrators
 from mbsd import Mechanism, ModelError, SimulationError
 from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator, register
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
+from mbsd.dynamics.runs.choose import integrate
 from mbsd.dynamics.state import NEXT, PAUSED, REACHED, TIME, output_for, start_state
 
 for _module in pkgutil.iter_modules(mbsd.dynamics.integrators.__path__):
@@ -123,7 +124,7 @@ def test_a_run_in_two_parts_is_the_run_in_one(name: str) -> None:
     method = INTEGRATORS[name]
     ready = prepare_dynamics(four_bar(), 0.0, 1.0)
     times = np.linspace(0.0, 1.0, 9)
-    whole, out = ready.run(method, times, 1e-7, 2e-3)
+    whole, out = integrate(ready, method, times, 1e-7, 2e-3)
     state = start_state(np.stack([ready.initial.q, ready.initial.v]), len(ready.packed.ws.phi), 0.0)
     parts = output_for(times, len(ready.initial.q), len(ready.packed.ws.phi))
     scratch, settings = ready.scratch(method), ready.settings(method, 1e-7, 2e-3, 1.0, {})
@@ -168,9 +169,9 @@ def test_time_runs_backward_along_the_same_path(name: str) -> None:
     """From the end with velocities turned round, the run returns to its start: to rounding, however long the steps."""
     method = INTEGRATORS[name]
     ready = prepare_dynamics(four_bar(), 0.0, 2.0)
-    there, _ = ready.run(method, np.array([0.0, 2.0]), 1e-7, 0.01)
+    there, _ = integrate(ready, method, np.array([0.0, 2.0]), 1e-7, 0.01)
     ready.initial.q[:], ready.initial.v[:] = there.y[0], -there.y[1]
-    back, _ = ready.run(method, np.array([0.0, 2.0]), 1e-7, 0.01)
+    back, _ = integrate(ready, method, np.array([0.0, 2.0]), 1e-7, 0.01)
     start = prepare_dynamics(four_bar(), 0.0, 2.0).initial
     np.testing.assert_allclose(back.y[0], start.q, atol=1e-10)
     np.testing.assert_allclose(back.y[1], -start.v, atol=1e-9)

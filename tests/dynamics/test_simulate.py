@@ -15,6 +15,7 @@ from scipy.special import ellipk
 from mbsd import AssemblyError, InitialConditionWarning, Mechanism, MobilityError, ModelError, constant_rate, harmonic
 from mbsd.compiling.jit import OFTEN
 from mbsd.dynamics.prepare import prepare
+from mbsd.dynamics.runs.choose import integrate
 from mbsd.dynamics.simulate import integrator_named
 
 A02 = json.loads((Path(__file__).parents[1] / "published" / "reference" / "iftomm_a02_n_four_bar_n2.json").read_text())[
@@ -277,7 +278,7 @@ def test_the_same_run_over_and_over_gives_the_same_bytes() -> None:
     method, times = integrator_named("pendulum", "dop853"), np.linspace(0.0, 1.0, 5)
     for formulation in ("reference", "independent"):
         ready = prepare.prepare_dynamics(m, 0.0, 1.0)
-        runs = [ready.run(method, times, 1e-8, 1.0, formulation=formulation)[1] for _ in range(OFTEN + 5)]
+        runs = [integrate(ready, method, times, 1e-8, 1.0, formulation=formulation)[1] for _ in range(OFTEN + 5)]
         for out in runs[1:]:
             for one, first in zip(out, runs[0], strict=True):
                 np.testing.assert_array_equal(one, first)

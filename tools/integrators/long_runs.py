@@ -10,6 +10,7 @@ import numpy as np
 
 from mbsd import Mechanism
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
+from mbsd.dynamics.runs.choose import integrate
 from mbsd.dynamics.simulate import integrator_named
 from mbsd.dynamics.state import EVALUATIONS
 from tools.integrators.mechanisms import four_bar, pendulum
@@ -48,9 +49,9 @@ def one(m: Mechanism, length: float, scale: float, name: str) -> dict[str, Any]:
     times = np.linspace(0.0, PERIODS * length, int(PERIODS * A_PERIOD) + 1)
     ready = prepare_dynamics(m, 0.0, float(times[-1]))
     tolerance, step = setting.get("tolerance", 1.0), length / setting.get("steps", 1.0)
-    ready.run(method, times[:3], tolerance, step)  # compiled before the clock starts
+    integrate(ready, method, times[:3], tolerance, step)  # compiled before the clock starts
     begin = time.process_time()
-    state, out = ready.run(method, times, tolerance, step)
+    state, out = integrate(ready, method, times, tolerance, step)
     seconds = time.process_time() - begin
     kinetic = 0.5 * (out.y[:, 1] ** 2 * ready.dynamics.inertia).sum(axis=1)
     energy = kinetic - out.y[:, 0] @ ready.dynamics.weight

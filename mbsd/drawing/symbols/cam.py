@@ -12,7 +12,7 @@ from mbsd.drawing.look import PAPER, QUIET
 from mbsd.drawing.symbols.reach import placed, profile_of
 
 if TYPE_CHECKING:
-    from mbsd.drawing.symbols.joints import Place
+    from mbsd.drawing.symbols.place import Place
 
 POINTS = 240
 """Of the outline at most."""

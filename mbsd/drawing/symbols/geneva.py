@@ -12,7 +12,7 @@ from mbsd.drawing.look import PAPER, QUIET
 from mbsd.drawing.symbols.reach import geneva_radius
 
 if TYPE_CHECKING:
-    from mbsd.drawing.symbols.joints import Place
+    from mbsd.drawing.symbols.place import Place
 
 LOCK = 0.8
 """Radius of the locking disc, of that of the pin's circle."""

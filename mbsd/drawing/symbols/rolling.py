@@ -18,7 +18,7 @@ from mbsd.model.joint import Joint
 from mbsd.model.teeth import with_radii
 
 if TYPE_CHECKING:
-    from mbsd.drawing.symbols.joints import Place
+    from mbsd.drawing.symbols.place import Place
 
 MOST = 40
 """Teeth of a pinion."""

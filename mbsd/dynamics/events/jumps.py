@@ -27,7 +27,7 @@ from mbsd.dynamics.state import TIME, State
 from mbsd.model.event import Event, Happening
 
 if TYPE_CHECKING:
-    from mbsd.dynamics.prepare.prepare import PreparedDynamics
+    from mbsd.dynamics.prepare.prepared import PreparedDynamics
 
 
 class Jumps:

@@ -51,7 +51,7 @@ from mbsd.equations.joint_friction import SENSE
 from mbsd.model.event import Event
 
 if TYPE_CHECKING:
-    from mbsd.dynamics.prepare.prepare import PreparedDynamics
+    from mbsd.dynamics.prepare.prepared import PreparedDynamics
     from mbsd.dynamics.runs.run import Run
 
 NEAR = 1e-11

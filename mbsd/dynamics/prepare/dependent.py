@@ -16,7 +16,7 @@ from mbsd.dynamics.reference.arrays import scratch_for
 from mbsd.dynamics.reference.projection import project
 
 if TYPE_CHECKING:
-    from mbsd.dynamics.prepare.prepare import PreparedDynamics
+    from mbsd.dynamics.prepare.prepared import PreparedDynamics
 
 BESIDE = (0.003, 0.001)
 """How far beside the start is looked, in sizes and rad; nearer where the links do not close."""

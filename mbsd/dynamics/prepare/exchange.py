@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from mbsd.kinematics.pose.mobility import BETTER, better_rows, scaled_jacobian
 
 if TYPE_CHECKING:
-    from mbsd.dynamics.prepare.prepare import PreparedDynamics
+    from mbsd.dynamics.prepare.prepared import PreparedDynamics
     from mbsd.dynamics.state import State
 
 LOOK = 10

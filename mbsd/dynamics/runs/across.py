@@ -15,7 +15,7 @@ import numpy as np
 from mbsd.base.errors import SimulationError
 from mbsd.dynamics.embedding.arrays import KIND
 from mbsd.dynamics.reference.acceleration import derivative
-from mbsd.dynamics.runs.embed import can_embed, embed
+from mbsd.dynamics.runs.embed import can_embed, embed, embedded_at_start
 from mbsd.dynamics.runs.embedded_run import EmbeddedRun
 from mbsd.dynamics.state import PAUSED, REACHED, TIME, Output, State, copied
 from mbsd.kinematics.groups.groups import BRANCH
@@ -31,9 +31,12 @@ NEAR = 0.05
 def can_carry(run: Run) -> bool:
     """Whether a run in reference coordinates has poses of this sort and independent coordinates to pass them."""
     ready = run.ready
-    if not run.method.embeds or can_embed(ready) is not None or ready.embedded is None:
+    if not run.method.embeds or can_embed(ready) is not None:
         return False
-    return any(int(kind) in BRANCH for kind in ready.embedded.arrays.group[:, KIND])
+    made = embedded_at_start(ready)
+    if made is None:
+        return False
+    return any(int(kind) in BRANCH for kind in made.arrays.group[:, KIND])
 
 
 class Across:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,11 +28,9 @@ from mbsd.dynamics.embedding.coordinates import MOST, Coordinate, choices, coord
 from mbsd.dynamics.embedding.equations import derivative, settle
 from mbsd.dynamics.embedding.groups.branch import FLOOR
 from mbsd.dynamics.embedding.numbers import group_numbers, group_table
+from mbsd.dynamics.prepare.prepared import UNKNOWN, PreparedDynamics
 from mbsd.dynamics.state import Settings
 from mbsd.kinematics.groups.plan import Plan
-
-if TYPE_CHECKING:
-    from mbsd.dynamics.prepare.prepare import PreparedDynamics
 
 GOOD = 3.0
 """A choice under which no body moves faster than this for one unit of a coordinate is taken at once."""
@@ -100,6 +97,13 @@ def can_embed(ready: PreparedDynamics) -> str | None:
     if not 0 < count <= MOST:
         return f"it has {count} degrees of freedom beside its drivers; 1 to {MOST} are possible"
     return None
+
+
+def embedded_at_start(ready: PreparedDynamics) -> Embedded | None:
+    """The mechanism in independent coordinates that suit its start, or None where there are none; found once."""
+    if ready.independent is UNKNOWN:
+        ready.independent = None if can_embed(ready) else embed(ready, ready.initial.q, ready.initial.v, ready.start)
+    return ready.independent
 
 
 def embed(ready: PreparedDynamics, q: np.ndarray, v: np.ndarray, time: float) -> Embedded | None:

@@ -18,15 +18,9 @@ from mbsd.dynamics.runs.stuck import diagnosis
 from mbsd.dynamics.state import ACCEPTED, REJECTED, TIME, State
 
 if TYPE_CHECKING:
-    from mbsd.dynamics.runs.run import Run
+    from mbsd.dynamics.runs.running import Running
 
 LOG = logging.getLogger("mbsd")
-STEPS_AT_ONCE = 2000
-"""Between two looks, of small mechanisms."""
-WORK_AT_ONCE = 3e6
-"""Coordinates times evaluations between two looks: a fraction of a second."""
-EVALUATIONS = 12
-"""Of a step."""
 CHECKED = 2000
 """Steps, the refused among them, between two looks at the pace."""
 MANY = 2e5
@@ -35,16 +29,10 @@ PATIENCE = 10.0
 """s before the first word of a long run; the gaps double."""
 
 
-def steps_at_once(coordinates: int, matrices: bool) -> int:
-    """Steps for one call of a compiled loop, so that it comes back within a second or so."""
-    work = max(coordinates, 1) * (EVALUATIONS + (6 * coordinates if matrices else 0))
-    return int(min(max(WORK_AT_ONCE / work, 1), STEPS_AT_ONCE))
-
-
 class Pace:
     """Of one run from where ``state`` stands to ``end`` (s)."""
 
-    def __init__(self, run: Run, state: State, end: float, progress: Callable[[float], None] | None) -> None:
+    def __init__(self, run: Running, state: State, end: float, progress: Callable[[float], None] | None) -> None:
         self.run, self.state, self.end, self.progress = run, state, end, progress
         self.start = self.last = float(state.clock[TIME])
         self._told = PATIENCE

@@ -2,53 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.base.errors import ModelError, SimulationError
+from mbsd.base.errors import SimulationError
 from mbsd.dynamics import state as run_state
-from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.prepare.exchange import LOOK, exchange_rows
-from mbsd.dynamics.reference.multipliers import fill_multipliers
-from mbsd.dynamics.runs.pace import Pace, steps_at_once
+from mbsd.dynamics.runs.running import Running
 from mbsd.dynamics.runs.stuck import jump
 from mbsd.equations.joint_friction import FAILED
-
-if TYPE_CHECKING:
-    from mbsd.dynamics.prepare.prepare import PreparedDynamics
-    from mbsd.dynamics.runs.embed import Embedded
-    from mbsd.dynamics.runs.embedded_run import EmbeddedRun
 
 NO_LIMIT = 10**12
 JUMP_STEP = 1e-9
 """Part of the longest step within which a force that jumps is looked for where steps shrink to nothing."""
-AUTO, REFERENCE, INDEPENDENT = FORMULATIONS = "auto", "reference", "independent"
-"""Which coordinates are integrated; "auto" takes independent ones where it can."""
 
 
-class Run:
-    """An integrator with its scratch and tolerances."""
-
-    def __init__(
-        self,
-        ready: PreparedDynamics,
-        method: Integrator,
-        tolerance: float,
-        step: float,
-        duration: float,
-        options: Mapping[str, float],
-        formulation: str = AUTO,
-    ) -> None:
-        self.ready = ready
-        self.formulation = formulation
-        self.method = method
-        self.tolerance = tolerance
-        self.steps_at_once = steps_at_once(ready.packed.coordinates, method.matrices[0] > 0)
-        self.scratch = ready.scratch(method)
-        self.settings = ready.settings(method, tolerance, step, duration, options)
+class Run(Running):
+    """A run in reference coordinates."""
 
     def advance(self, state: run_state.State, out: run_state.Output, end: float, steps: int = NO_LIMIT) -> int:
         """Go on to ``end`` (s), ``steps`` steps at most; returns REACHED or PAUSED, raises SimulationError."""
@@ -64,67 +35,7 @@ class Run:
         """For runs without outputs."""
         return run_state.output_for(np.zeros(0), len(self.ready.initial.q), len(self.ready.packed.ws.phi))
 
-    def to_end(
-        self, state: run_state.State, out: run_state.Output, progress: Callable[[float], None] | None = None
-    ) -> bool:
-        """Go on to the last output time, from a start or restart; returns whether in independent coordinates."""
-        embedded = self.embedded(state)
-        if embedded is None:
-            self.in_one_go(state, out, progress)
-            return False
-        embedded.in_one_go(state, out, progress)
-        fill_multipliers(self.ready.dynamics, self.scratch, out)
-        self.ready.packed.specials.check()
-        return True
-
-    def embedded(self, state: run_state.State) -> EmbeddedRun | None:
-        """The same run in independent coordinates from this state on, or None if it stays in reference coordinates.
-
-        Raises ModelError if independent coordinates were asked for in vain.
-        """
-        if self.formulation == REFERENCE:
-            return None
-        why, made = self._choice(state)
-        if made is not None:
-            from mbsd.dynamics.runs.embedded_run import EmbeddedRun
-
-            return EmbeddedRun(self, made, state)
-        if self.formulation == INDEPENDENT:
-            raise ModelError(f"{self.ready.packed.name}: formulation='independent' is not possible here: {why}")
-        return None
-
-    def _choice(self, state: run_state.State) -> tuple[str | None, Embedded | None]:
-        from mbsd.dynamics.runs.embed import NO_PLAN, can_embed, embed
-
-        if not self.method.embeds:
-            return f"method '{self.method.name}' works in reference coordinates", None
-        why = can_embed(self.ready)
-        if why is not None:
-            return why, None
-        if np.array_equal(state.y[0], self.ready.initial.q) and np.array_equal(state.y[1], self.ready.initial.v):
-            return NO_PLAN, self.ready.embedded
-        return NO_PLAN, embed(self.ready, state.y[0], state.y[1], float(state.clock[run_state.TIME]))
-
-    def in_one_go(
-        self, state: run_state.State, out: run_state.Output, progress: Callable[[float], None] | None = None
-    ) -> None:
-        """``to_end`` in reference coordinates, carried across singular poses by independent ones if asked for these."""
-        end = float(out.t[-1])
-        if self.formulation == REFERENCE:
-            from mbsd.dynamics.runs.across import Across, can_carry
-
-            if can_carry(self):
-                if Across(self, state, out, Pace(self, state, end, progress)).to_end():
-                    fill_multipliers(self.ready.dynamics, self.scratch, out)
-                return
-        pace = None if progress is None else Pace(self, state, end, progress)
-        while self._some_steps(state, out, end) != run_state.REACHED:
-            pace = pace or Pace(self, state, end, progress)
-            pace.note()
-        if pace is not None:
-            pace.note()
-
-    def _some_steps(self, state: run_state.State, out: run_state.Output, end: float) -> int:
+    def some_steps(self, state: run_state.State, out: run_state.Output, end: float) -> int:
         """As :meth:`advance`, with a look at rows that repeat others now and then."""
         if not self.ready.switches.spare:
             return self.advance(state, out, end, self.steps_at_once)

@@ -1,0 +1,102 @@
+"""A mechanism that is ready for forward dynamics, as data: arrays, independent rows, elimination sequence, start."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+
+from mbsd.arrays.packing import Packed
+from mbsd.base.errors import ModelError
+from mbsd.compiling.jit import Often
+from mbsd.dynamics import state as run_state
+from mbsd.dynamics.integrators.kind import Integrator
+from mbsd.dynamics.prepare.following import Following
+from mbsd.dynamics.prepare.stops import Stops, stops_of
+from mbsd.dynamics.reference.arrays import Dynamics, Scratch, scratch_for
+from mbsd.dynamics.rows.joint_sticks import JointStick
+from mbsd.dynamics.rows.switches import Switches
+from mbsd.kinematics.pose.initial import Initial
+from mbsd.results.mobility import Mobility
+
+SMALLEST_STEP = 1e-13
+"""Part of the longest step at which a run gives up."""
+OUTPUTS_LONGEST = 25
+"""A step covers this part of the duration at most, so that short loads are not stepped over."""
+UNKNOWN = object()
+"""Not looked for yet."""
+
+
+@dataclass
+class PreparedDynamics:
+    """A mechanism that can be simulated over and over."""
+
+    packed: Packed
+    dynamics: Dynamics
+    initial: Initial
+    start: float
+    end: float
+    mobility: Mobility
+    switches: Switches
+    """Contacts and joints whose rows are let go and taken up."""
+    sticks: list[JointStick]
+    """Joints that stick by events."""
+    advancing: dict[tuple[str, type], Often] = field(default_factory=dict)
+    """The loops of integrators by name and formulation."""
+    dropped: tuple[int, ...] = ()
+    """Rows left out because they repeat others."""
+    independent: Any = UNKNOWN
+    """The mechanism in independent coordinates that suit its start, None where there are none; see runs/embed.py."""
+
+    def advance(self, method: Integrator, arrays: Any, *rest: Any) -> int:
+        """Go on with ``method`` in reference coordinates (arrays: Dynamics) or in independent ones (Embedding)."""
+        key = method.name, type(arrays)
+        if key not in self.advancing:
+            chosen = method.advance if isinstance(arrays, Dynamics) else method.independent
+            assert chosen is not None, method.name
+            self.advancing[key] = Often(chosen)
+        advancing = self.advancing[key]
+        if self.following and isinstance(arrays, Dynamics):
+            return self.following.through(partial(self.stops.through, advancing), arrays, *rest)
+        return self.stops.through(advancing, arrays, *rest)
+
+    @cached_property
+    def following(self) -> Following:
+        """The points on curves that cross themselves."""
+        return Following(self.packed)
+
+    @cached_property
+    def stops(self) -> Stops:
+        """Where steps end because loads or laws jump or are short there."""
+        loads, laws, initial = self.dynamics.loads, self.dynamics.laws, self.initial
+        return stops_of(self.packed, loads, laws, self.start, self.end, initial.q, initial.v)
+
+    def begun(self, times: np.ndarray) -> tuple[run_state.State, run_state.Output]:
+        """A run at its consistent start, and room for its outputs."""
+        self.following.settle(self.initial.q, self.initial.v)
+        rows = len(self.packed.ws.phi)
+        state = run_state.start_state(np.stack([self.initial.q, self.initial.v]), rows, float(times[0]))
+        return state, run_state.output_for(times, len(self.initial.q), rows)
+
+    def scratch(self, method: Integrator) -> Scratch:
+        """Scratch for one run. Raises ModelError where the method cannot simulate this mechanism."""
+        refusal = method.refusal(self.dynamics)
+        if refusal is not None:
+            raise ModelError(f"{self.packed.name}: {refusal}")
+        return scratch_for(self.dynamics, self.packed.ws, len(self.packed.motions), method.stages, method.matrices)
+
+    def settings(
+        self, method: Integrator, tolerance: float, step: float, duration: float, options: Mapping[str, float]
+    ) -> run_state.Settings:
+        """Tolerances in the mechanism's own sizes. Raises ModelError for options that the method does not have."""
+        one = np.concatenate([np.ones(3), self.packed.column_scale()]) * tolerance
+        numbers = method.numbers(self.packed.name, options)
+        shortest = [force.params.get("shortest") for force in self.packed.forces if "function" in force.params]
+        longest = min([float(duration) / OUTPUTS_LONGEST, *(length for length in shortest if length)])
+        growing = np.stack([np.where(np.arange(len(one)) % 3 == 2, 0.0, tolerance), np.full(len(one), tolerance)])
+        return run_state.Settings(
+            np.stack([one, one]), float(tolerance), growing, longest, SMALLEST_STEP * longest, float(step), numbers
+        )

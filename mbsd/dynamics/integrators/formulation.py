@@ -15,7 +15,7 @@ place: nothing is asked at run time, and no loop contains what the other one nee
     keep_row(dyn, scratch, out, k)                keep output k as the pose before an unclear one
     join_rows(dyn, scratch, out, k, apart)        put output k between the pose kept and its own
     record_here(dyn, scratch, state, out)         write the next output from the state itself, which stands at its time
-    begin(dyn, scratch, state)                    make dy valid at a start or restart
+    begin(dyn, scratch, state)                    fill dy at a start or restart
 """
 
 from __future__ import annotations

@@ -6,16 +6,10 @@ cam = roller_cam(lift, base_radius=0.04, roller_radius=0.01)
 m.cam_roller("contact", disc.origin, follower.origin, cam)
 """
 
-from mbsd.model.cams import (
-    RISES,
-    CamProfile,
-    Lift,
-    cam_from,
-    flat_cam,
-    oscillating_flat_cam,
-    oscillating_roller_cam,
-    roller_cam,
-)
+from mbsd.model.cams.followers import cam_from, flat_cam, oscillating_flat_cam, oscillating_roller_cam, roller_cam
+from mbsd.model.cams.lift import Lift
+from mbsd.model.cams.profile import CamProfile
+from mbsd.model.cams.rises import RISES
 
 __all__ = [
     "RISES",

@@ -27,7 +27,7 @@ from benchmarks.calls import (
     rocker_error,
 )
 from benchmarks.calls.call import Call
-from benchmarks.four_bar import COUPLER, CRANK, GROUND, ROCKER, exact
+from benchmarks.four_bar.exudyn_model import four_bar
 
 sys.exudynFast = True  # type: ignore[attr-defined]  # the build without range checks
 import exudyn as exu  # noqa: E402
@@ -59,35 +59,8 @@ def _settings(steps: int, period: float) -> Any:
 
 
 def _sweeps() -> list[Call]:
-    theta, swing = (float(x[0]) for x in exact(np.zeros(1)))
-    system = exu.SystemContainer().AddSystem()
-    bodies, nodes = [], []
-    for x, angle, length in ((0.0, 0.0, CRANK), (CRANK, theta, COUPLER), (GROUND, swing, ROCKER)):
-        pose = [x + length / 2 * math.cos(angle), length / 2 * math.sin(angle), angle]
-        nodes.append(system.AddNode(u.NodeRigidBody2D(referenceCoordinates=pose, initialVelocities=[0, 0, 0])))
-        bodies.append(system.AddObject(u.RigidBody2D(nodeNumber=nodes[-1], mass=length, inertia=length**3 / 12)))
-    ground = system.AddObject(u.ObjectGround())
-
-    def marker(body: Any, x: float) -> Any:
-        return system.AddMarker(u.MarkerBodyPosition(bodyNumber=body, localPosition=[x, 0, 0]))
-
-    for pair in (
-        (marker(ground, 0.0), marker(bodies[0], -CRANK / 2)),
-        (marker(bodies[0], CRANK / 2), marker(bodies[1], -COUPLER / 2)),
-        (marker(bodies[1], COUPLER / 2), marker(bodies[2], ROCKER / 2)),
-        (marker(ground, GROUND), marker(bodies[2], -ROCKER / 2)),
-    ):
-        system.AddObject(u.RevoluteJoint2D(markerNumbers=list(pair)))
-    fixed = system.AddMarker(u.MarkerNodeCoordinate(nodeNumber=system.AddNode(u.NodePointGround()), coordinate=0))
-    driven = system.AddMarker(u.MarkerNodeCoordinate(nodeNumber=nodes[0], coordinate=2))
     turns, speeds = [1.0], itertools.count()
-    system.AddObject(
-        u.CoordinateConstraint(
-            markerNumbers=[fixed, driven],
-            offset=0,
-            offsetUserFunction=lambda mbs, t, item, load: 2 * math.pi * turns[0] * t,
-        )
-    )
+    system, nodes, (_, _, swing) = four_bar(lambda t: 2 * math.pi * turns[0] * t)
     kind = exu.OutputVariableType.Coordinates
     sensors = [
         system.AddSensor(u.SensorNode(nodeNumber=nodes[k], storeInternal=True, outputVariableType=kind)) for k in (0, 2)

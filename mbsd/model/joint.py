@@ -101,7 +101,7 @@ class JointKind:
 
 def cam_numbers(profile: Mapping[str, Any]) -> np.ndarray:
     """Numbers of the constraint of a cam, from its plain data."""
-    from mbsd.model.cams import cam_from
+    from mbsd.model.cams.followers import cam_from
 
     return cam_from(profile).numbers
 

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from mbsd import Body, Mechanism, constant_rate, harmonic
-from mbsd.model.cams import Lift, oscillating_flat_cam, oscillating_roller_cam
+from mbsd.cams import Lift, oscillating_flat_cam, oscillating_roller_cam
 
 LIFT = Lift.of(
     (2.1, math.radians(16), "modified_sine"), (0.6, math.radians(16)), (2.1, 0.0, "cycloidal"), (2 * math.pi - 4.8, 0.0)

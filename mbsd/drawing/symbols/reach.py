@@ -48,7 +48,7 @@ def placed(pose: Pose, marker: Marker, points: np.ndarray) -> np.ndarray:
 
 def profile_of(params: Any) -> Any:
     """The profile of a cam joint."""
-    from mbsd.model.cams import cam_from
+    from mbsd.model.cams.followers import cam_from
 
     return cam_from(params["profile"])
 

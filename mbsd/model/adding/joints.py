@@ -18,7 +18,7 @@ from mbsd.model.laws.function import Function
 from mbsd.model.teeth import FEWEST
 
 if TYPE_CHECKING:
-    from mbsd.model.cams import CamProfile
+    from mbsd.model.cams.profile import CamProfile
 from mbsd.model.mechanism import Model, connections, length_given, new_name, number_given, own_body
 
 Limits = Sequence[float | None] | None
@@ -68,7 +68,8 @@ def join(m: Model, kind: JointKind, name: str, i: Marker, j: Marker, law: Law | 
 
 def cam_given(m: Model, name: str, profile: CamProfile | Mapping[str, Any], flat: bool) -> dict[str, Any]:
     """Plain data of a cam for this kind of follower; warns of an undercut. Raises ModelError."""
-    from mbsd.model.cams import CamProfile, cam_from
+    from mbsd.model.cams.followers import cam_from
+    from mbsd.model.cams.profile import CamProfile
 
     if not isinstance(profile, CamProfile):
         if not isinstance(profile, Mapping):

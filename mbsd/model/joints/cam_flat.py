@@ -16,7 +16,7 @@ from mbsd.model.body import Marker
 from mbsd.model.joint import Joint, JointKind, cam_numbers, register
 
 if TYPE_CHECKING:
-    from mbsd.model.cams import CamProfile
+    from mbsd.model.cams.profile import CamProfile
 from mbsd.model.adding.joints import cam_given, join
 from mbsd.model.mechanism import Model
 

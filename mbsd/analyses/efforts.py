@@ -25,7 +25,7 @@ from mbsd.base.codes import CONSTANT
 from mbsd.base.errors import MobilityError, ModelError
 from mbsd.base.names import names_in, no_such
 from mbsd.base.shown import shown
-from mbsd.kinematics.closed_contacts import refuse_pushing
+from mbsd.kinematics.limits.closed_contacts import refuse_pushing
 from mbsd.model.adding.forces import Amount, add_force, amount_given
 from mbsd.model.force import Force, ForceKind
 from mbsd.model.forces.actuator import ACTUATOR

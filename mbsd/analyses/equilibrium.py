@@ -21,7 +21,7 @@ from mbsd.arrays.reactions import wrenches
 from mbsd.arrays.start_state import held, started_at
 from mbsd.base.errors import ModelError, SingularPoseError
 from mbsd.equations.assembly import tabulate
-from mbsd.kinematics.closed_contacts import refuse_resting
+from mbsd.kinematics.limits.closed_contacts import refuse_resting
 from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.pose.mobility import joint_mobility
 from mbsd.kinematics.prepared import refuse_bad_laws

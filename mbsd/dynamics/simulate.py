@@ -27,7 +27,7 @@ from mbsd.dynamics.runs.choose import ChoosingRun
 from mbsd.dynamics.runs.running import AUTO, FORMULATIONS, INDEPENDENT
 from mbsd.dynamics.runs.trail import Trail
 from mbsd.dynamics.start.large import MANY_COORDINATES
-from mbsd.kinematics.limits import refuse_passed
+from mbsd.kinematics.limits.joints import refuse_passed
 from mbsd.kinematics.multipliers import JACOBIAN_NUMBERS
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import equal_times, rising_times

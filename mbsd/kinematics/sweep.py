@@ -10,9 +10,9 @@ import numpy as np
 from mbsd.arrays.curve_branches import CurveBranches
 from mbsd.base.errors import ModelError, ModelWarning
 from mbsd.base.warn import warn
-from mbsd.kinematics.closed_contacts import refuse_passed_contacts
-from mbsd.kinematics.curve_jumps import refuse_jumps
-from mbsd.kinematics.limits import limits_of, refuse_passed
+from mbsd.kinematics.limits.closed_contacts import refuse_passed_contacts
+from mbsd.kinematics.limits.curve_jumps import refuse_jumps
+from mbsd.kinematics.limits.joints import limits_of, refuse_passed
 from mbsd.kinematics.multipliers import inverse_dynamics, singularity_margin
 from mbsd.kinematics.period import MOST_TURNS, common_period, repetition
 from mbsd.kinematics.prepared import March, Prepared, prepare

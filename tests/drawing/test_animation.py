@@ -12,11 +12,11 @@ import pytest
 
 from mbsd import Mechanism, ModelError, constant_rate
 from mbsd.drawing.animation import encoders
-from mbsd.drawing.animation.arrows import Arc, Arrow
 from mbsd.drawing.animation.between import at_times
 from mbsd.drawing.animation.clip import HOLD, clip_of
-from mbsd.drawing.animation.page import Page
-from mbsd.drawing.animation.scales import LONGEST, scales_of
+from mbsd.drawing.animation.picture.page import Page
+from mbsd.drawing.animation.picture.scales import LONGEST, scales_of
+from mbsd.drawing.animation.quantities.arrows import Arc, Arrow
 from mbsd.drawing.animation.scene import Scene, scene_of
 from mbsd.drawing.animation.words import EVERYTHING, round_below, with_unit
 from mbsd.drawing.look import PAPER
@@ -178,7 +178,7 @@ def test_energy_flows_from_the_motor_to_the_slider() -> None:
 
 
 def test_impacts_ring_at_the_floor() -> None:
-    from mbsd.drawing.animation.impacts import impacts_of
+    from mbsd.drawing.animation.picture.impacts import impacts_of
 
     drawn = scene(ball(0.5).simulate(2.0))
     impacts = impacts_of(drawn)

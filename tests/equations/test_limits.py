@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from mbsd import LimitError, Mechanism, ModelError, constant_rate, harmonic
-from mbsd.kinematics.limits import coordinate, limits_of
+from mbsd.kinematics.limits.joints import coordinate, limits_of
 from mbsd.kinematics.prepared import prepare
 
 

@@ -15,7 +15,7 @@ from mbsd.base.names import no_such
 from mbsd.base.shown import shown
 from mbsd.drawing.animation.clip import HOLD, clip_of
 from mbsd.drawing.animation.encoders import ffmpeg, held, write_gif, write_mp4
-from mbsd.drawing.animation.page import Page
+from mbsd.drawing.animation.picture.page import Page
 from mbsd.drawing.animation.scene import scene_of
 from mbsd.drawing.animation.words import EVERYTHING, QUANTITIES
 from mbsd.results.solution import Solution

@@ -1,7 +1,7 @@
 """What a simulation looks at step by step: points on curves that cross themselves, and wheels that may meet.
 
 It takes one step at a time, moves the parameters of the points' feet on, and divides a step in which a foot goes too
-far (mbsd/arrays/curve_branches.py). Wheels: mbsd/kinematics/free_wheels.py.
+far (mbsd/arrays/curve_branches.py). Wheels: mbsd/kinematics/limits/free_wheels.py.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from mbsd.arrays.curve_branches import CurveBranches
 from mbsd.dynamics.state import ACCEPTED, PAUSED, REACHED, TIME, State, copied
-from mbsd.kinematics.free_wheels import FreeWheels
+from mbsd.kinematics.limits.free_wheels import FreeWheels
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed

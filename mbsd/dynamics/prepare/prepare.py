@@ -17,7 +17,7 @@ from mbsd.dynamics.reference.sliding import sliding_for
 from mbsd.dynamics.rows.joint_sticks import joint_sticks, stuck_rows
 from mbsd.dynamics.rows.switches import Switches
 from mbsd.dynamics.start.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
-from mbsd.kinematics.contact_rows import all_contacts, with_contacts
+from mbsd.kinematics.limits.contact_rows import all_contacts, with_contacts
 from mbsd.kinematics.pose.initial import consistent
 from mbsd.kinematics.pose.mobility import independent_rows, joint_mobility, scaled_jacobian
 from mbsd.kinematics.prepared import refuse_bad_laws

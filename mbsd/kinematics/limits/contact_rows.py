@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mbsd.arrays.packing import Packed, pack
-from mbsd.kinematics.limits import coordinate, limits_of
+from mbsd.kinematics.limits.joints import coordinate, limits_of
 from mbsd.model.contacts.stops import ANGLE_STOP, COORDINATE_STOP
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.drawing.animation.arrows import moving_marker
 from mbsd.drawing.animation.between import at_times
 from mbsd.drawing.animation.brush import Brush, rgba
 from mbsd.drawing.animation.clip import Clip
-from mbsd.drawing.animation.loads import touched
+from mbsd.drawing.animation.quantities.arrows import moving_marker
+from mbsd.drawing.animation.quantities.loads import touched
 from mbsd.drawing.animation.scene import Scene
 from mbsd.drawing.look import MOVED
 from mbsd.drawing.pose import tracks_of

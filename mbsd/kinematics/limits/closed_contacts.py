@@ -34,7 +34,7 @@ class Gap:
 def gaps(m: Model, packed: Packed, q: np.ndarray, limits: bool) -> list[Gap]:
     """Of the contacts, and of the ``limits`` of joints, along poses q (T, 3 nb). A one-way clutch is always closed."""
     from mbsd.equations.assembly import tabulate
-    from mbsd.kinematics.contact_rows import all_contacts, with_contacts
+    from mbsd.kinematics.limits.contact_rows import all_contacts, with_contacts
 
     contacts = all_contacts(m, packed, q[0]) if limits else list(m.contacts.values())
     if not contacts:

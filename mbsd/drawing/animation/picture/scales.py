@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.drawing.animation.arrows import Arc, Arrow
+from mbsd.drawing.animation.quantities.arrows import Arc, Arrow
 from mbsd.drawing.animation.words import QUANTITIES, round_below
 
 USUAL = 97.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbsd.drawing.animation.arrows import Arc, Arrow, Moving, moving, moving_marker
+from mbsd.drawing.animation.quantities.arrows import Arc, Arrow, Moving, moving, moving_marker
 from mbsd.drawing.pose import Tracks
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model

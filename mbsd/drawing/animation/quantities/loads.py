@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from mbsd.drawing.animation.arrows import Arc, Arrow, acting, moving, moving_marker
+from mbsd.drawing.animation.quantities.arrows import Arc, Arrow, acting, moving, moving_marker
 from mbsd.drawing.pose import Tracks
 from mbsd.model.joint import Joint
 from mbsd.results.solution import Solution

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mbsd.drawing.animation.arrows import Arc, Arrow
 from mbsd.drawing.animation.brush import arc, arrow, fresh, rgba
-from mbsd.drawing.animation.scales import FULL_TURN
+from mbsd.drawing.animation.picture.scales import FULL_TURN
+from mbsd.drawing.animation.quantities.arrows import Arc, Arrow
 from mbsd.drawing.animation.words import CARD, QUANTITIES, round_below, with_unit
 from mbsd.drawing.look import INK, QUIET
 
 if TYPE_CHECKING:
-    from mbsd.drawing.animation.panel import Panel
+    from mbsd.drawing.animation.picture.panel import Panel
 
 
 def paint_still(panel: Panel, figure: Any, renderer: Any) -> None:

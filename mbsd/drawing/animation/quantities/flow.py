@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.drawing.animation.arrows import Arrow, acting, moving, moving_marker
+from mbsd.drawing.animation.quantities.arrows import Arrow, acting, moving, moving_marker
 from mbsd.drawing.pose import Tracks
 from mbsd.model.mechanism import Model
 from mbsd.results.solution import Solution

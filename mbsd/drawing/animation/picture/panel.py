@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.drawing.animation.arrows import Arc, Arrow
-from mbsd.drawing.animation.bars import Bars
 from mbsd.drawing.animation.brush import Brush, View, arc, arrow, fresh
-from mbsd.drawing.animation.impacts import draw_impacts, impacts_of
-from mbsd.drawing.animation.names import Placed, place_names
-from mbsd.drawing.animation.scales import FULL_TURN, LONGEST, Scale, scales_of, unit_of
+from mbsd.drawing.animation.picture.bars import Bars
+from mbsd.drawing.animation.picture.impacts import draw_impacts, impacts_of
+from mbsd.drawing.animation.picture.names import Placed, place_names
+from mbsd.drawing.animation.picture.scales import FULL_TURN, LONGEST, Scale, scales_of, unit_of
+from mbsd.drawing.animation.picture.sprites import lay
+from mbsd.drawing.animation.picture.trails import Trail, draw_trails
+from mbsd.drawing.animation.quantities.arrows import Arc, Arrow
 from mbsd.drawing.animation.scene import Scene
-from mbsd.drawing.animation.sprites import lay
-from mbsd.drawing.animation.trails import Trail, draw_trails
 from mbsd.drawing.animation.words import QUANTITIES, SLATE
 from mbsd.drawing.look import colour
 

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.drawing.animation.panel import Box, Panel, common_view
+from mbsd.drawing.animation.picture.panel import Box, Panel, common_view
+from mbsd.drawing.animation.picture.still import paint_still
+from mbsd.drawing.animation.picture.trails import trails_of
 from mbsd.drawing.animation.scene import Scene
-from mbsd.drawing.animation.still import paint_still
-from mbsd.drawing.animation.trails import trails_of
 from mbsd.drawing.animation.words import QUANTITIES
 from mbsd.drawing.look import INK, QUIET
 from mbsd.results.solution import Solution

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.drawing.animation.brush import Brush
-from mbsd.drawing.animation.sprites import sprite
+from mbsd.drawing.animation.picture.sprites import sprite
 from mbsd.drawing.names import offsets
 
 DIRECTIONS = 12

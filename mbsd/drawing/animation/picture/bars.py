@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from mbsd.drawing.animation.brush import Brush, Colour, rgba
-from mbsd.drawing.animation.flow import Balance
-from mbsd.drawing.animation.sprites import lay, sprite
+from mbsd.drawing.animation.picture.sprites import lay, sprite
+from mbsd.drawing.animation.quantities.flow import Balance
 from mbsd.drawing.animation.words import KINETIC, POTENTIAL, TAKEN, with_unit
 from mbsd.drawing.look import INK, QUIET
 

@@ -1,0 +1,1 @@
+"""What arrows and bars of a film stand for: motions, loads, the flow of energy."""

@@ -29,7 +29,8 @@ def calls() -> list[Call]:
     def again() -> np.ndarray:
         mujoco.mj_resetData(model, data)
         mujoco.mj_getState(model, data, start, kind)
-        return rollout(model, data, start, nstep=OUTPUTS)[0][0]
+        states, _ = rollout(model, data, start, nstep=OUTPUTS)
+        return np.asarray(states)[0]
 
     def error(states: Any) -> float:
         return energy_drift(states[:, 1], states[:, 2])  # after the time

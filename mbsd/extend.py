@@ -18,7 +18,7 @@ from mbsd.base.codes import (
     TURN,
 )
 from mbsd.model.adding.contacts import add_contact
-from mbsd.model.adding.forces import Amount, add_force, amount_given, not_negative
+from mbsd.model.adding.forces import Amount, add_force, amount_given, amounts_given
 from mbsd.model.adding.joints import Law, join, radii_given
 from mbsd.model.body import Body, Marker
 from mbsd.model.contact import ContactKind
@@ -58,9 +58,9 @@ __all__ = [
     "add_contact",
     "add_force",
     "amount_given",
+    "amounts_given",
     "join",
     "length_given",
-    "not_negative",
     "number_given",
     "radii_given",
     "register_contact",

@@ -7,7 +7,7 @@ function, so that nobody compiles what his model does not use.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from mbsd.base.codes import AXIS, CONSTANT, DAMPING, DRY, LAW_RATE, LAW_TIME, LINE, LINEAR, POWER, PUSH, TURN
 from mbsd.compiling.jit import inlined, kernel
@@ -15,9 +15,6 @@ from mbsd.equations.interactions.apply import apply_interactions
 from mbsd.equations.laws import evaluate_law
 from mbsd.equations.markers import place
 from mbsd.equations.user_forces import apply_user_forces
-
-if TYPE_CHECKING:
-    pass
 
 
 class Loads(NamedTuple):

@@ -164,3 +164,24 @@ def length_given(m: Model, what: str, value: object) -> float:
 def number_given(m: Model, what: str, value: object) -> float:
     """A finite number; raises ModelError."""
     return finite_number(f"{m.name}: {what}", value)
+
+
+def two_bodies(m: Model, what: str, i: Marker, j: Marker, same_body: bool = False) -> None:
+    """Raise ModelError unless i and j are markers of two bodies of this mechanism; ``same_body``: of one will do."""
+    for marker in (i, j):
+        if not isinstance(marker, Marker):
+            raise ModelError(
+                f"{m.name}: {what} needs two markers, got {shown(marker)}; write body.at(x, y), bar.start or bar.end"
+            )
+        own_body(m, marker.body, what)
+    if i.body is j.body and not same_body:
+        raise ModelError(f"{m.name}: {what} connects '{i.body.name}' with itself; give markers of two bodies")
+
+
+def not_negative(m: Model, what: str, **values: float) -> dict[str, float]:
+    """Numbers by name that may not be negative; raises ModelError."""
+    out = {key: number_given(m, f"{what}: {key}", value) for key, value in values.items()}
+    for key, value in out.items():
+        if value < 0:
+            raise ModelError(f"{m.name}: {what}: {key} is {value:g}; it cannot be negative")
+    return out

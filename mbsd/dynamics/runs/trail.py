@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mbsd.dynamics.state import Output
 from mbsd.model.event import Happening
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass

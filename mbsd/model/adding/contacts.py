@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
 from mbsd.model.body import Marker
 from mbsd.model.contact import ContactKind
 from mbsd.model.joint import Joint
-from mbsd.model.mechanism import Model, connections, new_name, number_given, own_body
+from mbsd.model.mechanism import Model, connections, new_name, not_negative, number_given, two_bodies
 
 
 def stop_given(m: Model, name: str, at: float, upper: bool) -> dict[str, Any]:
@@ -20,12 +19,7 @@ def stop_given(m: Model, name: str, at: float, upper: bool) -> dict[str, Any]:
 
 def amounts_given(m: Model, name: str, **values: float) -> dict[str, Any]:
     """Numbers that may not be negative. Raises ModelError."""
-    out = {}
-    for what, value in values.items():
-        out[what] = number_given(m, f"contact '{name}': {what}", value)
-        if out[what] < 0:
-            raise ModelError(f"{m.name}: contact '{name}': {what} is {value:g}; it cannot be negative")
-    return out
+    return not_negative(m, f"contact '{name}'", **values)
 
 
 def frictions_given(m: Model, name: str, friction: float, static_friction: float | None) -> dict[str, Any]:
@@ -45,15 +39,7 @@ def add_contact(
 ) -> Joint:
     """Enter a contact between markers of two bodies. Raises ModelError."""
     new_name(m, name, "contact", *connections(m))
-    for marker in (i, j):
-        if not isinstance(marker, Marker):
-            raise ModelError(
-                f"{m.name}: contact '{name}' needs two markers, got {shown(marker)}; "
-                "write body.at(x, y), bar.start or bar.end"
-            )
-        own_body(m, marker.body, f"contact '{name}'")
-    if i.body is j.body:
-        raise ModelError(f"{m.name}: contact '{name}' is of '{i.body.name}' with itself; give two bodies")
+    two_bodies(m, f"contact '{name}'", i, j)
     if restitution is not None:
         params["restitution"] = number_given(m, f"contact '{name}': restitution", restitution)
         if not 0.0 <= params["restitution"] <= 1.0:

@@ -12,7 +12,7 @@ from mbsd.model.force import Force, ForceKind
 from mbsd.model.laws import Motion
 from mbsd.model.laws.curve import Curve
 from mbsd.model.laws.function import Function
-from mbsd.model.mechanism import Model, connections, new_name, number_given, own_body
+from mbsd.model.mechanism import Model, connections, new_name, not_negative, number_given, own_body, two_bodies
 
 Amount = float | Motion | Callable[[float], float]
 """A constant, or a law of time."""
@@ -30,15 +30,7 @@ def add_force(
 ) -> Force:
     """Enter a force between two markers. Raises ModelError."""
     new_name(m, name, "force", *connections(m))
-    for marker in (i, j):
-        if not isinstance(marker, Marker):
-            raise ModelError(
-                f"{m.name}: force '{name}' needs two markers, got {shown(marker)}; "
-                "write body.at(x, y), bar.start or bar.end"
-            )
-        own_body(m, marker.body, f"force '{name}'")
-    if i.body is j.body and not same_body:
-        raise ModelError(f"{m.name}: force '{name}' connects '{i.body.name}' with itself; give two bodies")
+    two_bodies(m, f"force '{name}'", i, j, same_body)
     force = m.forces[name] = Force(kind, name, i, j, dict(params), dict(laws or {}))
     return force
 
@@ -50,14 +42,9 @@ def origins(m: Model, name: str, first: Body, second: Body) -> tuple[Marker, Mar
     return first.origin, second.origin
 
 
-def not_negative(m: Model, name: str, **values: float) -> dict[str, Any]:
-    """Numbers that may not be negative."""
-    out = {}
-    for what, value in values.items():
-        out[what] = number_given(m, f"force '{name}': {what}", value)
-        if out[what] < 0:
-            raise ModelError(f"{m.name}: force '{name}': {what} is {value:g}; it cannot be negative")
-    return out
+def amounts_given(m: Model, name: str, **values: float) -> dict[str, Any]:
+    """Numbers of a force that may not be negative. Raises ModelError."""
+    return not_negative(m, f"force '{name}'", **values)
 
 
 def above_zero(m: Model, name: str, what: str, value: float) -> float:
@@ -89,7 +76,7 @@ def spring_amounts(m: Model, name: str, **values: Amount) -> tuple[dict[str, Any
     params, laws = {}, {}
     for what, value in values.items():
         own, law = amount_given(m, name, what, value)
-        params |= own if what == "free_angle" else not_negative(m, name, **own)
+        params |= own if what == "free_angle" else amounts_given(m, name, **own)
         laws |= law
     free = list(values)[-1]
     if "stiffness" in laws and free in laws:

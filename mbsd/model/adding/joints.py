@@ -15,11 +15,18 @@ from mbsd.model.body import Marker
 from mbsd.model.joint import Joint, JointKind
 from mbsd.model.laws import Motion
 from mbsd.model.laws.function import Function
+from mbsd.model.mechanism import (
+    Model,
+    connections,
+    length_given,
+    new_name,
+    number_given,
+    two_bodies,
+)
 from mbsd.model.teeth import FEWEST
 
 if TYPE_CHECKING:
     from mbsd.model.cams.profile import CamProfile
-from mbsd.model.mechanism import Model, connections, length_given, new_name, number_given, own_body
 
 Limits = Sequence[float | None] | None
 Law = Motion | Callable[[float], float]
@@ -44,15 +51,7 @@ def join(m: Model, kind: JointKind, name: str, i: Marker, j: Marker, law: Law | 
     """Enter a joint, or a driver with its law, between two markers of different bodies. Raises ModelError."""
     what = "driver" if kind.driven else "joint"
     new_name(m, name, what, *connections(m))
-    for marker in (i, j):
-        if not isinstance(marker, Marker):
-            raise ModelError(
-                f"{m.name}: {what} '{name}' needs two markers, got {shown(marker)}; "
-                "write body.at(x, y), bar.start or bar.end"
-            )
-        own_body(m, marker.body, f"{what} '{name}'")
-    if i.body is j.body:
-        raise ModelError(f"{m.name}: {what} '{name}' connects '{i.body.name}' with itself; give markers of two bodies")
+    two_bodies(m, f"{what} '{name}'", i, j)
     motion = None
     if kind.driven:
         if not (isinstance(law, Motion) or callable(law)):

@@ -15,7 +15,7 @@ from mbsd.base.arguments import several_numbers
 from mbsd.base.codes import AXIS, DAMPING, LINEAR, TURN
 from mbsd.model.adding.forces import (
     add_force,
-    not_negative,
+    amounts_given,
 )
 from mbsd.model.body import Marker
 from mbsd.model.force import Element, Force, ForceKind, Term, register
@@ -54,5 +54,5 @@ def bushing(
     params: dict[str, Any] = {"free_angle": number_given(m, f"force '{name}': free_angle", free_angle)}
     for what, values in (("stiffness", stiffness), ("damping", damping)):
         values = several_numbers(f"{m.name}: force '{name}': {what}", values, 3, "give (x, y, turning)")
-        params[what] = tuple(not_negative(m, name, **{f"{what}[{k}]": v for k, v in enumerate(values)}).values())
+        params[what] = tuple(amounts_given(m, name, **{f"{what}[{k}]": v for k, v in enumerate(values)}).values())
     return add_force(m, BUSHING, name, i, j, params)

@@ -20,7 +20,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mbsd.base.errors import ModelError
-from mbsd.model.adding.forces import above_zero, add_force, curves_given, not_negative
+from mbsd.model.adding.forces import above_zero, add_force, amounts_given, curves_given
 from mbsd.model.body import Marker
 from mbsd.model.force import Force, ForceKind, Interaction, register
 from mbsd.model.laws.curve import Curve, curve
@@ -94,7 +94,7 @@ def contact(
     ``profile`` y(x) in its axes. Normal force stiffness * depth^exponent * (1 + damping * rate of depth); the
     friction coefficient is reached at some ``slip_speed`` (m/s).
     """
-    params = not_negative(
+    params = amounts_given(
         m, name, stiffness=stiffness, exponent=exponent, damping=damping, friction=friction, radius=radius
     )
     if params["exponent"] < 1.0:

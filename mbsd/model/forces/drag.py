@@ -15,7 +15,7 @@ from mbsd.model.adding.forces import (
     Amount,
     add_force,
     amount_given,
-    not_negative,
+    amounts_given,
 )
 from mbsd.model.body import Marker
 from mbsd.model.force import Force, ForceKind, Interaction, register
@@ -54,6 +54,6 @@ def drag(
     moves with ``wind`` (m/s, world axes) times ``gust``, a constant or a law of time.
     """
     params, laws = amount_given(m, name, "gust", gust)
-    params |= not_negative(m, name, coefficient=coefficient, turning=turning)
+    params |= amounts_given(m, name, coefficient=coefficient, turning=turning)
     params["wind"] = number_pair(f"{m.name}: force '{name}': wind", wind)
     return add_force(m, DRAG, name, m.ground.origin, at, params, laws, same_body=True)

@@ -24,7 +24,7 @@ from typing import Any
 from mbsd.base.codes import FRICTION_JOINTS
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
-from mbsd.model.adding.forces import above_zero, add_force, not_negative
+from mbsd.model.adding.forces import above_zero, add_force, amounts_given
 from mbsd.model.force import Force, ForceKind, register
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
@@ -70,10 +70,10 @@ def friction(
         raise ModelError(
             f"{what}: '{known.name}' is a {known.kind.name}; friction needs one of {', '.join(FRICTION_JOINTS)}"
         )
-    params = not_negative(
+    params = amounts_given(
         m, name, coefficient=coefficient, viscous=viscous, radius=radius, length=length, preload=preload
     )
-    params["static"] = params["coefficient"] if static is None else not_negative(m, name, static=static)["static"]
+    params["static"] = params["coefficient"] if static is None else amounts_given(m, name, static=static)["static"]
     params["stribeck"] = above_zero(m, name, "stribeck", stribeck)
     params["sticks"] = bool(sticks)
     if not sticks:

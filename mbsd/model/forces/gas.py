@@ -12,7 +12,7 @@ from mbsd.base.codes import AXIS, CONSTANT, POWER
 from mbsd.base.errors import ModelError
 from mbsd.model.adding.forces import (
     add_force,
-    not_negative,
+    amounts_given,
 )
 from mbsd.model.body import Marker
 from mbsd.model.force import Element, Force, ForceKind, Term, register
@@ -54,7 +54,7 @@ def gas(
     ``pressure`` (Pa, absolute) where the piston lies ``at`` (m) along that axis; ``clearance`` (m) is the length
     of the dead space before 0; ``outside`` is the pressure on the piston's other side.
     """
-    params = not_negative(
+    params = amounts_given(
         m, name, area=area, pressure=pressure, clearance=clearance, exponent=exponent, outside=outside
     )
     params["at"] = number_given(m, f"force '{name}': at", at)

@@ -16,8 +16,8 @@ from __future__ import annotations
 from mbsd.model.adding.forces import (
     above_zero,
     add_force,
+    amounts_given,
     curves_given,
-    not_negative,
 )
 from mbsd.model.body import Marker
 from mbsd.model.force import Force, ForceKind, Interaction, register
@@ -69,7 +69,7 @@ def tyre(
     ``stiffness`` (N/m) and ``damping`` (N s/m) carry; ``grip`` D, ``slope`` B, ``shape`` C and ``curvature`` E of
     the magic formula pull by longitudinal slip, which is kept finite below ``standstill`` (m/s).
     """
-    params = not_negative(m, name, stiffness=stiffness, damping=damping, grip=grip, slope=slope, shape=shape)
+    params = amounts_given(m, name, stiffness=stiffness, damping=damping, grip=grip, slope=slope, shape=shape)
     params["radius"] = above_zero(m, name, "radius", radius)
     params["standstill"] = above_zero(m, name, "standstill", standstill)
     params["curvature"] = number_given(m, f"force '{name}': curvature", curvature)

@@ -7,14 +7,9 @@ The reaction on body j is a torque.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from mbsd.model.adding.joints import join
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint, JointKind, register
-
-if TYPE_CHECKING:
-    pass
-from mbsd.model.adding.joints import join
 from mbsd.model.mechanism import Model
 
 ANGLE_LOCK = register(JointKind("angle_lock", ("angle",), example=lambda m, i, j: m.angle_lock("example", i, j)))

@@ -11,16 +11,13 @@ pulleys and sprockets given by teeth and pitch have r = pitch z / (2 pi).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mbsd.model.adding.joints import join, phase_given, wheels_given
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint, JointKind, register
-from mbsd.model.teeth import with_radii
-
-if TYPE_CHECKING:
-    pass
-from mbsd.model.adding.joints import join, phase_given, wheels_given
 from mbsd.model.mechanism import Model
+from mbsd.model.teeth import with_radii
 
 
 def _numbers(params: Mapping[str, Any]) -> list[tuple[float, float]]:

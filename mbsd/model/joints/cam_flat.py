@@ -12,13 +12,13 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from mbsd.model.adding.joints import cam_given, join
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint, JointKind, cam_numbers, register
+from mbsd.model.mechanism import Model
 
 if TYPE_CHECKING:
     from mbsd.model.cams.profile import CamProfile
-from mbsd.model.adding.joints import cam_given, join
-from mbsd.model.mechanism import Model
 
 _LIFT = {"segments": [[math.pi, 0.2, "cycloidal"], [math.pi, 0.0, "3-4-5"]], "start": 0.0}
 

@@ -10,16 +10,13 @@ function does not take complex numbers. A function compiled with numba.njit is c
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
+from mbsd.model.adding.joints import join
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint, JointKind, register
-
-if TYPE_CHECKING:
-    pass
-from mbsd.model.adding.joints import join
 from mbsd.model.mechanism import Model
 
 

@@ -12,17 +12,14 @@ teeth and module have r = module z / 2 (teeth.py) and must stand as far apart as
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mbsd.base.errors import ModelError
+from mbsd.model.adding.joints import join, phase_given, wheels_given
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint, JointKind, register
-from mbsd.model.teeth import gear_problem, with_radii
-
-if TYPE_CHECKING:
-    pass
-from mbsd.model.adding.joints import join, phase_given, wheels_given
 from mbsd.model.mechanism import Model
+from mbsd.model.teeth import gear_problem, with_radii
 
 
 def _numbers(params: Mapping[str, Any]) -> list[tuple[float, float]]:

@@ -12,16 +12,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
+from mbsd.model.adding.joints import join, radii_given
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint, JointKind, register
-
-if TYPE_CHECKING:
-    pass
-from mbsd.model.adding.joints import join, radii_given
 from mbsd.model.mechanism import Model
 
 ENTRY = 1e-6

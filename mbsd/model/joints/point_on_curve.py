@@ -15,12 +15,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mbsd.model.adding.joints import join
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint, JointKind, register
-
-if TYPE_CHECKING:
-    pass
-from mbsd.model.adding.joints import join
 from mbsd.model.mechanism import Model, number_given
 
 if TYPE_CHECKING:

@@ -10,16 +10,12 @@ reaction on body j is the tooth force along the rack as a force at its centre an
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
+from mbsd.model.adding.joints import join, phase_given, wheels_given
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint, JointKind, register
-from mbsd.model.teeth import rack_problem, with_radii
-
-if TYPE_CHECKING:
-    pass
-from mbsd.model.adding.joints import join, phase_given, wheels_given
 from mbsd.model.mechanism import Model
+from mbsd.model.teeth import rack_problem, with_radii
 
 RACK_AND_PINION = register(
     JointKind(

@@ -11,14 +11,10 @@ Dynamics, 2018, disc joint.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
+from mbsd.model.adding.joints import join, phase_given, radii_given
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint, JointKind, register
-
-if TYPE_CHECKING:
-    pass
-from mbsd.model.adding.joints import join, phase_given, radii_given
 from mbsd.model.mechanism import Model
 
 ROLLING_DISC = register(

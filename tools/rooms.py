@@ -9,7 +9,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "ARCHITECTURE.md"
 BEGIN, END = "<!-- rooms: written by make docs -->\n", "<!-- end of rooms -->\n"
-DEPTH = {"mbsd": 2, "mechanisms": 3, "render": 2, "shared": 2}
+DEPTH = {"mbsd": 2, "mechanisms": 3, "render": 2, "shared": 2, "studio": 2}
 """Rooms, and how many levels of folders are listed of each: a room alone is one."""
 
 

@@ -28,11 +28,10 @@ from mbsd.drawing.symbols.place import free_side
 from mbsd.drawing.symbols.wheels import draw_gear_pair
 from mbsd.model.force import ForceKind
 from mbsd.model.joint import JointKind
+from mbsd.testing import force_kinds, joint_kinds
+from mbsd.testing.forces import example as force_example
 from shared.stage.paths import ROOT
 from tests.dynamics.test_simulate import n_four_bar
-from tests.equations.test_forces import all_kinds as force_kinds
-from tests.equations.test_forces import example as force_example
-from tests.equations.test_joints import all_kinds
 from tests.kinematics.test_mobility import four_bar, parallelogram
 from tests.models import four_bars
 
@@ -109,7 +108,7 @@ def test_strokes_are_what_is_drawn(build) -> None:
     assert moved(first, first) == []
 
 
-@pytest.mark.parametrize("kind", all_kinds(), ids=lambda kind: kind.name)
+@pytest.mark.parametrize("kind", joint_kinds(), ids=lambda kind: kind.name)
 def test_every_kind_has_strokes_on_a_canvas_without_matplotlib(kind: JointKind) -> None:
     m = Mechanism("example")
     first = m.body("first", 1.0, (0.4, 0.1), 0.3)
@@ -144,7 +143,7 @@ def test_a_time_or_a_step_not_both_and_within_the_solution() -> None:
 
 
 @pytest.mark.parametrize("to_ground", [False, True], ids=["two_bodies", "to_ground"])
-@pytest.mark.parametrize("kind", all_kinds(), ids=lambda kind: kind.name)
+@pytest.mark.parametrize("kind", joint_kinds(), ids=lambda kind: kind.name)
 def test_every_kind_can_be_drawn(kind: JointKind, to_ground: bool) -> None:
     m = Mechanism("example")
     first = m.ground if to_ground else m.body("first", 1.0, (0.4, 0.1), 0.3)

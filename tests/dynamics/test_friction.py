@@ -12,7 +12,7 @@ from mbsd.arrays.friction_along import normals_along
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import pack
 from mbsd.equations.joint_friction import tabulate_friction
-from tests.equations.test_forces import motion
+from mbsd.testing.forces import motion
 from tests.models.slider_cranks import slider_crank
 
 G = 9.80665

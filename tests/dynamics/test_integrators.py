@@ -2,60 +2,34 @@
 
 from __future__ import annotations
 
-import importlib
+import dataclasses
 import math
-import pkgutil
 import sys
 from functools import cache
 
 import numpy as np
 import pytest
-from scipy.special import ellipj, ellipk
 
-import mbsd.dynamics.integrators
 from mbsd import Mechanism, ModelError, SimulationError
-from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator, register
+from mbsd.dynamics.integrators.kind import INTEGRATORS, register
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.runs.choose import integrate
 from mbsd.dynamics.state import NEXT, PAUSED, REACHED, TIME, output_for, start_state
+from mbsd.testing import check_integrator, integrators
+from mbsd.testing.integrators import (
+    AMPLITUDE,
+    GRAVITY,
+    OUTPUTS,
+    errors_of,
+    exact_pendulum,
+    four_bar,
+    order_of,
+    pendulum,
+)
 
-for _module in pkgutil.iter_modules(mbsd.dynamics.integrators.__path__):
-    importlib.import_module(f"mbsd.dynamics.integrators.{_module.name}")
-
-G = 9.81
-AMPLITUDE = math.radians(100)
-OUTPUTS = 10
-ROUNDING = 1e-11
-"""Errors below this tell nothing about an order."""
-METHODS = sorted(name for name in INTEGRATORS if INTEGRATORS[name].installed)
+METHODS = sorted(method.name for method in integrators() if method.installed)
 PROJECTED = [name for name in METHODS if name != "baumgarte"]
 """Methods that promise closed constraints at outputs."""
-
-
-def pendulum() -> Mechanism:
-    m = Mechanism("pendulum", gravity=(0.0, -G))
-    rod = m.bar("rod", 1.5, mass=1.0)
-    m.revolute("A", m.ground.at(0, 0), rod.start)
-    m.start_near(rod=math.degrees(AMPLITUDE) - 90.0)
-    return m
-
-
-def four_bar() -> Mechanism:
-    m = Mechanism("four-bar", gravity=(0.0, -G))
-    crank, coupler, rocker = m.bar("crank", 0.3, 1.0), m.bar("coupler", 0.9, 0.5), m.bar("rocker", 0.7, 2.0)
-    m.revolute("A", m.ground.at(0, 0), crank.start)
-    m.revolute("B", crank.end, coupler.start)
-    m.revolute("C", coupler.end, rocker.end)
-    m.revolute("D", m.ground.at(0.8, 0), rocker.start)
-    m.start_near(crank=50, coupler=20, rocker=80)
-    return m
-
-
-def exact_pendulum(t: np.ndarray | float) -> np.ndarray:
-    """Angle of the rod from the x axis: sin(phi/2) = k sn(K - w t), w^2 = g over the equivalent length l = 1 m."""
-    k = math.sin(AMPLITUDE / 2)
-    sn = ellipj(ellipk(k * k) - math.sqrt(G) * np.asarray(t), k * k)[0]
-    return 2 * np.arcsin(k * sn) - math.pi / 2
 
 
 @cache
@@ -64,36 +38,16 @@ def fine_four_bar(duration: float) -> np.ndarray:
     return sol.body("rocker").theta
 
 
-def runs(method: Integrator, case: str) -> tuple[np.ndarray, np.ndarray]:
-    """Steps and errors (rms of the outputs) of finer and finer runs, those that rounding hides left out.
-
-    Fixed steps over one second; tolerances over ten, so that steps are not bound by the duration.
-    """
-    duration = 1.0 if method.fixed_step else 10.0
-    make, body = (pendulum, "rod") if case == "pendulum" else (four_bar, "rocker")
-    exact = exact_pendulum(np.linspace(0, duration, OUTPUTS + 1)) if make is pendulum else fine_four_bar(duration)
-    steps, errors = [], []
-    for k in range(5):
-        setting = {"step": 0.02 / 2**k} if method.fixed_step else {"tolerance": 10.0 ** (-4 - k)}
-        sol = make().simulate(duration, steps=OUTPUTS, method=method.name, **setting)
-        error = float(np.sqrt(np.mean((sol.body(body).theta - exact) ** 2)))
-        if error > ROUNDING:
-            steps.append(sol.stats.steps)
-            errors.append(error)
-    return np.array(steps, float), np.array(errors)
-
-
-def order_of(steps: np.ndarray, errors: np.ndarray) -> float:
-    """From the slope of log error over log steps, the coarsest run left out."""
-    return -np.polyfit(np.log(steps[1:]), np.log(errors[1:]), 1)[0]
+@pytest.mark.parametrize("name", METHODS)
+def test_order_on_a_pendulum(name: str) -> None:
+    check_integrator(INTEGRATORS[name])
 
 
 @pytest.mark.parametrize("name", METHODS)
-@pytest.mark.parametrize("case", ["pendulum", "four-bar"])
-def test_measured_order(name: str, case: str) -> None:
-    """Of an open and a closed chain, by halved steps or by tolerances divided by ten."""
+def test_order_on_a_closed_chain(name: str) -> None:
+    """By halved steps, or by tolerances divided by ten."""
     method = INTEGRATORS[name]
-    steps, errors = runs(method, case)
+    steps, errors = errors_of(method, four_bar, "rocker", lambda t: fine_four_bar(float(t[-1])))
     if method.fixed_step:
         assert order_of(steps, errors) > method.order - 0.25
         assert (errors[1:] < 0.7 * errors[:-1]).all()
@@ -105,6 +59,27 @@ def test_measured_order(name: str, case: str) -> None:
         assert order_of(steps, errors) > method.order - 1.0, (
             "steps are not equal: the slope is not the order to a digit"
         )
+
+
+def test_a_method_of_a_lower_order_than_it_claims_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    method = dataclasses.replace(INTEGRATORS["rk4"], name="claimed", order=6)
+    monkeypatch.setitem(INTEGRATORS, "claimed", method)
+    with pytest.raises(AssertionError, match=r"claimed: the measured order is [34]\.\d+; it must be above 5\.75"):
+        check_integrator(method)
+
+
+def test_a_method_that_leaves_constraints_open_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    rk4 = INTEGRATORS["rk4"]
+
+    def advance(dyn, scratch, state, out, *steps):
+        status = rk4.advance(dyn, scratch, state, out, *steps)
+        out.y[-1, 0, 6:] += 1e-3  # the second body and the third, which the pendulum does not have
+        return status
+
+    method = dataclasses.replace(rk4, name="open", advance=advance)
+    monkeypatch.setitem(INTEGRATORS, "open", method)
+    with pytest.raises(AssertionError, match=r"open: position residuals of a four-bar's outputs reach 0\.00"):
+        check_integrator(method)
 
 
 @pytest.mark.parametrize("name", PROJECTED)
@@ -179,7 +154,7 @@ def test_time_runs_backward_along_the_same_path(name: str) -> None:
 
 def test_rattle_needs_no_mass() -> None:
     """A coupler without mass, and a point mass without inertia, keep the order."""
-    m = Mechanism("bob", gravity=(0.0, -G))
+    m = Mechanism("bob", gravity=(0.0, -GRAVITY))
     bob = m.body("bob", 1.0)
     m.revolute("A", m.ground.at(0, 0), bob.at(0, 1.0))
     m.start_near(bob=math.degrees(AMPLITUDE))
@@ -192,7 +167,7 @@ def test_rattle_needs_no_mass() -> None:
 
 def stiff_four_bar() -> Mechanism:
     """With a stiff bush for the pin C."""
-    m = Mechanism("stiff", gravity=(0.0, -G))
+    m = Mechanism("stiff", gravity=(0.0, -GRAVITY))
     crank, coupler, rocker = m.bar("crank", 0.3, 1.0), m.bar("coupler", 0.9, 0.5), m.bar("rocker", 0.7, 2.0)
     m.revolute("A", m.ground.at(0, 0), crank.start)
     m.revolute("B", crank.end, coupler.start)

@@ -1,16 +1,14 @@
-"""Every kind of contact: derivatives of its gap and way, and its file."""
+"""Every kind of contact: derivatives of its gap and of how far it slides, and its file."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelError
-from mbsd.arrays.packing import pack
-from mbsd.equations.assembly import tabulate
-from mbsd.model.contact import CONTACT_KINDS
+from mbsd.model.contact import CONTACT_KINDS, ContactKind
+from mbsd.testing import check_joint, contact_kinds
 
 
 def all_kinds() -> Mechanism:
@@ -24,20 +22,14 @@ def all_kinds() -> Mechanism:
     return m
 
 
-def test_every_kind_of_contact_has_the_gradient_and_curvature_of_its_gap() -> None:
-    packed = pack(all_kinds(), list(all_kinds().contacts.values()))
-    rng = np.random.default_rng(5)
-    q, v = rng.normal(size=9), rng.normal(size=9)
-    q[:3] = v[:3] = 0.0
-    h = 1e-5
-    at = [q - h * v, q, q + h * v]
-    rows = packed.first_row[-1]
-    phi, gamma, compact = np.zeros((3, rows)), np.zeros((3, rows)), np.zeros((3, rows, 6))
-    tabulate(packed.system, np.zeros((3, 1, 3)), np.array(at), np.array([v] * 3), packed.ws, phi, compact, gamma)
-    rates = packed.spread(compact[1]) @ v[3:]
-    np.testing.assert_allclose((phi[2] - phi[0]) / (2 * h), rates, atol=1e-8)
-    np.testing.assert_allclose((phi[2] - 2 * phi[1] + phi[0]) / h**2, -gamma[1], atol=1e-4)
-    assert {name for joint in packed.joints for name in joint.kind.constraints} == {
+@pytest.mark.parametrize("kind", contact_kinds(), ids=lambda kind: kind.name)
+def test_gaps_and_sliding_agree_with_differences(kind: ContactKind) -> None:
+    check_joint(kind)
+
+
+def test_contacts_are_made_of_these_constraints() -> None:
+    """Each must stand in the test above."""
+    assert {name for kind in contact_kinds() for name in kind.constraints} == {
         "linear",
         "turn",
         "radial",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import math
 import pkgutil
 
@@ -11,134 +10,55 @@ import pytest
 
 import mbsd.model.forces
 from mbsd import Mechanism, ModelError, curve, harmonic
-from mbsd.arrays.friction_along import normals_along
-from mbsd.arrays.laws import compiled_laws
-from mbsd.arrays.loads import pack_loads
-from mbsd.arrays.loads_along import loads_along
-from mbsd.arrays.packing import Packed, pack
-from mbsd.base.codes import POTENTIAL_TERMS, PUSH
-from mbsd.equations.assembly import tabulate
-from mbsd.equations.joint_friction import tabulate_friction
-from mbsd.equations.loads import tabulate_loads
-from mbsd.model.force import FORCE_KINDS, ForceKind
-from mbsd.results.energy import potential_of
-
-
-def all_kinds() -> list[ForceKind]:
-    """Import every file of mbsd/model/forces."""
-    for module in pkgutil.iter_modules(mbsd.model.forces.__path__):
-        importlib.import_module(f"mbsd.model.forces.{module.name}")
-    return list(FORCE_KINDS.values())
-
-
-def example(kind: ForceKind, seed: int, to_ground: bool = False) -> tuple[Mechanism, Packed]:
-    """One force of a kind between two bodies with centres of mass off their frames."""
-    random = np.random.default_rng(seed)
-    m = Mechanism("example")
-    first = m.ground if to_ground else m.body("first", 1.0, list(random.normal(size=2)), 1.0)
-    second = m.body("second", 1.0, list(random.normal(size=2)), 1.0)
-    assert kind.example is not None
-    kind.example(m, first.at(*random.normal(size=3)), second.at(*random.normal(size=3)))
-    return m, pack(m)
-
-
-def motion(packed: Packed, seed: int, count: int = 40) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """A smooth random motion of all coordinates; ground rests."""
-    random = np.random.default_rng(seed + 50)
-    amplitude, phase = random.normal(size=(2, packed.coordinates))
-    t = np.linspace(0.0, 1.0, count)
-    q, v = np.zeros((2, count, packed.coordinates + 3))
-    q[:, 3:] = amplitude * np.sin(2.0 * t[:, None] + phase)
-    v[:, 3:] = 2.0 * amplitude * np.cos(2.0 * t[:, None] + phase)
-    return t, q, v
-
-
-def evaluate(packed: Packed, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(T, 3 nb) loads and (T,) their power; friction under the reactions of multipliers of 1, 2 ..."""
-    loads, laws = pack_loads(packed), compiled_laws(packed, 0.0, 1.0)
-    force, power = np.zeros_like(q), np.zeros(len(t))
-    tabulate_loads(packed.system, loads, laws, t, q, v, packed.ws, force, power)
-    if len(loads.rub):
-        rows = len(packed.ws.phi)
-        phi, gamma, compact = *np.zeros((2, len(t), rows)), np.zeros((len(t), rows, 6))
-        tabulate(packed.system, packed.drives(t), q, v, packed.ws, phi, compact, gamma)
-        normal = normals_along(packed, loads, q, compact, np.tile(1.0 + np.arange(rows), (len(t), 1)))
-        tabulate_friction(packed.system, loads, q, v, normal, packed.ws, force, power)
-    force[:, :3] = 0.0
-    return force, power
-
-
-KINDS = all_kinds()
+from mbsd.extend import CONSTANT, LINE, LINEAR, PUSH, Element, ForceKind, Marker, Term, add_force
+from mbsd.model.force import FORCE_KINDS
+from mbsd.testing import check_force, force_kinds
 
 
 def test_each_file_registers_its_kind() -> None:
-    files = {module.name for module in pkgutil.iter_modules(mbsd.model.forces.__path__)} - {"kind"}
-    assert files == {kind.name for kind in KINDS}
+    files = {module.name for module in pkgutil.iter_modules(mbsd.model.forces.__path__)}
+    assert files == {kind.name for kind in force_kinds()}
 
 
-@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
-def test_only_loads_from_outside_push(kind: ForceKind) -> None:
-    m, _packed = example(kind, 0)
-    [force] = m.forces.values()
-    assert kind.outside or all(element.kind != PUSH for element in kind.elements(force))
+@pytest.mark.parametrize("kind", force_kinds(), ids=lambda kind: kind.name)
+def test_power_reaction_and_potential(kind: ForceKind) -> None:
+    check_force(kind)
 
 
-@pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
-def test_power_is_force_times_velocity(kind: ForceKind, seed: int) -> None:
-    _m, packed = example(kind, seed)
-    t, q, v = motion(packed, seed)
-    force, power = evaluate(packed, t, q, v)
-    assert np.abs(force[:, 3:]).max() > 0.0, "an example that does nothing proves nothing"
-    np.testing.assert_allclose(power, (force * v)[:, 3:].sum(axis=1), rtol=1e-10, atol=1e-9 * np.abs(power).max())
+def _spring(**more) -> ForceKind:
+    """A spring of 120 N/m and no length, and what its kind says otherwise."""
+    elements = more.pop("elements", lambda force: (Element(LINE, (Term(LINEAR, 120.0),)),))
+    example = more.pop("example", lambda m, i, j: add_force(m, kind, "example", i, j, {}))
+    kind = ForceKind("example", elements, example, **more)
+
+    @kind.adds
+    def add(m, name: str, i: Marker, j: Marker):
+        return add_force(m, kind, name, i, j, {})
+
+    return kind
 
 
-@pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
-def test_pairs_act_and_react(kind: ForceKind, seed: int) -> None:
-    m, packed = example(kind, seed)
-    [force] = m.forces.values()
-    t, q, v = motion(packed, seed)
-    load = evaluate(packed, t, q, v)[0].reshape(len(t), -1, 3)
-    if kind.outside:  # nothing feels the opposite
-        acted = {force.j.body.name} | {one.j.body.name for one in kind.interactions(force, packed.masses)}
-        others = [b for b, name in enumerate(packed.body_names) if name not in acted]
-        assert not load[:, others].any()
-        return
-    place = q.reshape(len(t), -1, 3)
-    moment = load[..., 2] + place[..., 0] * load[..., 1] - place[..., 1] * load[..., 0]
-    size = np.abs(load).max()
-    np.testing.assert_allclose(load[..., :2].sum(axis=1), 0.0, atol=1e-12 * size)
-    np.testing.assert_allclose(moment.sum(axis=1), 0.0, atol=1e-11 * size)
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        ({"outside": True}, "example: a load from outside on 'second' acts on 'first', too"),
+        ({"elements": lambda force: (Element(PUSH, (Term(CONSTANT, 2.0),)),)}, "PUSH acts on one body alone"),
+        ({"elements": lambda force: (Element(LINE, (Term(CONSTANT, 0.0),)),)}, "the example gives no load"),
+        ({"potential": lambda force, masses, q: 0.1 * q[:, 3] ** 2}, r"loads against -dV/dq, x of 'first'"),
+        ({"example": lambda m, i, j: None}, "its example must add one 'example' and no other force"),
+    ],
+)  # fmt: skip
+def test_a_wrong_force_is_found(more: dict, says: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    kind = _spring(**more)
+    monkeypatch.setitem(FORCE_KINDS, "example", kind)
+    with pytest.raises(AssertionError, match=says):
+        check_force(kind)
 
 
-@pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
-def test_elastic_forces_are_the_slope_of_their_potential(kind: ForceKind, seed: int) -> None:
-    m, packed = example(kind, seed)
-    [force] = m.forces.values()
-    t, q, v = motion(packed, seed, 7)
-    elements = kind.elements(force)
-    terms = {term.kind for element in elements for term in element.terms}
-    potential = potential_of(packed, force, q)
-    if not terms & set(POTENTIAL_TERMS) and not potential.any():
-        assert kind.potential is None or kind.name == "rotating_frame", "a law of time has no potential"
-        return
-    load = loads_along(packed, pack_loads(packed), compiled_laws(packed, 0.0, 1.0), t, q, np.zeros_like(v))
-    resting = _resting_part(packed, elements, q) if elements else np.zeros_like(q)
-    for c in range(3, q.shape[1]):
-        step = np.zeros(q.shape[1])
-        step[c] = 1e-6
-        slope = (potential_of(packed, force, q + step) - potential_of(packed, force, q - step)) / 2e-6
-        np.testing.assert_allclose(load[:, c] - resting[:, c], -slope, rtol=2e-6, atol=2e-6 * np.abs(load).max())
-
-
-def _resting_part(packed: Packed, elements, q: np.ndarray) -> np.ndarray:
-    """Loads at rest that do not come from a potential: constants, and curves of rate at zero."""
-    loads, laws = pack_loads(packed), compiled_laws(packed, 0.0, 1.0)
-    elastic = np.isin(loads.term[:, 0], POTENTIAL_TERMS)
-    loads.number[elastic, 0] = 0.0
-    return loads_along(packed, loads, laws, np.zeros(len(q)), q, np.zeros_like(q))
+def test_a_right_force_passes(monkeypatch: pytest.MonkeyPatch) -> None:
+    kind = _spring()
+    monkeypatch.setitem(FORCE_KINDS, "example", kind)
+    check_force(kind)
 
 
 def test_spring_mass_swings_with_the_root_of_stiffness_over_mass() -> None:

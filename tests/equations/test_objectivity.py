@@ -12,9 +12,10 @@ from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
 from mbsd.model.force import ForceKind
 from mbsd.results.energy import potential_of
-from tests.equations.test_forces import KINDS, example, motion
+from mbsd.testing import force_kinds
+from mbsd.testing.forces import example, motion
 
-PAIRS = [kind for kind in KINDS if not kind.outside]
+PAIRS = [kind for kind in force_kinds() if not kind.outside]
 
 
 def carried(q: np.ndarray, v: np.ndarray, angle: float, shift: np.ndarray, spin: np.ndarray) -> tuple[np.ndarray, ...]:

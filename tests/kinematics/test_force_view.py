@@ -12,7 +12,8 @@ from mbsd.arrays.reactions import marker_places
 from mbsd.model.force import ForceKind
 from mbsd.results.forces import Moved, force_view
 from mbsd.results.solution import Solution
-from tests.equations.test_forces import all_kinds, example
+from mbsd.testing import force_kinds
+from mbsd.testing.forces import example
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 HALF = 0.0025
@@ -63,7 +64,7 @@ def run(kind: ForceKind, seed: int, to_ground: bool) -> Solution:
 @pytest.mark.filterwarnings("ignore::mbsd.ModelWarning")
 @pytest.mark.filterwarnings("ignore::mbsd.InitialConditionWarning")
 @pytest.mark.parametrize("to_ground", [False, True], ids=["two_bodies", "to_ground"])
-@pytest.mark.parametrize("kind", all_kinds(), ids=lambda kind: kind.name)
+@pytest.mark.parametrize("kind", force_kinds(), ids=lambda kind: kind.name)
 def test_every_kind_fulfils_newton_euler_and_its_power_is_the_work(kind: ForceKind, to_ground: bool) -> None:
     sol = run(kind, 3, to_ground)
     [view] = sol.forces.values()
@@ -93,7 +94,7 @@ def test_every_kind_fulfils_newton_euler_and_its_power_is_the_work(kind: ForceKi
 
 @pytest.mark.filterwarnings("ignore::mbsd.ModelWarning")
 @pytest.mark.filterwarnings("ignore::mbsd.InitialConditionWarning")
-@pytest.mark.parametrize("kind", all_kinds(), ids=lambda kind: kind.name)
+@pytest.mark.parametrize("kind", force_kinds(), ids=lambda kind: kind.name)
 def test_what_is_measured_has_its_rate_and_pushes_by_its_effort(kind: ForceKind) -> None:
     sol = run(kind, 5, False)
     [view] = sol.forces.values()

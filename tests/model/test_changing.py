@@ -15,8 +15,7 @@ from mbsd import Mechanism, ModelError, constant_rate, harmonic
 from mbsd.model.contact import CONTACT_KINDS, ContactKind
 from mbsd.model.force import ForceKind
 from mbsd.model.joint import JointKind
-from tests.equations.test_forces import all_kinds as force_kinds
-from tests.equations.test_joints import all_kinds as joint_kinds
+from mbsd.testing import force_kinds, joint_kinds
 
 for module in pkgutil.iter_modules(mbsd.model.contacts.__path__):
     importlib.import_module(f"mbsd.model.contacts.{module.name}")

@@ -58,6 +58,13 @@ def test_python_blocks_run(document: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
 
 
+def test_extending_uses_the_public_doors_alone() -> None:
+    page = ROOT / "docs" / "extending.md"
+    imported = {name for code in blocks(page, "python") for name in re.findall(r"^from ([\w.]+) import", code, re.M)}
+    ours = {name for name in imported if name.split(".")[0] in ("mbsd", "tests", "tools")}
+    assert ours == {"mbsd", "mbsd.extend", "mbsd.extend.integrators", "mbsd.testing"}
+
+
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_make_targets_exist(document: Path) -> None:
     environment = {key: value for key, value in os.environ.items() if key not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS")}

@@ -107,6 +107,17 @@ def test_the_readme_runs_in_an_empty_environment(archives: list[Path], empty: Pa
     assert Path(told[-1]).parent == package
 
 
+def test_a_kind_of_ones_own_is_checked_in_an_empty_environment(
+    archives: list[Path], empty: Path, tmp_path: Path
+) -> None:
+    """The first joint of docs/extending.md, which has no more than the wheel at hand."""
+    _installed(empty, archives[1])
+    page = (ROOT / "docs" / "extending.md").read_text()
+    (block,) = (code for code in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "PARALLEL_ARM = " in code)
+    code = f"{block}\nfrom mbsd.testing import check_joint\ncheck_joint(PARALLEL_ARM, seeds=[0])\nprint('agrees')"
+    assert _run(empty / "bin" / "python", code, tmp_path, NUMBA_DISABLE_JIT="1")[0] == "agrees"
+
+
 def _compiled_before(folder: Path, sources: Path) -> None:
     """The kernels that the runs below need, from where this clone keeps them."""
     code = README_BLOCK + SIMULATED + COUNTED + FOLDERS

@@ -28,12 +28,11 @@ from mbsd.model.laws.examples import EXAMPLES
 from mbsd.model.laws.function import Function
 from mbsd.saving.document import build, document
 from mbsd.saving.schema import content, schema
+from mbsd.testing import force_kinds, joint_kinds
+from mbsd.testing.forces import evaluate
+from mbsd.testing.forces import example as force_example
+from mbsd.testing.forces import motion as force_motion
 from shared.stage.paths import ROOT
-from tests.equations.test_forces import all_kinds as force_kinds
-from tests.equations.test_forces import evaluate
-from tests.equations.test_forces import example as force_example
-from tests.equations.test_forces import motion as force_motion
-from tests.equations.test_joints import all_kinds
 from tests.models import four_bars
 
 
@@ -62,7 +61,7 @@ def test_a_force_with_a_python_function_cannot_be_saved(tmp_path: Path) -> None:
         force_example(FORCE_KINDS["user_force"], 0)[0].save(tmp_path / "model.json")
 
 
-@pytest.mark.parametrize("kind", [kind for kind in all_kinds() if kind.saved], ids=lambda kind: kind.name)
+@pytest.mark.parametrize("kind", [kind for kind in joint_kinds() if kind.saved], ids=lambda kind: kind.name)
 def test_every_kind_comes_back(kind: JointKind, tmp_path: Path) -> None:
     m = _example(kind)
     jsonschema.validate(document(m), schema())

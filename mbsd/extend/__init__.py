@@ -1,6 +1,7 @@
-"""What joints, forces, contacts and integrators of one's own are made of; docs/extending.md uses nothing else.
+"""What joints, drivers, forces and contacts of one's own are made of; docs/extending.md shows some.
 
-Rooms below may move; these names stay.
+Rooms below may move; these names stay. What integrators need is in :mod:`mbsd.extend.integrators`, because it loads the
+compiler; :mod:`mbsd.testing` checks a kind.
 """
 
 from mbsd.base.codes import (
@@ -17,7 +18,7 @@ from mbsd.base.codes import (
     PUSH,
     TURN,
 )
-from mbsd.model.adding.contacts import add_contact
+from mbsd.model.adding.contacts import add_contact, frictions_given, stop_given
 from mbsd.model.adding.forces import Amount, add_force, amount_given, amounts_given
 from mbsd.model.adding.joints import Law, join, radii_given
 from mbsd.model.body import Body, Marker
@@ -59,6 +60,7 @@ __all__ = [
     "add_force",
     "amount_given",
     "amounts_given",
+    "frictions_given",
     "join",
     "length_given",
     "number_given",
@@ -66,4 +68,5 @@ __all__ = [
     "register_contact",
     "register_force",
     "register_joint",
+    "stop_given",
 ]

@@ -1,0 +1,81 @@
+"""What an integrator of one's own works with; docs/extending.md shows one. Importing this loads the compiler.
+
+derivative, project     rates of a state, and a state closed onto the constraints
+begin, fixed_step       the start of ``advance``, and the next step of a method with fixed ones
+record, record_here     outputs between steps, and at the end of a step
+kernel, apart, internal, inlined    how its functions are compiled
+"""
+
+from mbsd.compiling.jit import apart, inlined, internal, kernel
+from mbsd.dynamics.integrators.kind import Integrator, Option, without_sliding
+from mbsd.dynamics.integrators.kind import register as register_integrator
+from mbsd.dynamics.integrators.others.outside import advance_with
+from mbsd.dynamics.integrators.step_size import allowed, first_step
+from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.reference.full_matrix import factor_full, solve_full
+from mbsd.dynamics.reference.projection import project
+from mbsd.dynamics.reference.tangents import differentiate, too_large
+from mbsd.dynamics.state import (
+    ACCEPTED,
+    ERROR,
+    EVALUATIONS,
+    NEXT,
+    NO_CONVERGENCE,
+    NOT_FINITE,
+    PAUSED,
+    POWER,
+    REACHED,
+    REJECTED,
+    STEP,
+    STEP_TOO_SMALL,
+    TIME,
+    WORK,
+    Output,
+    Settings,
+    State,
+    begin,
+    fixed_step,
+    record,
+    record_here,
+)
+
+__all__ = [
+    "ACCEPTED",
+    "ERROR",
+    "EVALUATIONS",
+    "NEXT",
+    "NOT_FINITE",
+    "NO_CONVERGENCE",
+    "PAUSED",
+    "POWER",
+    "REACHED",
+    "REJECTED",
+    "STEP",
+    "STEP_TOO_SMALL",
+    "TIME",
+    "WORK",
+    "Integrator",
+    "Option",
+    "Output",
+    "Settings",
+    "State",
+    "advance_with",
+    "allowed",
+    "apart",
+    "begin",
+    "derivative",
+    "differentiate",
+    "factor_full",
+    "first_step",
+    "fixed_step",
+    "inlined",
+    "internal",
+    "kernel",
+    "project",
+    "record",
+    "record_here",
+    "register_integrator",
+    "solve_full",
+    "too_large",
+    "without_sliding",
+]

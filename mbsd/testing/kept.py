@@ -1,0 +1,62 @@
+"""What change() and files need of a kind: its params are the arguments of the function that adds one, by name."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from mbsd.base.errors import ModelError
+from mbsd.mechanism import Mechanism
+from mbsd.model.change import law_name
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
+from mbsd.saving.document import build, document
+
+
+def check_kept(m: Mechanism) -> None:
+    """Change each number of what joins the bodies of ``m`` to what it is, then write the model and read it back.
+
+    Raises AssertionError where something else comes of it. Functions of the user are left out: no file holds them.
+    """
+    for table in ("joints", "drivers", "contacts", "forces"):
+        for name, old in list(getattr(m, table).items()):
+            kind = old.kind
+            if kind.add is None:
+                raise AssertionError(f"{kind.name}: decorate the function that adds one with @{kind.name.upper()}.adds")
+            if not kind.saved:
+                continue
+            for key, value in _values(old).items():
+                _change(m, name, kind.name, key, value)
+            _compare(kind.name, "change()", old, getattr(m, table)[name])
+            try:
+                loaded = build(document(m), Mechanism)
+            except ModelError as error:
+                raise AssertionError(f"{kind.name}: the example cannot be saved: {error}") from error
+            _compare(kind.name, "a saved file", old, getattr(loaded, table)[name])
+
+
+def _values(one: Joint | Force) -> dict[str, Any]:
+    values = dict(one.params)
+    if isinstance(one, Force):
+        return values | dict(one.laws)
+    if one.motion is not None and one.kind.add is not None:
+        values[law_name(one.kind.add)] = one.motion
+    return values
+
+
+def _change(m: Mechanism, name: str, kind: str, key: str, value: Any) -> None:
+    try:
+        m.change(name, **{key: value})
+    except (ModelError, TypeError) as error:
+        raise AssertionError(
+            f"{kind}: params hold '{key}', with which change() fails: {error}; keep the arguments of the function that "
+            "adds one under their names"
+        ) from error
+
+
+def _compare(kind: str, after: str, old: Joint | Force, new: Joint | Force) -> None:
+    if new.params != old.params or new.kind is not old.kind:
+        raise AssertionError(f"{kind}: after {after} params are {dict(new.params)} instead of {dict(old.params)}")
+    for side in "ij":
+        here, there = ((one.body.name, one.x, one.y, one.angle) for one in (getattr(old, side), getattr(new, side)))
+        if here != there:
+            raise AssertionError(f"{kind}: after {after} marker {side} is {there} instead of {here}")

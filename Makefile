@@ -4,6 +4,7 @@
 SHEET_PRESET := $(if $(filter undefined,$(origin PRESET)),draft,$(value PRESET))
 PRESET ?= preview
 FRAME ?= 0
+FRAMES ?=
 NAME ?=
 KIND ?=
 VIEW ?=
@@ -23,6 +24,7 @@ PYTEST ?= -n 2 --dist loadscope --no-loadscope-reorder
 # where no shell reads them. Python refuses what is no name (shared/stage/paths.py).
 override PRESET := $(value PRESET)
 override FRAME := $(value FRAME)
+override FRAMES := $(value FRAMES)
 override NAME := $(value NAME)
 override KIND := $(value KIND)
 override VIEW := $(value VIEW)
@@ -36,7 +38,7 @@ override ONLY := $(value ONLY)
 override SEED := $(value SEED)
 override EVERY := $(value EVERY)
 override MECHANISM = $(subst -,_,$*)
-export PRESET SHEET_PRESET FRAME NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N ONLY SEED EVERY
+export PRESET SHEET_PRESET FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N ONLY SEED EVERY
 
 PRESETS := draft preview production final
 ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
@@ -161,6 +163,9 @@ scene-ui-%: install always ## open the scene in an installed Blender
 scene-%: install always ## save the scene: out/<name>/<name>.blend
 	$(upto_shot)
 	@$(PICTURE) scene "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
+
+verify-%: install always ## solids, motion, some frames (FRAMES=0,30) and the film made again in scratch and compared
+	@$(PYTHON) -m studio.verify "$$MECHANISM" --preset "$$PRESET" --frames="$$FRAMES" $${SHOW:+--show="$$SHOW"}
 
 gallery: install ## posters of all mechanisms (PRESET) and the page that shows them: docs/gallery/
 	@for file in mechanisms/*/mechanism.py; do one=$${file%/mechanism.py}; one=$${one#mechanisms/}; \

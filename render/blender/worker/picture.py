@@ -68,11 +68,13 @@ def save_picture(scene: Any, job: Job, picture: Picture, over: Path | None) -> P
     import bpy
 
     from render.blender.worker import overlay
+    from render.blender.worker.plain_png import make_plain
 
     def save(path: Path) -> None:
         bpy.data.images["Render Result"].save_render(str(path), scene=scene)
         if job.flat is None:
             overlay.lay(path, over, job.scene.writing, job.states[picture.state].number)
+        make_plain(path)
 
     part = Path(picture.folder) / f".{picture.key}.part.png"
     save_whole(

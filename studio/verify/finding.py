@@ -1,0 +1,21 @@
+"""What a comparison found: the same, different, made from other inputs, or not there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Verdict = Literal["same", "differs", "outdated", "missing"]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One file, frame or film. ``outdated``: its inputs have changed since it was made, so nothing follows."""
+
+    what: str
+    verdict: Verdict
+    detail: str = ""
+
+    def __str__(self) -> str:
+        word = {"outdated": "made from other inputs", "missing": "not compared"}.get(self.verdict, self.verdict)
+        return f"{self.what}: {word}{', ' * bool(self.detail)}{self.detail}"

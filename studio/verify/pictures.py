@@ -1,0 +1,73 @@
+"""Pixels of chosen frames beside those rendered again."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+
+from render.frames.store import FrameIndex, FrameStore
+from shared.stage import jsonfile
+from shared.stage.errors import UserError
+from studio.verify.finding import Finding
+
+CHOSEN = 3
+"""Frames if none are named, in equal steps from the first."""
+
+
+def index_of(store: FrameStore) -> FrameIndex | None:
+    """Which picture each frame of the film shows; None if the film was never rendered here."""
+    return jsonfile.read(store.index, FrameIndex) if store.index.is_file() else None
+
+
+def chosen(words: str, count: int, mechanism: str) -> list[int]:
+    """Numbers of frames in ``0,30,60``, or three of them; raises UserError for what is no frame of the film."""
+    if not words.strip():
+        return sorted({k * count // CHOSEN for k in range(CHOSEN)})
+    found = []
+    for word in words.replace(",", " ").split():
+        if not word.isascii() or not word.isdigit() or int(word) >= count:
+            raise UserError(f"{mechanism}: there is no frame {word!r}; the film has frames 0 to {count - 1}")
+        found.append(int(word))
+    return sorted(set(found))
+
+
+def compared(frame: int, name: str, store: FrameStore, again: FrameStore) -> Finding:
+    """The picture of a frame beside the one rendered again; ``name`` is its file's in the film's index."""
+    what = f"frame {frame}"
+    old = store.read(name)
+    if old is None:
+        return Finding(what, "differs", f"{name} is gone, or is not the picture that was rendered any more")
+    new = next(iter(sorted(again.folder.glob(f"{name.partition('-')[0]}-*.png"))), None)
+    if new is None:
+        return Finding(what, "outdated", "the film was made from another motion, other solids, another shot or sources")
+    return pixels(what, old, new.read_bytes())
+
+
+def pixels(what: str, old: bytes, new: bytes) -> Finding:
+    """Two PNGs, decoded."""
+    one, other = _decoded(old), _decoded(new)
+    if one.shape != other.shape:
+        return Finding(what, "differs", f"{_size(one)} pixels, made again {_size(other)}")
+    far = np.abs(one.astype(np.int16) - other).max(axis=2)
+    if not far.any():
+        beside = "the same bytes" if old == new else "other bytes around the same pixels"
+        return Finding(what, "same", f"{_size(one)} pixels, {beside}")
+    rows, columns = np.nonzero(far)
+    return Finding(
+        what,
+        "differs",
+        f"{len(rows)} of {far.size} pixels by up to {far.max()} of 255, the first at ({columns[0]}, {rows[0]})",
+    )
+
+
+def _size(picture: np.ndarray) -> str:
+    return f"{picture.shape[1]}x{picture.shape[0]}"
+
+
+def _decoded(content: bytes) -> np.ndarray:
+    """Rows x columns x 3, 0..255."""
+    from PIL import Image
+
+    with Image.open(io.BytesIO(content)) as picture:
+        return np.asarray(picture.convert("RGB"))

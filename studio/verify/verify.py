@@ -1,0 +1,120 @@
+"""Everything of one mechanism made again in scratch, compared, and reported.
+
+What the author's files give (solids, motion, shot) is made by the same stages, what they give by frames and film by the
+same code, all in fresh processes; nothing that is there is touched.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections import Counter
+from contextlib import suppress
+from pathlib import Path
+
+from render.blender.scratch import scratch_folder
+from render.film.inputs import named
+from render.frames.store import FrameIndex, FrameStore
+from render.presets import Preset
+from shared.stage.console import fail, say
+from shared.stage.errors import UserError
+from shared.stage.paths import ROOT, Out, out_root
+from studio.verify import again, files, film, pictures
+from studio.verify.finding import Finding
+
+
+def run(name: str, preset: Preset, frames: str = "", show: str = "") -> int:
+    """Compare, say each finding, and return 1 if anything differs. Raises UserError if there is nothing to compare.
+
+    ``frames``: numbers such as ``0,30``; three frames of the film if empty.
+    """
+    out = Out(name)
+    if not out.motion.is_file():
+        raise UserError(f"{out.name}: {out.motion} is not there; make run-{_hyphens(out.name)} first")
+    home = out_root() / ".verify"
+    try:
+        with scratch_folder(home) as scratch:
+            found = _compared(out, preset, frames, show, scratch)
+    finally:
+        with suppress(OSError):
+            home.rmdir()  # unless another run uses it
+    for finding in found:
+        (say if finding.verdict in ("same", "missing") else _complain)("verify", f"{out.name}: {finding}")
+    return _sum(out.name, found)
+
+
+def _compared(out: Out, preset: Preset, frames: str, show: str, scratch: Path) -> list[Finding]:
+    store = FrameStore(out.frames(preset.name))
+    index = pictures.index_of(store)
+    wanted = pictures.chosen(frames, len(index.frames), out.name) if index else []  # told before the work
+    root = scratch / "out"
+    solids = out.parts.is_file()
+    for stage in (
+        ("parts", "solve", "shot") if solids else ("solve",)
+    ):  # masses are those of solids, where there are some
+        _stage(root, "mechanisms", stage, out.name)
+    made = root / out.name
+    found = [_of_parts(out, made)] if solids else [Finding("solids", "missing", "there are none")]
+    for what, path in (("motion", out.motion), ("skeleton", out.skeleton), ("shot", out.shot)):
+        if path.is_file() and (solids or path != out.shot):
+            found.append(files.compared(f"{what} ({path.name})", path, made / path.name))
+    if index is None or not solids:
+        hint = f"make film-{_hyphens(out.name)} PRESET={preset.name} first"
+        return [*found, Finding("frames and film", "missing", f"none of {preset.name} are there; {hint}")]
+    return [*found, *_of_pictures(out, preset, index, wanted, show, scratch)]
+
+
+def _of_pictures(
+    out: Out, preset: Preset, index: FrameIndex, wanted: list[int], show: str, scratch: Path
+) -> list[Finding]:
+    root, store = scratch / "out", FrameStore(out.frames(preset.name))
+    _stage(root, "studio.verify.again", out.name, again.told(preset), ",".join(map(str, wanted)), show)
+    made = FrameStore(root / out.name / "frames" / preset.name)
+    found = [pictures.compared(frame, index.frames[frame], store, made) for frame in wanted]
+    return [*found, film.compared(named(out.film(preset.name), show), scratch, store, index, preset)]
+
+
+def _of_parts(out: Out, again: Path) -> Finding:
+    """parts.json and all STL and STEP files: one finding, of the first that differs."""
+    described = files.compared("parts.json", out.parts, again / "parts" / "parts.json")
+    if described.verdict != "same":
+        return Finding(f"solids ({described.what})", described.verdict, described.detail)
+    here, there = out.parts_folder, again / "parts"
+    names = sorted({path.name for folder in (here, there) for path in folder.glob("*.st[el]*")})
+    found = [files.compared(name, here / name, there / name) for name in names]
+    wrong = [finding for finding in found if finding.verdict != "same"]
+    if wrong:
+        detail = f"{len(wrong)} of {len(found)} files, such as {wrong[0].what} {wrong[0].detail}"
+        return Finding("solids (STL, STEP)", "differs", detail)
+    return Finding("solids (parts.json, STL, STEP)", "same", f"{len(found) + 1} files")
+
+
+def _stage(root: Path, module: str, *arguments: str) -> None:
+    """A stage in a process of its own with its results below ``root``; raises UserError if it fails."""
+    command = [sys.executable, "-m", module, *arguments]
+    done = subprocess.run(command, cwd=ROOT, env=os.environ | {"MBSD_OUT": str(root)})
+    if done.returncode:
+        raise UserError(f"{' '.join(command[2:])}: ended with code {done.returncode}; its error stands above")
+
+
+def _complain(_: str, text: str) -> None:
+    fail(text)
+
+
+def _sum(name: str, found: list[Finding]) -> int:
+    """The last line, and the exit code."""
+    counts = Counter(finding.verdict for finding in found)
+    words = [f"{counts['same']} the same"]
+    if counts["missing"]:
+        words.append(f"{counts['missing']} not compared")
+    if counts["outdated"]:
+        words.append(f"{counts['outdated']} made from other inputs: make run-{_hyphens(name)}, then again")
+    if counts["differs"]:
+        words.append(f"{counts['differs']} different")
+    say("verify", f"{name}: {', '.join(words)}")
+    return int(bool(counts["differs"] or counts["outdated"]))
+
+
+def _hyphens(name: str) -> str:
+    return name.replace("_", "-")

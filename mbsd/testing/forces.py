@@ -33,8 +33,8 @@ def check_force(kind: ForceKind, seeds: Iterable[int] = SEEDS) -> None:
     """Check a kind of force between two bodies that move along random paths.
 
     Its power must be that of its loads; its loads must balance each other, unless it is a load from ``outside``;
-    loads of its elastic terms and of its ``potential`` must be the slope of the potential energy. Its example must act, and what
-    ``adds`` decorates must keep its arguments. Raises AssertionError.
+    loads of its elastic terms and of its ``potential`` must be the slope of the potential energy. Its example must
+    act, and what ``adds`` decorates must keep its arguments. Raises AssertionError.
     """
     for seed in seeds:
         m, packed = example(kind, seed)

@@ -10,12 +10,12 @@ from collections.abc import Iterable
 import numpy as np
 
 from mbsd.arrays.packing import Packed, pack
-from mbsd.compiling.jit import kernel
-from mbsd.equations.assembly import evaluate_nu, tabulate
+from mbsd.equations.assembly import tabulate
 from mbsd.mechanism import Mechanism
 from mbsd.model.joint import ROWS, Joint, JointKind
 from mbsd.testing.differences import compare, coordinate
 from mbsd.testing.kept import check_kept
+from mbsd.testing.velocity_rows import fill_nu
 
 SEEDS = range(5)
 TIME, STEP = 0.3, 1e-6
@@ -115,10 +115,5 @@ def _nu(packed: Packed, t: np.ndarray) -> np.ndarray:
     """(T, m) velocities that the drivers impose."""
     out = np.zeros((len(t), len(packed.ws.phi)))
     for k, drive in enumerate(packed.drives(t)):
-        _fill_nu(packed.system, drive, out[k])
+        fill_nu(packed.system, drive, out[k])
     return out
-
-
-@kernel
-def _fill_nu(system, drive, nu):
-    evaluate_nu(system, drive, nu)

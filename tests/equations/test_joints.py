@@ -54,7 +54,7 @@ def test_a_wrong_equation_is_found(table: str, says: str, monkeypatch: pytest.Mo
 
 
 def test_a_driver_whose_rate_is_wrong_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(mbsd.testing.joints, "_fill_nu", lambda system, drive, nu: None)
+    monkeypatch.setattr(mbsd.testing.joints, "fill_nu", lambda system, drive, nu: None)
     with pytest.raises(AssertionError, match=r"drive_angle, seed 0: J v - nu against dPhi/dt, row 0 \(angle\)"):
         check_joint(KINDS["drive_angle"])
 

@@ -1,0 +1,12 @@
+"""What drivers impose on velocities, as kernels give it; in a file of its own, so that no edit beside compiles it."""
+
+from __future__ import annotations
+
+from mbsd.compiling.jit import kernel
+from mbsd.equations.assembly import evaluate_nu
+
+
+@kernel
+def fill_nu(system, drive, nu):
+    """Fill nu (m,) for the values, rates and accelerations ``drive`` (motions, 3) of the laws."""
+    evaluate_nu(system, drive, nu)

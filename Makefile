@@ -172,6 +172,9 @@ gallery: install ## posters of all mechanisms (PRESET) and the page that shows t
 	"$(MAKE)" --no-print-directory "poster-$$one" PRESET="$$PRESET" || echo "gallery: no poster of $$one" >&2; done
 	@$(PICTURE) gallery
 
+showreel: install ## the finished films of PRESET, each under its title, as one; ONLY=four_bar,geneva_drive
+	@$(PICTURE) showreel --preset "$$PRESET" --only="$$ONLY" $${SHOW:+--show="$$SHOW"}
+
 new: install ## a new mechanism that already runs: make new NAME=my_linkage KIND=driven|simulated
 	@$(STAGE) new --kind="$${KIND:-driven}" -- "$$NAME"
 

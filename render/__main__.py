@@ -48,6 +48,12 @@ def main() -> int | None:
         if command == "still":
             sub.add_argument("--frame", type=int, default=0, help="number of the frame, from 0")
     commands.add_parser("gallery", help="docs/gallery/: every mechanism that has a poster")
+    reel = commands.add_parser("showreel", help="the finished films, each under its title, as one")
+    reel.add_argument("--preset", default="preview", help=f"{', '.join(PRESETS)}; preview if not given")
+    reel.add_argument("--only", default="", help="these films in this order: four_bar,geneva_drive; all if not given")
+    reel.add_argument(
+        "--show", default="", help="the films that show this; those that show what shot.py says if not given"
+    )
     commands.add_parser("overview", help="a table of the runs that its standard input tells of")
     arguments = parser.parse_args()
     if arguments.command == "overview":
@@ -58,6 +64,11 @@ def main() -> int | None:
         from render import gallery
 
         return gallery.run()
+    if arguments.command == "showreel":
+        from render.showreel import showreel
+
+        showreel.run(preset_named(arguments.preset), arguments.only, show_words(arguments.show))
+        return None
     name, command = mechanism_name(arguments.name), arguments.command.replace("_", "-")
     if command == "plots":
         from render import plots

@@ -1,1 +1,1 @@
-"""Same inputs, same outputs: a mechanism's files made again in fresh processes and compared with those that are there."""
+"""Same inputs, same outputs: files of a mechanism made again in fresh processes, beside those that are there."""

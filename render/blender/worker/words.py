@@ -38,7 +38,7 @@ def written(wide: int, high: int, writing: Writing, number: str) -> Any:
     return Image.fromarray(np.rint(255 * mean).astype(np.uint8), "RGBA")
 
 
-def _font(size: float, bold: bool = False) -> Any:
+def font_of(size: float, bold: bool = False) -> Any:
     """Inter, which Blender brings along; Pillow's own where it does not."""
     from PIL import ImageFont
 
@@ -57,7 +57,7 @@ def _title(draw: Any, page: tuple[int, int], edge: float, writing: Writing, numb
     lines = [(writing.title, page[1] / 16, INK), (number, page[1] / 23, INK), (writing.rate, page[1] / 27, QUIET)]
     for words, size, ink in lines:
         if words:
-            font = _font(size, bold=words == writing.title)
+            font = font_of(size, bold=words == writing.title)
             draw.text((edge + shadow, y + shadow), words, fill=(0, 0, 0, 150), font=font, anchor="la")
             draw.text((edge, y), words, fill=ink, font=font, anchor="la")
             y += 1.4 * size
@@ -66,7 +66,7 @@ def _title(draw: Any, page: tuple[int, int], edge: float, writing: Writing, numb
 def _legend(draw: Any, page: tuple[int, int], edge: float, writing: Writing) -> None:
     """A card in its corner: arrow, number and word in each row."""
     size = page[1] / 25
-    font = _font(size)
+    font = font_of(size)
     row, pad, gap = 1.5 * size, 0.7 * size, 0.8 * size
     arrows = max(2.6 * ARC * size if one.sweep else one.length * page[0] for one in writing.legend)
     numbers = max(draw.textlength(one.number, font=font) for one in writing.legend)

@@ -1,0 +1,162 @@
+"""Films and titles as one file: copied where their parameters are the same, encoded anew where they are not."""
+
+from __future__ import annotations
+
+import io
+import subprocess
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from render.frames import encode
+from render.frames.film_file import refuse_other_than
+from render.presets import Preset
+from render.showreel import card
+from render.showreel.card import Title
+from render.showreel.clip import Clip, read_clip
+from shared.stage.console import say
+from shared.stage.errors import UserError
+from shared.stage.files import whole_file
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+PATIENCE = 3600.0
+"""Seconds for ffmpeg to join or encode one film."""
+
+
+def join(films: Sequence[tuple[Path, Title]], preset: Preset, target: Path, scratch: Path) -> list[Clip]:
+    """Write ``target`` from films under their titles, with a chapter for each; returns its clips in order.
+
+    The films' most frequent rate is that of all. Raises UserError naming the film that does not decode.
+    """
+    clips = [read_clip(path) for path, _ in films]
+    fps = Counter(clip.fps for clip in clips).most_common(1)[0][0]
+    row: list[Clip] = []
+    for number, (clip, (path, title)) in enumerate(zip(clips, films, strict=True)):
+        place = scratch / f"{number:04d}"
+        first = _first_picture(path).resize((preset.width, preset.height))
+        encode.encode(card.pictures(first, title, fps), card.number(fps), preset, fps, place.with_suffix(".title.mp4"))
+        head = read_clip(place.with_suffix(".title.mp4"))
+        if clip.parameters != head.parameters:
+            say("showreel", f"{path.name}: encoded again, {_difference(clip, head)}")
+            clip = _encoded_anew(clip, preset, fps, place.with_suffix(".film.mp4"))
+        row += [head, clip]
+    _refuse_unlike(row)
+    with whole_file(target) as part:
+        _concatenate(row, [title for _, title in films], part, scratch)
+        _check(row, [path for path, _ in films], part, target.name, preset, fps)
+    return row
+
+
+def _difference(clip: Clip, other: Clip) -> str:
+    """Why a film cannot be copied, in words."""
+    one, two = clip.parameters, other.parameters
+    if clip.fps != other.fps:
+        return f"{clip.fps} frames a second, not {other.fps}"
+    if one.size != two.size:
+        return f"{one.size} pixels, not {two.size}"
+    return "its encoder had other settings"
+
+
+def _encoded_anew(clip: Clip, preset: Preset, fps: int, target: Path) -> Clip:
+    """The film at this size and rate."""
+    wide, high = preset.width, preset.height
+    fit = f"fps={fps},scale={wide}:{high}:force_original_aspect_ratio=decrease:flags=lanczos"
+    fit += f",pad={wide}:{high}:(ow-iw)/2:(oh-ih)/2,setsar=0"
+    settings = list(encode.SETTINGS)
+    at = settings.index("-vf") + 1
+    settings[at] = f"{fit},{settings[at]}"
+    _ffmpeg(clip.path.name, "-i", str(clip.path), "-map", "0:v:0", *settings, str(target))
+    return read_clip(target)
+
+
+def _refuse_unlike(row: Sequence[Clip]) -> None:
+    for clip in row:
+        if clip.parameters != row[0].parameters:
+            raise UserError(f"{clip.path.name}: its parameters differ from those of its neighbours, also encoded anew")
+
+
+def _concatenate(row: Sequence[Clip], titles: Sequence[Title], target: Path, scratch: Path) -> None:
+    """ffmpeg's concat demuxer, which copies the packets; players show the chapters."""
+    listing, chapters, at = ["ffconcat version 1.0"], [";FFMETADATA1"], 0
+    for clip in row:
+        listing.append(f"file '{_quoted(clip.path.resolve())}'")
+        listing.append(f"duration {clip.frames / clip.fps:.9f}")
+    for k, title in enumerate(titles):
+        frames = row[2 * k].frames + row[2 * k + 1].frames
+        chapters += ["[CHAPTER]", f"TIMEBASE=1/{row[0].fps}", f"START={at}", f"END={at + frames}"]
+        chapters.append(f"title={_escaped(title.name)}")
+        at += frames
+    (scratch / "list.txt").write_text("\n".join(listing) + "\n")
+    (scratch / "chapters.txt").write_text("\n".join(chapters) + "\n")
+    _ffmpeg(
+        target.name,
+        *(
+            "-f",
+            "concat",
+            "-safe",
+            "0",
+            "-auto_convert",
+            "0",
+            "-i",
+            str(scratch / "list.txt"),
+            "-i",
+            str(scratch / "chapters.txt"),
+        ),
+        *("-map", "0:v:0", "-map_metadata", "1", "-map_chapters", "1", "-c", "copy"),
+        *("-movflags", "+faststart", "-fflags", "+bitexact", str(target)),
+    )
+
+
+def _check(row: Sequence[Clip], films: Sequence[Path], part: Path, name: str, preset: Preset, fps: int) -> None:
+    """Every packet is there in order, and every frame decodes; else the film that does not is named."""
+    count = sum(clip.frames for clip in row)
+    try:
+        refuse_other_than(part, name, encode.ffmpeg(), count, preset, fps, PATIENCE)
+    except UserError:
+        for path in films:
+            _first_picture(path, whole=True)
+        raise
+    if read_clip(part).packets != tuple(packet for clip in row for packet in clip.packets):
+        raise UserError(f"{name}: not every packet of the films was copied; run it again")
+
+
+def _first_picture(film: Path, whole: bool = False) -> Image:
+    """The first picture; ``whole``: the film is decoded to its end. Raises UserError naming the film if that fails."""
+    from PIL import Image
+
+    command = [encode.ffmpeg(), "-v", "error", *["-xerror"] * whole, "-i", str(film)]
+    command += ["-map", "0:v:0", "-frames:v", "1", "-f", "image2pipe", "-c:v", "png", "-"]
+    command += ["-map", "0:v:0", "-f", "null", "-"] * whole
+    done = subprocess.run(command, capture_output=True, timeout=PATIENCE)
+    try:
+        picture = Image.open(io.BytesIO(done.stdout)).convert("RGB")
+        if whole and (done.returncode or done.stderr.strip()):
+            raise ValueError
+        return picture
+    except (OSError, SyntaxError, ValueError) as error:
+        said = done.stderr.decode(errors="replace").strip().splitlines()
+        reason = said[-1] if said else "it has no picture"
+        raise UserError(f"{film}: the film does not decode ({reason}); remove it and make it again") from error
+
+
+def _ffmpeg(name: str, *arguments: str) -> None:
+    command = [encode.ffmpeg(), "-y", "-v", "error", *arguments]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=PATIENCE)
+    except subprocess.TimeoutExpired:
+        raise UserError(f"{name}: ffmpeg took longer than {PATIENCE:.0f} s; run it again") from None
+    if done.returncode:
+        said = (done.stderr.strip().splitlines() or [f"code {done.returncode}"])[-1]
+        raise UserError(f"{name}: ffmpeg failed: {said}")
+
+
+def _quoted(path: Path) -> str:
+    return str(path).replace("'", r"'\''")
+
+
+def _escaped(words: str) -> str:
+    """For ffmpeg's metadata files."""
+    return "".join(f"\\{letter}" if letter in "=;#\\\n" else letter for letter in words)

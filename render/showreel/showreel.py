@@ -1,0 +1,72 @@
+"""Which films, in which order, and out/films/showreel-<preset>.mp4."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from pathlib import Path
+
+from render.blender.scratch import scratch_folder
+from render.film.inputs import named
+from render.gallery.page import sentences
+from render.presets import Preset
+from render.report import description
+from render.showreel.card import Title
+from render.showreel.join import join
+from shared.stage.console import duration, say
+from shared.stage.errors import UserError
+from shared.stage.paths import Out, known_name, mechanism_folder, mechanism_names, out_root, variants_in
+
+NAME = "showreel"
+
+
+def run(preset: Preset, only: str = "", show: str = "") -> Path:
+    """Join the finished films of a preset in alphabetical order, or those of ``only`` in its order.
+
+    Raises UserError if there is none, if one of ``only`` is missing, or if a film does not decode.
+    """
+    names = [known_name(word) for word in only.replace(",", " ").split()] or _all_names()
+    found = {name: film for name in names if (film := named(Out(name).film(preset.name), show)).is_file()}
+    left = [name for name in names if name not in found]
+    if not found or (only.strip() and left):
+        first = (left or ["<name>"])[0].replace("_", "-")
+        wanted = ", ".join(left) if only.strip() else "any mechanism"
+        raise UserError(
+            f"showreel: there is no film of {wanted} at {preset.name}; make film-{first} PRESET={preset.name}"
+        )
+    if any("-" not in name for name in left):
+        missing = [name for name in left if "-" not in name]  # a variant's film is one that somebody asked for
+        say("showreel", f"left out, since they have no film of {preset.name}: {', '.join(missing)}")
+    if NAME in mechanism_names():
+        raise UserError(f"showreel: a mechanism has this name, and so has its film; call mechanisms/{NAME} otherwise")
+    target = named(out_root() / "films" / f"{NAME}-{preset.name}.mp4", show)
+    home = out_root() / f".{NAME}"
+    say("showreel", f"{len(found)} films of {preset}, each under its title")
+    try:
+        with scratch_folder(home) as scratch:
+            row = join([(film, title_of(name)) for name, film in found.items()], preset, target, scratch)
+    finally:
+        with suppress(OSError):
+            home.rmdir()
+    seconds = sum(clip.frames for clip in row) / row[0].fps
+    copied = sum(clip.path.parent == target.parent for clip in row)
+    say(
+        NAME,
+        f"{target}: {duration(seconds)}, {copied} films copied as they are, {len(found) - copied} encoded again, "
+        f"{target.stat().st_size / 1e6:.1f} MB",
+    )
+    return target
+
+
+def title_of(name: str) -> Title:
+    """Words for a mechanism or variant; what it is comes from mechanism.py."""
+    owner, _, variant = name.partition("-")
+    words = owner.replace("_", " ") + (f": {variant.replace('_', ' ')}" if variant else "")
+    return Title(words[:1].upper() + words[1:], sentences(description(owner)))
+
+
+def _all_names() -> list[str]:
+    names = []
+    for owner in mechanism_names():
+        variants = variants_in(mechanism_folder(owner) / "mechanism.py")
+        names += [owner, *(f"{owner}-{variant}" for variant in variants)]
+    return names

@@ -1,0 +1,112 @@
+"""The showreel: films are copied packet by packet, titles stand before them, what differs is encoded anew and told."""
+
+from __future__ import annotations
+
+import io
+import re
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image, ImageDraw
+
+from render.frames import encode
+from render.presets import Preset
+from render.showreel import card, showreel
+from render.showreel.card import Title
+from render.showreel.clip import read_clip
+from shared.stage.errors import UserError
+
+TINY = Preset("tiny", 128, 72, 1)
+
+
+def film(folder: Path, name: str, count: int, fps: int = 30, size: tuple[int, int] = (128, 72)) -> Path:
+    """A ball that rolls."""
+    path = folder / "films" / f"{name}-tiny.mp4"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    content = []
+    for k in range(count):
+        page = Image.new("RGB", size, (20, 40, 70))
+        ImageDraw.Draw(page).ellipse((3 * k, 20, 3 * k + 30, 50), fill=(250, 160, 60))
+        buffer = io.BytesIO()
+        page.save(buffer, format="PNG")
+        content.append(buffer.getvalue())
+    encode.encode(content, count, Preset("tiny", *size, 1), fps, path)
+    return path
+
+
+def test_films_are_joined(out_root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    first, second = film(out_root, "four_bar", 20), film(out_root, "pendulum", 33)
+    other = film(out_root, "jansen_leg", 24, fps=24, size=(64, 64))
+    variant = film(out_root, "chain-three", 11)
+    target = showreel.run(TINY)
+    said = capsys.readouterr().out
+    assert "left out, since they have no film of tiny: belt_drive, " in said
+    assert "jansen_leg-tiny.mp4: encoded again, 24 frames a second, not 30" in said
+    assert "3 films copied as they are, 1 encoded again" in said
+    reel, title = read_clip(target), card.number(30)
+    assert reel.frames == 4 * title + 11 + 20 + 30 + 33
+    at = title
+    for path, frames in ((variant, 11), (first, 20), (other, 30), (second, 33)):
+        found = reel.packets[at : at + frames]
+        assert (found == read_clip(path).packets) is (path != other)  # as they are, in alphabetical order
+        at += frames + title
+    listing = subprocess.run([encode.ffmpeg(), "-i", str(target)], capture_output=True, text=True).stderr
+    assert re.findall(r"title\s*: (.*)", listing) == ["Chain: three", "Four bar", "Jansen leg", "Pendulum"]
+    assert "start 2.966667, end 6.233333" in listing  # a chapter begins with its title
+    assert sorted(path.name for path in out_root.iterdir()) == ["films"]
+    before = target.read_bytes()
+    assert showreel.run(TINY).read_bytes() == before  # same films, same bytes; it is no film of its own
+
+
+def test_only_some_in_their_order(out_root: Path) -> None:
+    first, second = film(out_root, "four_bar", 9), film(out_root, "pendulum", 7)
+    target = showreel.run(TINY, "pendulum, four-bar")
+    title = card.number(30)
+    assert read_clip(target).packets[title : title + 7] == read_clip(second).packets
+    assert read_clip(target).packets[-9:] == read_clip(first).packets
+
+
+def test_what_is_missing_or_damaged_is_named(out_root: Path) -> None:
+    with pytest.raises(UserError, match="there is no film of any mechanism at tiny; make film-belt-drive PRESET=tiny"):
+        showreel.run(TINY)
+    path = film(out_root, "four_bar", 20)
+    with pytest.raises(UserError, match="there is no film of pendulum at tiny; make film-pendulum"):
+        showreel.run(TINY, "four_bar,pendulum")
+    content = path.read_bytes()
+    start = content.index(b"mdat") + 700
+    path.write_bytes(content[:start] + bytes(400) + content[start + 400 :])
+    with pytest.raises(UserError, match=r"four_bar-tiny\.mp4: the film does not decode"):
+        showreel.run(TINY)
+    path.write_bytes(b"no film")
+    with pytest.raises(UserError, match=r"four_bar-tiny\.mp4 is not a film .*; remove it and make it again"):
+        showreel.run(TINY)
+    assert [one.name for one in path.parent.iterdir()] == [path.name]
+
+
+def test_a_title_leads_to_the_film() -> None:
+    first = Image.effect_noise((160, 90), 80).convert("RGB")
+    pages = [np.asarray(Image.open(io.BytesIO(page))) for page in card.pictures(first, Title("Crank", "It turns."), 30)]
+    assert len(pages) == card.number(30) == 78
+    middle = pages[39]
+    assert middle.max() > 220  # the name
+    assert middle.mean() < 0.5 * np.asarray(first).mean()
+    assert np.array_equal(middle, pages[45])
+    far = [np.abs(page.astype(int) - np.asarray(first)).mean() for page in pages[-14:]]
+    assert far == sorted(far, reverse=True)
+    assert far[-1] < 6
+    few = list(card.pictures(first, Title("Crank"), 1))
+    assert len(few) == card.number(1) == 3
+
+
+@pytest.mark.parametrize(
+    "words", ["Wheel", "A mechanism with a name that is far too long for one line of a title " * 2]
+)
+def test_words_stay_inside(words: str) -> None:
+    drawn = card._words((320, 180), Title(words, "It is said at length, over and over again. " * 20))[..., 3]
+    assert drawn.any()
+    edge = round(320 * card.LEFT * 0.9)
+    assert not drawn[:, :edge].any()
+    assert not drawn[:, -edge:].any()
+    assert not drawn[-10:].any()

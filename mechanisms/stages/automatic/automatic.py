@@ -174,12 +174,15 @@ class Automatic:
             heights_of = heights(self.decided, layout.layered, self.sizes.thickness, needs, 2 * pivot.fit.axial)
         return heights_of
 
-    def solids(self) -> Bodies:
-        """Every piece by the body it moves with, in mm; the first of each list is the body's main piece."""
+    def solids(self, engraved_too: bool = True) -> Bodies:
+        """Every piece by the body it moves with, in mm; the first of each list is the body's main piece.
+
+        ``engraved_too``: the base with its names, rule and dial, which cost as much as a link.
+        """
         from mechanisms.stages.automatic.assembly.built import built
         from shared.shapes.bodies import Bodies
 
-        made = Bodies(built(self.plan(), self.heights) | self._replaced)
+        made = Bodies(built(self.plan(), self.heights, engraved_too) | self._replaced)
         for body in self.layout.apart.intersection(self.m.bodies):
             made.leave_out(body)
         for rod, joint in self.layout.rods.items():

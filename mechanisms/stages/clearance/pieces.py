@@ -6,7 +6,7 @@ import hashlib
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from mechanisms.stages.clearance.tree import FacetTree
 from mechanisms.stages.parts_files import read_triangles
 from shared.contract import Parts
 from shared.stage.errors import UserError
+
+if TYPE_CHECKING:
+    from mechanisms.stages.clearance.search.outline import Outline
 
 LEVEL = 1e-6
 """A facet whose corners differ less in height is horizontal (mm)."""
@@ -83,6 +86,11 @@ class MeshPiece:
         """(n,): twice the area of each facet (mm^2)."""
         p, q = (self.triangles[:, k] - self.triangles[:, 0] for k in (1, 2))
         return np.linalg.norm(np.cross(p, q), axis=1)
+
+    @cached_property
+    def outlines(self) -> dict[tuple[float, float], Outline | None]:
+        """Those that were asked for, by their heights (mm)."""
+        return {}
 
     @cached_property
     def manifold(self) -> Any:

@@ -21,8 +21,6 @@ GROUP = 32
 """Boxes that are looked at together."""
 MANY = 4_000_000
 """Pairs of boxes in one go."""
-FEW = 1500
-"""Points of a surface that are compared with those of another; of more, some are left out, evenly."""
 
 
 def turn_gap(first: np.ndarray, second: np.ndarray, reach: float, limit: float = 0.0) -> tuple[float, float]:
@@ -33,23 +31,27 @@ def turn_gap(first: np.ndarray, second: np.ndarray, reach: float, limit: float =
     ``reach``; a gap that is seen to be below ``limit`` is not looked at further. Holds for surfaces; whether one
     mesh is inside the other is to be seen at a single pose.
     """
-    a, b = first, second
-    best, proven = reach, 0.0
+    a, b, best, proven = first, second, reach, 0.0
+    for near in (reach, None):
+        a, b = _within(a, b, near or best), _within(b, a, near or best)
+        if not len(a) or not len(b):
+            return reach, reach
+        best = min(best, _reached(a, b))
     for _ in range(ROUNDS):
+        if best < limit:
+            return best, 0.0
         box_a, box_b = _boxes(a), _boxes(b)
         a, box_a = _near(a, box_a, _hull(box_b), best)
         b, box_b = _near(b, box_b, _hull(box_a), best)
         if not len(a) or not len(b):
             break
-        best = min(best, _reached(a, b))
-        if best < limit:
-            return best, 0.0
         enough = best - RESOLUTION if best < reach else reach
         low_a, low_b = _bounds(box_a, box_b, enough)
         proven = float(low_a.min())
         if proven >= enough:
             break
         a, b = _split(a[low_a < enough]), _split(b[low_b < enough])
+        best = min(best, _reached(a, b))
     else:
         return best, proven
     return (best, max(best - RESOLUTION, 0.0)) if best < reach else (reach, reach)
@@ -79,6 +81,19 @@ def _least_radius(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     pierced = (side > 0).all(axis=1) | (side < 0).all(axis=1)
     on_edge = np.column_stack([r[rows, edge], nearest[rows, edge, 2]])
     return np.where(pierced, 0.0, on_edge[:, 0]), on_edge
+
+
+def _within(t: np.ndarray, other: np.ndarray, reach: float) -> np.ndarray:
+    """Without the triangles that are seen at a glance to be farther from another mesh than ``reach``: by their heights,
+    and by the radii of their corners, which are not farther from any point of a triangle than its longest edge.
+    """
+    r, z = np.hypot(t[:, :, 0], t[:, :, 1]), t[:, :, 2]
+    radius, height = np.hypot(other[:, :, 0], other[:, :, 1]), other[:, :, 2]
+    room = reach + ROUNDING
+    near = (z.min(axis=1) < height.max() + room) & (z.max(axis=1) > height.min() - room)
+    edge = np.roll(t, -1, axis=1) - t
+    longest = np.sqrt(np.einsum("nij,nij->ni", edge, edge).max(axis=1))
+    return t[near & (r.min(axis=1) - longest < radius.max() + room)]
 
 
 def _hull(box: np.ndarray) -> np.ndarray:
@@ -136,10 +151,11 @@ def _pair_gap(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _reached(a: np.ndarray, b: np.ndarray) -> float:
-    """The least distance between some points of the two surfaces in (r, z): an upper bound."""
-    first, second = (some[:: -(-len(some) // FEW)] for some in (_samples(a), _samples(b)))
-    r, z = (first[:, None, k] - second[None, :, k] for k in (0, 1))
-    return float(np.sqrt((r * r + z * z).min()))
+    """The least distance between points of the two surfaces in (r, z): an upper bound."""
+    from scipy.spatial import KDTree
+
+    first, second = sorted((_samples(a), _samples(b)), key=len)
+    return float(KDTree(second).query(first)[0].min())
 
 
 def _samples(t: np.ndarray) -> np.ndarray:

@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from shared.shapes.outline import Circle
 
 
-def built(plan: Plan, heights: Heights) -> dict[str, list[Solid]]:
-    """All solids by body, in mm."""
-    made: dict[str, list[Solid]] = {"ground": [*base(plan), *plan.solids.get("ground", [])]}
+def built(plan: Plan, heights: Heights, engraved_too: bool = True) -> dict[str, list[Solid]]:
+    """All solids by body, in mm; ``engraved_too``: the base with its names, rule and dial."""
+    made: dict[str, list[Solid]] = {"ground": [*base(plan, engraved_too), *plan.solids.get("ground", [])]}
     for body in plan.layout.moving:
         shape, holes = _plate(plan, body, heights.thickness)
         for tool, through in plan.cuts.get(body, []):

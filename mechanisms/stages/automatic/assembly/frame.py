@@ -31,15 +31,16 @@ DIAL = 22.5
 MOST_LETTERS = 3
 
 
-def base(plan: Plan) -> list[Solid]:
-    """Plate, screws and feet; the plate is the ground's main piece."""
+def base(plan: Plan, engraved_too: bool = True) -> list[Solid]:
+    """Plate, screws and feet; the plate is the ground's main piece, ``engraved_too`` unless nobody is to see it."""
     x0, y0, x1, y1 = _extent(plan)
     corners = [(x, y) for x in (x0 + INSET, x1 - INSET) for y in (y0 + INSET, y1 - INSET)]
     hole = plan.layout.sizes.screw / plan.layout.sizes.scale + 0.4
     bolts = [(x, y, hole, BOLT_HOLE) for stand in plan.feet for x, y in stand.holes]
     screw = _corner_screw(plan.layout.sizes)
     plate = base_plate((x0, y0, x1, y1), PLATE, 12.0, corners, screw.diameter, screw.room, bolts)
-    plate = engraved(plate, _marks(plan, (x0, y0, x1, y1)), 0.0)
+    if engraved_too:
+        plate = engraved(plate, _marks(plan, (x0, y0, x1, y1)), 0.0)
     seat = plan.layout.sizes.pivot.fit.seat
     solids = [Solid("base_plate", plate, "aluminium_black", len(corners))]
     under = foot(18.0, FOOT_HEIGHT, screw.diameter + 0.4)

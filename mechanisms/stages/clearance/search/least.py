@@ -12,7 +12,7 @@ from mechanisms.stages.clearance.search.search import RESOLUTION, Least, Search
 from mechanisms.stages.clearance.search.sweep import Sweep
 from mechanisms.stages.clearance.tree import Tree
 
-FIRST = 9
+FIRST = 5
 """Poses at which the whole pieces are compared before the search."""
 
 

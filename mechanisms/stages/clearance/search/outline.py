@@ -34,7 +34,16 @@ class Outline(Tree):
 
 
 def outline(piece: MeshPiece, low: float, high: float) -> Outline | None:
-    """Of what ``piece`` has between two heights (mm); None if that is nothing."""
+    """Of what ``piece`` has between two heights (mm); None if that is nothing. It is kept with the piece, since many
+    others have the same heights in common with it.
+    """
+    span = max(low, piece.z_range[0]), min(high, piece.z_range[1])
+    if span not in piece.outlines:
+        piece.outlines[span] = _outline(piece, *span)
+    return piece.outlines[span]
+
+
+def _outline(piece: MeshPiece, low: float, high: float) -> Outline | None:
     mesh = _between(piece, low, high)
     if mesh is None:
         return None

@@ -6,7 +6,7 @@ import hashlib
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,9 +15,6 @@ from mechanisms.stages.clearance.tree import FacetTree
 from mechanisms.stages.parts_files import read_triangles
 from shared.contract import Parts
 from shared.stage.errors import UserError
-
-if TYPE_CHECKING:
-    from mechanisms.stages.clearance.search.outline import Outline
 
 LEVEL = 1e-6
 """A facet whose corners differ less in height is horizontal (mm)."""
@@ -88,8 +85,8 @@ class MeshPiece:
         return np.linalg.norm(np.cross(p, q), axis=1)
 
     @cached_property
-    def outlines(self) -> dict[tuple[float, float], Outline | None]:
-        """Those that were asked for, by their heights (mm)."""
+    def outlines(self) -> dict[tuple[float, float], Any]:
+        """The ``search.outline.Outline`` or None of those heights (mm) that were asked for."""
         return {}
 
     @cached_property

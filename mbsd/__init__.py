@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from mbsd.results.friction import FrictionView
     from mbsd.results.mobility import Mobility
     from mbsd.results.solution import DriverView, EnergyView, FrameView, JointView, Solution, Stats
+    from mbsd.synthesis.fit_path import PathFit, SynthesisError, fit_path
 
 __version__ = "0.1.0"
 
@@ -83,17 +84,20 @@ __all__ = [
     "ModelWarning",
     "Moment",
     "Motion",
+    "PathFit",
     "Picture",
     "SimulationError",
     "SingularPoseError",
     "Solution",
     "Stats",
     "Svg",
+    "SynthesisError",
     "angle_reaches",
     "constant_rate",
     "curve",
     "cycloidal",
     "distance_reaches",
+    "fit_path",
     "function",
     "harmonic",
     "polynomial",
@@ -119,12 +123,15 @@ _RETURNED = {
     "Mobility": "mbsd.results.mobility",
     "Mode": "mbsd.analyses.modes",
     "Moment": "mbsd.dynamics.events.moment",
+    "PathFit": "mbsd.synthesis.fit_path",
     "Picture": "mbsd.drawing.picture",
     "Solution": "mbsd.results.solution",
     "Stats": "mbsd.results.solution",
     "Svg": "mbsd.drawing.picture",
+    "SynthesisError": "mbsd.synthesis.fit_path",
+    "fit_path": "mbsd.synthesis.fit_path",
 }
-"""What methods return, and where it is."""
+"""What methods return, and what loads more than this import should, and where it is."""
 
 
 def __getattr__(name: str) -> Any:

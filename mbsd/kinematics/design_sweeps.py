@@ -1,0 +1,198 @@
+"""Sweeps of many designs of one mechanism: prepared once, then called with the numbers of n designs, over and over.
+
+The numbers of the groups (mbsd/kinematics/groups) are linear in the places of the markers, so those of all designs are
+one matrix product. Designs share the branch of the mechanism itself.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from mbsd.arrays.packing import Packed
+from mbsd.base.errors import ModelError
+from mbsd.kinematics.groups.blocks import BLOCK
+from mbsd.kinematics.groups.designs import place_designs
+from mbsd.kinematics.groups.groups import BRANCH, DRIVEN, PRP, RPR, RRP, SLIDE, WELDED, YOKE, Groups
+from mbsd.kinematics.groups.plan import plan_groups
+from mbsd.kinematics.groups.solve import DOUBTED, SOLVED
+from mbsd.kinematics.prepared import Prepared
+from mbsd.kinematics.steps import divisions
+from mbsd.model.body import Marker
+from mbsd.model.mechanism import Model
+from mbsd.model.output_times import refuse_beyond_memory
+
+CHUNK = 64
+"""Designs that a thread takes at once."""
+
+
+class Moved(NamedTuple):
+    """What one parameter changes."""
+
+    markers: Sequence[tuple[int, int]] = ()
+    """Marker and axis."""
+    trace: tuple[int, int] | None = None
+    """Traced point and axis."""
+    rod: int | None = None
+    """Row of the distance constraints."""
+
+
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """Results of n designs at T times; NaN where a design does not close."""
+
+    t: np.ndarray
+    """(T,) s."""
+    points: dict[str, np.ndarray]
+    """(n, T, 2) of each traced point (m)."""
+    angles: dict[str, np.ndarray]
+    """(n, T) of each body asked for (rad)."""
+    closes: np.ndarray
+    """(n,) whether the links close all the way."""
+    doubted: np.ndarray
+    """(n,) whether a design was given up where its branches come near each other; sweep it alone to see more."""
+
+
+def in_closed_form(ready: Prepared) -> bool:
+    """Whether a mechanism is made of driven bodies and dyads without a redundant joint."""
+    groups = ready.groups
+    return groups is not None and not ready.mobility.redundant_rows and not (groups.kind >= BLOCK).any()
+
+
+class DesignSweeps:
+    """Sweeps over times ``grid`` (T,) of designs that differ in what ``moved`` says.
+
+    Raises ModelError for a mechanism that is not made of driven bodies and dyads, and for an angle of no body.
+    """
+
+    def __init__(
+        self, m: Model, ready: Prepared, grid: np.ndarray, moved: Sequence[Moved], angles: Sequence[str] = ()
+    ) -> None:
+        if not in_closed_form(ready):
+            raise ModelError(
+                f"{m.name}: batch solves mechanisms of driven bodies and dyads (pins, sliders, slots, rods, "
+                "welds); this one holds something else or a redundant joint. Sweep its designs one by one."
+            )
+        assert ready.groups is not None
+        packed = ready.packed
+        self.m, self.packed, self.groups, self.q0, self.grid = m, packed, ready.groups, ready.q0, grid
+        self.moved, self.angles = list(moved), list(angles)
+        self.slopes = slopes(packed, ready.q0, ready.groups, self.moved)
+        self.bodies = np.array([packed.body_names.index(p.body.name) for p in m.traces.values()], np.int64)
+        self.arms = np.array([(p.x, p.y) for p in m.traces.values()]).reshape(-1, 2) - packed.com[self.bodies]
+        self.turned = np.array([_body(m, packed, name) for name in angles], np.int64)
+        self.every = divisions(packed, grid)
+        dense = np.linspace(grid[0], grid[-1], self.every * (len(grid) - 1) + 1)
+        self.driven, self.fixed = _turns(self.groups, packed.drives(dense))
+
+    def __call__(self, values: np.ndarray, threads: int | None = None) -> Batch:
+        """Of designs whose numbers differ from the mechanism's own by ``values`` (n, moved) (m)."""
+        m, grid, groups, moved, traces = self.m, self.grid, self.groups, self.moved, len(self.bodies)
+        count, turned = len(values), self.turned
+        refuse_beyond_memory(
+            f"{m.name}: {count} designs at {len(grid)} times",
+            count * (len(grid) * (2 * traces + len(turned)) + groups.number.size),
+            "Take fewer designs or steps at once",
+        )
+        numbers = self._numbers(values)
+        arms = np.tile(self.arms, (count, 1, 1))
+        for column, change in enumerate(moved):
+            if change.trace is not None:
+                arms[:, change.trace[0], change.trace[1]] += values[:, column]
+        out = np.empty((count, traces, len(grid), 2))
+        out_angles = np.empty((count, len(turned), len(grid)))
+        status = np.zeros(count, np.int64)
+
+        def work(first: int) -> None:
+            part = slice(first, min(first + CHUNK, count))
+            place = np.zeros((len(self.packed.body_names), 4))
+            place[0, 2] = 1.0
+            scratch, roots, last = np.zeros((2, 2)), np.zeros((len(groups.kind), 2)), np.zeros(len(turned))
+            place_designs(
+                groups, numbers[part], self.q0, self.driven, self.every, self.fixed, place, scratch, roots, last,
+                self.bodies, arms[part], turned, out[part], out_angles[part], status[part],
+            )  # fmt: skip
+            for part_of in (out, out_angles):
+                part_of[part][status[part] != SOLVED] = np.nan
+
+        starts = range(0, count, CHUNK)
+        if count:
+            work(0)  # compiles before the threads start
+        if len(starts) > 1:
+            with ThreadPoolExecutor(threads or os.process_cpu_count()) as pool:
+                list(pool.map(work, starts[1:]))
+        points = {name: out[:, k] for k, name in enumerate(m.traces)}
+        angles = {name: out_angles[:, k] for k, name in enumerate(self.angles)}
+        return Batch(grid, points, angles, status == SOLVED, status == DOUBTED)
+
+    def _numbers(self, values: np.ndarray) -> np.ndarray:
+        """(n, g, 14) numbers of the groups of all designs; exact, for they are linear in places and lengths."""
+        out = np.tile(self.groups.number, (len(values), 1, 1))
+        for column, slope in enumerate(self.slopes):
+            if slope is not None:
+                out += values[:, column, None, None] * slope
+        return out
+
+
+def slopes(packed: Packed, q0: np.ndarray, groups: Groups, moved: Sequence[Moved]) -> list[np.ndarray | None]:
+    """By how much each parameter changes the (g, 14) numbers of the groups; None for those of traced points."""
+    out: list[np.ndarray | None] = []
+    arms = packed.system.marker_arm
+    for change in moved:
+        if change.trace is not None:
+            out.append(None)
+            continue
+        shifted, lengths = arms.copy(), packed.system.distance_length.copy()
+        for number, axis in change.markers:
+            shifted[number, axis] += 1.0
+        if change.rod is not None:
+            lengths[change.rod] += 1.0
+        system = packed.system._replace(marker_arm=shifted, distance_length=lengths)
+        changed = plan_groups(replace(packed, system=system), q0, 0)
+        assert changed is not None
+        slope = changed.number - groups.number
+        for e, kind in enumerate(groups.kind):
+            if int(kind) in BRANCH:
+                slope[e, BRANCH[int(kind)]] = 0.0
+        out.append(slope)
+    return out
+
+
+def at_end(marker: Marker, length: float) -> bool:
+    """Whether a marker is at the end of its bar, whose length this is."""
+    return marker.x == length and marker.y == 0.0
+
+
+def _turns(groups: Groups, drives: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """What no design changes: cosine and sine of driven angles, other laws (T, g, 2); turns of A and B (g, 2, 2)."""
+    driven = np.zeros((len(drives), len(groups.kind), 2))
+    fixed = np.zeros((len(groups.kind), 2, 2))
+    constant = {
+        WELDED: ((0, 4),),
+        RRP: ((1, 10),),
+        RPR: ((1, 9),),
+        YOKE: ((0, 8),),
+        PRP: ((0, 4), (1, 11)),
+        SLIDE: ((0, 4),),
+    }
+    for e, kind in enumerate(groups.kind):
+        if kind == DRIVEN:
+            angle = groups.number[e, 5] * (groups.number[e, 4] + drives[:, groups.motion[e], 0])
+            driven[:, e] = np.column_stack([np.cos(angle), np.sin(angle)])
+        else:
+            driven[:, e, 0] = drives[:, groups.motion[e], 0]
+        for side, column in constant.get(int(kind), ()):
+            angle = groups.number[e, column]
+            fixed[e, side] = math.cos(angle), math.sin(angle)
+    return driven, fixed
+
+
+def _body(m: Model, packed: Packed, name: str) -> int:
+    m.known_body(name)
+    return packed.body_names.index(name)

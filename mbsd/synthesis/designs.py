@@ -1,0 +1,163 @@
+"""The paths of many designs of one mechanism: all at once in closed form where that serves, else one by one.
+
+A design is a vector of the numbers that vary. It is either the mechanism itself with other lengths and places, or what
+a function of the author builds from them; the latter is solved with the others as long as only places of markers, of
+the traced point and lengths of rods differ.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.arrays.packing import Packed, pack
+from mbsd.base.errors import MechanismError, ModelError
+from mbsd.kinematics.batch import parameters
+from mbsd.kinematics.design_sweeps import DesignSweeps, Moved, in_closed_form
+from mbsd.kinematics.prepared import prepare
+from mbsd.model.mechanism import Model
+from mbsd.synthesis.changed import changed
+from mbsd.synthesis.conditions import Pin, four_bar, grashof_excess, pins, transmission_angles
+from mbsd.synthesis.varied import Varied
+
+Build = Callable[..., Model]
+
+
+@dataclass(frozen=True, eq=False)
+class Paths:
+    """Of n designs."""
+
+    path: np.ndarray
+    """(n, T, 2) of the traced point (m); NaN where a design does not close."""
+    closes: np.ndarray
+    """(n,)"""
+    transmission: np.ndarray
+    """(n,) least transmission angle (rad); pi/2 where there is no pin that has one."""
+    excess: np.ndarray
+    """(n,) by how much Grashof's inequality is missed, relative to the sum of the lengths; 0 where not asked for."""
+
+
+class Designs:
+    """Vectors in, paths out, on a coarse grid of times for the search and a fine one (T,) for the fit."""
+
+    def __init__(
+        self, m: Model, varied: Varied, build: Build | None, trace: str, grids: dict[bool, np.ndarray], grashof: bool
+    ) -> None:
+        self.m, self.varied, self.build, self.trace, self.grids = m, varied, build, trace, grids
+        self.evaluations = 0
+        grid = grids[True]
+        self.ready = prepare(m, float(grid[0]), float(grid[-1]))
+        packed = self.ready.packed
+        self.pins: list[Pin] = pins(m, packed)
+        self.links = four_bar(m, packed) if grashof else []
+        self.turned = list(dict.fromkeys(body for pin in self.pins for body in pin.bodies))
+        middle = (varied.low + varied.high) / 2
+        self.at_once = in_closed_form(self.ready)
+        if build is not None:
+            self.at_once = self.at_once and all(self._only_places(x) for x in (varied.low, middle, varied.high))
+        moved = self.changes(middle[None])[1]
+        self.sweeps = {
+            fine: DesignSweeps(m, self.ready, one, moved, self.turned) for fine, one in grids.items() if self.at_once
+        }
+
+    def __call__(self, x: np.ndarray, fine: bool = False, threads: int | None = None) -> Paths:
+        """Of designs x (n, k)."""
+        self.evaluations += len(x)
+        values, moved = self.changes(x)
+        if self.at_once:
+            found = self.sweeps[fine](values, threads)
+            path, angles, closes = found.points[self.trace], found.angles, found.closes
+        else:
+            path, angles, closes = self._one_by_one(x, self.grids[fine])
+        arms = np.tile(self.ready.packed.system.marker_arm, (len(x), 1, 1))
+        for column, change in enumerate(moved):
+            for number, axis in change.markers:
+                arms[:, number, axis] += values[:, column]
+        transmission = np.full(len(x), np.pi / 2)
+        for pin in self.pins:
+            first, second = (angles[body] for body in pin.bodies)
+            at_pin = transmission_angles(pin, arms, first, second).min(axis=1)
+            transmission = np.fmin(transmission, at_pin)
+        excess = np.zeros(len(x))
+        if self.links:
+            lengths = np.stack([np.hypot(*(arms[:, a] - arms[:, b]).T) for a, b in self.links], axis=1)
+            excess = np.maximum(grashof_excess(lengths), 0.0)
+        return Paths(path, closes, transmission, excess)
+
+    def model(self, x: np.ndarray) -> Model:
+        """The mechanism of one design x (k,). Raises what the author's function raises."""
+        values = self.varied.values(x)
+        if self.build is None:
+            return changed(self.m, values)
+        made = self.build(**values)
+        if not isinstance(made, Model):
+            raise ModelError(f"{self.m.name}: fit_path: build returned {type(made).__name__}, not a Mechanism")
+        return made
+
+    def changes(self, x: np.ndarray) -> tuple[np.ndarray, list[Moved]]:
+        """(n, p) differences from the mechanism itself, and what each moves."""
+        packed = self.ready.packed
+        if self.build is not None:
+            rows = [self._places(self.model(one)) for one in x]
+            moved = [Moved([(number, axis)]) for number in range(2 * len(packed.joints)) for axis in (0, 1)]
+            moved += [Moved(trace=(k, axis)) for k in range(len(self.m.traces)) for axis in (0, 1)]
+            moved += [Moved(rod=k) for k in range(len(packed.system.distance_length))]
+            return np.array(rows) - self._places(self.m), moved
+        lengths, places = {}, {}
+        for name, part, single in self.varied.columns():
+            if single:
+                lengths[name] = x[:, part][:, 0]
+            else:
+                places[name] = x[:, part]
+        return parameters(self.m, packed, lengths, places)
+
+    def _places(self, m: Model) -> np.ndarray:
+        """Places of the markers of all joints and traces, and lengths of rods, as one vector (p,)."""
+        joints = [*m.joints.values(), *m.drivers.values()]
+        markers = [marker for joint in joints for marker in (joint.i, joint.j)]
+        rods = [
+            joint.params.get("length", 0.0)
+            for joint in joints
+            for constraint in joint.kind.constraints
+            if constraint == "distance"
+        ]
+        places = [number for marker in (*markers, *m.traces.values()) for number in (marker.x, marker.y)]
+        return np.array([*places, *rods])
+
+    def _only_places(self, x: np.ndarray) -> bool:
+        """Whether the design x (k,) is the mechanism itself but for places and rods."""
+        own, other = self.ready.packed, pack(self.model(x))
+        other.settle_laws(float(self.grids[True][0]), float(self.grids[True][-1]))
+        return _numbers(own, self.grids[True]) == _numbers(other, self.grids[True]) and list(own.body_names) == list(
+            other.body_names
+        )
+
+    def _one_by_one(self, x: np.ndarray, grid: np.ndarray) -> tuple[np.ndarray, dict[str, np.ndarray], np.ndarray]:
+        path = np.full((len(x), len(grid), 2), np.nan)
+        angles = {body: np.full((len(x), len(grid)), np.nan) for body in self.turned}
+        for k, one in enumerate(x):
+            try:
+                m = self.model(one)
+                ready = prepare(m, float(grid[0]), float(grid[-1]))
+                q = ready.kinematics(grid)[0]
+            except MechanismError:
+                continue
+            marker = m.traces[self.trace]
+            body = ready.packed.body_names.index(marker.body.name)
+            x0, y0 = np.array([marker.x, marker.y]) - ready.packed.com[body]
+            c, s = np.cos(q[:, body, 2]), np.sin(q[:, body, 2])
+            path[k] = q[:, body, :2] + np.column_stack([c * x0 - s * y0, s * x0 + c * y0])
+            for name, rows in angles.items():
+                rows[k] = q[:, ready.packed.body_names.index(name), 2]
+        return path, angles, np.isfinite(path).all(axis=(1, 2))
+
+
+def _numbers(packed: Packed, grid: np.ndarray) -> tuple[bytes, ...]:
+    """All of a mechanism but places of markers, lengths of rods, masses and forces."""
+    system = packed.system
+    axes = system.marker_axis[: 2 * len(packed.joints)]
+    kept = (axes, system.angle_offset, system.special, system.numbers, system.point, system.angle, system.slot)
+    tables = (*kept, system.along, system.distance, packed.markers, system.marker_body[: len(axes)])
+    return (*(np.ascontiguousarray(part).tobytes() for part in tables), packed.drives(grid).tobytes())

@@ -24,6 +24,7 @@ ANALYSES = (
     "statics",
     "linearisation",
     "batch",
+    "synthesis",
     "joints",
     "cams",
     "forces",

@@ -85,7 +85,7 @@ def test_conditions_hold() -> None:
     points = np.array([(0.05, 0.3), (0.15, 0.32), (0.25, 0.3), (0.3, 0.22)])
     free = fit_path(four_bar(), points, BOUNDS, seed=2, starts=1, generations=60)
     held = fit_path(
-        four_bar(), points, BOUNDS, seed=2, starts=1, generations=60, grashof=True, least_transmission=np.radians(50)
+        four_bar(), points, BOUNDS, seed=2, starts=1, generations=30, grashof=True, least_transmission=np.radians(50)
     )
     assert held.least_transmission >= np.radians(50)
     assert held.mean >= free.mean - 1e-9
@@ -198,5 +198,5 @@ def test_where_nothing_closes_or_meets_the_conditions_it_says_so() -> None:
     points = [(0.1, 0.2), (0.2, 0.2)]
     with pytest.raises(SynthesisError, match="none closes over the whole motion"):
         fit_path(four_bar(), points, {"crank": (0.6, 0.7)}, starts=1, generations=2)
-    with pytest.raises(SynthesisError, match="none of them meets a transmission angle of 1.5 rad"):
+    with pytest.raises(SynthesisError, match=r"none of them meets a transmission angle of 1\.5 rad"):
         fit_path(four_bar(), points, {"crank": (0.05, 0.1)}, starts=1, generations=2, least_transmission=1.5)

@@ -15,9 +15,8 @@ KERNELS ?=
 GAP ?=
 N ?=
 ONLY ?=
+WATTS ?=
 SEED ?= 1
-# Set by tools/run_all.sh: names of SPECTRA that a mechanism has not are left out.
-EVERY ?=
 PYTEST ?= -n 2 --dist loadscope --no-loadscope-reorder
 
 # Words of the user are taken as they are: make expands nothing in them, and commands get them through the environment,
@@ -36,9 +35,9 @@ override GAP := $(value GAP)
 override N := $(value N)
 override ONLY := $(value ONLY)
 override SEED := $(value SEED)
-override EVERY := $(value EVERY)
+override WATTS := $(value WATTS)
 override MECHANISM = $(subst -,_,$*)
-export PRESET SHEET_PRESET FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N ONLY SEED EVERY
+export PRESET SHEET_PRESET FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N ONLY WATTS SEED
 
 PRESETS := draft preview production final
 ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
@@ -48,6 +47,8 @@ endif
 PYTHON := .venv/bin/python
 STAGE = $(PYTHON) -m mechanisms
 PICTURE = $(PYTHON) -m render
+NIGHT = $(PYTHON) -m studio.night
+OF_NIGHT = --preset "$$PRESET" --only="$$ONLY" --show="$$SHOW" --spectra="$$SPECTRA" --watts="$$WATTS" --python="$(PYTHON)"
 # install compiles the kernels in the background; these want all of them, and nothing else running.
 ALL_KERNELS = @$(PYTHON) -m tools.compiling wait
 
@@ -60,7 +61,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install check list run-all all gallery new test lint format bench bench-start hunt hunt-parts torture check-numbers record-numbers schema docs integrators wheel lock clean clean-all always
+.PHONY: help install check list run-all all overnight status stop gallery new test lint format bench bench-start hunt hunt-parts torture check-numbers record-numbers schema docs integrators wheel lock clean clean-all always
 
 # A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
 define upto_motion
@@ -76,7 +77,7 @@ define upto_shot
 $(upto_motion)
 @$(STAGE) shot "$$MECHANISM"
 endef
-SPECTRA_IF_ANY = $${SPECTRA:+--spectra="$$SPECTRA" $${EVERY:+--every}}
+SPECTRA_IF_ANY = $${SPECTRA:+--spectra="$$SPECTRA"}
 
 help: ## this list
 	@echo "make <target>, with PRESET=draft|preview|production|final on every picture target (preview by default)."
@@ -97,10 +98,19 @@ run-%: install always ## everything of one mechanism: parts, motion, clearance, 
 	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 	@$(PICTURE) film "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 
-run-all: install ## run-<name> for every mechanism; goes on after a failure, with a table of all at the end
-	@sh tools/run_all.sh "$(MAKE)" "$$PRESET" "$(PYTHON)"
+run-all: install ## run-<name> for every mechanism or ONLY=four_bar,slider_crank; goes on after a failure
+	@$(NIGHT) run $(OF_NIGHT)
 
-all: run-all ## the same: what one starts overnight, e.g. make all PRESET=final
+all: run-all ## the same
+
+overnight: install ## the same in the background, also after the logout; WATTS=85 tells the energy it takes
+	@$(NIGHT) start $(OF_NIGHT)
+
+status: ## what every film is at: frames, seconds a frame, time left, last error
+	@$(NIGHT) status
+
+stop: ## end make overnight or make all after the frame in flight; the same command goes on from there
+	@$(NIGHT) stop
 
 parts-%: install always ## the solids: out/<name>/parts/ (STL, STEP, parts.json)
 	@$(STAGE) parts "$$MECHANISM"

@@ -39,7 +39,11 @@ class Patience:
             floor = KERNELS
         else:
             floor = FLOOR if self.pictures else START
-        return max(floor * _scale(), min(TIMES * self.longest, LONGEST))
+        return max(self.scaled(floor), min(TIMES * self.longest, LONGEST))
+
+    def scaled(self, seconds: float) -> float:
+        """Seconds in the proportion that the environment asks for."""
+        return seconds * _scale()
 
 
 def _scale() -> float:

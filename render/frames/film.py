@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 def run(name: str, preset: Preset, show: str = "") -> None:
     """The stage: out/films/<mechanism>-<preset>.mp4."""
     out = Out(name)
-    film = named(out.film(preset.name), show)
-    stage = Stage(out, film.stem.replace(out.name, "film", 1), stage_key(out, preset, encoder_version(), show), [film])
+    stage = _stage(out, preset, show)
+    film = stage.outputs[0]
     if stage.is_fresh():
         say("film", f"{out.name}: {preset}: nothing to do")
         return
@@ -36,6 +36,16 @@ def run(name: str, preset: Preset, show: str = "") -> None:
     stage.done()
     seconds = len(index.frames) / index.fps
     say("film", f"{out.name}: {film}: {seconds:.1f} s, {index.fps} frames a second, {film.stat().st_size / 1e6:.1f} MB")
+
+
+def is_fresh(name: str, preset: Preset, show: str = "") -> bool:
+    """Whether there is nothing to do. Raises UserError where motion, parts or shot are missing."""
+    return _stage(Out(name), preset, show).is_fresh()
+
+
+def _stage(out: Out, preset: Preset, show: str) -> Stage:
+    film = named(out.film(preset.name), show)
+    return Stage(out, film.stem.replace(out.name, "film", 1), stage_key(out, preset, encoder_version(), show), [film])
 
 
 def _pictures(mechanism: str, store: FrameStore, names: Sequence[str]) -> Iterator[bytes]:

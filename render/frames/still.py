@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 
 from render.film.inputs import named, stage_key
@@ -24,9 +25,18 @@ def still(name: str, preset: Preset, frame: int, show: str = "") -> None:
 def poster(name: str, preset: Preset, show: str = "") -> None:
     """out/<mechanism>/poster.png: the moment that ``shot.poster`` names."""
     out = Out(name)
+    stage = _poster(out, preset, show)
+    _make(out, preset, None, stage.outputs[0], stage, show)
+
+
+def is_fresh_poster(name: str, preset: Preset, show: str = "") -> bool:
+    """Whether there is nothing to do. Raises UserError where motion, parts or shot are missing."""
+    return _poster(Out(name), preset, show).is_fresh()
+
+
+def _poster(out: Out, preset: Preset, show: str) -> Stage:
     target = named(out.poster, show)
-    stage = Stage(out, target.stem, stage_key(out, preset, show), [target])
-    _make(out, preset, None, target, stage, show)
+    return Stage(out, target.stem, stage_key(out, preset, show), [target])
 
 
 def _make(out: Out, preset: Preset, frame: int | None, target: Path, stage: Stage, show: str) -> None:
@@ -39,6 +49,7 @@ def _make(out: Out, preset: Preset, frame: int | None, target: Path, stage: Stag
     from render.frames import frames
     from render.frames.store import FrameStore
 
+    started = time.perf_counter()
     film = read_film(out, show)
     clock = film.clock
     if frame is None:
@@ -51,8 +62,10 @@ def _make(out: Out, preset: Preset, frame: int | None, target: Path, stage: Stag
     frame %= clock.frames
     pictures = frames.Pictures(film, preset)
     store = FrameStore(out.frames(preset.name))
+    tally = frames.Tally()
     with store.locked():
-        frames.render(pictures, store, [frame], f"frame {frame}", frames.Tally())
+        frames.render(pictures, store, [frame], f"frame {frame}", tally)
+        tally.write(store, preset, time.perf_counter() - started)  # it tells what the film will take
         write_bytes(target, frames.picture_of(pictures, store, frame).read_bytes())
     stage.done()
     say(word, f"{out.name}: {target}")

@@ -14,13 +14,7 @@ from shared.stage.stages import Stage, contract_sources, key_of, versions
 def run(name: str) -> None:
     """Write out/<name>/<name>.glb, if the parts, the motion or the shot have changed. Raises UserError."""
     out = Out(name)
-    refuse_missing(out)
-    sources = [ROOT / "render" / name for name in ("presets.py", "film", "blender/scene/tubes.py")]
-    shared = contract_sources(*SHARED)
-    key = key_of(
-        out.motion, out.parts, out.shot, sources_hash(Path(__file__).parent, *sources, *shared), versions("numpy")
-    )
-    stage = Stage(out, "glb", key, [out.glb])
+    stage = _stage(out)
     if stage.is_fresh():
         say("glb", f"{out.name}: nothing to do")
         return
@@ -31,3 +25,18 @@ def run(name: str) -> None:
     stage.done()
     seconds = film.motion.time[-1] - film.motion.time[0]
     say("glb", f"{out.name}: {out.glb}: {seconds:.4g} s, {out.glb.stat().st_size / 1e6:.1f} MB")
+
+
+def is_fresh(name: str) -> bool:
+    """Whether there is nothing to do. Raises UserError where motion, parts or shot are missing."""
+    return _stage(Out(name)).is_fresh()
+
+
+def _stage(out: Out) -> Stage:
+    refuse_missing(out)
+    sources = [ROOT / "render" / name for name in ("presets.py", "film", "blender/scene/tubes.py")]
+    shared = contract_sources(*SHARED)
+    key = key_of(
+        out.motion, out.parts, out.shot, sources_hash(Path(__file__).parent, *sources, *shared), versions("numpy")
+    )
+    return Stage(out, "glb", key, [out.glb])

@@ -36,9 +36,7 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
         )
     names = [*plots_of(motion), *_spectra(motion, out.name, spectra, every)]
     outputs = {plot: out.plots / f"{plot}.png" for plot in names}
-    sources = sources_hash(Path(__file__).parent, *READ)
-    key = key_of(out.motion, out.skeleton, sources, names, versions("matplotlib", "numpy", "scipy"))
-    stage = Stage(out, "plots", key, list(outputs.values()))
+    stage = _stage(out, names)
     if stage.is_fresh():
         say("plots", f"{out.name}: nothing to do")
         return
@@ -53,6 +51,19 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
         older.unlink()
     stage.done()
     say("plots", f"{out.name}: {len(outputs)} plots in {out.plots}")
+
+
+def is_fresh(name: str, spectra: str = "", every: bool = False) -> bool:
+    """Whether there is nothing to do. Raises as :func:`run`."""
+    out = Out(name)
+    motion = read_motion(out.motion, out.name)
+    return _stage(out, [*plots_of(motion), *_spectra(motion, out.name, spectra, every)]).is_fresh()
+
+
+def _stage(out: Out, names: list[str]) -> Stage:
+    sources = sources_hash(Path(__file__).parent, *READ)
+    key = key_of(out.motion, out.skeleton, sources, names, versions("matplotlib", "numpy", "scipy"))
+    return Stage(out, "plots", key, [out.plots / f"{plot}.png" for plot in names])
 
 
 def plots_of(motion: Motion) -> list[str]:

@@ -25,15 +25,25 @@ def run(name: str) -> None:
     parts = read_parts(out.parts, out.name) if out.parts.is_file() else None
     clearance = read_clearance(out.clearance) if parts is not None and out.clearance.is_file() else None
     said = description(out.name)
-    files = [path for path in (out.motion, out.parts, out.clearance) if path.is_file()]
-    key = key_of(*files, len(files), said, sources_hash(Path(__file__).parent, *READ), versions("numpy"))
-    stage = Stage(out, "report", key, [out.report])
+    stage = _stage(out, said)
     if stage.is_fresh():
         say("report", f"{out.name}: nothing to do")
         return
     write_bytes(out.report, report(motion, parts, clearance, said).encode())
     stage.done()
     say("report", f"{out.name}: {out.report}")
+
+
+def is_fresh(name: str) -> bool:
+    """Whether there is nothing to do."""
+    out = Out(name)
+    return out.motion.is_file() and _stage(out, description(out.name)).is_fresh()
+
+
+def _stage(out: Out, said: str) -> Stage:
+    files = [path for path in (out.motion, out.parts, out.clearance) if path.is_file()]
+    key = key_of(*files, len(files), said, sources_hash(Path(__file__).parent, *READ), versions("numpy"))
+    return Stage(out, "report", key, [out.report])
 
 
 def report(motion: Motion, parts: Parts | None, clearance: Clearance | None, said: str = "") -> str:

@@ -98,10 +98,30 @@ def write_bytes(path: Path, content: bytes) -> None:
         temporary.write_bytes(content)
 
 
+_hashes: dict[object, str] | None = None
+"""What was hashed in a block of :func:`remembered`."""
+
+
+@contextmanager
+def remembered() -> Iterator[None]:
+    """Hash every file once in this block, for a look at many stages that writes nothing. Blocks do not nest."""
+    global _hashes
+    _hashes = {}
+    try:
+        yield
+    finally:
+        _hashes = None
+
+
 def file_hash(path: Path) -> str:
     """SHA-256 of a file's bytes, as hex."""
+    if _hashes is not None and path in _hashes:
+        return _hashes[path]
     with path.open("rb") as handle:
-        return hashlib.file_digest(handle, "sha256").hexdigest()
+        found = hashlib.file_digest(handle, "sha256").hexdigest()
+    if _hashes is not None:
+        _hashes[path] = found
+    return found
 
 
 def sources_hash(*folders_or_files: Path, leave_out: Collection[Path] = ()) -> str:
@@ -109,6 +129,16 @@ def sources_hash(*folders_or_files: Path, leave_out: Collection[Path] = ()) -> s
 
     Sources below the folders in ``leave_out`` do not count.
     """
+    asked = (folders_or_files, tuple(leave_out))
+    if _hashes is not None and asked in _hashes:
+        return _hashes[asked]
+    found = _sources_hash(folders_or_files, leave_out)
+    if _hashes is not None:
+        _hashes[asked] = found
+    return found
+
+
+def _sources_hash(folders_or_files: Collection[Path], leave_out: Collection[Path]) -> str:
     digest = hashlib.sha256()
     for root in folders_or_files:
         files = sorted(root.rglob("*.py")) if root.is_dir() else [root]

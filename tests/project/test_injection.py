@@ -18,6 +18,7 @@ from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from shared.stage.paths import ROOT, Out, mechanism_name
 from shared.stage.stages import Stage
+from studio.night import options
 from tests.render import film_fixture
 
 NASTY = [
@@ -101,8 +102,19 @@ def test_a_target_reaches_python_as_it_is(tree: Path, target: str, word: str) ->
 
 def test_words_of_one_make_are_not_executed_by_the_makes_it_starts(tree: Path) -> None:
     before = files_of(tree)
-    done = make(tree, "run-all", "NAME=$(shell touch pwned)", "FRAME=`touch pwned`")
-    assert done.stdout.endswith("run-all: 2 done\n"), done.stderr
+    done = make(tree, "gallery", "NAME=$(shell touch pwned)", "FRAME=`touch pwned`")
+    assert done.stdout.endswith("<gallery>\n"), done.stderr
+    assert files_of(tree) == before
+
+
+@pytest.mark.parametrize("word", NASTY)
+def test_words_of_a_night_reach_python_as_they_are(tree: Path, word: str) -> None:
+    before = files_of(tree)
+    for command, target in (("run", "all"), ("start", "overnight")):
+        done = make(tree, target, f"ONLY={word}", WATTS=word)
+        assert done.stdout.startswith(f"<-m>\n<studio.night>\n<{command}>\n"), done.stderr
+        assert f"<--only={word}>\n" in done.stdout
+        assert f"<--watts={word}>\n" in done.stdout
     assert files_of(tree) == before
 
 
@@ -115,18 +127,17 @@ def test_a_folder_that_is_no_name_is_told_and_never_executed(
         (tree / "mechanisms" / word / "mechanism.py").write_text("open('pwned', 'w')")
     before = files_of(tree)
     try:
-        done = make(tree, "run-all")
         monkeypatch.setattr(paths, "MECHANISMS", tree / "mechanisms")
+        asked = options.options("", "draft", "", "", "", "")
         listing.run()
     finally:
         for word in words:
             shutil.rmtree(tree / "mechanisms" / word)
-    assert done.returncode != 0
-    assert "run-all: 2 done, failed: (an unfit name)" in done.stderr
+    assert asked.names == ("arm", "four_bar")
+    assert set(asked.unfit) == set(words)
     said = capsys.readouterr()
     assert [line.split()[0] for line in said.out.splitlines() if not line.startswith(" ")] == ["arm", "four-bar"]
     for word in words:
-        assert f"run-all: error: mechanisms/{word} is not the name of a mechanism; rename the folder" in done.stderr
         assert f"mechanisms/{word!r} is left out" in said.err
     assert before - files_of(tree) == {path for path in before if any(f"mechanisms/{word}" in path for word in words)}
     assert not files_of(tree) - before

@@ -1,4 +1,4 @@
-"""make over everything: run-all, clean and check."""
+"""make over everything: clean and check."""
 
 from __future__ import annotations
 
@@ -8,32 +8,6 @@ from pathlib import Path
 
 from shared.stage.paths import ROOT
 from tests.project.making import run
-
-
-def fake_make(folder: Path, *failing: str) -> Path:
-    """Stands for make in run_all.sh: fails for the named targets."""
-    script = folder / "make"
-    script.write_text(
-        f'#!/bin/sh\necho "made $2 $3 EVERY=$EVERY"\ncase " {" ".join(failing)} " in *" $2 "*) exit 1;; esac\n'
-    )
-    script.chmod(0o755)
-    return script
-
-
-def test_run_all_goes_on_after_a_failure_and_sums_up(tmp_path: Path) -> None:
-    shutil.copytree(ROOT / "tools", tmp_path / "tools")
-    for name in ("a_linkage", "b_linkage", "c_linkage"):
-        (tmp_path / "mechanisms" / name).mkdir(parents=True)
-        (tmp_path / "mechanisms" / name / "mechanism.py").touch()
-    (tmp_path / "mechanisms" / "not_one").mkdir()
-    done = run("sh", "tools/run_all.sh", str(fake_make(tmp_path)), "draft", cwd=tmp_path)
-    assert done.returncode == 0
-    assert done.stdout.count("PRESET=draft EVERY=1") == 3  # what one of them lacks is no failure
-    assert done.stdout.endswith("run-all: 3 done\n")
-    done = run("sh", "tools/run_all.sh", str(fake_make(tmp_path, "run-b_linkage")), "final", cwd=tmp_path)
-    assert done.returncode == 1
-    assert "made run-c_linkage PRESET=final" in done.stdout
-    assert "run-all: 2 done, failed: b_linkage" in done.stderr
 
 
 def test_clean_removes_the_results_and_leaves_a_folder_of_the_users_alone(tmp_path: Path) -> None:

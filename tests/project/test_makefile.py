@@ -58,8 +58,6 @@ def test_what_draws_plots_takes_the_spectra(target: str) -> None:
     assert "--spectra" not in plain
     [asked] = [line for line in planned(f"{target}-four-bar", "SPECTRA=shaking force,motor") if line.startswith(stage)]
     assert asked == f"{stage} four_bar --spectra=shaking force,motor"
-    [one] = [line for line in planned(f"{target}-four-bar", "SPECTRA=motor", "EVERY=1") if line.startswith(stage)]
-    assert one == f"{stage} four_bar --spectra=motor --every"
 
 
 def test_a_contact_sheet_is_of_drafts_unless_asked_otherwise() -> None:

@@ -39,28 +39,32 @@ LINUX = pytest.mark.skipif(sys.platform != "linux", reason="nothing tells there 
         pytest.param("make", signal.SIGINT, marks=LINUX),
         pytest.param("make", signal.SIGHUP, marks=LINUX),
         ("make", signal.SIGKILL),
-        ("run_all.sh", signal.SIGTERM),
-        ("run_all.sh", signal.SIGKILL),
+        ("the night", signal.SIGTERM),
+        ("the night", signal.SIGINT),
+        ("the night", signal.SIGKILL),
     ],
     ids=str,
 )
 def test_whatever_ends_run_all_ends_its_stages(tmp_path: Path, victim: str, how: signal.Signals) -> None:
     left, script = tmp_path / "left behind", tmp_path / "python"
     (tmp_path / "stage.py").write_text(STAGE)
-    script.write_text(f"#!/bin/sh\nexec '{sys.executable}' '{tmp_path}/stage.py' '{left}'\n")
+    script.write_text(
+        f"#!/bin/sh\ncase $2 in studio.night) exec '{sys.executable}' \"$@\" ;; esac\n"
+        f"exec '{sys.executable}' '{tmp_path}/stage.py' '{left}'\n"
+    )
     script.chmod(0o755)
     clean = {key: value for key, value in os.environ.items() if key not in ("MAKEFLAGS", "MAKELEVEL", "MBSD_MAKE")}
     process = subprocess.Popen(
-        ["make", "-o", "install", "run-all", f"PYTHON={script}"],
+        ["make", "-o", "install", "run-all", "ONLY=four_bar", f"PYTHON={script}"],
         cwd=ROOT,
-        env=clean | {"PYTHONPATH": str(ROOT)},
+        env=clean | {"PYTHONPATH": str(ROOT), "MBSD_OUT": str(tmp_path / "out")},
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     )
     try:
         wait_until(left.exists)
-        shells = [pid for pid, parent, _ in processes() if parent == process.pid]
-        os.kill(process.pid if victim == "make" else shells[0], how)
+        nights = [pid for pid, parent, _ in processes() if parent == process.pid]
+        os.kill(process.pid if victim == "make" else nights[0], how)
         process.wait(timeout=20)
         wait_until(lambda: not any(str(left) in arguments for *_, arguments in processes()))
         assert not left.exists()

@@ -187,14 +187,14 @@ def gone(content: bytes, chance: random.Random) -> None:
 
 
 STAGE, FILM, BLENDER = "tools.torture.stage", "tools.torture.stage film", "render.blender.worker.worker"
-SHELL, MAKE = "tools/run_all.sh", "make run-all"
+NIGHT, MAKE = "studio.night run", "make run-all"
 TERM, INT, HUP, KILL = signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL
 STOP, SEGV = signal.SIGSTOP, signal.SIGSEGV
 MAKE_TELLS = [INT, HUP] if sys.platform == "linux" else []
 """Signals that make keeps to itself; only Linux shows that it got them."""
 FAULTS = [
     *(Fault(f"{what.name} to make", signal_to("make", what), during=FILM) for what in (TERM, KILL, *MAKE_TELLS)),
-    *(Fault(f"{what.name} to the shell of run-all", signal_to(SHELL, what)) for what in (TERM, KILL)),
+    *(Fault(f"{what.name} to the coordinator", signal_to(NIGHT, what)) for what in (TERM, INT, HUP, KILL)),
     *(Fault(f"{what.name} to a stage", signal_to(STAGE, what), during=STAGE) for what in (TERM, INT, KILL)),
     *(Fault(f"{what.name} to Blender", signal_to(BLENDER, what), during=BLENDER) for what in (TERM, KILL, SEGV)),
     Fault("Blender stopped", signal_to(BLENDER, STOP), during=BLENDER),

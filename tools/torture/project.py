@@ -25,9 +25,10 @@ PATIENCE = 12.0
 """Seconds of a picture in which Blender may be silent; 30 for its start."""
 STAND_IN = """#!/bin/sh
 # Stands for .venv/bin/python where make calls `python -m mechanisms|render STAGE NAME ...`.
-case "$3" in
-parts) stage=inputs ;;
-film) stage=film ;;
+case "$2 $3" in
+"studio.night "*) exec '{python}' "$@" ;;
+*parts) stage=inputs ;;
+*film) stage=film ;;
 *) exit 0 ;;
 esac
 exec '{python}' -m tools.torture.stage $stage "$4" '{folder}'
@@ -76,8 +77,6 @@ class Project:
             ROOT / "tools", self.folder / "tools", ignore=lambda _, names: {n for n in names if n[-3:] != ".sh"}
         )
         (self.folder / ".venv").symlink_to(ROOT / ".venv")
-        (self.folder / "mechanisms" / NAME).mkdir(parents=True)
-        (self.folder / "mechanisms" / NAME / "mechanism.py").touch()
         script = self.folder / "python"
         script.write_text(STAND_IN.format(python=sys.executable, folder=self.folder))
         script.chmod(script.stat().st_mode | stat.S_IXUSR)
@@ -107,7 +106,7 @@ class Project:
         }
         with (self.folder / "said.txt").open("ab") as said:
             run = subprocess.Popen(
-                ["make", "run-all", "PRESET=draft", f"PYTHON={self.folder}/python"],
+                ["make", "run-all", "PRESET=draft", f"ONLY={NAME}", f"PYTHON={self.folder}/python"],
                 cwd=self.folder,
                 env=environment,
                 stdin=subprocess.DEVNULL,

@@ -57,17 +57,26 @@ def run(name: str) -> None:
     """
     out = Out(name)
     parts, motion = read_parts(out.parts, out.name), read_motion(out.motion, out.name)
-    key = key_of(out.parts, out.motion, sources_hash(*SOURCES), versions(*PACKAGES), LIMIT, REACH)
-    stage = Stage(out, "clearance", key, [out.clearance])
+    stage = _stage(out)
     if stage.is_fresh():
         say("clearance", f"{out.name}: nothing to do")
         return
     from mechanisms.stages.clearance.pieces import read_pieces
 
-    found = check(parts, motion, read_pieces(parts, out.parts_folder), key)
+    found = check(parts, motion, read_pieces(parts, out.parts_folder), stage.key)
     write_clearance(out.clearance, found)
     stage.done()
     say("clearance", _summary(found))
+
+
+def is_fresh(name: str) -> bool:
+    """Whether there is nothing to do. Raises OSError where parts or motion are missing."""
+    return _stage(Out(name)).is_fresh()
+
+
+def _stage(out: Out) -> Stage:
+    key = key_of(out.parts, out.motion, sources_hash(*SOURCES), versions(*PACKAGES), LIMIT, REACH)
+    return Stage(out, "clearance", key, [out.clearance])
 
 
 def check(

@@ -31,8 +31,7 @@ def run(name: str) -> None:
     if not has(out.name, "shot"):
         _without_file(out)
         return
-    known = observed(Stage(out, "shot", "", []).notes().get("inputs"))
-    if known and Stage(out, "shot", _key(names, known), [out.shot]).is_fresh():
+    if _is_fresh(out, names):
         say("shot", f"{out.name}: nothing to do")
         return
     from mechanisms.stages.loading.loaded_files import loaded_inputs
@@ -52,9 +51,24 @@ def run(name: str) -> None:
     say("shot", f"{out.name}: {shot.turns} turns at {shot.fps} frames a second")
 
 
+def is_fresh(name: str) -> bool:
+    """Whether there is nothing to do."""
+    out = Out(name)
+    return _is_fresh(out, _names(out)) if has(out.name, "shot") else _stage_without_file(out).is_fresh()
+
+
+def _is_fresh(out: Out, names: Names | None) -> bool:
+    known = observed(Stage(out, "shot", "", []).notes().get("inputs"))
+    return bool(known) and Stage(out, "shot", _key(names, known), [out.shot]).is_fresh()
+
+
+def _stage_without_file(out: Out) -> Stage:
+    return Stage(out, "shot", key_of(sources_hash(*SOURCES), "no shot.py"), [out.shot])
+
+
 def _without_file(out: Out) -> None:
     """Write shot.json of ``Shot()``, unless it is there."""
-    stage = Stage(out, "shot", key_of(sources_hash(*SOURCES), "no shot.py"), [out.shot])
+    stage = _stage_without_file(out)
     if stage.is_fresh():
         say("shot", f"{out.name}: nothing to do")
         return

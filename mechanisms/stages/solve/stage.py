@@ -37,10 +37,8 @@ def run(name: str) -> None:
     Raises UserError.
     """
     out = Out(name)
-    parts = contract.read_parts(out.parts, out.name) if out.parts.is_file() else None
-    notes = Stage(out, "solve", "", []).notes()
-    known = observed(notes.get("inputs"))
-    if known and Stage(out, "solve", _key(parts, known), [out.motion, out.skeleton]).is_fresh():
+    parts = _parts(out)
+    if _is_fresh(out, parts):
         console.say("solve", f"{name}: nothing to do")
         return
     from mechanisms.stages.loading.loaded_files import loaded_inputs
@@ -60,6 +58,21 @@ def run(name: str) -> None:
     contract.write_motion(out.motion, motion)
     Stage(out, "solve", key, [out.motion, out.skeleton]).done(inputs=inputs.names())
     console.say("solve", f"{name}: {_summary(solution)}")
+
+
+def is_fresh(name: str) -> bool:
+    """Whether there is nothing to do. Raises UserError where parts.json cannot be read."""
+    out = Out(name)
+    return _is_fresh(out, _parts(out))
+
+
+def _parts(out: Out) -> contract.Parts | None:
+    return contract.read_parts(out.parts, out.name) if out.parts.is_file() else None
+
+
+def _is_fresh(out: Out, parts: contract.Parts | None) -> bool:
+    known = observed(Stage(out, "solve", "", []).notes().get("inputs"))
+    return bool(known) and Stage(out, "solve", _key(parts, known), [out.motion, out.skeleton]).is_fresh()
 
 
 def _key(parts: contract.Parts | None, inputs: Inputs) -> str:

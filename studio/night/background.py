@@ -1,0 +1,153 @@
+"""``make overnight``: a run that goes on when its terminal closes: in a tmux session, or by itself without tmux."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from shared.stage.console import say, warn
+from shared.stage.errors import UserError
+from shared.stage.files import refusal
+from shared.stage.lineage import VARIABLE
+from shared.stage.paths import ROOT, out_root, refuse_links
+from studio.night import logout, record, runs
+from studio.night.options import Options
+from studio.night.runs import Run
+
+BEGIN = 30.0
+"""Seconds that a run has to appear."""
+LOOK = 0.2
+OF_MAKE = (VARIABLE, "MAKEFLAGS", "MAKELEVEL", "MFLAGS", "MAKEOVERRIDES", "MAKE_TERMOUT", "MAKE_TERMERR")
+"""Variables that bind a stage to the make above it; the night has none."""
+
+
+def start(asked: Options) -> int:
+    """Start the run, say how to attach and what it takes; on a terminal wait for its forecast, which Ctrl-C ends.
+
+    Where a run is at work already it is named, and the new one joins it: it takes what the other has not. Raises
+    UserError where the results cannot be written, or the run does not begin.
+    """
+    for run in runs.alive():
+        found = record.read(run)
+        who = f" (process {found.process} on {found.host}, since {found.started})" if found else ""
+        warn("night", f"run {run.number} is at work already{who}; this one takes what that one is not at")
+    before = {run.number for run in runs.alive()}
+    environment = {key: value for key, value in os.environ.items() if key not in OF_MAKE}
+    attach = _launch(_command(asked), environment)
+    night = _begun(before)
+    say("night", f"started as run {night.number}; it goes on after you have logged out")
+    if attach:
+        say("night", f"attach to it: {attach} (Ctrl-B D leaves it running)")
+    else:
+        say("night", f"there is no tmux to attach to, which does not matter; see it work: tail -f {runs.log_file()}")
+    say("night", f"make status tells how far it is, make stop ends it after the frame in flight; {runs.log_file()}")
+    logout.warn_if_it_ends_all(warn)
+    if sys.stdout.isatty():
+        _tell_forecast(night)
+    else:
+        say("night", "the forecast follows in make status when a frame of every film is measured")
+    return 0
+
+
+def _command(asked: Options) -> list[str]:
+    words = [sys.executable, "-m", "studio.night", "run", "--preset", asked.preset.name]
+    words += [f"--only={','.join(asked.names)}"] if not asked.whole else []
+    words += [f"--show={asked.show}", f"--spectra={asked.spectra}"]
+    words += [f"--watts={asked.watts:g}"] if asked.watts is not None else []
+    return [*words, f"--python={asked.python}"]
+
+
+def _launch(command: list[str], environment: dict[str, str]) -> str:
+    """Start it in the background; how to attach to it, empty without tmux."""
+    refuse_links(runs.folder())
+    try:
+        runs.folder().mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(refusal(runs.folder(), error)) from error
+    scope = logout.scope()
+    tmux = shutil.which("tmux")
+    if tmux is not None:
+        # A server of its own has the environment of this command; that of the user's server may be of another day.
+        socket = f"night-{_tree()}"
+        session = _free_session(tmux, socket)
+        found = subprocess.run(
+            [*scope, tmux, "-L", socket, "new-session", "-d", "-s", session, "-c", str(ROOT), *command],
+            env={key: value for key, value in environment.items() if key not in ("TMUX", "TMUX_PANE")},
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+        )
+        if found.returncode == 0:
+            return f"tmux -L {socket} attach -t {session}"
+        warn("night", f"tmux could not start a session ({found.stderr.strip()}); it goes on without")
+    else:
+        warn("night", "tmux is not installed (sudo apt-get install -y tmux), so there is nothing to attach to")
+    subprocess.Popen(
+        [*scope, "nohup", *command],
+        cwd=ROOT,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    return ""
+
+
+def _tree() -> str:
+    """A word for this project and its results, unlike that of another copy: ``mbsd-1a2b3c``."""
+    mark = hashlib.sha256(f"{ROOT}\0{Path(os.path.abspath(out_root()))}".encode()).hexdigest()[:6]
+    return f"{re.sub(r'[^A-Za-z0-9]+', '-', ROOT.name).strip('-') or 'tree'}-{mark}"
+
+
+def _free_session(tmux: str, socket: str) -> str:
+    """``night``, or with a number where sessions of other runs are there."""
+    listing = subprocess.run([tmux, "-L", socket, "list-sessions", "-F", "#S"], capture_output=True, text=True)
+    taken = set(listing.stdout.split())
+    names = ["night", *(f"night-{number}" for number in range(2, 2 + len(taken)))]
+    return next(name for name in names if name not in taken)
+
+
+def _begun(before: set[int]) -> Run:
+    """The run that has just begun. Raises UserError if none appears."""
+    new: list[Run] = []
+
+    def appeared() -> bool:
+        new[:] = [run for run in runs.alive() if run.number not in before]
+        return bool(new)
+
+    if not _wait(appeared, BEGIN):
+        raise UserError(
+            f"the run did not begin within {BEGIN:.0f} s, or was over at once; {runs.log_file()} tells what it said, "
+            "make all does the same in this terminal"
+        )
+    return new[0]
+
+
+def _tell_forecast(night: Run) -> None:
+    """Wait until the forecast stands, or the run is over, and say it."""
+    say("night", "a frame of every film is measured for the forecast; Ctrl-C ends the waiting, not the night")
+    try:
+        _wait(lambda: not night.is_alive() or bool((found := record.read(night)) and found.forecast))
+    except KeyboardInterrupt:
+        print()
+        return
+    found = record.read(night)
+    if found is not None and found.forecast:
+        say("night", f"forecast: {found.forecast}")
+
+
+def _wait(ready: Callable[[], bool], seconds: float = float("inf")) -> bool:
+    end = time.monotonic() + seconds
+    while not ready():
+        if time.monotonic() > end:
+            return False
+        time.sleep(LOOK)
+    return True

@@ -1,0 +1,90 @@
+"""Which steps are done, and which may start next: the rules of the order, without processes or files."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import Literal
+
+from studio.night.steps import FILM, PROBE, STEPS, Step, followers
+
+State = Literal["waiting", "running", "fresh", "done", "failed", "blocked"]
+"""``fresh``: there was nothing to do; ``blocked``: a step that it needs has failed."""
+OVER: tuple[State, ...] = ("fresh", "done", "failed", "blocked")
+GOOD: tuple[State, ...] = ("fresh", "done")
+
+
+class Board:
+    """The states of all steps of all mechanisms."""
+
+    def __init__(
+        self, names: Sequence[str], fresh: Mapping[str, Collection[str]] | None = None, steps: Sequence[Step] = STEPS
+    ) -> None:
+        self.names, self.steps = list(names), {step.name: step for step in steps}
+        known = fresh or {}
+        self._states: dict[tuple[str, str], State] = {}
+        for name in names:
+            for step in steps:
+                # What follows a step that has something to do may have something to do, too.
+                good = step.name in known.get(name, ()) and all(self._states[name, n] == "fresh" for n in step.needs)
+                self._states[name, step.name] = "fresh" if good else "waiting"
+
+    def state(self, name: str, step: str) -> State:
+        """How a step stands."""
+        return self._states[name, step]
+
+    def of(self, name: str) -> dict[str, State]:
+        """The steps of one mechanism in order."""
+        return {step: self._states[name, step] for step in self.steps}
+
+    def start(self, name: str, step: str) -> None:
+        """A step runs now."""
+        self._states[name, step] = "running"
+
+    def wait(self, name: str, step: str) -> None:
+        """A step that ran has to run once more."""
+        self._states[name, step] = "waiting"
+
+    def done(self, name: str, step: str) -> None:
+        """A step has ended well."""
+        self._states[name, step] = "done"
+
+    def fail(self, name: str, step: str) -> None:
+        """A step has failed; what needs it is blocked, what runs already runs on."""
+        self._states[name, step] = "failed"
+        for other in followers(step, list(self.steps.values())):
+            if self._states[name, other] == "waiting":
+                self._states[name, other] = "blocked"
+
+    def is_over(self) -> bool:
+        """Whether nothing is left that could run or runs."""
+        return all(state in OVER for state in self._states.values())
+
+    def is_measured(self) -> bool:
+        """Whether the probe of every film that is to be made is over."""
+        return all(self._states[name, PROBE] in OVER for name in self.names) if PROBE in self.steps else True
+
+    def ready(self, renders: bool) -> Iterator[tuple[str, str]]:
+        """Mechanism and step of what may start now, the most urgent first, to render or beside the render.
+
+        Every probe comes before the first film, so that the forecast stands when the night begins.
+        """
+        found = [
+            (step.rank, place, name, step.name)
+            for place, name in enumerate(self.names)
+            for step in self.steps.values()
+            if step.renders == renders
+            and self._states[name, step.name] == "waiting"
+            and all(self._states[name, need] in GOOD for need in step.needs)
+            and (step.name != FILM or self.is_measured())
+        ]
+        for _, _, name, step in sorted(found):
+            yield name, step
+
+    def outcome(self, name: str) -> Literal["waiting", "at work", "done", "failed"]:
+        """How a whole mechanism stands."""
+        states = set(self.of(name).values())
+        if states <= set(GOOD):
+            return "done"
+        if states <= set(OVER):
+            return "failed"
+        return "at work" if "running" in states else "waiting"

@@ -1,0 +1,180 @@
+"""Takes every mechanism through its steps: one render always going on, the others' steps beside it.
+
+What is to be made is decided by stamps and pictures alone, so after whatever end the same command goes on.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+
+from shared.stage.console import duration
+from studio.night import watch
+from studio.night.board import Board
+from studio.night.books import Books
+from studio.night.log import Log
+from studio.night.options import Options
+from studio.night.process import Process
+from studio.night.runs import Claims, Run
+from studio.night.steps import FILM, STEPS, Step, command
+
+TICK = 0.1
+"""Seconds between two looks at the processes."""
+ELSEWHERE = 2.0
+"""Seconds between two tries for a mechanism that another run has."""
+LONGEST_TICK = 5.0
+"""Seconds of silence that one look counts at most."""
+
+
+class Coordinator:
+    """One run over the mechanisms of ``asked``; ``environment`` is added to that of the steps."""
+
+    def __init__(
+        self,
+        asked: Options,
+        run: Run,
+        log: Log,
+        board: Board,
+        steps: Sequence[Step] = STEPS,
+        environment: Mapping[str, str] | None = None,
+    ) -> None:
+        self.asked, self.run, self.log, self.board = asked, run, log, board
+        self.steps = {step.name: step for step in steps}
+        self.cores = os.process_cpu_count() or 1
+        self.environment = dict(environment or {})
+        self.claims = Claims()
+        self.running: list[Process] = []
+        self.books = Books(asked, run, log, board)
+        self._tries: dict[tuple[str, str], int] = {}
+        self._elsewhere: dict[str, float] = {}
+        """By mechanism that another run has, the moment of the next try."""
+        self._looked = time.monotonic()
+
+    def go(self) -> bool:
+        """Do all there is to do; False where somebody asked it to stop. However it ends, no process remains."""
+        self.books.moved()
+        try:
+            while not self.board.is_over():
+                if self.run.is_asked_to_stop():
+                    self._stop_after_frame()
+                    return False
+                self._start()
+                time.sleep(TICK)
+                self._look()
+            return True
+        finally:
+            self._end_all()
+
+    def _start(self) -> None:
+        """Start what has a place: one render, and beside it as many steps as cores are free."""
+        rendering = any(self.steps[process.step].renders for process in self.running)
+        if not rendering:
+            rendering = self._start_first(renders=True)
+        places = max(self.cores - 1, 0) if rendering else self.cores
+        while len(self._beside()) < places and self._start_first(renders=False):
+            pass
+
+    def _beside(self) -> list[Process]:
+        return [process for process in self.running if not self.steps[process.step].renders]
+
+    def _start_first(self, renders: bool) -> bool:
+        """Start the most urgent step whose mechanism no other run has; False if there is none."""
+        now = time.monotonic()
+        for name, step in self.board.ready(renders):
+            if self._elsewhere.get(name, now) > now:
+                continue
+            who = self.claims.take(name)
+            if who:
+                self._elsewhere[name] = now + ELSEWHERE
+                self.books.elsewhere(name, who)
+                continue
+            self._elsewhere.pop(name, None)
+            self.books.started(name, step)
+            process = Process(name, step, command(step, name, self.asked), not renders, self.environment)
+            self._tries[name, step] = self._tries.get((name, step), 0) + 1
+            self.running.append(process)
+            self.board.start(name, step)
+            self.books.changed()
+            return True
+        return False
+
+    def _look(self) -> None:
+        """Pass on what was said, count pictures, collect what has ended and kill what hangs."""
+        now = time.monotonic()
+        passed, self._looked = min(now - self._looked, LONGEST_TICK), now
+        for process in list(self.running):
+            code = process.code()
+            said = process.lines()
+            for line in said:
+                self.log.relay(line if process.name in line else f"{process.name}: {line}")
+            renders = self.steps[process.step].renders
+            alive = self.books.new_picture(process.name) if renders else bool(said)
+            process.silence = 0.0 if alive else process.silence + passed
+            if code is not None:
+                self._ended(process)
+            elif not process.hung:
+                longest = watch.limit(process.step, renders, self.books.each(process.name))
+                if process.silence > longest:
+                    process.hung = True
+                    self.log.warn(f"{process.name}: {process.step} gave no sign of life for {duration(longest)}")
+                    self._kill(process)
+        self.books.write_if_due()
+
+    def _kill(self, process: Process) -> None:
+        process.end()
+        process.wait()
+
+    def _ended(self, process: Process) -> None:
+        name, step = process.name, process.step
+        self.running.remove(process)
+        process.close()
+        self.claims.give_back(name)
+        self.books.ended(name, step, time.monotonic() - process.started)
+        if process.code() == 0 and not process.hung:
+            self.board.done(name, step)
+        else:
+            why = watch.ending(process)
+            again = watch.is_tried_again(process, self._tries[name, step])
+            self.books.error(name, f"{step}: {why}")
+            if again:
+                self.log.warn(f"{name}: {step}: {why}; it is started again")
+                self.board.wait(name, step)
+            else:
+                self.log.fail(f"{name}: {step} failed: {why}")
+                self.board.fail(name, step)
+        self.books.moved()
+
+    def _stop_after_frame(self) -> None:
+        """End the steps beside the render at once, the render when its next picture is there."""
+        self.log.say("asked to stop; it ends after the frame in flight")
+        for process in self._beside():
+            process.end()
+        while self.running:
+            time.sleep(TICK)
+            for process in list(self.running):
+                for line in process.lines():
+                    self.log.relay(line if process.name in line else f"{process.name}: {line}")
+                renders = self.steps[process.step].renders
+                framed = renders and self.books.new_picture(process.name)
+                if framed and not (process.step == FILM and self.books.frames[process.name].left == 0):
+                    process.end()  # the last picture is followed by the film, which takes a moment
+                if process.code() is not None:
+                    self.running.remove(process)
+                    process.close()
+                    self.claims.give_back(process.name)
+                    good = process.code() == 0
+                    (self.board.done if good else self.board.wait)(process.name, process.step)
+            self.books.write_if_due()
+
+    def _end_all(self) -> None:
+        """End what still runs: after an error of ours, or a signal."""
+        for process in self.running:
+            process.end()
+        for process in self.running:
+            process.wait()
+            self.board.wait(process.name, process.step)
+            with suppress(OSError):
+                process.close()
+        self.running.clear()

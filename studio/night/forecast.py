@@ -1,0 +1,106 @@
+"""What the rest of the night takes: time, disk, energy, and the hour at which it ends."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Collection
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from pathlib import Path
+
+from render.presets import Preset
+from shared.stage.console import duration
+from studio.night.frames import Frames
+
+START = 6.0
+"""Seconds in which Blender is loaded and the scene is built, once a film."""
+BYTES = 1.3
+"""Of a picture of the studio, a pixel, until one was measured."""
+FILM = 0.1
+"""Size of a film, of that of its pictures."""
+RESERVE = 200e6
+"""Bytes that stay free, as the stage of frames keeps them."""
+
+
+@dataclass(frozen=True)
+class Forecast:
+    """Of the films that are still to be made."""
+
+    films: int
+    pictures: int
+    seconds: float | None
+    """Until the last one; None where no picture was measured."""
+    unknown: int
+    """Films among them of which no picture was measured; they count like the others on average."""
+    unread: int
+    """Films of which it is not known yet how many pictures they have."""
+    bytes: float
+    free: float | None
+    """Bytes free on the disk; None where it cannot be asked."""
+
+    @property
+    def fits(self) -> bool:
+        """Whether the disk has room."""
+        return self.free is None or self.bytes + RESERVE <= self.free or not self.pictures
+
+    def ends(self, now: datetime) -> str:
+        """The hour at which the night is over; with the day if it is another."""
+        if self.seconds is None:
+            return "at an hour that is not known yet"
+        end = now + timedelta(seconds=self.seconds)
+        return f"at {end:%H:%M}" if end.date() == now.date() else f"on {end:%A %d %B at %H:%M}"
+
+    def words(self, now: datetime, watts: float | None = None) -> str:
+        """The forecast in a sentence."""
+        if not self.pictures and not self.unread:
+            return "every frame is there"
+        text = f"{_number(self.films, 'film')}, {_number(self.pictures, 'frame')} to render"
+        if self.seconds is not None:
+            text += f": {duration(self.seconds)}, finished {self.ends(now)}"
+        if watts is not None and self.seconds is not None:
+            text += f"; {energy(watts * self.seconds)} at {watts:g} W"
+        free = "" if self.free is None else f" of {size(self.free)} free"
+        text += f"; {size(self.bytes)} of disk{free}"
+        if self.unknown:
+            text += f"; {_number(self.unknown, 'film')} not measured, taken as the average of the others"
+        if self.unread:
+            text += f"; {_number(self.unread, 'film')} not counted, because their parts or motion are not there"
+        return text
+
+
+def forecast(films: Collection[Frames], unread: int, preset: Preset, disk: Path) -> Forecast:
+    """The forecast over the films that are not finished; ``unread`` more have no known number of pictures."""
+    left = [film for film in films if film.left]
+    known = [film.each for film in left if film.each is not None]
+    unknown = sum(film.each is None for film in left)
+    pictures = sum(film.left for film in left)
+    mean = sum(known) / len(known) if known else None
+    seconds: float | None = None
+    if mean is not None:
+        seconds = sum(film.left * (mean if film.each is None else film.each) + START for film in left)
+    elif not left:
+        seconds = 0.0
+    guess = BYTES * preset.width * preset.height
+    needed = sum((film.left + FILM * film.all) * (film.size or guess) for film in left)
+    try:
+        free = float(shutil.disk_usage(next(p for p in (disk, *disk.parents) if p.exists())).free)
+    except OSError:
+        free = None
+    return Forecast(len(left) + unread, pictures, seconds, unknown, unread, needed, free)
+
+
+def size(count: float) -> str:
+    """Bytes for people: ``12 MB``, ``3.4 GB``."""
+    if count < 1e9:
+        return f"{count / 1e6:.0f} MB"
+    return f"{count / 1e9:.1f} GB" if count < 100e9 else f"{count / 1e9:.0f} GB"
+
+
+def energy(joules: float) -> str:
+    """An energy for people, in watt-hours or kilowatt-hours."""
+    hours = joules / 3600
+    return f"{hours:.0f} Wh" if hours < 1000 else f"{hours / 1000:.1f} kWh"
+
+
+def _number(count: int, what: str) -> str:
+    return f"{count} {what}{'s' * (count != 1)}"

@@ -1,0 +1,93 @@
+"""How far a film is: its pictures that are there, those that lack, and the seconds that one takes."""
+
+from __future__ import annotations
+
+import os
+import time
+from dataclasses import dataclass, field
+
+from render.presets import Preset
+from shared.stage.errors import UserError
+from shared.stage.paths import Out
+
+FEWEST = 3
+"""Pictures made in a run before their own pace counts, rather than that of the probe."""
+
+
+@dataclass
+class Frames:
+    """The pictures of one film; all numbers are of pictures, of which a film may show one several times."""
+
+    name: str
+    preset: Preset
+    keys: frozenset[str] = frozenset()
+    probed: float | None = None
+    """Seconds a picture, as the last run or the probe measured it."""
+    size: float = 0.0
+    """Bytes of a picture, on average; 0 where none is there."""
+    files: frozenset[str] = frozenset()
+    """Names of the pictures in the folder as it was looked at last."""
+    _seen: list[tuple[float, int]] = field(default_factory=list)
+    """Moments (monotonic) at which pictures were first seen in this run, and how many there were then."""
+
+    def read(self, show: str) -> bool:
+        """Read from motion, parts and shot which pictures the film has; False where these are not there yet."""
+        from render.film.inputs import read_film
+        from render.frames.frames import Pictures
+        from render.frames.store import FrameStore
+
+        try:
+            film = read_film(Out(self.name), show)
+            pictures = Pictures(film, self.preset)
+            self.keys = frozenset(pictures.key(frame) for frame in range(film.clock.frames))
+        except (UserError, OSError, ValueError):
+            return False
+        timing = FrameStore(Out(self.name).frames(self.preset.name)).read_timing()
+        self.probed = timing.cycles / timing.rendered if timing is not None else None
+        self.look()
+        return True
+
+    @property
+    def all(self) -> int:
+        """Pictures of the film."""
+        return len(self.keys)
+
+    @property
+    def done(self) -> int:
+        """Pictures of the film that are there."""
+        return len({name.partition("-")[0] for name in self.files} & self.keys)
+
+    def look(self) -> bool:
+        """Look into the folder; whether there is a picture that was not there before."""
+        folder = Out(self.name).frames(self.preset.name)
+        try:
+            with os.scandir(folder) as entries:
+                found = {entry.name: entry for entry in entries if entry.name.endswith(".png")}
+                found = {name: entry for name, entry in found.items() if not name.startswith(".")}
+                fresh = set(found) - self.files
+                if fresh and not self.size:
+                    self.size = sum(found[name].stat().st_size for name in fresh) / len(fresh)
+        except OSError:
+            found, fresh = {}, set()
+        self.files = frozenset(found)
+        if fresh:
+            self._seen.append((time.monotonic(), self.done))
+        return bool(fresh)
+
+    def begin(self) -> None:
+        """A run of the film begins: its pace is measured anew."""
+        self._seen.clear()
+
+    @property
+    def each(self) -> float | None:
+        """Seconds a picture; None while nothing is known."""
+        if len(self._seen) >= FEWEST:
+            (first, before), (last, after) = self._seen[0], self._seen[-1]
+            if after > before:
+                return (last - first) / (after - before)
+        return self.probed
+
+    @property
+    def left(self) -> int:
+        """Pictures that lack."""
+        return self.all - self.done

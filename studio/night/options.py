@@ -1,0 +1,66 @@
+"""What a user asks of a night: which mechanisms, at which preset, and what is told of the cost."""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+from dataclasses import dataclass
+
+from render.presets import PRESETS, Preset, preset_named
+from shared.stage.errors import UserError
+from shared.stage.paths import known_name, mechanism_names, unfit_folders
+
+
+@dataclass(frozen=True)
+class Options:
+    """One night."""
+
+    names: tuple[str, ...]
+    """Mechanisms and variants in the order in which their films are made."""
+    preset: Preset = PRESETS["preview"]
+    show: str = ""
+    """What SHOW asks for in place of the shots."""
+    spectra: str = ""
+    """What SPECTRA asks for; spectra of what a mechanism has not are left out."""
+    watts: float | None = None
+    """Power of the machine while it renders (W)."""
+    python: str = sys.executable
+    """The interpreter that runs the stages."""
+    unfit: tuple[str, ...] = ()
+    """Folders with a mechanism.py whose name is none."""
+    whole: bool = False
+    """Whether these are all mechanisms, rather than those of ONLY."""
+
+
+def options(only: str, preset: str, show: str, spectra: str, watts: str, python: str) -> Options:
+    """Options from words as the Makefile has them. Raises UserError naming the word that cannot be."""
+    wanted = only_of(only)
+    return Options(
+        names=wanted or tuple(mechanism_names()),
+        preset=preset_named(preset),
+        show=show,
+        spectra=spectra,
+        watts=watts_of(watts),
+        python=python or sys.executable,
+        unfit=() if wanted else tuple(unfit_folders()),
+        whole=not wanted,
+    )
+
+
+def only_of(words: str) -> tuple[str, ...]:
+    """The mechanisms of ``ONLY=four-bar,geneva_drive``, each once; raises UserError for one that is not there."""
+    return tuple(dict.fromkeys(known_name(word) for word in re.split(r"[,\s]+", words) if word))
+
+
+def watts_of(words: str) -> float | None:
+    """The power of ``WATTS=85`` (W); raises UserError if it is no positive number."""
+    if not words.strip():
+        return None
+    try:
+        watts = float(words)
+    except ValueError:
+        watts = math.nan
+    if not 0 < watts < math.inf:
+        raise UserError(f"WATTS={words} is no power; write what the machine takes while it renders, in watts: WATTS=85")
+    return watts

@@ -1,0 +1,83 @@
+"""``make status``: what every film is at, from files alone, while a run works and after its end, whatever ended it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from datetime import datetime, timedelta
+
+from shared.stage.console import duration
+from studio.night import record, runs
+from studio.night.record import FilmRecord, NightRecord
+from studio.night.runs import Run
+
+HEAD = ("film", "frames", "each", "left", "at")
+
+
+def tell() -> int:
+    """Print the state of every run, a row for each film; always 0."""
+    known = [(run, found) for run in runs.runs() if (found := record.read(run)) is not None]
+    if not known:
+        print("No night was started here yet: make overnight starts one, make all the same in this terminal.")
+        return 0
+    sys.stdout.write("\n".join("\n".join(words(run, found, run.is_alive())) for run, found in known) + "\n")
+    return 0
+
+
+def words(run: Run, found: NightRecord, alive: bool) -> list[str]:
+    """The lines of one run."""
+    lines = [f"{standing(found, alive)} (run {run.number}, {found.preset}, started {found.started})"]
+    if found.forecast:
+        lines.append(f"forecast: {found.forecast}")
+    if alive and found.left:
+        end = datetime.now() + timedelta(seconds=found.left)
+        lines.append(f"now: {duration(found.left)} left, until {end:%a %H:%M}")
+    lines += table([row(name, film, alive) for name, film in found.films.items()])
+    lines += [f"{name}: {film.error}" for name, film in found.films.items() if film.error]
+    lines.append(f"log: {runs.log_file()}")
+    return lines
+
+
+def standing(found: NightRecord, alive: bool) -> str:
+    """How the run stands, in a few words."""
+    if alive:
+        return f"at work as process {found.process} on {found.host}"
+    how = {
+        "done": "done",
+        "failed": "over, with failures; the same command tries these again",
+        "stopped": "stopped; the same command goes on from here",
+        "": "ended without a word: killed, or the machine went down; the same command goes on from here",
+    }
+    return f"{how[found.ended]}, last seen {found.updated}"
+
+
+def row(name: str, film: FilmRecord, alive: bool) -> tuple[str, ...]:
+    """Name, frames, seconds a frame, time left, and what it is at."""
+    running = [step for step, state in film.steps.items() if state == "running"]
+    if film.elsewhere:
+        at = f"another run is at it ({film.elsewhere})"
+    elif running and alive:
+        at = ", ".join(running)
+    elif film.outcome == "failed":
+        at = "failed: " + ", ".join(step for step, state in film.steps.items() if state == "failed")
+    elif film.outcome == "done":
+        at = "done"
+    else:
+        at = "waits" if alive else "not finished"
+    over = film.outcome == "done"
+    left = "" if over or film.left is None or film.outcome == "failed" else duration(film.left)
+    frames = f"{film.done}/{film.all}" if film.all else ""
+    each = "" if film.each is None else f"{film.each:.2f} s" if film.each < 9.95 else duration(film.each)
+    return name, frames, each, left, at
+
+
+def table(rows: Sequence[tuple[str, ...]]) -> list[str]:
+    """Rows under :data:`HEAD`, numbers to the right."""
+    full = [HEAD, *rows]
+    widths = [max(len(line[column]) for line in full) for column in range(len(HEAD))]
+    lines = []
+    for line in full:
+        first, *numbers, last = line
+        middle = "  ".join(word.rjust(width) for word, width in zip(numbers, widths[1:-1], strict=True))
+        lines.append(f"  {first.ljust(widths[0])}  {middle}  {last}".rstrip())
+    return lines

@@ -1,0 +1,60 @@
+"""The steps of a mechanism, from its files to its film: what each needs, and the command that does it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from studio.night.options import Options
+
+
+@dataclass(frozen=True)
+class Step:
+    """One stage of every mechanism."""
+
+    name: str
+    needs: tuple[str, ...] = ()
+    """Steps of the same mechanism that have to be done before."""
+    renders: bool = False
+    """Whether it takes the one place of the render; the others run beside it."""
+    rank: int = 0
+    """Among the steps that could run beside the render the lowest rank comes first."""
+
+
+STEPS = (
+    Step("parts"),
+    Step("solve", ("parts",)),
+    Step("shot", ("solve",)),
+    Step("clearance", ("solve",), rank=1),
+    Step("report", ("clearance",), rank=2),
+    Step("plots", ("solve",), rank=2),
+    Step("glb", ("shot",), rank=2),
+    Step("poster", ("shot",), renders=True),
+    Step("film", ("poster", "clearance"), renders=True, rank=1),
+)
+"""In the order in which ``make run-<name>`` makes them. The poster is a frame of the film, and probes its time."""
+PROBE, FILM = "poster", "film"
+AUTHORS = ("parts", "solve", "shot", "clearance")
+"""Stages of ``python -m mechanisms``; the others are commands of ``python -m render``."""
+
+
+def command(step: str, name: str, asked: Options) -> list[str]:
+    """The command line of a step, as the Makefile has it."""
+    if step in AUTHORS:
+        return [asked.python, "-m", "mechanisms", step, name]
+    words = [asked.python, "-m", "render", step, name]
+    if step == "plots" and asked.spectra:
+        words += [f"--spectra={asked.spectra}", "--every"]
+    if step in (PROBE, FILM):
+        words += ["--preset", asked.preset.name]
+        words += [f"--show={asked.show}"] if asked.show else []
+    return words
+
+
+def followers(step: str, steps: Sequence[Step] = STEPS) -> list[str]:
+    """The steps that need this one, by themselves or through others."""
+    found = {step}
+    for other in steps:  # each stands behind those that it needs
+        if found & set(other.needs):
+            found.add(other.name)
+    return [other.name for other in steps if other.name in found - {step}]

@@ -1,0 +1,49 @@
+"""``make stop``: every run on this tree ends after the frame in flight, and is said to have ended when it has."""
+
+from __future__ import annotations
+
+import time
+
+from shared.stage.console import duration, say
+from shared.stage.errors import UserError
+from shared.stage.files import refusal
+from studio.night import record, runs
+from studio.night.runs import Run
+
+LOOK = 0.2
+"""Seconds between two looks."""
+WORD = 30.0
+"""Seconds between two words on what is waited for."""
+
+
+def stop() -> int:
+    """Ask all runs to stop and wait for their end; 0 also where there was none. Raises UserError if it cannot ask."""
+    found = runs.alive()
+    if not found:
+        say("stop", "no night is at work here")
+        return 0
+    for run in found:
+        try:
+            run.ask_to_stop()
+        except OSError as error:
+            raise UserError(refusal(run.wish, error)) from error
+    began = told = time.monotonic()
+    for run in found:
+        say("stop", f"run {run.number} ends after {_in_flight(run)}; Ctrl-C leaves it to that")
+        while run.is_alive():
+            time.sleep(LOOK)
+            if time.monotonic() - told > WORD:
+                told = time.monotonic()
+                say("stop", f"run {run.number}: {duration(told - began)}, still {_in_flight(run)}")
+        say("stop", f"run {run.number} has ended after {duration(time.monotonic() - began)}; the same command goes on")
+    return 0
+
+
+def _in_flight(run: Run) -> str:
+    """What it waits for: ``the frame in flight of four_bar (about 8.3 s)``."""
+    found = record.read(run)
+    if found is not None:
+        for name, film in found.films.items():
+            if any(film.steps.get(step) == "running" for step in ("poster", "film")):
+                return f"the frame in flight of {name}" + (f" (about {duration(film.each)})" if film.each else "")
+    return "what it is at"

@@ -1,0 +1,53 @@
+"""How long a step may give no sign of life, and whether one that ended badly is tried again.
+
+Blender itself is watched by the stage that renders, which starts it again where it hangs, crashes or grows
+(render/blender/child.py). Here the stages are watched: one that hangs for other reasons is killed.
+"""
+
+from __future__ import annotations
+
+import signal
+
+from render.blender.patience import Patience
+from studio.night.process import Process
+from studio.night.steps import PROBE
+
+STAGE = 3600.0
+"""Seconds without a word for a stage that is no render: a proof of clearance says nothing until its end."""
+TWICE = 2.5
+"""Of the patience with Blender: the stage kills it twice before it gives up by itself."""
+TRIES = 2
+"""Times that a step is started."""
+
+
+def limit(step: str, renders: bool, each: float | None) -> float:
+    """Seconds of silence after which a step is killed; ``each`` is the forecast of a picture (s)."""
+    patience = Patience(longest=each or 0.0)
+    if not renders:
+        return patience.scaled(STAGE)
+    return TWICE * patience.limit("kernels" if each is None or step == PROBE else "")
+
+
+def is_tried_again(process: Process, tries: int) -> bool:
+    """Whether a step that has failed is started once more: after a hang, a crash or a kill from outside.
+
+    An error that a stage told in a sentence would come again.
+    """
+    code = process.code() or 0
+    return tries < TRIES and (process.hung or code < 0)
+
+
+def ending(process: Process) -> str:
+    """What went wrong, in a sentence's half: its own last error, else how it ended."""
+    code = process.code() or 0
+    if process.hung:
+        return "it gave no sign of life and was killed"
+    if process.error:
+        return process.error
+    if code < 0:
+        try:
+            name = signal.Signals(-code).name
+        except ValueError:
+            name = f"signal {-code}"
+        return f"it was killed by {name}" + (", by the system if the memory ran out" if name == "SIGKILL" else "")
+    return f"it ended with code {code}"

@@ -148,7 +148,7 @@ def test_a_folder_that_cannot_be_written_is_told(tmp_path: Path, monkeypatch: py
     [("rendered", 0), ("work", 0), ("cycles", -1.0), ("cycles", 1e300), ("device", "\udcff")],
     ids=str,
 )
-def test_a_timing_that_cannot_be_is_as_good_as_none(tmp_path: Path, field: str, value: object):
+def test_a_timing_that_cannot_be_is_as_good_as_none(out_root: Path, tmp_path: Path, field: str, value: object):
     store = FrameStore(tmp_path)
     timing = Timing(preset="tiny", device="CPU", work=1, rendered=10, wall=1.1, cycles=1.0, overhead=1.1)
     jsonfile.write(store.timing, timing)

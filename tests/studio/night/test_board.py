@@ -15,7 +15,7 @@ WORK = [(name, step.name) for name in NAMES for step in STEPS]
 
 
 def play(board: Board, bad: set[tuple[str, str]], data: st.DataObject, cores: int) -> list[tuple[str, str]]:
-    """Run the board as the coordinator does, with steps that end in any order; the steps in the order of their start."""
+    """Run the board as the coordinator does, with steps that end in any order; the steps as they were started."""
     running: list[tuple[str, str]] = []
     order: list[tuple[str, str]] = []
     while not board.is_over():

@@ -1,0 +1,73 @@
+"""Nights whose stages are stand-ins: the order, the locks and the ends are real."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from shared.stage.paths import ROOT
+
+STEPS = ["parts", "solve", "shot", "clearance", "report", "plots", "glb", "poster", "film"]
+
+
+@dataclass
+class Night:
+    """A folder of results, and what the stand-ins shall do."""
+
+    folder: Path
+
+    def __post_init__(self) -> None:
+        self.folder.mkdir(exist_ok=True)
+        script = self.folder / "python"
+        script.write_text(f"#!/bin/sh\nexec '{sys.executable}' '{Path(__file__).with_name('stand_in.py')}' \"$@\"\n")
+        script.chmod(0o755)
+
+    def tell(self, name: str, step: str, words: str) -> None:
+        """What this step of this mechanism does, instead of ending well at once."""
+        (self.folder / f"{name}.{step}").write_text(words)
+
+    def ran(self) -> list[str]:
+        """``name step`` of every stage that was started, in order."""
+        file = self.folder / "ran.txt"
+        return file.read_text().splitlines() if file.exists() else []
+
+    def start(self, only: str, *words: str, command: str = "run", **variables: str) -> subprocess.Popen[str]:
+        """Start one; what it says can be read from its pipes."""
+        inherited = {key: value for key, value in os.environ.items() if key not in ("MBSD_MAKE", "TMUX")}
+        variables |= {"MBSD_STAND_IN": str(self.folder), "MBSD_OUT": str(self.folder / "out")}
+        return subprocess.Popen(
+            [sys.executable, "-m", "studio.night", command, "--preset=draft", f"--only={only}"]
+            + [f"--python={self.folder}/python", *words],
+            cwd=ROOT,
+            env=inherited | variables,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+
+    def say(self, command: str) -> str:
+        """What ``status`` or ``stop`` say."""
+        variables = os.environ | {"MBSD_OUT": str(self.folder / "out")}
+        words = [sys.executable, "-m", "studio.night", command]
+        return subprocess.run(words, cwd=ROOT, env=variables, capture_output=True, text=True, check=True).stdout
+
+
+def finished(night: subprocess.Popen[str], seconds: float = 60.0) -> tuple[int, str, str]:
+    """Exit code, stdout and stderr of a night after its end."""
+    out, err = night.communicate(timeout=seconds)
+    return night.returncode, out, err
+
+
+def until(condition: Callable[[], object], seconds: float = 30.0) -> None:
+    """Wait for something."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.05)

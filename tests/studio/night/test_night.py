@@ -1,0 +1,125 @@
+"""Whole nights with stand-ins for the stages: order, failures, crashes, hangs, kills, two at once, stop and status."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.studio.night.nights import STEPS, Night, finished, until
+
+
+@pytest.fixture
+def night(tmp_path: Path) -> Night:
+    return Night(tmp_path / "night")
+
+
+def alive(night: Night) -> list[str]:
+    """Processes of stand-ins that are left."""
+    listing = subprocess.run(["ps", "-axwwo", "args="], capture_output=True, text=True, check=True).stdout
+    return [line for line in listing.splitlines() if "stand_in.py" in line and str(night.folder) in line]
+
+
+def test_a_failure_stops_no_other_and_table_and_exit_code_tell_it(night: Night):
+    night.tell("four_bar", "clearance", "fail")
+    code, out, err = finished(night.start("four-bar,slider_crank"))
+    assert code == 1
+    ran = night.ran()
+    assert {line.split()[1] for line in ran if line.startswith("slider_crank ")} == set(STEPS)
+    assert {line.split()[1] for line in ran if line.startswith("four_bar ")} == set(STEPS) - {"report", "film"}
+    assert len(ran) == len(set(ran))
+    table = out[out.index("TABLE") :].splitlines()
+    assert [line.split()[::2] for line in table[1:3]] == [["four_bar", "failed"], ["slider_crank", "done"]]
+    assert "four_bar: clearance failed: four_bar has a bad link; make it longer" in err
+    assert "1 done, failed: four_bar" in err
+    status = night.say("status")
+    assert "over, with failures" in status
+    assert "four_bar: clearance: four_bar has a bad link; make it longer" in status
+
+
+def test_what_is_asked_for_reaches_the_stages(night: Night):
+    code, out, _ = finished(night.start("four_bar", "--show=forces,title", "--spectra=shaking force", "--watts=85"))
+    assert code == 0
+    assert "plots: four_bar: --spectra=shaking force --every" in out
+    assert "film: four_bar: --preset draft --show=forces,title" in out
+    log = (night.folder / "out" / "night" / "log.txt").read_text()
+    assert "film: four_bar: done" in log
+    assert "night: 1 done" in log
+
+
+@pytest.mark.parametrize("how", ["crash", "killed"])
+def test_what_crashes_is_started_once_more(night: Night, how: str):
+    night.tell("four_bar", "film", f"once {how}")
+    night.tell("slider_crank", "film", how)
+    code, _, err = finished(night.start("four_bar,slider_crank"))
+    assert code == 1
+    assert night.ran().count("four_bar film") == night.ran().count("slider_crank film") == 2
+    assert "1 done, failed: slider_crank" in err
+    assert f"it was killed by {'SIGSEGV' if how == 'crash' else 'SIGKILL'}" in err
+
+
+def test_what_hangs_is_killed_and_started_once_more(night: Night):
+    night.tell("four_bar", "plots", "once hang")
+    code, _, err = finished(night.start("four_bar", MBSD_PATIENCE="0.05"))
+    assert code == 0, err
+    assert night.ran().count("four_bar plots") == 2
+    assert "plots gave no sign of life for" in err
+
+
+@pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL], ids=str)
+def test_whatever_ends_a_night_ends_its_stages_and_status_tells(night: Night, how: signal.Signals):
+    night.tell("four_bar", "film", "sleep 300")
+    run = night.start("four_bar")
+    until(lambda: "four_bar film" in night.ran())
+    assert "at work as process" in night.say("status")
+    os.kill(run.pid, how)
+    code, _, _ = finished(run)
+    assert code == (-how if how == signal.SIGKILL else 128 + how)
+    until(lambda: not alive(night))
+    assert ("killed, or the machine" if how == signal.SIGKILL else "stopped; the same") in night.say("status")
+    night.tell("four_bar", "film", "")
+    assert finished(night.start("four_bar"))[0] == 0
+    assert ": done, last seen" not in night.say("status")
+    assert "done, last seen" in night.say("status")
+
+
+def test_a_second_run_takes_what_the_first_is_not_at_and_waits_for_the_rest(night: Night):
+    night.tell("four_bar", "film", "sleep 4")
+    first = night.start("four_bar")
+    until(lambda: "four_bar film" in night.ran())
+    second = night.start("four_bar,slider_crank")
+    until(lambda: "slider_crank glb" in night.ran())
+    status = night.say("status")
+    assert "(run 1, draft" in status
+    assert "(run 2, draft" in status
+    code, out, err = finished(second)
+    assert (code, finished(first)[0]) == (0, 0), err
+    assert f"four_bar: another run is at it (process {first.pid} on" in out
+
+
+def test_stop_ends_what_is_beside_the_render_and_says_when_it_has(night: Night):
+    night.tell("four_bar", "clearance", "sleep 300")
+    run = night.start("four_bar")
+    until(lambda: "four_bar clearance" in night.ran() and "four_bar poster" in night.ran())
+    said = night.say("stop")
+    assert "run 1 has ended after" in said
+    code, out, _ = finished(run)
+    assert code == 130
+    assert "0 done, 1 not finished; the same command goes on" in out
+    assert not alive(night)
+    assert night.say("stop") == "stop: no night is at work here\n"
+
+
+def test_words_that_cannot_be_are_refused_in_a_sentence(night: Night):
+    for words, told in (
+        (("four_bra",), "did you mean 'four_bar'?"),
+        (("four_bar", "--watts=0"), "WATTS=0 is no power"),
+        (("four_bar", "--watts=much"), "WATTS=much is no power"),
+    ):
+        code, _, err = finished(night.start(*words))
+        assert code == 1
+        assert told in err
+    assert night.say("status").startswith("No night was started here yet")

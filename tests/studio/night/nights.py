@@ -40,9 +40,9 @@ class Night:
         """Start one; what it says can be read from its pipes."""
         inherited = {key: value for key, value in os.environ.items() if key not in ("MBSD_MAKE", "TMUX")}
         variables |= {"MBSD_STAND_IN": str(self.folder), "MBSD_OUT": str(self.folder / "out")}
+        more = [f"--python={self.folder}/python", *words]
         return subprocess.Popen(
-            [sys.executable, "-m", "studio.night", command, "--preset=draft", f"--only={only}"]
-            + [f"--python={self.folder}/python", *words],
+            [sys.executable, "-m", "studio.night", command, "--preset=draft", f"--only={only}", *more],
             cwd=ROOT,
             env=inherited | variables,
             stdin=subprocess.DEVNULL,

@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from mbsd.results.friction import FrictionView
     from mbsd.results.mobility import Mobility
     from mbsd.results.solution import DriverView, EnergyView, FrameView, JointView, Solution, Stats
+    from mbsd.studies.study import study
     from mbsd.synthesis.fit_path import PathFit, SynthesisError, fit_path
 
 __version__ = "0.1.0"
@@ -103,10 +104,11 @@ __all__ = [
     "polynomial",
     "recorded",
     "speed_reaches",
+    "study",
     "table",
 ]
 
-_RETURNED = {
+_LATER = {
     "ActuatedMotion": "mbsd.analyses.efforts",
     "Animation": "mbsd.drawing.animation.animate",
     "Batch": "mbsd.kinematics.batch",
@@ -130,11 +132,12 @@ _RETURNED = {
     "Svg": "mbsd.drawing.picture",
     "SynthesisError": "mbsd.synthesis.fit_path",
     "fit_path": "mbsd.synthesis.fit_path",
+    "study": "mbsd.studies.study",
 }
 """What methods return, and what loads more than this import should, and where it is."""
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _RETURNED:
+    if name not in _LATER:
         raise AttributeError(f"module 'mbsd' has no attribute '{name}'")
-    return getattr(importlib.import_module(_RETURNED[name]), name)
+    return getattr(importlib.import_module(_LATER[name]), name)

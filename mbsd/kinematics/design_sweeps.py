@@ -7,7 +7,6 @@ one matrix product. Designs share the branch of the mechanism itself.
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -16,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mbsd.arrays.packing import Packed
+from mbsd.base.cores import cores
 from mbsd.base.errors import ModelError
 from mbsd.kinematics.groups.blocks import BLOCK
 from mbsd.kinematics.groups.designs import place_designs
@@ -125,7 +125,7 @@ class DesignSweeps:
         if count:
             work(0)  # compiles before the threads start
         if len(starts) > 1:
-            with ThreadPoolExecutor(threads or os.process_cpu_count()) as pool:
+            with ThreadPoolExecutor(threads or cores()) as pool:
                 list(pool.map(work, starts[1:]))
         points = {name: out[:, k] for k, name in enumerate(m.traces)}
         angles = {name: out_angles[:, k] for k, name in enumerate(self.angles)}

@@ -24,6 +24,11 @@ OPTIONAL = {
     "imageio_ffmpeg": "animate",
     "PIL": "animate",
     "sksundae": "bench",
+    "cloudpickle": "study",
+    "loky": "study",
+    "pyarrow": "study",
+    "rich": "study",
+    "distributed": "cluster",
 }
 """What single methods ask for, and the extra that brings it."""
 PACKAGE = {"sksundae": "scikit-sundae", "imageio_ffmpeg": "imageio-ffmpeg", "PIL": "pillow"}

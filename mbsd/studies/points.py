@@ -1,0 +1,76 @@
+"""The points of a study: a full product of values, a list of points, or the rows of a table."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from mbsd.base.errors import ModelError
+from mbsd.base.shown import shown
+
+MOST = 10_000_000
+"""Points of one study."""
+REASON = "reason"
+"""The column that tells why a point failed."""
+
+Point = dict[str, Any]
+
+
+def points_of(grid: Any) -> list[Point]:
+    """The points of ``grid`` in order; of a product the last name varies fastest. Raises ModelError if it is none."""
+    if isinstance(grid, Mapping):
+        return _product(grid)
+    rows = grid.to_dict("records") if hasattr(grid, "to_dict") and hasattr(grid, "columns") else grid
+    if isinstance(rows, str | bytes) or not isinstance(rows, Iterable):
+        raise ModelError(
+            f"study: grid is {shown(grid)}; give names and their values {{name: [...]}}, a list of points "
+            "[{name: value}, ...] or a DataFrame"
+        )
+    return [_point(number, row) for number, row in enumerate(rows)]
+
+
+def _product(grid: Mapping[str, Any]) -> list[Point]:
+    names, lists = [], []
+    for name, values in grid.items():
+        names.append(_name(name))
+        lists.append([_value(name, value) for value in _listed(name, values)])
+    count = math.prod(map(len, lists))
+    if count > MOST:
+        raise ModelError(f"study: a grid of {count} points; take {MOST} at most, in several studies")
+    return [dict(zip(names, values, strict=True)) for values in itertools.product(*lists)] if names else []
+
+
+def _listed(name: str, values: Any) -> list[Any]:
+    """A number or a text is one value."""
+    if isinstance(values, str | bool | int | float) or values is None or getattr(values, "shape", None) == ():
+        return [values]
+    if isinstance(values, Mapping) or not isinstance(values, Iterable):
+        raise ModelError(f"study: values of '{name}' are {shown(values)}; give a list of values")
+    return list(values)
+
+
+def _point(number: int, row: Any) -> Point:
+    if not isinstance(row, Mapping):
+        raise ModelError(f"study: point {number} is {shown(row)}; give names and values {{name: value}}")
+    return {_name(name): _value(name, value) for name, value in row.items()}
+
+
+def _name(name: Any) -> str:
+    if not isinstance(name, str) or not name.isidentifier():
+        raise ModelError(f"study: {shown(name)} is not a name that build(...) can take as an argument")
+    if name == REASON:
+        raise ModelError(f"study: '{REASON}' is the column that tells why a point failed; choose another name")
+    return name
+
+
+def _value(name: Any, value: Any) -> Any:
+    """Numbers, texts and tuples of these, of Python's own types, so that equal points have one key."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, list | tuple):
+        return tuple(_value(name, one) for one in value)
+    if value is None or isinstance(value, str | bool | int | float):
+        return value
+    raise ModelError(f"study: a value of '{name}' is {shown(value)}; give numbers, texts or tuples of these")

@@ -1,0 +1,150 @@
+"""``study``: build and measure a mechanism at every point of a grid."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import closing, nullcontext
+from typing import TYPE_CHECKING, Any
+
+from mbsd.base.arguments import checked
+from mbsd.base.cores import cores
+from mbsd.base.errors import ModelError, ModelWarning
+from mbsd.base.shown import shown
+from mbsd.base.warn import warn
+from mbsd.mechanism import Mechanism
+from mbsd.studies.content import Content, own_sources
+from mbsd.studies.driver import Numbered, Workers, computed
+from mbsd.studies.local import Here, Processes
+from mbsd.studies.points import Point, points_of
+from mbsd.studies.progress import progress as told
+from mbsd.studies.remote import Cluster, connected
+from mbsd.studies.store import Store
+from mbsd.studies.table import pandas_here, refuse_format, refuse_taken, save_table, table_of
+from mbsd.studies.work import Result
+
+if TYPE_CHECKING:
+    import pandas
+
+    from mbsd.studies.points import Point
+
+
+@checked
+def study(
+    build: Callable[..., Mechanism],
+    grid: Mapping[str, Any] | Iterable[Mapping[str, Any]] | pandas.DataFrame,
+    measure: Callable[[Mechanism], Mapping[str, float]],
+    client: Any = None,
+    *,
+    folder: str | os.PathLike[str] | None = "studies",
+    save: str | os.PathLike[str] | None = None,
+    processes: int | None = None,
+    progress: bool = True,
+) -> pandas.DataFrame:
+    """Build and measure a mechanism at every point; a table back, a row a point in the order of the grid.
+
+    ``build(**point)`` gives the mechanism, ``measure(mechanism)`` solves it and gives numbers by name. ``grid`` maps
+    names to values, of which all combinations are taken (the last name varies fastest), or lists points as mappings or
+    rows of a DataFrame. Columns of the table: the point, what was measured, and ``reason``: why build or measure
+    failed there, where the numbers are NaN; missing where they did not. ``save`` writes it as ``.parquet`` or ``.csv``.
+
+    Without ``client`` the work is done by ``processes`` of this machine, by default one a core; 1 stays in this
+    process. ``client`` is a ``distributed.Client`` or the address of a scheduler. Neither changes an order or a number.
+
+    Results are kept in ``folder``, named by the content of build and measure (their code, constants and helper
+    functions), the point and mbsd's own sources: what is known is not computed again, so a study that was stopped goes
+    on, and a larger grid costs what is new. None keeps nothing. Points at which the machine failed, not the mechanism,
+    are computed again.
+
+    Needs the extra ``study``. Raises ModelError for a grid that is none, a ``measure`` that uses a name of the points,
+    a scheduler that does not answer and workers none of which has the same versions.
+    """
+    for name, function in (("build", build), ("measure", measure)):
+        if not callable(function):
+            raise ModelError(f"study: {name} is {shown(function)}; give a function")
+    pandas_here()
+    if save is not None:
+        refuse_format(save)
+    points = points_of(grid)
+    content = Content(strict=folder is not None).add(build).add(measure)
+    key = hashlib.sha256(f"{own_sources()} {content.hexdigest()}".encode()).hexdigest()
+    store = None if folder is None else Store(folder, key)
+    keys = [_key_of(point) for point in points] if store else []
+    results: dict[int, Result] = (
+        {} if store is None else {n: store.known[k] for n, k in enumerate(keys) if k in store.known}
+    )
+    todo: Numbered = [(number, point) for number, point in enumerate(points) if number not in results]
+    if todo:
+        names = {name for point in points for name in point}
+        with (
+            _client(client) as found,
+            closing(_workers(build, measure, content, found, processes, len(todo))) as workers,
+            told(len(points), len(results), progress) as tell,
+        ):
+            try:
+                for part in computed(workers, todo):
+                    for number, result in part:
+                        results[number] = result
+                        for name in result.values or ():
+                            refuse_taken(name, names)
+                        if store is not None and not result.passing:
+                            store.keep(keys[number], result)
+                    tell(len(part), sum(result.values is None for _, result in part))
+            finally:
+                if store is not None:
+                    store.flush()
+    if points and all(result.values is None for result in results.values()):
+        warn(f"study: all {len(points)} points failed, the first for: {results[0].reason}", ModelWarning)
+    frame = table_of(points, [results[number] for number in range(len(points))], _index_of(grid))
+    if save is not None:
+        save_table(frame, save)
+    return frame
+
+
+def _index_of(grid: Any) -> Any:
+    """The rows of a DataFrame keep their names."""
+    return grid.index if hasattr(grid, "to_dict") and hasattr(grid, "columns") else None
+
+
+def _key_of(point: Point) -> str:
+    """Names in any order are one point."""
+    return Content().add(dict(sorted(point.items()))).hexdigest()[:32]
+
+
+def _bytes_of(build: Any, measure: Any, content: Content) -> bytes:
+    """Build and measure as bytes that need no file of the user where they are read."""
+    try:
+        import cloudpickle
+    except ImportError as error:
+        raise ModelError("study needs cloudpickle: install mbsd[study]") from error
+    modules = [module for name, module in content.modules.items() if name != "__main__"]
+    for module in modules:
+        cloudpickle.register_pickle_by_value(module)
+    try:
+        return cloudpickle.dumps((build, measure))
+    except Exception as error:
+        raise ModelError(f"study: build or measure cannot be sent to another process: {error}") from error
+    finally:
+        for module in modules:
+            cloudpickle.unregister_pickle_by_value(module)
+
+
+def _client(client: Any) -> Any:
+    """A connection of our own is closed at the end, the user's stays."""
+    if client is None or hasattr(client, "scheduler_info"):
+        return nullcontext(client)
+    if not isinstance(client, str):
+        raise ModelError(f"study: client is {shown(client)}; give a distributed.Client or the address of a scheduler")
+    return connected(client)
+
+
+def _workers(build: Any, measure: Any, content: Content, client: Any, processes: int | None, todo: int) -> Workers:
+    if client is not None:
+        return Cluster(_bytes_of(build, measure, content), client)
+    count = cores() if processes is None else processes
+    if count < 1:
+        raise ModelError(f"study: processes is {count}; it must be 1 at least")
+    if min(count, todo) == 1:
+        return Here(build, measure)
+    return Processes(_bytes_of(build, measure, content), min(count, todo))

@@ -1,0 +1,72 @@
+"""A study over Dask gives the table of a local one; workers that do not fit are refused by name."""
+
+from __future__ import annotations
+
+import os
+import signal
+import warnings
+from collections.abc import Iterator
+from typing import Any
+
+import dask.config
+import distributed
+import pytest
+from pandas.testing import assert_frame_equal
+
+import mbsd
+from mbsd import Mechanism, ModelError
+from mbsd.studies import remote
+
+LENGTHS = {"length": [0.1, 0.2, 0.3, -0.1, 0.5, 0.6]}
+QUIET = {"progress": False, "folder": None}
+
+
+def build(length: float) -> Mechanism:
+    m = Mechanism("pendulum")
+    bar = m.bar("bar", length, mass=1.0)
+    m.revolute("O", m.ground.at(0, 0), bar.start)
+    m.start_near(bar=30)
+    return m
+
+
+def fastest(m: Mechanism) -> dict[str, float]:
+    return {"fastest": float(m.simulate(0.5, steps=20).body("bar").omega.max())}
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[Any]:
+    """Two workers, processes of their own on loopback."""
+    settings = {"distributed.scheduler.allowed-failures": 0, "distributed.worker.daemon": True}
+    with (
+        dask.config.set(settings),
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        yield client
+
+
+def test_the_table_is_that_of_a_local_study(client: Any) -> None:
+    alone = mbsd.study(build, LENGTHS, fastest, processes=1, **QUIET)
+    assert list(alone["reason"].notna()).count(True) == 1
+    assert_frame_equal(mbsd.study(build, LENGTHS, fastest, client, **QUIET), alone)
+    assert_frame_equal(mbsd.study(build, LENGTHS, fastest, client.scheduler.address, **QUIET), alone)
+
+
+def test_a_point_that_ends_workers_is_told(client: Any) -> None:
+    def deadly(m: Mechanism) -> dict[str, float]:
+        if m.bodies["bar"].length == 0.3:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return fastest(m)
+
+    table = mbsd.study(build, LENGTHS, deadly, client, **QUIET)
+    assert list(table["reason"].notna()).count(True) == 2
+    assert table["reason"][2].startswith("its process was ended")
+
+
+def test_workers_with_other_versions_are_refused_by_name(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    ours = remote.versions() | {"numpy": "1.0"}
+    monkeypatch.setattr(remote, "versions", lambda: ours)
+    [name, *_] = client.scheduler_info(n_workers=-1)["workers"]
+    with warnings.catch_warnings(), pytest.raises(ModelError, match=f"{name}: numpy .*, here 1.0; start workers"):
+        warnings.simplefilter("ignore")
+        mbsd.study(build, LENGTHS, fastest, client, **QUIET)

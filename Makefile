@@ -14,6 +14,8 @@ BED ?=
 KERNELS ?=
 GAP ?=
 N ?=
+HOST ?=
+FOLDER ?=
 ONLY ?=
 WATTS ?=
 SEED ?= 1
@@ -33,11 +35,13 @@ override BED := $(value BED)
 override KERNELS := $(value KERNELS)
 override GAP := $(value GAP)
 override N := $(value N)
+override HOST := $(value HOST)
+override FOLDER := $(value FOLDER)
 override ONLY := $(value ONLY)
 override SEED := $(value SEED)
 override WATTS := $(value WATTS)
 override MECHANISM = $(subst -,_,$*)
-export PRESET SHEET_PRESET FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N ONLY WATTS SEED
+export PRESET SHEET_PRESET FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N HOST FOLDER ONLY WATTS SEED
 
 PRESETS := draft preview production final
 ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
@@ -184,6 +188,9 @@ gallery: install ## posters of all mechanisms (PRESET) and the page that shows t
 
 showreel: install ## the finished films of PRESET, each under its title, as one; ONLY=four_bar,geneva_drive
 	@$(PICTURE) showreel --preset "$$PRESET" --only="$$ONLY" $${SHOW:+--show="$$SHOW"}
+
+fetch: install ## bring the films of another machine home, what changed alone: HOST=user@machine FOLDER=mbsd
+	@$(PYTHON) -m studio.fetch --folder="$$FOLDER" -- "$$HOST"
 
 new: install ## a new mechanism that already runs: make new NAME=my_linkage KIND=driven|simulated
 	@$(STAGE) new --kind="$${KIND:-driven}" -- "$$NAME"

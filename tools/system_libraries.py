@@ -1,8 +1,12 @@
-"""The system libraries that Blender and the CAD kernel load, and the packages that bring them (Linux alone)."""
+"""The system libraries that Blender and the CAD kernel load, and the packages that bring them (Linux alone).
+
+Programs that a user may do without, and the tests may not, are told where ``--for-tests`` asks.
+"""
 
 from __future__ import annotations
 
 import ctypes
+import shutil
 import sys
 
 LIBRARIES = {
@@ -17,6 +21,9 @@ LIBRARIES = {
     "libxkbcommon.so.0": "libxkbcommon0",
 }
 
+PROGRAMS = {"rsync": "rsync", "ssh": "openssh-client", "sshd": "openssh-server"}
+"""Of tests: `make fetch` brings films from an sshd on loopback."""
+
 
 def missing() -> list[str]:
     """Names of the libraries that cannot be loaded; always empty on a Mac, which needs none of them."""
@@ -27,6 +34,12 @@ def cure(names: list[str]) -> str:
     """One line that names the libraries and the command that installs them."""
     packages = " ".join(LIBRARIES[name] for name in names)
     return f"missing system libraries {', '.join(names)}: sudo apt-get install -y {packages}"
+
+
+def missing_programs() -> list[str]:
+    """Names of the programs that the tests want and that are not there; sshd may be outside a user's PATH."""
+    places = [None, "/usr/sbin:/usr/local/sbin:/sbin"]
+    return [name for name in PROGRAMS if not any(shutil.which(name, path=place) for place in places)]
 
 
 def _loads(name: str) -> bool:
@@ -40,11 +53,17 @@ def _loads(name: str) -> bool:
 def main() -> int:
     """Print the cure on stderr and return 1 if something is missing; ``--packages`` prints package names alone."""
     names = missing()
-    if names and "--packages" in sys.argv:
-        print(" ".join(LIBRARIES[name] for name in names))
-    elif names:
+    programs = missing_programs() if "--for-tests" in sys.argv else []
+    packages = [LIBRARIES[name] for name in names] + [PROGRAMS[name] for name in programs]
+    if packages and "--packages" in sys.argv:
+        print(" ".join(packages))
+        return 1
+    if names:
         print(cure(names), file=sys.stderr)
-    return 1 if names else 0
+    if programs:
+        wanted = " ".join(PROGRAMS[name] for name in programs)
+        print(f"missing programs {', '.join(programs)}: sudo apt-get install -y {wanted}", file=sys.stderr)
+    return 1 if packages else 0
 
 
 if __name__ == "__main__":

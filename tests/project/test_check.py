@@ -25,6 +25,28 @@ def test_a_library_is_really_loaded() -> None:
     assert not system_libraries._loads("libThisIsNoLibrary.so.1")
 
 
+def test_programs_of_tests_are_named_with_their_packages(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(system_libraries, "missing", lambda: ["libGL.so.1"])
+    monkeypatch.setattr(
+        system_libraries.shutil, "which", lambda name, path=None: None if name != "ssh" else "/usr/bin/ssh"
+    )
+    for words, out, err in (
+        (["--for-tests", "--packages"], "libgl1 rsync openssh-server\n", ""),
+        (["--packages"], "libgl1\n", ""),
+        (["--for-tests"], "", "missing programs rsync, sshd: sudo apt-get install -y rsync openssh-server\n"),
+    ):
+        monkeypatch.setattr(system_libraries.sys, "argv", ["system_libraries", *words])
+        assert system_libraries.main() == 1
+        said = capsys.readouterr()
+        assert said.out == out
+        assert said.err.endswith(err)
+    monkeypatch.setattr(system_libraries, "missing", list)
+    monkeypatch.setattr(system_libraries.sys, "argv", ["system_libraries"])
+    assert system_libraries.main() == 0
+
+
 def test_faults_are_warned_of_and_fail_the_check(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -1,0 +1,113 @@
+"""One run of rsync: what it is told, what it says, and that it ends with us."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import re
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from shared.stage.errors import UserError
+from shared.stage.signals import terminable
+
+SSH = "ssh -o ConnectTimeout=20 -o ServerAliveInterval=20 -o ServerAliveCountMax=6"
+"""A machine that is gone is given up after two minutes. $RSYNC_RSH, if set, takes its place."""
+PR_SET_PDEATHSIG = 1
+"""Number of the request in Linux's <sys/prctl.h>."""
+FILE = re.compile(r"^file (\d+) (\d+) (.*)$")
+
+
+@dataclass
+class Transfer:
+    """What came of it."""
+
+    code: int
+    """rsync's exit code; 0 is success."""
+    said: list[str]
+    """Its errors, and those of ssh."""
+    received: int = 0
+    """Bytes of files that came over the line."""
+    there: int = 0
+    """Bytes of them that were here already."""
+
+
+def transfer(source: str, target: Path, beside: Path, lock: int, told: Callable[[str, int], None]) -> Transfer:
+    """Bring the films of ``source`` into ``target``, those left out that ``beside`` has with the same bytes.
+
+    A file that is in ``target`` in part gets the rest alone. ``told`` is called with the name and the size of each that
+    is done. rsync keeps the open file ``lock``, so that a lock on it is held until it has ended itself.
+    """
+    command = [program("rsync"), "-r", "--checksum", "--inplace", "--no-whole-file", "--stats"]
+    command += ["--out-format=file %b %l %n", f"--compare-dest={beside.resolve()}", f"--rsh={remote_shell()}"]
+    command += ["--exclude=.*", "--include=*.mp4", "--exclude=*", "--", f"{source}/", f"{target.resolve()}/"]
+    environment = {key: value for key, value in os.environ.items() if not key.startswith("RSYNC_")} | {"LC_ALL": "C"}
+    prctl = ctypes.CDLL(None).prctl if sys.platform == "linux" else None
+
+    def end_with_us() -> None:
+        if prctl is not None:
+            prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+
+    with terminable():
+        process = subprocess.Popen(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            env=environment,
+            pass_fds=[lock],
+            preexec_fn=end_with_us,
+        )
+        try:
+            return _listened(process, told)
+        finally:
+            with suppress(ProcessLookupError):
+                process.terminate()  # rsync keeps what it has
+            process.wait()
+
+
+def _listened(process: subprocess.Popen[str], told: Callable[[str, int], None]) -> Transfer:
+    assert process.stdout is not None
+    found = Transfer(code=0, said=[])
+    for line in process.stdout:
+        words = line.strip()
+        if done := FILE.match(words):
+            if not done[3].endswith("/"):
+                told(done[3], int(done[2]))
+        elif number := re.match(r"(Literal|Matched) data: ([\d,.]+)", words):
+            count = int(re.sub(r"\D", "", number[2]))
+            if number[1] == "Literal":
+                found.received = count
+            else:
+                found.there = count
+        elif words and not re.match(r"(Number of|Total|File list|sent |total size)", words):
+            found.said.append(words)
+    found.code = process.wait()
+    return found
+
+
+def remote_shell() -> str:
+    """How rsync gets to the other machine; raises UserError if that program is not installed."""
+    shell = os.environ.get("RSYNC_RSH") or SSH
+    program(shlex.split(shell)[0])
+    return shell
+
+
+def program(name: str) -> str:
+    """The program's path; raises UserError with the command that installs it."""
+    found = shutil.which(name)
+    if found is None:
+        package = {"ssh": "openssh-client"}.get(name, name)
+        raise UserError(
+            f"fetch: {name} is not installed here; sudo apt-get install -y {package} (Linux), brew install {name} (Mac)"
+        )
+    return found

@@ -1,0 +1,94 @@
+"""An sshd on loopback with keys of its own in a temporary folder; nothing of the user's is read or written."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+RELAY = Path(__file__).with_name("relay.py")
+PRIVILEGE_SEPARATION = Path("/run/sshd")
+"""sshd wants it where it runs as root; a system without sshd's service has none."""
+
+
+@dataclass(frozen=True)
+class Machine:
+    """The other machine: this one."""
+
+    folder: Path
+    port: int
+
+    @property
+    def counted(self) -> Path:
+        return self.folder / "counted"
+
+    def shell(self, most: int = 0, port: int = 0) -> str:
+        """For $RSYNC_RSH; ``most``: bytes after which the line hangs; ``port``: another one than sshd's."""
+        relay = shlex.join([sys.executable, str(RELAY), str(port or self.port), str(self.counted), str(most)])
+        options = [
+            f"IdentityFile={self.folder / 'key'}",
+            f"UserKnownHostsFile={self.folder / 'known'}",
+            "IdentitiesOnly=yes",
+            "StrictHostKeyChecking=accept-new",
+            "BatchMode=yes",
+            "LogLevel=ERROR",
+            f"ProxyCommand={relay}",
+        ]
+        words = ["ssh", "-F", "/dev/null", *(word for option in options for word in ("-o", option))]
+        return " ".join(f"'{word}'" if " " in word else word for word in words)  # as rsync takes words apart
+
+
+@contextmanager
+def machine(folder: Path) -> Iterator[Machine]:
+    """Start it; it ends with the block."""
+    made = not PRIVILEGE_SEPARATION.exists() and os.getuid() == 0
+    if made:
+        PRIVILEGE_SEPARATION.mkdir(mode=0o755)
+    folder.mkdir(mode=0o700)
+    for name in ("host", "key"):
+        subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", str(folder / name)], check=True)
+    shutil.copy(folder / "key.pub", folder / "authorized")
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    settings = {
+        "Port": port,
+        "ListenAddress": "127.0.0.1",
+        "HostKey": folder / "host",
+        "AuthorizedKeysFile": folder / "authorized",
+        "PidFile": "none",
+        "StrictModes": "no",
+        "UsePAM": "no",
+        "PasswordAuthentication": "no",
+        "PermitRootLogin": "yes",
+    }
+    (folder / "config").write_text("".join(f"{name} {value}\n" for name, value in settings.items()))
+    server = shutil.which("sshd") or "/usr/sbin/sshd"
+    with (folder / "log").open("wb") as log:
+        process = subprocess.Popen([server, "-D", "-e", "-f", str(folder / "config")], stdout=log, stderr=log)
+    try:
+        _wait(process, port, folder / "log")
+        yield Machine(folder, port)
+    finally:
+        process.terminate()
+        process.wait()
+        if made:
+            with suppress(OSError):
+                PRIVILEGE_SEPARATION.rmdir()
+
+
+def _wait(process: subprocess.Popen[bytes], port: int, log: Path) -> None:
+    for _ in range(200):
+        with suppress(OSError), socket.create_connection(("127.0.0.1", port), timeout=1):
+            return
+        assert process.poll() is None, log.read_text()
+        time.sleep(0.05)
+    raise AssertionError(log.read_text())

@@ -72,12 +72,12 @@ def with_efforts(m: AnyModel, efforts: Mapping[str, Amount | None]) -> AnyModel:
         elif name in m.forces:
             force = out.forces.pop(name)
             if effort is not None:
-                if force.kind.name not in ("torque", "force", "actuator"):
+                if not force.kind.effort:
                     raise ModelError(
                         f"{m.name}: force '{name}' is a {force.kind.name}; only drivers, torques, forces and actuators "
                         "take an effort"
                     )
-                params = {key: value for key, value in force.params.items() if key not in ("torque", "force")}
+                params = {key: value for key, value in force.params.items() if key != force.kind.effort}
                 _put(out, force.kind, name, force.i, force.j, params, effort)
         else:
             raise ModelError(f"{m.name}: {no_such('driver or force', name, [*m.drivers, *m.forces])}")
@@ -85,7 +85,7 @@ def with_efforts(m: AnyModel, efforts: Mapping[str, Amount | None]) -> AnyModel:
 
 
 def _put(m: Model, kind: ForceKind, name: str, i, j, params: Mapping, effort: Amount) -> None:
-    own, laws = amount_given(m, name, "torque" if kind is TORQUE else "force", effort)
+    own, laws = amount_given(m, name, kind.effort, effort)
     add_force(m, kind, name, i, j, {**params, **own}, laws, same_body=True)
 
 

@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.base.codes import FRICTION_JOINTS
-from mbsd.equations.joint_friction import BY_RATE, PIN
+from mbsd.equations.joint_friction import BY_RATE, GUIDE, PIN
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
 
 
+SHAPES = {"pin": PIN, "guide": GUIDE, "slot": 2}
+"""What the kernels call the pairs of :attr:`mbsd.model.joint.JointKind.pair`."""
 SHARP = 1e-9
 """Slip speed, in sizes/s, of joints that stick, where no simulation looks for the events."""
 
@@ -23,9 +24,9 @@ def pack_friction(packed: Packed) -> tuple[np.ndarray, np.ndarray]:
     names = [joint.name for joint in packed.joints]
     sharp = SHARP * packed.size
     for force, (i, j) in zip(packed.forces, packed.force_markers, strict=True):
-        if force.kind.name == "friction":
+        if force.kind.of_reactions:
             p, k = force.params, names.index(force.params["joint"])
-            shape = FRICTION_JOINTS.index(packed.joints[k].kind.name)
+            shape = SHAPES[packed.joints[k].kind.pair or ""]
             second = int(packed.system.marker_body[j] > 0)
             way = packed.first_row[names.index(force.name)] if force.name in names else -1
             rows.append((shape, i, j, packed.first_row[k], packed.first_row[k + 1], second, way))

@@ -33,20 +33,8 @@ WIDTH, TALLEST, FLATTEST = 7.0, 7.0, 2.6
 """Of a figure of our own (inches)."""
 UNITS_ACROSS = 34.0
 """Units in the larger side of a drawing."""
-UNPLACED = (
-    "force",
-    "torque",
-    "torsion_spring",
-    "torsion_spring_law",
-    "curve_of_angle",
-    "user_force",
-    "drag",
-    "rotating_frame",
-)
-"""Forces whose first marker is a direction or a body, no place."""
 SMALLEST = 1e-12
 """A unit (m) below this is the rounding of one single place."""
-SLIDING = ("prismatic", "pin_in_slot")
 
 
 def draw(m: Model, pose: Pose, ax: Axes | None, frames: bool, names: bool) -> Picture:
@@ -146,9 +134,9 @@ def _points(m: Model, pose: Pose, name: str) -> np.ndarray:
     """(k, 2) of all that a body carries: joints, traced points, the places where others slide on it."""
     out: list[np.ndarray] = []
     for joint in (*m.joints.values(), *m.drivers.values()):
-        if joint.kind.driven and joint.kind.units[1] == "rad":
+        if joint.kind.driven and joint.kind.angular:
             continue
-        slides = joint.kind.name in SLIDING
+        slides = joint.kind.slides
         if joint.j.body.name == name:
             out.append(pose.place(joint.j))
         if joint.i.body.name == name:
@@ -159,8 +147,7 @@ def _points(m: Model, pose: Pose, name: str) -> np.ndarray:
             if slides and joint.name in pose.travel:
                 out += [start + s * axis for s in (pose.travel[joint.name].min(), pose.travel[joint.name].max())]
     for force in m.forces.values():
-        ends = [force.j] if force.kind.name in UNPLACED else [force.i, force.j]
-        out += [pose.place(marker) for marker in ends if marker.body.name == name]
+        out += [pose.place(marker) for marker in force.kind.places(force) if marker.body.name == name]
     touching = [contact.j for contact in m.contacts.values() if not contact.params.get("radius")]
     out += [pose.place(marker) for marker in touching if marker.body.name == name]
     out += [pose.place(marker) for marker in m.traces.values() if marker.body.name == name]
@@ -192,7 +179,7 @@ def _unit(size: np.ndarray, points: dict[str, np.ndarray]) -> float:
 def _link(canvas: Canvas, m: Model, pose: Pose, name: str, points: np.ndarray, edge: str, frames: bool) -> None:
     """A body: a rounded outline around what it carries, its centre of mass and its frame."""
     body = m.bodies[name]
-    sliding = any(j.kind.name == "prismatic" and j.j.body is body for j in m.joints.values())
+    sliding = any(j.kind.pair == "guide" and j.j.body is body for j in m.joints.values())
     extent = float(np.hypot(*np.ptp(points, axis=0)))
     if extent > 0.5 * canvas.unit or not sliding:
         canvas.shape(rounded(points, 0.95 * canvas.unit), edge=edge, fill=edge, width=1.5, order=2, alpha=0.16)

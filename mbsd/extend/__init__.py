@@ -20,7 +20,7 @@ from mbsd.base.codes import (
 )
 from mbsd.model.adding.contacts import add_contact, frictions_given, stop_given
 from mbsd.model.adding.forces import Amount, add_force, amount_given, amounts_given
-from mbsd.model.adding.joints import Law, join, radii_given
+from mbsd.model.adding.joints import Law, Limits, join, limits_given, phase_given, radii_given
 from mbsd.model.body import Body, Marker
 from mbsd.model.contact import ContactKind
 from mbsd.model.contact import register as register_contact
@@ -53,6 +53,7 @@ __all__ = [
     "Joint",
     "JointKind",
     "Law",
+    "Limits",
     "Marker",
     "Model",
     "Term",
@@ -63,7 +64,9 @@ __all__ = [
     "frictions_given",
     "join",
     "length_given",
+    "limits_given",
     "number_given",
+    "phase_given",
     "radii_given",
     "register_contact",
     "register_force",

@@ -27,6 +27,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from mbsd.base.arguments import checked
+from mbsd.base.codes import TURN
 from mbsd.model.body import Marker
 from mbsd.model.laws import Motion
 from mbsd.model.laws.curve import Curve
@@ -103,6 +104,8 @@ class ForceKind:
     """What a force of this kind is made of."""
     example: Callable[[Any, Marker, Marker], object] | None = None
     """Adds one of this kind between two markers of different bodies; must be given."""
+    effort: str = ""
+    """The argument that is its magnitude, a constant or a law of time: an effort may take its place."""
     interactions: Callable[[Force, Masses], Sequence[Interaction]] = _no_interactions
     """Beside its elements."""
     potential: Callable[[Force, Masses, np.ndarray], np.ndarray] | None = None
@@ -116,6 +119,10 @@ class ForceKind:
     """Whether it is a load from outside, to which nothing in the mechanism feels the opposite."""
     of_reactions: bool = False
     """Whether it is friction, which comes from the reaction of a joint; see mbsd/equations/joint_friction.py."""
+    on_bodies: bool = False
+    """Whether it acts on bodies as a whole, and its markers are no places."""
+    sign: str = ""
+    """Its sign in drawings, if not that of its first element: see mbsd/drawing/symbols/loads.py."""
     saved: bool = True
     """Whether a file can hold its params; a Python function cannot be saved."""
     add: Callable[..., Any] | None = field(default=None, init=False, compare=False)
@@ -126,6 +133,11 @@ class ForceKind:
         made = checked(function)
         object.__setattr__(self, "add", made)
         return made
+
+    def places(self, force: Force) -> tuple[Marker, ...]:
+        """Those of its markers that are places where it acts, and not a direction or a body alone."""
+        turning = [element.kind == TURN for element in self.elements(force)]
+        return (force.j,) if self.outside or (turning and all(turning)) else (force.i, force.j)
 
 
 FORCE_KINDS: dict[str, ForceKind] = {}

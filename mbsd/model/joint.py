@@ -49,6 +49,9 @@ SPECIALS: dict[str, Special] = {
 }
 ROWS = {"point": 2, "angle": 1, "slot": 1, "along": 1, "distance": 1} | dict.fromkeys(SPECIALS, 1)
 """Rows that each constraint takes in J."""
+TOUCHING = ("", "line", "curve", "discs", "place")
+"""See :attr:`JointKind.touching`."""
+_PAIRS = {frozenset({"point"}): "pin", frozenset({"slot", "angle"}): "guide", frozenset({"slot"}): "slot"}
 
 
 @dataclass(frozen=True)
@@ -67,7 +70,12 @@ class JointKind:
     problem: Callable[[Mapping[str, Any], float, float], str | None] | None = None
     """From params and the place (x, y) of marker j against marker i at the start: why this joint cannot be."""
     lengths: tuple[str, ...] = ()
-    """Params that are lengths (m), or places of a curve, and tell how large the mechanism is."""
+    """Params that are lengths (m), or places of a curve, and say how large the mechanism is."""
+    touching: str = ""
+    """Where its force acts if that is beside marker j: on a "line" along the x axis of marker i, a "curve" of body i,
+    between "discs" about both markers, or at a "place" that follows from its torque."""
+    sign: str = ""
+    """The kind whose sign it has in drawings; its own if empty. See mbsd/drawing/symbols."""
     saved: bool = True
     """Whether a file can hold its params; a Python function cannot be saved."""
     add: Callable[..., Any] | None = field(default=None, init=False, compare=False)
@@ -87,6 +95,25 @@ class JointKind:
             value if isinstance(value, float) else max(max(x) - min(x) for x in zip(*value, strict=True))
             for value in values
         ]
+
+    @property
+    def pair(self) -> str | None:
+        """How its bodies move on each other; None of other joints and of drivers.
+
+        "pin": they turn about a common point. "guide": marker j slides along the x axis of marker i, without turning.
+        "slot": it slides there and turns.
+        """
+        return None if self.driven else _PAIRS.get(frozenset(self.constraints))
+
+    @property
+    def slides(self) -> bool:
+        """Whether marker j moves along the x axis of marker i."""
+        return self.pair in ("guide", "slot")
+
+    @property
+    def drawn_as(self) -> str:
+        """The kind whose sign it has."""
+        return self.sign or self.name
 
     @property
     def angular(self) -> bool:
@@ -116,6 +143,10 @@ def register(kind: JointKind) -> JointKind:
         raise ValueError(f"{kind.name}: constraints {unknown or 'are missing'}; there are {', '.join(ROWS)}")
     if not callable(kind.example):
         raise ValueError(f"{kind.name}: an example is missing; the registry test needs one")
+    if kind.touching not in TOUCHING:
+        raise ValueError(
+            f"{kind.name}: touching is {kind.touching!r}; it must be one of {', '.join(TOUCHING[1:])}, or empty"
+        )
     if kind.name in KINDS:
         raise ValueError(f"{kind.name}: registered twice")
     KINDS[kind.name] = kind

@@ -294,7 +294,7 @@ def _elements(packed: Packed, force: Force) -> tuple[Element, ...]:
     if not force.kind.of_reactions:
         return force.kind.elements(force)
     [joint] = [joint for joint in packed.joints if joint.name == force.params["joint"]]
-    return (Element(TURN if joint.kind.name == "revolute" else AXIS, ()),)
+    return (Element(TURN if joint.kind.pair == "pin" else AXIS, ()),)
 
 
 def _places(moved: Moved, force: Force, i: int, j: int) -> list[tuple[int, np.ndarray]]:

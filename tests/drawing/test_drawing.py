@@ -265,6 +265,12 @@ def boxes(text: str) -> list[tuple[float, float, float, float]]:
     return out
 
 
+def test_bodies_without_joints_have_a_topology() -> None:
+    m = Mechanism("loose")
+    m.rigid_contact("floor", m.ground.origin, m.body("ball", 1.0, inertia=1.0).origin, radius=0.1)
+    assert {"ground", "ball"} <= {element.text for element in ET.fromstring(m.topology().text).iter()}
+
+
 def test_the_topology_names_all_and_marks_the_redundant() -> None:
     m = parallelogram()
     text = m.topology().text

@@ -28,7 +28,7 @@ BLOCK = (1.75, 1.05)
 
 def draw_joint(canvas: Canvas, place: Place) -> None:
     """The symbol of a joint or driver, and its name."""
-    SYMBOLS.get(place.joint.kind.name, _link)(canvas, place)
+    SYMBOLS.get(place.joint.kind.drawn_as, _link)(canvas, place)
 
 
 def _revolute(canvas: Canvas, place: Place) -> None:

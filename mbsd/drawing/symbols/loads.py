@@ -29,7 +29,7 @@ def draw_force(canvas: Canvas, force: Force, pose: Pose) -> None:
     elif element.kind == PUSH:
         way = -1.0 if force.params.get("force", 0.0) < 0 else 1.0
         _arrow(canvas, force.name, j, way * pose.axis(force.i))
-    elif force.kind.name == "gravitation":
+    elif force.kind.sign == "attraction":
         canvas.line([i, j], LOAD, 1.0, order=3, linestyle=(0, (1, 2)))
         canvas.label(force.name, (i + j) / 2, 0.4, LOAD)
     elif element.kind == LINE or len(force.kind.elements(force)) == 1:

@@ -23,12 +23,12 @@ def reach(joint: Joint, pose: Pose) -> np.ndarray:
     out = [np.zeros((0, 2))]
     discs = ((joint.i, params.get("radius_i")), (joint.j, params.get("radius_j")), (joint.j, params.get("radius")))
     for marker, radius in discs:
-        if isinstance(radius, float) and joint.kind.name != "geneva":
+        if isinstance(radius, float) and joint.kind.drawn_as != "geneva":
             out.append(pose.place(marker) + radius * ROUND)
-    if joint.kind.name == "geneva":
+    if joint.kind.drawn_as == "geneva":
         wheel = geneva_radius(joint, pose)
         out += [pose.place(joint.i) + params["radius"] * ROUND, pose.place(joint.j) + wheel * ROUND]
-    if joint.kind.name in ("rolling_disc", "rack_and_pinion"):
+    if joint.kind.drawn_as in ("rolling_disc", "rack_and_pinion"):
         start, axis = pose.place(joint.i), pose.axis(joint.i)
         travel = np.append(pose.travel.get(joint.name, np.zeros(0)), float((pose.place(joint.j) - start) @ axis))
         ends = np.array([travel.min(), travel.max()]) + BESIDE * params["radius"] * np.array([-1.0, 1.0])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -26,32 +26,22 @@ def draw_contacts(canvas: Canvas, contacts: Sequence[Joint], pose: Pose, colours
     for feet in _floors(contacts):
         _floor(canvas, feet, pose, colours)
     for joint in contacts:
-        kind, radius = joint.kind.name, joint.params.get("radius", 0.0)
-        if kind == "rigid_terrain":
-            draw_way(canvas, curve_path(joint, pose), joint.i.body.name, colours)
-        if kind in ("rigid_contact", "rigid_terrain") and radius > 0.0:
-            _disc(canvas, joint, pose, radius, colours)
-        elif kind == "rigid_discs":
-            _discs(canvas, joint, pose, colours)
-        elif kind == "rope":
-            canvas.line(_rope(pose.place(joint.i), pose.place(joint.j), joint.params["length"]), INK, 1.5, order=5)
-        elif kind in ("coordinate_stop", "angle_stop"):
-            _stop(canvas, joint, pose, colours)
+        if joint.kind.drawn_as in SIGNS:
+            SIGNS[joint.kind.drawn_as](canvas, joint, pose, colours)
 
 
 def contact_reach(joint: Joint, pose: Pose) -> np.ndarray:
     """(k, 2) points that a drawing of this contact must hold (m)."""
-    kind, i, j = joint.kind.name, pose.place(joint.i), pose.place(joint.j)
+    i, j = pose.place(joint.i), pose.place(joint.j)
     out = [j + joint.params.get("radius", joint.params.get("radius_j", 0.0)) * ROUND]
-    if kind == "rigid_contact":
-        axis = pose.axis(joint.i)
+    if joint.kind.touching == "line":
         ends = _travel(joint, pose)
-        out.append(i + np.array([ends.min(), ends.max()])[:, None] * axis)
-    elif kind == "rigid_terrain":
+        out.append(i + np.array([ends.min(), ends.max()])[:, None] * pose.axis(joint.i))
+    elif joint.kind.touching == "curve":
         out.append(placed(pose, joint.i, np.array(joint.params["points"], float)))
-    elif kind == "rigid_discs":
+    elif joint.kind.touching == "discs":
         out.append(i + joint.params["radius_i"] * ROUND)
-    elif kind == "rope":
+    elif joint.kind.drawn_as == "rope":
         out.append(i[None])
     return np.concatenate(out)
 
@@ -68,7 +58,7 @@ def _floors(contacts: Sequence[Joint]) -> list[list[Joint]]:
     """Contacts with lines, together where these are the same line of a body."""
     out: list[list[Joint]] = []
     for joint in contacts:
-        if joint.kind.name != "rigid_contact":
+        if joint.kind.touching != "line":
             continue
         same = next((feet for feet in out if _same_line(feet[0], joint)), None)
         if same is None:
@@ -95,9 +85,17 @@ def _floor(canvas: Canvas, feet: list[Joint], pose: Pose, colours: dict[str, str
     canvas.label(feet[0].name if len(feet) == 1 else f"{feet[0].name} ...", b, 0.5)
 
 
-def _disc(canvas: Canvas, joint: Joint, pose: Pose, radius: float, colours: dict[str, str]) -> None:
-    name = joint.j.body.name
-    draw_disc(canvas, pose.place(joint.j), radius, pose.frames[name][2] + joint.j.angle, colours.get(name, QUIET))
+def _terrain(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
+    draw_way(canvas, curve_path(joint, pose), joint.i.body.name, colours)
+    _disc(canvas, joint, pose, colours)
+
+
+def _disc(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
+    """The disc about marker j, unless a point touches."""
+    name, radius = joint.j.body.name, joint.params.get("radius", 0.0)
+    if radius > 0.0:
+        turn = pose.frames[name][2] + joint.j.angle
+        draw_disc(canvas, pose.place(joint.j), radius, turn, colours.get(name, QUIET))
 
 
 def _discs(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
@@ -112,17 +110,24 @@ def _discs(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) ->
             draw_disc(canvas, centre, radius, pose.frames[name][2] + marker.angle, colour)
 
 
-def _stop(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
-    """A bar across the way of a coordinate, a spoke where an angle ends."""
-    start, axis, at = pose.place(joint.i), pose.axis(joint.i), joint.params["at"]
-    colour = colours.get(joint.i.body.name, INK)
-    if joint.kind.name == "coordinate_stop":
-        across = 1.5 * canvas.unit * np.array([-axis[1], axis[0]])
-        canvas.line([start + at * axis - across, start + at * axis + across], colour, 3.0, order=4.2)
-        return
-    angle = math.atan2(axis[1], axis[0]) + at
+def _coordinate_stop(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
+    """A bar across the coordinate, where it ends."""
+    axis, colour = pose.axis(joint.i), colours.get(joint.i.body.name, INK)
+    end = pose.place(joint.i) + joint.params["at"] * axis
+    across = 1.5 * canvas.unit * np.array([-axis[1], axis[0]])
+    canvas.line([end - across, end + across], colour, 3.0, order=4.2)
+
+
+def _angle_stop(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
+    """A spoke where the angle ends."""
+    start, axis = pose.place(joint.i), pose.axis(joint.i)
+    angle = math.atan2(axis[1], axis[0]) + joint.params["at"]
     out = canvas.unit * np.array([math.cos(angle), math.sin(angle)])
-    canvas.line([start + 1.2 * out, start + 2.6 * out], colour, 3.0, order=4.2)
+    canvas.line([start + 1.2 * out, start + 2.6 * out], colours.get(joint.i.body.name, INK), 3.0, order=4.2)
+
+
+def _rope_line(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
+    canvas.line(_rope(pose.place(joint.i), pose.place(joint.j), joint.params["length"]), INK, 1.5, order=5)
 
 
 def _rope(i: np.ndarray, j: np.ndarray, length: float) -> np.ndarray:
@@ -137,3 +142,13 @@ def _rope(i: np.ndarray, j: np.ndarray, length: float) -> np.ndarray:
         long = float(np.hypot(*np.diff(path, axis=0).T).sum()) > length
         low, high = (low, sag) if long else (sag, high)
     return i + s[:, None] * gap - (4 * low * s * (1 - s))[:, None] * np.array([0.0, 1.0])
+
+
+SIGNS: dict[str, Callable[[Canvas, Joint, Pose, dict[str, str]], None]] = {
+    "rigid_contact": _disc,
+    "rigid_terrain": _terrain,
+    "rigid_discs": _discs,
+    "rope": _rope_line,
+    "coordinate_stop": _coordinate_stop,
+    "angle_stop": _angle_stop,
+}

@@ -42,7 +42,7 @@ def _stress(places: np.ndarray, distance: np.ndarray) -> float:
 def _crossings(places: np.ndarray, edges: list[tuple[int, int]], sizes: np.ndarray) -> int:
     """Pairs of edges that cross, and boxes that an edge of others runs through."""
     count = 0
-    ends = np.array(edges).reshape(-1, 2)
+    ends = np.array(edges, int).reshape(-1, 2)
     a, b = places[ends[:, 0]], places[ends[:, 1]]
     for k in range(len(ends)):
         apart = (ends != ends[k, 0]).all(axis=1) & (ends != ends[k, 1]).all(axis=1)

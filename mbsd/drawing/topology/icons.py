@@ -5,43 +5,65 @@ A kind without a sign of its own gets a diamond; drivers a turning or a straight
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from mbsd.drawing.look import PAPER
 from mbsd.drawing.topology.svg_text import d, tag
-from mbsd.model.force import FORCE_KINDS
-from mbsd.model.joint import KINDS
+from mbsd.model.force import Force, ForceKind
+from mbsd.model.joint import Joint
 
 STROKE = 1.8
-WHEELS = ("gear_pair", "belt")
 
 
-def icon(kind: str, x: float, y: float, radius: float, colour: str) -> list[str]:
-    """The sign of a kind within ``radius`` (px) of (x, y)."""
-    return [_disc(x, y, radius - 1, colour), *_inside(kind, x, y, radius, colour)]
+def icon(sign: str, x: float, y: float, radius: float, colour: str) -> list[str]:
+    """The sign of a kind within ``radius`` (px) of (x, y); see :func:`sign_of`."""
+    return [_disc(x, y, radius - 1, colour), *ICONS.get(sign, _diamond)(x, y, radius, colour)]
 
 
-def _inside(kind: str, x: float, y: float, r: float, colour: str) -> list[str]:
-    if kind == "revolute":
-        return [_disc(x, y, 0.34 * r, colour)]
-    if kind == "prismatic":
-        block = _box(x, y - 0.02 * r, 0.42 * r, 0.3 * r, colour)
-        return [_stroke(d("M", x - 0.7 * r, y + 0.36 * r, "h", 1.4 * r), colour), block]
-    if kind == "pin_in_slot":
-        slot = _box(x, y, 0.66 * r, 0.32 * r, colour, rx=0.32 * r)
-        return [slot, _disc(x, y, 0.13 * r, colour, fill=colour)]
-    if kind == "weld":
-        return [_box(x, y, 0.34 * r, 0.34 * r, colour, fill=colour)]
-    if kind == "distance":
-        ends = [_disc(x + side * 0.48 * r, y, 0.16 * r, colour) for side in (-1, 1)]
-        return [_stroke(d("M", x - 0.48 * r, y, "h", 0.96 * r), colour), *ends]
-    if kind in KINDS and KINDS[kind].driven:
-        return (_turning if KINDS[kind].units[1] == "rad" else _pushing)(x, y, r, colour)
-    if kind in WHEELS:
-        return [_disc(x - 0.26 * r, y, 0.3 * r, colour), _disc(x + 0.3 * r, y, 0.22 * r, colour)]
-    if kind in FORCE_KINDS:
-        return [_stroke(d("M", x - 0.72 * r, y, "h", 0.2 * r, *_zigzag(r), "h", 0.2 * r), colour)]
+def sign_of(one: Joint | Force) -> str:
+    """The sign of a joint, driver or force in ICONS."""
+    if isinstance(one.kind, ForceKind):
+        return "force"
+    if one.kind.driven:
+        return "turning" if one.kind.angular else "pushing"
+    return one.kind.drawn_as
+
+
+def _revolute(x: float, y: float, r: float, colour: str) -> list[str]:
+    return [_disc(x, y, 0.34 * r, colour)]
+
+
+def _prismatic(x: float, y: float, r: float, colour: str) -> list[str]:
+    block = _box(x, y - 0.02 * r, 0.42 * r, 0.3 * r, colour)
+    return [_stroke(d("M", x - 0.7 * r, y + 0.36 * r, "h", 1.4 * r), colour), block]
+
+
+def _pin_in_slot(x: float, y: float, r: float, colour: str) -> list[str]:
+    slot = _box(x, y, 0.66 * r, 0.32 * r, colour, rx=0.32 * r)
+    return [slot, _disc(x, y, 0.13 * r, colour, fill=colour)]
+
+
+def _weld(x: float, y: float, r: float, colour: str) -> list[str]:
+    return [_box(x, y, 0.34 * r, 0.34 * r, colour, fill=colour)]
+
+
+def _distance(x: float, y: float, r: float, colour: str) -> list[str]:
+    ends = [_disc(x + side * 0.48 * r, y, 0.16 * r, colour) for side in (-1, 1)]
+    return [_stroke(d("M", x - 0.48 * r, y, "h", 0.96 * r), colour), *ends]
+
+
+def _wheels(x: float, y: float, r: float, colour: str) -> list[str]:
+    return [_disc(x - 0.26 * r, y, 0.3 * r, colour), _disc(x + 0.3 * r, y, 0.22 * r, colour)]
+
+
+def _force(x: float, y: float, r: float, colour: str) -> list[str]:
+    return [_stroke(d("M", x - 0.72 * r, y, "h", 0.2 * r, *_zigzag(r), "h", 0.2 * r), colour)]
+
+
+def _diamond(x: float, y: float, r: float, colour: str) -> list[str]:
+    """Of a kind without a sign."""
     half = 0.5 * r
-    diamond = d("M", x - half, y, "l", half, -half, "l", half, half, "l", -half, half, "z")
-    return [_stroke(diamond, colour)]
+    return [_stroke(d("M", x - half, y, "l", half, -half, "l", half, half, "l", -half, half, "z"), colour)]
 
 
 def _zigzag(r: float) -> list[str | float]:
@@ -82,3 +104,17 @@ def _stroke(path: str, colour: str) -> str:
 
 def _filled(path: str, colour: str) -> str:
     return tag("path", d=path, fill=colour, stroke="none")
+
+
+ICONS: dict[str, Callable[[float, float, float, str], list[str]]] = {
+    "revolute": _revolute,
+    "prismatic": _prismatic,
+    "pin_in_slot": _pin_in_slot,
+    "weld": _weld,
+    "distance": _distance,
+    "gear_pair": _wheels,
+    "belt": _wheels,
+    "turning": _turning,
+    "pushing": _pushing,
+    "force": _force,
+}

@@ -10,7 +10,7 @@ from mbsd.base.errors import AssemblyError, ModelError
 from mbsd.drawing import look
 from mbsd.drawing.picture import Svg
 from mbsd.drawing.topology.graph_layout import layout
-from mbsd.drawing.topology.icons import icon
+from mbsd.drawing.topology.icons import icon, sign_of
 from mbsd.drawing.topology.svg_text import d, tag
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
@@ -79,13 +79,13 @@ def _body(m: Model, name: str, k: int) -> Node:
 
 
 def _joint(joint: Joint | Force, redundant: bool) -> Node:
-    name, kind = joint.name, joint.kind.name
-    words = kind.replace("_", " ")
+    name = joint.name
+    words = joint.kind.name.replace("_", " ")
     below = f"{words}, redundant" if redundant else words
     colour = look.LOAD if isinstance(joint, Force) else look.MOVED if joint.kind.driven else look.INK
     colour = look.WRONG if redundant else colour
     width = max(2 * JOINT, _width(name, 12), _width(below, 9.5))
-    return Node(name, below, kind, colour, (width + 12, 2 * JOINT + 34))
+    return Node(name, below, sign_of(joint), colour, (width + 12, 2 * JOINT + 34))
 
 
 def _width(text: str, size: float) -> float:

@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.base.codes import FRICTION_JOINTS
 from mbsd.dynamics.rows.switches import RELEASED, SLIDES
 from mbsd.equations.joint_friction import BY_RATE, FIRST, NONE, PIN, PRELOAD, SENSE, SHAPE, SIZE, STATIC, WAY
 from mbsd.equations.loads import Loads
@@ -33,11 +32,11 @@ STUCK_PLACE = JointKind("stuck_place", ("linear",), example=_example, numbers=la
 
 def stuck_rows(packed: Packed) -> list[Joint]:
     """What holds the joints with such friction while they stick, by the names of the frictions."""
-    pins = {joint.name for joint in packed.joints if joint.kind.name == FRICTION_JOINTS[PIN]}
+    pins = {joint.name for joint in packed.joints if joint.kind.pair == "pin"}
     return [
         Joint(STUCK_ANGLE if force.params["joint"] in pins else STUCK_PLACE, force.name, force.i, force.j, {})
         for force in packed.forces
-        if force.kind.name == "friction" and force.params["sticks"]
+        if force.kind.of_reactions and force.params["sticks"]
     ]
 
 

@@ -50,7 +50,7 @@ def limits_of(packed: Packed) -> list[Limit]:
                     name=joint.name,
                     marker_i=int(i),
                     marker_j=int(j),
-                    angular=joint.kind.name == "revolute",
+                    angular=joint.kind.pair == "pin",
                     offset=joint.j.angle - joint.i.angle,
                     lower=-math.inf if lower is None else float(lower),
                     upper=math.inf if upper is None else float(upper),

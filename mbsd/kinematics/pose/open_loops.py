@@ -42,7 +42,7 @@ def _short_links(m: Model, packed: Packed, joint: Joint, drive: np.ndarray) -> s
     driven = {
         j.j.body.name: float(drive[k + 1, 0])
         for k, j in enumerate(m.drivers.values())
-        if j.kind.name == "drive_angle" and j.motion is not None
+        if j.kind.angular and j.i.body.name == "ground" and j.motion is not None
     }
     parts: list[tuple[str, np.ndarray, bool]] = []  # bodies, vector in the world if it is fixed, fixed?
     for body, entry, leave in loop:
@@ -78,7 +78,7 @@ class _Crossing(NamedTuple):
 
 def _loop_through(m: Model, joint: Joint) -> list[_Crossing] | None:
     """The shortest loop of pins through ``joint`` (any loop if it is no pin); None if there is none."""
-    pins = [j for j in m.joints.values() if j.kind.name == "revolute"]
+    pins = [j for j in m.joints.values() if j.kind.pair == "pin"]
     if joint not in pins:
         loops = [loop for pin in pins if (loop := _loop_through(m, pin))]
         return min(loops, key=len, default=None)

@@ -90,7 +90,7 @@ def _arm_of(packed: Packed, q: np.ndarray, i: int, j: int) -> int | None:
     for centre, own in zip(centres, (i, j), strict=True):
         found = {int(packed.system.marker_body[own])}
         for joint, markers in zip(packed.joints, packed.markers, strict=True):
-            if joint.kind.name == "revolute":
+            if joint.kind.pair == "pin":
                 near = np.linalg.norm(_place(packed, q, markers[0]) - centre) < SAME_PLACE * packed.size
                 found |= {int(packed.system.marker_body[marker]) for marker in markers} if near else set()
         pins.append(found)

@@ -28,6 +28,7 @@ DISCS = register(
         example=lambda m, i, j: m.rigid_discs("example", i, j, 0.05, 0.04),
         numbers=_numbers,
         lengths=("radius_i", "radius_j"),
+        touching="discs",
     )
 )
 

@@ -27,6 +27,7 @@ LINE = register(
         example=lambda m, i, j: m.rigid_contact("example", i, j),
         numbers=_numbers,
         lengths=("radius",),
+        touching="line",
     )
 )
 

@@ -71,9 +71,9 @@ def stop(
         raise ModelError(f"{m.name}: stop '{name}' has no end; give lower=, upper= or both")
     if lower is not None and upper is not None and not lower < upper:
         raise ModelError(f"{m.name}: stop '{name}': lower is {lower:g}, upper {upper:g}; lower must be less")
-    if not isinstance(joint, Joint) or joint.kind.name not in ("revolute", "prismatic"):
+    if not isinstance(joint, Joint) or joint.kind.pair not in ("pin", "guide"):
         raise ModelError(f"{m.name}: stop '{name}' needs a revolute or prismatic joint, got {shown(joint)}")
-    add = angle_stop if joint.kind.name == "revolute" else coordinate_stop
+    add = angle_stop if joint.kind.pair == "pin" else coordinate_stop
     ends = [("lower", lower, False), ("upper", upper, True)]
     given = [(f"{name} {end}", at, is_upper) for end, at, is_upper in ends if at is not None]
     for one, _, _ in given:

@@ -37,6 +37,7 @@ TERRAIN = register(
         ),
         numbers=_numbers,
         lengths=("radius", "points"),
+        touching="curve",
     )
 )
 

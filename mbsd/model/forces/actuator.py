@@ -24,7 +24,12 @@ def _elements(force):
 
 
 ACTUATOR = register(
-    ForceKind("actuator", _elements, example=lambda m, i, j: m.actuator("example", i, j, 12.0, along_axis=True))
+    ForceKind(
+        "actuator",
+        _elements,
+        effort="force",
+        example=lambda m, i, j: m.actuator("example", i, j, 12.0, along_axis=True),
+    )
 )
 
 

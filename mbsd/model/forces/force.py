@@ -35,6 +35,7 @@ FORCE = register(
     ForceKind(
         "force",
         _elements,
+        effort="force",
         example=lambda m, i, j: m.force("example", j, 3.0, direction=(0.6, 0.8), frame=i.body),
         outside=True,
     )

@@ -21,7 +21,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from mbsd.base.codes import FRICTION_JOINTS
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.model.adding.forces import above_zero, add_force, amounts_given
@@ -66,9 +65,9 @@ def friction(
     known = m.joints.get(key) if isinstance(key, str) else None
     if known is None or (known is not joint and isinstance(joint, Joint)):
         raise ModelError(f"{what}: {no_such('joint', key, m.joints)}")
-    if known.kind.name not in FRICTION_JOINTS:
+    if known.kind.pair is None:
         raise ModelError(
-            f"{what}: '{known.name}' is a {known.kind.name}; friction needs one of {', '.join(FRICTION_JOINTS)}"
+            f"{what}: '{known.name}' is a {known.kind.name}; friction needs one of revolute, prismatic, pin_in_slot"
         )
     params = amounts_given(
         m, name, coefficient=coefficient, viscous=viscous, radius=radius, length=length, preload=preload
@@ -80,9 +79,9 @@ def friction(
         params["slip_speed"] = above_zero(m, name, "slip_speed", 1e-3 if slip_speed is None else slip_speed)
     elif slip_speed is not None:
         raise ModelError(f"{what}: a joint that sticks does not creep; give slip_speed or sticks=True, not both")
-    if (params["radius"] > 0) != (known.kind.name == "revolute"):
+    if (params["radius"] > 0) != (known.kind.pair == "pin"):
         raise ModelError(f"{what}: a revolute joint needs the radius of its pin (m), and no other has one")
-    if params["length"] > 0 and known.kind.name != "prismatic":
+    if params["length"] > 0 and known.kind.pair != "guide":
         raise ModelError(f"{what}: a length of guide (m) is of prismatic joints alone")
     params["joint"] = known.name
     return add_force(m, FRICTION, name, known.i, known.j, params)

@@ -21,7 +21,7 @@ def _elements(force):
 
 
 GRAVITATION = register(
-    ForceKind("gravitation", _elements, example=lambda m, i, j: m.gravitation("example", i, j, -2.3))
+    ForceKind("gravitation", _elements, sign="attraction", example=lambda m, i, j: m.gravitation("example", i, j, -2.3))
 )
 
 

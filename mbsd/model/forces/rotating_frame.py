@@ -50,6 +50,7 @@ ROTATING_FRAME = register(
         interactions=_interactions,
         potential=_potential,
         outside=True,
+        on_bodies=True,
         example=lambda m, i, j: m.rotating_frame("example", harmonic(2.0, 3.0), (0.3, -0.4)),
     )
 )

@@ -24,7 +24,9 @@ def _elements(force):
 
 
 TORQUE = register(
-    ForceKind("torque", _elements, example=lambda m, i, j: m.torque("example", j.body, 1.7, against=i.body))
+    ForceKind(
+        "torque", _elements, effort="torque", example=lambda m, i, j: m.torque("example", j.body, 1.7, against=i.body)
+    )
 )
 
 

@@ -30,6 +30,7 @@ USER_FORCE = register(
         "user_force",
         example=lambda m, i, j: m.user_force("example", _wind_and_spring, j.body),
         outside=True,
+        on_bodies=True,
         saved=False,
     )
 )

@@ -28,6 +28,7 @@ CAM_FLAT = register(
         ("support",),
         example=lambda m, i, j: m.cam_flat("example", i, j, {"follower": "flat", "lift": _LIFT, "base_radius": 1.5}),
         numbers=lambda params: [cam_numbers(params["profile"])],
+        touching="place",
     )
 )
 

@@ -31,6 +31,7 @@ CONSTRAINT = register(
         ("user",),
         example=lambda m, i, j: m.constraint("example", i, j, _ellipse),
         saved=False,
+        touching="place",
     )
 )
 

@@ -35,6 +35,7 @@ GEAR_PAIR = register(
         numbers=_numbers,
         problem=gear_problem,
         lengths=("radius_i", "radius_j"),
+        touching="place",
     )
 )
 

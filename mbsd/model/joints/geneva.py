@@ -44,6 +44,7 @@ GENEVA = register(
         numbers=lambda params: [(params["slots"], params["radius"])],
         problem=_problem,
         lengths=("radius",),
+        touching="place",
     )
 )
 

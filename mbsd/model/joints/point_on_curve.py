@@ -48,6 +48,7 @@ POINT_ON_CURVE = register(
         ),
         numbers=_numbers,
         lengths=("points",),
+        touching="place",
     )
 )
 

@@ -25,6 +25,7 @@ RACK_AND_PINION = register(
         numbers=lambda params: [(1.0, 0.0, with_radii(params)["radius"], 0.0)],
         problem=rack_problem,
         lengths=("radius",),
+        touching="place",
     )
 )
 

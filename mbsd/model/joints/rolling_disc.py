@@ -24,6 +24,7 @@ ROLLING_DISC = register(
         example=lambda m, i, j: m.rolling_disc("example", i, j, radius=0.3),
         numbers=lambda params: [(0.0, 1.0, 0.0, params["radius"]), (1.0, 0.0, params["radius"], 0.0)],
         lengths=("radius",),
+        touching="line",
     )
 )
 

@@ -39,6 +39,7 @@ ROLLING_ON_CURVE = register(
         ),
         numbers=_numbers,
         lengths=("radius", "points"),
+        touching="curve",
     )
 )
 

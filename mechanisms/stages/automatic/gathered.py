@@ -108,5 +108,5 @@ def _loose_eyes(joints: list[Joint], features: list[Feature], layout: Layout) ->
             beside = [*(a for a in taken if a.body == body), *(eye for eye in eyes if eye.body == body)]
             free = all(abs(other.x - x) > 0.02 or abs(other.y - y) > 0.02 for other in beside)
             if body in layout.moving and free:
-                eyes.append(LooseEye(body, x, y, joint.kind.name in ("revolute", ROD)))
+                eyes.append(LooseEye(body, x, y, joint.kind.pair == "pin" or joint.kind.name == ROD))
     return list(eyes)

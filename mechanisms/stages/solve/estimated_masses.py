@@ -28,8 +28,6 @@ LEAST_SIZE = 0.1
 """L (m) where no body has two markers apart."""
 CORNERS = 96
 """Of the polygon that stands for a disc."""
-ROLLING = ("contact", "tyre")
-"""Forces whose radius is that of a disc about their second marker."""
 
 
 @dataclass(frozen=True)
@@ -55,12 +53,13 @@ def estimated_masses(m: Mechanism) -> dict[str, Estimate]:
 
 def _discs(m: Mechanism) -> Iterator[tuple[Marker, float]]:
     """Every marker that is used, with the radius of the wheel about it (m), or 0."""
+    from mbsd.model.force import ForceKind
     from mbsd.model.teeth import with_radii
 
     for joint in chain(m.joints.values(), m.drivers.values(), m.contacts.values(), m.forces.values()):
         params = with_radii(joint.params)
-        rolls = joint.name not in m.forces or joint.kind.name in ROLLING
-        wheel = params.get("radius", 0.0) if rolls and joint.kind.name != "geneva" else 0.0
+        rolls = not isinstance(joint.kind, ForceKind) or joint.kind.surface is not None
+        wheel = params.get("radius", 0.0) if rolls and "slots" not in params else 0.0
         yield joint.i, float(params.get("radius_i", 0.0))
         yield joint.j, float(params.get("radius_j", wheel))
     for marker in m.traces.values():

@@ -106,7 +106,7 @@ def to_motion(
 
 def _force(solution: Solution, view: ForceView) -> contract.ForceMotion:
     force = solution.mechanism.forces[view.name]
-    on_no_markers = view.several or force.kind.name in ("user_force", "rotating_frame")
+    on_no_markers = view.several or force.kind.on_bodies
     return contract.ForceMotion(
         kind=view.kind,
         actions=[contract.Action(body=body, **_lists(view.on(body), PLACED)) for body in view.bodies],

@@ -15,6 +15,7 @@ POINTS = 240
 
 def shape_of(one: Joint | Force) -> Shape:
     """The shape between the two markers of a joint, force or contact."""
+    from mbsd.model.force import ForceKind
     from mbsd.model.teeth import with_radii
 
     params = dict(with_radii(one.params))
@@ -27,9 +28,9 @@ def shape_of(one: Joint | Force) -> Shape:
         outline = _curve(params["points"], params["closed"])
     elif "profile" in laws:
         outline = _profile(laws["profile"])
-    geneva = one.kind.name == "geneva"
+    geneva = "slots" in params
     teeth = params.get("teeth")
-    of_pin = one.kind.name == "friction"
+    of_pin = isinstance(one.kind, ForceKind) and one.kind.of_reactions
     return Shape(
         bodies=one.bodies,
         markers=((one.i.x, one.i.y, one.i.angle), (one.j.x, one.j.y, one.j.angle)),

@@ -11,10 +11,6 @@ from mbsd.drawing.pose import Tracks
 from mbsd.model.joint import Joint
 from mbsd.results.solution import Solution
 
-ROLLING = ("rolling_disc", "rolling_on_curve", "rack_and_pinion")
-TOUCHING = (*ROLLING, "gear_pair", "cam_flat", "geneva", "point_on_curve", "constraint")
-"""Joints whose force acts beside the second marker: on the line where it has no torque."""
-
 
 def reaction_arrows(sol: Solution, tracks: Tracks) -> list[Arrow | Arc]:
     """What joints and contacts do to their second body; to the first one where the second is ground."""
@@ -46,7 +42,7 @@ def _wrench(sol: Solution, tracks: Tracks, joint: Joint, k: int, quantity: str) 
     """Force and torque of joint number ``k`` on its moving second body, else on its first."""
     force, torque = sol.wrench[:, k, :2], sol.wrench[:, k, 2]
     place = moving_marker(tracks.views, joint.j).place
-    if joint.kind.name in TOUCHING or joint.name in sol.mechanism.contacts:
+    if joint.kind.touching:
         place = touched(tracks, joint, place, force, torque)
         torque = np.zeros(len(torque))
     sign = -1.0 if joint.j.body.name == "ground" else 1.0
@@ -56,12 +52,12 @@ def _wrench(sol: Solution, tracks: Tracks, joint: Joint, k: int, quantity: str) 
 def touched(tracks: Tracks, joint: Joint, place: np.ndarray, force: np.ndarray, torque: np.ndarray) -> np.ndarray:
     """(T, 2) where a force acts that has a torque about the second marker only because it acts beside it."""
     radius = joint.params.get("radius", 0.0)
-    if joint.kind.name in ("rolling_disc", "rigid_contact"):  # a line: below the centre, whatever the friction
+    if joint.kind.touching == "line":  # a line: below the centre, whatever the friction
         angle = tracks.views[joint.i.body.name].theta + joint.i.angle
         return place - radius * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
-    if joint.kind.name in ("rolling_on_curve", "rigid_terrain"):
+    if joint.kind.touching == "curve":
         return place + _toward(force, torque, radius) if force.any() else place
-    if joint.kind.name == "rigid_discs":
+    if joint.kind.touching == "discs":
         gap = moving_marker(tracks.views, joint.i).place - place
         length = np.hypot(*gap.T)[:, None]
         side = -joint.params["radius_j"] if joint.params["inside"] else joint.params["radius_j"]

@@ -37,7 +37,7 @@ def motion_arrows(m: Model, tracks: Tracks, quantity: str) -> list[Arrow | Arc]:
 
 def _markers(m: Model, name: str) -> list[Marker]:
     """Where a body has joints and traced points; its centre of mass too, or a bar's end, if these are one place."""
-    joints = [*m.joints.values(), *(one for one in m.contacts.values() if one.kind.name == "rope")]
+    joints = [*m.joints.values(), *(one for one in m.contacts.values() if one.kind.drawn_as == "rope")]
     out = [marker for joint in joints for marker in (joint.j, joint.i) if marker.body.name == name]
     out += [marker for marker in m.traces.values() if marker.body.name == name]
     body = m.bodies[name]

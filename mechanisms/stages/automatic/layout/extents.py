@@ -19,8 +19,6 @@ LINK, STUD = 22.0, 18.0
 """Least distances of two pins of one body, and of a spring's stud and a pin or stud beside it (rmm)."""
 ROD = "distance"
 """The kind of joint that is a rod: like a body here, though it has no mass and no pose of its own in the model."""
-PINNED = ("revolute", ROD)
-"""Kinds of joints with a pin on either body."""
 STRETCHING = ("spring", "spring_law", "curve_of_length", "actuator", "gas")
 """Kinds of forces that act along the line of two points, or along an axis on which both may be."""
 ROPE, LINEAR = "rope", "drive_distance"
@@ -69,7 +67,7 @@ def extents(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) ->
             if marker.body.name in left_out:
                 continue
             places.setdefault(marker.body.name, []).append((marker.x, marker.y))
-            if joint.kind.name in PINNED or (joint.kind.name == "pin_in_slot" and marker is joint.j):
+            if joint.kind.pair == "pin" or joint.kind.name == ROD or (joint.kind.pair == "slot" and marker is joint.j):
                 pinned.setdefault(marker.body.name, []).append((marker.x, marker.y))
     for thing in (*m.joints.values(), *m.contacts.values(), *m.forces.values()):
         if thing.kind.name in EXTENTS and not any(body in left_out for body in thing.bodies):

@@ -143,7 +143,7 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
 @kind(ROD)
 def gather_rods(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
     """Their pins are those of the revolute joints, unless there is none of these."""
-    revolute = [j for j in m.joints.values() if j.kind.name == "revolute" and not layout.apart.intersection(j.bodies)]
+    revolute = [j for j in m.joints.values() if j.kind.pair == "pin" and not layout.apart.intersection(j.bodies)]
     return [] if revolute else _pins(m, _rod_ends(layout))
 
 

@@ -121,7 +121,7 @@ def stops(m: Mechanism, features: list[Feature], layout: Layout) -> list[Feature
     taken = [anchor for feature in features for anchor in feature.anchors(layout)]
     found: list[Feature] = []
     for joint in m.joints.values():
-        if joint.kind.name != "revolute" or layout.apart.intersection(joint.bodies):
+        if joint.kind.pair != "pin" or layout.apart.intersection(joint.bodies):
             continue
         ends = limits.turning(joint, m)
         (i, j), swap = (joint.i, joint.j), joint.j.body.name == "ground"

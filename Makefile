@@ -150,6 +150,11 @@ glb-%: install always ## the parts with their motion in one file for any glTF vi
 	$(upto_shot)
 	@$(PICTURE) glb "$$MECHANISM"
 
+view-%: install always ## one HTML page with the machine, its forces and its plots: out/<name>/view.html
+	$(upto_bare_motion)
+	@$(STAGE) shot "$$MECHANISM"
+	@$(PICTURE) view "$$MECHANISM"
+
 poster-%: install always ## one picture at its best: out/<name>/poster.png
 	$(upto_shot)
 	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}

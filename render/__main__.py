@@ -14,6 +14,7 @@ COMMANDS = {
     "compare": "all variants of a mechanism on the same pages",
     "report": "what the run found, in sentences and tables: report.md",
     "glb": "the parts with their motion as one animation, for any glTF viewer",
+    "view": "one HTML page with the machine, its forces and its plots",
     "still": "one frame as a picture",
     "contact": "a sheet of twelve frames as contact.png",
     "poster": "the shot's best moment as poster.png",
@@ -31,7 +32,7 @@ def main() -> int | None:
     for command, text in COMMANDS.items():
         sub = commands.add_parser(command, aliases=[command.replace("-", "_")] if "-" in command else [], help=text)
         sub.add_argument("name", help="mechanism; four-bar and four_bar are one")
-        if command not in ("plots", "compare", "report", "glb"):
+        if command not in ("plots", "compare", "report", "glb", "view"):
             sub.add_argument("--preset", default="preview", help=f"{', '.join(PRESETS)}; preview if not given")
             sub.add_argument(
                 "--show", default="", help="what to show: reactions,velocities,title; as shot.py says if not given"
@@ -86,6 +87,10 @@ def main() -> int | None:
         from render import glb
 
         return glb.run(name)
+    if command == "view":
+        from render import view
+
+        return view.run(name)
     return _picture(command, name, preset_named(arguments.preset), arguments)
 
 

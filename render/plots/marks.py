@@ -9,30 +9,13 @@ from matplotlib.transforms import blended_transform_factory
 
 from render.plots.horizon import Horizon
 from render.plots.style import QUIET
-from render.report.transmission import loops
+from render.report.moments import marks
 from shared.contract import Motion
 
 MOST = 12
 """Events on a page; of more, the first."""
-STEP = 1e-6
-"""Of the motion: times that are nearer are one."""
-FEW = 6
-"""Dead points on a page at most; of a crank that turns and turns they would say nothing."""
 APART = 0.09
 """Of the page: nearer marks share the text of the first."""
-
-
-def marks(motion: Motion) -> list[tuple[float, str]]:
-    """Times (s) and words, in their order: dead points of driven cranks, and all events but the end."""
-    time = np.asarray(motion.time)
-    found = [(at, f"{loop.follower} turns back") for loop in loops(motion) for at, _ in loop.dead_points(time)]
-    if motion.period:  # what is at the start of a period is at its end
-        close = STEP * (time[-1] - time[0])
-        ends = (time[0], time[-1])
-        found += [(other, words) for at, words in found for end, other in (ends, ends[::-1]) if abs(at - end) < close]
-    found = found if len(found) <= FEW else []
-    found += [(event.time, f"{event.name}: {event.what}") for event in motion.events if event.what != "end"]
-    return sorted(set(found))
 
 
 def mark(figure: Figure, over: Horizon, motion: Motion) -> None:

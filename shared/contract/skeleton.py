@@ -61,6 +61,54 @@ class Pose(_Strict, kw_only=True):
     strokes: list[Stroke]
 
 
+class End(_Strict, kw_only=True):
+    """A point of a body or of ground, in its frame (m)."""
+
+    body: str
+    x: float = 0.0
+    y: float = 0.0
+
+
+class Carrier(_Strict, kw_only=True):
+    """What something moves with, for any moment of the motion."""
+
+    kind: Literal["ground", "body", "place", "line", "shapes"]
+    """It stays; it moves with a body's frame; it moves with a point and does not turn; it moves with the line between
+    two points, stretched along it and not across; it is recorded in many poses."""
+    ends: list[End] = []
+    """None of ground and shapes; the body; the point; the two ends of the line."""
+
+
+class Carried(_Strict, kw_only=True):
+    """A stroke where it is at the start of the motion, and what carries it from there."""
+
+    stroke: Stroke
+    carrier: Carrier
+    shapes: list[list[float]] = []
+    """Of what nothing carries: its points (x and y in turn, m) at the times of the shapes; they correspond."""
+
+
+class CarriedName(_Strict, kw_only=True):
+    """A name, as it is at the start of the motion."""
+
+    name: Name
+    carrier: Carrier
+
+
+class Moving(_Strict, kw_only=True):
+    """The whole skeleton for any moment: symbols stay on one side, springs keep their turns."""
+
+    unit: Positive
+    """Size of the symbols (m)."""
+    low: tuple[float, float]
+    high: tuple[float, float]
+    """Corners of the box that holds the machine over the whole motion (m)."""
+    strokes: list[Carried]
+    names: list[CarriedName]
+    times: list[float]
+    """Of the shapes (s)."""
+
+
 class Skeleton(_Strict, kw_only=True):
     """skeleton.json."""
 
@@ -75,6 +123,8 @@ class Skeleton(_Strict, kw_only=True):
     """In the first pose."""
     poses: Annotated[list[Pose], msgspec.Meta(min_length=1)]
     """In equal times. The first holds everything, the others only what is elsewhere."""
+    moving: Moving | None = None
+    """Null in files from before it was recorded."""
 
 
 def read_skeleton(path: Path) -> Skeleton:
@@ -87,9 +137,23 @@ def read_skeleton(path: Path) -> Skeleton:
                     f"{path}: poses[{index}].strokes[{number}].points has {len(stroke.points)} numbers; "
                     "x and y in turn of two points or more"
                 )
+    if skeleton.moving is not None:
+        _refuse_inconsistent(skeleton.moving, path)
     return skeleton
 
 
 def write_skeleton(path: Path, skeleton: Skeleton) -> None:
     """Check and write skeleton.json, whole."""
     jsonfile.write(path, skeleton)
+
+
+def _refuse_inconsistent(moving: Moving, path: Path) -> None:
+    """Raise UserError unless each carrier has its ends, and each recorded stroke a shape for every time."""
+    ends = {"ground": 0, "shapes": 0, "body": 1, "place": 1, "line": 2}
+    for number, one in enumerate(moving.strokes):
+        where = f"{path}: moving.strokes[{number}]"
+        if len(one.carrier.ends) != ends[one.carrier.kind]:
+            raise UserError(f"{where}.carrier is a {one.carrier.kind} with {len(one.carrier.ends)} ends; make it again")
+        wanted = len(moving.times) if one.carrier.kind == "shapes" else 0
+        if len(one.shapes) != wanted or len({len(shape) for shape in one.shapes}) > 1:
+            raise UserError(f"{where}.shapes are {len(one.shapes)}, not {wanted} of one length; make it again")

@@ -171,6 +171,7 @@ class Out:
         self.plots = self.folder / "plots"
         self.compare = self.folder / "compare"
         self.glb = self.folder / f"{self.name}.glb"
+        self.view = self.folder / "view.html"
         self.report = self.folder / "report.md"
         self.poster = self.folder / "poster.png"
         self.contact = self.folder / "contact.png"

@@ -155,7 +155,7 @@ def test_teeth_turn_with_their_wheels_and_stay_in_mesh() -> None:
         # a tooth of one meets a gap of two at angle 0 of one, which is pi of two
         assert math.cos(0 * z_i - phase_i) == pytest.approx(-math.cos(math.pi * z_j - phase_j), abs=1e-6)
         turned = float(drawn.tracks.views["one"].theta[k] - drawn.tracks.views["one"].theta[0])
-        assert phase_i - drawn.wheels["one", 0.02][1] == pytest.approx(z_i * turned)
+        assert phase_i - drawn.steady.wheels["one", 0.02][1] == pytest.approx(z_i * turned)
 
 
 def test_energy_flows_from_the_motor_to_the_slider() -> None:

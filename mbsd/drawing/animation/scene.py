@@ -17,7 +17,8 @@ from mbsd.drawing.animation.quantities.loads import force_arrows, reaction_arrow
 from mbsd.drawing.animation.quantities.motions import motion_arrows
 from mbsd.drawing.look import colour
 from mbsd.drawing.pose import Pose, Tracks, tracks_of
-from mbsd.drawing.skeleton import draw_on, measure_all, steady_sides
+from mbsd.drawing.skeleton import draw_on
+from mbsd.drawing.steady import Steady, steady_of
 from mbsd.results.solution import Solution
 
 LOOKED_AT = 24
@@ -45,16 +46,24 @@ class Scene:
     sol: Solution
     """At the times of the pictures."""
     tracks: Tracks
-    low: np.ndarray
-    high: np.ndarray
-    """(2,) extent of the machine over the whole motion (m)."""
-    unit: float
-    """Of its symbols (m)."""
-    sides: dict[str, np.ndarray]
-    coils: dict[str, int]
-    wheels: dict[tuple[str, float], tuple[int, float]]
-    """At the first picture."""
+    steady: Steady
+    """Extent and symbols."""
     _drawn: dict[tuple[int, float], Drawn] = field(default_factory=dict)
+
+    @property
+    def low(self) -> np.ndarray:
+        """(2,) lowest x, y of the machine over the whole motion (m)."""
+        return self.steady.low
+
+    @property
+    def high(self) -> np.ndarray:
+        """(2,) highest."""
+        return self.steady.high
+
+    @property
+    def unit(self) -> float:
+        """Of its symbols (m)."""
+        return self.steady.unit
 
     @property
     def length(self) -> float:
@@ -67,12 +76,10 @@ class Scene:
 
     def draw(self, brush: Brush, k: int, colours: dict[str, str]) -> None:
         """The machine at picture ``k``: springs keep their turns, ground its signs, teeth turn with their wheels."""
-        theta = {name: view.theta for name, view in self.tracks.views.items()}
-        brush.coils.update(self.coils)
-        for (body, radius), (teeth, phase) in self.wheels.items():
-            turned = float(theta[body][k] - theta[body][0])
-            brush.turned[body, radius] = teeth, phase + teeth * turned
-        draw_on(brush, self.sol.mechanism, self.pose(k), colours, False, self.sides)
+        self.steady.ready(
+            brush, {name: float(view.theta[k] - view.theta[0]) for name, view in self.tracks.views.items()}
+        )
+        draw_on(brush, self.sol.mechanism, self.pose(k), colours, False, self.steady.sides)
 
     def drawn(self, brush: Brush, k: int, colours: dict[str, str]) -> Drawn:
         """The same as marks, in the scale of ``brush``; panels of one scale share it, unless bodies glow in one."""
@@ -145,17 +152,6 @@ def scene_of(sol: Solution, clip: Clip) -> Scene:
     whole = tracks_of(sol)
     tracks = replace(tracks_of(here), travel=whole.travel, paths=whole.paths)
     some = [tracks.pose(k) for k in np.unique(np.linspace(0, len(clip.times) - 1, LOOKED_AT).round().astype(int))]
-    low, high, unit = measure_all(m, some)
-    sides = steady_sides(m, some, unit)
     colours = {name: colour(k) for k, name in enumerate(name for name in m.bodies if name != "ground")}
-    turns: dict[str, list[int]] = {}
-    first: dict[tuple[str, float], tuple[int, float]] = {}
-    for k, pose in enumerate(some):
-        brush = Brush(None, unit)
-        draw_on(brush, m, pose, colours, False, sides)
-        for name, count in brush.coils.items():
-            turns.setdefault(name, []).append(count)
-        if k == 0:
-            first = dict(brush.wheels)
-    coils = {name: int(np.median(counts)) for name, counts in turns.items()}
-    return Scene(clip, sol, here, tracks, low, high, unit, sides, coils, first)
+    steady = steady_of(m, some, colours, Brush)
+    return Scene(clip, sol, here, tracks, steady)

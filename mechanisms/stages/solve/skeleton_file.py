@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from shared.contract import Provenance
-from shared.contract.skeleton import Name, Pose, Skeleton, Stroke
+from shared.contract.skeleton import Carried, CarriedName, Carrier, End, Moving, Name, Pose, Skeleton, Stroke
 
 if TYPE_CHECKING:
     from mbsd import Solution
@@ -32,21 +32,60 @@ def skeleton_of(solution: Solution, provenance: Provenance) -> Skeleton:
     for other in drawn[1:]:
         strokes = [_stroke(stroke, digits) for stroke in moved(first, other)]
         poses.append(Pose(time=other.time, strokes=strokes))
-    names = [
-        Name(
-            text=label.text,
-            at=(float(label.anchor[0]), float(label.anchor[1])),
-            clearance=label.clearance * first.unit,
-            ink=label.colour,
-        )
-        for label in first.labels
-    ]
-    return Skeleton(mechanism=solution.mechanism.name, provenance=provenance, unit=first.unit, names=names, poses=poses)
+    names = [_name(label, first.unit) for label in first.labels]
+    return Skeleton(
+        mechanism=solution.mechanism.name,
+        provenance=provenance,
+        unit=first.unit,
+        names=names,
+        poses=poses,
+        moving=moving_of(solution),
+    )
+
+
+def moving_of(solution: Solution) -> Moving:
+    """The whole skeleton for any moment."""
+    from mbsd.drawing.view.carried import moving
+
+    found = moving(solution)
+    steady = found.steady
+    digits = max(0, math.ceil(-math.log10(FINENESS * steady.unit)))
+    return Moving(
+        unit=steady.unit,
+        low=_pair(steady.low),
+        high=_pair(steady.high),
+        strokes=[
+            Carried(
+                stroke=_stroke(one.stroke, digits),
+                carrier=_carrier(one.carrier),
+                shapes=[_flat(shape, digits) for shape in one.shapes],
+            )
+            for one in found.strokes
+        ],
+        names=[CarriedName(name=_name(label, steady.unit), carrier=_carrier(by)) for label, by in found.names],
+        times=found.times.tolist(),
+    )
+
+
+def _carrier(carrier: Any) -> Carrier:
+    return Carrier(kind=carrier.kind, ends=[End(body=end.body, x=end.x, y=end.y) for end in carrier.ends])
+
+
+def _name(label: Any, unit: float) -> Name:
+    return Name(text=label.text, at=_pair(label.anchor), clearance=label.clearance * unit, ink=label.colour)
+
+
+def _pair(place: Any) -> tuple[float, float]:
+    return float(place[0]), float(place[1])
+
+
+def _flat(points: Any, digits: int) -> list[float]:
+    return (points.round(digits) + 0.0).ravel().tolist()  # -0 becomes 0
 
 
 def _stroke(stroke: Any, digits: int) -> Stroke:
     return Stroke(
-        points=(stroke.points.round(digits) + 0.0).ravel().tolist(),  # -0 becomes 0
+        points=_flat(stroke.points, digits),
         closed=stroke.closed,
         ink=stroke.ink,
         fill=stroke.fill,

@@ -1,0 +1,96 @@
+"""What may carry a stroke: ground, bodies, their points, lines between two points."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from mbsd.drawing.pose import Tracks
+from mbsd.model.body import Marker
+from mbsd.model.mechanism import Model
+
+Kind = Literal["ground", "body", "place", "line", "shapes"]
+
+
+@dataclass(frozen=True)
+class End:
+    """A point of a body, in its frame (m)."""
+
+    body: str
+    x: float = 0.0
+    y: float = 0.0
+
+
+class Frames:
+    """Where the bodies are at one output."""
+
+    def __init__(self, tracks: Tracks, step: int) -> None:
+        self._pose = tracks.pose(step)
+
+    def of(self, body: str) -> tuple[np.ndarray, float]:
+        """Place (2,) and angle of a body's frame (m, rad)."""
+        x, y, theta = self._pose.frames[body]
+        return np.array([x, y]), theta
+
+    def place(self, end: End) -> np.ndarray:
+        """(2,) in the world (m)."""
+        return self._pose.of(end.body, end.x, end.y)
+
+
+@dataclass(frozen=True)
+class Carrier:
+    """One of the kinds; ``ends``: none of ground, the body's frame, a place, or the two ends of a line."""
+
+    kind: Kind
+    ends: tuple[End, ...] = ()
+
+    def moved(self, points: np.ndarray | None, start: Frames, now: Frames) -> np.ndarray:
+        """Points (k, 2) from where they are at the start to where they are carried to (m)."""
+        if points is None or self.kind == "ground":
+            return np.zeros((0, 2)) if points is None else points
+        if self.kind == "body":
+            (a, first), (b, last) = start.of(self.ends[0].body), now.of(self.ends[0].body)
+            return b + (points - a) @ _turn(last - first)
+        if self.kind == "place":
+            return points + now.place(self.ends[0]) - start.place(self.ends[0])
+        (a, b), (c, d) = ([frames.place(end) for end in self.ends] for frames in (start, now))
+        before, after = b - a, d - c
+        length, longer = float(np.hypot(*before)), float(np.hypot(*after))
+        if length == 0 or longer == 0:
+            return points + c - a
+        along, across = _axes(before / length)
+        u, v = (points - a) @ along, (points - a) @ across
+        along, across = _axes(after / longer)
+        return c + (u * longer / length)[:, None] * along + v[:, None] * across
+
+
+GROUND = Carrier("ground")
+
+
+def candidates(m: Model) -> list[Carrier]:
+    """All of a model, in the order in which they are tried."""
+    pairs = [*m.joints.values(), *m.drivers.values(), *m.forces.values(), *m.contacts.values()]
+    ends = [(_end(one.i), _end(one.j)) for one in pairs]
+    bodies = [Carrier("body", (End(name),)) for name in m.bodies if name != "ground"]
+    centres = [End(name, *map(float, body.com)) for name, body in m.bodies.items() if name != "ground"]
+    ours = [end for pair in ends for end in pair if end.body != "ground"]
+    places = [Carrier("place", (end,)) for end in (*centres, *ours)]
+    lines = [Carrier("line", pair) for pair in ends]
+    return list(dict.fromkeys([*bodies, *places, *lines]))
+
+
+def _end(marker: Marker) -> End:
+    return End(marker.body.name, marker.x, marker.y)
+
+
+def _turn(angle: float) -> np.ndarray:
+    """Rows turn by ``angle``, counter-clockwise."""
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, s], [-s, c]])
+
+
+def _axes(along: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return along, np.array([-along[1], along[0]])

@@ -1,0 +1,93 @@
+"""Arrows, arcs and clearances of the page: the same ones and the same scales as in the film.
+
+arrows    full: length of the largest (m); longest: cut at so many of it; tiny: left out below this part of it;
+          scales {unit: {largest, reference, cut, words}}; list [{quantity, name, unit, place, value (2 T,), z}]
+arcs      full: sweep of the largest (rad); scale as above or null; list [{quantity, name, place (2 T,), value (T,),
+          radius, z}]
+clearance limit (m), pairs [{bodies, pieces, gap, time}] nearest first; gap as proven
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from render.film.arrows.arcs import FULL_TURN, Arcs
+from render.film.arrows.arrows import FULL, Arrows
+from render.film.arrows.scales import LONGEST, TINY, Scale, with_unit
+from render.film.arrows.torques import rounding, torques
+from render.film.arrows.vectors import vectors
+from render.film.heights import Heights
+from shared.contract import Motion
+from shared.contract.clearance import Clearance
+from shared.contract.shot import Quantity
+
+ALL: tuple[Quantity, ...] = ("velocities", "accelerations", "forces", "reactions")
+PAIRS = 60
+"""Of the clearance, at most."""
+
+
+def arrows_of(motion: Motion, size: float, heights: Heights | None = None) -> dict[str, Any]:
+    """Straight arrows of all quantities; ``size`` (m) of the machine, ``heights`` where it has parts."""
+    arrows = Arrows(np.asarray(motion.time), vectors(motion, ALL), size)
+    return {
+        "full": FULL * size,
+        "longest": LONGEST,
+        "tiny": TINY,
+        "scales": {unit: _scale(scale) for unit, scale in arrows.scales.items()},
+        "list": [
+            {
+                "quantity": one.quantity,
+                "name": one.name,
+                "unit": one.unit,
+                "bodies": list(one.bodies),
+                "place": one.place.astype(np.float32),
+                "value": one.value.astype(np.float32),
+                "z": heights.arrow(one.bodies, *map(float, one.place[0])) if heights else 0.0,
+            }
+            for one in arrows.vectors
+        ],
+    }
+
+
+def arcs_of(motion: Motion, size: float, heights: Heights | None = None) -> dict[str, Any]:
+    """Curved arrows: torques of joints, drivers, springs, loads."""
+    least = rounding(vectors(motion, ("forces", "reactions")), size)
+    arcs = Arcs(np.asarray(motion.time), torques(motion, ALL), size, least)
+    return {
+        "full": FULL_TURN,
+        "scale": _scale(arcs.scale) if arcs.scale else None,
+        "list": [
+            {
+                "quantity": one.quantity,
+                "name": one.name,
+                "bodies": list(one.bodies),
+                "place": one.place.astype(np.float32),
+                "value": one.value.astype(np.float32),
+                "radius": spec.radius,
+                "z": heights.arrow(one.bodies, *map(float, one.place[0])) if heights else 0.0,
+            }
+            for one, spec in zip(arcs.torques, arcs.specs(), strict=True)
+        ],
+    }
+
+
+def clearance_of(clearance: Clearance) -> dict[str, Any]:
+    """The nearest pairs that depend on the pose, and then the others."""
+    return {
+        "limit": clearance.limit,
+        "pairs": [
+            {"bodies": list(one.bodies), "pieces": list(one.pieces), "gap": one.proven, "time": one.time}
+            for one in clearance.pairs[:PAIRS]
+        ],
+    }
+
+
+def _scale(scale: Scale) -> dict[str, Any]:
+    return {
+        "largest": scale.largest,
+        "reference": scale.reference,
+        "cut": scale.cut,
+        "words": with_unit(scale.reference, scale.unit),
+    }

@@ -1,0 +1,44 @@
+/** Keys; help.js lists them. */
+import { showHelp } from "./help.js";
+import { SHOWN } from "./shown.js";
+import { SPEEDS } from "./transport.js";
+
+/** @param {import("../app.js").App} app */
+export function keys(app) {
+  const { store } = app;
+  const speed = (way) => {
+    const at = SPEEDS.indexOf(store.state.speed);
+    store.set({ speed: SPEEDS[Math.min(Math.max(at + way, 0), SPEEDS.length - 1)] });
+  };
+  const act = {
+    " ": () => app.play(),
+    ArrowLeft: (event) => app.step(event.shiftKey ? -10 : -1),
+    ArrowRight: (event) => app.step(event.shiftKey ? 10 : 1),
+    Home: () => store.set({ playing: false, time: app.clock.start }),
+    End: () => store.set({ playing: false, time: app.clock.end }),
+    "[": () => speed(-1),
+    "]": () => speed(1),
+    "+": () => app.stage.zoom(1.2),
+    "=": () => app.stage.zoom(1.2),
+    "-": () => app.stage.zoom(1 / 1.2),
+    0: () => app.stage.home(),
+    3: () => store.set({ view: "3d" }),
+    2: () => store.set({ view: "2d" }),
+    d: () => app.themes.next(),
+    s: () => app.plots.save(),
+    "?": () => showHelp(),
+    Escape: () => store.set({ selected: null }),
+  };
+  for (const { word, key } of SHOWN) act[key] = () => app.parts.chips.querySelector(`[data-word=${word}]`) && store.show(word);
+  document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
+    const { target } = event, tag = target?.tagName;
+    const typed = tag === "SELECT" || tag === "TEXTAREA" || (tag === "INPUT" && target.type !== "range" && target.type !== "checkbox");
+    if (typed || target?.closest?.(".slot")) return;
+    if (event.key === " " && (tag === "BUTTON" || target?.type === "checkbox")) return;
+    const one = act[event.key] ?? act[event.key.toLowerCase()];
+    if (!one) return;
+    event.preventDefault();
+    one(event);
+  });
+}

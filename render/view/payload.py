@@ -1,0 +1,190 @@
+"""What the page shows, as one dict of plain values and arrays; binary.py makes bytes of it.
+
+SI units and radians; names are those of data.json. Arrays are float32 unless said; T is the number of times.
+
+    mechanism, title        its name, and in words
+    analysis, gravity       "sweep" or "simulation"; [x, y] (m/s^2)
+    time                    (T,) float64; rows right before and right after an event share a time
+    period                  s, or null: then it plays forwards, holds at its end and begins anew
+    clock                   start, end (s of the motion); seconds: film time of one showing; hold: film time at the end;
+                            fps: of the film, for going on by one frame
+    bodies[name]            x y theta vx vy omega ax ay alpha (T,); mass com inertia; colour: number in the palette
+    joints[name]            kind, bodies; x y fx fy torque (T,); at: {body, x, y} of its second marker
+    drivers[name]           kind, bodies; value effort power (T,); unit, effort_unit
+    points[name]            body; x y vx vy ax ay (T,)
+    forces[name]            kind; value, rate, effort (T,) or null; power potential (T,); unit, effort_unit
+    contacts[name]          kind, bodies; x y fx fy torque gap normal friction (T,)
+    energy                  kinetic potential (T,), work audit (T,) or null
+    margin                  (T,) smallest over largest singular value of the scaled Jacobian
+    marks                   [{time, words, kind: "event" or "dead point"}]
+    skeleton                unit, low, high (m); strokes, names, times: see skeleton()
+    arrows, arcs            see loads.py
+    trails                  [{point, colour (linear), tail (turns), radius, z}]
+    clearance               null, or limit and pairs: see loads.py
+    solid                   null, or the parts: see solid.py
+
+A server may send the same dict again, or some of its keys alone: what is given replaces what was there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from render.film.clock import Clock
+from render.film.tubes.trails import trails_of
+from render.report.moments import marks
+from render.view.loads import arcs_of, arrows_of
+from shared.contract import JointMotion, Motion
+from shared.contract.shot import Shot
+from shared.contract.skeleton import Carrier, Moving, Stroke
+
+ANGLES = ("angle", "relative_angle")
+
+
+def payload(motion: Motion, moving: Moving, shot: Shot | None = None) -> dict[str, Any]:
+    """Everything but the parts. ``motion`` may have more bodies than the skeleton: rods of the parts."""
+    shot = shot or Shot()
+    clock = Clock(motion, shot)
+    size = max(float(np.ptp([moving.low, moving.high], axis=0).max()), 10 * moving.unit)
+    return {
+        "mechanism": motion.mechanism,
+        "title": title_of(motion.mechanism),
+        "analysis": motion.analysis,
+        "gravity": list(motion.gravity),
+        "time": np.asarray(motion.time, np.float64),
+        "period": motion.period,
+        "clock": {
+            "start": clock.start,
+            "end": clock.end,
+            "seconds": clock.moving / shot.fps,
+            "hold": 0.0 if clock.repeats else (clock.frames - clock.moving) / shot.fps,
+            "fps": shot.fps,
+            "turns": clock.turns,
+        },
+        "bodies": {name: _body(body, k) for k, (name, body) in enumerate(motion.bodies.items())},
+        "joints": {name: _joint(motion, joint) for name, joint in motion.joints.items()},
+        "drivers": {name: _driver(driver) for name, driver in motion.drivers.items()},
+        "points": {
+            name: {"body": point.body} | _series(point, "x", "y", "vx", "vy", "ax", "ay")
+            for name, point in motion.points.items()
+        },
+        "forces": {name: _force(force) for name, force in motion.forces.items()},
+        "contacts": {
+            name: {"kind": one.kind, "bodies": list(one.bodies)}
+            | _series(one, "x", "y", "fx", "fy", "torque", "gap", "normal", "friction")
+            for name, one in motion.contacts.items()
+        },
+        "energy": _series(motion.energy, "kinetic", "potential", "work", "audit"),
+        "margin": floats(motion.diagnostics.singularity_margin),
+        "marks": [
+            {"time": time, "words": words, "kind": "dead point" if words.endswith("turns back") else "event"}
+            for time, words in marks(motion)
+        ],
+        "skeleton": skeleton(moving),
+        "arrows": arrows_of(motion, size),
+        "arcs": arcs_of(motion, size),
+        "trails": [
+            {"point": one.point, "colour": list(one.colour), "tail": one.tail, "radius": one.radius * size, "z": 0.0}
+            for one in trails_of(motion, shot)
+        ],
+        "clearance": None,
+        "solid": None,
+    }
+
+
+def skeleton(moving: Moving) -> dict[str, Any]:
+    """Strokes {points (2 n,), closed, ink, fill, alpha, width, order, dash, carrier, shapes (k, 2 n)}, in the order in
+    which they are drawn; names {text, at, clearance, ink, carrier}; a carrier is {kind, ends: [{body, x, y}]}.
+    """
+    return {
+        "unit": moving.unit,
+        "low": list(moving.low),
+        "high": list(moving.high),
+        "times": np.asarray(moving.times, np.float64),
+        "strokes": [
+            _stroke(one.stroke)
+            | {"carrier": _carrier(one.carrier), "shapes": floats(one.shapes) if one.shapes else None}
+            for one in sorted(moving.strokes, key=lambda one: one.stroke.order)
+        ],
+        "names": [
+            {
+                "text": one.name.text,
+                "at": list(one.name.at),
+                "clearance": one.name.clearance,
+                "ink": one.name.ink,
+                "carrier": _carrier(one.carrier),
+            }
+            for one in moving.names
+        ],
+    }
+
+
+def title_of(mechanism: str) -> str:
+    """The name in words: ``Four bar``, ``Slider crank: no gravity``."""
+    words = mechanism.replace("_", " ").replace("-", ": ")
+    return words[:1].upper() + words[1:]
+
+
+def floats(values: Any) -> np.ndarray:
+    """As float32."""
+    return np.asarray(values, np.float64).astype(np.float32)
+
+
+def _series(thing: Any, *names: str) -> dict[str, Any]:
+    series: dict[str, Sequence[float] | None] = {name: getattr(thing, name) for name in names}
+    return {name: None if values is None else floats(values) for name, values in series.items()}
+
+
+def _body(body: Any, index: int) -> dict[str, Any]:
+    out = _series(body, "x", "y", "vx", "vy", "omega", "ax", "ay", "alpha")
+    # Whole turns at the start say nothing and cost figures.
+    out["theta"] = floats(np.asarray(body.theta) - math.tau * round(body.theta[0] / math.tau))
+    return out | {"mass": body.mass, "com": list(body.com), "inertia": body.inertia, "colour": index}
+
+
+def _joint(motion: Motion, joint: JointMotion) -> dict[str, Any]:
+    """``at``: the second marker in its body, from where both are at the start."""
+    body, x, y = joint.bodies[1], joint.x[0], joint.y[0]
+    if body in motion.bodies:
+        first = motion.bodies[body]
+        dx, dy, c, s = x - first.x[0], y - first.y[0], math.cos(first.theta[0]), math.sin(first.theta[0])
+        x, y = c * dx + s * dy, c * dy - s * dx
+    at = {"body": body, "x": x, "y": y}
+    out = {"kind": joint.kind, "bodies": list(joint.bodies), "at": at}
+    return out | _series(joint, "x", "y", "fx", "fy", "torque")
+
+
+def _driver(driver: Any) -> dict[str, Any]:
+    turns = driver.kind in ANGLES
+    units = {"unit": "rad" if turns else "m", "effort_unit": "N m" if turns else "N"}
+    bodies = list(driver.bodies) if driver.bodies else []
+    return {"kind": driver.kind, "bodies": bodies} | units | _series(driver, "value", "effort", "power")
+
+
+def _force(force: Any) -> dict[str, Any]:
+    turns = force.measures == "angle"
+    units = {"unit": "rad" if turns else "m", "effort_unit": "N m" if turns else "N"}
+    bodies = [action.body for action in force.actions]
+    out = {"kind": force.kind, "bodies": bodies} | units
+    return out | _series(force, "value", "rate", "effort", "power", "potential")
+
+
+def _carrier(carrier: Carrier) -> dict[str, Any]:
+    return {"kind": carrier.kind, "ends": [{"body": end.body, "x": end.x, "y": end.y} for end in carrier.ends]}
+
+
+def _stroke(stroke: Stroke) -> dict[str, Any]:
+    return {
+        "points": floats(stroke.points),
+        "closed": stroke.closed,
+        "ink": stroke.ink,
+        "fill": stroke.fill,
+        "alpha": stroke.alpha,
+        "width": stroke.width,
+        "order": stroke.order,
+        "dash": list(stroke.dash),
+    }

@@ -1,0 +1,108 @@
+"""The skeleton for any moment is the one that is drawn then."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from mbsd import Mechanism, SingularPoseError, Solution, constant_rate
+from mbsd.drawing.pose import tracks_of
+from mbsd.drawing.skeleton import draw_on
+from mbsd.drawing.strokes import Recorder
+from mbsd.drawing.view.carried import SLACK, TEETH, Moving, moving
+from mbsd.drawing.view.carriers import Frames
+from mbsd.drawing.view.curves import alike, resampled
+from tests.models import genevas, linkages, random_linkages
+
+
+def hung() -> Solution:
+    m = Mechanism("hung")
+    block = m.body("block", mass=1.0, inertia=0.01)
+    m.prismatic("guide", m.ground.at(0, 0, math.pi / 2), block.at(0, 0, math.pi / 2))
+    m.spring("spring", m.ground.at(0, 0.5), block.at(0, 0), stiffness=100.0, damping=1.0, free_length=0.5)
+    return m.simulate(duration=1.0, steps=200)
+
+
+def geared() -> Solution:
+    m = Mechanism("geared")
+    one, two = m.body("one", mass=1.0, inertia=0.01), m.body("two", mass=1.0, inertia=0.01)
+    m.revolute("A", m.ground.at(0, 0), one.at(0, 0))
+    m.revolute("B", m.ground.at(0.15, 0), two.at(0, 0))
+    m.gear_pair("mesh", one.at(0, 0), two.at(0, 0), teeth=(20, 40), module=0.005)
+    m.drive_angle("motor", one, constant_rate(6.0))
+    return m.sweep(duration=1.0, steps=300)
+
+
+MADE: dict[str, Callable[[], Solution]] = {
+    "four_bar": lambda: linkages.four_bar(0.12, 0.04, 0.12, 0.09).sweep(duration=1.0, steps=120),
+    "slider_crank": lambda: linkages.slider_crank().sweep(duration=1.0, steps=120),
+    "geneva": lambda: genevas.geneva(4).sweep(duration=1.0, steps=120),
+    "hung": hung,
+    "geared": geared,
+}
+
+
+def check(solution: Solution, found: Moving) -> None:
+    """At poses that were not looked at, too, each carried stroke lies on the one that is drawn there."""
+    m, tracks, steady = solution.mechanism, tracks_of(solution), found.steady
+    colours = {name: f"body:{name}" for name in m.bodies if name != "ground"}
+    first = Frames(tracks, 0)
+    for step in range(3, len(solution.t), 29):
+        canvas = Recorder(None, steady.unit)
+        steady.ready(canvas, {name: float(v.theta[step] - v.theta[0]) for name, v in tracks.views.items()})
+        draw_on(canvas, m, tracks.pose(step), colours, False, steady.sides)
+        assert len(canvas.strokes) == len(found.strokes)
+        for carried, drawn in zip(found.strokes, canvas.strokes, strict=True):
+            if carried.carrier.kind != "shapes":
+                here = carried.carrier.moved(carried.stroke.points, first, Frames(tracks, step))
+                slack = TEETH if drawn.ink.startswith("body:") else SLACK
+                assert alike(here, drawn.points, drawn.closed, 1.5 * slack * steady.unit), (step, drawn.ink)
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_each_stroke_is_carried_to_where_it_is_drawn(name: str) -> None:
+    solution = MADE[name]()
+    found = moving(solution)
+    check(solution, found)
+    kinds = Counter(one.carrier.kind for one in found.strokes)
+    assert kinds["body"] > 0
+    assert kinds["ground"] > 0
+    assert kinds["shapes"] == 0
+    assert (kinds["line"] > 0) == (name == "hung")
+    assert len(found.names) == len({label.text for label, _ in found.names})
+
+
+@settings(max_examples=6, deadline=None)
+@given(seed=st.integers(0, 500))
+def test_random_linkages_are_carried(seed: int) -> None:
+    m = random_linkages.driven_linkage(seed, 2)
+    try:
+        solution = m.sweep(duration=0.2, steps=40)
+    except SingularPoseError:
+        assume(False)
+        raise
+    check(solution, moving(solution))
+
+
+@settings(max_examples=40, deadline=None)
+@given(corners=st.integers(3, 40), start=st.integers(0, 39), factor=st.floats(0.1, 30))
+def test_outlines_with_other_corners_are_alike_and_others_are_not(corners: int, start: int, factor: float) -> None:
+    turn = np.linspace(0, 2 * np.pi, corners, endpoint=False)
+    outline = factor * np.stack([np.cos(turn), 0.5 * np.sin(turn)], axis=1)
+    between = (outline + np.roll(outline, -1, axis=0)) / 2
+    finer = np.stack([outline, between], axis=1).reshape(-1, 2)
+    assert alike(np.roll(outline, start, axis=0), finer, True, 1e-9 * factor)
+    assert not alike(outline, finer * 1.2, True, 0.02 * factor)
+
+
+def test_shapes_get_one_number_of_corners_and_what_is_not_drawn_is_a_point() -> None:
+    square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    made = resampled([square, square[:3], np.zeros((0, 2))], True)
+    assert [len(shape) for shape in made] == [4, 4, 4]
+    assert np.ptp(made[2], axis=0).max() == 0.0

@@ -14,11 +14,12 @@ from typing import IO
 
 import msgspec
 
-from render.blender.ending import Silent, how_it_ended, how_it_stands
+from render.blender.ending import Silent, how_it_ended, how_it_stands, is_crash, remedy_of
 from render.blender.job import Answer, Job
+from render.blender.memory import Grown, Memory
 from render.blender.patience import Patience
 from render.blender.scratch import scratch_folder
-from shared.stage.console import duration, warn
+from shared.stage.console import duration, say, warn
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from shared.stage.paths import ROOT, out_root, refuse_links
@@ -36,9 +37,10 @@ after twice as many, and so on."""
 def blender(job: Job, longest: float = 0.0) -> Iterator[Iterator[Answer]]:
     """Start the job in a process of its own; yields its answers as they come.
 
-    A process that hangs is stopped and started again with what is left of the job; ``longest`` is the time that a
-    picture is known to take (s, 0 if unknown). The process is stopped when the block ends, also by Ctrl-C or SIGTERM.
-    Raises UserError with the reason if Blender fails, or hangs twice without making a picture in between.
+    A process that hangs, crashes, is killed by the system or grows is started again with what is left of the job;
+    ``longest`` is the time that a picture is known to take (s, 0 if unknown). The process is stopped when the block
+    ends, also by Ctrl-C or SIGTERM. Raises UserError with the reason if Blender fails, or hangs or crashes twice
+    without making a picture in between.
     """
     home = out_root() / ".blender"
     for folder in (home / "user", home / "cache"):
@@ -71,22 +73,29 @@ class _Child:
                         hung = False
                     yield answer
                 return
+            except Grown as grown:
+                self.stop()
+                if not left:
+                    return
+                say("film", f"{grown}; it is replaced by a new one")
             except Silent as silent:
                 self.stop()
                 if job.pictures and not left:
-                    return  # it hung on its way out
+                    return  # it hung or crashed on its way out
                 if hung:
+                    remedy = f"; {silent.remedy}" if silent.remedy else ""
                     raise UserError(
-                        f"{silent}, for the second time; nothing was lost, the same command goes on"
+                        f"{silent}, for the second time{remedy}; nothing was lost, the same command goes on"
                     ) from None
                 hung = True
                 warn("film", f"{silent}; it is started again")
-                job = msgspec.structs.replace(job, pictures=list(left.values()))
+            job = msgspec.structs.replace(job, pictures=list(left.values()))
 
     def _attempt(self, job: Job) -> Iterator[Answer]:
         paper = self.scratch / "job.json"
         write_bytes(paper, msgspec.json.encode(job))
         self.patience.pictures, self.doing = 0, "starts"
+        memory = Memory()
         with tempfile.TemporaryFile(dir=self.scratch) as chat:
             self.process = subprocess.Popen(
                 [sys.executable, "-m", WORKER, str(paper)],
@@ -107,6 +116,8 @@ class _Child:
                 if answer.key:
                     self.patience.finished(answer.cycles)
                 yield answer
+                if answer.key:
+                    memory.refuse_growth(self.process.pid)
             self._end(self.process, chat)
 
     def _lines(self, process: subprocess.Popen[bytes]) -> Iterator[bytes]:
@@ -145,7 +156,8 @@ class _Child:
             raise Silent(f"Blender does not end ({self.doing}{how_it_stands(process.pid)})") from None
         if code:
             chat.seek(0)
-            raise UserError(how_it_ended(code, self.doing, chat.read().decode(errors="replace")))
+            told = how_it_ended(code, self.doing, chat.read().decode(errors="replace"))
+            raise Silent(told, remedy_of(code)) if is_crash(code) else UserError(told)
 
     def stop(self) -> None:
         """Kill the process and wait for its end."""

@@ -5,9 +5,17 @@ from __future__ import annotations
 import signal
 import subprocess
 
+ENDED = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
+"""Signals by which somebody wishes it to end."""
+
 
 class Silent(Exception):
-    """The process gives no sign of life; the message is the first half of a sentence."""
+    """The process gives no sign of life any more; the message is the first half of a sentence."""
+
+    def __init__(self, told: str, remedy: str = "") -> None:
+        super().__init__(told)
+        self.remedy = remedy
+        """What a user can do, if it comes again."""
 
 
 def how_it_ended(code: int, doing: str, said: str) -> str:
@@ -21,15 +29,24 @@ def how_it_ended(code: int, doing: str, said: str) -> str:
         return f"Blender ended with code {code} ({doing}): {last}"
     name = _signal_name(-code)
     if -code == signal.SIGKILL:
-        return (
-            f"Blender was killed by {name} ({doing}): by the system if the memory ran out, else by a user; close other "
-            "programs or take a smaller PRESET. The same command goes on from here"
-        )
-    if -code in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+        return f"Blender was killed by {name} ({doing}): by the system if the memory ran out, else by a user"
+    if -code in ENDED:
         return f"Blender was ended from outside by {name} ({doing}); the same command goes on from here"
     if -code == signal.SIGABRT:
         return f"Blender gave up by {name} ({doing}): {last}"
-    return f"Blender crashed by {name} ({doing}); the same command goes on from here, make check tells the device"
+    return f"Blender crashed by {name} ({doing})"
+
+
+def remedy_of(code: int) -> str:
+    """What to do where Blender ends with this code again and again."""
+    if -code == signal.SIGKILL:
+        return "close other programs or take a smaller PRESET"
+    return "make check tells the device"
+
+
+def is_crash(code: int) -> bool:
+    """Whether an exit code tells of a crash, or of a kill that is no wish of a user to end it."""
+    return code < 0 and -code not in ENDED
 
 
 def how_it_stands(process: int) -> str:

@@ -25,6 +25,11 @@ def folder() -> Path:
     return out_root() / "night"
 
 
+def locks_folder() -> Path:
+    """Where locks lie; their files stay, the locks on them end with their process."""
+    return folder() / "locks"
+
+
 def log_file() -> Path:
     """What all nights said, a line each."""
     return folder() / "log.txt"
@@ -35,9 +40,9 @@ class Run:
 
     def __init__(self, number: int) -> None:
         self.number = number
-        self.lock = folder() / f".run-{number}.lock"
+        self.lock = locks_folder() / f"run-{number}.lock"
         self.record = folder() / f"run-{number}.json"
-        self.wish = folder() / f".run-{number}.stop"
+        self.wish = folder() / f"run-{number}.stop"
 
     def is_alive(self) -> bool:
         """Whether the process of this run is at work, which its lock tells."""
@@ -54,8 +59,8 @@ class Run:
 
 def runs() -> list[Run]:
     """The runs of which there is a record or a lock, by number."""
-    places = [*folder().glob("run-*.json"), *folder().glob(".run-*.lock")]
-    numbers = {path.name.strip(".").removeprefix("run-").partition(".")[0] for path in places}
+    places = [*folder().glob("run-*.json"), *locks_folder().glob("run-*.lock")]
+    numbers = {path.stem.removeprefix("run-") for path in places}
     return [Run(number) for number in sorted(int(word) for word in numbers if word.isdigit())]
 
 
@@ -70,10 +75,10 @@ def taken() -> Iterator[Run]:
 
     Raises UserError where the folder cannot be written.
     """
-    refuse_links(folder())
+    refuse_links(locks_folder())
     handle = -1
     try:
-        folder().mkdir(parents=True, exist_ok=True)
+        locks_folder().mkdir(parents=True, exist_ok=True)
         for number in range(1, MOST + 1):
             run = Run(number)
             handle = _opened(run.lock)
@@ -112,7 +117,7 @@ class Claims:
             handle, count = self._held[name]
             self._held[name] = (handle, count + 1)
             return ""
-        path = folder() / f".{name}.lock"
+        path = locks_folder() / f"{name}.lock"
         try:
             handle = _opened(path)
         except OSError as error:

@@ -187,7 +187,7 @@ def gone(content: bytes, chance: random.Random) -> None:
 
 
 STAGE, FILM, BLENDER = "tools.torture.stage", "tools.torture.stage film", "render.blender.worker.worker"
-NIGHT, MAKE = "studio.night run", "make run-all"
+NIGHT, MAKE = "studio.night run", "make -o install run-all"
 TERM, INT, HUP, KILL = signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL
 STOP, SEGV = signal.SIGSTOP, signal.SIGSEGV
 MAKE_TELLS = [INT, HUP] if sys.platform == "linux" else []

@@ -106,7 +106,7 @@ class Project:
         }
         with (self.folder / "said.txt").open("ab") as said:
             run = subprocess.Popen(
-                ["make", "run-all", "PRESET=draft", f"ONLY={NAME}", f"PYTHON={self.folder}/python"],
+                ["make", "-o", "install", "run-all", "PRESET=draft", f"ONLY={NAME}", f"PYTHON={self.folder}/python"],
                 cwd=self.folder,
                 env=environment,
                 stdin=subprocess.DEVNULL,

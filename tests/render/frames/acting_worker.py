@@ -29,8 +29,10 @@ for picture in job.pictures:
         os.kill(os.getpid(), signal.SIGSTOP)
     elif act == "sleeps":
         time.sleep(60)
-    elif act.startswith("SIG"):
-        os.kill(os.getpid(), signal.Signals[act])
+    elif act.startswith("SIG") and (first or not act.endswith(" once")):
+        os.kill(os.getpid(), signal.Signals[act.removesuffix(" once")])
+    elif act == "grows":
+        kept = b"x" * 400_000_000
     elif act == "fails":
         sys.exit("RuntimeError: no such node")
     elif act == "is cut":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 import time
@@ -10,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from render.blender import child
+from render.blender import child, memory
 from render.blender.job import Job, Picture
 from render.blender.patience import FLOOR, START, Patience
 from render.film.scene import Scene, StudioSpec
@@ -72,7 +73,10 @@ def test_a_worker_that_hangs_on_its_way_out_has_done_its_job(acts):
     ("act", "words"),
     [
         ("SIGKILL", r"Blender was killed by SIGKILL \(renders SIGKILL: .*\): by the system if the memory ran out"),
-        ("SIGSEGV", r"Blender crashed by SIGSEGV \(renders SIGSEGV: Sample 1/8\); the same command goes on"),
+        (
+            "SIGSEGV",
+            r"crashed by SIGSEGV \(renders SIGSEGV: Sample 1/8\), for the second time; make check tells the dev",
+        ),
         ("SIGTERM", "Blender was ended from outside by SIGTERM"),
         ("fails", r"Blender ended with code 1 \(renders fails: Sample 1/8\): RuntimeError: no such node"),
         ("is cut", "Blender was killed by SIGKILL"),
@@ -82,6 +86,37 @@ def test_how_it_ended_is_told_by_its_signal_and_not_by_a_warning_of_blenders(act
     with pytest.raises(UserError, match=words) as error:
         acts("good", act)
     assert "texture" not in str(error.value)
+
+
+@pytest.mark.parametrize("act", ["SIGKILL", "SIGSEGV", "SIGABRT"])
+def test_each_picture_may_crash_once(acts, act: str, capsys: pytest.CaptureFixture[str]):
+    assert acts(f"{act} once", "good", f"{act} once") == ["k0", "k1", "k2"]
+    assert capsys.readouterr().err.count("; it is started again\n") == 2
+
+
+def test_a_worker_that_grows_is_replaced_and_makes_what_is_left(acts, capsys: pytest.CaptureFixture[str]):
+    names = ["good"] * 8
+    names[6] = "grows"
+    assert acts(*names) == [f"k{number}" for number in range(8)]
+    said = capsys.readouterr().out
+    assert re.search(
+        r"Blender takes \d{3,} MB of memory after 7 pictures, \d+ MB after 5; it is replaced by a new", said
+    )
+    assert "warning" not in said
+
+
+def test_a_worker_that_grows_at_its_end_is_not_started_again(acts, capsys: pytest.CaptureFixture[str]):
+    names = ["good"] * 7
+    names[6] = "grows"
+    assert acts(*names) == [f"k{number}" for number in range(7)]
+    assert "replaced" not in capsys.readouterr().out
+
+
+def test_memory_may_double_where_there_is_little_and_not_where_there_is_much():
+    assert memory.limit(100e6) > 2 * 100e6
+    assert memory.limit(5e9) < 2 * 5e9
+    assert memory.resident(2**22 + 1) == 0.0
+    assert memory.resident(os.getpid()) > 1e6
 
 
 def test_patience_follows_what_a_picture_takes(monkeypatch: pytest.MonkeyPatch):

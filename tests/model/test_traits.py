@@ -55,6 +55,7 @@ def kinds(monkeypatch: pytest.MonkeyPatch) -> dict[str, JointKind]:
 def pendulum(kind: JointKind, **more) -> Mechanism:
     m = Mechanism("pendulum")
     rod = m.bar("rod", 0.5, mass=1.0)
+    assert kind.add is not None
     kind.add(m, "A", m.ground.origin, rod.start, **more)
     m.start_near(rod=-30)
     return m
@@ -105,7 +106,9 @@ def test_a_pin_of_ones_own_has_friction_stops_limits_and_the_sign(kinds: dict[st
 def test_a_guide_of_ones_own_has_stops_along_it(kinds: dict[str, JointKind]) -> None:
     m = Mechanism("slider", gravity=None)
     block = m.body("block", 1.0, inertia=1.0)
-    joint = kinds["sleeve"].add(m, "rail", m.ground.origin, block.origin)
+    sleeve = kinds["sleeve"].add
+    assert sleeve is not None
+    joint = sleeve(m, "rail", m.ground.origin, block.origin)
     m.stop("end", joint, upper=0.5, restitution=1.0)
     m.friction("rubbing", joint, 0.1, length=0.2)
     m.start_moving(block=(1.0, 0.0, 0.0))

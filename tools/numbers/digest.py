@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 
 from mbsd import MechanismError
+from mbsd.model.force import ForceKind
+from mbsd.model.joint import JointKind
 from mbsd.results.solution import Solution
 
 ARRAYS = ("t", "q", "v", "a", "lam", "wrench", "drives", "margin", "work", "held")
@@ -35,6 +37,8 @@ def numbers(value: Any, name: str = "") -> Iterator[tuple[str, bytes]]:
     """Name and bytes of each number and array within a result."""
     if isinstance(value, Solution):
         yield from _of_solution(value, name)
+    elif isinstance(value, JointKind | ForceKind):
+        yield name, value.name.encode()
     elif dataclasses.is_dataclass(value) and not isinstance(value, type):
         for field in sorted(one.name for one in dataclasses.fields(value)):
             if field not in ("model", "mechanism", "packed"):

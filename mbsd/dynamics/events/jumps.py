@@ -21,8 +21,9 @@ from mbsd.dynamics.events.moment import Moment
 from mbsd.dynamics.events.watches import HALTS, OPENS, SLIPS, Watch
 from mbsd.dynamics.reference.arrays import Scratch
 from mbsd.dynamics.reference.projection import project
-from mbsd.dynamics.rows.joint_sticks import let_go
-from mbsd.dynamics.rows.switches import OPEN, RELEASED, SLIDES, STICKS, Touch
+from mbsd.dynamics.rows.held import OPEN, RELEASED, SLIDES, STICKS
+from mbsd.dynamics.rows.joint_sticks import release
+from mbsd.dynamics.rows.switches import Touch
 from mbsd.dynamics.state import TIME, State
 from mbsd.model.event import Event, Happening
 
@@ -39,8 +40,6 @@ class Jumps:
         self.packed, self.dynamics = ready.packed, ready.dynamics
         self.switches, self.sticks = ready.switches, ready.sticks
         self.scratch, self.state, self.near, self.still = scratch, state, near, still
-        self.signs = [0.0] * len(self.switches.touches)
-        """Of sliding, by contact."""
         self.happenings: list[Happening] = []
 
     def compliance(self, time: float, q: np.ndarray) -> Compliance:
@@ -60,7 +59,7 @@ class Jumps:
             ) from error
         for joint in moment.released:
             self.switches.release(joint)
-            let_go(self.dynamics.loads, self.sticks, int(self.packed.first_row[joint]))
+            release(self.switches.now, self.dynamics.loads, self.sticks, int(self.packed.first_row[joint]))
         if moment.released:
             self.switches.stand_in(self.state.y[0])
         for row in range(self.packed.contact_rows, len(self.packed.ws.phi)):
@@ -118,26 +117,25 @@ class Jumps:
             change = 0.0
 
     def _set(self, at: Compliance, verdict: Verdict, before: list[str]) -> None:
-        sliding, sticking = self.dynamics.sliding.table[:, 0], []
+        sliding, sticking = self.switches.now.factors, []
         by_name = {decision.touch.name: decision for decision in verdict.contacts if decision.normal > 0.0}
         sliding[:] = 0.0
         rows: list[int] = []
-        for k, touch in enumerate(self.switches.touches):
+        for touch in self.switches.touches:
             old = touch.state
             self.switches.let_go(touch.gap)
             if touch.way is not None:
                 self.switches.let_go(touch.way)
             decision = by_name.get(touch.name)
-            self.signs[k] = 0.0
             if decision is None:
-                touch.state = OPEN
+                touch.set(OPEN)
             else:
                 rows.append(touch.gap)
                 if touch.always_closed:
                     self.switches.move_zero(touch.gap, at.phi[touch.gap])
-                touch.state, self.signs[k] = SLIDES, decision.sliding
+                touch.set(SLIDES, decision.sliding)
                 if touch.way is not None and decision.sliding == 0.0:
-                    touch.state = STICKS
+                    touch.set(STICKS)
                     if old != STICKS:
                         self.switches.move_zero(touch.way, at.phi[touch.way])
                     sticking.append(touch.way)

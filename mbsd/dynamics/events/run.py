@@ -31,7 +31,7 @@ from mbsd.dynamics.events.watches import (
 )
 from mbsd.dynamics.prepare.exchange import LOOK, exchange_rows
 from mbsd.dynamics.reference.acceleration import derivative
-from mbsd.dynamics.rows.switches import STICKS
+from mbsd.dynamics.rows.held import STICKS
 from mbsd.dynamics.runs.pace import Pace
 from mbsd.dynamics.runs.trail import Snapshot
 from mbsd.dynamics.state import (
@@ -47,7 +47,6 @@ from mbsd.dynamics.state import (
     State,
     copied,
 )
-from mbsd.equations.joint_friction import SENSE
 from mbsd.model.event import Event
 
 if TYPE_CHECKING:
@@ -74,9 +73,9 @@ class EventRun:
         self.run, self.state, self.out, self.events = run, state, out, events
         scale = 1.0 / self.packed.row_scale()
         self.near, self.still = NEAR * scale, STILL * scale
+        self.now = self.switches.now
+        self.now.events, self.now.sliding = {}, [0.0] * len(self.switches.touches)
         self.jumps = Jumps(ready, run.scratch, state, self.near, self.still)
-        self.sides: dict[str, float] = {}
-        """Sign of the value of each event of the user."""
         self.watches: list[Watch] = []
         self.happenings = self.jumps.happenings
         self.snapshots: list[Snapshot] = []
@@ -94,23 +93,14 @@ class EventRun:
         """At the start of a simulation: what is closed, and impacts of velocities that contacts forbid."""
         self._refuse_inside()
         for event in self.events:
-            self.sides[event.name] = float(np.sign(self._value(event)))
+            self.now.events[event.name] = float(np.sign(self._value(event)))
         self.jumps.resolve(None)
         self._restart()
 
     def resume(self, snapshot: Snapshot, work: float) -> None:
         """Go on from where another run was, with its contacts as they were."""
-        self.dynamics.schur.rows[:] = snapshot.rows
-        self.dynamics.sliding.table[:, 0] = snapshot.factor
-        self.dynamics.loads.rub_number[:, SENSE] = snapshot.senses
-        self.packed.system.numbers[:] = snapshot.numbers
+        self.now.restore(snapshot.held)
         self.ready.following.settle(*self.state.y)
-        for stick, (state, sign) in zip(self.sticks, snapshot.joints, strict=True):
-            stick.state, stick.sign = state, sign
-        for touch, status in zip(self.switches.touches, snapshot.states, strict=True):
-            touch.state = status
-        self.jumps.signs, self.sides = list(snapshot.signs), dict(snapshot.sides)
-        self.switches.released = set(snapshot.released)
         self.state.clock[WORK] = work
         self._restart()
 
@@ -247,7 +237,7 @@ class EventRun:
             self.run.advance(self.state, self.out, root)
 
     def _turn_side(self, watch: Watch) -> None:
-        self.sides[watch.name] = -(self.sides[watch.name] or 1.0)
+        self.now.events[watch.name] = -(self.now.events[watch.name] or 1.0)
 
     # -- jumps --------------------------------------------------------------------------------------------------
 
@@ -278,14 +268,14 @@ class EventRun:
         self._make_valid()
         load = max(float(np.abs(self.dynamics.weight[3:]).max()), float(np.abs(state.lam).max(initial=0.0)), 1e-300)
         self.watches = []
-        for touch, sign in zip(self.switches.touches, self.jumps.signs, strict=True):
-            self.watches += touch_watches(touch, sign, self.near, self.still, load)
+        for touch in self.switches.touches:
+            self.watches += touch_watches(touch, self.near, self.still, load)
         together = self._spare if self._sharing else None
         self.watches += stick_watches(self.sticks, together, self.still, load)
         for event in self.events:
-            if self.sides[event.name] == 0.0:
-                self.sides[event.name] = float(np.sign(self._value(event)))
-            self.watches.append(event_watch(self.packed, event, self.sides[event.name] or 1.0))
+            if self.now.events[event.name] == 0.0:
+                self.now.events[event.name] = float(np.sign(self._value(event)))
+            self.watches.append(event_watch(self.packed, event, self.now.events[event.name] or 1.0))
         self.snapshots.append(self.snapshot())
 
     def snapshot(self) -> Snapshot:
@@ -294,15 +284,7 @@ class EventRun:
             self.state.y.copy(),
             float(self.state.clock[TIME]),
             float(self.state.clock[WORK]),
-            self.dynamics.schur.rows.copy(),
-            self.dynamics.sliding.table[:, 0].copy(),
-            self.packed.system.numbers.copy(),
-            [touch.state for touch in self.switches.touches],
-            list(self.jumps.signs),
-            dict(self.sides),
-            set(self.switches.released),
-            [(stick.state, stick.sign) for stick in self.sticks],
-            self.dynamics.loads.rub_number[:, SENSE].copy(),
+            self.now.copy(),
         )
 
     def _row(self) -> tuple:

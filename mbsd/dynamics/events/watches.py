@@ -23,8 +23,9 @@ from mbsd.base.users_function import described
 from mbsd.dynamics.events.moment import Moment
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import Dynamics, Scratch
+from mbsd.dynamics.rows.held import OPEN, SLIDES, STICKS
 from mbsd.dynamics.rows.joint_sticks import JointStick
-from mbsd.dynamics.rows.switches import OPEN, SLIDES, STICKS, Touch
+from mbsd.dynamics.rows.switches import Touch
 from mbsd.equations.assembly import tabulate
 from mbsd.model.event import Event
 
@@ -107,9 +108,9 @@ class Watch:
     """From the begin and the end of a step: whether the scalar rises away from zero there, by its rates."""
 
 
-def touch_watches(touch: Touch, sign: float, near: np.ndarray, still: np.ndarray, load: float) -> list[Watch]:
-    """Of a contact in its present state; ``sign`` of its sliding. ``near``, ``still`` (m,): rounding."""
-    gap, way, name = touch.gap, touch.way or 0, touch.name
+def touch_watches(touch: Touch, near: np.ndarray, still: np.ndarray, load: float) -> list[Watch]:
+    """Of a contact in its present state. ``near``, ``still`` (m,): rounding."""
+    gap, way, name, sign = touch.gap, touch.way or 0, touch.name, touch.sign
     if touch.state == OPEN:
         if touch.always_closed:
             return [Watch(name, LOCKS, lambda s: s.rates()[:, gap], still[gap], touch)]

@@ -14,8 +14,9 @@ from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import Dynamics, scratch_for
 from mbsd.dynamics.reference.schur import plan_schur
 from mbsd.dynamics.reference.sliding import sliding_for
+from mbsd.dynamics.rows.held import Held
 from mbsd.dynamics.rows.joint_sticks import joint_sticks, stuck_rows
-from mbsd.dynamics.rows.switches import Switches
+from mbsd.dynamics.rows.switches import Switches, friction_rows
 from mbsd.dynamics.start.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
 from mbsd.kinematics.limits.contact_rows import all_contacts, with_contacts
 from mbsd.kinematics.pose.initial import consistent
@@ -62,14 +63,16 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     spare = set() if large else set(range(always)) - set(kept)
     planned = {*kept, *spare, *range(always, len(packed.ws.phi))}
     schur, _ = plan_schur(packed.system.row_body, blocks_of(packed, planned))
-    switches = Switches(packed, schur, spare)
     loads = pack_loads(packed)
+    sliding = sliding_for(friction_rows(packed), len(inertia), len(packed.ws.phi))
+    held = Held.of(schur, packed.system, sliding, loads)
+    switches = Switches(packed, held, spare)
     dynamics = Dynamics(
         system=packed.system,
         laws=compiled_laws(packed, start, end),
         loads=loads,
         schur=schur,
-        sliding=sliding_for(switches.friction_rows, len(inertia), len(packed.ws.phi)),
+        sliding=sliding,
         inertia=inertia,
         inverse=_inverse(lifted),
         metric=_inverse(metric),
@@ -78,7 +81,9 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
         baumgarte=np.zeros(2),
         per_size=1.0 / np.concatenate([np.ones(3), packed.column_scale()]),
     )
-    ready = PreparedDynamics(packed, dynamics, initial, start, end, mobility, switches, joint_sticks(packed, loads))
+    ready = PreparedDynamics(
+        packed, dynamics, initial, start, end, mobility, switches, joint_sticks(packed, loads, held)
+    )
     refuse_singular_start(ready, list(kept), always)
     _refuse_unheld(ready)
     return ready

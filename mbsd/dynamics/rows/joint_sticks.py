@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.dynamics.rows.switches import RELEASED, SLIDES
+from mbsd.dynamics.rows.held import RELEASED, SLIDES, Held
 from mbsd.equations.joint_friction import BY_RATE, FIRST, NONE, PIN, PRELOAD, SENSE, SHAPE, SIZE, STATIC, WAY
 from mbsd.equations.loads import Loads
 from mbsd.model.joint import Joint, JointKind
@@ -40,10 +40,13 @@ def stuck_rows(packed: Packed) -> list[Joint]:
     ]
 
 
-@dataclass
+@dataclass(eq=False)
 class JointStick:
     """One joint of a run that may stick."""
 
+    held: Held
+    place: int
+    """In ``held``."""
     name: str
     """Of its friction."""
     way: int
@@ -51,9 +54,16 @@ class JointStick:
     at: int
     """Row of Loads.rub."""
     loads: Loads
-    state: str = SLIDES
-    sign: float = 1.0
-    """Of its sliding."""
+
+    @property
+    def state(self) -> str:
+        """SLIDES, STICKS or RELEASED."""
+        return self.held.joints[self.place]
+
+    @property
+    def sign(self) -> float:
+        """Of its sliding."""
+        return self.held.joints_sliding[self.place]
 
     @property
     def number(self) -> np.ndarray:
@@ -66,21 +76,23 @@ class JointStick:
         return self.number[STATIC] * lever * (normal[..., self.at] + self.number[PRELOAD])
 
     def set(self, state: str, sign: float) -> None:
-        """Slide with this sign, stick (0), or be let go for good."""
-        self.state, self.sign = state, sign
-        self.number[SENSE] = sign if state == SLIDES else NONE
+        """Slide with this sign, stick (0), or be released for good."""
+        self.held.joints[self.place], self.held.joints_sliding[self.place] = state, sign
+        self.held.senses[self.at] = sign if state == SLIDES else NONE
 
 
-def joint_sticks(packed: Packed, loads: Loads) -> list[JointStick]:
-    """Of a packed mechanism with the rows of ``stuck_rows``."""
+def joint_sticks(packed: Packed, loads: Loads, held: Held) -> list[JointStick]:
+    """Of a packed mechanism with the rows of ``stuck_rows``; all slide."""
     name_of = {int(packed.first_row[k]): joint.name for k, joint in enumerate(packed.joints)}
-    return [JointStick(name_of[int(way)], int(way), at, loads) for at, way in enumerate(loads.rub[:, WAY]) if way >= 0]
+    rows = [(at, int(way)) for at, way in enumerate(loads.rub[:, WAY]) if way >= 0]
+    held.joints, held.joints_sliding = [SLIDES] * len(rows), [1.0] * len(rows)
+    return [JointStick(held, place, name_of[way], way, at, loads) for place, (at, way) in enumerate(rows)]
 
 
-def let_go(loads: Loads, sticks: Sequence[JointStick], first_row: int) -> None:
+def release(held: Held, loads: Loads, sticks: Sequence[JointStick], first_row: int) -> None:
     """The joint whose rows begin at ``first_row`` holds no more, and has no friction."""
     for at in np.flatnonzero(loads.rub[:, FIRST] == first_row):
-        loads.rub_number[at, SENSE] = NONE
+        held.senses[at] = NONE
         for stick in sticks:
             if stick.at == at:
                 stick.set(RELEASED, 0.0)

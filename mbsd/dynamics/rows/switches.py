@@ -11,20 +11,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.dynamics.reference.schur import Schur
+from mbsd.dynamics.rows.held import OPEN, Held
 from mbsd.equations.constraints.relative import AT, ROW
 from mbsd.kinematics.pose.mobility import independent_rows, scaled_jacobian
 from mbsd.model.contact import ContactKind
 from mbsd.model.joint import Joint
 
-OPEN, SLIDES, STICKS, RELEASED = "open", "slides", "sticks", "released"
-"""States of a contact, one without friction slides, and of a joint with friction."""
 
-
-@dataclass
+@dataclass(eq=False)
 class Touch:
     """A contact of a run."""
 
+    held: Held
+    number: int
+    """Its place in ``held``."""
     contact: Joint
     gap: int
     """Row."""
@@ -35,7 +35,20 @@ class Touch:
     always_closed: bool
     settle: float
     """A rebound slower than this (m/s or rad/s) is none."""
-    state: str = OPEN
+
+    @property
+    def state(self) -> str:
+        """Of the contact: OPEN, SLIDES or STICKS."""
+        return self.held.contacts[self.number]
+
+    def set(self, state: str, sign: float = 0.0) -> None:
+        """Open, slide with this sign, or stick."""
+        self.held.contacts[self.number], self.held.sliding[self.number] = state, sign
+
+    @property
+    def sign(self) -> float:
+        """Of its sliding."""
+        return self.held.sliding[self.number]
 
     @property
     def name(self) -> str:
@@ -65,12 +78,10 @@ SETTLE = 1e-4
 class Switches:
     """What holds now. Made before anything is let go; then all contacts are open."""
 
-    def __init__(self, packed: Packed, schur: Schur, spare: Collection[int] = ()) -> None:
+    def __init__(self, packed: Packed, held: Held, spare: Collection[int] = ()) -> None:
         self.packed = packed
-        self.schur = schur
-        self.place = {int(row): (k, s) for k, rows in enumerate(schur.rows) for s, row in enumerate(rows) if row >= 0}
-        self.released: set[int] = set()
-        """Rows of joints that an action let go."""
+        self.now = held
+        self.place = {int(row): (k, s) for k, rows in enumerate(held.rows) for s, row in enumerate(rows) if row >= 0}
         self.touches: list[Touch] = []
         special = packed.system.special
         self._number_of = {int(special[k, ROW]): int(special[k, AT]) for k in range(len(special))}
@@ -84,6 +95,8 @@ class Switches:
             slippery = contact.params.get("friction", 0.0) == 0.0
             self.touches.append(
                 Touch(
+                    held,
+                    len(self.touches),
                     contact,
                     row,
                     None if slippery else row + 1,
@@ -93,35 +106,30 @@ class Switches:
                 )
             )
             friction += not slippery
+        held.contacts, held.sliding = [OPEN] * len(self.touches), [0.0] * len(self.touches)
         for row in (*spare, *range(packed.contact_rows, len(packed.ws.phi))):
             self.let_go(row)
 
     @property
     def spare(self) -> list[int]:
         """Rows of joints that repeat others: each can stand in for one of those, or holds once those are released."""
-        held = {int(row) for row in self.bilateral()} | self.released
+        held = {int(row) for row in self.bilateral()} | self.now.released
         return [row for row in sorted(self.place) if row < self.packed.contact_rows and row not in held]
-
-    @property
-    def friction_rows(self) -> np.ndarray:
-        """(c, 2) rows of gap and way of the contacts with friction."""
-        rows = [(touch.gap, touch.way) for touch in self.touches if touch.way is not None]
-        return np.array(rows, np.int64).reshape(-1, 2)
 
     def let_go(self, row: int) -> None:
         """Row ``row`` of J holds no more."""
         k, s = self.place[row]
-        self.schur.rows[k, s] = -1
+        self.now.rows[k, s] = -1
 
     def take_up(self, row: int) -> None:
         """Row ``row`` of J holds."""
         k, s = self.place[row]
-        self.schur.rows[k, s] = row
+        self.now.rows[k, s] = row
 
     def release(self, joint: int) -> None:
         """Let joint number ``joint`` of the packed mechanism go for good."""
         for row in range(int(self.packed.first_row[joint]), int(self.packed.first_row[joint + 1])):
-            self.released.add(row)
+            self.now.released.add(row)
             if row in self.place:
                 self.let_go(row)
 
@@ -143,13 +151,23 @@ class Switches:
 
     def held(self) -> np.ndarray:
         """(m,) which rows hold; joints' redundant rows do too."""
-        rows = self.schur.rows[self.schur.rows >= 0]
+        rows = self.now.rows[self.now.rows >= 0]
         out = np.arange(len(self.packed.ws.phi)) < self.packed.contact_rows
-        out[sorted(self.released)] = False
+        out[sorted(self.now.released)] = False
         out[rows] = True
         return out
 
     def bilateral(self) -> np.ndarray:
         """Independent rows of joints and drivers that hold."""
-        rows = self.schur.rows[self.schur.rows >= 0]
+        rows = self.now.rows[self.now.rows >= 0]
         return np.sort(rows[rows < self.packed.contact_rows])
+
+
+def friction_rows(packed: Packed) -> np.ndarray:
+    """(c, 2) rows of the gap and of the sliding of the contacts with friction."""
+    rows = [
+        (packed.first_row[k], packed.first_row[k] + 1)
+        for k, joint in enumerate(packed.joints)
+        if isinstance(joint.kind, ContactKind) and joint.params.get("friction", 0.0) != 0.0
+    ]
+    return np.array(rows, np.int64).reshape(-1, 2)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from mbsd.dynamics.rows.held import Held
 from mbsd.dynamics.state import Output
 from mbsd.model.event import Happening
 
@@ -18,23 +19,7 @@ class Snapshot:
     """(2, 3 nb)"""
     time: float
     work: float
-    rows: np.ndarray
-    """Schur.rows"""
-    factor: np.ndarray
-    """First column of Sliding.table"""
-    numbers: np.ndarray
-    """System.numbers"""
-    states: list[str]
-    """Of the contacts."""
-    signs: list[float]
-    """Of their sliding."""
-    sides: dict[str, float]
-    """Signs of the values of the user's events."""
-    released: set[int]
-    joints: list[tuple[str, float]]
-    """State and sign of sliding of the joints that stick by events."""
-    senses: np.ndarray
-    """Of Loads.rub_number."""
+    held: Held
 
 
 @dataclass

@@ -13,8 +13,8 @@ import numpy as np
 from mbsd.arrays.friction_along import normals_along
 from mbsd.dynamics.events.laws.compliance import Compliance
 from mbsd.dynamics.events.laws.sharing import share
+from mbsd.dynamics.rows.held import STICKS
 from mbsd.dynamics.rows.joint_sticks import JointStick
-from mbsd.dynamics.rows.switches import STICKS
 
 PASSES = 100
 AGREED = 1e-12

@@ -21,8 +21,9 @@ from mbsd.base.errors import SimulationError
 from mbsd.dynamics.events.laws.complementarity import complementarity, gives_way
 from mbsd.dynamics.events.laws.compliance import Compliance
 from mbsd.dynamics.events.laws.sharing import share
+from mbsd.dynamics.rows.held import RELEASED, SLIDES
 from mbsd.dynamics.rows.joint_sticks import JointStick
-from mbsd.dynamics.rows.switches import RELEASED, SLIDES, Touch
+from mbsd.dynamics.rows.switches import Touch
 from mbsd.equations.joint_friction import FAINT, MOST_PASSES, SETTLED, X
 
 AT_LIMIT = 1e-10

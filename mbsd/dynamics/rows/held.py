@@ -1,0 +1,63 @@
+"""All that events change in a run, in one record; everything else about a mechanism is constant meanwhile.
+
+The arrays are those that kernels read: a change here is seen by the next evaluation. A copy is what a run goes on from.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+
+import numpy as np
+
+from mbsd.dynamics.reference.schur import Schur
+from mbsd.dynamics.reference.sliding import Sliding
+from mbsd.equations.joint_friction import SENSE
+from mbsd.equations.loads import Loads
+from mbsd.equations.system import System
+
+OPEN, SLIDES, STICKS, RELEASED = "open", "slides", "sticks", "released"
+"""States of a contact, one without friction slides, and of a joint with friction."""
+
+
+@dataclass(eq=False)
+class Held:
+    """Which rows of J hold, and what contacts, joints with friction and events of the user do."""
+
+    rows: np.ndarray
+    """(blocks, 2) rows of J in the blocks of Schur.rows; -1: it is released, or there is none."""
+    numbers: np.ndarray
+    """(n,) System.numbers, of which events change from where sliding is counted (PHASE)."""
+    factors: np.ndarray
+    """(c,) friction coefficient times direction of sliding of the contacts with friction; 0: it does not slide."""
+    senses: np.ndarray
+    """(f,) direction in which the friction of each joint acts, or BY_RATE or NONE: see equations/joint_friction.py."""
+    released: set[int] = field(default_factory=set)
+    """Rows of joints that an action released for good."""
+    contacts: list[str] = field(default_factory=list)
+    """State of each contact."""
+    sliding: list[float] = field(default_factory=list)
+    """Direction of sliding of each contact: 1, -1, or 0."""
+    joints: list[str] = field(default_factory=list)
+    """State of each joint that sticks by events."""
+    joints_sliding: list[float] = field(default_factory=list)
+    """Direction of sliding of each: 1, -1, or 0."""
+    events: dict[str, float] = field(default_factory=dict)
+    """Sign of the value of each event of the user."""
+
+    @classmethod
+    def of(cls, schur: Schur, system: System, sliding: Sliding, loads: Loads) -> Held:
+        """The record of arrays that kernels read."""
+        return cls(schur.rows, system.numbers, sliding.table[:, 0], loads.rub_number[:, SENSE])
+
+    def copy(self) -> Held:
+        """As it is now."""
+        return Held(**{one.name: getattr(self, one.name).copy() for one in fields(self)})
+
+    def restore(self, other: Held) -> None:
+        """Become as ``other`` is, in place."""
+        for one in fields(self):
+            own, given = getattr(self, one.name), getattr(other, one.name)
+            if isinstance(own, np.ndarray):
+                own[...] = given
+            else:
+                setattr(self, one.name, given.copy())

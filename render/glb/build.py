@@ -7,6 +7,7 @@ viewers bring theirs.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -28,11 +29,20 @@ UPRIGHT = (-(0.5**0.5), 0.0, 0.0, 0.5**0.5)
 
 def glb(film: Film) -> bytes:
     """The file's bytes, the same each time."""
+    return _content(film, film.scene.pieces)
+
+
+def tubes(film: Film) -> bytes:
+    """A file with springs, ropes and belts alone."""
+    return _content(film, [])
+
+
+def _content(film: Film, pieces: Sequence[PieceSpec]) -> bytes:
     document, motion = Document(), film.motion
     paints, animation = Paints(document), Animation(document, motion)
     nodes: dict[str, int] = {}
     children: dict[tuple[str, str], int] = {}
-    for piece in film.scene.pieces:
+    for piece in pieces:
         if piece.body not in nodes:
             nodes[piece.body] = document.add("nodes", {"name": piece.body, "children": []})
         node: dict[str, Any] = {"name": f"{piece.body}/{piece.name}", "mesh": _mesh(document, piece, paints)}
@@ -44,7 +54,7 @@ def glb(film: Film) -> bytes:
         if name in nodes:
             x, y, theta = (np.array(series)[animation.kept] for series in (body.x, body.y, body.theta))
             animation.place(nodes[name], np.stack([x, y, 0 * x], axis=1), theta)
-    for roller in film.rollers.found:
+    for roller in film.rollers.found if pieces else []:
         animation.add(children[roller.body, roller.piece], "rotation", about_z(roller.turned[animation.kept]))
     springs = Springs(document, animation, paints, motion)
     for stretched in film.stretched:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
+from render.film.film import Film
 from render.view.loads import clearance_of
 from render.view.payload import payload
-from shared.contract import read_motion
+from render.view.solid import with_parts
+from shared.contract import read_motion, read_parts
 from shared.contract.clearance import read_clearance
 from shared.contract.shot import Shot, read_shot
 from shared.contract.skeleton import read_skeleton
+from shared.contract.spanning import with_rods
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
 
@@ -27,7 +30,11 @@ def read_payload(out: Out) -> dict[str, Any]:
             f"run make solve-{out.name.replace('_', '-')} again"
         )
     shot = read_shot(out.shot) if out.shot.is_file() else Shot()
+    parts = read_parts(out.parts, out.name) if out.parts.is_file() else None
+    motion = with_rods(motion, parts) if parts else motion
     found = payload(motion, skeleton.moving, shot)
+    if parts is not None:
+        found = with_parts(found, Film(motion, parts, shot, out.parts_folder))
     if out.clearance.is_file():
         found["clearance"] = clearance_of(read_clearance(out.clearance))
     return found

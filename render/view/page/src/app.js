@@ -60,7 +60,7 @@ export class App {
     this.take({ ...this.payload, ...patch });
     const kept = Math.min(Math.max(time, this.clock.start), this.clock.end);
     this.motion.to(kept);
-    this.stage.update(patch);
+    this.stage.update();
     this.plots.update();
     this.transport.update();
     this.parts.update();

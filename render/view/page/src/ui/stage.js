@@ -1,5 +1,6 @@
 /** The middle of the page: the 3D view or the 2D one, whichever is chosen and possible. */
 import { Skeleton } from "../view2d/skeleton.js";
+import { Solid } from "../view3d/scene.js";
 import { Legend } from "./legend.js";
 
 export class Stage {
@@ -13,13 +14,31 @@ export class Stage {
     new ResizeObserver(() => { this.resize(); app.redraw(); }).observe(stage);
     app.store.on(["view"], () => this.resize());
     this.resize();
-    this.update({ solid: app.payload.solid });
+    this.update();
   }
 
   get flat() { return !this.solid || this.app.store.state.view === "2d"; }
   get shown() { return this.flat ? this.plane : this.solid; }
 
-  update() { this.plane.update(); }
+  /** Take what the app's payload is now. */
+  update() {
+    this.plane.update();
+    const { app } = this, { solid } = app.payload;
+    if (!solid) this.solid = null;
+    else if (this.solid) this.solid.update();
+    else if (!this.missing) {
+      try {
+        this.solid = new Solid(app.parts.canvases.solid, app);
+        this.resize();
+        this.solid.home();
+      } catch (error) {
+        this.missing = true;
+        app.parts.root.dataset.flat = "";
+        app.notice("This browser has no WebGL: here are the skeleton and the curves, without the parts.", "plain");
+        console.info(`no WebGL: ${error.message}`);
+      }
+    }
+  }
 
   resize() {
     const { width, height } = this.app.parts.stage.getBoundingClientRect();

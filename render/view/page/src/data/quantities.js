@@ -1,0 +1,88 @@
+/**
+ * What there is to plot of a thing: charts with a unit, curves with values at the payload's times.
+ *
+ * @typedef {{name: string, values: Float32Array}} Line
+ * @typedef {{title: string, unit: string, lines: Line[]}} Chart
+ */
+import { KINDS } from "../app.js";
+
+/** Parts of the largest below which a curve is rounding. */
+const NOTHING = 1e-9;
+
+/** @param {import("./decode.js").Payload} payload  @param {import("../state.js").Thing | null} thing  @returns {Chart[]} */
+export function chartsOf(payload, thing) {
+  const one = thing && payload[KINDS[thing.kind]]?.[thing.name];
+  const charts = one ? OF[thing.kind](one) : overview(payload);
+  return charts.map((chart) => ({ ...chart, lines: chart.lines.filter((line) => line.values) })).filter((chart) => chart.lines.length);
+}
+
+/** All things that have curves, by kind. @returns {import("../state.js").Thing[]} */
+export function thingsOf(payload) {
+  return Object.entries(KINDS).flatMap(([kind, key]) => Object.keys(payload[key]).map((name) => ({ kind, name })));
+}
+
+const chart = (title, unit, ...lines) => ({ title, unit, lines: lines.map(([name, values]) => ({ name, values })) });
+
+const OF = {
+  joint: (one) => [
+    chart("Reaction", "N", ["x", one.fx], ["y", one.fy], ["size", size(one.fx, one.fy)]),
+    ...some([one.torque], one.fx, one.fy) ? [chart("Reaction torque", "N m", ["torque", one.torque])] : [],
+    chart("Place", "m", ["x", one.x], ["y", one.y]),
+  ],
+  body: (one) => [
+    chart("Angle", "rad", ["angle", one.theta]),
+    chart("Angular velocity", "rad/s", ["ω", one.omega]),
+    chart("Angular acceleration", "rad/s²", ["α", one.alpha]),
+    chart("Place of its frame", "m", ["x", one.x], ["y", one.y]),
+    chart("Velocity of its frame", "m/s", ["x", one.vx], ["y", one.vy], ["speed", size(one.vx, one.vy)]),
+    chart("Acceleration of its frame", "m/s²", ["x", one.ax], ["y", one.ay]),
+  ],
+  driver: (one) => [
+    chart(one.unit === "rad" ? "Torque" : "Force", one.effort_unit, ["effort", one.effort]),
+    chart("Power", "W", ["power", one.power]),
+    chart(one.unit === "rad" ? "Angle" : "Length", one.unit, ["value", one.value]),
+  ],
+  point: (one) => [
+    chart("Speed", "m/s", ["speed", size(one.vx, one.vy)], ["x", one.vx], ["y", one.vy]),
+    chart("Place", "m", ["x", one.x], ["y", one.y]),
+    chart("Acceleration", "m/s²", ["size", size(one.ax, one.ay)], ["x", one.ax], ["y", one.ay]),
+  ],
+  force: (one) => [
+    chart(one.unit === "rad" ? "Torque" : "Force", one.effort_unit, ["effort", one.effort]),
+    chart(one.unit === "rad" ? "Angle" : "Length", one.unit, ["value", one.value]),
+    chart("Power", "W", ["power", one.power]),
+    ...some([one.potential]) ? [chart("Potential energy", "J", ["energy", one.potential])] : [],
+  ],
+  contact: (one) => [
+    chart("Normal force", "N", ["normal", one.normal], ["friction", one.friction]),
+    chart("Gap", "m", ["gap", one.gap]),
+  ],
+};
+
+/** Of the whole machine. */
+function overview(payload) {
+  const { drivers, points, energy, bodies } = payload, charts = [];
+  for (const unit of ["N m", "N"]) {
+    const lines = Object.entries(drivers).filter(([, one]) => one.effort_unit === unit && some([one.effort]));
+    if (lines.length) charts.push(chart(unit === "N m" ? "Driving torque" : "Driving force", unit, ...lines.map(([name, one]) => [name, one.effort])));
+  }
+  const speeds = Object.entries(points).map(([name, one]) => [name, size(one.vx, one.vy)]);
+  if (speeds.length) charts.push(chart("Speed of traced points", "m/s", ...speeds.slice(0, 6)));
+  const spins = Object.entries(bodies).filter(([, one]) => some([one.omega])).map(([name, one]) => [name, one.omega]);
+  if (spins.length) charts.push(chart("Angular velocities", "rad/s", ...spins.slice(0, 6)));
+  if (some([energy.kinetic], energy.potential)) charts.push(chart("Energy", "J", ["kinetic", energy.kinetic], ["potential", energy.potential]));
+  charts.push(chart("Distance from singular poses", "1", ["margin", payload.margin]));
+  return charts;
+}
+
+function size(u, v) {
+  const out = new Float32Array(u.length);
+  for (let k = 0; k < out.length; k++) out[k] = Math.hypot(u[k], v[k]);
+  return out;
+}
+
+/** Whether any of these is more than rounding beside the others. */
+function some(series, ...beside) {
+  const largest = (list) => list.reduce((top, values) => values ? values.reduce((a, b) => Math.max(a, Math.abs(b)), top) : top, 0);
+  return largest(series) > NOTHING * largest(beside);
+}

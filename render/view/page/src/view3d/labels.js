@@ -1,0 +1,39 @@
+/** Words over the parts: names of joints, points and bodies, and gaps; each where its place is seen. */
+import { Vector3 } from "three";
+import { el } from "../ui/dom.js";
+
+const place = new Vector3();
+
+export class Labels {
+  /** @param {HTMLElement} layer */
+  constructor(layer) {
+    this.layer = layer;
+    this.known = new Map();
+  }
+
+  /** @param {{key: string, text: string, at: [number, number, number], kind: string, act?: () => void}[]} wanted
+   *  @param {(v: Vector3) => [number, number]} pixel */
+  show(wanted, pixel) {
+    const gone = new Set(this.known.keys()), taken = [];
+    for (const { key, text, at, kind, act } of wanted) {
+      let one = this.known.get(key);
+      if (!one) {
+        one = act ? el("button", { class: "label", type: "button", "data-kind": kind, onclick: act }) : el("span", { class: "label", "data-kind": kind });
+        this.known.set(key, one);
+        this.layer.append(one);
+      }
+      gone.delete(key);
+      if (one.textContent !== text) one.textContent = text;
+      const [x, y] = pixel(place.set(...at));
+      const width = 8 * text.length + 12;
+      let top = y - 13;
+      for (let k = 0; k < 6 && taken.some(([a, b, w]) => Math.abs(a - x) < (w + width) / 2 && Math.abs(b - top) < 19); k++) top -= 19;
+      taken.push([x, top, width]);
+      one.style.transform = `translate(${x.toFixed(1)}px, ${top.toFixed(1)}px) translate(-50%, -100%)`;
+    }
+    for (const key of gone) {
+      this.known.get(key).remove();
+      this.known.delete(key);
+    }
+  }
+}

@@ -1,0 +1,73 @@
+/** The parts: a group for each body, a mesh for each piece, moved by the motion; springs and belts as recorded. */
+import { AnimationMixer, Group, Mesh } from "three";
+import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
+import { materialOf, setGlass } from "./materials.js";
+import { geometryOf } from "./meshes.js";
+
+export class Parts {
+  /** @param {any} solid payload.solid  @param {() => void} ready called when springs and belts are there */
+  constructor(solid, ready) {
+    this.solid = solid;
+    this.group = new Group();
+    /** @type {Map<string, Group>} */
+    this.bodies = new Map();
+    this.rollers = [];
+    this.meshes = [];
+    this.materials = solid.surfaces.map(materialOf);
+    const geometries = solid.meshes.map((mesh) => geometryOf(mesh, solid.step));
+    for (const piece of solid.pieces) {
+      const mesh = new Mesh(geometries[piece.mesh], this.materials[piece.surface]);
+      mesh.castShadow = mesh.receiveShadow = true;
+      mesh.userData = { body: piece.body, piece: piece.name };
+      mesh.position.set(...piece.at);
+      this.meshes.push(mesh);
+      if (piece.turns) {
+        const axis = new Group();
+        axis.position.set(piece.turns.x, piece.turns.y, 0);
+        mesh.position.x -= piece.turns.x;
+        mesh.position.y -= piece.turns.y;
+        axis.add(mesh);
+        this.body(piece.body).add(axis);
+        this.rollers.push([axis, piece.turns.angle]);
+      } else this.body(piece.body).add(mesh);
+    }
+    if (solid.tubes) this.load(solid.tubes, ready);
+  }
+
+  body(name) {
+    let group = this.bodies.get(name);
+    if (!group) {
+      group = new Group();
+      this.bodies.set(name, group);
+      this.group.add(group);
+    }
+    return group;
+  }
+
+  async load(bytes, ready) {
+    const file = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
+    const { scene, animations } = await new GLTFLoader().parseAsync(file, "");
+    scene.rotation.set(0, 0, 0);
+    for (const root of scene.children) root.quaternion.identity(); // its y is up, ours z
+    scene.traverse((one) => { one.castShadow = one.receiveShadow = !!one.isMesh; });
+    this.group.add(scene);
+    this.mixer = new AnimationMixer(scene);
+    for (const clip of animations) this.mixer.clipAction(clip).play();
+    this.length = Math.max(0, ...animations.map((clip) => clip.duration));
+    ready();
+  }
+
+  /** @param {import("../data/motion.js").Motion} motion */
+  move(motion) {
+    for (const [name, group] of this.bodies) {
+      if (!(name in motion.payload.bodies)) continue;
+      const { x, y, theta } = motion.body(name);
+      group.position.set(x, y, 0);
+      group.rotation.z = theta;
+    }
+    for (const [axis, angle] of this.rollers) axis.rotation.z = motion.linear(angle);
+    this.mixer?.setTime(Math.min(motion.t - motion.start, this.length * (1 - 1e-7)));
+  }
+
+  glass(on) { for (const material of this.materials) setGlass(material, on); }
+}

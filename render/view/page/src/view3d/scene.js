@@ -1,0 +1,162 @@
+/** The 3D view. The machine is scaled so that the radius of its swept motion is 1; z is up. */
+import { NeutralToneMapping, Group, PCFShadowMap, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { inks } from "../view2d/inks.js";
+import { Arrows } from "./arrows.js";
+import { Ghosts } from "./ghosts.js";
+import { Labels } from "./labels.js";
+import { Marks } from "./marks.js";
+import { Parts } from "./parts.js";
+import { Studio } from "./studio.js";
+import { Trails } from "./trails.js";
+import { wantedLabels, wantedMarks } from "./wanted.js";
+
+const SENSOR = 36, ASPECT = 16 / 9, NEAR = 15, STILL = 5;
+
+export class Solid {
+  /** @param {HTMLCanvasElement} canvas  @param {import("../app.js").App} app  Throws where there is no WebGL. */
+  constructor(canvas, app) {
+    this.canvas = canvas;
+    this.app = app;
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    this.renderer.toneMapping = NeutralToneMapping;
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = PCFShadowMap;
+    this.scene = new Scene();
+    this.machine = new Group();
+    this.scene.add(this.machine);
+    this.studio = new Studio(this.renderer, this.scene);
+    this.camera = new PerspectiveCamera(30, ASPECT, 0.02, 60);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener("change", () => app.redraw());
+    Object.assign(this.controls, { enableDamping: false, maxPolarAngle: Math.PI * 0.495, minDistance: 0.25, maxDistance: 25, zoomToCursor: true });
+    this.controls.keys = {};
+    this.arrows = new Arrows();
+    this.trails = new Trails();
+    this.marks = new Marks();
+    this.ghosts = new Ghosts();
+    this.labels = new Labels(app.parts.labels);
+    this.parts = null;
+    this.size = [1, 1];
+    this.listen();
+    this.update();
+    this.home();
+  }
+
+  get dark() { return this.app.dark; }
+
+  /** Take what the app's payload is now; the camera stays. */
+  update() {
+    const { payload, motion } = this.app, { solid } = payload;
+    if (this.parts?.solid !== solid) {
+      if (this.parts) this.machine.remove(this.parts.group);
+      this.parts = new Parts(solid, () => this.app.redraw());
+      this.machine.add(this.parts.group);
+      this.radius = solid.size / 2;
+      this.machine.scale.setScalar(1 / this.radius);
+      this.machine.position.set(...solid.middle).multiplyScalar(-1 / this.radius);
+      this.glass = null;
+      this.look = null;
+    }
+    this.machine.add(this.arrows.group, this.trails.group, this.marks.group, this.ghosts.group);
+    this.arrows.clear();
+    this.trails.update(payload);
+    this.ghosted = null;
+    this.parts.move(motion);
+  }
+
+  /** World of the picture from places (m). @returns {Vector3} */
+  world(x, y, z) { return new Vector3(x, y, z).divideScalar(this.radius).add(this.machine.position); }
+
+  home() {
+    const { camera } = this.app.payload.solid;
+    this.camera.position.copy(this.world(...camera.position));
+    this.controls.target.copy(this.world(...camera.target));
+    this.lens = camera.lens;
+    this.aim();
+    this.controls.update();
+  }
+
+  aim() {
+    const aspect = this.size[0] / this.size[1], half = SENSOR / (2 * this.lens);
+    this.tangent = half / Math.min(aspect, ASPECT);
+    this.camera.fov = (2 * Math.atan(this.tangent) * 180) / Math.PI;
+    this.camera.aspect = aspect;
+    this.camera.updateProjectionMatrix();
+  }
+
+  resize(width, height, ratio) {
+    this.size = [width, height];
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(width, height, false);
+    this.aim();
+  }
+
+  zoom(factor) {
+    this.camera.position.sub(this.controls.target).divideScalar(factor).add(this.controls.target);
+    this.controls.update();
+  }
+
+  /** Pixels of a place (m) given as a vector, which is changed. @returns {[number, number]} */
+  pixel(vector) {
+    vector.divideScalar(this.radius).add(this.machine.position).project(this.camera);
+    return [((vector.x + 1) / 2) * this.size[0], ((1 - vector.y) / 2) * this.size[1]];
+  }
+
+  pixelsPerMetre() {
+    return this.size[1] / (2 * this.tangent * this.camera.position.distanceTo(this.controls.target) * this.radius);
+  }
+
+  draw() {
+    const { payload, motion, store, dark } = this.app, { shown } = store.state, { solid } = payload;
+    const look = dark ? "studio" : "daylight";
+    if (this.look !== look) {
+      this.studio.set(look, solid.camera.azimuth, (solid.floor - solid.middle[2]) / this.radius);
+      this.look = look;
+    }
+    if (this.glass !== !!shown.glass) this.parts.glass((this.glass = !!shown.glass));
+    this.parts.move(motion);
+    this.machine.updateMatrixWorld(true);
+    this.ghosts.group.visible = !!shown.ghosts;
+    if (shown.ghosts && this.ghosted !== this.parts) {
+      this.ghosts.update(this.parts, motion);
+      this.ghosted = this.parts;
+    }
+    const colours = inks(dark, payload.bodies);
+    this.trails.group.visible = !!shown.trails;
+    if (shown.trails) this.trails.draw(payload, motion);
+    this.arrows.draw(payload, motion, shown, colours.arrows);
+    this.marks.show(wantedMarks(this.app), colours, this.size[1], this.tangent * this.radius);
+    this.renderer.render(this.scene, this.camera);
+    this.labels.show(wantedLabels(this.app), (vector) => this.pixel(vector));
+  }
+
+  listen() {
+    let start = null;
+    this.canvas.addEventListener("pointerdown", (event) => { start = event.isPrimary && event.button === 0 ? [event.clientX, event.clientY] : null; });
+    this.canvas.addEventListener("pointerup", (event) => {
+      if (!start || Math.hypot(event.clientX - start[0], event.clientY - start[1]) > STILL) return;
+      const box = this.canvas.getBoundingClientRect();
+      this.app.select(this.thingAt(event.clientX - box.left, event.clientY - box.top));
+    });
+  }
+
+  /** @returns {import("../state.js").Thing | null} a joint or point near a pixel, else the body there */
+  thingAt(px, py) {
+    const { payload, motion } = this.app, { heights } = payload.solid;
+    let best = null, nearest = NEAR;
+    const look = (kind, name, place, z) => {
+      const [x, y] = this.pixel(new Vector3(...place, z)), away = Math.hypot(x - px, y - py);
+      if (away < nearest) [best, nearest] = [{ kind, name }, away];
+    };
+    for (const name in payload.joints) look("joint", name, motion.joint(name), heights.joints[name] ?? 0);
+    for (const name in payload.points) look("point", name, motion.point(name), heights.points[name] ?? 0);
+    if (best) return best;
+    const ray = new Raycaster();
+    ray.setFromCamera(new Vector2((2 * px) / this.size[0] - 1, 1 - (2 * py) / this.size[1]), this.camera);
+    const hit = ray.intersectObjects(this.parts.meshes, false)[0];
+    const name = hit?.object.userData.body;
+    return name && name in payload.bodies ? { kind: "body", name } : null;
+  }
+}

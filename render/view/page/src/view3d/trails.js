@@ -1,0 +1,59 @@
+/** The path of a traced point as a thin light that fades behind it. */
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, Group, Mesh, MeshBasicMaterial } from "three";
+import { tailOf } from "../view2d/trails.js";
+
+const RINGS = 220, SIDES = 8;
+
+export class Trails {
+  constructor() {
+    this.group = new Group();
+    this.made = [];
+  }
+
+  update(payload) {
+    for (const { mesh } of this.made) mesh.geometry.dispose();
+    this.group.clear();
+    this.made = payload.trails.map((trail) => {
+      const mesh = new Mesh(tube(trail.colour), new MeshBasicMaterial({ vertexColors: true, transparent: true, side: DoubleSide, depthWrite: false, toneMapped: false }));
+      mesh.frustumCulled = false;
+      mesh.renderOrder = 5;
+      this.group.add(mesh);
+      return { trail, mesh };
+    });
+  }
+
+  draw(payload, motion) {
+    for (const { trail, mesh } of this.made) {
+      const places = tailOf(payload, motion, trail.point, trail.tail, RINGS), { array } = mesh.geometry.attributes.position;
+      for (let k = 0; k < RINGS; k++) {
+        const a = places[Math.max(k - 1, 0)], b = places[Math.min(k + 1, RINGS - 1)];
+        const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1, u = -(b[1] - a[1]) / length, v = (b[0] - a[0]) / length;
+        const r = trail.radius * (1 - (k / (RINGS - 1)) ** 1.5 * 0.85);
+        for (let n = 0; n < SIDES; n++) {
+          const angle = (2 * Math.PI * n) / SIDES, c = r * Math.cos(angle), at = 3 * (k * SIDES + n);
+          array[at] = places[k][0] + u * c;
+          array[at + 1] = places[k][1] + v * c;
+          array[at + 2] = trail.z + r * Math.sin(angle);
+        }
+      }
+      mesh.geometry.attributes.position.needsUpdate = true;
+    }
+  }
+}
+
+function tube(colour) {
+  const geometry = new BufferGeometry(), colours = new Float32Array(4 * RINGS * SIDES), corners = [];
+  const bright = new Color().setRGB(...colour).multiplyScalar(1.12);
+  for (let k = 0; k < RINGS; k++) {
+    for (let n = 0; n < SIDES; n++) {
+      colours.set([bright.r, bright.g, bright.b, 0.95 * (1 - k / (RINGS - 1)) ** 1.6], 4 * (k * SIDES + n));
+      if (k + 1 === RINGS) continue;
+      const a = k * SIDES + n, b = k * SIDES + ((n + 1) % SIDES);
+      corners.push(a, b, a + SIDES, b, b + SIDES, a + SIDES);
+    }
+  }
+  geometry.setAttribute("position", new BufferAttribute(new Float32Array(3 * RINGS * SIDES), 3));
+  geometry.setAttribute("color", new BufferAttribute(colours, 4));
+  geometry.setIndex(corners);
+  return geometry;
+}

@@ -1,0 +1,45 @@
+/** Which words and signs the 3D view shows at the moment. */
+
+/** @param {import("../app.js").App} app */
+export function wantedLabels(app) {
+  const { payload, motion, store } = app, { shown, selected } = store.state, { heights } = payload.solid, out = [];
+  const add = (kind, name, place, z, text = name) => out.push({ key: `${kind} ${name}`, text: text.replaceAll("_", " "), at: [...place, z], kind });
+  if (shown.names) {
+    for (const name in payload.joints) add("joint", name, motion.joint(name), heights.joints[name] ?? 0);
+    for (const name in payload.points) add("point", name, motion.point(name), heights.points[name] ?? 0);
+    for (const name in payload.bodies) if (payload.bodies[name].mass > 0) add("body", name, motion.centre(name), heights.bodies[name] ?? 0);
+  } else if (selected) {
+    const place = app.placeOf(selected);
+    if (place) add(selected.kind, selected.name, place, heightOf(app, selected));
+  }
+  if (shown.clearance) {
+    for (const { at, gap, time, bodies } of gaps(payload)) {
+      const act = time === null ? undefined : () => store.set({ playing: false, time });
+      out.push({ key: `gap ${at}`, text: `${millimetres(gap)} ${bodies.join(" – ")}`.replaceAll("_", " "), at, kind: "gap", act });
+    }
+  }
+  return out;
+}
+
+/** @param {import("../app.js").App} app */
+export function wantedMarks(app) {
+  const { payload, motion, store } = app, { shown, selected } = store.state, { heights } = payload.solid, out = [];
+  if (shown.centres) {
+    for (const name in payload.bodies) if (payload.bodies[name].mass > 0) out.push({ kind: "centre", at: [...motion.centre(name), heights.bodies[name] ?? 0] });
+  }
+  if (shown.names) for (const name in payload.joints) out.push({ kind: "joint", at: [...motion.joint(name), heights.joints[name] ?? 0] });
+  if (shown.clearance) for (const { at } of gaps(payload)) out.push({ kind: "gap", at });
+  const place = selected && app.placeOf(selected);
+  if (place) out.push({ kind: "selected", at: [...place, heightOf(app, selected)] });
+  return out;
+}
+
+const gaps = (payload) => (payload.clearance?.pairs ?? []).filter((pair) => pair.at).slice(0, 6);
+
+const millimetres = (gap) => `${(1000 * gap).toFixed(gap < 0.01 ? 2 : 1)} mm`;
+
+function heightOf({ payload }, { kind, name }) {
+  const { joints, points, bodies } = payload.solid.heights;
+  const known = { joint: joints, point: points, body: bodies }[kind]?.[name];
+  return known ?? Math.max(0, ...Object.values(bodies));
+}

@@ -1,0 +1,123 @@
+"""The parts of the page, as the film has them.
+
+solid   look ("studio", "daylight"); size, middle (m), floor: height (m)
+        camera {azimuth, elevation (rad), lens (mm), position, target (m)}: the film's first
+        step (m) and meshes: see meshes.py
+        surfaces [{colour (linear), finish, roughness, metal, coat}]
+        pieces [{body, name, mesh, at (m, of its lowest corner in the body), surface, turns}]; turns is null, or
+        {x, y, angle (T,)} of a roller about a point of its body (m, rad)
+        heights {joints, points, bodies: {name: m}}: of what floats over them
+        tubes: bytes of a GLB with springs, ropes and belts and their motion, or null
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from render.film.film import Film
+from render.film.framing import axes
+from render.film.pieces import piece_specs
+from render.film.poses import Moment
+from render.film.scene import PieceSpec, SurfaceSpec
+from render.glb.build import tubes
+from render.glb.materials import METALLIC, TONE
+from render.view.loads import arcs_of, arrows_of
+from render.view.meshes import Meshes, shapes
+
+COAT = {"anodised": 0.18, "plastic": 0.25}
+"""Of varnish, by finish."""
+
+
+def with_parts(payload: dict[str, Any], film: Film) -> dict[str, Any]:
+    """The payload of the film's motion with its parts, and arrows and trails at their heights."""
+    size, heights = film.space.size, film.trails.heights
+    trails = [
+        one | {"z": heights[trail.point], "radius": trail.radius * size}
+        for one, trail in zip(payload["trails"], film.trails.trails, strict=True)
+    ]
+    return payload | {
+        "arrows": arrows_of(film.motion, size, film.heights),
+        "arcs": arcs_of(film.motion, size, film.heights),
+        "trails": trails,
+        "solid": solid(film),
+    }
+
+
+def solid(film: Film) -> dict[str, Any]:
+    """See the file."""
+    specs = piece_specs(film.parts, film.shot, film.folder)
+    found = list(shapes([Path(spec.stl) for spec in specs]))
+    meshes = Meshes(max(float(np.ptp(positions, axis=0).max()) for positions, _, _ in found))
+    surfaces: dict[SurfaceSpec, int] = {}
+    turned = {(one.body, one.piece): one for one in film.rollers.found}
+    pieces = []
+    for spec, shape in zip(specs, found, strict=True):
+        mesh, at = meshes.add(shape)
+        surface = surfaces.setdefault(spec.surface, len(surfaces))
+        turns = _turns(turned.get((spec.body, spec.name)), spec)
+        pieces.append(
+            {"body": spec.body, "name": spec.name, "mesh": mesh, "at": at, "surface": surface, "turns": turns}
+        )
+    return {
+        "look": film.shot.look,
+        "size": film.space.size,
+        "middle": [float(value) for value in film.space.middle],
+        "floor": float(film.space.all[:, 2].min()),
+        "camera": _camera(film),
+        "step": meshes.step,
+        "meshes": meshes.list,
+        "surfaces": [_surface(surface) for surface in surfaces],
+        "pieces": pieces,
+        "heights": _heights(film),
+        "tubes": np.frombuffer(tubes(film), np.uint8) if film.drawn else None,
+    }
+
+
+def _surface(surface: SurfaceSpec) -> dict[str, Any]:
+    tone = TONE.get(surface.finish, 1.0)
+    return {
+        "colour": [tone * part for part in surface.colour],
+        "finish": surface.finish,
+        "roughness": surface.roughness,
+        "metal": METALLIC.get(surface.finish, 0.0),
+        "coat": COAT.get(surface.finish, 0.0),
+    }
+
+
+def _turns(roller: Any, spec: PieceSpec) -> dict[str, Any] | None:
+    if roller is None or spec.turns_about is None:
+        return None
+    x, y = spec.turns_about
+    return {"x": x, "y": y, "angle": np.asarray(roller.turned, np.float64).astype(np.float32)}
+
+
+def _camera(film: Film) -> dict[str, Any]:
+    pose = film.camera(0)
+    forward = axes(pose.azimuth, pose.elevation)[2]
+    position = np.array(pose.position)
+    target = position + forward * float((film.space.middle - position) @ forward)
+    return {
+        "azimuth": math.radians(film.shot.camera.azimuth),
+        "elevation": math.radians(film.shot.camera.elevation),
+        "lens": pose.lens,
+        "position": position.tolist(),
+        "target": target.tolist(),
+    }
+
+
+def _heights(film: Film) -> dict[str, dict[str, float]]:
+    start = Moment(float(film.poses.time[0]), 0)
+    tops = {
+        body: max((piece.z_range[1] for piece in solids.pieces.values()), default=0.0)
+        for body, solids in film.parts.bodies.items()
+    }
+    highest = max(tops.values(), default=0.0)
+    return {
+        "joints": {name: film.heights.label(name, start)[2] for name in film.motion.joints},
+        "points": {name: film.heights.label(name, start)[2] for name in film.motion.points},
+        "bodies": {name: tops.get(name, highest) for name in film.motion.bodies},
+    }

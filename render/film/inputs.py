@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from render.presets import Preset
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash
+from shared.stage.memory import recalled
 from shared.stage.paths import Out, mechanism_folder
 from shared.stage.stages import contract_sources, key_of
 
@@ -44,7 +45,7 @@ def named(path: Path, show: str) -> Path:
 def encoder_version() -> str:
     """Version of the package that brings ffmpeg; empty where the system's own is used."""
     try:
-        return metadata.version("imageio-ffmpeg")
+        return recalled(("version", "imageio-ffmpeg"), lambda: metadata.version("imageio-ffmpeg"))
     except metadata.PackageNotFoundError:
         return ""
 
@@ -59,7 +60,7 @@ def picture_sources() -> str:
 def blender_version() -> str:
     """Version of bpy, without its two seconds of import."""
     try:
-        return metadata.version("bpy")
+        return recalled(("version", "bpy"), lambda: metadata.version("bpy"))
     except metadata.PackageNotFoundError:
         raise UserError("bpy (Blender as a module) is not installed; run make install") from None
 

@@ -38,6 +38,8 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
     outputs = {plot: out.plots / f"{plot}.png" for plot in names}
     stage = _stage(out, names)
     if stage.is_fresh():
+        if not is_fresh(name, spectra, every):  # asked for in other words
+            stage.done(plots=names, asked=[*spectra_asked(out.name, spectra), every])
         say("plots", f"{out.name}: nothing to do")
         return
 
@@ -49,15 +51,21 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
             figure(plot, motion, skeleton).savefig(temporary, format="png", metadata={"Software": None})
     for older in set(out.plots.glob("*.png")) - set(outputs.values()):
         older.unlink()
-    stage.done()
+    stage.done(plots=names, asked=[*spectra_asked(out.name, spectra), every])
     say("plots", f"{out.name}: {len(outputs)} plots in {out.plots}")
 
 
 def is_fresh(name: str, spectra: str = "", every: bool = False) -> bool:
-    """Whether there is nothing to do. Raises as :func:`run`."""
+    """Whether there is nothing to do, by the names of the last drawing: the same motion has the same plots.
+
+    Raises UserError for a SPECTRA in mechanism.py that is none, OSError where the motion is missing.
+    """
     out = Out(name)
-    motion = read_motion(out.motion, out.name)
-    return _stage(out, [*plots_of(motion), *_spectra(motion, out.name, spectra, every)]).is_fresh()
+    notes = Stage(out, "plots", "", []).notes()
+    known = notes.get("plots")
+    if not isinstance(known, list) or notes.get("asked") != [*spectra_asked(out.name, spectra), every]:
+        return False
+    return _stage(out, known).is_fresh()
 
 
 def _stage(out: Out, names: list[str]) -> Stage:

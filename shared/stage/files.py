@@ -14,6 +14,7 @@ from pathlib import Path
 
 from shared.stage import locks
 from shared.stage.errors import UserError
+from shared.stage.memory import recalled
 from shared.stage.paths import refuse_links
 
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
@@ -98,30 +99,14 @@ def write_bytes(path: Path, content: bytes) -> None:
         temporary.write_bytes(content)
 
 
-_hashes: dict[object, str] | None = None
-"""What was hashed in a block of :func:`remembered`."""
-
-
-@contextmanager
-def remembered() -> Iterator[None]:
-    """Hash every file once in this block, for a look at many stages that writes nothing. Blocks do not nest."""
-    global _hashes
-    _hashes = {}
-    try:
-        yield
-    finally:
-        _hashes = None
-
-
 def file_hash(path: Path) -> str:
     """SHA-256 of a file's bytes, as hex."""
-    if _hashes is not None and path in _hashes:
-        return _hashes[path]
+    return recalled(("file", path), lambda: _file_hash(path))
+
+
+def _file_hash(path: Path) -> str:
     with path.open("rb") as handle:
-        found = hashlib.file_digest(handle, "sha256").hexdigest()
-    if _hashes is not None:
-        _hashes[path] = found
-    return found
+        return hashlib.file_digest(handle, "sha256").hexdigest()
 
 
 def sources_hash(*folders_or_files: Path, leave_out: Collection[Path] = ()) -> str:
@@ -129,13 +114,8 @@ def sources_hash(*folders_or_files: Path, leave_out: Collection[Path] = ()) -> s
 
     Sources below the folders in ``leave_out`` do not count.
     """
-    asked = (folders_or_files, tuple(leave_out))
-    if _hashes is not None and asked in _hashes:
-        return _hashes[asked]
-    found = _sources_hash(folders_or_files, leave_out)
-    if _hashes is not None:
-        _hashes[asked] = found
-    return found
+    asked = ("sources", folders_or_files, tuple(leave_out))
+    return recalled(asked, lambda: _sources_hash(folders_or_files, leave_out))
 
 
 def _sources_hash(folders_or_files: Collection[Path], leave_out: Collection[Path]) -> str:

@@ -20,6 +20,7 @@ import msgspec
 from shared.stage import jsonfile
 from shared.stage.errors import UserError
 from shared.stage.files import file_hash
+from shared.stage.memory import recalled
 from shared.stage.paths import ROOT, Out, refuse_links
 
 
@@ -110,7 +111,7 @@ def key_of(*values: Any) -> str:
 
 def versions(*packages: str) -> dict[str, str]:
     """Installed versions by package name, without importing the packages; part of a key, and of the provenance."""
-    return {package: metadata.version(package) for package in packages}
+    return {package: recalled(("version", package), lambda one=package: metadata.version(one)) for package in packages}
 
 
 def contract_sources(*more: str) -> list[Path]:

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable
 
 from render.presets import Preset
 from shared.stage.errors import UserError
-from shared.stage.files import remembered
+from shared.stage.memory import remembered
 from shared.stage.paths import ROOT
 from studio.night.options import Options
 from studio.night.steps import STEPS

@@ -19,6 +19,7 @@ import msgspec
 
 from shared.stage import paths
 from shared.stage.files import file_hash, sources_hash
+from shared.stage.memory import recalled
 
 PICTURES = ("mbsd/drawing",)
 """Sources that decide no number; what they draw has them in its key by their own name."""
@@ -127,7 +128,7 @@ def variable_state(name: str) -> str:
 def package_state(name: str) -> str:
     """The installed version, or missing."""
     try:
-        return metadata.version(name)
+        return recalled(("version", name), lambda: metadata.version(name))
     except (metadata.PackageNotFoundError, ValueError):
         return "missing"
 

@@ -1,0 +1,81 @@
+"""The forecast: time, hour, disk and energy from pictures that lack and the seconds of those that were made."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from pathlib import Path
+
+import pytest
+
+from render.presets import PRESETS
+from studio.night import forecast as told
+from studio.night.forecast import START, Forecast, forecast
+from studio.night.frames import Frames
+
+PREVIEW = PRESETS["preview"]
+NOW = datetime(2026, 3, 1, 22, 30)
+
+
+def film(name: str, total: int, done: int, each: float | None, size: float = 1e6) -> Frames:
+    keys = [f"{name}{number}" for number in range(total)]
+    files = frozenset(f"{key}-abc.png" for key in keys[:done])
+    return Frames(name, PREVIEW, frozenset(keys), each, size, files)
+
+
+def test_the_forecast_is_the_sum_of_what_lacks(tmp_path: Path):
+    found = forecast([film("a", 100, 40, 10.0), film("b", 50, 50, 3.0), film("c", 20, 0, 5.0)], 0, PREVIEW, tmp_path)
+    assert (found.films, found.pictures, found.unknown) == (2, 80, 0)
+    assert found.seconds == pytest.approx(60 * 10.0 + 20 * 5.0 + 2 * START)
+    assert found.bytes == pytest.approx((60 + 0.1 * 100 + 20 + 0.1 * 20) * 1e6)
+    assert found.fits
+
+
+def test_a_film_that_was_not_measured_counts_as_the_others_do_on_average(tmp_path: Path):
+    found = forecast([film("a", 10, 0, 10.0), film("b", 10, 0, 20.0), film("c", 10, 0, None)], 1, PREVIEW, tmp_path)
+    assert found.seconds == pytest.approx(10 * (10.0 + 20.0 + 15.0) + 3 * START)
+    words = found.words(NOW)
+    assert words.startswith("4 films, 30 frames to render: 7 min 48 s, finished at 22:37;")
+    assert "1 film not measured" in words
+    assert "1 film not counted" in words
+
+
+def test_energy_and_the_day_are_told():
+    found = Forecast(2, 1000, 36_000.0, 0, 0, 2.5e9, 80e9)
+    words = found.words(NOW, 85.0)
+    assert words == (
+        "2 films, 1000 frames to render: 10 h 00 min, finished on Monday 02 March at 08:30; 850 Wh at 85 W; "
+        "2.5 GB of disk of 80.0 GB free"
+    )
+    assert told.energy(3.6e6 * 12.34) == "12.3 kWh"
+
+
+def test_a_disk_that_is_too_small_is_seen_also_where_nothing_was_measured(tmp_path: Path):
+    assert not Forecast(1, 10, None, 1, 0, 1e9, 1.1e9).fits
+    assert Forecast(1, 10, None, 1, 0, 1e9, 1.3e9).fits
+    assert Forecast(0, 0, 0.0, 0, 0, 0.0, 1e6).fits
+    found = forecast([film("a", 10, 0, None, size=0.0)], 0, PREVIEW, tmp_path / "not there yet")
+    assert found.seconds is None
+    assert found.bytes == pytest.approx(11 * told.BYTES * 1280 * 720)
+    assert "hour" not in found.words(NOW)
+
+
+def test_nothing_left_is_told_as_such(tmp_path: Path):
+    assert forecast([film("a", 10, 10, 2.0)], 0, PREVIEW, tmp_path).words(NOW, 85.0) == "every frame is there"
+
+
+def test_the_pace_of_a_run_replaces_that_of_the_probe(out_root: Path, monkeypatch: pytest.MonkeyPatch):
+    clock = [0.0]
+    monkeypatch.setattr("studio.night.frames.time.monotonic", lambda: clock[0])
+    one = film("a", 10, 0, 10.0, size=0.0)
+    folder = out_root / "a" / "frames" / "preview"
+    folder.mkdir(parents=True)
+    for number in range(4):
+        assert one.each == (10.0 if number < 3 else 2.0)
+        clock[0] += 2.0
+        (folder / f"a{number}-abc.png").write_bytes(b"x" * 1000)
+        (folder / f".a{number}.part.png").touch()
+        assert one.look()
+        assert not one.look()
+    assert (one.done, one.left, one.size) == (4, 6, 1000.0)
+    one.begin()
+    assert one.each == 10.0

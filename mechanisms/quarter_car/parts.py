@@ -5,7 +5,7 @@ from __future__ import annotations
 import cadquery as cq
 
 from mechanisms.automatic import automatic
-from mechanisms.quarter_car.mechanism import Params, build
+from mechanisms.quarter_car.mechanism import DURATION, Params, build
 from shared.shapes.bodies import Bodies
 from shared.shapes.build import extruded
 from shared.shapes.outline import circle
@@ -16,7 +16,9 @@ ARCH = 1.22
 """Radius of the arch over the wheel, in the wheel's."""
 SIDE = ((0.62, -0.44), (0.68, -0.36), (0.68, -0.12), (0.55, 0.02), (0.02, 0.14), (-0.26, 0.38), (-0.66, 0.38))
 """From the bumper over the bonnet to the roof (m), from the middle of the body."""
-SILL, BACK = -0.44, -0.66
+SILL, BACK, TOP = -0.44, -0.66, 0.38
+AROUND = 0.15
+"""Of the base plate beyond the car (m)."""
 WINDOW = ((-0.16, 0.16), (-0.30, 0.32), (-0.59, 0.32), (-0.59, 0.16))
 LAMP = (0.59, -0.12, 0.045)
 ROUND = 28.0
@@ -26,6 +28,8 @@ ROUND = 28.0
 def parts(p: Params) -> Bodies:
     """By body."""
     made = automatic(build(p))
+    way = p.speed * DURATION
+    made.base_under((mm(BACK - AROUND), 0.0), (mm(way + SIDE[0][0] + AROUND), mm(p.radius + p.hub + TOP + AROUND)))
     low, high = made.span("body")
     solids = made.solids()
     plate = solids["body"][0]

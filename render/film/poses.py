@@ -72,6 +72,12 @@ class Poses:
         whole = round((angles[-1] - angles[0]) / math.tau) if self.motion.period is not None else 0
         return x, y, theta + math.tau * whole * at.turns
 
+    def over(self, name: str, times: Array) -> Array:
+        """Poses (n, 3) of a body at times (n,) of the motion's first period."""
+        if name not in self.motion.bodies:
+            return np.zeros((len(times), 3))
+        return np.stack([hermite(self.time, *self._series[name, k], times) for k in ("x", "y", "theta")], axis=1)
+
     def point(self, name: str, times: Array) -> Array:
         """Positions (n, 2) of a traced point at mechanism times (n,)."""
         return np.stack([hermite(self.time, *self._points[name, k], times) for k in ("x", "y")], axis=1)

@@ -12,6 +12,8 @@ from shared.stage.errors import UserError
 Array = NDArray[np.float64]
 MILLIMETRE = 0.001
 """STL files are in millimetres, everything else here is in metres."""
+DIRECTIONS = 24
+"""In the plane, in which points are looked for that are outermost."""
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
@@ -34,6 +36,13 @@ def prism(vertices: Array) -> Array:
     outline = _convex_outline(vertices[:, :2])
     heights = vertices[:, 2].min(), vertices[:, 2].max()
     return np.concatenate([np.column_stack([outline, np.full(len(outline), z)]) for z in heights])
+
+
+def outermost(points: Array) -> Array:
+    """Those of points (n, 3) that are farthest in some direction: within a hundredth of their size, all are inside."""
+    angles = np.linspace(0.0, 2 * np.pi, DIRECTIONS, endpoint=False)
+    ways = np.array([(np.cos(angle), np.sin(angle), lean) for angle in angles for lean in (-1.0, 0.0, 1.0)])
+    return points[np.unique((points @ ways.T).argmax(axis=0))]
 
 
 def swept(outline: Array, poses: Array) -> Array:

@@ -12,12 +12,16 @@ from numpy.typing import NDArray
 
 from render.film.clock import turns_of
 from render.film.poses import Moment, Poses
-from render.film.solids import prism, read_vertices, swept
+from render.film.solids import outermost, prism, read_vertices, swept
 from shared.contract import Parts
 
 Array = NDArray[np.float64]
 SAMPLES, MOST = 120, 1200
 """Poses over the motion from which the swept space is taken: of a turn or a second, and of the whole at most."""
+MANY = 5_000_000
+"""Of more points than this, those are taken that are outermost in each body: a chain of a hundred links has forty
+million.
+"""
 
 
 class SweptSpace:
@@ -91,12 +95,14 @@ class SweptSpace:
     def _bodies(self) -> dict[str, Array]:
         """The swept points of each body."""
         clouds: dict[str, Array] = {}
-        for body, outlines in self._outlines.items():
-            poses = np.array([self._poses.body(body, at) for at in self._moments])
+        times = np.array([at.time for at in self._moments])
+        points = {body: np.concatenate(outlines) for body, outlines in self._outlines.items() if outlines}
+        many = len(times) * sum(map(len, points.values())) > MANY
+        for body, outline in points.items():
+            poses = self._poses.over(body, times)
             if np.ptp(poses, axis=0).max() < 1e-12:
                 poses = poses[:1]
-            if outlines:
-                clouds[body] = swept(np.concatenate(outlines), poses)
+            clouds[body] = swept(outermost(outline) if many else outline, poses)
         return clouds
 
     @cached_property

@@ -145,6 +145,9 @@ def clearance_section(clearance: Clearance | None) -> list[str]:
     if clearance.may_touch:
         pairs = "; ".join(" and ".join(pair) for pair in clearance.may_touch)
         lines += ["", f"Bodies that touch by design were not compared with each other: {pairs}."]
+    if clearance.pieces_may_touch:
+        pairs = "; ".join(" and ".join(pair) for pair in clearance.pieces_may_touch)
+        lines += ["", f"Pieces that touch by design were not compared with each other: {pairs}."]
     return lines
 
 

@@ -54,6 +54,8 @@ class Clearance(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     """Pairs that never come within the search distance."""
     may_touch: list[tuple[str, str]] = []
     """Pairs of bodies that touch by design; their pieces were not compared with each other."""
+    pieces_may_touch: list[tuple[str, str]] = []
+    """Pairs of pieces that touch by design and were not compared with each other."""
 
 
 def read_clearance(path: Path) -> Clearance:

@@ -83,6 +83,12 @@ def refuse_inconsistent_parts(parts: Parts, path: Path | str) -> None:
                     f"{path}: may_touch[{index}] is {' and '.join(pair)}; it must name two bodies that have solids: "
                     f"{', '.join(parts.bodies)}"
                 )
+    home = {name: body for body, solids in parts.bodies.items() for name in solids.pieces}
+    for index, (first, second) in enumerate(parts.pieces_may_touch):
+        if first not in home or second not in home or home[first] == home[second]:
+            raise UserError(
+                f"{path}: pieces_may_touch[{index}] is {first} and {second}; it must name pieces of two bodies"
+            )
     seen: dict[str, str] = {}
     for body, solids in parts.bodies.items():
         for name, piece in solids.pieces.items():

@@ -90,3 +90,5 @@ class Parts(Strict, kw_only=True):
     """Bodies of mechanism.py that are left out here."""
     may_touch: list[tuple[str, str]] = []
     """Pairs of bodies that touch by design: their pieces are not compared with each other."""
+    pieces_may_touch: list[tuple[str, str]] = []
+    """Pairs of pieces of different bodies that touch by design; all else of their bodies is compared."""

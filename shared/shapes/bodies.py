@@ -18,6 +18,7 @@ class Bodies(dict[str, list[Solid]]):
 
         made = Bodies(ground=[...], cam=[...], follower=[...])
         made.may_touch("cam", "follower")
+        made.pieces_may_touch("tyre", "road")
         made.leave_out("string")
         made.join_places("rod", ("cam", 10.0, 0.0), ("follower", 0.0, -5.0))  # made["rod"] is between them
         return made
@@ -28,6 +29,7 @@ class Bodies(dict[str, list[Solid]]):
     def __init__(self, *args: Mapping[str, list[Solid]], **bodies: list[Solid]) -> None:
         super().__init__(*args, **bodies)
         self._touching: set[tuple[str, str]] = set()
+        self._pieces_touching: set[tuple[str, str]] = set()
         self._left_out: set[str] = set()
         self._rods: dict[str, tuple[Place, Place]] = {}
 
@@ -37,6 +39,13 @@ class Bodies(dict[str, list[Solid]]):
         Raises UserError where both are one.
         """
         self._touching.add(pair_of(first, second))
+
+    def pieces_may_touch(self, first: str, second: str) -> None:
+        """Two solids of different bodies, by their names, touch by design; all else of their bodies is compared.
+
+        Raises UserError where both are one.
+        """
+        self._pieces_touching.add(pair_of(first, second, "pieces_may_touch", "solid"))
 
     def leave_out(self, body: str) -> None:
         """``body`` of mechanism.py has no solids; where mechanism.py gives it no mass, that is estimated."""
@@ -63,6 +72,11 @@ class Bodies(dict[str, list[Solid]]):
         return frozenset(self._touching)
 
     @property
+    def pieces_touching(self) -> frozenset[tuple[str, str]]:
+        """Pairs of solids that may touch, each in the order of the alphabet."""
+        return frozenset(self._pieces_touching)
+
+    @property
     def left_out(self) -> frozenset[str]:
         """Bodies without solids."""
         return frozenset(self._left_out)
@@ -73,6 +87,7 @@ class Bodies(dict[str, list[Solid]]):
         for one in (self, other):
             if isinstance(one, Bodies):
                 joined._touching |= one.touching
+                joined._pieces_touching |= one.pieces_touching
                 joined._left_out |= one.left_out
                 joined._rods |= one.rods
         return joined
@@ -81,8 +96,9 @@ class Bodies(dict[str, list[Solid]]):
         return Bodies(other) | self
 
 
-def pair_of(first: str, second: str) -> tuple[str, str]:
-    """Two bodies in the order of the alphabet. Raises UserError where both are one."""
+def pair_of(first: str, second: str, wish: str = "may_touch", what: str = "body") -> tuple[str, str]:
+    """Two bodies, or two solids, in the order of the alphabet. Raises UserError where both are one."""
     if first == second:
-        raise UserError(f"may_touch('{first}', '{second}'): a body may touch itself anyway; name two bodies")
+        both = {"body": "bodies"}.get(what, f"{what}s")
+        raise UserError(f"{wish}('{first}', '{second}'): a {what} may touch itself anyway; name two {both}")
     return (first, second) if first < second else (second, first)

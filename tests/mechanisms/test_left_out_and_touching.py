@@ -115,6 +115,36 @@ def test_hand_made_parts_say_what_touches_and_what_has_no_solid(
     assert "rod" not in names
 
 
+def test_pieces_may_touch_and_all_else_of_their_bodies_is_compared(
+    project: Project, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The base and both blocks lie in each other: named by their bodies or by their pieces, they are left in peace."""
+    by_pieces = """\
+    made.leave_out("rod")
+    made.pieces_may_touch("slider", "crank")
+    made.pieces_may_touch("base", "crank")
+    made["crank"] += block("knob", 3, 3, 12)
+    return made
+"""
+    (project.folder / "parts.py").write_text(BLOCKS + by_pieces)
+    project.run()
+    solve_stage.run("arm")
+    with pytest.raises(
+        UserError, match=r"knob and (ground: base|slider: slider)|(base|slider: slider) and crank: knob"
+    ):
+        clearance_stage.run("arm")
+    lone = by_pieces.replace('    made["crank"] += block("knob", 3, 3, 12)\n', "")
+    (project.folder / "parts.py").write_text(BLOCKS + lone)
+    project.run()
+    solve_stage.run("arm")
+    clearance_stage.run("arm")
+    assert "not compared, as they may touch: base and crank, crank and slider" in capsys.readouterr().out
+    found = read_clearance(Out("arm").clearance)
+    assert (found.may_touch, found.pieces_may_touch) == ([], [("base", "crank"), ("crank", "slider")])
+    text = report.report(read_motion(Out("arm").motion), read_parts(Out("arm").parts), found)
+    assert "Pieces that touch by design were not compared with each other: base and crank; crank and slider." in text
+
+
 def test_what_is_not_said_is_proven(project: Project) -> None:
     (project.folder / "parts.py").write_text(BLOCKS + SAID.replace('    made.may_touch("slider", "crank")\n', ""))
     project.run()
@@ -145,16 +175,29 @@ def test_words_that_fit_nothing_are_refused() -> None:
         refuse_unfit("arm", made)
     with pytest.raises(UserError, match="name two bodies"):
         made.may_touch("crank", "crank")
+    with pytest.raises(UserError, match="name two solids"):
+        made.pieces_may_touch("crank", "crank")
+    made = _solids("crank", "slider")
+    made.pieces_may_touch("crank", "slidre")
+    with pytest.raises(UserError, match=r"names 'slidre', which is no solid.*did you mean 'slider'"):
+        refuse_unfit("arm", made)
+    made = _solids("crank", "slider")
+    made["crank"].append(Solid("knob", made["crank"][0].shape, "steel", 0))
+    made.pieces_may_touch("crank", "knob")
+    with pytest.raises(UserError, match="two solids of 'crank', which are not compared anyway"):
+        refuse_unfit("arm", made)
 
 
 def test_what_was_said_survives_more_solids() -> None:
     made = _solids("crank", "slider")
     made.leave_out("rod")
     made.may_touch("slider", "crank")
+    made.pieces_may_touch("slider", "crank")
     for joined in (made | {"wheel": made["crank"]}, {"wheel": made["crank"]} | made):
         assert isinstance(joined, Bodies)
         assert set(joined) == {"crank", "slider", "wheel"}
         assert (joined.left_out, joined.touching) == (made.left_out, {("crank", "slider")})
+        assert joined.pieces_touching == {("crank", "slider")}
     assert set(made) == {"crank", "slider"}
 
 

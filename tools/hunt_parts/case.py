@@ -152,6 +152,7 @@ def proven(m: Mechanism, solution: Solution, bodies: Bodies, pieces: list[MeshPi
             for body in bodies
         },
         may_touch=sorted(bodies.touching),
+        pieces_may_touch=sorted(bodies.pieces_touching),
     )
     found = check(parts, to_motion(solution, None, "0" * 64, {}), pieces, "0" * 64)
     if not found.pairs:

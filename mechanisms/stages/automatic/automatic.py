@@ -9,6 +9,7 @@ def parts(p: Params) -> dict[str, list[Solid]]:
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -57,6 +58,7 @@ class Automatic:
         self._left_out: set[str] = set()
         self._touching: set[tuple[str, str]] = set()
         self._marks: list[Wish] = []
+        self._base_under: list[Point] = []
 
     # -- wishes -------------------------------------------------------------------------------------------------
 
@@ -110,6 +112,16 @@ class Automatic:
         if body in self._replaced:
             raise UserError(f"{self.m.name}: '{body}' is replaced; engrave its solids (shared/shapes/engraving.py)")
         self._marks.append(Wish(body, word, at, height))
+
+    def base_under(self, *places: Point) -> None:
+        """Let the base plate reach places (x, y) of ground (mm), besides all that stands on it.
+
+        Raises UserError for a place that is not finite.
+        """
+        for x, y in places:
+            if not (math.isfinite(x) and math.isfinite(y)):
+                raise UserError(f"{self.m.name}: base_under({x:g}, {y:g}): give places in mm")
+        self._base_under += places
 
     def leave_out(self, body: str) -> None:
         """Build nothing of ``body``. Where a joint would hold it, other bodies keep an eye without a pin.
@@ -182,7 +194,8 @@ class Automatic:
         from mechanisms.stages.automatic.assembly.built import built
         from shared.shapes.bodies import Bodies
 
-        made = Bodies(built(self.plan(), self.heights, engraved_too) | self._replaced)
+        plan = self.plan()
+        made = Bodies(built(plan, self.heights, engraved_too) | self._replaced)
         for body in self.layout.apart.intersection(self.m.bodies):
             made.leave_out(body)
         for rod, joint in self.layout.rods.items():
@@ -190,6 +203,12 @@ class Automatic:
         for first, second in map(tuple, self.layout.touching | self.layout.pressing):
             if first in made and second in made:
                 made.may_touch(first, second)
+        names = {solid.name for solids in made.values() for solid in solids}
+        for part, body, piece in plan.pressing:
+            if {plan.outer[part], piece} <= names:
+                made.pieces_may_touch(plan.outer[part], piece)
+            else:
+                made.may_touch(part.body, body)  # solids that are replaced may be anything
         return made
 
     def span(self, body: str) -> tuple[float, float]:
@@ -209,6 +228,7 @@ class Automatic:
         for feature in self.layout.features:
             build(feature, plan, self.heights)
         place(self._marks, plan)
+        plan.base_under += [(x / self.sizes.scale, y / self.sizes.scale) for x, y in self._base_under]
         return plan
 
     @cached_property

@@ -16,7 +16,7 @@ shows, the meshes are apart by the ``proven`` gap of clearance.json. It is at mo
 measured, and less what the true motion may be off between two samples there (path.py). Meshes lie within
 ``parts_files.TOLERANCE`` of the solids, or the ``tolerance`` of a Solid. A belt or chain is the band that it runs in
 (belts.py), compared with all but its own pulleys. Pieces of one body are not compared with each other, nor are pieces
-of two bodies that parts.json says may touch by design; clearance.json names these pairs.
+of two bodies, or two pieces, that parts.json says may touch by design; clearance.json names these pairs.
 """
 
 from __future__ import annotations
@@ -102,7 +102,9 @@ def check(
         )
     where = paths(motion)
     axes, in_mesh = axes_of(motion, parts, where), meshes(motion, pieces)
-    own: set[frozenset[tuple[str, str]]] = set()
+    home = {piece.name: piece.body for piece in pieces}
+    own = {frozenset((home[name], name) for name in pair if name in home) for pair in parts.pieces_may_touch}
+    """Pairs of pieces that are not compared."""
     for belt in list(bands(parts, motion, where)):
         it = belt.piece
         pieces, where[it.body] = [*pieces, it], belt.path
@@ -152,6 +154,7 @@ def check(
         pairs=sorted(pairs, key=lambda pair: (pair.gap, pair.pieces)),
         apart=apart,
         may_touch=parts.may_touch,
+        pieces_may_touch=parts.pieces_may_touch,
     )
 
 
@@ -198,7 +201,7 @@ def _refusal(name: str, refused: list[tuple[Sweep, Least]], limit: float) -> str
     pair = f"{sweep.mover.body}: {sweep.mover.name} and {sweep.still.body}: {sweep.still.name}"
     remedy = (
         "move one to another layer, make it smaller, or cut it out where the other passes (parts.py; there may_touch "
-        "names bodies that touch by design)"
+        "names bodies that touch by design, pieces_may_touch two pieces)"
     )
     if least.gap >= limit:
         text = (
@@ -228,6 +231,7 @@ def _summary(found: Clearance) -> str:
         nearest = found.pairs[0]
         when = "at every angle" if nearest.time is None else f"at t={nearest.time:.3g} s"
         text += f"; nearest {nearest.pieces[0]} and {nearest.pieces[1]}: {mm(nearest.gap):.3f} mm {when}"
-    if found.may_touch:
-        text += f"; not compared, as they may touch: {', '.join(' and '.join(pair) for pair in found.may_touch)}"
+    touching = [*found.may_touch, *found.pieces_may_touch]
+    if touching:
+        text += f"; not compared, as they may touch: {', '.join(' and '.join(pair) for pair in touching)}"
     return text

@@ -41,6 +41,7 @@ def refuse_unfit(name: str, bodies: Any) -> None:
             known[solid.name] = body
     if isinstance(bodies, Bodies):
         _refuse_unknown(name, bodies)
+        _refuse_unknown_pieces(name, bodies, known)
 
 
 def _refuse_unknown(name: str, bodies: Bodies) -> None:
@@ -59,4 +60,20 @@ def _refuse_unknown(name: str, bodies: Bodies) -> None:
             raise UserError(
                 f"{name}: join_places names '{rod}', which has no solids; there is: {', '.join(bodies)}"
                 f"{did_you_mean(rod, bodies)}"
+            )
+
+
+def _refuse_unknown_pieces(name: str, bodies: Bodies, home: dict[str, str]) -> None:
+    """Pairs of solids that touch are there, and are of two bodies; ``home`` is the body of each solid."""
+    for pair in sorted(bodies.pieces_touching):
+        for solid in pair:
+            if solid not in home:
+                raise UserError(
+                    f"{name}: pieces_may_touch{pair} names '{solid}', which is no solid; there is: "
+                    f"{', '.join(home)}{did_you_mean(solid, home)}"
+                )
+        if home[pair[0]] == home[pair[1]]:
+            raise UserError(
+                f"{name}: pieces_may_touch{pair} names two solids of '{home[pair[0]]}', which are not compared anyway; "
+                "name solids of two bodies"
             )

@@ -78,6 +78,7 @@ def run(name: str) -> None:
         bodies=described,
         without_solids=sorted(getattr(bodies, "left_out", ())),
         may_touch=sorted(getattr(bodies, "touching", ())),
+        pieces_may_touch=sorted(getattr(bodies, "pieces_touching", ())),
     )
     written = _write(out, files, document)
     Stage(out, "parts", key, [out.parts, *(out.parts_folder / file for file in files)]).done(

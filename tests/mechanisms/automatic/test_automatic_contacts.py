@@ -63,7 +63,9 @@ def test_what_presses_in_a_little_is_smaller_by_as_much_else_the_two_may_touch()
         assert pressed > 0
         clear = ball.short - (0.0 if visible else pressed)
         assert 0.05 < clear * made.sizes.scale < 0.5  # mm
-        assert made.layout.pressing == ({frozenset(("ground", "ball"))} if visible else set())
+        assert made.layout.yielding == ({frozenset(("ground", "ball"))} if visible else set())
+        told = [(plan.outer[part], piece) for plan in [made.plan()] for part, _, piece in plan.pressing]
+        assert told == ([("ball", "road_floor"), ("ball", "road_left")] if visible else [])
 
 
 @pytest.mark.parametrize("stiffness", [0.0, 3000.0])
@@ -113,8 +115,9 @@ def test_profiles_of_tyres_reach_as_far_as_the_wheel() -> None:
     assert part.look == "wheel"
     assert road.path[0, 0] < places[:, 0].min() - part.radius
     assert road.path[-1, 0] > places[:, 0].max() + part.radius
-    assert made.layout.pressing == {frozenset(("ground", "wheel"))}
-    assert made.solids().touching == {("ground", "wheel")}
+    assert made.layout.yielding == {frozenset(("ground", "wheel"))}
+    solids = made.solids()
+    assert (solids.touching, solids.pieces_touching) == (set(), {("road_tyre", "tyre_tyre")})
 
 
 def test_planks_of_a_bowl_end_where_they_meet() -> None:

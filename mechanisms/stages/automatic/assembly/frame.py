@@ -77,13 +77,14 @@ def _corner_screw(sizes: Sizes) -> _Screw:
 
 
 def _extent(plan: Plan) -> tuple[float, float, float, float]:
-    """Of the plate: round all feet; without any, under what moves."""
+    """Of the plate: round all feet; without any, under what moves; and as far as one wishes."""
     if plan.feet:
         places = np.array([[stand.x, stand.y] for stand in plan.feet])
     else:
         places = np.concatenate([plan.layout.poses[body][:, :2] for body in plan.layout.moving])
     (x0, y0), (x1, y1) = places.min(axis=0), places.max(axis=0)
-    return float(x0) - MARGIN[0], float(y0) - MARGIN[1], float(x1) + MARGIN[0], float(y1) + MARGIN[1]
+    corners = np.array([[x0 - MARGIN[0], y0 - MARGIN[1]], [x1 + MARGIN[0], y1 + MARGIN[1]], *plan.base_under])
+    return (*corners.min(axis=0).tolist(), *corners.max(axis=0).tolist())
 
 
 def _marks(plan: Plan, extent: tuple[float, float, float, float]) -> list[cq.Face]:

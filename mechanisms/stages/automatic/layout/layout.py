@@ -91,7 +91,9 @@ class Layout:
     touching: frozenset[frozenset[str]] = frozenset()
     """Pairs of bodies that may touch by design; a feature adds those of its own when it is gathered."""
     pressing: set[frozenset[str]] = field(default_factory=set)
-    """Such pairs whose contact yields: the order of layers keeps all else of them apart."""
+    """Such pairs that are bolted to each other: the order of layers keeps all else of them apart."""
+    yielding: set[frozenset[str]] = field(default_factory=set)
+    """Pairs of bodies whose round part is seen to press into a wall: these two pieces touch, and nothing else."""
     flush: bool = False
     """Whether pivots on ground may end flush with the one link that turns on them."""
     webs: dict[str, str] = field(default_factory=dict)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from shared.shapes.link import Eye
 from shared.shapes.solid import Solid
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     import cadquery as cq
 
     from mechanisms.stages.automatic.layout.layout import Carrier, Layout
@@ -53,6 +55,12 @@ class Mark:
     height: float
 
 
+class Carried(Protocol):
+    """A round part that runs on something."""
+
+    body: str
+
+
 @dataclass(eq=False)
 class Plan:
     """Filled by the features, read by those who build bodies and base."""
@@ -70,6 +78,12 @@ class Plan:
     plates: dict[str, list[Plate]] = field(default_factory=dict)
     marks: dict[str, list[Mark]] = field(default_factory=dict)
     """Words on the upper face of a body's plate."""
+    outer: dict[Carried, str] = field(default_factory=dict)
+    """By round part: the piece that touches what it runs on."""
+    pressing: list[tuple[Carried, str, str]] = field(default_factory=list)
+    """Round parts, and the bodies and pieces into which they press."""
+    base_under: list[tuple[float, float]] = field(default_factory=list)
+    """Places that the base plate has to reach."""
     names: set[str] = field(default_factory=set)
     main: dict[str, str] = field(default_factory=dict)
     """Names of the main pieces."""
@@ -91,9 +105,15 @@ class Plan:
         kept = self.solids.setdefault(body, [])
         kept += [replace(s, name=self.named(s.name)) for s in solids]
 
-    def make(self, body: str, name: str, shape: cq.Workplane, material: str, through_holes: int, buy: str = "") -> None:
-        """One solid."""
+    def make(self, body: str, name: str, shape: cq.Workplane, material: str, through_holes: int, buy: str = "") -> str:
+        """One solid; the name that it gets."""
         self.add(body, Solid(name, shape, material, through_holes, buy=buy))
+        return self.solids[body][-1].name
+
+    def pressed_into(self, body: str, piece: str, parts: Iterable[Carried]) -> None:
+        """A piece of ``body`` carries round parts; note those that are seen to press into it."""
+        yielding = self.layout.yielding
+        self.pressing += [(part, body, piece) for part in parts if frozenset((part.body, body)) in yielding]
 
     def reserve(self, bodies: list[str]) -> None:
         """Main pieces are called like their bodies."""

@@ -1,9 +1,9 @@
 """Contacts of discs with surfaces and with each other: walls, roads, tracks, balls, wheels and discs.
 
 A surface is where the model has it. What touches is smaller by a clearance (cams.py), and where a contact hardly yields
-also by as much as it presses in; where one sees that, the two may touch by design. A body without joints is a ball, or
-where there is friction, which turns it, a wheel with a tyre; a body with joints gets a disc. What touches a disc that
-is itself on ground, or a yielding profile of a moving body, has no parts.
+also by as much as it presses in; where one sees that, the two pieces may touch by design. A body without joints is a
+ball, or where there is friction, which turns it, a wheel with a tyre; a body with joints gets a disc. What touches a
+disc that is itself on ground, or a yielding profile of a moving body, has no parts.
 """
 
 from __future__ import annotations
@@ -173,12 +173,15 @@ def _round(m: Mechanism, touch: Touch, layout: Layout, gap: float) -> tuple[Roun
     turned = touch.params.get("friction", 0.0) > 0.0
     look: Look = "wheel" if touch.kind.name == "tyre" else _look(m, body, turned)
     pressed, pair = max(0.0, -gap), frozenset(touch.bodies)
-    if pressed > YIELDS:
-        layout.pressing.add(pair)
-    if pair in layout.touching | layout.pressing:
+    seen = pressed if pressed > YIELDS else 0.0
+    if seen:
+        layout.yielding.add(pair)
+    if pair in layout.touching | layout.yielding:
         pressed = 0.0
     radius = max(layout.sizes.of_metres(touch.params["radius"]), NOSE)
-    return round_at(layout, touch.name, body, layout.place(touch.j), radius, look, pressed)
+    part, new = round_at(layout, touch.name, body, layout.place(touch.j), radius, look, pressed)
+    part.pressed = max(part.pressed, seen)
+    return part, new
 
 
 def _look(m: Mechanism, body: str, turned: bool) -> Look:

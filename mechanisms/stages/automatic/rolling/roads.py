@@ -73,7 +73,8 @@ class Road:
         """The wall; the base plate goes on beside it, under what it carries."""
         seat = plan.layout.sizes.pivot.fit.seat
         top = max(part.top(heights) for part in self.rounds)
-        plan.make("ground", f"road_{self.name}", self._wall(seat, top), "aluminium", 0)
+        name = plan.make("ground", f"road_{self.name}", self._wall(seat, top), "aluminium", 0)
+        plan.pressed_into("ground", name, self.rounds)
         under = _behind(self.path[-1] - self.path[0])
         widest = max(part.radius for part in self.rounds)
         ends = [*self.path[[0, -1]], *self.feet, *(self.path[[0, -1]] - widest * under)]

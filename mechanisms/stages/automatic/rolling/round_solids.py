@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.plan import Plan
 
 TYRE = 0.16
-"""Of the wheel's radius; 5 rmm at most."""
+"""Of the wheel's radius; 5 rmm at most, or as much as it is pressed in."""
+RIM = 1.0
+"""What stays of the wheel between its hub and a tyre that is pressed in far (rmm)."""
 HOLES = 5
 WIDE = 9.0
 """A wheel with so much between hub and tyre (rmm), and with nothing but its axle on it, has round holes."""
@@ -27,13 +29,14 @@ WIDE = 9.0
 @build.register(Round)
 def round_solids(part: Round, plan: Plan, heights: Heights) -> None:
     """As it looks."""
+    plan.outer[part] = plan.main[part.body]
     {"ball": ball, "wheel": tyred_wheel, "disc": plain_disc}[part.look](part, plan, heights)
 
 
 def tyred_wheel(wheel: Round, plan: Plan, heights: Heights) -> None:
     """A disc with holes becomes its body's plate, with a tyre round it."""
     fit, (x, y), hub = plan.layout.sizes.pivot.fit, wheel.at, wheel.hub(plan.layout)
-    tyre = min(TYRE * wheel.made, 5.0)
+    tyre = max(min(TYRE * wheel.made, 5.0), min(wheel.pressed + fit.running, wheel.made - hub - RIM))
     rim = wheel.made - tyre - fit.seat
     shape = extruded(circle(0, 0, rim), heights.thickness).faces("|Z").edges().chamfer(0.4)
     alone = all(math.hypot(a.x - x, a.y - y) < 0.01 for a in plan.layout.anchors[wheel.body])
@@ -43,7 +46,9 @@ def tyred_wheel(wheel: Round, plan: Plan, heights: Heights) -> None:
         shape = shape.cut(placed(tool, turn=360.0 * k / holes))
     plan.plate(wheel.body, placed(shape, x, y), (x, y, hub + 0.1 if holes else rim - 0.5), holes)
     band = washer(2 * (rim + fit.seat), 2 * wheel.made, heights.thickness, chamfer=0.25 * tyre)
-    plan.make(wheel.body, f"tyre_{wheel.name}", placed(band, x, y, heights.bottom(wheel.body)), "rubber", 1)
+    plan.outer[wheel] = plan.make(
+        wheel.body, f"tyre_{wheel.name}", placed(band, x, y, heights.bottom(wheel.body)), "rubber", 1
+    )
 
 
 def ball(ball: Round, plan: Plan, heights: Heights) -> None:

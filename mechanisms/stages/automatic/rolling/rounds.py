@@ -45,6 +45,8 @@ class Round:
     """Whether a pin goes through its middle."""
     meets: set[str] = field(default_factory=set)
     """Bodies with discs that touch it."""
+    pressed: float = 0.0
+    """How far it is seen to be pressed in (rmm)."""
 
     @property
     def made(self) -> float:

@@ -106,7 +106,8 @@ class Track:
         else:
             middle = heights.bottom(other) + heights.thickness / 2
             low, high = 2 * middle - self.carried.top(heights), heights.bottom(self.body) - seat
-        plan.make(self.body, f"track_{self.name}", self._wall(low, high), "aluminium", int(self.inside))
+        name = plan.make(self.body, f"track_{self.name}", self._wall(low, high), "aluminium", int(self.inside))
+        plan.pressed_into(self.body, name, [self.carried])
 
     def _wall(self, low: float, high: float) -> cq.Workplane:
         corners = simplified(self.path, CHORD)

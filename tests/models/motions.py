@@ -21,7 +21,7 @@ from shared.contract import (
     PointMotion,
     Provenance,
 )
-from shared.contract.skeleton import Name, Pose, Skeleton, Stroke
+from shared.contract.skeleton import Carried, CarriedName, Carrier, End, Moving, Name, Pose, Skeleton, Stroke
 
 GRAVITY = np.array([0.0, -9.81])
 MASSES = {"crank": 0.05, "coupler": 0.12, "rocker": 0.10}
@@ -236,7 +236,26 @@ def plain_skeleton(motion: Motion, poses: int = 12) -> Skeleton:
     return Skeleton(
         mechanism=motion.mechanism, provenance=motion.provenance, unit=0.004, names=names,
         poses=[Pose(time=motion.time[step], strokes=bars(step)) for step in steps],
+        moving=_moving(motion, bars(0), names),
     )  # fmt: skip
+
+
+def _moving(motion: Motion, bars: list[Stroke], names: list[Name]) -> Moving:
+    """The bars, each carried by its body, and names that stay."""
+    places = np.array([(body.x, body.y) for body in motion.bodies.values()])
+    low, high = places.min(axis=(0, 2)), places.max(axis=(0, 2))
+    ground = Carrier(kind="ground")
+    return Moving(
+        unit=0.004,
+        low=(float(low[0]), float(low[1])),
+        high=(float(high[0]), float(high[1])),
+        strokes=[
+            Carried(stroke=bar, carrier=Carrier(kind="body", ends=[End(body=bar.ink.removeprefix("body:"))]))
+            for bar in bars
+        ],
+        names=[CarriedName(name=name, carrier=ground) for name in names],
+        times=[motion.time[0], motion.time[-1]],
+    )
 
 
 def _unit(angle: np.ndarray) -> np.ndarray:

@@ -18,6 +18,7 @@ export class Solid {
   constructor(canvas, app) {
     this.canvas = canvas;
     this.app = app;
+    if (!document.createElement("canvas").getContext("webgl2")) throw new Error("a context of WebGL 2 is refused");
     this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
     this.renderer.toneMapping = NeutralToneMapping;
     this.renderer.shadowMap.enabled = true;

@@ -1,0 +1,188 @@
+"""The page in a real browser with WebGL in software: it shows what data.json says and does what it is told."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from render import view
+from render.film.framing import SENSOR, axes
+from render.film.inputs import read_film
+from render.film.poses import Moment
+from render.presets import ASPECT
+from render.view.bundle import PAGE, node, node_modules
+from shared.contract import read_motion
+from shared.contract.shot import Shot
+from shared.stage.paths import Out
+from tests.render import film_fixture
+
+ACCENT = {"3d": (255, 138, 76), "2d": (255, 138, 76)}
+JOINTS = ("B", "C", "B", "A", "C", "D", "B", "C", "B", "C")
+STEPS = (0, 31, 77, 110, 150, 190, 222, 260, 301, 340)
+WIDTH, HEIGHT = 1000, 620
+REACH = 17
+"""Of the ring around what is selected, and a little more (pixels)."""
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Out, dict[str, Any], Path]]:
+    chromium = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("google-chrome")
+    if chromium is None:
+        assert not os.environ.get("CI"), "the page's test needs a browser: apt-get install chromium"
+        pytest.skip("the page's test needs a browser: apt-get install chromium")
+    folder = tmp_path_factory.mktemp("page")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("MBSD_OUT", str(folder / "out"))
+        out = film_fixture.write(Shot(trails=()))
+        view.run("four_bar")
+        motion = read_motion(out.motion)
+        moments = [{"time": motion.time[step], "joint": joint} for step, joint in zip(STEPS, JOINTS, strict=True)]
+        plan = {
+            "width": WIDTH,
+            "height": HEIGHT,
+            "moments": {"3d": moments, "2d": moments},
+            "pin": [motion.joints["B"].x[0], motion.joints["B"].y[0]],
+        }
+        (folder / "plan.json").write_text(json.dumps(plan))
+        command = [node(), Path(__file__).with_name("use_page.cjs"), out.view, folder, folder / "plan.json"]
+        environment = {
+            "NODE_PATH": str(node_modules()),
+            "CHROMIUM": chromium,
+            "PAGE_BROWSER": str(PAGE / "browser" / "browser.cjs"),
+        }
+        done = subprocess.run(
+            [str(part) for part in command],
+            env=os.environ | environment,
+            capture_output=True,
+            text=True,
+            timeout=280,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr[-3000:]
+        yield out, json.loads((folder / "seen.json").read_text()), folder
+
+
+def test_pins_are_within_two_pixels_of_where_data_json_projects(page: Any) -> None:
+    out, seen, folder = page
+    motion = read_motion(out.motion)
+    assert len(seen["pins"]) == 2 * len(STEPS)
+    for pin in seen["pins"]:
+        step = int(np.argmin(np.abs(np.array(motion.time) - pin["time"])))
+        place = motion.joints[pin["joint"]].x[step], motion.joints[pin["joint"]].y[step]
+        if pin["view"] == "2d":
+            (ox, oy), scale = seen["paper"]["origin"], seen["paper"]["scale"]
+            wanted = ox + scale * place[0], oy - scale * place[1]
+        else:
+            wanted = _projected(out, pin["joint"], place, seen["stage"])
+        found = _mark(folder / pin["picture"], ACCENT[pin["view"]])
+        assert np.hypot(found[0] - wanted[0], found[1] - wanted[1]) < 2.0, (pin, found, wanted)
+
+
+def test_scrubbing_keys_and_playing_move_the_machine(page: Any) -> None:
+    out, seen, _ = page
+    motion = read_motion(out.motion)
+    end = motion.time[-1]
+    assert seen["scrubbed"]["time"] == pytest.approx(end / 2, abs=0.01 * end)
+    assert seen["home"]["time"] == motion.time[0]
+    assert seen["stepped"]["time"] == pytest.approx(end / 120, rel=1e-6), "one of the film's 120 frames"
+    assert seen["playing"]["playing"]
+    assert 0.02 * end < seen["playing"]["time"] < 0.9 * end
+    assert seen["end"]["time"] == end
+
+
+def test_a_click_shows_a_joints_curves_and_a_drag_on_them_moves_the_machine(page: Any) -> None:
+    out, seen, folder = page
+    motion = read_motion(out.motion)
+    assert seen["clicked"]["selected"] == {"kind": "joint", "name": "B"}
+    assert seen["charts"][0] == "Reaction N"
+    time = seen["dragged"]["time"]
+    assert time == pytest.approx(0.75 * motion.time[-1], abs=0.01)
+    assert not seen["dragged"]["playing"]
+    fx = float(np.interp(time, motion.time, motion.joints["B"].fx))
+    number = seen["values"].split("x ")[1].split(" N")[0].replace("−", "-")
+    assert float(number) == pytest.approx(fx, abs=2e-3 * max(map(abs, motion.joints["B"].fx)))
+    head, *rows = (folder / "curves.csv").read_text().splitlines()
+    assert head.startswith("time [s],joint B Reaction x [N],joint B Reaction y [N]")
+    table = np.array([[float(cell) for cell in row.split(",")] for row in rows])
+    assert table[:, 0] == pytest.approx(motion.time)
+    assert table[:, 1] == pytest.approx(motion.joints["B"].fx, rel=1e-5, abs=1e-6)
+
+
+def test_words_of_what_is_shown_help_and_themes(page: Any) -> None:
+    _, seen, _ = page
+    assert seen["reactions"]["shown"]["reactions"]
+    assert "reactions" in seen["reactions"]["legend"]
+    assert "play, pause" in seen["help"]
+    assert "three.js" in seen["help"]
+    assert "Permission is hereby granted" in seen["help"]
+    assert seen["light"] == "light"
+
+
+def test_an_update_keeps_time_and_selection(page: Any) -> None:
+    _, seen, _ = page
+    assert seen["updated"]["title"] == "Another"
+    assert seen["updated"]["time"] == seen["dragged"]["time"]
+    assert seen["updated"]["selected"] == seen["clicked"]["selected"]
+
+
+def test_everything_is_readable_and_reachable_and_nothing_complains(page: Any) -> None:
+    _, seen, _ = page
+    assert seen["errors"] == []
+    assert seen["small"] == []
+    assert seen["unreachable"] == []
+    assert seen["phone"]["wide"] <= 390
+    assert seen["phone"]["stage"] >= 300
+
+
+def test_without_webgl_the_skeleton_and_the_curves_are_shown(page: Any) -> None:
+    _, seen, _ = page
+    assert seen["flat"]["view"] == "2d"
+    assert "no WebGL" in seen["flat"]["notice"]
+    assert seen["flat"]["charts"] >= 3
+    assert seen["flat"]["errors"] == []
+
+
+def test_the_file_is_small_and_names_nothing_outside(page: Any) -> None:
+    out, _, _ = page
+    content = out.view.read_text("utf-8")
+    assert len(content.encode()) < view.LARGEST
+    assert "default-src &#x27;none&#x27;" in content
+    assert str(out.folder) not in content
+
+
+def test_the_lock_has_no_addresses() -> None:
+    lock = json.loads((PAGE / "package-lock.json").read_text())
+    packages = [one for name, one in lock["packages"].items() if name]
+    assert len(packages) >= 4
+    assert all("integrity" in one and "resolved" not in one for one in packages)
+    assert "://" not in "".join(str(one.get("resolved")) for one in packages)
+
+
+def _projected(out: Out, joint: str, place: tuple[float, float], stage: dict[str, float]) -> tuple[float, float]:
+    """Pixels in the stage of a joint's label place, by the film's camera."""
+    film = read_film(out)
+    pose = film.camera(0)
+    z = film.heights.label(joint, Moment(0.0, 0))[2]
+    u, v, w = axes(pose.azimuth, pose.elevation) @ (np.array([*place, z]) - np.array(pose.position))
+    aspect = stage["width"] / stage["height"]
+    scale = stage["height"] * min(aspect, ASPECT) / (SENSOR / pose.lens)
+    return stage["width"] / 2 + scale * u / w, stage["height"] / 2 - scale * v / w
+
+
+def _mark(picture: Path, colour: tuple[int, int, int]) -> tuple[float, float]:
+    """Middle of the ring around what is selected: of the box around its pixels, those of other things left out."""
+    pixels = np.asarray(Image.open(picture).convert("RGB")).astype(int)
+    places = np.argwhere(np.abs(pixels - colour).max(axis=2) < 4)
+    assert len(places) > 20, picture
+    away = np.abs(places - np.median(places, axis=0)).max(axis=1)
+    rows, columns = places[away <= REACH].T
+    return float(columns.min() + columns.max() + 1) / 2, float(rows.min() + rows.max() + 1) / 2

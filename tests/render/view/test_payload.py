@@ -1,0 +1,117 @@
+"""The payload: what is in it is what the files say, and its bytes give it back."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from render.film.solids import read_triangles
+from render.view.binary import encode
+from render.view.inputs import read_payload
+from render.view.meshes import Meshes, shapes
+from shared.contract import read_motion
+from shared.contract.skeleton import read_skeleton, write_skeleton
+from shared.stage.errors import UserError
+from shared.stage.paths import Out
+from tests.render import film_fixture
+from tests.render.view.decoded import decoded
+
+KINDS = st.sampled_from([np.float32, np.float64, np.uint8, np.int8, np.int16, np.uint16, np.uint32])
+
+
+@pytest.fixture
+def out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Out:
+    monkeypatch.setenv("MBSD_OUT", str(tmp_path))
+    return film_fixture.write()
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    array=KINDS.flatmap(lambda kind: hnp.arrays(kind, st.integers(0, 40))),
+    word=st.text(max_size=9),
+    plain=st.booleans(),
+)
+def test_bytes_give_the_payload_back(array: np.ndarray, word: str, plain: bool) -> None:
+    back = decoded(encode({"a": array, "deep": [{"b": array[::-1], "word": word}, None, True]}, compress=not plain))
+    assert back["a"].dtype == array.dtype
+    assert back["a"].tobytes() == array.tobytes()
+    assert back["deep"][0]["b"].tobytes() == array[::-1].tobytes()
+    assert back["deep"][0]["word"] == word
+    assert back["deep"][1:] == [None, True]
+
+
+def test_the_payload_holds_what_the_files_say_and_is_the_same_each_time(out: Out) -> None:
+    content = encode(read_payload(out))
+    assert content == encode(read_payload(out))
+    back, motion = decoded(content), read_motion(out.motion)
+    assert back["time"] == pytest.approx(motion.time, abs=0)
+    for name, body in motion.bodies.items():
+        assert back["bodies"][name]["x"] == pytest.approx(np.float32(body.x), abs=0)
+        turned = (np.array(body.theta) - back["bodies"][name]["theta"]) / math.tau
+        assert turned == pytest.approx(np.round(turned), abs=1e-6)
+    for name, joint in motion.joints.items():
+        at, k = back["joints"][name]["at"], 77
+        x, y, theta = 0.0, 0.0, 0.0
+        if at["body"] in motion.bodies:
+            body = motion.bodies[at["body"]]
+            x, y, theta = body.x[k], body.y[k], body.theta[k]
+        u, v, c, s = at["x"], at["y"], math.cos(theta), math.sin(theta)
+        assert (x + c * u - s * v, y + s * u + c * v) == pytest.approx((joint.x[k], joint.y[k]), abs=1e-9)
+    pieces = back["solid"]["pieces"]
+    assert {(one["body"], one["name"]) for one in pieces} >= {("crank", "crank"), ("ground", "base")}
+    assert len(back["solid"]["meshes"]) < len(pieces), "balls of one size are one mesh"
+
+
+def test_meshes_lie_where_the_stl_files_do(out: Out) -> None:
+    files = sorted(out.parts_folder.glob("*.stl"))
+    meshes = Meshes(0.2)
+    for file, shape in zip(files, shapes(files), strict=True):
+        number, low = meshes.add(shape)
+        mesh = meshes.list[number]
+        count = mesh["count"]
+        places = np.cumsum(mesh["positions"].astype(np.int64), axis=1) % 65536
+        places = low + meshes.step * places.T
+        differences = mesh["triangles"].astype(np.int64)
+        differences = np.where(differences % 2, -(differences + 1) // 2, differences // 2)
+        first = np.cumsum(differences[0])
+        corners = np.stack([first, first + differences[1], first + differences[2]], axis=1)
+        assert corners.min() >= 0
+        assert corners.max() < count
+        wanted = read_triangles(file)
+        assert _volume(places[corners]) == pytest.approx(_volume(wanted), rel=1e-3)
+        assert np.ptp(places, axis=0) == pytest.approx(np.ptp(wanted.reshape(-1, 3), axis=0), abs=2 * meshes.step)
+        u, v = mesh["normals"].astype(float) / 127
+        z = 1 - np.abs(u) - np.abs(v)
+        u, v = (
+            np.where(z < 0, (1 - np.abs(v)) * np.where(u >= 0, 1, -1), u),
+            np.where(z < 0, (1 - np.abs(u)) * np.where(v >= 0, 1, -1), v),
+        )
+        normals = np.stack([u, v, z], axis=1) / np.linalg.norm([u, v, z], axis=0)[:, None]
+        assert normals == pytest.approx(shape[1], abs=0.02)
+
+
+def test_a_skeleton_from_before_is_refused_with_the_remedy(out: Out) -> None:
+    skeleton = read_skeleton(out.skeleton)
+    skeleton.moving = None
+    write_skeleton(out.skeleton, skeleton)
+    with pytest.raises(UserError, match="make solve-four-bar again"):
+        read_payload(out)
+
+
+def test_without_parts_there_is_the_skeleton_alone(out: Out) -> None:
+    out.parts.unlink()
+    found = read_payload(out)
+    assert found["solid"] is None
+    assert len(found["skeleton"]["strokes"]) == 3
+    assert all(one["z"] == 0 for one in found["arrows"]["list"])
+
+
+def _volume(triangles: np.ndarray) -> float:
+    a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
+    return float((a * np.cross(b, c)).sum() / 6)

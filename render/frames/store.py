@@ -18,7 +18,7 @@ import msgspec
 from render.blender.picture_file import is_as_named
 from shared.stage import jsonfile, locks
 from shared.stage.console import say
-from shared.stage.errors import UserError
+from shared.stage.errors import Busy, UserError
 from shared.stage.files import refusal
 from shared.stage.paths import refuse_links
 
@@ -121,7 +121,7 @@ class FrameStore:
         try:
             while not locks.take(handle):
                 if time.monotonic() >= end:
-                    raise UserError(f"another process renders into {self.folder}; wait for it or stop it")
+                    raise Busy(f"another process renders into {self.folder}; wait for it or stop it")
                 if not told:
                     say("frames", f"another process has {self.folder}; waiting {WAIT:.0f} s for it")
                     told = True

@@ -81,7 +81,8 @@ def duration(seconds: float) -> str:
 
 
 def run_cli(main: Callable[[], int | None]) -> NoReturn:
-    """Run ``main`` and exit: 0 or its return value, 1 on a UserError (one sentence), 128 + number on a signal.
+    """Run ``main`` and exit: 0 or its return value, 1 on a UserError (one sentence), 75 if another process has the
+    files, 128 + number on a signal.
 
     A disk that is full or read-only, and a folder or file that is not what it should be, are a sentence as well.
     With ``MBSD_TRACEBACK=1`` in the environment a UserError also prints its traceback, and that of its cause.
@@ -95,7 +96,7 @@ def run_cli(main: Callable[[], int | None]) -> NoReturn:
         if os.environ.get("MBSD_TRACEBACK", "0") not in ("", "0"):
             traceback.print_exc()
         fail(str(error))
-        code = 1
+        code = error.code
     except (KeyboardInterrupt, Stopped) as stop:
         with suppress(OSError):  # the terminal may be what has gone
             fail("stopped; what is finished is kept, the same command goes on from here")

@@ -1,7 +1,19 @@
-"""The one exception that a stage reports as a sentence instead of a traceback."""
+"""The exceptions that a stage reports as a sentence instead of a traceback."""
 
 from __future__ import annotations
+
+BUSY = 75
+"""Exit code of a stage whose files another process has just now; EX_TEMPFAIL of <sysexits.h>."""
 
 
 class UserError(Exception):
     """Something the user can cause and cure; the message says what, where and how."""
+
+    code = 1
+    """Exit code of a process that ends by it."""
+
+
+class Busy(UserError):
+    """Another process has what this one needs; the same command works when that one has ended."""
+
+    code = BUSY

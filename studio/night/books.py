@@ -45,6 +45,7 @@ class Books:
         self._told: float | None = None
         """When the forecast was told last (monotonic)."""
         self._again = REFINED
+        self._said: set[tuple[str, str]] = set()
 
     def started(self, name: str, step: str) -> None:
         """A step begins."""
@@ -64,10 +65,12 @@ class Books:
         self._films[name].error = text
 
     def elsewhere(self, name: str, who: str) -> None:
-        """Another run has this mechanism."""
+        """Another process has this mechanism; ``who`` says which."""
         if self._films[name].elsewhere != who:
             self._films[name].elsewhere = who
-            self.log.say(f"{name}: another run is at it ({who}); it waits for that")
+            if (name, who) not in self._said:
+                self._said.add((name, who))
+                self.log.say(f"{name}: {who}; it waits for that")
             self.changed()
 
     def new_picture(self, name: str) -> bool:
@@ -76,6 +79,10 @@ class Books:
             return False
         self._due = True
         return True
+
+    def is_complete(self, name: str) -> bool:
+        """Whether every picture of a film is there, so that only the film itself is to be made."""
+        return name in self.frames and bool(self.frames[name].all) and not self.frames[name].left
 
     def each(self, name: str) -> float | None:
         """Seconds a picture of a film."""

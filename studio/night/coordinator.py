@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 
 from shared.stage.console import duration
+from shared.stage.errors import BUSY, UserError
 from studio.night import watch
 from studio.night.board import Board
 from studio.night.books import Books
@@ -24,6 +25,8 @@ TICK = 0.1
 """Seconds between two looks at the processes."""
 ELSEWHERE = 2.0
 """Seconds between two tries for a mechanism that another run has."""
+BUSY_ELSEWHERE = 10.0
+"""The same where another process, which is no run, has the frames of a film."""
 LONGEST_TICK = 5.0
 """Seconds of silence that one look counts at most."""
 
@@ -85,14 +88,27 @@ class Coordinator:
         for name, step in self.board.ready(renders):
             if self._elsewhere.get(name, now) > now:
                 continue
-            who = self.claims.take(name)
+            try:
+                who = self.claims.take(name)
+            except UserError as error:
+                self.log.fail(f"{name}: {error}")
+                self.books.error(name, f"{step}: {error}")
+                self.board.fail(name, step)
+                self.books.moved()
+                continue
             if who:
                 self._elsewhere[name] = now + ELSEWHERE
-                self.books.elsewhere(name, who)
+                self.books.elsewhere(name, f"another run is at it ({who})")
                 continue
             self._elsewhere.pop(name, None)
             self.books.started(name, step)
-            process = Process(name, step, command(step, name, self.asked), not renders, self.environment)
+            try:
+                process = Process(name, step, command(step, name, self.asked), not renders, self.environment)
+            except OSError as error:  # no memory for another process, or too many of them
+                self.claims.give_back(name)
+                self._elsewhere[name] = now + BUSY_ELSEWHERE
+                self.log.warn(f"{name}: {step} could not be started ({error.strerror}); it is tried again")
+                continue
             self._tries[name, step] = self._tries.get((name, step), 0) + 1
             self.running.append(process)
             self.board.start(name, step)
@@ -115,7 +131,8 @@ class Coordinator:
             if code is not None:
                 self._ended(process)
             elif not process.hung:
-                longest = watch.limit(process.step, renders, self.books.each(process.name))
+                making = renders and not self.books.is_complete(process.name)
+                longest = watch.limit(process.step, making, self.books.each(process.name))
                 if process.silence > longest:
                     process.hung = True
                     self.log.warn(f"{process.name}: {process.step} gave no sign of life for {duration(longest)}")
@@ -134,6 +151,11 @@ class Coordinator:
         self.books.ended(name, step, time.monotonic() - process.started)
         if process.code() == 0 and not process.hung:
             self.board.done(name, step)
+        elif process.code() == BUSY:
+            self._tries[name, step] -= 1
+            self._elsewhere[name] = time.monotonic() + BUSY_ELSEWHERE
+            self.board.wait(name, step)
+            self.books.elsewhere(name, "another process renders it")
         else:
             why = watch.ending(process)
             again = watch.is_tried_again(process, self._tries[name, step])

@@ -32,11 +32,13 @@ class Frames:
 
     def read(self, show: str) -> bool:
         """Read from motion, parts and shot which pictures the film has; False where these are not there yet."""
-        from render.film.inputs import read_film
-        from render.frames.frames import Pictures
-        from render.frames.store import FrameStore
+        from render.film.inputs import read_film, refuse_missing
 
         try:
+            refuse_missing(Out(self.name))
+            from render.frames.frames import Pictures  # with numpy, which a run that has nothing to do never needs
+            from render.frames.store import FrameStore
+
             film = read_film(Out(self.name), show)
             pictures = Pictures(film, self.preset)
             self.keys = frozenset(pictures.key(frame) for frame in range(film.clock.frames))

@@ -30,7 +30,7 @@ class FilmRecord(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     error: str = ""
     """The last error, of whichever step."""
     elsewhere: str = ""
-    """The other run that is at it."""
+    """The other process that is at it, in words; empty if none is."""
 
 
 class NightRecord(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):

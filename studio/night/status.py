@@ -55,7 +55,7 @@ def row(name: str, film: FilmRecord, alive: bool) -> tuple[str, ...]:
     """Name, frames, seconds a frame, time left, and what it is at."""
     running = [step for step, state in film.steps.items() if state == "running"]
     if film.elsewhere:
-        at = f"another run is at it ({film.elsewhere})"
+        at = film.elsewhere
     elif running and alive:
         at = ", ".join(running)
     elif film.outcome == "failed":

@@ -24,8 +24,8 @@ class Step:
 STEPS = (
     Step("parts"),
     Step("solve", ("parts",)),
-    Step("shot", ("solve",)),
     Step("clearance", ("solve",), rank=1),
+    Step("shot", ("solve",)),
     Step("report", ("clearance",), rank=2),
     Step("plots", ("solve",), rank=2),
     Step("glb", ("shot",), rank=2),

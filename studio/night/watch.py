@@ -21,7 +21,9 @@ TRIES = 2
 
 
 def limit(step: str, renders: bool, each: float | None) -> float:
-    """Seconds of silence after which a step is killed; ``each`` is the forecast of a picture (s)."""
+    """Seconds of silence after which a step is killed; ``renders``: pictures are its signs of life, and one of them
+    takes ``each`` seconds by the forecast.
+    """
     patience = Patience(longest=each or 0.0)
     if not renders:
         return patience.scaled(STAGE)

@@ -105,6 +105,7 @@ def test_what_exists_is_not_touched() -> None:
         ("match", "a word of Python"),
         ("all", "make run-all"),
         ("films", "out/films"),
+        ("night", "out/night"),
         ("ui_x", "scene-ui"),
         ("automatic", "has a file or folder 'automatic'"),
         ("stages", "has a file or folder 'stages'"),

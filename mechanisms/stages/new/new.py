@@ -19,7 +19,11 @@ KINDS = {
     "simulated": "a double pendulum moved by weight and a spring",
 }
 """Folders of templates, and what is in them."""
-TAKEN = {"all": "make run-all runs every mechanism", "films": "out/films holds the films"}
+TAKEN = {
+    "all": "make run-all runs every mechanism",
+    "films": "out/films holds the films",
+    "night": "out/night holds the log of the nights",
+}
 
 
 def run(name: str, kind: str = "driven") -> None:

@@ -12,8 +12,6 @@ from pathlib import Path
 
 from shared.stage.paths import ROOT
 
-STEPS = ["parts", "solve", "shot", "clearance", "report", "plots", "glb", "poster", "film"]
-
 
 @dataclass
 class Night:
@@ -24,7 +22,9 @@ class Night:
     def __post_init__(self) -> None:
         self.folder.mkdir(exist_ok=True)
         script = self.folder / "python"
-        script.write_text(f"#!/bin/sh\nexec '{sys.executable}' '{Path(__file__).with_name('stand_in.py')}' \"$@\"\n")
+        script.write_text(
+            f"#!/bin/sh\nexec '{sys.executable}' -I -S '{Path(__file__).with_name('stand_in.py')}' \"$@\"\n"
+        )
         script.chmod(0o755)
 
     def tell(self, name: str, step: str, words: str) -> None:

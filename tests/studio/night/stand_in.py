@@ -36,6 +36,9 @@ def main() -> int:
             os.kill(os.getpid(), signal.SIGSEGV)
         case ["killed"]:
             os.kill(os.getpid(), signal.SIGKILL)
+        case ["busy"]:
+            print("error: another process renders into a folder", file=sys.stderr)
+            return 75
         case ["hang"]:
             signal.signal(signal.SIGTERM, signal.SIG_IGN)
             time.sleep(600)

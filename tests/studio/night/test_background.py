@@ -51,8 +51,8 @@ def test_it_goes_on_without_its_terminal_and_says_how_to_attach(night: Night, tm
     assert "attach -t night-2" in again[1]
     until(lambda: "slider_crank film" in night.ran())
     assert "run 1 has ended after" in night.say("stop")
-    sessions = ["tmux", *attach[0].split(), "list-sessions"]
-    until(lambda: subprocess.run(sessions, capture_output=True).stdout == b"")
+    listed = ["tmux", *attach[0].split(), "list-sessions"]
+    until(lambda: subprocess.run(listed, capture_output=True).stdout == b"")
 
 
 def test_without_tmux_it_goes_on_as_well_and_that_is_told(night: Night, tmp_path: Path):
@@ -70,8 +70,8 @@ def test_where_the_system_ends_all_at_the_logout_a_scope_and_a_word_stand_agains
 ):
     programs = tmp_path / "bin"
     programs.mkdir()
-    for name, said in (("busctl", "b true"), ("systemd-run", "")):
-        (programs / name).write_text(f"#!/bin/sh\necho '{said}'\n")
+    for name, word in (("busctl", "b true"), ("systemd-run", "")):
+        (programs / name).write_text(f"#!/bin/sh\necho '{word}'\n")
         (programs / name).chmod(0o755)
     monkeypatch.setenv("PATH", f"{programs}:{os.environ['PATH']}")
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))

@@ -9,7 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.studio.night.nights import STEPS, Night, finished, until
+from render.presets import PRESETS
+from studio.night.options import Options
+from studio.night.steps import STEPS, command
+from tests.project.making import STAGES, planned
+from tests.studio.night.nights import Night, finished, until
 
 
 @pytest.fixture
@@ -28,8 +32,8 @@ def test_a_failure_stops_no_other_and_table_and_exit_code_tell_it(night: Night):
     code, out, err = finished(night.start("four-bar,slider_crank"))
     assert code == 1
     ran = night.ran()
-    assert {line.split()[1] for line in ran if line.startswith("slider_crank ")} == set(STEPS)
-    assert {line.split()[1] for line in ran if line.startswith("four_bar ")} == set(STEPS) - {"report", "film"}
+    assert {line.split()[1] for line in ran if line.startswith("slider_crank ")} == set(STAGES)
+    assert {line.split()[1] for line in ran if line.startswith("four_bar ")} == set(STAGES) - {"report", "film"}
     assert len(ran) == len(set(ran))
     table = out[out.index("TABLE") :].splitlines()
     assert [line.split()[::2] for line in table[1:3]] == [["four_bar", "failed"], ["slider_crank", "done"]]
@@ -48,6 +52,22 @@ def test_what_is_asked_for_reaches_the_stages(night: Night):
     log = (night.folder / "out" / "night" / "log.txt").read_text()
     assert "film: four_bar: done" in log
     assert "night: 1 done" in log
+
+
+def test_steps_and_commands_are_those_of_run_in_the_makefile():
+    asked = Options(names=("four_bar",), preset=PRESETS["draft"], show="title", spectra="motor", python="echo")
+    lines = planned("run-four-bar", "PRESET=draft", "SHOW=title", "SPECTRA=motor")
+    assert [step.name for step in STEPS] == list(STAGES)
+    commands = [" ".join(command(step.name, "four_bar", asked)[3:]) for step in STEPS]
+    assert commands == [line + " --every" * line.startswith("plots") for line in lines]
+
+
+def test_a_film_that_another_process_renders_is_waited_for(night: Night):
+    night.tell("four_bar", "film", "once busy")
+    code, out, _ = finished(night.start("four_bar"))
+    assert code == 0
+    assert night.ran().count("four_bar film") == 2
+    assert "four_bar: another process renders it; it waits for that" in out
 
 
 @pytest.mark.parametrize("how", ["crash", "killed"])
@@ -80,10 +100,17 @@ def test_whatever_ends_a_night_ends_its_stages_and_status_tells(night: Night, ho
     assert code == (-how if how == signal.SIGKILL else 128 + how)
     until(lambda: not alive(night))
     assert ("killed, or the machine" if how == signal.SIGKILL else "stopped; the same") in night.say("status")
+
+
+def test_the_same_command_goes_on_after_a_kill(night: Night):
+    night.tell("four_bar", "film", "sleep 300")
+    run = night.start("four_bar")
+    until(lambda: "four_bar film" in night.ran())
+    run.kill()
+    finished(run)
     night.tell("four_bar", "film", "")
-    assert finished(night.start("four_bar"))[0] == 0
-    assert ": done, last seen" not in night.say("status")
-    assert "done, last seen" in night.say("status")
+    assert finished(night.start("four_bar"))[0] == 0  # the locks went with the process, the record stands for nothing
+    assert night.say("status").startswith("done, last seen")
 
 
 def test_a_second_run_takes_what_the_first_is_not_at_and_waits_for_the_rest(night: Night):

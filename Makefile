@@ -65,7 +65,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install check list run-all all overnight status stop gallery new test lint format bench bench-start hunt hunt-parts torture check-numbers record-numbers schema docs integrators wheel lock clean clean-all always
+.PHONY: help install check list run-all all overnight status stop gallery showreel fetch new test lint format bench bench-start bench-film hunt hunt-parts torture check-numbers record-numbers schema docs integrators wheel lock clean clean-all always
 
 # A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
 define upto_motion
@@ -233,6 +233,9 @@ bench-start: install ## how long one waits for a first result and for calls as u
 	$(ALL_KERNELS)
 	@$(PYTHON) -m benchmarks start
 
+bench-film: install ## what a film costs beside Cycles alone, a plain script, one core; NAME=four_bar N=60 frames
+	@$(PYTHON) -m benchmarks film --name "$${NAME:-four_bar}" --preset "$$PRESET" --frames "$${N:-60}"
+
 check-numbers: install ## raw bytes of 210 runs against those recorded, all or ONLY="gallery four_bar"
 	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.numbers check "$$ONLY"
@@ -249,7 +252,7 @@ hunt-parts: install ## parts of N random mechanisms (1000), goes on where it sto
 	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.hunt_parts --n "$${N:-1000}" --seed "$$SEED"
 
-torture: install ## N films of a postage stamp (20), killed and damaged while they are made; SEED=1: out/torture.json
+torture: install ## N nights of postage stamps (20), killed, damaged, fetched while they are made; SEED=1: out/torture.json
 	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.torture --n "$${N:-20}" --seed "$$SEED"
 

@@ -4,6 +4,7 @@ python -m benchmarks                  all of it
 python -m benchmarks calls            the calls as users make them alone, only shown
 python -m benchmarks dynamics         the dynamics problems alone, only shown
 python -m benchmarks machines         gears, a Geneva, a cam and a stiff contact alone, only shown
+python -m benchmarks film [--help]     what a film costs (make bench-film)
 python -m benchmarks start            the table of start-up (make bench-start)
 python -m benchmarks table            the tables again from the last run
 python -m benchmarks tune [names]     the sweeps for the best settings, of some codes or problems
@@ -16,12 +17,14 @@ import os
 import subprocess
 import sys
 
-from benchmarks import film, rows, table
+from benchmarks import rows, table
 from benchmarks.batch import measure as batch
 from benchmarks.calls import measure as calls
 from benchmarks.dynamics import measure as dynamics
 from benchmarks.dynamics import scaling
 from benchmarks.dynamics.settings import tune_all
+from benchmarks.film import measure as film
+from benchmarks.film import timing
 from benchmarks.four_bar import STEPS
 from benchmarks.machines import measure as machines
 from benchmarks.rows import Bar, Row
@@ -46,6 +49,8 @@ def main() -> int:
             found, bars = {"calls": calls, "dynamics": dynamics, "machines": machines}[part].measured()
             rows.show_all(found)
             return _tell(bars)
+        case ["film", *words]:
+            return film.measured(words)
         case ["start"]:
             return start.measured()
         case ["table"]:
@@ -54,7 +59,7 @@ def main() -> int:
             tune_all(names)
         case other:
             raise UserError(
-                f"bench: {' '.join(other)}? There is: calls, dynamics, machines, start, table, tune [names], "
+                f"bench: {' '.join(other)}? There is: calls, dynamics, film, machines, start, table, tune [names], "
                 "or nothing for all"
             )
     return 0
@@ -79,7 +84,7 @@ def _all() -> int:
         more, more_bars = part()
         everything += more
         bars += more_bars
-    films, missed = film.rows_of_films()
+    films, missed = timing.rows_of_films()
     rows.show_all(everything[len(found) :] + films)
     rows.write(everything + films, bars)
     table.write(everything, bars)

@@ -101,6 +101,9 @@ def run_cli(main: Callable[[], int | None]) -> NoReturn:
         with suppress(OSError):  # the terminal may be what has gone
             fail("stopped; what is finished is kept, the same command goes on from here")
         code = stop.code if isinstance(stop, Stopped) else 130
+    except MemoryError:
+        fail("the memory ran out; close other programs or take a smaller PRESET. The same command goes on from here")
+        code = 1
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 1

@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 from shared.stage.paths import ROOT
-from tools.torture.faults import FAULTS, FULL, cut, flipped, no_text
+from tools.torture.damage import cut, flipped, no_text
+from tools.torture.faults import BACKGROUND, FAULTS, FETCH, FULL
 from tools.torture.rounds import Outcome
 
 
@@ -38,8 +39,8 @@ def test_two_rounds(out_root: Path, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("field", ["wrong", "lost", "redone", "refused", "hangs", "orphans", "tracebacks"])
 def test_each_count_makes_a_round_bad(field: str) -> None:
-    assert not Outcome(fault="x", state="half", moment=1.0).bad
-    assert Outcome(fault="x", state="half", moment=1.0, **{field: 1}).bad
+    assert not Outcome(fault="x", target="run-all", state="half", moment=1.0).bad
+    assert Outcome(fault="x", target="run-all", state="half", moment=1.0, **{field: 1}).bad
 
 
 def test_damages_change_the_bytes() -> None:
@@ -55,4 +56,4 @@ def test_damages_change_the_bytes() -> None:
 
 def test_faults_have_names_of_their_own() -> None:
     assert len({fault.name for fault in FAULTS}) == len(FAULTS)
-    assert not {fault.name for fault in FAULTS} & {fault.name for fault in FULL}
+    assert not {fault.name for fault in FAULTS} & {fault.name for fault in (*FULL, *BACKGROUND, *FETCH)}

@@ -48,6 +48,7 @@ def write(shot: Shot | None = None, name: str = "four_bar") -> Out:
     """data.json, skeleton.json, parts.json with its STL files, and shot.json below the folder of results."""
     out = Out(name)
     motion = four_bar_motion()
+    motion.mechanism = name
     write_motion(out.motion, motion)
     write_skeleton(out.skeleton, plain_skeleton(motion))
     mass = Mass(mass=0.1, com=(0.0, 0.0), inertia=1e-5, volume=1e-5)

@@ -1,34 +1,40 @@
-"""``python -m tools.torture``: a film at the size of a postage stamp, made while things go wrong.
+"""``python -m tools.torture``: a night of films at the size of a postage stamp, made while things go wrong.
 
 --n 100 --seed 1    a hundred rounds: a run of make with a random fault at a random moment (kills, a full disk, damaged
-                    files, two runs at once), then the same command again, which has to end with the right film
+                    files, two runs at once), then the same command again, which has to end with the right films;
+                    the run is make run-all or make overnight
 --keep              keep the project's folder after a round that went wrong, and end there
 
-Exit code 1 if a film was wrong or short, a picture was lost or rendered twice, a run hung or ended in a traceback, or a
-process or temporary file stayed. The report is also in out/torture.json.
+Exit code 1 if a film was wrong or short, a picture was lost or more than one rendered twice in a round, a run hung or
+ended in a traceback, or a process or temporary file stayed. The report is also in out/torture.json.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import os
 import random
+import shutil
 import tempfile
 import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 
 from shared.stage.console import run_cli, say, warn
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from shared.stage.paths import out_root
-from tools.torture.faults import FAULTS, FULL, Fault
+from tests.studio.loopback_ssh import machine
+from tools.torture import fetching
+from tools.torture.faults import BACKGROUND, FAULTS, FETCH, FULL, Fault
 from tools.torture.project import Project
 from tools.torture.rounds import Outcome, play
 
 ROUNDS, SEED = 20, 1
-COUNTS = ("wrong", "lost", "redone", "refused", "hangs", "orphans", "tracebacks")
+COUNTS = ("wrong", "lost", "redone", "twice", "refused", "hangs", "orphans", "tracebacks")
 
 
 def main() -> int:
@@ -43,11 +49,18 @@ def main() -> int:
     report = out_root() / "torture.json"  # before the project sets a folder of its own
     project = Project(Path(tempfile.mkdtemp(prefix="mbsd-torture-")).resolve())
     outcomes: list[Outcome] = []
-    kept = False
+    kept, closing = False, ExitStack()
     try:
         project.build()
         reference, length = _reference(project)
-        faults = [*FAULTS, *(FULL if project.mounted else [])]
+        faults = [*FAULTS, *(FULL if project.mounted else []), *(BACKGROUND if shutil.which("tmux") else [])]
+        if fetching.is_possible():
+            place = closing.enter_context(tempfile.TemporaryDirectory(prefix="mbsd-ssh-"))
+            other = closing.enter_context(machine(Path(place) / "machine"))
+            os.environ["MBSD_TORTURE_RSH"] = other.shell()
+            faults += FETCH
+        else:
+            warn("torture", "rsync, ssh or sshd is missing, so no film is fetched")
         if not project.mounted:
             warn(
                 "torture", "a small disk can be mounted by root alone, so no disk gets full; the tests do that as well"
@@ -65,6 +78,7 @@ def main() -> int:
                 project.forget()
                 _reference(project)
     finally:
+        closing.close()
         if kept:
             say("torture", f"kept: {project.folder}")
         else:
@@ -82,21 +96,21 @@ def _rounds(faults: Sequence[Fault], count: int, seed: int) -> Iterator[tuple[in
         yield number, hat.pop()
 
 
-def _reference(project: Project) -> tuple[bytes, float]:
-    """The film of a run that nothing disturbs, and how long it takes (s)."""
+def _reference(project: Project) -> tuple[list[bytes], float]:
+    """The films of a run that nothing disturbs, and how long it takes (s)."""
     begin = time.monotonic()
     code = project.start().wait(timeout=300)
     if code:
         raise UserError(f"the undisturbed run ended with code {code}:\n{project.said()}")
     length = time.monotonic() - begin
     project.kill()
-    return project.film.read_bytes(), length
+    return [film.read_bytes() for film in project.films], length
 
 
 def _words(outcome: Outcome) -> str:
     hit = f"after {outcome.moment:.1f} s" if outcome.hit else "nothing to hit"
     then = f"code {outcome.code}" + (f", {outcome.damaged} pictures destroyed" if outcome.damaged > 0 else "")
-    return f"{outcome.fault} ({outcome.state}, {hit}): {then}, {'WRONG' if outcome.bad else 'right'}"
+    return f"{outcome.fault} ({outcome.target}, {outcome.state}, {hit}): {then}, {'WRONG' if outcome.bad else 'right'}"
 
 
 def _report(outcomes: list[Outcome], seed: int, path: Path) -> int:
@@ -111,6 +125,7 @@ def _report(outcomes: list[Outcome], seed: int, path: Path) -> int:
         **sums,
         "destroyed by faults": sum(max(outcome.damaged, 0) for outcome in outcomes),
         "seconds": round(seconds, 1),
+        "overnight": sum(outcome.target == "overnight" for outcome in outcomes),
         "faults": dict(sorted(Counter(outcome.fault for outcome in outcomes).items())),
         "outcomes": [outcome.as_json() for outcome in outcomes],
     }

@@ -1,4 +1,4 @@
-"""A project of one tiny film in a folder of its own, with this project's Makefile and scripts, on a small disk."""
+"""A project of tiny films in a folder of its own, with this project's Makefile and scripts, on a small disk."""
 
 from __future__ import annotations
 
@@ -12,13 +12,18 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from render.frames.store import FrameStore
-from shared.contract.shot import Shot
+from shared.contract.shot import Camera, Shot
 from shared.stage.paths import ROOT, Out
+from studio.night import record, runs
 from tools.torture.processes import Process, processes
+from tools.torture.stage import RENDERED
 
-NAME = "four_bar"
-SHOT = Shot(turns=2, seconds_per_turn=0.2)
-"""Six pictures, shown twice."""
+SHOTS = {
+    "four_bar": Shot(turns=2, seconds_per_turn=0.2),
+    "pendulum": Shot(turns=1, seconds_per_turn=0.14, camera=Camera(azimuth=30.0)),
+}
+"""Two films: six pictures shown twice, and four."""
+COORDINATOR = "studio.night run"
 DISK = 300
 """Megabytes of the disk in memory: a film is refused below 200."""
 PATIENCE = 12.0
@@ -49,19 +54,28 @@ class Project:
         return self.folder / "disk"
 
     @property
-    def out(self) -> Out:
+    def outs(self) -> list[Out]:
         """The results."""
-        return Out(NAME)
+        return [Out(name) for name in SHOTS]
 
     @property
-    def store(self) -> FrameStore:
+    def stores(self) -> list[FrameStore]:
         """The pictures."""
-        return FrameStore(self.out.frames("draft"))
+        return [FrameStore(out.frames("draft")) for out in self.outs]
 
     @property
-    def film(self) -> Path:
-        """The finished film."""
-        return self.out.film("draft")
+    def films(self) -> list[Path]:
+        """The finished films."""
+        return [out.film("draft") for out in self.outs]
+
+    def pictures(self) -> list[Path]:
+        """The pictures that are there."""
+        return [path for store in self.stores for path in store.folder.glob("[!.]*.png")]
+
+    def rendered(self) -> list[str]:
+        """Keys of the pictures that were rendered since :meth:`hush`, each as often as it was."""
+        path = self.folder / RENDERED
+        return path.read_text().split() if path.exists() else []
 
     def build(self) -> None:
         """Write everything, and mount the disk where that is allowed."""
@@ -69,6 +83,7 @@ class Project:
 
         os.environ["MBSD_OUT"] = str(self.disk / "out")
         self.disk.mkdir(parents=True)
+        (self.folder / "inputs").mkdir()
         mount = ["mount", "-t", "tmpfs", "-o", f"size={DISK}m", "none", str(self.disk)]
         self.mounted = shutil.which("mount") is not None and not subprocess.run(mount, capture_output=True).returncode
         for name in ("Makefile", "requirements.lock"):
@@ -80,8 +95,9 @@ class Project:
         script = self.folder / "python"
         script.write_text(STAND_IN.format(python=sys.executable, folder=self.folder))
         script.chmod(script.stat().st_mode | stat.S_IXUSR)
-        film_fixture.write(SHOT, NAME)
-        shutil.move(self.out.folder, self.folder / "inputs")
+        for out, shot in zip(self.outs, SHOTS.values(), strict=True):
+            film_fixture.write(shot, out.name)
+            shutil.move(out.folder, self.folder / "inputs" / out.name)
 
     def forget(self) -> None:
         """Remove all results, so that the next round does not suffer from this one."""
@@ -94,19 +110,30 @@ class Project:
             subprocess.run(["umount", "-l", str(self.disk)], check=False)
         shutil.rmtree(self.folder, ignore_errors=True)
 
-    def start(self) -> subprocess.Popen[bytes]:
-        """Start ``make run-all PRESET=draft`` as a user does; what it says goes to said.txt."""
-        inherited = ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "MBSD_MAKE", "COLUMNS")
-        environment = {key: value for key, value in os.environ.items() if key not in inherited}
-        environment |= {
+    def environment(self) -> dict[str, str]:
+        """Of every command of the user."""
+        inherited = ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "MBSD_MAKE", "COLUMNS", "TMUX", "TMUX_PANE")
+        found = {key: value for key, value in os.environ.items() if key not in inherited}
+        return found | {
             "MBSD_OUT": str(self.disk / "out"),
             "MBSD_PATIENCE": str(PATIENCE),
             "PYTHONPATH": str(ROOT),
             "PYTHONSAFEPATH": "1",
+            "TMUX_TMPDIR": str(self.folder),
         }
+
+    def start(self, target: str = "run-all") -> subprocess.Popen[bytes]:
+        """Start ``make run-all PRESET=draft`` or another target as a user does; what it says goes to said.txt."""
+        words = [f"PYTHON={self.folder}/python"]
+        if target in ("run-all", "overnight"):
+            words += ["PRESET=draft", f"ONLY={','.join(SHOTS)}"]
+        return self.call(["make", "-o", "install", target, *words], self.environment())
+
+    def call(self, command: list[str], environment: dict[str, str]) -> subprocess.Popen[bytes]:
+        """Start a command that is ended with the others."""
         with (self.folder / "said.txt").open("ab") as said:
             run = subprocess.Popen(
-                ["make", "-o", "install", "run-all", "PRESET=draft", f"ONLY={NAME}", f"PYTHON={self.folder}/python"],
+                command,
                 cwd=self.folder,
                 env=environment,
                 stdin=subprocess.DEVNULL,
@@ -118,14 +145,28 @@ class Project:
         self.runs.append(run)
         return run
 
+    def is_over(self) -> bool:
+        """Whether every command has ended, and every night that one of them has started."""
+        ended = all(run.poll() is not None for run in self.runs)
+        return ended and not any(COORDINATOR in process.arguments for process in self.alive())
+
+    def code(self) -> int:
+        """The exit code of the first command; of ``make overnight`` what became of the night that it started."""
+        first = self.runs[0]
+        if "overnight" not in str(first.args) or first.returncode:
+            return first.returncode
+        found = record.read(runs.Run(1))
+        return 0 if found is not None and found.ended == "done" else 1
+
     def said(self) -> str:
-        """What make and its stages said since :meth:`hush`."""
-        path = self.folder / "said.txt"
-        return path.read_text(errors="replace") if path.exists() else ""
+        """What make, its stages and nights in the background said since :meth:`hush`."""
+        paths = [self.folder / "said.txt", runs.log_file()]
+        return "\n".join(path.read_text(errors="replace") for path in paths if path.exists())
 
     def hush(self) -> None:
-        """Forget what was said."""
-        (self.folder / "said.txt").unlink(missing_ok=True)
+        """Forget what was said and rendered."""
+        for path in (self.folder / "said.txt", self.folder / RENDERED, runs.log_file()):
+            path.unlink(missing_ok=True)
 
     def alive(self) -> list[Process]:
         """Every process of the runs, also those that lost their parent."""

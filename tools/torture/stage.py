@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-from render.frames import film
+from render.blender.job import Answer, Job
+from render.frames import film, frames
 from render.presets import Preset
 from shared.stage.console import run_cli, say
 from shared.stage.files import write_bytes
 from shared.stage.paths import Out
 from shared.stage.stages import Stage, key_of
 
+MODULE = "tools.torture.stage"
+RENDERED = "rendered.txt"
 STAMP = Preset("draft", 64, 36, 1)
 """The picture's size: a postage stamp, rendered in milliseconds."""
 
@@ -20,9 +26,30 @@ def main() -> None:
     """Run one stage."""
     stage, name, folder = sys.argv[1:]
     if stage == "film":
+        count_pictures(Path(folder) / RENDERED)
         film.run(name, STAMP)
     else:
-        inputs(name, Path(folder) / "inputs")
+        inputs(name, Path(folder) / "inputs" / name)
+
+
+def count_pictures(path: Path) -> None:
+    """Have the frames stage add a line to a file for each picture that Blender has rendered: its key."""
+    blender = frames.blender
+
+    @contextmanager
+    def counting(job: Job, longest: float = 0.0) -> Iterator[Iterator[Answer]]:
+        def counted(answers: Iterator[Answer]) -> Iterator[Answer]:
+            for answer in answers:
+                if answer.key:
+                    handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
+                    os.write(handle, f"{answer.key}\n".encode())
+                    os.close(handle)
+                yield answer
+
+        with blender(job, longest) as answers:
+            yield counted(answers)
+
+    frames.blender = counting
 
 
 def inputs(name: str, folder: Path) -> None:

@@ -252,7 +252,7 @@ hunt-parts: install ## parts of N random mechanisms (1000), goes on where it sto
 	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.hunt_parts --n "$${N:-1000}" --seed "$$SEED"
 
-torture: install ## N nights of postage stamps (20), killed, damaged, fetched while they are made; SEED=1: out/torture.json
+torture: install ## N nights of postage stamps (20), killed and damaged meanwhile; SEED=1: out/torture.json
 	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.torture --n "$${N:-20}" --seed "$$SEED"
 

@@ -249,7 +249,7 @@ class Mechanism(Model):
 
     def sweep(
         self, duration: float | None = None, steps: int = 360, times: Sequence[float] | np.ndarray | None = None
-    ) -> Solution:
+    ) -> Solution[Mechanism]:
         """Solve the driven motion: positions, velocities, accelerations, reactions, driver efforts, energy.
 
         ``steps`` equal steps over ``duration`` seconds, both ends included; by default over one :meth:`period`, and
@@ -307,7 +307,7 @@ class Mechanism(Model):
         event_rows: bool = False,
         formulation: str = "auto",
         **options: float,
-    ) -> Solution:
+    ) -> Solution[Mechanism]:
         """Forward dynamics from ``start_near`` and ``start_moving``: M a + J^T lam = Q, J a = gamma.
 
         ``steps`` equal output steps over ``duration`` seconds, both ends included; ``times`` (s), rising, replaces

@@ -11,6 +11,8 @@ from __future__ import annotations
 import functools
 import inspect
 import math
+import types
+import typing
 from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
@@ -143,6 +145,25 @@ def annotation_of(parameter: inspect.Parameter) -> str:
     """The type of a parameter as it is written, whether or not its file postpones annotations."""
     given = parameter.annotation
     return given.__name__ if isinstance(given, type) else str(given)
+
+
+def types_of(function: Callable[..., Any]) -> dict[str, tuple[Any, ...]]:
+    """The types that each parameter may have, by its name: ``float | None`` is (float, NoneType).
+
+    An annotation that is not known where the function stands, as what is imported for type checkers alone, stays text.
+    """
+    plain = inspect.unwrap(function)
+    out: dict[str, tuple[Any, ...]] = {}
+    for p in inspect.signature(plain).parameters.values():
+        given = p.annotation
+        if isinstance(given, str):
+            try:
+                given = eval(given, plain.__globals__)
+            except (NameError, AttributeError, SyntaxError, TypeError):
+                given = p.annotation
+        united = isinstance(given, types.UnionType) or typing.get_origin(given) is typing.Union
+        out[p.name] = typing.get_args(given) if united else (given,)
+    return out
 
 
 def checked(function: F) -> F:

@@ -7,18 +7,16 @@ used as it is.
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable, Mapping
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from mbsd.base.arguments import annotation_of
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.model.body import Marker
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import connections
+from mbsd.model.roles import Role, arguments
 
 if TYPE_CHECKING:
     from mbsd.model.mechanism import Model
@@ -33,24 +31,18 @@ def with_markers(add: Callable[..., Any], markers: list[Marker], named: Mapping[
     (``against``, ``frame``) takes what is left.
     """
     out = dict(named)
-    slots = [p for p in _parameters(add) if p.name not in named]
-    needed = [p for p in slots if annotation_of(p) in ("Marker", "Body")]
-    given = [p for p in slots if annotation_of(p) == "Body | None"]
+    slots = [one for one in arguments(add) if one.name not in named]
+    needed = [one for one in slots if one.role in (Role.MARKER, Role.BODY)]
+    given = [one for one in slots if one.role is Role.OPTIONAL_BODY]
     left = markers[: len(markers) - len(needed)]
     for slot, marker in [*zip(needed, markers[len(left) :], strict=False), *zip(given, left, strict=False)]:
-        out[slot.name] = marker if annotation_of(slot) == "Marker" else marker.body
+        out[slot.name] = marker if slot.role is Role.MARKER else marker.body
     return out
-
-
-@lru_cache(maxsize=256)
-def _parameters(add: Callable[..., Any]) -> tuple[inspect.Parameter, ...]:
-    """Of a function that adds one, the mechanism left out."""
-    return tuple(inspect.signature(add).parameters.values())[1:]
 
 
 def law_name(add: Callable[..., Any]) -> str:
     """The argument of a driver's function that is its law."""
-    [law] = [p.name for p in _parameters(add) if annotation_of(p) == "Law"]
+    [law] = [one.name for one in arguments(add) if one.role is Role.LAW]
     return law
 
 
@@ -72,9 +64,8 @@ def _change(m: Model, table: dict[str, Any], name: str, values: Mapping[str, Any
     old: Joint | Force = table[name]
     add = old.kind.add
     assert add is not None
-    parameters = _parameters(add)[1:]
-    own = [p.name for p in parameters if annotation_of(p) not in ("Marker", "Body", "Body | None")]
-    if any(p.kind is p.VAR_POSITIONAL for p in parameters):
+    own = [one.name for one in arguments(add) if one.role not in (Role.MARKER, Role.BODY, Role.OPTIONAL_BODY)]
+    if any(one.several for one in arguments(add)):
         own = []
     what = f"{old.kind.name} '{name}'"
     _refuse_others(m, what, values, own)

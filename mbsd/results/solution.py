@@ -17,10 +17,11 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Generic
 
 import numpy as np
 
+from mbsd.arrays.start_state import AnyModel
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
@@ -143,11 +144,11 @@ class EnergyView:
 
 
 @dataclass(frozen=True, eq=False)
-class Solution:
+class Solution(Generic[AnyModel]):
     """The motion of one mechanism. q, v, a hold centres of mass, (T, nb, 3); the views give the author's frames."""
 
-    mechanism: Any
-    """The Mechanism that was solved."""
+    mechanism: AnyModel
+    """What was solved: a Mechanism, where its methods were asked."""
     packed: Packed
     t: np.ndarray
     q: np.ndarray

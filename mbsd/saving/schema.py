@@ -5,32 +5,32 @@ Kinds and laws are read off the registries and the signatures of their methods.
 
 from __future__ import annotations
 
-import inspect
 import json
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from mbsd.base.arguments import annotation_of
 from mbsd.base.files import write_whole
 from mbsd.model.contact import CONTACT_KINDS
 from mbsd.model.force import FORCE_KINDS
 from mbsd.model.joint import KINDS
+from mbsd.model.roles import Role, arguments
 from mbsd.saving.document import SCHEMA, SCHEMA_VERSION
 from mbsd.saving.laws import loadable_laws
 
 NUMBER: dict[str, Any] = {"type": "number"}
 PAIR: dict[str, Any] = {"type": "array", "items": NUMBER, "minItems": 2, "maxItems": 2}
-TYPES: dict[str, dict[str, Any]] = {
-    "float": NUMBER,
-    "int": {"type": "integer"},
-    "bool": {"type": "boolean"},
-    "str": {"type": "string"},
-    "Sequence[int]": {"type": "array", "items": {"type": "integer"}},
-    "Sequence[float]": {"type": "array", "items": NUMBER},
-    "None": {"type": "null"},
+TYPES: dict[Any, dict[str, Any]] = {
+    float: NUMBER,
+    int: {"type": "integer"},
+    bool: {"type": "boolean"},
+    str: {"type": "string"},
+    Sequence[int]: {"type": "array", "items": {"type": "integer"}},
+    Sequence[float]: {"type": "array", "items": NUMBER},
+    type(None): {"type": "null"},
 }
+"""Arguments of other types are whatever they are."""
 
 
 def schema() -> dict[str, Any]:
@@ -109,29 +109,23 @@ def _force(name: str) -> dict[str, Any]:
     reference = {"$ref": "#/$defs/marker"}
     method = _adds(name)
     params, law = _parameters(method), ({"$ref": "#/$defs/law"}, False)
-    laws = {p.name: law for p in inspect.signature(method).parameters.values() if _words(p)[0] in ("Amount", "Curve")}
+    laws = {one.name: law for one in arguments(method) if one.role in (Role.AMOUNT, Role.CURVE)}
     amounts = {key: (NUMBER, False) for key in laws if key in params}
     fixed = {"kind": {"const": name}, "i": reference, "j": reference}
     return _object(fixed | {"params": _object({}, params | amounts), "laws": _object({}, laws)})
 
 
-def _words(p: inspect.Parameter) -> list[str]:
-    """The types of a parameter."""
-    return [word.strip() for word in annotation_of(p).split("|")]
-
-
 def _parameters(function: Callable[..., Any]) -> dict[str, tuple[dict[str, Any], bool]]:
     """What a method or law takes beside names, markers, bodies and laws: its schema, and whether it must be there."""
     out = {}
-    for p in inspect.signature(function).parameters.values():
-        words = _words(p)
-        if p.name in ("m", "name") or words[0] in ("Marker", "Body", "Law", "Curve"):
-            continue
-        types = [TYPES[word] for word in words if word in TYPES]
-        known = types[0] if len(types) == 1 else {"anyOf": types} if types else {}
-        if p.kind is inspect.Parameter.VAR_POSITIONAL:
-            known = {"type": "array", "items": known}
-        out[p.name] = known, p.default is inspect.Parameter.empty
+    for one in arguments(function):
+        if one.role in (Role.VALUE, Role.AMOUNT):
+            types = [TYPES[known] for known in one.types if known in TYPES]
+            types = [] if types == [TYPES[type(None)]] else types  # all but None is of another type
+            known = types[0] if len(types) == 1 else {"anyOf": types} if types else {}
+            if one.several:
+                known = {"type": "array", "items": known}
+            out[one.name] = known, one.needed
     return out
 
 

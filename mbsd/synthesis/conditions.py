@@ -78,14 +78,14 @@ def grashof_excess(lengths: np.ndarray) -> np.ndarray:
 
 
 def _revolutes(m: Model) -> Sequence[Joint]:
-    return [joint for joint in m.joints.values() if joint.kind.name == "revolute"]
+    return [joint for joint in m.joints.values() if joint.kind.pair == "pin"]
 
 
 def _pin_markers(m: Model, packed: Packed) -> dict[str, list[tuple[str, int]]]:
     """By body, its revolute joints and the numbers of their markers on it."""
     out: dict[str, list[tuple[str, int]]] = {body: [] for body in m.bodies}
     for joint, pair in zip(packed.joints, packed.markers, strict=True):
-        if joint.kind.name == "revolute":
+        if joint.kind.pair == "pin":
             for body, number in zip(joint.bodies, pair, strict=True):
                 out[body].append((joint.name, int(number)))
     return out

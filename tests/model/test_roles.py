@@ -25,7 +25,7 @@ def other_words(
     amount: Amount = 1.0,
     profile: Curve | None = None,
     *,
-    unknown: "Nowhere" = None,  # noqa: F821
+    unknown: "Nowhere" = None,  # noqa: F821  # pyright: ignore[reportUndefinedVariable]
 ):
     """Written without postponed annotations, with other names and in part as text."""
 

@@ -39,9 +39,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from mbsd.arrays.packing import Packed
-    from mbsd.drawing.of_solution import Animation, Picture
+    from mbsd.drawing.of_solution import Animation, Picture, View
     from mbsd.model.body import Marker
     from mbsd.results.mobility import Mobility
+
+SHOWN = 40
+"""Bodies: a notebook shows no larger mechanism in motion by itself."""
 
 
 @dataclass(frozen=True)
@@ -350,6 +353,16 @@ class Solution(Generic[AnyModel]):
 
         return animate(self, path, show, rate, fps, size, names, progress)
 
+    def view(self, path: str | os.PathLike[str] | None = None, height: float = 380.0) -> View:
+        """The skeleton in motion as a small page that plays by itself, ``height`` pixels high in a notebook.
+
+        With ``path`` it is written there as an HTML file, too, which needs no network. A motion that repeats
+        (``period``) loops; others begin anew. Raises ModelError for what cannot be shown or written.
+        """
+        from mbsd.drawing.of_solution import view
+
+        return view(self, path, height)
+
     def __repr__(self) -> str:
         return (
             f"<Solution {self.mechanism.name}: {len(self.t)} times, t = {self.t[0]:g} .. {self.t[-1]:g} s, "
@@ -357,6 +370,7 @@ class Solution(Generic[AnyModel]):
         )
 
     def _repr_html_(self) -> str:
+        moving = self.view()._repr_html_() if len(self.mechanism.bodies) <= SHOWN and len(self.t) > 1 else ""
         rows = [
             (name, f"{view.min():.6g}", f"{view.max():.6g}")
             for name, view in self.columns().items()
@@ -367,7 +381,10 @@ class Solution(Generic[AnyModel]):
             f"<p><b>{html.escape(self.mechanism.name)}</b>: {html.escape(str(self.mobility))}; "
             f"{len(self.t)} times from {self.t[0]:g} to {self.t[-1]:g} s; "
             f"largest residual {self.stats.position_residual:.1e}</p>"
-            f"<table><tr><th>quantity</th><th>min</th><th>max</th></tr>{body}</table>"
+            f"{moving}"
+            "<details><summary>Least and largest values</summary>"
+            "<table><tr><th>quantity</th><th>min</th><th>max</th></tr>"
+            f"{body}</table></details>"
         )
 
     def _frame(self, b: int, place: tuple[float, float], turned: float = 0.0) -> FrameView:

@@ -62,7 +62,8 @@ def moving(solution: Solution) -> Moving:
     """The skeleton of a solution."""
     m, tracks = solution.mechanism, tracks_of(solution)
     steps = _steps(solution.t, SHAPES)
-    looked = [int(step) for step in steps[np.linspace(0, len(steps) - 1, LOOKED_AT).round().astype(int)]]
+    places = np.unique(np.linspace(0, len(steps) - 1, LOOKED_AT).round().astype(int))
+    looked = [int(step) for step in steps[places]]
     colours = {name: f"body:{name}" for name in m.bodies if name != "ground"}
     steady = steady_of(m, [tracks.pose(step) for step in looked], colours, Recorder)
     drawn = {step: _drawn(solution, tracks, steady, colours, step) for step in looked}

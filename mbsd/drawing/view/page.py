@@ -1,0 +1,136 @@
+"""The skeleton in motion as one small HTML page, from a solution alone: for notebooks, or as a file."""
+
+from __future__ import annotations
+
+import html
+import json
+import os
+from importlib import resources
+from typing import Any
+
+import numpy as np
+
+from mbsd.base.arguments import finite_number
+from mbsd.base.errors import ModelError
+from mbsd.base.files import write_whole
+from mbsd.drawing.view.carried import moving
+from mbsd.drawing.view.carriers import Carrier
+from mbsd.results.solution import Solution
+
+MOST = 361
+"""Times of the motion that a page has, at most."""
+FIGURES = 6
+HEIGHT = 380
+"""Pixels in a notebook."""
+PAGE = """<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<title>{title}</title>
+<style>
+:root {{ color-scheme: light dark; }}
+html, body {{ margin: 0; height: 100%; font: 13px system-ui, sans-serif; }}
+body {{ display: grid; grid-template-rows: minmax(0, 1fr) auto; background: #fff; color: #20252b; }}
+canvas {{ width: 100%; height: 100%; display: block; }}
+div {{ display: flex; gap: 10px; align-items: center; padding: 6px 12px; border-top: 1px solid #dfe3e8; }}
+button {{ width: 34px; height: 28px; border: 1px solid #9aa5b3; border-radius: 7px; background: none; color: inherit;
+  cursor: pointer; }}
+input {{ flex: 1; accent-color: #c2410c; }}
+output {{ min-width: 62px; text-align: right; font-variant-numeric: tabular-nums; }}
+@media (prefers-color-scheme: dark) {{
+  body {{ background: #10141b; color: #e6e9ee; }} div {{ border-color: #252c37; }}
+}}
+</style></head>
+<body><canvas aria-label="{title}"></canvas>
+<div><button type="button"></button>
+<input type="range" min="0" max="1000" step="1" aria-label="Time"><output></output></div>
+<script>
+{player}(document.body, {data});
+</script></body></html>
+"""
+
+
+class View:
+    """A page that a notebook shows where it stands; ``html`` is the page."""
+
+    def __init__(self, page: str, height: int) -> None:
+        self.html, self._height = page, height
+
+    def _repr_html_(self) -> str:
+        inside = html.escape(self.html)
+        return (
+            f'<iframe srcdoc="{inside}" sandbox="allow-scripts" style="width:100%;height:{self._height}px;border:1px '
+            'solid #9aa5b355;border-radius:8px" title="the mechanism in motion"></iframe>'
+        )
+
+    def __repr__(self) -> str:
+        return f"<View, {len(self.html) / 1e3:.0f} kB of HTML>"
+
+
+def view(sol: Solution, path: str | os.PathLike[str] | None, height: float) -> View:
+    """See :meth:`mbsd.results.solution.Solution.view`."""
+    height = finite_number(f"{sol.mechanism.name}: view: height (pixels)", height)
+    if height < 120:
+        raise ModelError(f"{sol.mechanism.name}: view: height is {height:g} pixels; give 120 or more")
+    if len(sol.t) < 2:
+        raise ModelError(f"{sol.mechanism.name}: the solution has one time; view() shows a motion, draw() a pose")
+    player = resources.files("mbsd.drawing.view").joinpath("player.js").read_text("utf-8").strip()
+    data = json.dumps(_data(sol), separators=(",", ":"), ensure_ascii=False).replace("</", "<\\/")
+    title = html.escape(sol.mechanism.name.replace("_", " "))
+    page = PAGE.format(title=title, player=player.replace("</", "<\\/"), data=data)
+    if path is not None:
+        write_whole(path, page.encode())
+    return View(page, round(height))
+
+
+def _data(sol: Solution) -> dict[str, Any]:
+    found = moving(sol)
+    kept = np.unique(np.linspace(0, len(sol.t) - 1, MOST).round().astype(int))
+    views = {name: sol.body(name) for name in sol.mechanism.bodies if name != "ground"}
+    traces = [sol.point(name) for name in sol.mechanism.traces]
+    return {
+        "name": sol.mechanism.name,
+        "unit": _short(found.steady.unit),
+        "low": _short(found.steady.low),
+        "high": _short(found.steady.high),
+        "t": _short(sol.t[kept], 10),
+        "loops": sol.period is not None,
+        "bodies": {
+            name: [_short(values[kept], 8) for values in (one.x, one.y, one.theta)] for name, one in views.items()
+        },
+        "times": _short(found.times, 10),
+        "paths": [_short(np.stack([one.x[kept], one.y[kept]], axis=1).ravel()) for one in traces],
+        "strokes": [
+            {
+                "points": _short(one.stroke.points.ravel()),
+                "closed": one.stroke.closed,
+                "ink": one.stroke.ink,
+                "fill": one.stroke.fill,
+                "alpha": one.stroke.alpha,
+                "width": one.stroke.width,
+                "dash": list(one.stroke.dash),
+                "by": _by(one.carrier),
+                "shapes": [_short(shape.ravel()) for shape in one.shapes],
+            }
+            for one in sorted(found.strokes, key=lambda one: one.stroke.order)
+        ],
+        "names": [
+            {
+                "text": label.text.replace("_", " "),
+                "points": _short(label.anchor),
+                "off": _short(label.clearance * found.steady.unit),
+                "ink": label.colour,
+                "by": _by(carrier),
+            }
+            for label, carrier in found.names
+        ],
+    }
+
+
+def _by(carrier: Carrier) -> list[Any]:
+    return [carrier.kind, *([end.body, end.x, end.y] for end in carrier.ends)]
+
+
+def _short(values: Any, figures: int = FIGURES) -> Any:
+    """Numbers with so many figures."""
+    if np.ndim(values) == 0:
+        return float(f"{float(values):.{figures}g}")
+    return [float(f"{value:.{figures}g}") for value in np.asarray(values, float).tolist()]

@@ -1,0 +1,137 @@
+// Plays a skeleton on a canvas: {name, unit, low, high, t, loops, bodies: {name: [x, y, theta]}, times, strokes, names}.
+// What carries a stroke is told in carried.py. Plain JavaScript, no libraries.
+(function (root, data) {
+  "use strict";
+  const LIGHT = { ink: "#20252b", quiet: "#5d6670", paper: "#ffffff", faint: "#e9ecef", driver: "#c2410c", load: "#4b5563", wrong: "#c81e1e" };
+  const DARK = { ink: "#e6e9ee", quiet: "#98a3b1", paper: "#10141b", faint: "#222a35", driver: "#ff8a4c", load: "#a9b6c6", wrong: "#ff6b6b" };
+  const BODIES = {
+    light: ["#0b62a8", "#00805e", "#a83a82", "#8a6d00", "#5a4fcf", "#3b7d8c", "#8f4a1d", "#4d6b1f"],
+    dark: ["#5db2ff", "#37d3a4", "#f08bd0", "#e2bd4b", "#a59bff", "#74cde0", "#e89a68", "#a9cf6b"],
+  };
+  const canvas = root.querySelector("canvas"), g = canvas.getContext("2d"), button = root.querySelector("button");
+  const bar = root.querySelector("input"), time = root.querySelector("output"), dark = matchMedia("(prefers-color-scheme: dark)");
+  const start = data.t[0], end = data.t[data.t.length - 1], span = end - start || 1, order = Object.keys(data.bodies);
+  const seconds = data.loops ? 4 : Math.min(Math.max(span, 2), 12), digits = Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(span))));
+  let t = start, playing = !matchMedia("(prefers-reduced-motion: reduce)").matches, last = 0, held = 0, scale = 1, middle = [0, 0];
+
+  function pose(body, at) {
+    const track = data.bodies[body];
+    if (!track) return [0, 0, 0];
+    let low = 0, high = data.t.length - 2;
+    while (low < high) { const half = (low + high + 1) >> 1; if (data.t[half] <= at) low = half; else high = half - 1; }
+    const part = Math.min(Math.max((at - data.t[low]) / (data.t[low + 1] - data.t[low] || 1), 0), 1);
+    return track.map((values) => values[low] + part * (values[low + 1] - values[low]));
+  }
+  function place(end, at) {
+    const [x, y, theta] = pose(end[0], at), c = Math.cos(theta), s = Math.sin(theta);
+    return [x + c * end[1] - s * end[2], y + s * end[1] + c * end[2]];
+  }
+  function turn(points, from, to, angle) {
+    const c = Math.cos(angle), s = Math.sin(angle), out = [];
+    for (let k = 0; k < points.length; k += 2) {
+      const u = points[k] - from[0], v = points[k + 1] - from[1];
+      out.push(to[0] + c * u - s * v, to[1] + s * u + c * v);
+    }
+    return out;
+  }
+  function moved(one) {
+    const [kind, ...ends] = one.by;
+    if (kind === "body") {
+      const a = pose(ends[0][0], start), b = pose(ends[0][0], t);
+      return turn(one.points, a, b, b[2] - a[2]);
+    }
+    if (kind === "place") return turn(one.points, place(ends[0], start), place(ends[0], t), 0);
+    if (kind === "line") {
+      const [a, b] = ends.map((end) => place(end, start)), [c, d] = ends.map((end) => place(end, t)), out = [];
+      const before = Math.hypot(b[0] - a[0], b[1] - a[1]), after = Math.hypot(d[0] - c[0], d[1] - c[1]);
+      if (!before || !after) return turn(one.points, a, c, 0);
+      const p = (b[0] - a[0]) / before, q = (b[1] - a[1]) / before, r = (d[0] - c[0]) / after, s = (d[1] - c[1]) / after;
+      for (let k = 0; k < one.points.length; k += 2) {
+        const x = one.points[k] - a[0], y = one.points[k + 1] - a[1], u = (x * p + y * q) * after / before, v = y * p - x * q;
+        out.push(c[0] + u * r - v * s, c[1] + u * s + v * r);
+      }
+      return out;
+    }
+    if (kind === "shapes") {
+      let k = 0;
+      while (k + 2 < data.times.length && data.times[k + 1] <= t) k++;
+      const part = Math.min(Math.max((t - data.times[k]) / (data.times[k + 1] - data.times[k] || 1), 0), 1);
+      return one.shapes[k].map((value, n) => (1 - part) * value + part * one.shapes[k + 1][n]);
+    }
+    return one.points;
+  }
+  const pixel = (x, y) => [middle[0] + scale * (x - (data.low[0] + data.high[0]) / 2), middle[1] - scale * (y - (data.low[1] + data.high[1]) / 2)];
+  function draw() {
+    const colours = dark.matches ? DARK : LIGHT, bodies = BODIES[dark.matches ? "dark" : "light"];
+    const of = (role) => role.startsWith("body:") ? bodies[Math.max(order.indexOf(role.slice(5)), 0) % bodies.length] : colours[role] || colours.ink;
+    const ratio = Math.min(devicePixelRatio || 1, 2), width = canvas.clientWidth, height = canvas.clientHeight, pad = 3 * data.unit;
+    canvas.width = width * ratio;
+    canvas.height = height * ratio;
+    scale = Math.min(width / (data.high[0] - data.low[0] + 2 * pad), height / (data.high[1] - data.low[1] + 2 * pad)) * 0.94;
+    middle = [width / 2, height / 2];
+    g.setTransform(ratio, 0, 0, ratio, 0, 0);
+    g.fillStyle = colours.paper;
+    g.fillRect(0, 0, width, height);
+    g.lineJoin = g.lineCap = "round";
+    for (const one of data.paths) {
+      g.beginPath();
+      for (let k = 0; k < one.length; k += 2) g.lineTo(...pixel(one[k], one[k + 1]));
+      g.globalAlpha = 0.55;
+      g.strokeStyle = colours.driver;
+      g.lineWidth = 1.5;
+      g.stroke();
+    }
+    for (const one of data.strokes) {
+      const points = moved(one), line = one.width * 1.15;
+      g.beginPath();
+      for (let k = 0; k < points.length; k += 2) g.lineTo(...pixel(points[k], points[k + 1]));
+      if (one.closed) g.closePath();
+      if (one.fill) { g.globalAlpha = one.alpha; g.fillStyle = of(one.fill); g.fill(); }
+      g.globalAlpha = one.closed ? 1 : one.alpha;
+      if (line) { g.lineWidth = line; g.setLineDash(one.dash.map((dash) => dash * line)); g.strokeStyle = of(one.ink); g.stroke(); g.setLineDash([]); }
+    }
+    g.globalAlpha = 1;
+    g.font = "500 12px system-ui, sans-serif";
+    g.textBaseline = "middle";
+    const taken = [];
+    for (const one of data.names) {
+      const at = moved(one), [x, y] = pixel(at[0], at[1]), off = one.off * scale * 0.75 + 3, w = g.measureText(one.text).width;
+      const sides = [[x + off, y - off - 4], [x + off, y + off + 6], [x - off - w, y - off - 4], [x - off - w, y + off + 6], [x - w / 2, y - 2 * off - 6]];
+      const free = sides.find(([a, b]) => !taken.some(([c, d, e]) => a < c + e + 4 && c < a + w + 4 && Math.abs(b - d) < 15)) || sides[0];
+      taken.push([...free, w]);
+      g.lineWidth = 4;
+      g.strokeStyle = colours.paper;
+      g.strokeText(one.text, ...free);
+      g.fillStyle = of(one.ink);
+      g.fillText(one.text, ...free);
+    }
+    bar.value = String((1000 * (t - start)) / span);
+    time.textContent = `${t.toFixed(digits)} s`;
+  }
+  function step(now) {
+    if (!playing) return;
+    const passed = last ? Math.min((now - last) / 1000, 0.25) : 0;
+    last = now;
+    t += (passed * span) / seconds;
+    if (t >= end) {
+      held += data.loops ? 1 : passed;
+      t = held >= 1 ? (data.loops ? start + ((t - start) % span) : start) : end;
+      if (held >= 1) held = 0;
+    }
+    draw();
+    requestAnimationFrame(step);
+  }
+  function play(on) {
+    playing = on;
+    last = 0;
+    button.textContent = on ? "❚❚" : "▶";
+    button.setAttribute("aria-label", on ? "Pause" : "Play");
+    if (on) requestAnimationFrame(step);
+  }
+  button.addEventListener("click", () => play(!playing));
+  bar.addEventListener("input", () => { play(false); t = start + (span * bar.valueAsNumber) / 1000; draw(); });
+  dark.addEventListener("change", draw);
+  new ResizeObserver(draw).observe(canvas);
+  play(playing);
+  draw();
+})

@@ -1,0 +1,109 @@
+"""One worker as the coordinator sees it: what it has to do, how fast it is, how often it failed."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass, field
+from typing import Any
+
+AHEAD = 2
+"""Groups that a worker has, so that it need not wait for the next."""
+TARGET = 4.0
+"""Seconds that a group of orders takes."""
+LARGEST = 64
+"""Orders in a group."""
+TIMES = 10.0
+"""Of what was expected: a worker that is silent for longer counts as stalled."""
+FAILURES = 3
+"""In a row, after which a worker is left out."""
+REST = 5.0
+"""Seconds that a worker rests after a failure; twice as many after the next."""
+
+
+@dataclass(eq=False)
+class Group:
+    """Orders that a worker has got together."""
+
+    keys: list[str]
+    future: Any = None
+
+
+@dataclass(eq=False)
+class Hand:
+    """A worker."""
+
+    name: str
+    patience: float
+    """Seconds of silence that are never too long."""
+    fit: bool = False
+    aside: str = ""
+    """Why it is left out."""
+    stalled: bool = False
+    each: float = math.inf
+    """Seconds an order; infinite as long as it is not known."""
+    groups: list[Group] = field(default_factory=list)
+    lacks: list[str] = field(default_factory=list)
+    """Contents that it asked for."""
+    failures: int = 0
+    resting: float = 0.0
+    began: float = 0.0
+    """When it got at its first group."""
+    made: int = 0
+
+    def is_ready(self) -> bool:
+        """Whether it can get another group."""
+        ahead = AHEAD if math.isfinite(self.each) else 1
+        able = self.fit and not self.aside and not self.stalled and time.monotonic() >= self.resting
+        return able and len(self.groups) < ahead
+
+    def size(self, fair: int) -> int:
+        """Orders of its next group, ``fair`` at most."""
+        if not math.isfinite(self.each):
+            return 1
+        return max(1, min(fair, LARGEST, int(TARGET / max(self.each, 1e-6))))
+
+    def take(self, group: Group) -> None:
+        """Count a group as given to it."""
+        if not self.groups:
+            self.began = time.monotonic()
+        self.groups.append(group)
+
+    def drop(self, group: Group) -> None:
+        """It is through with a group."""
+        if group in self.groups:
+            self.groups.remove(group)
+            self.began = time.monotonic()
+
+    def count(self, done: int, seconds: float) -> None:
+        """It did so many orders in so many seconds."""
+        if done:
+            pace = seconds / done
+            # The first order loads and builds, which says too much of the others.
+            known = math.isfinite(self.each) and self.made > 1
+            self.each = 0.6 * self.each + 0.4 * pace if known else pace
+            self.made += done
+            self.failures, self.stalled = 0, False
+
+    def fail(self, reason: str) -> bool:
+        """It failed; True where it is left out from now on."""
+        self.failures += 1
+        self.resting = time.monotonic() + REST * 2 ** (self.failures - 1)
+        if self.failures >= FAILURES:
+            self.aside = reason
+        return bool(self.aside)
+
+    def is_overdue(self) -> bool:
+        """Whether it has been silent for much longer than its group should take."""
+        if not self.groups or self.stalled:
+            return False
+        expected = self.each * len(self.groups[0].keys) if math.isfinite(self.each) else self.patience
+        return time.monotonic() - self.began > max(TIMES * expected if self.made else 0.0, self.patience)
+
+    def remaining(self) -> dict[str, float]:
+        """Seconds until each of its orders should be done, the last one last; infinite where its pace is unknown."""
+        passed = time.monotonic() - self.began
+        keys = [key for group in self.groups for key in group.keys]
+        if not math.isfinite(self.each) or self.stalled:
+            return dict.fromkeys(keys, math.inf)
+        return {key: max((at + 1) * self.each - passed, 0.0) for at, key in enumerate(keys)}

@@ -1,0 +1,35 @@
+"""What a machine works with. Machines with the same identity give the same results, as far as their processors do."""
+
+from __future__ import annotations
+
+import functools
+import platform
+from collections.abc import Iterable, Mapping
+from importlib import metadata
+
+from shared.stage.files import sources_hash
+from shared.stage.paths import ROOT
+
+PACKAGES = ("bpy", "distributed", "msgspec", "numpy", "pillow")
+"""Those whose version decides what comes out of a picture, or how machines speak with each other."""
+
+
+@functools.cache
+def identity(rooms: Iterable[str], packages: Iterable[str] = PACKAGES) -> dict[str, str]:
+    """Python, packages, and the sources of these rooms, by name.
+
+    It is found once in a process, so a worker tells what it was started with.
+    """
+    found = {"Python": platform.python_version()}
+    for package in packages:
+        try:
+            found[package] = metadata.version(package)
+        except metadata.PackageNotFoundError:
+            found[package] = "none"
+    return found | {f"sources of {room}": sources_hash(ROOT / room)[:12] for room in rooms}
+
+
+def differences(theirs: Mapping[str, str], ours: Mapping[str, str]) -> str:
+    """Where another machine differs from this one: ``numpy 2.4.0, here 2.5.5``; empty where it does not."""
+    names = [name for name in ours if theirs.get(name) != ours[name]]
+    return "; ".join(f"{name} {theirs.get(name, 'unknown')}, here {ours[name]}" for name in names)

@@ -1,0 +1,139 @@
+"""Orders on workers: all done, each once, whoever dies, fails, stalls or is slow."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import dask.config
+import distributed
+import pytest
+
+from shared.cluster import deal, hand
+from shared.cluster.contents import content_hash
+from shared.cluster.deal import Deal
+from shared.stage.errors import UserError
+from tests.shared.cluster import acting
+
+ROOMS = ("shared/cluster",)
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[distributed.Client]:
+    """Three workers within this process."""
+    with (
+        pytest.MonkeyPatch.context() as patch,
+        dask.config.set({"distributed.client.scheduler-info-interval": "200ms"}),
+    ):
+        patch.setenv("MBSD_OUT", str(tmp_path_factory.mktemp("out")))
+        with (
+            distributed.LocalCluster(
+                n_workers=3, threads_per_worker=1, processes=False, dashboard_address=None
+            ) as cluster,
+            distributed.Client(cluster, set_as_default=False) as client,
+        ):
+            yield client
+
+
+@pytest.fixture(autouse=True)
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(hand, "REST", 0.05)
+    monkeypatch.setattr(deal, "SURVEY", 0.1)
+    monkeypatch.setattr(deal, "TICK", 0.02)
+
+
+def dealt(client: distributed.Client, work: Callable[..., Any], orders: dict[str, Any], **more: Any) -> Deal:
+    content = b"in common"
+    name = content_hash(content)
+    return Deal(client, work, name, {name: lambda: content}, orders, ROOMS, **more)
+
+
+def test_all_orders_are_done_once_with_their_inputs(client: distributed.Client) -> None:
+    orders = {f"k{n}": n for n in range(200)}
+    found = list(dealt(client, acting.doubled, orders).results())
+    assert {key: value for key, value, _ in found} == {f"k{n}": b"in common" + f"{n}{n}".encode() for n in range(200)}
+    assert len(found) == 200
+    assert len({worker for _, _, worker in found}) == 3
+
+
+def test_inputs_are_sent_only_where_they_lack(client: distributed.Client) -> None:
+    asked = []
+    content = os.urandom(1000)
+    name = content_hash(content)
+
+    def give() -> bytes:
+        asked.append(1)
+        return content
+
+    for _ in range(2):
+        orders = {f"k{n}": n for n in range(30)}
+        list(Deal(client, acting.doubled, name, {name: give}, orders, ROOMS).results())
+    assert 1 <= len(asked) <= 3  # these three have one folder
+
+
+def test_a_worker_that_fails_gives_its_orders_to_others(client: distributed.Client) -> None:
+    sick = sorted(client.scheduler_info(n_workers=-1)["workers"])[0]
+    work = dealt(client, acting.refusing, {f"k{n}": sick for n in range(20)})
+    found = list(work.results())
+    assert len(found) == 20
+    assert sick not in {value for _, value, _ in found}
+
+
+def test_an_order_that_fails_everywhere_is_told(client: distributed.Client) -> None:
+    orders = {f"k{n}": "never" for n in range(5)} | {"bad": "always"}
+    with pytest.raises(UserError, match="frame of always: the disk is full"):
+        list(dealt(client, acting.refusing, orders).results())
+
+
+def test_a_worker_that_stalls_keeps_nothing_back(client: distributed.Client) -> None:
+    stalling = sorted(client.scheduler_info(n_workers=-1)["workers"])[0]
+    started = time.monotonic()
+    work = dealt(client, acting.hanging, {f"k{n}": stalling for n in range(12)}, patience=0.5)
+    found = list(work.results())
+    assert len(found) == 12
+    assert time.monotonic() - started < 3.0 or stalling in {value for _, value, _ in found}
+    time.sleep(3.0)  # the sleeper wakes up before the next test
+
+
+def test_workers_that_have_nothing_to_do_take_over_from_slow_ones(client: distributed.Client) -> None:
+    """The last order is with a worker that should take long; another does it as well, and one answer is kept."""
+    orders = {f"k{n}": 0.05 for n in range(12)}
+    work = dealt(client, acting.slow, orders)
+    found = [key for key, _, _ in work.results()]
+    assert Counter(found) == Counter(orders.keys())
+
+
+def test_workers_with_other_sources_are_refused_by_name(client: distributed.Client) -> None:
+    work = dealt(client, acting.doubled, {"k": 1})
+    work.ours = work.ours | {"numpy": "0.1"}
+    name = sorted(client.scheduler_info(n_workers=-1)["workers"])[0]
+    with pytest.raises(UserError, match=f"{name}: numpy .*, here 0.1") as refusal:
+        list(work.results())
+    assert "make worker" in str(refusal.value)
+
+
+def test_no_worker_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(deal, "WAIT", 0.3)
+    with (
+        distributed.LocalCluster(n_workers=0, processes=False, dashboard_address=None) as cluster,
+        distributed.Client(cluster, set_as_default=False) as client,
+        pytest.raises(UserError, match="for there is none"),
+    ):
+        list(dealt(client, acting.doubled, {"k": 1}).results())
+
+
+def test_killed_workers_lose_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MBSD_OUT", str(tmp_path / "out"))
+    orders = {f"k{n}": str(tmp_path / ("dies" if n == 5 else f"lives{n}")) for n in range(40)}
+    with (
+        dask.config.set({"distributed.client.scheduler-info-interval": "200ms"}),
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        distributed.Client(cluster, set_as_default=False) as client,
+    ):
+        found = list(dealt(client, acting.deadly, orders).results())
+    assert Counter(key for key, _, _ in found) == Counter(orders.keys())
+    assert (tmp_path / "dies").exists()

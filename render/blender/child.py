@@ -46,14 +46,14 @@ def blender(job: Job, longest: float = 0.0) -> Iterator[Iterator[Answer]]:
     for folder in (home / "user", home / "cache"):
         refuse_links(folder)
     with terminable(), scratch_folder(home) as scratch:
-        child = _Child(home, scratch, Patience(longest))
+        child = Child(home, scratch, Patience(longest))
         try:
             yield child.answers(job)
         finally:
             child.stop()
 
 
-class _Child:
+class Child:
     """One Blender process after the other, until the job is done."""
 
     def __init__(self, home: Path, scratch: Path, patience: Patience) -> None:
@@ -67,7 +67,7 @@ class _Child:
         hung = False
         while True:
             try:
-                for answer in self._attempt(job):
+                for answer in self.attempt(job):
                     if answer.key:
                         left.pop(answer.key, None)
                         hung = False
@@ -91,7 +91,8 @@ class _Child:
                 warn("film", f"{silent}; it is started again")
             job = msgspec.structs.replace(job, pictures=list(left.values()))
 
-    def _attempt(self, job: Job) -> Iterator[Answer]:
+    def attempt(self, job: Job) -> Iterator[Answer]:
+        """The answers of one process; raises Silent, Grown or UserError if it does not make all of the job."""
         paper = self.scratch / "job.json"
         write_bytes(paper, msgspec.json.encode(job))
         self.patience.pictures, self.doing = 0, "starts"

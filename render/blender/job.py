@@ -27,6 +27,8 @@ class Job(msgspec.Struct, kw_only=True, frozen=True):
     states: list[State]
     """Consecutive frames; a blurred picture needs its neighbours."""
     pictures: list[Picture] = []
+    waits: bool = False
+    """Takes more pictures afterwards, a JSON line each on its standard input, until that closes."""
     blend: str | None = None
     width: int = 1280
     height: int = 720

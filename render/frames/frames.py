@@ -5,18 +5,20 @@ from __future__ import annotations
 import math
 import shutil
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from render.blender.child import blender
-from render.blender.job import Job, Picture
+from render.blender.job import Answer, Job, Picture
 from render.film.film import Film
 from render.film.inputs import blender_version, read_film, stage_key
 from render.film.scene import State
 from render.frames.keys import frame_key, scene_key
 from render.frames.store import FrameIndex, FrameStore, Timing
 from render.presets import Preset
+from shared.cluster.address import address
 from shared.stage import jsonfile
 from shared.stage.console import duration, progress, say, warn
 from shared.stage.errors import UserError
@@ -87,9 +89,12 @@ class Tally:
     cycles: float = 0.0
 
     def write(self, store: FrameStore, preset: Preset, wall: float) -> None:
-        """Keep it in timing.json, unless this was but the rest of a longer run: Blender's start would dominate it."""
+        """Keep it in timing.json, unless this was but the rest of a longer run: Blender's start would dominate it.
+
+        What a cluster made says nothing of this machine.
+        """
         longer = store.read_timing()
-        if not self.rendered or (longer is not None and self.rendered < longer.rendered / 4):
+        if not self.rendered or address() or (longer is not None and self.rendered < longer.rendered / 4):
             return
         timing = Timing(
             preset=preset.name,
@@ -167,8 +172,8 @@ def render(pictures: Pictures, store: FrameStore, frames: Sequence[int], what: s
     if known is not None:
         each, source = known
         say("frames", f"{name}: forecast {duration(each * len(missing))} at {duration(each)} a frame, {source}")
-    each = known[0] if known else 0.0
-    with blender(pictures.job(missing, store), each) as answers, progress(f"{name} {preset.name}", len(missing)) as bar:
+    each, label = known[0] if known else 0.0, f"{name} {preset.name}"
+    with _makers(pictures.job(missing, store), store, each) as answers, progress(label, len(missing)) as bar:
         for answer in answers:
             if answer.device:
                 tally.device = answer.device
@@ -180,6 +185,15 @@ def render(pictures: Pictures, store: FrameStore, frames: Sequence[int], what: s
                 whole = duration(answer.cycles * (len(missing) - 1))
                 say("frames", f"{name}: forecast {whole} more, from {answer.cycles:.1f} s for the first frame")
             bar.advance()
+
+
+def _makers(job: Job, store: FrameStore, longest: float) -> AbstractContextManager[Iterator[Answer]]:
+    """A Blender process here, or the workers of the CLUSTER."""
+    if not address():
+        return blender(job, longest)
+    from render.frames import on_cluster
+
+    return on_cluster.workers(job, store)
 
 
 def _forecast(preset: Preset, store: FrameStore) -> tuple[float, str] | None:

@@ -19,7 +19,7 @@ from render.blender.picture_file import is_as_named
 from shared.stage import jsonfile, locks
 from shared.stage.console import say
 from shared.stage.errors import Busy, UserError
-from shared.stage.files import refusal
+from shared.stage.files import refusal, write_bytes
 from shared.stage.paths import refuse_links
 
 WAIT = 10.0
@@ -91,6 +91,13 @@ class FrameStore:
             if is_as_named(path, content):
                 return content
         return None
+
+    def put(self, name: str, content: bytes) -> None:
+        """Keep a picture that was made elsewhere. Raises UserError if these are not its bytes, or the disk is full."""
+        path = self.folder / name
+        if not is_as_named(path, content):
+            raise UserError(f"{path.name} came damaged from where it was rendered; run the same command again")
+        write_bytes(path, content)
 
     @contextmanager
     def locked(self) -> Iterator[None]:

@@ -136,7 +136,7 @@ class Deal:
                 return
         reasons = "".join(f"; {name}: {why}" for name, why in sorted((self._refused | self._aside()).items()))
         raise UserError(
-            f"no worker at {self.client.scheduler.address} can do this{reasons or ', for there is none'}; start workers "
+            f"no worker of the cluster can do this{reasons or ', for there is none'}; start workers "
             "with the same lock file and sources (make worker), or leave CLUSTER out"
         )
 

@@ -9,15 +9,16 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
-from render.blender.job import Answer, Job
+from render.blender.job import Answer, Job, Picture
 from render.blender.worker.libraries import missing_library
-from render.blender.worker.parent import die_with_parent
+from render.blender.worker.parent import die_with_its_thread, die_with_parent
 from shared.stage.errors import UserError
 
 
@@ -30,8 +31,11 @@ def main() -> int:
         answers.write(msgspec.json.encode(Answer(**fields)).decode() + "\n")
         answers.flush()
 
-    die_with_parent()
+    lines = die_with_parent()
     job = msgspec.json.decode(Path(sys.argv[1]).read_bytes(), type=Job)
+    if not job.waits:  # else it is kept from picture to picture by a process whose threads come and go
+        die_with_its_thread()
+    more = (msgspec.json.decode(line, type=Picture) for line in lines) if job.waits else iter(())
     answer(doing="loads Blender")
     try:
         import bpy  # noqa: F401  # first, so that a missing system library is told as such
@@ -39,15 +43,15 @@ def main() -> int:
         answer(error=missing_library(str(error)))
         return 1
     try:
-        _work(job, answer)
+        _work(job, more, answer)
     except UserError as error:
         answer(error=str(error))
         return 1
     return 0
 
 
-def _work(job: Job, answer: Callable[..., None]) -> None:
-    """Build the scene and make what the job asks for."""
+def _work(job: Job, more: Iterator[Picture], answer: Callable[..., None]) -> None:
+    """Build the scene and make what the job asks for, and ``more``."""
     import bpy
 
     from render.blender.scene.built_scene import build
@@ -67,7 +71,7 @@ def _work(job: Job, answer: Callable[..., None]) -> None:
     picture_settings(built.scene, job)
     if built.front is not None:
         front_settings(built.front, built.scene, job)
-    for picture in job.pictures:
+    for picture in chain(job.pictures, more):
         built.show(picture.state)
         over = None
         with signs_of_life(lambda doing, name=picture.name: answer(doing=f"renders {name}: {doing}")):

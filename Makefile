@@ -19,6 +19,8 @@ FOLDER ?=
 ONLY ?=
 WATTS ?=
 SEED ?= 1
+CLUSTER ?=
+CLUSTER_TLS ?=
 PYTEST ?= -n 2 --dist loadscope --no-loadscope-reorder
 
 # Words of the user are taken as they are: make expands nothing in them, and commands get them through the environment,
@@ -40,8 +42,11 @@ override FOLDER := $(value FOLDER)
 override ONLY := $(value ONLY)
 override SEED := $(value SEED)
 override WATTS := $(value WATTS)
+override CLUSTER := $(value CLUSTER)
+override CLUSTER_TLS := $(value CLUSTER_TLS)
 override MECHANISM = $(subst -,_,$*)
 export PRESET SHEET_PRESET FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N HOST FOLDER ONLY WATTS SEED
+export CLUSTER CLUSTER_TLS
 
 PRESETS := draft preview production final
 ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
@@ -196,6 +201,15 @@ showreel: install ## the finished films of PRESET, each under its title, as one;
 
 fetch: install ## bring the films of another machine home, what changed alone: HOST=user@machine FOLDER=mbsd
 	@$(PYTHON) -m studio.fetch --folder="$$FOLDER" -- "$$HOST"
+
+scheduler: install ## of a cluster: CLUSTER=tcp://127.0.0.1:8786 is its address; HOST=address for other machines
+	@$(PYTHON) -m shared.cluster scheduler --host="$$HOST"
+
+worker: install ## makes frames for whoever gives the same CLUSTER=tcp://scheduler:8786; HOST=address of this machine
+	@$(PYTHON) -m shared.cluster worker --host="$$HOST" -- "$$CLUSTER"
+
+certificates: install ## CLUSTER_TLS=folder: so that a cluster on several machines lets nobody else in
+	@$(PYTHON) -m shared.cluster certificates -- "$$CLUSTER_TLS"
 
 new: install ## a new mechanism that already runs: make new NAME=my_linkage KIND=driven|simulated
 	@$(STAGE) new --kind="$${KIND:-driven}" -- "$$NAME"

@@ -46,7 +46,9 @@ def certificates() -> tuple[str, str, str] | None:
     ca, cert, key = (Path(folder).expanduser() / name for name in FILES)
     for path in (ca, cert, key):
         if not path.is_file():
-            raise UserError(f"CLUSTER_TLS={folder}: {path.name} is missing; make certificates DIR={folder} makes all")
+            raise UserError(
+                f"CLUSTER_TLS={folder}: {path.name} is missing; make certificates CLUSTER_TLS={folder} makes all"
+            )
     return str(ca), str(cert), str(key)
 
 

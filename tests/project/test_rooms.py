@@ -59,7 +59,7 @@ def test_import_linter_sees_every_other_folder() -> None:
                 assert (file.parent / "__init__.py").is_file(), file
 
 
-HEAVY = {"bpy", "cadquery", "trimesh", "manifold3d", "matplotlib", "numba", "scipy", "rich"}
+HEAVY = {"bpy", "cadquery", "distributed", "trimesh", "manifold3d", "matplotlib", "numba", "scipy", "rich"}
 STAGES = [
     *(f"mechanisms.stages.{room}.stage" for room in ("parts", "solve", "clearance", "shot")),
     "render.plots", "render.frames.still", "render.frames.frames", "render.frames.film", "render.frames.blend",

@@ -129,7 +129,7 @@ def test_blenders_side_takes_nothing_from_outside_that_no_key_holds():
 
 
 def test_every_shared_file_that_decides_what_is_seen_is_in_the_key_of_the_stages():
-    """What motion and parts hold is in it anyway; shared/stage only finds and checks files, shared/cluster deals out."""
+    """What motion and parts hold is in it anyway; shared/stage finds and checks files, shared/cluster deals out."""
     always = {path.stem for path in contract_sources()}
     used: set[str] = set()
     for file in (file for room in ("film", "frames", "blender") for file in (ROOT / "render" / room).rglob("*.py")):

@@ -1,0 +1,116 @@
+"""``python -m shared.cluster scheduler | worker ADDRESS | certificates FOLDER``: what a cluster is made of."""
+
+from __future__ import annotations
+
+import argparse
+import ipaddress
+import os
+import socket
+import sys
+from pathlib import Path
+
+from shared.cluster import address, authority
+from shared.stage.console import run_cli, say
+from shared.stage.errors import UserError
+from shared.stage.paths import ROOT, out_root
+
+
+def main() -> None:
+    """Read the command line; scheduler and worker take the place of this process."""
+    parser = argparse.ArgumentParser(prog="python -m shared.cluster", description="Scheduler, workers, certificates.")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    scheduler = commands.add_parser("scheduler", help="the one that knows all workers")
+    scheduler.add_argument("--port", type=int, default=8786)
+    worker = commands.add_parser("worker", help="takes work; one for each machine, as Blender uses all its cores")
+    worker.add_argument("address", help="of the scheduler: tcp://name:8786 or tls://name:8786")
+    worker.add_argument("--name", default="", help="what it is called; the host's name and a number if not given")
+    for one in (scheduler, worker):
+        one.add_argument("--host", default="", help="address of this machine that others reach; 127.0.0.1 if not given")
+        one.add_argument("--plain", action="store_true", help="without certificates though others reach it")
+    made = commands.add_parser("certificates", help="an authority, a certificate and its key, for all machines")
+    made.add_argument("folder")
+    arguments = parser.parse_args()
+    if arguments.command == "certificates":
+        if not arguments.folder:
+            raise UserError("say where the certificates go: make certificates CLUSTER_TLS=folder")
+        authority.make(Path(arguments.folder))
+        say(
+            "cluster",
+            f"{arguments.folder}: ca.pem, cert.pem, key.pem; copy the folder to every machine, show key.pem to nobody",
+        )
+        return
+    host = arguments.host or "127.0.0.1"
+    refuse_open(host, arguments.plain)
+    os.chdir(ROOT)
+    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH", "")]))
+    if arguments.command == "scheduler":
+        command = scheduler_command(host, arguments.port)
+        scheme = "tls" if address.certificates() else "tcp"
+        say("cluster", f"CLUSTER={scheme}://{host}:{arguments.port}")
+    else:
+        if not arguments.address:
+            raise UserError("say where the scheduler is: make worker CLUSTER=tcp://127.0.0.1:8786")
+        os.environ[address.VARIABLE] = arguments.address
+        address.address()
+        command = worker_command(arguments.address, host, arguments.name)
+    sys.stdout.flush()
+    os.execv(sys.executable, command)
+
+
+def scheduler_command(host: str, port: int) -> list[str]:
+    """Dask's scheduler; its page of measurements is off, as it has no password."""
+    scheme = "tls" if address.certificates() else "tcp"
+    program = [
+        sys.executable,
+        "-m",
+        "distributed.cli.dask_scheduler",
+        "--host",
+        f"{scheme}://{host}",
+        "--port",
+        str(port),
+    ]
+    return [*program, "--no-dashboard", *_tls()]
+
+
+def worker_command(scheduler: str, host: str, name: str) -> list[str]:
+    """Dask's worker, which a nanny starts again when it ends."""
+    folder = out_root() / ".cluster" / "dask"
+    folder.mkdir(parents=True, exist_ok=True)
+    scheme = "tls" if address.certificates() else "tcp"
+    program = [sys.executable, "-m", "distributed.cli.dask_worker", scheduler, "--host", f"{scheme}://{host}"]
+    options = ["--nworkers", "1", "--nthreads", "1", "--memory-limit", "0", "--no-dashboard"]
+    kept = ["--local-directory", str(folder), "--preload", "shared.cluster.preload"]
+    return [*program, *options, *kept, "--name", name or f"{socket.gethostname()}-{os.getpid()}", *_tls()]
+
+
+def refuse_open(host: str, plain: bool) -> None:
+    """Raise UserError for an address that others reach without certificates: a worker runs what it is sent."""
+    if plain or address.certificates() or is_loopback(host):
+        return
+    raise UserError(
+        f"HOST={host} can be reached by others, and a worker runs what it is sent: make certificates, and give their "
+        "folder as CLUSTER_TLS=folder, or say --plain where nobody else can reach that network"
+    )
+
+
+def is_loopback(host: str) -> bool:
+    """Whether only this machine reaches it."""
+    if host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+def _tls() -> list[str]:
+    found = address.certificates()
+    if found is None:
+        return []
+    return [
+        part for name, path in zip(("ca-file", "cert", "key"), found, strict=True) for part in (f"--tls-{name}", path)
+    ]
+
+
+if __name__ == "__main__":
+    run_cli(main)

@@ -1,0 +1,128 @@
+"""Scheduler and worker as they are started by hand, with certificates; addresses that are refused."""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from shared.cluster import authority
+from shared.cluster.__main__ import is_loopback, refuse_open
+from shared.cluster.address import address, connected
+from shared.cluster.contents import Contents, content_hash
+from shared.cluster.deal import Deal
+from shared.stage.errors import UserError
+from shared.stage.paths import ROOT
+from tests.shared.cluster import acting
+
+
+@contextmanager
+def started(*words: str, log: Path) -> Iterator[None]:
+    """A scheduler or worker until the block ends."""
+    with log.open("w") as said:
+        process = subprocess.Popen([sys.executable, "-m", "shared.cluster", *words], cwd=ROOT, stdout=said, stderr=said)
+        try:
+            yield
+        finally:
+            process.terminate()
+            process.wait(timeout=20)
+
+
+def free_port() -> int:
+    with socket.socket() as one:
+        one.bind(("127.0.0.1", 0))
+        return one.getsockname()[1]
+
+
+def test_a_cluster_with_certificates_does_work_and_lets_nobody_else_in(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    authority.make(tmp_path / "certificates")
+    assert (tmp_path / "certificates" / "key.pem").stat().st_mode & 0o077 == 0
+    with pytest.raises(UserError, match="there already"):
+        authority.make(tmp_path / "certificates")
+    port = free_port()
+    monkeypatch.setenv("CLUSTER_TLS", str(tmp_path / "certificates"))
+    monkeypatch.setenv("MBSD_OUT", str(tmp_path / "out"))
+    monkeypatch.setenv("CLUSTER", f"tls://127.0.0.1:{port}")
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    content = b"in common"
+    name = content_hash(content)
+    with (
+        started("scheduler", "--port", str(port), log=tmp_path / "scheduler.log"),
+        started("worker", f"tls://127.0.0.1:{port}", log=tmp_path / "worker.log"),
+    ):
+        end = time.monotonic() + 60
+        while time.monotonic() < end:
+            try:
+                socket.create_connection(("127.0.0.1", port), 1).close()
+                break
+            except OSError:
+                time.sleep(0.2)
+        with connected() as client:
+            work = Deal(client, acting.doubled, name, {name: lambda: content}, {"a": 1, "b": 2}, ("shared/cluster",))
+            assert {key: value for key, value, _ in work.results()} == {"a": b"in common11", "b": b"in common22"}
+        monkeypatch.setattr("shared.cluster.address.TIMEOUT", 1.0)
+        other = tmp_path / "others"
+        authority.make(other)
+        monkeypatch.setenv("CLUSTER_TLS", str(other))
+        with pytest.raises(UserError, match="no scheduler answers"), connected():
+            pass
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ("server", "no address"),
+        ("tcp://server", "no address"),
+        ("http://server:1", "no address"),
+        ("tls://a:1", "CLUSTER_TLS"),
+    ],
+)
+def test_what_is_no_address_is_refused(given: str, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("CLUSTER_TLS", raising=False)
+    monkeypatch.setenv("CLUSTER", given)
+    with pytest.raises(UserError, match=said):
+        address()
+
+
+def test_a_missing_certificate_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CLUSTER_TLS", str(tmp_path))
+    monkeypatch.setenv("CLUSTER", "tls://a:1")
+    with pytest.raises(UserError, match=r"ca\.pem is missing"):
+        address()
+
+
+def test_others_reach_nothing_without_certificates(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("CLUSTER_TLS", raising=False)
+    monkeypatch.delenv("CLUSTER", raising=False)
+    for host in ("127.0.0.1", "localhost", "::1"):
+        assert is_loopback(host)
+        refuse_open(host, plain=False)
+    for host in ("0.0.0.0", "192.0.2.1", "server"):
+        with pytest.raises(UserError, match="runs what it is sent"):
+            refuse_open(host, plain=False)
+        refuse_open(host, plain=True)
+
+
+def test_contents_are_whole_and_the_longest_unused_go(tmp_path: Path) -> None:
+    kept = Contents(tmp_path, limit=2500)
+    parts = [os.urandom(1000) for _ in range(3)]
+    names = [content_hash(part) for part in parts]
+    for name, part in zip(names[:2], parts[:2], strict=True):
+        kept.put({name: part})
+    os.utime(tmp_path / names[0], (1e9, 2e9))
+    os.utime(tmp_path / names[1], (1e9, 1e9))
+    kept.put({names[2]: parts[2]})
+    assert kept.lacking(names) == [names[1]]
+    (tmp_path / names[0]).write_bytes(parts[0][:-1])
+    assert Contents(tmp_path).lacking(names) == names[:2]
+    kept.put({names[1]: b"other bytes"})
+    assert names[1] in kept.lacking(names)

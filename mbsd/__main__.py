@@ -1,7 +1,7 @@
 """``python -m mbsd compile``: compile all kernels now, so that the first real run does not wait for it.
 
 Each part solves a small mechanism that uses some entry points, in a process of its own: as many at a time as there are
-cores. What two parts share is compiled by whoever comes first.
+cores. What two parts share is compiled by whoever comes first. Kernels that they might call are compiled, too.
 """
 
 from __future__ import annotations
@@ -87,8 +87,11 @@ def main() -> int:
                 return 1
             print(f"mbsd: kernels ready in {time.perf_counter() - started:.1f} s")
         case ["compile", part] if part in PARTS:
+            from mbsd.compiling.lazy_kernel import compile_all
+
             logging.getLogger("mbsd").setLevel(logging.ERROR)  # one word for all parts is enough
             PARTS[part]()
+            compile_all()
         case _:
             print("usage: python -m mbsd compile", file=sys.stderr)
             return 2

@@ -4,6 +4,7 @@
     apart       the same for kernels alone: without a wrapper for Python it compiles in half the time
     internal    small, called by kernels alone, whose machine code contains it
     inlined     copied into the caller by numba: passing a System by value costs more than the work
+    lazy        called by kernels alone, and compiled when one of them first calls it (lazy_kernel.py)
     merged      copied into the caller by LLVM, so that numba reads it once: for large ones
     threaded    runs in several threads at once, each with scratch of its own
     at_address  called through its machine address
@@ -18,7 +19,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numba
-from numba.core import sigutils
+from numba.core import sigutils, types
 from numba.core.ccallback import CFunc
 from numba.core.dispatcher import Dispatcher
 from numba.core.registry import CPUDispatcher
@@ -27,6 +28,7 @@ from mbsd.compiling.kernel_cache import KernelCache
 from mbsd.compiling.kernel_library import Apart
 from mbsd.compiling.kernel_pipeline import KernelCompiler
 from mbsd.compiling.kernel_target import GENERIC
+from mbsd.compiling.lazy_kernel import by_cell
 from mbsd.compiling.notice import give_notice
 
 give_notice()
@@ -87,6 +89,21 @@ internal = _compiled(False, no_cpython_wrapper=True)
 
 apart = _compiled(True, no_cpython_wrapper=True)
 """The same for large ones: callers do not contain them, so that each is optimised once."""
+
+_RETURNED = {int: types.int64, float: types.float64, bool: types.boolean, None: types.none}
+
+
+def lazy(returns: Any) -> Callable[[Callable[..., Any]], Any]:
+    """The same for large ones that many runs do not call: compiled when first called.
+
+    ``returns``: int, float, bool or None, the type of what the function returns.
+    """
+
+    def decorate(function: Callable[..., Any]) -> Any:
+        return by_cell(apart(function), _RETURNED[returns]) if COMPILED else function
+
+    return decorate
+
 
 inlined = _compiled(False, inline="always")
 """The same for kernels whose body is copied into the caller."""

@@ -27,6 +27,7 @@ from typing import Any
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _Cache, _CacheLocator
 
 from mbsd.compiling.kernel_library import Apart
+from mbsd.compiling.lazy_kernel import cell_of
 from mbsd.compiling.shipped_kernels import SHIPPED, tell_of_other_kernels
 
 try:
@@ -172,23 +173,32 @@ class _Results(CompileResultCacheImpl):
 
     def reduce(self, cres: Any) -> Any:
         """What is written."""
-        called = {
-            name: (one.dispatcher.py_func.__module__, one.dispatcher.py_func.__qualname__, one.arguments)
-            for name, one in cres.library.calls.items()
-        }
-        return called, super().reduce(cres)
+        library = cres.library
+        called = {name: (*_place(one.dispatcher), one.arguments) for name, one in library.calls.items()}
+        cells = [(*_place(one.dispatcher), one.arguments, one.returns) for one in library.cells.values()]
+        return called, cells, super().reduce(cres)
 
     def rebuild(self, target_context: Any, payload: Any) -> Any:
         """From what was read."""
-        called, own = payload
+        called, cells, own = payload
         calls = {}
+        made = [
+            cell_of(getattr(importlib.import_module(module), function).kernel, arguments, returns)
+            for module, function, arguments, returns in cells
+        ]
         for name, (module, function, arguments) in called.items():
             calls[name] = Apart(name, getattr(importlib.import_module(module), function), arguments)
             if calls[name].library is None:
                 return None
         cres = super().rebuild(target_context, own)
         cres.library.calls = calls
+        cres.library.cells = {one.name: one for one in made}
         return cres
+
+
+def _place(dispatcher: Any) -> tuple[str, str]:
+    """Module and name of a kernel."""
+    return dispatcher.py_func.__module__, dispatcher.py_func.__qualname__
 
 
 class _Files(FunctionCache):

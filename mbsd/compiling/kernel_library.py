@@ -52,6 +52,12 @@ class KernelLibrary(JITCodeLibrary):
         """What this library is to its callers, if it is not linked into them."""
         self.calls: dict[str, Apart] = {}
         """Kernels that must be loaded before this one, by name."""
+        self.cells: dict[str, Any] = {}
+        """Cells of kernels that it compiles when it calls them, by name (lazy_kernel.py)."""
+
+    def note_cell(self, cell: Any) -> None:
+        """Code of this library names the cell."""
+        self.cells[cell.name] = cell
 
     def finalize(self) -> None:
         """Optimise it together with what does not stand apart, and make machine code."""
@@ -63,6 +69,7 @@ class KernelLibrary(JITCodeLibrary):
                 self.calls[library.apart.name] = library.apart
             else:
                 self.calls.update(library.calls)
+                self.cells.update(library.cells)
                 linked.append(_WithoutCallees(library))
         self._linking_libraries = linked
         super().finalize()

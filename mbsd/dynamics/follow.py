@@ -10,6 +10,7 @@ from mbsd.base.errors import SimulationError
 from mbsd.compiling.interrupts import kept
 from mbsd.dynamics.events.run import EventRun
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.reference.multipliers import fill_multipliers
 from mbsd.dynamics.runs.choose import ChoosingRun
 from mbsd.dynamics.runs.trail import Trail
 from mbsd.dynamics.state import ACCEPTED, NEXT, TIME, WORK, Output
@@ -76,9 +77,10 @@ def resumed(ready: PreparedDynamics, run: ChoosingRun, trail: Trail, times: np.n
             state.clock[TIME] = snapshot.time if k < 0 else trail.out.t[k]
             state.y[...] = snapshot.y if k < 0 else trail.out.y[k]
             state.clock[WORK] = snapshot.work if k < 0 else trail.out.work[k]
-            run.to_end(state, out)
+            if run.to_end(state, out):
+                fill_multipliers(ready.packed, ready.dynamics, out.t, out.y, out.lam, out.margin)
             held = np.broadcast_to(ready.switches.held(), out.lam.shape)
-            pieces.append(Trail(out, held, int(state.count[ACCEPTED]), independent=True))
+            pieces.append(Trail(out, held, int(state.count[ACCEPTED])))
         steps += pieces[-1].steps
         first = last
     out = Output(*(np.concatenate(parts) for parts in zip(*(piece.out for piece in pieces), strict=True)))

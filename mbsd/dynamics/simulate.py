@@ -22,6 +22,7 @@ from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
 from mbsd.dynamics.prepare.dependent import refuse_opened
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.reference.multipliers import multipliers_along
 from mbsd.dynamics.rows.joint_sticks import standing
 from mbsd.dynamics.runs.choose import ChoosingRun
 from mbsd.dynamics.runs.running import AUTO, FORMULATIONS, INDEPENDENT
@@ -127,6 +128,9 @@ def solution(
         compact = np.zeros((at.stop - start, rows, 6))
         tabulate_along(packed, drives[at], q[at], v[at], phi, compact, gamma)
         held = trail.held[at]
+        if trail.independent:
+            motion = out.t[at], q[at], v[at]
+            out.lam[at], out.margin[at] = multipliers_along(packed, ready.dynamics, motion, compact, gamma)
         refuse_opened(ready, out.t[at], phi * held)
         lam[at] = _least_norm(ready, compact, out.lam[at], held)
         wrench[at] = wrenches(packed, compact, q[at], lam[at])

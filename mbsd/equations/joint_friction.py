@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import apart, internal, kernel
+from mbsd.compiling.jit import internal, kernel, lazy
 from mbsd.equations.markers import move, place
 
 PIN, GUIDE = 0, 1
@@ -101,7 +101,7 @@ def friction_of(loads, k, rate, normal, whole):
     return -coefficient * sense * (normal + whole * number[PRELOAD]) * lever - whole * number[VISCOUS] * rate
 
 
-@apart
+@lazy(float)
 def rub(system, loads, v, ws, normal, whole, load):
     """Add the friction under normal forces (f,) to load (3 nb,), after place and move; returns its power (W).
 
@@ -133,7 +133,7 @@ def rub(system, loads, v, ws, normal, whole, load):
     return power
 
 
-@apart
+@lazy(None)
 def note_friction(system, loads, v, ws, lam):
     """Set lam of the ways of sliding joints that may stick: J^T lam holds their friction, as it does in sticking."""
     for k in range(loads.rub.shape[0]):
@@ -142,7 +142,7 @@ def note_friction(system, loads, v, ws, lam):
             lam[way] = -friction_of(loads, k, rate_of(system, loads, v, ws, k), loads.normal[X, k], 1.0)
 
 
-@apart
+@lazy(float)
 def begin_rubbing(system, loads, v, ws, load):
     """Add the friction under the normal forces of the last evaluation; returns its power (W)."""
     x = loads.normal[X]
@@ -153,7 +153,7 @@ def begin_rubbing(system, loads, v, ws, load):
     return rub(system, loads, v, ws, x, 1.0, load)
 
 
-@apart
+@lazy(bool)
 def settle(dyn, ws, a, lam):
     """Compare with the normal forces at a (3 nb,) and lam (m,): True if they agree.
 

@@ -14,7 +14,7 @@ import math
 from typing import Any, NamedTuple
 
 from mbsd.base.codes import CYCLOIDAL, HARMONIC, PERIODIC, POLYNOMIAL
-from mbsd.compiling.jit import apart, inlined, kernel
+from mbsd.compiling.jit import inlined, kernel, lazy
 
 
 class Laws(NamedTuple):
@@ -64,7 +64,7 @@ def evaluate_law(laws, k, x, out):
         _evaluate_pieces(laws, at, x, out)
 
 
-@apart
+@lazy(None)
 def _evaluate_pieces(laws, at, x, out):
     numbers = laws.numbers
     count = int(numbers[at])
@@ -101,7 +101,13 @@ def _evaluate_pieces(laws, at, x, out):
     out[2] = bend if beyond == 0.0 else 0.0
 
 
-@inlined
+@lazy(None)
+def law_at(laws, k, x, out):
+    """evaluate_law as a function of its own."""
+    evaluate_law(laws, k, x, out)
+
+
+@lazy(None)
 def evaluate_laws(laws, count, x, out):
     """Rows 0 .. count-1 of out (count, 3) at x: the drivers' laws, which come first; row 0 is zero."""
     for k in range(1, count):

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from mbsd.base.codes import AXIS, CONSTANT, DAMPING, DRY, LAW_RATE, LAW_TIME, LINE, LINEAR, POWER, PUSH, TURN
 from mbsd.compiling.jit import inlined, kernel
 from mbsd.equations.interactions.apply import apply_interactions
-from mbsd.equations.laws import evaluate_law
+from mbsd.equations.laws import law_at
 from mbsd.equations.markers import place
 from mbsd.equations.user_forces import apply_user_forces
 
@@ -124,7 +124,7 @@ def apply_elements(element, place, term, number, laws, law, t, q, v, cos_sin, lo
                     at = rate
                 elif what == LAW_TIME:
                     at = t
-                evaluate_law(laws, term[k, 1], at, law)
+                law_at(laws, term[k, 1], at, law)
                 force += a * law[0]
         power += force * rate
         if kind == TURN:
@@ -157,17 +157,20 @@ def apply_loads(loads, laws, t, q, v, cos_sin, load):
         loads.element, loads.place, loads.term, loads.number, laws, loads.law, t, q, v, cos_sin, load
     )
     if loads.interaction.shape[0] > 0:
-        power += apply_interactions(loads, laws, t, q, v, cos_sin, load)
+        power += apply_interactions(
+            loads.interaction, loads.given, loads.state, loads.exchange, laws, loads.law, t, q, v, cos_sin, load
+        )
     if loads.user.shape[0] > 0:
-        power += apply_user_forces(loads, t, q, v, cos_sin, load)
+        power += apply_user_forces(loads.user, loads.user_body, loads.user_com, loads.exchange, t, q, v, cos_sin, load)
     return power
 
 
 @kernel
 def tabulate_loads(system, loads, laws, times, q, v, ws, out, power):
-    """out (T, 3 nb) and power (T,) of all forces along a motion q, v (T, 3 nb); ground's entries mean nothing."""
+    """Add all forces along a motion q, v (T, 3 nb) to out (T, 3 nb); power (T,) takes theirs.
+
+    Ground's entries mean nothing.
+    """
     for k in range(q.shape[0]):
         place(system, q[k], ws)
-        for c in range(q.shape[1]):
-            out[k, c] = 0.0
         power[k] = apply_loads(loads, laws, times[k], q[k], v[k], ws.cos_sin, out[k])

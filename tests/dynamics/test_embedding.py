@@ -11,8 +11,12 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism, ModelError, constant_rate, harmonic
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
+from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.reference.multipliers import fill_multipliers
 from mbsd.dynamics.runs import embedded_run
+from mbsd.dynamics.runs.choose import integrate
 from mbsd.dynamics.runs.embed import embed, embedded_at_start
+from mbsd.dynamics.simulate import integrator_named
 from mbsd.kinematics.groups.groups import NAMES
 from mbsd.results.solution import Solution
 from tests.models.assur_models import MODELS
@@ -143,7 +147,7 @@ def test_angles_count_their_turns() -> None:
 # -- forces -----------------------------------------------------------------------------------------------------------
 
 
-def test_forces_of_all_sorts() -> None:
+def _loaded() -> Mechanism:
     m = freed("RRR")
     rocker, coupler, crank = (m.bodies[n] for n in ("rocker", "coupler", "crank"))
     m.spring("spring", m.ground.at(0.1, 0.5), coupler.at(0.1, 0.1), 300.0, damping=2.0, free_length=0.3)
@@ -151,10 +155,14 @@ def test_forces_of_all_sorts() -> None:
     m.torque("push", crank, 0.4)
     m.drag("air", rocker.end, 0.8)
     m.user_force("wind", lambda t, q, v: [0.3 * math.sin(9 * t), -0.2 * v[1], 0.01 * q[2]], rocker)
-    agree(*both(m, 0.6), close=1e-5)
+    return m
 
 
-def test_bodies_without_mass() -> None:
+def test_forces_of_all_sorts() -> None:
+    agree(*both(_loaded(), 0.6), close=1e-5)
+
+
+def _light() -> Mechanism:
     m = Mechanism("light")
     crank, coupler, rocker = m.bar("crank", 0.1, 1.0), m.bar("coupler", 0.38), m.bar("rocker", 0.3, 1.0)
     m.revolute("O", m.ground.at(0, 0), crank.start)
@@ -162,7 +170,26 @@ def test_bodies_without_mass() -> None:
     m.revolute("B", coupler.end, rocker.end)
     m.revolute("C", m.ground.at(0.4, 0), rocker.start)
     m.start_near(crank=10, coupler=45, rocker=90)
-    agree(*both(m, 0.5), close=1e-5)
+    return m
+
+
+def test_bodies_without_mass() -> None:
+    agree(*both(_light(), 0.5), close=1e-5)
+
+
+@pytest.mark.parametrize("make", [_loaded, _light, lambda: with_pendulum("RRP"), lambda: with_pendulum("rod driven")])
+def test_multipliers_of_outputs_are_those_of_reference_coordinates_to_the_last_digit(make) -> None:
+    """The same pose and velocities, evaluated both ways."""
+    m = make()
+    ready = prepare_dynamics(m, 0.0, 0.4)
+    method = integrator_named(m.name, "dop853")
+    _, out = integrate(ready, method, np.linspace(0.0, 0.4, 9), 1e-8, 0.05, formulation="independent")
+    fill_multipliers(ready.packed, ready.dynamics, out.t, out.y, out.lam, out.margin)
+    scratch, lam = ready.scratch(method), np.zeros_like(out.lam[0])
+    for k, t in enumerate(out.t):
+        derivative(ready.dynamics, scratch, float(t), out.y[k], np.zeros_like(out.y[k]), lam)
+        np.testing.assert_array_equal(out.lam[k], lam)
+        assert out.margin[k] == scratch.report[0]
 
 
 # -- poor and singular poses ------------------------------------------------------------------------------------------

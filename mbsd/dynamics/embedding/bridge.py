@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbsd.compiling.jit import apart, internal
+from mbsd.compiling.jit import internal, lazy
 from mbsd.dynamics.embedding.arrays import AVOID, COS, INERTIA, MASS, SIN, SPEED, TURNS, VALUE
 from mbsd.dynamics.embedding.groups.branch import FLOOR, SOLVED
 from mbsd.dynamics.embedding.groups.groups import solve_groups
@@ -81,7 +81,7 @@ def _joined(
     return True
 
 
-@apart
+@lazy(int)
 def bridge(laws, group, number, gravity, body, rate, base, coordinate, drive, sums, joined_body, joined_rate, t):
     """Fill body, rate and sums near an unclear pose; returns SOLVED or DOUBTED.
 

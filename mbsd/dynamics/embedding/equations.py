@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import apart, inlined, internal, kernel, merged
+from mbsd.compiling.jit import apart, inlined, internal, kernel, lazy, merged
 from mbsd.dynamics.embedding.arrays import (
     BASE,
     BEND,
@@ -63,7 +63,7 @@ def place_bodies(loaded, body, rate, base, coordinate, angles, q, v, cos_sin):
             v[3 * b + c] = speed
 
 
-@internal
+@lazy(bool)
 def reduced(rate, inertia, weight, force, mass, a):
     """a (3 + f,) from 3 on takes z'' of several coordinates; returns whether M_z is positive."""
     count = mass.shape[0]
@@ -102,7 +102,7 @@ def reduced(rate, inertia, weight, force, mass, a):
     return True
 
 
-@internal
+@lazy(float)
 def power_of_all(rate, inertia, weight, coordinate, a):
     """Power of loads and drivers (W), from what the bodies gain."""
     last = rate.shape[1] - 3
@@ -189,7 +189,7 @@ def accelerate(dyn, scratch, t, state, a, lam):
     return power
 
 
-@kernel
+@apart
 def derivative(dyn, scratch, t, state, out, lam):
     """out (2, 3 + f) = d(state)/dt; returns the power of loads and drivers (W)."""
     for c in range(3, state.shape[1]):
@@ -242,6 +242,14 @@ def settle(dyn, scratch, t, state, fresh):
 
 
 @kernel
+def look(dyn, scratch, t, state):
+    """Evaluate a state, and predict from there; scratch.watch takes its sensitivity. Returns the power (W)."""
+    power = derivative(dyn, scratch, t, state, scratch.stages[0], scratch.multipliers)
+    settle(dyn, scratch, t, state, True)
+    return power
+
+
+@apart
 def write(dyn, scratch, t, state, stage, out, k):
     """Output k in reference coordinates from a state; stage (2, 3 + f) takes its derivative."""
     body = scratch.body
@@ -264,3 +272,9 @@ def write(dyn, scratch, t, state, stage, out, k):
             out.y[k, 1, 3 * b + c] = v
             out.a[k, 3 * b + c] = bend
     return power
+
+
+@kernel
+def write_alone(dyn, scratch, t, state, stage, out, k):
+    """``write`` for callers outside the compiled loops."""
+    return write(dyn, scratch, t, state, stage, out, k)

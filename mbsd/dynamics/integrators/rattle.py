@@ -61,7 +61,8 @@ def _loads(dyn, scratch, t, y):
 @internal
 def _factor(dyn, scratch, t, q):
     """Laws and factors of S at (t, q)."""
-    evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
+    if scratch.drive.shape[0] > 1:
+        evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
     residual_and_jacobian(dyn.system, q, scratch.drive, scratch.ws)
     factor_schur(dyn.schur, dyn.inverse, scratch.ws.jac, scratch.factors, LIFT)
 
@@ -141,7 +142,7 @@ def rattle_step(dyn, scratch, t, h, y, power):
         impulse[c] = 0.5 * h * load[c]
     for r in range(lam.shape[0]):
         lam[r] = 0.0
-    if system.driven.shape[0] > 0:
+    if scratch.drive.shape[0] > 1:
         evaluate_laws(dyn.laws, scratch.drive.shape[0], t + h, scratch.drive)
     last = 1e300
     found = False
@@ -165,7 +166,7 @@ def rattle_step(dyn, scratch, t, h, y, power):
     for c in range(3, n3):
         y[0, c] = start[c] + h * v[c]
         y[1, c] = v[c]
-    if system.driven.shape[0] > 0:
+    if scratch.drive.shape[0] > 1:
         evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
         work += _driver_work(dyn, scratch, lam)
     _factor(dyn, scratch, t + h, y[0])

@@ -45,7 +45,8 @@ def accelerate(dyn, scratch, t, state, a, lam):
     v = state[1]
     n3 = q.shape[0]
     power = 0.0
-    evaluate_laws(dyn.laws, drive.shape[0], t, drive)
+    if drive.shape[0] > 1:
+        evaluate_laws(dyn.laws, drive.shape[0], t, drive)
     evaluate_position(system, q, drive, ws)
     evaluate_gamma(system, v, drive, ws, gamma)
     scratch.report[0] = factor_schur(schur, dyn.inverse, ws.jac, factors, 0.0)

@@ -31,7 +31,8 @@ def project(dyn, scratch, t, state, passes):
     y = factors.side
     nu = ws.right[1]
     n3 = state.shape[1]
-    evaluate_laws(dyn.laws, drive.shape[0], t, drive)
+    if drive.shape[0] > 1:
+        evaluate_laws(dyn.laws, drive.shape[0], t, drive)
     evaluate_nu(system, drive, nu)
     for step in range(passes):
         evaluate_position(system, state[0], drive, ws)

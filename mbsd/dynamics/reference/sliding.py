@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mbsd.compiling.jit import apart, internal
+from mbsd.compiling.jit import internal, lazy
 from mbsd.dynamics.reference.schur import solve_schur, subtract_forces, times_jacobian
 
 
@@ -40,7 +40,7 @@ def sliding_for(rows: np.ndarray, coordinates: int, multipliers: int) -> Sliding
     return Sliding(np.asarray(rows, np.int64).reshape(-1, 2), np.zeros((count, width)))
 
 
-@apart
+@lazy(None)
 def begin_sliding(dyn, scratch):
     """Find (a_k, lam_k) of every sliding contact at the pose of the factors; the friction of none is applied yet."""
     table = dyn.sliding.table
@@ -86,7 +86,7 @@ def begin_sliding(dyn, scratch):
                         own_lam[r] += y[b, s, 0]
 
 
-@apart
+@lazy(float)
 def slide(dyn, scratch, v, a, lam):
     """Add the friction to a (3 nb,), lam (m,) and what is left of Q, after begin_sliding; returns its power (W)."""
     rows = dyn.sliding.rows

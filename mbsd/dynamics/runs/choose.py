@@ -24,14 +24,15 @@ class ChoosingRun(Run):
     def to_end(
         self, state: run_state.State, out: run_state.Output, progress: Callable[[float], None] | None = None
     ) -> bool:
-        """Go on to the last output time, from a start or restart; returns whether in independent coordinates."""
+        """Go on to the last output time, from a start or restart; returns whether in independent coordinates.
+
+        Then multipliers and margins are still to be found (reference/multipliers.py).
+        """
         embedded = self.embedded(state)
         if embedded is None:
             self.in_one_go(state, out, progress)
             return False
         embedded.in_one_go(state, out, progress)
-        fill_multipliers(self.ready.dynamics, self.scratch, out)
-        self.ready.packed.specials.check()
         return True
 
     def embedded(self, state: run_state.State) -> EmbeddedRun | None:
@@ -68,7 +69,7 @@ class ChoosingRun(Run):
 
             if can_carry(self):
                 if Across(self, state, out, Pace(self, state, end, progress)).to_end():
-                    fill_multipliers(self.ready.dynamics, self.scratch, out)
+                    fill_multipliers(self.ready.packed, self.ready.dynamics, out.t, out.y, out.lam, out.margin)
                 return
         pace = None if progress is None else Pace(self, state, end, progress)
         while self.some_steps(state, out, end) != run_state.REACHED:
@@ -88,7 +89,10 @@ def integrate(
     options: Mapping[str, float] | None = None,
     formulation: str = AUTO,
 ) -> tuple[run_state.State, run_state.Output]:
-    """Integrate to the last of ``times`` (s), which begin with the start; no events. Raises SimulationError."""
+    """Integrate to the last of ``times`` (s), which begin with the start; no events. Raises SimulationError.
+
+    Multipliers are found in reference coordinates alone.
+    """
     state, out = ready.begun(times)
     run = ChoosingRun(ready, method, tolerance, step, float(times[-1] - times[0]), options or {}, formulation)
     run.to_end(state, out, progress)

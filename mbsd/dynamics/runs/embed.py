@@ -25,7 +25,7 @@ from mbsd.dynamics.embedding.arrays import (
 )
 from mbsd.dynamics.embedding.bridge import KEPT
 from mbsd.dynamics.embedding.coordinates import MOST, Coordinate, choices, coordinates_of
-from mbsd.dynamics.embedding.equations import derivative, settle
+from mbsd.dynamics.embedding.equations import look
 from mbsd.dynamics.embedding.groups.branch import FLOOR
 from mbsd.dynamics.embedding.numbers import group_numbers, group_table
 from mbsd.dynamics.prepare.prepared import UNKNOWN, PreparedDynamics
@@ -195,9 +195,8 @@ def _sensitivity(ready: PreparedDynamics, made: Embedded, q: np.ndarray, v: np.n
     arrays, scratch = made.copied(), scratch_for(ready, made, 1, q)
     state = made.state(q, v)
     begin_at(arrays, scratch, state, time, math.inf)
-    power = derivative(arrays, scratch, time, state, scratch.stages[0], scratch.multipliers)
+    power = look(arrays, scratch, time, state)
     ready.packed.specials.check()
     if math.isnan(power):
         return math.inf
-    settle(arrays, scratch, time, state, True)
     return float(scratch.watch[SENSITIVITY])

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from mbsd.dynamics import state as run_state
 from mbsd.dynamics.embedding.arrays import LIMIT, SENSITIVITY
-from mbsd.dynamics.embedding.equations import write
+from mbsd.dynamics.embedding.equations import write_alone
 from mbsd.dynamics.runs.embed import DOUBLED, GOOD, POOR, Embedded, begin_at, embed, scratch_for
 from mbsd.dynamics.runs.pace import Pace
 from mbsd.dynamics.state import NEXT, STARTED, STEP, TIME, WORK
@@ -107,7 +107,7 @@ class EmbeddedRun:
     def _write_whole(self) -> None:
         """Write where the run stands into the whole state."""
         here = run_state.output_for(self.whole.clock[TIME : TIME + 1], self.whole.y.shape[1], 0)
-        write(self.arrays, self.scratch, float(here.t[0]), self.own.y.copy(), self.scratch.stages[0], here, 0)
+        write_alone(self.arrays, self.scratch, float(here.t[0]), self.own.y.copy(), self.scratch.stages[0], here, 0)
         self.whole.y[...] = here.y[0]
 
     def _in_reference_coordinates(self) -> run_state.State:

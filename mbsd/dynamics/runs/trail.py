@@ -33,4 +33,4 @@ class Trail:
     happenings: list[Happening] = field(default_factory=list)
     snapshots: list[Snapshot] = field(default_factory=list)
     independent: bool = False
-    """Integrated in independent coordinates."""
+    """Integrated in independent coordinates; multipliers and margins are still to be found."""

@@ -18,11 +18,11 @@ Source: chain rule; the relative coordinates are those of the files along.py, sl
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import apart
+from mbsd.compiling.jit import lazy
 from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA, FYY, TURN, A, F, X, Y, evaluate
 
 
-@apart
+@lazy(None)
 def rows(system, q, drive, ws):
     """Residual and Jacobian. A row that is left out is zero."""
     for k in range(system.special.shape[0]):
@@ -60,7 +60,7 @@ def rows(system, q, drive, ws):
         ws.jac[r, 5] = -gx * ws.arm[j, 1] + gy * ws.arm[j, 0] + out[FA]
 
 
-@apart
+@lazy(None)
 def gamma_rows(system, v, ws, gamma):
     """Acceleration right-hand side without f'', after rows at the same pose."""
     for k in range(system.special.shape[0]):

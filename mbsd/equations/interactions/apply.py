@@ -7,40 +7,39 @@ on body j: F at marker j and T; on body i: -F at the same point and -T;   power 
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import apart
+from mbsd.compiling.jit import lazy
 from mbsd.equations.interactions.law import FX, FY, LAW, LAW_RATE, OMEGA, TIME, TORQUE, VX, VY
-from mbsd.equations.laws import evaluate_law
+from mbsd.equations.laws import law_at
 from mbsd.equations.relative.equation import OWN, A, X, Y, evaluate
 
 GEOMETRY = 7
 """Numbers of an interaction before its own."""
 
 
-@apart
-def apply_interactions(loads, laws, t, q, v, cos_sin, load):
+@lazy(float)
+def apply_interactions(interaction, given, state, exchange, laws, law, t, q, v, cos_sin, load):
     """Add the generalised forces of all interactions to load (3 nb,); cos_sin (nb, 2) turns the bodies.
 
-    Returns their power (W).
+    The first four and ``law`` are those of Loads. Returns their power (W).
     """
-    state = loads.state
-    out = loads.exchange[1]
+    out = exchange[1]
     power = 0.0
-    for k in range(loads.interaction.shape[0]):
-        first = loads.interaction[k, 0]
-        second = loads.interaction[k, 1]
-        at = loads.interaction[k, 3]
+    for k in range(interaction.shape[0]):
+        first = interaction[k, 0]
+        second = interaction[k, 1]
+        at = interaction[k, 3]
         i = 3 * first
         j = 3 * second
         c = cos_sin[first, 0]
         s = cos_sin[first, 1]
-        arm_ix = c * loads.given[at] - s * loads.given[at + 1]
-        arm_iy = s * loads.given[at] + c * loads.given[at + 1]
-        ux = c * loads.given[at + 2] - s * loads.given[at + 3]
-        uy = s * loads.given[at + 2] + c * loads.given[at + 3]
+        arm_ix = c * given[at] - s * given[at + 1]
+        arm_iy = s * given[at] + c * given[at + 1]
+        ux = c * given[at + 2] - s * given[at + 3]
+        uy = s * given[at + 2] + c * given[at + 3]
         c = cos_sin[second, 0]
         s = cos_sin[second, 1]
-        arm_jx = c * loads.given[at + 4] - s * loads.given[at + 5]
-        arm_jy = s * loads.given[at + 4] + c * loads.given[at + 5]
+        arm_jx = c * given[at + 4] - s * given[at + 5]
+        arm_jy = s * given[at + 4] + c * given[at + 5]
         dx = q[j] + arm_jx - q[i] - arm_ix
         dy = q[j + 1] + arm_jy - q[i + 1] - arm_iy
         omega = v[i + 2]
@@ -50,16 +49,19 @@ def apply_interactions(loads, laws, t, q, v, cos_sin, load):
         y = ux * dy - uy * dx
         state[X] = x
         state[Y] = y
-        state[A] = q[j + 2] - q[i + 2] + loads.given[at + 6]
+        state[A] = q[j + 2] - q[i + 2] + given[at + 6]
         state[VX] = ux * vx + uy * vy + omega * y
         state[VY] = ux * vy - uy * vx - omega * x
         state[OMEGA] = v[j + 2] - omega
         state[TIME] = t
-        evaluate_law(laws, loads.interaction[k, 2], t, loads.law)
-        state[LAW] = loads.law[0]
-        state[LAW_RATE] = loads.law[1]
+        state[LAW] = 0.0
+        state[LAW_RATE] = 0.0
+        if interaction[k, 2] > 0:
+            law_at(laws, interaction[k, 2], t, law)
+            state[LAW] = law[0]
+            state[LAW_RATE] = law[1]
         # functions count their own numbers from OWN
-        evaluate(loads.interaction[k, 4], loads.given[at + GEOMETRY - OWN :], state, out)
+        evaluate(interaction[k, 4], given[at + GEOMETRY - OWN :], state, out)
         power += out[FX] * state[VX] + out[FY] * state[VY] + out[TORQUE] * state[OMEGA]
         fx = out[FX] * ux - out[FY] * uy
         fy = out[FX] * uy + out[FY] * ux

@@ -13,14 +13,14 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import internal
+from mbsd.compiling.jit import lazy
 from mbsd.kinematics.groups.points import MEETING, SOLVED, aim, carried, follow, hang, reach
 
 PARALLEL = 1e-6
 """Sine of the angle between two slides below which they do not cross."""
 
 
-@internal
+@lazy(int)
 def solve_prp(body, n, qk, vk, ak, turn, point):
     """Fill positions, velocities and accelerations qk, vk, ak (3 nb,) of the group's bodies; return SOLVED or why not.
 
@@ -82,7 +82,7 @@ def solve_prp(body, n, qk, vk, ak, turn, point):
     return SOLVED
 
 
-@internal
+@lazy(int)
 def solve_rod(body, n, law, qk, vk, ak, last, turn, point):
     """law (3,): l and its rates beside the constant length; last (3 nb,): the pose before. See :func:`solve_prp`."""
     p = point[0]
@@ -128,7 +128,7 @@ def solve_rod(body, n, law, qk, vk, ak, last, turn, point):
     return SOLVED
 
 
-@internal
+@lazy(int)
 def solve_slide(body, n, law, qk, vk, ak, turn, point):
     """law (3,): f and its rates. See :func:`solve_prp`."""
     p = point[0]
@@ -146,7 +146,7 @@ def solve_slide(body, n, law, qk, vk, ak, turn, point):
     return SOLVED
 
 
-@internal
+@lazy(None)
 def solve_train(train, body_of, share_of, body, k1, n, qk, vk, ak, turn, p):
     """train (2,): first share and how many; the angle is their sum. ``p`` (8,): scratch."""
     angle = n[4]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import internal
+from mbsd.compiling.jit import lazy
 from mbsd.dynamics.embedding.arrays import (
     AVOID,
     COORDINATE,
@@ -32,7 +32,7 @@ from mbsd.dynamics.embedding.groups.branch import DOUBTED, SOLVED, doubted, pred
 from mbsd.dynamics.embedding.groups.carrying import carry, hang, place, turn, turned_x, turned_y
 
 
-@internal
+@lazy(int)
 def solve_rod(bodies, n, body, rate, base, coordinate, drive):
     """omega w . u_perp = l l' + w . (Q' - P').
 
@@ -104,7 +104,7 @@ def solve_rod(bodies, n, body, rate, base, coordinate, drive):
     return SOLVED
 
 
-@internal
+@lazy(int)
 def solve_slide(bodies, n, body, rate, coordinate, drive):
     """S = S_0 + f g:  S' = K' + f' g  (S'' = K'' + 2 omega_K f' g_perp + f'' g);  K' the point S as K1 carries it."""
     a = bodies[FIRST]

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import internal
+from mbsd.compiling.jit import lazy
 from mbsd.dynamics.embedding.arrays import AVOID, COS, FIRST, K1, K2, NEAR, OMEGA, SECOND, SIGN, SIN, SINE, SPEED, X, Y
 from mbsd.dynamics.embedding.groups.branch import DOUBTED, SOLVED, doubted, predicted
 from mbsd.dynamics.embedding.groups.carrying import carry, hang, place, turn, turned_x, turned_y
 
 
-@internal
+@lazy(int)
 def solve_rrp(bodies, n, body, rate, base, coordinate):
     """omega_A u_perp - s' e = C' - P'  (+ 2 omega_K s' e_perp + omega_A^2 u);  C' as K2 carries it."""
     a = bodies[FIRST]
@@ -94,7 +94,7 @@ def solve_rrp(bodies, n, body, rate, base, coordinate):
     return SOLVED
 
 
-@internal
+@lazy(int)
 def solve_rpr(bodies, n, body, rate, base, coordinate):
     """omega d_perp + s' e = Q' - P'  (+ omega^2 d - 2 omega s' e_perp)."""
     a = bodies[FIRST]

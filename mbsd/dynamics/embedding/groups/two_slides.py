@@ -6,7 +6,7 @@ PRP   s1' e1 - s2' e2 = C2' - C1'  (+ 2 omega_2 s2' e2_perp - 2 omega_1 s1' e1_p
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import internal
+from mbsd.compiling.jit import lazy
 from mbsd.dynamics.embedding.arrays import FIRST, K1, K2, OMEGA, SECOND, SPEED, X, Y
 from mbsd.dynamics.embedding.groups.branch import DOUBTED, SOLVED
 from mbsd.dynamics.embedding.groups.carrying import carry, hang, place, turn, turned_x, turned_y
@@ -15,7 +15,7 @@ PARALLEL = 1e-3
 """Sine of the angle between two slides below which their crossing is in doubt."""
 
 
-@internal
+@lazy(int)
 def solve_yoke(bodies, n, body, rate, coordinate):
     """s' n.e = n . (Q' - K')  (- 2 omega_K (Q' - K')_perp);  K' the point Q as K1 carries it."""
     a = bodies[FIRST]
@@ -67,7 +67,7 @@ def solve_yoke(bodies, n, body, rate, coordinate):
     return SOLVED
 
 
-@internal
+@lazy(int)
 def solve_prp(bodies, n, body, rate, coordinate):
     """s1' e1 - s2' e2 = C2' - C1'  (+ 2 omega_2 s2' e2_perp - 2 omega_1 s1' e1_perp)."""
     a = bodies[FIRST]

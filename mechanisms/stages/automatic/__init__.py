@@ -5,11 +5,11 @@ In this order, a file each:
     layout/sizes.py     one scale from the links; all is laid out in reference millimetres (rmm), pins 8 rmm thick
     layout/motion.py    poses of all bodies over the motion
     kinds.py            each joint becomes a feature: places that bodies must reach, what takes room, heights of gaps
-    pins/points.py      traced points, free ends, lone centres of mass: features without a joint
+    pins/free/points.py traced points, free ends, lone centres of mass: features without a joint
     layout/layout.py    outlines of bodies round the features' places; which items meet in the plane (planar.py)
-    layout/layers.py    the search for an order of layers (layer_clauses.py its rules; refusal.py why there is none)
+    layout/order/       the search for an order of layers (layer_clauses.py its rules; refusal.py why there is none)
     decided.py          which thickness of pins, which layers; pivots that must hang get bridges (pins/bridges.py)
-    layout/heights.py   layers become heights
+    layout/order/       layers become heights (heights.py)
     layout/plan.py      features give bodies their eyes, and add hardware
     assembly/built.py   plates (body_shape.py, marks.py), base (frame.py) and hardware become solids, in millimetres
     automatic.py        the face

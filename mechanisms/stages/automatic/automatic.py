@@ -20,13 +20,13 @@ from mechanisms.stages.automatic.decided import decided
 from mechanisms.stages.automatic.gathered import gathered
 from mechanisms.stages.automatic.layout.extents import extents
 from mechanisms.stages.automatic.layout.features import build
-from mechanisms.stages.automatic.layout.heights import Heights, heights
 from mechanisms.stages.automatic.layout.items import Need
 from mechanisms.stages.automatic.layout.layout import Layout, Springs
 from mechanisms.stages.automatic.layout.motion import poses_of, times_of
+from mechanisms.stages.automatic.layout.order.heights import Heights, heights
 from mechanisms.stages.automatic.layout.sizes import Sizes, of_pin, refuse_sizes, sizes
-from mechanisms.stages.automatic.pins.free_bodies import free_bodies
-from mechanisms.stages.automatic.pins.points import styluses, weights
+from mechanisms.stages.automatic.pins.free.free_bodies import free_bodies
+from mechanisms.stages.automatic.pins.free.points import styluses, weights
 from mechanisms.stages.automatic.pins.rods import add_poses, places
 from mechanisms.stages.automatic.wished_names import refuse_material, refuse_unknown
 from shared.stage.errors import UserError

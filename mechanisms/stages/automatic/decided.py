@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 from itertools import islice, product
 from typing import TYPE_CHECKING
 
-from mechanisms.stages.automatic.layout.layers import find_layers
 from mechanisms.stages.automatic.layout.layout import Springs
+from mechanisms.stages.automatic.layout.order.layers import find_layers
 from mechanisms.stages.automatic.pins.bridges import Bridge, bridges_over, may_hang
 from mechanisms.stages.automatic.pins.webs import webbed
 from mechanisms.stages.automatic.refusal import in_the_way, refusal

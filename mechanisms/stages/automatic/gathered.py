@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from mbsd.model.force import Force
     from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.features import Gather
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Item, Levels
     from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 SHAPELESS = ("angle_lock", "constraint")

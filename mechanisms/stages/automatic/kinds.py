@@ -10,9 +10,11 @@ from mechanisms.stages.automatic.pins import (  # noqa: F401
     bridge_solids,
     pin_hardware,
     pins,  # revolute, and the ends of rods
+    welds,  # weld
+)
+from mechanisms.stages.automatic.pins.springs import (  # noqa: F401
     springs,  # springs, dampers and actuators between points
     stud_solids,
-    welds,  # weld
 )
 from mechanisms.stages.automatic.rolling import (  # noqa: F401
     contacts,  # discs on walls and roads, tyres

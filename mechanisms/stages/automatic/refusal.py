@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from mechanisms.stages.automatic.layout.layers import blocking
+from mechanisms.stages.automatic.layout.order.layers import blocking
 from mechanisms.stages.automatic.pins.bridges import may_hang
 
 if TYPE_CHECKING:

@@ -118,7 +118,7 @@ def test_what_is_wrong_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     from mechanisms.stages.automatic import decided
 
     def flat(problem: object) -> dict[str, int]:
-        from mechanisms.stages.automatic.layout.layer_clauses import choices_of
+        from mechanisms.stages.automatic.layout.order.layer_clauses import choices_of
 
         return dict.fromkeys([*problem.bodies, *choices_of(problem.items)], 0)
 

@@ -20,7 +20,7 @@ from shared.shapes.outline import circle
 from shared.shapes.solid import Solid, placed
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.heights import Heights
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.layout.sizes import Sizes
     from shared.shapes.outline import Circle

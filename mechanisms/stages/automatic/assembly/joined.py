@@ -17,9 +17,9 @@ from shared.shapes.build import eased, extruded
 if TYPE_CHECKING:
     import cadquery as cq
 
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
     from shared.shapes.outline import Point
 

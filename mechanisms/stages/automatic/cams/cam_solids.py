@@ -14,7 +14,7 @@ from shared.shapes.build import eased, extruded
 from shared.shapes.cam import cam_disc
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.heights import Heights
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 

@@ -10,8 +10,8 @@ if TYPE_CHECKING:
     from mbsd import Mechanism
     from mbsd.model.force import Force
     from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.layout import Feature, Layout
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 

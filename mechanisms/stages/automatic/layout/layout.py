@@ -11,7 +11,7 @@ import numpy as np
 
 from mechanisms.stages.automatic.layout.extents import rods_of
 from mechanisms.stages.automatic.layout.items import PIVOT, Item, Reach, spans_meet
-from mechanisms.stages.automatic.layout.layers import Problem
+from mechanisms.stages.automatic.layout.order.layers import Problem
 from mechanisms.stages.automatic.layout.planar import Rounded, around, core_gaps, least_gap, placed
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from shared.shapes.pin import pin
 from shared.shapes.solid import placed
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.heights import Heights
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.pins.pins import Pin
 

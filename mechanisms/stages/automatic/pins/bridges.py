@@ -18,7 +18,7 @@ from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.planar import Rounded, core_gaps, placed
 from mechanisms.stages.automatic.pins.pin_solids import FOOT
 from mechanisms.stages.automatic.pins.pins import Pin
-from mechanisms.stages.automatic.pins.stretching import Stud
+from mechanisms.stages.automatic.pins.springs.stretching import Stud
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:

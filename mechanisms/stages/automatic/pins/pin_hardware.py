@@ -10,7 +10,7 @@ from mechanisms.stages.automatic.pins.pins import Pin
 from mechanisms.stages.automatic.pins.strong_pins import crank_pin, flush_pivot
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.heights import Heights
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 

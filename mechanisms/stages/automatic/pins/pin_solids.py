@@ -13,7 +13,7 @@ from shared.shapes.solid import Solid, placed
 from shared.shapes.standards import screw_length, screw_name
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.heights import Heights
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.pins.pins import Pin
 

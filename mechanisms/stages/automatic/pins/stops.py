@@ -29,9 +29,9 @@ from shared.shapes.solid import placed
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 AWAY, RADIUS, EYE = 17.8, 3.2, 6.2

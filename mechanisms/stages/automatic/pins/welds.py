@@ -21,9 +21,9 @@ from shared.shapes.solid import placed
 if TYPE_CHECKING:
     from mbsd import Mechanism
     from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 BOLT, HEAD = 5.0, Head(9.0, 3.0, 0.8)

@@ -17,9 +17,9 @@ from mechanisms.stages.automatic.layout.profiles import simplified
 from shared.shapes.build import extruded
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.rolling.rounds import Round
 

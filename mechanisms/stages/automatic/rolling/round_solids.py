@@ -14,7 +14,7 @@ from shared.shapes.solid import placed
 from shared.shapes.stud import ball as sphere
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.heights import Heights
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 TYRE = 0.16

@@ -15,9 +15,9 @@ from mechanisms.stages.automatic.layout.planar import disc
 from mechanisms.stages.automatic.layout.sizes import CLEAR
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.order.heights import Heights
 
 type Look = Literal["ball", "wheel", "disc"]
 

@@ -24,9 +24,9 @@ from shared.shapes import outline
 from shared.shapes.build import eased, extruded
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.rolling.rounds import Round
 

@@ -13,7 +13,7 @@ from shared.shapes.build import eased, extruded
 if TYPE_CHECKING:
     import cadquery as cq
 
-    from mechanisms.stages.automatic.layout.heights import Heights
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 

@@ -26,9 +26,9 @@ from shared.stage.errors import UserError
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
     from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 STEP, MOST = 2.0, 240

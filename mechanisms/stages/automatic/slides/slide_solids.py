@@ -15,7 +15,7 @@ from shared.shapes.build import eased, extruded
 from shared.shapes.solid import placed
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.heights import Heights
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 DEPTH = 4.8

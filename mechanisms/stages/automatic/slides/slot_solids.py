@@ -22,7 +22,7 @@ from shared.shapes.solid import Roll, Solid, placed
 if TYPE_CHECKING:
     import cadquery as cq
 
-    from mechanisms.stages.automatic.layout.heights import Heights
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 GROOVES, GROOVE, GROOVE_DEPTH = 6, 2.6, 1.6

@@ -18,9 +18,9 @@ from mechanisms.stages.automatic.layout.planar import Rounded
 from mechanisms.stages.automatic.wheels.wheels import Wheel
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 LEAST = 19.0

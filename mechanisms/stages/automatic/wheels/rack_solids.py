@@ -14,7 +14,7 @@ from shared.shapes.outline import circle
 from shared.shapes.solid import placed
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.heights import Heights
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 

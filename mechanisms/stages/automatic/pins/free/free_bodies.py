@@ -19,16 +19,16 @@ import numpy as np
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.planar import disc
-from mechanisms.stages.automatic.pins.stretching import Stud
+from mechanisms.stages.automatic.pins.springs.stretching import Stud
 from shared.contract.materials import MATERIALS
 from shared.shapes.build import eased, extruded
 from shared.shapes.outline import circle
 from shared.shapes.stud import ball
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 LARGEST = (14.0, 20.0)

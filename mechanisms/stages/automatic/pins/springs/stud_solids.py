@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from mechanisms.stages.automatic.layout.features import build
 from mechanisms.stages.automatic.layout.plan import Foot
 from mechanisms.stages.automatic.pins.pin_solids import upper_end
-from mechanisms.stages.automatic.pins.stretching import BALL, EYE, FOOT, POST, Stud
+from mechanisms.stages.automatic.pins.springs.stretching import BALL, EYE, FOOT, POST, Stud
 from shared.shapes.base import column
 from shared.shapes.link import Eye
 from shared.shapes.solid import Hold, Solid, placed
@@ -16,7 +16,7 @@ from shared.shapes.stud import Collar, ball_stud
 if TYPE_CHECKING:
     import cadquery as cq
 
-    from mechanisms.stages.automatic.layout.heights import Heights
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.pins.pins import Pin
 

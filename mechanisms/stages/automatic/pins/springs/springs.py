@@ -21,7 +21,7 @@ from mechanisms.stages.automatic.layout.extents import LINEAR, ROPE, stretching
 from mechanisms.stages.automatic.layout.features import contact_kind, driver_kind, force_kind
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.pins.pins import SAME, Pin
-from mechanisms.stages.automatic.pins.stretching import BALL, Stretching, Stud
+from mechanisms.stages.automatic.pins.springs.stretching import BALL, Stretching, Stud
 
 if TYPE_CHECKING:
     from mbsd import Mechanism

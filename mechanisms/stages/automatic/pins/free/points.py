@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.planar import disc
-from mechanisms.stages.automatic.pins.free_bodies import FreeBody
+from mechanisms.stages.automatic.pins.free.free_bodies import FreeBody
 from shared.shapes.link import Eye
 from shared.shapes.pin import Head, pin, stylus
 from shared.shapes.solid import placed
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.heights import Heights
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 SHANK = 4.0

@@ -13,7 +13,7 @@ from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from mechanisms.stages.automatic.layout.items import Item, PivotReach, Reach
-from mechanisms.stages.automatic.layout.layer_clauses import Clauses, choices_of
+from mechanisms.stages.automatic.layout.order.layer_clauses import Clauses, choices_of
 
 BUDGET = 20_000
 """Conflicts of the solver that one question may cost, beside the question whether there is any order."""

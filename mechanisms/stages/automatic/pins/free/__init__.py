@@ -1,0 +1,1 @@
+"""Bodies and points that no joint shapes."""

@@ -127,12 +127,12 @@ class Coordinator:
                 self.log.relay(line if process.name in line else f"{process.name}: {line}")
             renders = self.steps[process.step].renders
             alive = self.books.new_picture(process.name) if renders else bool(said)
-            process.silence = 0.0 if alive else process.silence + passed
+            process.live(passed, alive)
             if code is not None:
                 self._ended(process)
             elif not process.hung:
                 making = renders and not self.books.is_complete(process.name)
-                longest = watch.limit(process.step, making, self.books.each(process.name))
+                longest = watch.limit(making, self.books.each(process.name), process.signs)
                 if process.silence > longest:
                     process.hung = True
                     self.log.warn(f"{process.name}: {process.step} gave no sign of life for {duration(longest)}")

@@ -28,6 +28,8 @@ class Process:
         self.started = time.monotonic()
         self.silence = 0.0
         """Seconds without a sign of life, counted in looks at it, so that a stop of this process itself is none."""
+        self.signs = 0
+        """Signs of life that it gave."""
         self.error = ""
         """The last line that begins with ``error:``."""
         self.hung = False
@@ -64,6 +66,11 @@ class Process:
             if line.startswith("error: "):
                 self.error = line.removeprefix("error: ")
         return [line for line in said if line]
+
+    def live(self, seconds: float, sign: bool) -> None:
+        """Some seconds have passed, with a sign of life or without."""
+        self.signs += sign
+        self.silence = 0.0 if sign else self.silence + seconds
 
     def code(self) -> int | None:
         """Its exit code, the negative number of a signal that ended it; None while it runs."""

@@ -33,7 +33,9 @@ def words(run: Run, found: NightRecord, alive: bool) -> list[str]:
         end = datetime.now() + timedelta(seconds=found.left)
         lines.append(f"now: {duration(found.left)} left, until {end:%a %H:%M}")
     lines += table([row(name, film, alive) for name, film in found.films.items()])
-    lines += [f"{name}: {film.error}" for name, film in found.films.items() if film.error]
+    for name, film in found.films.items():
+        if film.error:
+            lines.append(f"{name}: {film.error}" + ("; done since then" if film.outcome == "done" else ""))
     lines.append(f"log: {runs.log_file()}")
     return lines
 

@@ -10,7 +10,6 @@ import signal
 
 from render.blender.patience import Patience
 from studio.night.process import Process
-from studio.night.steps import PROBE
 
 STAGE = 3600.0
 """Seconds without a word for a stage that is no render: a proof of clearance says nothing until its end."""
@@ -20,14 +19,16 @@ TRIES = 2
 """Times that a step is started."""
 
 
-def limit(step: str, renders: bool, each: float | None) -> float:
-    """Seconds of silence after which a step is killed; ``renders``: pictures are its signs of life, and one of them
-    takes ``each`` seconds by the forecast.
+def limit(renders: bool, each: float | None, pictures: int) -> float:
+    """Seconds of silence after which a step is killed.
+
+    ``renders``: pictures are its signs of life; it has made so many ``pictures``, and the forecast of one is ``each``
+    (s). Before the first the drivers of a GPU may compile, which the stage itself has patience with.
     """
-    patience = Patience(longest=each or 0.0)
+    patience = Patience(longest=each or 0.0, pictures=pictures)
     if not renders:
         return patience.scaled(STAGE)
-    return TWICE * patience.limit("kernels" if each is None or step == PROBE else "")
+    return TWICE * patience.limit("" if pictures else "kernels")
 
 
 def is_tried_again(process: Process, tries: int) -> bool:

@@ -114,7 +114,7 @@ def test_the_same_command_goes_on_after_a_kill(night: Night):
 
 
 def test_a_second_run_takes_what_the_first_is_not_at_and_waits_for_the_rest(night: Night):
-    night.tell("four_bar", "film", "sleep 4")
+    night.tell("four_bar", "film", f"wait {night.folder}/go")
     first = night.start("four_bar")
     until(lambda: "four_bar film" in night.ran())
     second = night.start("four_bar,slider_crank")
@@ -122,6 +122,7 @@ def test_a_second_run_takes_what_the_first_is_not_at_and_waits_for_the_rest(nigh
     status = night.say("status")
     assert "(run 1, draft" in status
     assert "(run 2, draft" in status
+    (night.folder / "go").touch()
     code, out, err = finished(second)
     assert (code, finished(first)[0]) == (0, 0), err
     assert f"four_bar: another run is at it (process {first.pid} on" in out

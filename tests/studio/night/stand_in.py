@@ -1,8 +1,8 @@
 """Stands for the interpreter that runs the stages: each notes that it ran, and does what a file of its name says.
 
-``python stand_in.py -m mechanisms|render STEP NAME ...`` under the folder MBSD_STAND_IN. Files there: ``<name>.<step>``
-holds words such as ``fail``, ``crash``, ``once crash``, ``busy``, ``sleep 5``, ``wait FILE``, ``hang``; ``ran.txt`` gets
-a line each time.
+``python stand_in.py -m mechanisms|render STEP NAME ...`` with a folder in MBSD_STAND_IN. Files there: ``<name>.<step>``
+holds words such as ``fail``, ``crash``, ``once crash``, ``busy``, ``sleep 5``, ``wait FILE``, ``hang``; ``ran.txt``
+gets a line each time.
 """
 
 from __future__ import annotations

@@ -83,7 +83,8 @@ def main() -> int:
             say("torture", f"kept: {project.folder}")
         else:
             project.remove()
-    return _report(outcomes, arguments.seed, report)
+        code = _report(outcomes, arguments.seed, report)  # of what was played, if it was stopped
+    return code
 
 
 def _rounds(faults: Sequence[Fault], count: int, seed: int) -> Iterator[tuple[int, Fault]]:

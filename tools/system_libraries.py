@@ -21,8 +21,8 @@ LIBRARIES = {
     "libxkbcommon.so.0": "libxkbcommon0",
 }
 
-PROGRAMS = {"chromium": "chromium", "rsync": "rsync", "ssh": "openssh-client", "sshd": "openssh-server"}
-"""Of tests: the page is opened in a browser, `make fetch` brings films from an sshd on loopback."""
+PROGRAMS = {"chromium": "chromium", "rsync": "rsync", "ssh": "openssh-client", "sshd": "openssh-server", "tmux": "tmux"}
+"""Of tests: the page is opened in a browser, `make fetch` brings films from an sshd, nights run in tmux."""
 
 
 def missing() -> list[str]:

@@ -33,9 +33,13 @@ def test_programs_of_tests_are_named_with_their_packages(
         system_libraries.shutil, "which", lambda name, path=None: None if name != "ssh" else "/usr/bin/ssh"
     )
     for words, out, err in (
-        (["--for-tests", "--packages"], "libgl1 rsync openssh-server\n", ""),
+        (["--for-tests", "--packages"], "libgl1 chromium rsync openssh-server tmux\n", ""),
         (["--packages"], "libgl1\n", ""),
-        (["--for-tests"], "", "missing programs rsync, sshd: sudo apt-get install -y rsync openssh-server\n"),
+        (
+            ["--for-tests"],
+            "",
+            "chromium, rsync, sshd, tmux: sudo apt-get install -y chromium rsync openssh-server tmux\n",
+        ),
     ):
         monkeypatch.setattr(system_libraries.sys, "argv", ["system_libraries", *words])
         assert system_libraries.main() == 1

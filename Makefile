@@ -70,7 +70,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install check list run-all all overnight status stop gallery showreel fetch new test lint format bench bench-start bench-film hunt hunt-parts torture check-numbers record-numbers schema docs integrators wheel lock clean clean-all always
+.PHONY: help install check list run-all all overnight status stop view-all gallery showreel fetch new test lint format bench bench-start bench-film hunt hunt-parts torture check-numbers record-numbers schema docs integrators wheel lock clean clean-all always
 
 # A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
 define upto_motion
@@ -190,6 +190,11 @@ scene-%: install always ## save the scene: out/<name>/<name>.blend
 
 verify-%: install always ## solids, motion, some frames (FRAMES=0,30) and the film made again in scratch and compared
 	@$(PYTHON) -m studio.verify "$$MECHANISM" --preset "$$PRESET" --frames="$$FRAMES" $${SHOW:+--show="$$SHOW"}
+
+view-all: install ## view-<name> for every mechanism, and a picture of each page (Chromium): out/<name>/view.png
+	@for file in mechanisms/*/mechanism.py; do one=$${file%/mechanism.py}; one=$${one#mechanisms/}; \
+	"$(MAKE)" --no-print-directory "view-$$one" || echo "view-all: no page of $$one" >&2; done
+	@$(PICTURE) pages
 
 gallery: install ## posters of all mechanisms (PRESET) and the page that shows them: docs/gallery/
 	@for file in mechanisms/*/mechanism.py; do one=$${file%/mechanism.py}; one=$${one#mechanisms/}; \

@@ -34,7 +34,8 @@ def page(entries: Sequence[Entry]) -> str:
         folder = f"../../mechanisms/{entry.name}/mechanism.py"
         lines += ["", f"## {title}", "", f"![{title}]({entry.name}.jpg)", ""]
         lines += [entry.said, ""] if entry.said else []
-        lines += [f"{' · '.join(entry.facts)} · [mechanism.py]({folder})"]
+        page_of = f"[the page](../view.md): `make view-{entry.name.replace('_', '-')}`"
+        lines += [f"{' · '.join(entry.facts)} · [mechanism.py]({folder}) · {page_of}"]
     return "\n".join(lines) + "\n"
 
 

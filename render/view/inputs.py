@@ -33,8 +33,9 @@ def read_payload(out: Out) -> dict[str, Any]:
     parts = read_parts(out.parts, out.name) if out.parts.is_file() else None
     motion = with_rods(motion, parts) if parts else motion
     found = payload(motion, skeleton.moving, shot)
-    if parts is not None:
-        found = with_parts(found, Film(motion, parts, shot, out.parts_folder))
+    film = Film(motion, parts, shot, out.parts_folder) if parts else None
+    if film is not None:
+        found = with_parts(found, film)
     if out.clearance.is_file():
-        found["clearance"] = clearance_of(read_clearance(out.clearance))
+        found["clearance"] = clearance_of(read_clearance(out.clearance), film)
     return found

@@ -4,7 +4,7 @@ arrows    full: length of the largest (m); longest: cut at so many of it; tiny: 
           scales {unit: {largest, reference, cut, words}}; list [{quantity, name, unit, place, value (2 T,), z}]
 arcs      full: sweep of the largest (rad); scale as above or null; list [{quantity, name, place (2 T,), value (T,),
           radius, z}]
-clearance limit (m), pairs [{bodies, pieces, gap, time}] nearest first; gap as proven
+clearance limit (m), pairs [{bodies, pieces, gap (as proven), time, at}] nearest first; at is where, or null
 """
 
 from __future__ import annotations
@@ -18,7 +18,9 @@ from render.film.arrows.arrows import FULL, Arrows
 from render.film.arrows.scales import LONGEST, TINY, Scale, with_unit
 from render.film.arrows.torques import rounding, torques
 from render.film.arrows.vectors import vectors
+from render.film.film import Film
 from render.film.heights import Heights
+from render.view.gaps import gap_places
 from shared.contract import Motion
 from shared.contract.clearance import Clearance
 from shared.contract.shot import Quantity
@@ -73,13 +75,14 @@ def arcs_of(motion: Motion, size: float, heights: Heights | None = None) -> dict
     }
 
 
-def clearance_of(clearance: Clearance) -> dict[str, Any]:
-    """The nearest pairs that depend on the pose, and then the others."""
+def clearance_of(clearance: Clearance, film: Film | None = None) -> dict[str, Any]:
+    """The nearest pairs; with their places where the machine has parts."""
+    places = gap_places(film, clearance) if film else [None] * len(clearance.pairs)
     return {
         "limit": clearance.limit,
         "pairs": [
-            {"bodies": list(one.bodies), "pieces": list(one.pieces), "gap": one.proven, "time": one.time}
-            for one in clearance.pairs[:PAIRS]
+            {"bodies": list(one.bodies), "pieces": list(one.pieces), "gap": one.proven, "time": one.time, "at": at}
+            for one, at in zip(clearance.pairs[:PAIRS], places[:PAIRS], strict=True)
         ],
     }
 

@@ -18,7 +18,7 @@ const { launch, open } = require("./browser.cjs");
     }, options);
     if (options.key) await page.keyboard.press(options.key);
     await page.waitForTimeout(options.wait ?? 400);
-    await page.screenshot({ path: jobs[k + 1], fullPage: !!options.full });
+    await page.screenshot({ path: jobs[k + 1], fullPage: !!options.full, timeout: 180000 });
     if (errors.length) { console.error(`${jobs[k]}:`, errors.join("\n")); process.exitCode = 1; }
     await context.close();
   }

@@ -1,0 +1,83 @@
+"""Where two pieces come nearest: the middle of the gap, from points all over both surfaces."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from render.film.film import Film
+from render.film.poses import Moment
+from render.film.solids import read_triangles
+from shared.contract.clearance import Clearance
+
+Array = NDArray[np.float64]
+MOST = 12
+"""Pairs whose place is looked for: the nearest ones."""
+FINE = 250
+"""Points are at most the larger piece's size apart, divided by this, as long as there are no more than POINTS."""
+POINTS = 80_000
+
+
+def gap_places(film: Film, clearance: Clearance) -> list[list[float] | None]:
+    """For each pair x, y, z (m) at the time of its least gap; None beyond MOST, and for pieces that are not there."""
+    out: list[list[float] | None] = []
+    for number, pair in enumerate(clearance.pairs):
+        found = [
+            film.parts.bodies[body].pieces.get(piece) if body in film.parts.bodies else None
+            for body, piece in zip(pair.bodies, pair.pieces, strict=True)
+        ]
+        if number >= MOST or None in found:
+            out.append(None)
+            continue
+        at = Moment(float(film.poses.time[0]) if pair.time is None else pair.time, 0)
+        surfaces = [
+            _placed(read_triangles(film.folder / piece.stl), film.poses.body(body, at))
+            for body, piece in zip(pair.bodies, found, strict=True)
+            if piece is not None
+        ]
+        out.append([float(value) for value in middle(*surfaces)])
+    return out
+
+
+def middle(first: Array, second: Array) -> Array:
+    """(3,) halfway between the two nearest points of triangles (n, 3, 3) and (m, 3, 3)."""
+    size = max(float(np.ptp(one.reshape(-1, 3), axis=0).max()) for one in (first, second))
+    # Far triangles of a large piece need no points: those within reach of the other's box alone.
+    near = [_beside(one, other, size / 4) for one, other in ((first, second), (second, first))]
+    a, b = (_points(one, size / FINE) for one in near)
+    distance, index = cKDTree(b).query(a)
+    k = int(np.argmin(distance))
+    return (a[k] + b[index[k]]) / 2
+
+
+def _beside(one: Array, other: Array, reach: float) -> Array:
+    corners = other.reshape(-1, 3)
+    low, high = corners.min(axis=0) - reach, corners.max(axis=0) + reach
+    there = ((one.max(axis=1) >= low) & (one.min(axis=1) <= high)).all(axis=1)
+    return one[there] if there.any() else one
+
+
+def _points(triangles: Array, apart: float) -> Array:
+    """(k, 3) corners, and places inside of triangles that are larger than ``apart``."""
+    edges = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1)
+    parts = np.clip(np.ceil(edges / apart), 1, 200).astype(int)
+    total = int(((parts + 1) * (parts + 2) // 2).sum())
+    if total > POINTS:
+        parts = np.maximum(1, (parts / math.sqrt(total / POINTS)).astype(int))
+    out = []
+    for count in np.unique(parts):
+        i, j = (values.ravel() for values in np.meshgrid(np.arange(count + 1), np.arange(count + 1)))
+        inside = i + j <= count
+        weights = np.stack([i, j, count - i - j], axis=1)[inside] / count
+        out.append(np.einsum("kc,ncd->nkd", weights, triangles[parts == count]).reshape(-1, 3))
+    return np.concatenate(out)
+
+
+def _placed(triangles: Array, pose: tuple[float, float, float]) -> Array:
+    x, y, theta = pose
+    c, s = math.cos(theta), math.sin(theta)
+    turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    return triangles @ turn + np.array([x, y, 0.0])

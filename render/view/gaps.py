@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from render.film.film import Film
 from render.film.poses import Moment
@@ -48,7 +48,7 @@ def middle(first: Array, second: Array) -> Array:
     # Far triangles of a large piece need no points: those within reach of the other's box alone.
     near = [_beside(one, other, size / 4) for one, other in ((first, second), (second, first))]
     a, b = (_points(one, size / FINE) for one in near)
-    distance, index = cKDTree(b).query(a)
+    distance, index = KDTree(b).query(a)
     k = int(np.argmin(distance))
     return (a[k] + b[index[k]]) / 2
 

@@ -6,8 +6,8 @@
  */
 import { KINDS } from "../app.js";
 
-/** Parts of the largest below which a curve is rounding. */
-const NOTHING = 1e-9;
+/** Parts of the largest below which a curve is rounding; and what is rounding by itself, in SI units. */
+const NOTHING = 1e-9, TINY = 1e-12;
 
 /** @param {import("./decode.js").Payload} payload  @param {import("../state.js").Thing | null} thing  @returns {Chart[]} */
 export function chartsOf(payload, thing) {
@@ -84,5 +84,5 @@ function size(u, v) {
 /** Whether any of these is more than rounding beside the others. */
 function some(series, ...beside) {
   const largest = (list) => list.reduce((top, values) => values ? values.reduce((a, b) => Math.max(a, Math.abs(b)), top) : top, 0);
-  return largest(series) > NOTHING * largest(beside);
+  return largest(series) > Math.max(NOTHING * largest(beside), TINY);
 }

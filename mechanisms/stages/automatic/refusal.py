@@ -13,6 +13,11 @@ if TYPE_CHECKING:
 
 TOLD = 4
 """So many meetings are told."""
+SLOTTED = "the slotted plate of "
+CROSSED = (
+    "; slots on ground that cross fit where their pins are pinned to small bodies on prismatic joints, which get one "
+    "plate with grooves"
+)
 
 
 def refusal(layout: Layout, fixed: Mapping[str, int]) -> str:
@@ -20,13 +25,14 @@ def refusal(layout: Layout, fixed: Mapping[str, int]) -> str:
     items, kept = layout.items, _kept(layout, fixed)
     bodies = _bodies(layout, kept)
     pins = [rule for rule in kept if any(items[k].source is not None for k in rule)] or kept
+    crossed = any(all(items[k].what.startswith(SLOTTED) for k in rule) for rule in pins)
     meetings = [_meeting(layout, rule) for rule in _first_of_each(layout, pins)[:TOLD]]
     return (
         f"{layout.m.name}: no order of layers lets {_listed(bodies)} pass each other with pins of "
         f"{layout.sizes.pin:g} mm, on the base or on bridges, with one of them built up of "
         f"two webs: {'; '.join(meetings)}. Make links shorter or move joints "
         "apart so that one stays clear of the other, make pins thinner still (automatic(m, pin=...)), or shape them by "
-        "hand in parts.py"
+        f"hand in parts.py{CROSSED if crossed else ''}"
     )
 
 

@@ -40,8 +40,19 @@ def simulated_closely(m: Mechanism, duration: float, steps: int) -> Solution:
     return solution
 
 
+def refined_sweep(solution: Solution) -> Solution:
+    """The same sweep, at more times where the motion needs them; itself where it does not."""
+    closer = closer_times(solution.mechanism, solution.t)
+    return solution if len(closer) == len(solution.t) else solution.mechanism.sweep(times=closer)
+
+
 def swept_closely(m: Mechanism, times: np.ndarray) -> Solution:
-    """``m.sweep`` at ``times`` (s) and at more where the motion needs them: where a link flies past a dead point."""
+    """``m.sweep`` at ``times`` (s) and at more where the motion needs them."""
+    return m.sweep(times=closer_times(m, times))
+
+
+def closer_times(m: Mechanism, times: np.ndarray) -> np.ndarray:
+    """Times (s) with more of them where the motion of a sweep needs it: where a link flies past a dead point."""
     for _ in range(2 * ROUNDS):
         both = np.empty(2 * len(times) - 1)
         both[::2], both[1::2] = times, (times[:-1] + times[1:]) / 2
@@ -51,7 +62,7 @@ def swept_closely(m: Mechanism, times: np.ndarray) -> Solution:
         if len(closer) == len(times):
             break
         times = closer
-    return m.sweep(times=times)
+    return times
 
 
 def _divided(times: np.ndarray, coarse: np.ndarray) -> np.ndarray:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
 
 SWEEP_STEPS = 360
-"""Of one turn of the drivers in a sweep whose mechanism.py has no STEPS."""
+"""Of one turn of the drivers in a sweep whose mechanism.py has no STEPS; more where the motion needs them."""
 FEWEST, MOST, RATE = 360, 7200, 120.0
 """Steps of a simulation whose mechanism.py has no STEPS: so many a second, within these, more where it needs them."""
 
@@ -80,7 +80,11 @@ def _natural(name: str, module: Any, m: Mechanism) -> Solution:
         raise UserError(f"{_file(name)}: STEPS is {steps:g}; it must be a whole number of steps, as in STEPS = 600")
     free = m.mobility().dof - len(m.drivers)
     if free <= 0:
-        return m.sweep(duration, int(steps or (SWEEP_STEPS if duration else _steps_of_period(m))))
+        if steps is not None:
+            return m.sweep(duration, int(steps))
+        from mechanisms.stages.solve.refined_times import refined_sweep
+
+        return refined_sweep(m.sweep(duration, SWEEP_STEPS if duration else _steps_of_period(m)))
     if duration is None:
         freedoms = "1 degree of freedom is" if free == 1 else f"{free} degrees of freedom are"
         raise UserError(

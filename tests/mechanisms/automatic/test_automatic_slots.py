@@ -141,3 +141,17 @@ def test_bands_follow_arcs() -> None:
     assert sharpest(circle) == pytest.approx(50.0, rel=5e-3)
     with pytest.raises(ValueError, match="bends as sharply"):
         band(arc, 55.0)
+
+
+@pytest.mark.parametrize(("scale", "turn"), [(0.1, 0.3), (30.0, -2.0)])
+def test_slots_on_ground_that_cross_are_refused_with_their_names(scale: float, turn: float) -> None:
+    """Either roller would have to pass the plate of the other: only slides cross in one plate (crossings.py)."""
+    m = Mechanism("crossed")
+    bar = m.bar("bar", 0.1 * scale)
+    m.pin_in_slot("across", m.ground.at(0, 0, turn), bar.start)
+    m.pin_in_slot("along", m.ground.at(0, 0, turn + math.pi / 2), bar.end)
+    m.drive_angle("motor", bar, constant_rate(2 * math.pi))
+    corner = 0.1 * scale * math.sqrt(0.5)
+    m.start_near(bar=(corner * math.cos(turn), corner * math.sin(turn), math.degrees(turn) + 135.0))
+    with pytest.raises(UserError, match=r"slotted plate of along meets the slotted plate of across.*prismatic"):
+        _ = Automatic(m, m.sweep(steps=60)).levels

@@ -9,6 +9,7 @@ import cadquery as cq
 import numpy as np
 
 from mechanisms.stages.automatic.layout.features import build
+from mechanisms.stages.automatic.layout.sizes import Sizes
 from mechanisms.stages.automatic.wheels.gear_solids import build_wheel, shape_of, with_hub
 from mechanisms.stages.automatic.wheels.pulleys import BELT, Pulley
 from shared.shapes.build import extruded, turned
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 
 EDGE, FLOOR = 0.7, 1.3
 """Of a groove: what stays beside it, and half of the width of its floor."""
+MARKS, LEAST_MARK, LARGEST_MARK = 3, 1.0, 2.5
+"""Small holes between hub and rim, and their radii."""
 SPROCKET = 0.45
 """Thickness of a sprocket's teeth as a part of the plate's."""
 SEAT = 5
@@ -31,9 +34,17 @@ SEAT = 5
 
 @shape_of.register(Pulley)
 def pulley_disc(pulley: Pulley, thickness: float, eyes: list[tuple[float, float, Eye]]) -> tuple[cq.Workplane, int]:
-    """From z = 0 up, with its eyes, and its number of through holes."""
-    shape = extruded(circle(0, 0, pulley.root), thickness)
-    return with_hub(shape, pulley.root, thickness, eyes)
+    """From z = 0 up, with its eyes, and its number of through holes. One without windows has small holes, so that one
+    sees it turn.
+    """
+    shape, holes = with_hub(extruded(circle(0, 0, pulley.root), thickness), pulley.root, thickness, eyes)
+    room = pulley.root - Sizes.hardware
+    if holes > 1 or 0.3 * room < LEAST_MARK or any(math.hypot(x, y) > 0.01 for x, y, _ in eyes):
+        return shape, holes
+    for k in range(MARKS):
+        tool = extruded(circle(pulley.root - 0.5 * room, 0, min(0.3 * room, LARGEST_MARK)), thickness + 2.0, -1.0)
+        shape = shape.cut(placed(tool, turn=360.0 * k / MARKS))
+    return shape, holes + MARKS
 
 
 @build.register(Pulley)

@@ -1,0 +1,44 @@
+"""A sweep of a mechanism has more times where a link flies past a dead point, and only there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from mbsd import Solution
+from mechanisms.quick_return import mechanism as shaper
+from mechanisms.stages.solve import solving
+from mechanisms.stages.solve.refined_times import CLOSE
+
+
+def _swept(p: shaper.Params) -> Solution:
+    return solving.motion_of("quick_return", shaper, shaper.build(p), p)
+
+
+def test_a_usual_motion_keeps_its_times() -> None:
+    p = shaper.Params()
+    np.testing.assert_array_equal(_swept(p).t, shaper.build(p).sweep().t)
+
+
+def test_an_arm_that_flies_back_gets_more_times_and_keeps_its_period() -> None:
+    """The crank is nearly as long as the arm's pivot is away: the arm swings back within 15 degrees of the crank.
+
+    Half way between two times the quintic is the motion itself, known here: the arm points at the crank's pin.
+    """
+    p = replace(shaper.Params(), crank=0.0992, arm=0.3, ram=0.25, link=0.35)
+    found = _swept(p)
+    assert found.period == 2 * np.pi / p.speed
+    rate = np.abs(found.body("arm").omega)
+    assert np.diff(found.t)[rate[1:] > 0.5 * rate.max()].max() < 0.3 * np.median(np.diff(found.t))
+    assert _off(p, found) < 2 * CLOSE < 1e-3 < _off(p, shaper.build(p).sweep())
+
+
+def _off(p: shaper.Params, found: Solution) -> float:
+    """The largest difference of the quintic and the motion half way between two times (rad)."""
+    h, arm = np.diff(found.t), found.body("arm")
+    q, v, a = arm.theta, arm.omega, arm.alpha
+    middle = (q[:-1] + q[1:]) / 2 + 5 * h / 32 * (v[:-1] - v[1:]) + h**2 / 64 * (a[:-1] + a[1:])
+    crank = found.body("crank").theta[0] + p.speed * (found.t[:-1] + h / 2)
+    exact = np.arctan2(p.height + p.crank * np.sin(crank), p.crank * np.cos(crank))
+    return float(np.abs(np.exp(1j * middle) - np.exp(1j * exact)).max())

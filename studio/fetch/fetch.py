@@ -19,7 +19,7 @@ from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.files import refusal
 from shared.stage.paths import out_root, refuse_links
-from studio.fetch.transfer import Transfer, transfer
+from studio.fetch.transfer import Transfer, program, shell_program, transfer
 
 FOLDER = "mbsd"
 """Where the project is on the other machine, below the home folder."""
@@ -36,6 +36,8 @@ def run(host: str, folder: str = "") -> list[str]:
     no films, or the connection breaks; what came until then is kept.
     """
     source = source_of(host, folder)
+    for word in ("rsync", shell_program()):
+        program(word)  # told before anything is made
     films, arriving = out_root() / "films", out_root() / ".fetch"
     refuse_links(films)
     films.mkdir(parents=True, exist_ok=True)
@@ -50,7 +52,10 @@ def run(host: str, folder: str = "") -> list[str]:
         say("fetch", f"{source} to {films}")
         result = transfer(source, arriving, films, lock, told)
         if result.code:
-            raise UserError(_reason(result, host, source, _bytes(arriving)))
+            kept = _bytes(arriving)
+            if not kept:
+                shutil.rmtree(arriving, ignore_errors=True)
+            raise UserError(_reason(result, host, source, kept))
         moved = _moved(arriving, films)
     if moved:
         line = f"{result.received / 1e6:.1f} MB over the line, {result.there / 1e6:.1f} MB of them were here"

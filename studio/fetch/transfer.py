@@ -96,10 +96,13 @@ def _listened(process: subprocess.Popen[str], told: Callable[[str, int], None]) 
 
 
 def remote_shell() -> str:
-    """How rsync gets to the other machine; raises UserError if that program is not installed."""
-    shell = os.environ.get("RSYNC_RSH") or SSH
-    program(shlex.split(shell)[0])
-    return shell
+    """How rsync gets to the other machine."""
+    return os.environ.get("RSYNC_RSH") or SSH
+
+
+def shell_program() -> str:
+    """The program of that."""
+    return shlex.split(remote_shell())[0]
 
 
 def program(name: str) -> str:

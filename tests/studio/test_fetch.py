@@ -133,6 +133,7 @@ def test_what_stands_in_the_way_is_told(
 ) -> None:
     with pytest.raises(UserError, match=r"nowhere/out/films is not there; make fetch HOST=.* FOLDER=<the project's"):
         fetch.run(HOST, str(project / "nowhere"))
+    assert [path.name for path in out_root.iterdir()] == ["films"]
     monkeypatch.setenv("RSYNC_RSH", other.shell(port=1))
     with pytest.raises(UserError, match=r"fetch: .*@127\.0\.0\.1 cannot be reached: .*; try ssh "):
         fetch.run(HOST, str(project))
@@ -145,6 +146,7 @@ def test_what_stands_in_the_way_is_told(
         with pytest.raises(UserError, match=f"fetch: {name} is not installed here; sudo apt-get install -y {package}"):
             fetch.run(HOST, str(project))
     assert not here(out_root)
+    assert [path.name for path in out_root.iterdir()] == ["films"]
 
 
 def test_the_other_machine_has_no_rsync() -> None:

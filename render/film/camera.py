@@ -24,11 +24,21 @@ class FilmCamera:
 
     def pose(self, frame: int) -> CameraPose:
         """At a frame: it stands still, or swings about the middle once in each showing of the motion."""
-        elevation, azimuth = math.radians(self.shot.elevation), math.radians(self.shot.azimuth)
         swing = math.radians(self.shot.orbit)
+        if not swing:
+            return self._still
+        return self._posed(math.radians(self.shot.azimuth) + swing * math.sin(math.tau * self.clock.phase(frame)))
+
+    @cached_property
+    def _still(self) -> CameraPose:
+        """Of a camera that does not swing: what is in focus is measured once, not a frame."""
+        return self._posed(math.radians(self.shot.azimuth))
+
+    def _posed(self, azimuth: float) -> CameraPose:
+        """At an azimuth (rad), where the shot has its own or swings about the middle."""
+        elevation = math.radians(self.shot.elevation)
         position, target, distance = self._stand
-        if swing:
-            azimuth += swing * math.sin(math.tau * self.clock.phase(frame))
+        if self.shot.orbit:
             position = target - axes(azimuth, elevation)[2] * distance
         depths = (self.sharp - position) @ axes(azimuth, elevation)[2]
         near, far = float(depths.min()), float(depths.max())

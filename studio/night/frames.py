@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from render.presets import Preset
 from shared.stage.errors import UserError
+from shared.stage.files import file_hash
 from shared.stage.paths import Out
 
 FEWEST = 3
@@ -27,6 +28,8 @@ class Frames:
     """Bytes of a picture, on average; 0 where none is there."""
     files: frozenset[str] = frozenset()
     """Names of the pictures in the folder as it was looked at last."""
+    _contents: tuple[str, ...] = ()
+    """Hashes of motion, parts and shot as they were read."""
     _seen: list[tuple[float, int]] = field(default_factory=list)
     """Moments (monotonic) at which pictures were first seen in this run, and how many there were then."""
 
@@ -34,16 +37,26 @@ class Frames:
         """Read from motion, parts and shot which pictures the film has; False where these are not there yet."""
         from render.film.inputs import read_film, refuse_missing
 
+        out = Out(self.name)
         try:
-            refuse_missing(Out(self.name))
+            refuse_missing(out)
+            contents = tuple(file_hash(path) for path in (out.motion, out.parts, out.shot))
+            if contents == self._contents:
+                return self._measured()
             from render.frames.frames import Pictures  # with numpy, which a run that has nothing to do never needs
-            from render.frames.store import FrameStore
 
-            film = read_film(Out(self.name), show)
+            film = read_film(out, show)
             pictures = Pictures(film, self.preset)
             self.keys = frozenset(pictures.key(frame) for frame in range(film.clock.frames))
         except (UserError, OSError, ValueError):
             return False
+        self._contents = contents
+        return self._measured()
+
+    def _measured(self) -> bool:
+        """Read what a picture took in the last run, and look into the folder."""
+        from render.frames.store import FrameStore
+
         timing = FrameStore(Out(self.name).frames(self.preset.name)).read_timing()
         self.probed = timing.cycles / timing.rendered if timing is not None else None
         self.look()

@@ -68,7 +68,7 @@ def row(name: str, film: FilmRecord, alive: bool) -> tuple[str, ...]:
         at = "waits" if alive else "not finished"
     over = film.outcome == "done"
     left = "" if over or film.left is None or film.outcome == "failed" else duration(film.left)
-    frames = f"{film.done}/{film.all}" if film.all else ""
+    frames = f"{film.all if over else film.done}/{film.all}" if film.all else ""
     each = "" if film.each is None else f"{film.each:.2f} s" if film.each < 9.95 else duration(film.each)
     return name, frames, each, left, at
 

@@ -83,6 +83,12 @@ def _installed(empty: Path, wheel: Path) -> Path:
     return package
 
 
+@pytest.fixture(scope="module")
+def installed(archives: list[Path], empty: Path) -> Path:
+    """The folder of the package in that environment, from the wheel without kernels."""
+    return _installed(empty, archives[1])
+
+
 def test_the_same_sources_give_the_same_bytes(archives: list[Path], tmp_path: Path) -> None:
     again = build(ROOT, tmp_path)
     assert [file.name for file in again] == [file.name for file in archives]
@@ -99,19 +105,16 @@ def test_the_sdist_builds_the_wheel(archives: list[Path], tmp_path: Path) -> Non
     assert (tmp_path / wheel.name).read_bytes() == wheel.read_bytes()
 
 
-def test_the_readme_runs_in_an_empty_environment(archives: list[Path], empty: Path, tmp_path: Path) -> None:
-    package = _installed(empty, archives[1])
+def test_the_readme_runs_in_an_empty_environment(installed: Path, empty: Path, tmp_path: Path) -> None:
     code = f"{README_BLOCK}\nimport mbsd; print(mbsd.__file__)"
     told = _run(empty / "bin" / "python", code, tmp_path, NUMBA_DISABLE_JIT="1")
     assert told[0] == "1 degree of freedom (1 nominal)"
-    assert Path(told[-1]).parent == package
+    assert Path(told[-1]).parent == installed
 
 
-def test_a_kind_of_ones_own_is_checked_in_an_empty_environment(
-    archives: list[Path], empty: Path, tmp_path: Path
-) -> None:
+@pytest.mark.usefixtures("installed")
+def test_a_kind_of_ones_own_is_checked_in_an_empty_environment(empty: Path, tmp_path: Path) -> None:
     """The first joint of docs/extending.md, which has no more than the wheel at hand."""
-    _installed(empty, archives[1])
     page = (ROOT / "docs" / "extending.md").read_text()
     (block,) = (code for code in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "PARALLEL_ARM = " in code)
     code = f"{block}\nfrom mbsd.testing import check_joint\ncheck_joint(PARALLEL_ARM, seeds=[0])\nprint('agrees')"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import shlex
 import shutil
@@ -17,6 +18,8 @@ from pathlib import Path
 RELAY = Path(__file__).with_name("relay.py")
 PRIVILEGE_SEPARATION = Path("/run/sshd")
 """sshd wants it where it runs as root; a system without sshd's service has none."""
+MADE = Path("/run/sshd-of-tests")
+"""Locked by each of the processes that made it."""
 
 
 @dataclass(frozen=True)
@@ -49,9 +52,30 @@ class Machine:
 @contextmanager
 def machine(folder: Path) -> Iterator[Machine]:
     """Start it; it ends with the block."""
-    made = not PRIVILEGE_SEPARATION.exists() and os.getuid() == 0
-    if made:
-        PRIVILEGE_SEPARATION.mkdir(mode=0o755)
+    with _privilege_separation():
+        yield from _started(folder)
+
+
+@contextmanager
+def _privilege_separation() -> Iterator[None]:
+    """Make sshd's folder where root has none, and remove it with the last of those that made it."""
+    if os.getuid() != 0 or (PRIVILEGE_SEPARATION.exists() and not MADE.exists()):
+        yield
+        return
+    handle = os.open(MADE, os.O_RDWR | os.O_CREAT, 0o600)
+    fcntl.flock(handle, fcntl.LOCK_SH)
+    PRIVILEGE_SEPARATION.mkdir(mode=0o755, exist_ok=True)
+    try:
+        yield
+    finally:
+        with suppress(OSError):
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            PRIVILEGE_SEPARATION.rmdir()
+            MADE.unlink()
+        os.close(handle)
+
+
+def _started(folder: Path) -> Iterator[Machine]:
     folder.mkdir(mode=0o700)
     for name in ("host", "key"):
         subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", str(folder / name)], check=True)
@@ -80,9 +104,6 @@ def machine(folder: Path) -> Iterator[Machine]:
     finally:
         process.terminate()
         process.wait()
-        if made:
-            with suppress(OSError):
-                PRIVILEGE_SEPARATION.rmdir()
 
 
 def _wait(process: subprocess.Popen[bytes], port: int, log: Path) -> None:

@@ -198,10 +198,10 @@ class Mechanism(Model):
         terminal: bool = False,
         action: Callable[[Any], object] | None = None,
     ) -> Event:
-        """Something to watch: ``value(t, moment)`` passes zero, rising (direction 1), falling (-1) or either (0).
+        """Monitor a scalar: ``value(t, moment)`` passes zero, rising (direction 1), falling (-1) or either (0).
 
         ``moment`` shows the motion now (mbsd/dynamics/events/moment.py). ``terminal`` ends the simulation there;
-        ``action`` is called with the moment and may change velocities and let joints go.
+        ``action`` is called with the moment and may change velocities and release joints.
         """
         new_name(self, name, "event", self.events)
         for what, function in (("value", value), ("action", action)):
@@ -356,7 +356,7 @@ class Mechanism(Model):
 
         ``at``: ``"equilibrium"`` (the stable one, found from start_near), ``"start"`` (start_near and start_moving),
         an equilibrium, or a solution and its output nearest to ``t`` (s). ``inputs`` are efforts: names of drivers,
-        which let go and keep their effort, or of torques, forces and actuators.
+        which are released and keep their effort, or of torques, forces and actuators.
 
         Raises MobilityError if nothing can move, SingularPoseError at a toggle or change point.
         """
@@ -384,7 +384,7 @@ class Mechanism(Model):
         return inverse_dynamics(self, motion, actuators)
 
     def with_efforts(self, **efforts: Amount | None) -> Mechanism:
-        """A copy moved by efforts: each named driver lets go and gives this effort instead of imposing its law.
+        """A copy moved by efforts: each named driver gives this effort instead of imposing its law.
 
         An effort is a number, a law of time (``table(sol.t, sol.driver("motor").effort)``) or a function, in N or
         N m; None leaves the driver or force out. Torques, forces and actuators are given another law alike.

@@ -1,4 +1,4 @@
-"""The state about which a mechanism is linearised, as the start of a copy of it; drivers that are inputs let go."""
+"""The state about which a mechanism is linearised, as the start of a copy; drivers that are inputs are released."""
 
 from __future__ import annotations
 

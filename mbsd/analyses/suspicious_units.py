@@ -1,4 +1,4 @@
-"""Numbers that are allowed but look as if a unit was mixed up, each told with its remedy.
+"""Numbers that are allowed but look as if a unit was mixed up, each reported with its remedy.
 
 Only what is off by more than machines ever are counts: sizes a hundredfold apart, masses 1e5 apart, an inertia whose
 radius of gyration is 20 sizes, marker angles of whole degrees beyond a turn. Silence proves nothing.

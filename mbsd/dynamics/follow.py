@@ -12,7 +12,7 @@ from mbsd.dynamics.events.run import EventRun
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.multipliers import fill_multipliers
 from mbsd.dynamics.runs.choose import ChoosingRun
-from mbsd.dynamics.runs.trail import Trail
+from mbsd.dynamics.runs.recording import Recording
 from mbsd.dynamics.state import ACCEPTED, NEXT, TIME, WORK, Output
 from mbsd.model.event import Event
 
@@ -26,13 +26,13 @@ def follow(
     events: list[Event],
     event_rows: bool,
     progress: Progress,
-) -> Trail:
+) -> Recording:
     """Simulate from the consistent start to the last of ``times`` (s)."""
     with kept():
         return _followed(ready, run, times, events, event_rows, progress)
 
 
-def trail_of(met: EventRun, event_rows: bool = False) -> Trail:
+def recording_of(met: EventRun, event_rows: bool = False) -> Recording:
     """Of an event run that has ended: outputs that were reached, with rows at events if asked for."""
     written = int(met.state.count[NEXT])
     out, held = Output(*(part[:written] for part in met.out)), met.held[:written]
@@ -43,16 +43,19 @@ def trail_of(met: EventRun, event_rows: bool = False) -> Trail:
         order = np.argsort(both[0], kind="stable")
         out = Output(*(part[order] for part in both))
         held = np.concatenate([held, np.stack([row[-1] for row in rows])])[order]
-    return Trail(out, held, int(met.state.count[ACCEPTED]), met.happenings, met.snapshots)
+    return Recording(out, held, int(met.state.count[ACCEPTED]), met.happenings, met.snapshots)
 
 
-def resumed(ready: PreparedDynamics, run: ChoosingRun, trail: Trail, times: np.ndarray, events: list[Event]) -> Trail:
-    """The motion at other times (T,), rising and within the trail: each from the last point known before it."""
-    began = np.array([snapshot.time for snapshot in trail.snapshots])
+def resumed(
+    ready: PreparedDynamics, run: ChoosingRun, recording: Recording, times: np.ndarray, events: list[Event]
+) -> Recording:
+    """The motion at other times (T,), rising and within the recording: each from the last point known before it."""
+    began = np.array([snapshot.time for snapshot in recording.snapshots])
     which = np.maximum(np.searchsorted(began, times, side="right") - 1, 0)
-    outputs = np.searchsorted(trail.out.t, times, side="right") - 1
+    outputs = np.searchsorted(recording.out.t, times, side="right") - 1
     starts = [
-        (int(s), int(k) if k >= 0 and trail.out.t[k] > began[s] else -1) for s, k in zip(which, outputs, strict=True)
+        (int(s), int(k) if k >= 0 and recording.out.t[k] > began[s] else -1)
+        for s, k in zip(which, outputs, strict=True)
     ]
     pieces, steps, first = [], 0, 0
     while first < len(times):
@@ -60,31 +63,31 @@ def resumed(ready: PreparedDynamics, run: ChoosingRun, trail: Trail, times: np.n
         while last < len(times) and starts[last] == starts[first]:
             last += 1
         s, k = starts[first]
-        snapshot = trail.snapshots[s]
+        snapshot = recording.snapshots[s]
         state, out = ready.begun(times[first:last])
-        state.clock[TIME] = snapshot.time if k < 0 else trail.out.t[k]
-        state.y[...] = snapshot.y if k < 0 else trail.out.y[k]
+        state.clock[TIME] = snapshot.time if k < 0 else recording.out.t[k]
+        state.y[...] = snapshot.y if k < 0 else recording.out.y[k]
         met = EventRun(ready, run, state, out, events)
-        met.resume(snapshot, snapshot.work if k < 0 else float(trail.out.work[k]))
+        met.resume(snapshot, snapshot.work if k < 0 else float(recording.out.work[k]))
         try:
             met.to(float(times[last - 1]))
-            pieces.append(trail_of(met))
+            pieces.append(recording_of(met))
         except SimulationError:
-            if events or ready.switches.touches or ready.sticks:
+            if events or ready.switches.contacts or ready.sticks:
                 raise
             # near a singular pose, which independent coordinates pass
             state, out = ready.begun(times[first:last])
-            state.clock[TIME] = snapshot.time if k < 0 else trail.out.t[k]
-            state.y[...] = snapshot.y if k < 0 else trail.out.y[k]
-            state.clock[WORK] = snapshot.work if k < 0 else trail.out.work[k]
+            state.clock[TIME] = snapshot.time if k < 0 else recording.out.t[k]
+            state.y[...] = snapshot.y if k < 0 else recording.out.y[k]
+            state.clock[WORK] = snapshot.work if k < 0 else recording.out.work[k]
             if run.to_end(state, out):
                 fill_multipliers(ready.packed, ready.dynamics, out.t, out.y, out.lam, out.margin)
             held = np.broadcast_to(ready.switches.held(), out.lam.shape)
-            pieces.append(Trail(out, held, int(state.count[ACCEPTED])))
+            pieces.append(Recording(out, held, int(state.count[ACCEPTED])))
         steps += pieces[-1].steps
         first = last
     out = Output(*(np.concatenate(parts) for parts in zip(*(piece.out for piece in pieces), strict=True)))
-    return Trail(out, np.concatenate([piece.held for piece in pieces]), steps)
+    return Recording(out, np.concatenate([piece.held for piece in pieces]), steps)
 
 
 def _followed(
@@ -94,14 +97,14 @@ def _followed(
     events: list[Event],
     event_rows: bool,
     progress: Progress,
-) -> Trail:
+) -> Recording:
     state, out = ready.begun(times)
     met = EventRun(ready, run, state, out, events)
-    if not events and not ready.switches.touches and not ready.sticks:
+    if not events and not ready.switches.contacts and not ready.sticks:
         met.snapshots.append(met.snapshot())
         independent = run.to_end(state, out, progress)
         steps, held = int(state.count[ACCEPTED]), met.held | ready.switches.held()
-        return Trail(out, held, steps, [], met.snapshots, independent)
+        return Recording(out, held, steps, [], met.snapshots, independent)
     met.begin()
     met.to(float(times[-1]), progress)
-    return trail_of(met, event_rows)
+    return recording_of(met, event_rows)

@@ -25,8 +25,8 @@ from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.multipliers import multipliers_along
 from mbsd.dynamics.rows.joint_sticks import standing
 from mbsd.dynamics.runs.choose import ChoosingRun
+from mbsd.dynamics.runs.recording import Recording
 from mbsd.dynamics.runs.running import AUTO, FORMULATIONS, INDEPENDENT
-from mbsd.dynamics.runs.trail import Trail
 from mbsd.dynamics.start.large import MANY_COORDINATES
 from mbsd.kinematics.limits.joints import refuse_passed
 from mbsd.kinematics.multipliers import JACOBIAN_NUMBERS
@@ -78,17 +78,17 @@ def simulate(
     longest = step or float(np.diff(grid).max())
     run = ChoosingRun(ready, integrator, tolerance, longest, float(grid[-1] - grid[0]), options, formulation)
     events = list(m.events.values())
-    if formulation == INDEPENDENT and (events or ready.switches.touches or ready.sticks):
+    if formulation == INDEPENDENT and (events or ready.switches.contacts or ready.sticks):
         raise ModelError(
             f"{m.name}: formulation='independent' does not know events, contacts, limits and joints that stick"
         )
-    trail = follow(ready, run, grid, events, event_rows, progress)
+    recording = follow(ready, run, grid, events, event_rows, progress)
 
     def between(times: np.ndarray) -> Solution:
-        return solution(m, ready, resumed(ready, run, trail, times, events))
+        return solution(m, ready, resumed(ready, run, recording, times, events))
 
-    refuse_passed(ready.packed, trail.out.t, np.ascontiguousarray(trail.out.y[:, 0]))
-    return solution(m, ready, trail, between)
+    refuse_passed(ready.packed, recording.out.t, np.ascontiguousarray(recording.out.y[:, 0]))
+    return solution(m, ready, recording, between)
 
 
 def integrator_named(model: str, method: str) -> Integrator:
@@ -113,10 +113,10 @@ def output_times(
 
 
 def solution(
-    m: Model, ready: PreparedDynamics, trail: Trail, between: Callable[[np.ndarray], Solution] | None = None
+    m: Model, ready: PreparedDynamics, recording: Recording, between: Callable[[np.ndarray], Solution] | None = None
 ) -> Solution:
     """The results by name, with reactions and residuals; ``between`` gives those at other times."""
-    packed, out = ready.packed, trail.out
+    packed, out = ready.packed, recording.out
     count, rows = len(out.t), len(packed.ws.phi)
     drives = packed.drives(out.t)
     q, v = np.ascontiguousarray(out.y[:, 0]), np.ascontiguousarray(out.y[:, 1])
@@ -127,8 +127,8 @@ def solution(
         phi, gamma = np.zeros((2, at.stop - start, rows))
         compact = np.zeros((at.stop - start, rows, 6))
         tabulate_along(packed, drives[at], q[at], v[at], phi, compact, gamma)
-        held = trail.held[at]
-        if trail.independent:
+        held = recording.held[at]
+        if recording.independent:
             motion = out.t[at], q[at], v[at]
             out.lam[at], out.margin[at] = multipliers_along(packed, ready.dynamics, motion, compact, gamma)
         refuse_opened(ready, out.t[at], phi * held)
@@ -159,12 +159,14 @@ def solution(
         lam=lam,
         drives=drives,
         margin=np.sqrt(np.clip(out.margin, 0.0, None)),
-        stats=Stats(*(float(r) for r in residuals), steps=trail.steps, inserted_steps=0, independent=trail.independent),
+        stats=Stats(
+            *(float(r) for r in residuals), steps=recording.steps, inserted_steps=0, independent=recording.independent
+        ),
         mobility=ready.mobility,
         work=out.work,
         changes=ready.initial.poses + ready.initial.velocities,
-        events=tuple(trail.happenings),
-        held=trail.held,
+        events=tuple(recording.happenings),
+        held=recording.held,
         span=(ready.start, ready.end),
         between=between,
     )
@@ -173,7 +175,7 @@ def solution(
 def _friction(
     ready: PreparedDynamics, q: np.ndarray, v: np.ndarray, compact: np.ndarray, lam: np.ndarray, held: np.ndarray
 ) -> np.ndarray:
-    """(T, 3 nb) of the joints whose friction no multipliers hold, while they are not let go."""
+    """(T, 3 nb) of the joints whose friction no multipliers hold, as long as they are not released."""
     out = np.zeros_like(q)
     for loads, at in standing(ready.dynamics.loads, held):
         out[at] = friction_along(ready.packed, loads, q[at], v[at], compact[at], lam[at])

@@ -125,7 +125,7 @@ def _ends(q: np.ndarray, v: np.ndarray, a: np.ndarray, i: int, j: int) -> Ends:
 def _least_turns(ends: Ends) -> int | None:
     """The number of turns of which that of the period is a multiple; None if a body turns in no whole number of them.
 
-    Told by the bodies that stand where they stood, moving as they moved, and have turned.
+    It shows in bodies that stand where they stood, move as they moved, and have turned.
     """
     (q0, v0, a0), (q1, v1, a1) = ends
     least = 1

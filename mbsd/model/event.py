@@ -15,7 +15,7 @@ from mbsd.model.body import Body, Marker
 
 @dataclass(frozen=True, eq=False)
 class Event:
-    """A scalar function of time and motion to watch; see :meth:`mbsd.mechanism.Mechanism.event`."""
+    """A scalar function of time and motion that a simulation monitors; see :meth:`mbsd.mechanism.Mechanism.event`."""
 
     name: str
     value: Callable[[float, Any], float]
@@ -38,7 +38,7 @@ class Happening:
     impulse: float = 0.0
     """Of an impact, normal (N s; N m s of stops of angles)."""
     energy: float = 0.0
-    """Kinetic energy after less before (J), of all that happens at this time; told once."""
+    """Kinetic energy after less before (J), of all that happens at this time; given once."""
 
 
 def angle_reaches(body: Body, angle: float) -> Callable[[float, Any], float]:

@@ -51,7 +51,7 @@ class Model:
     velocities: dict[str, StartVelocity] = field(default_factory=dict)
 
     findings_told = False
-    """Whether suspicious units were told; see mbsd/analyses/suspicious_units.py."""
+    """Whether suspicious units were reported; see mbsd/analyses/suspicious_units.py."""
 
     def __post_init__(self) -> None:
         new_name(self, self.name, "mechanism")

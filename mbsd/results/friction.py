@@ -33,7 +33,7 @@ def friction_view(
 ) -> FrictionView:
     """Of the friction ``name``; q, v (T, nb, 3) or (T, 3 nb), lam (T, m); rows of J that ``held`` (T, m), None: all.
 
-    A joint that an action let go has no friction.
+    A joint that an action released has no friction.
     """
     from mbsd.arrays.curve_branches import tabulate_along
     from mbsd.arrays.friction_along import normals_along

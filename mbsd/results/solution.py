@@ -343,8 +343,8 @@ class Solution(Generic[AnyModel]):
 
         ``show``: one or more of ``velocities``, ``accelerations``, ``forces``, ``reactions`` and ``energy`` over one
         another, ``()`` for the machine alone, or ``"all"``: each in a picture of its own, side by side. Arrows have one
-        scale for the whole film, told by one of a round number. ``rate``: seconds of the motion in a second of the
-        film; by default real time, or a round part or multiple of it, told in the picture, where that would be too
+        scale for the whole film, shown by one of a round number. ``rate``: seconds of the motion in a second of the
+        film; by default real time, or a round part or multiple of it, stated in the picture, where that would be too
         short or too long to see. ``fps``: pictures a second; ``size``: pixels, (1280, 720) by default, (800, 450) of a
         GIF. A motion that repeats (``period``) loops; others play once. ``progress`` is called with the number of
         pictures drawn, and of all. Needs the extra ``animate``; raises ModelError for what cannot be drawn or written.

@@ -77,7 +77,7 @@ def test_a_copy_does_not_follow_and_a_record_restored_is_read_by_the_kernels() -
     assert before.contacts == ["open"]
     met.now.restore(before)
     np.testing.assert_array_equal(met.dynamics.schur.rows, before.rows)
-    assert met.switches.touches[0].state == "open"
+    assert met.switches.contacts[0].state == "open"
     assert met.now.released == set()
     met.now.released.add(5)
     assert before.released == set()

@@ -1,1 +1,1 @@
-"""Events: what is watched, when it is zero, what changes then."""
+"""Events: which scalars are monitored, when one passes zero, what changes then."""

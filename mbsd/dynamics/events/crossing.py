@@ -1,4 +1,4 @@
-"""Where in a step a watched scalar first falls through zero.
+"""Where in a step a monitored scalar first falls through zero.
 
 Interior samples of the step's quintic also find scalars that dip below zero and come back, and those that leave zero
 at the start of the step (a bounce) and return within it. A gap that begins within rounding of zero, or an error of the
@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from mbsd.dynamics.events.watches import Samples, Watch
+from mbsd.dynamics.events.monitors import Monitor, Samples
 
 PARTS = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
 HALVINGS = 40
@@ -20,45 +20,45 @@ HALVINGS = 40
 
 
 def first_crossing(
-    watches: Sequence[Watch], samples: Callable[[np.ndarray], Samples]
-) -> tuple[Watch, float, float] | None:
-    """The watch that falls through zero first, the part of the step where, and a part where it is negative.
+    monitors: Sequence[Monitor], samples: Callable[[np.ndarray], Samples]
+) -> tuple[Monitor, float, float] | None:
+    """The monitor that falls through zero first, the part of the step where, and a part where it is negative.
 
-    ``samples(x)`` gives what watches read at parts x (S,) of the step.
+    ``samples(x)`` gives what monitors read at parts x (S,) of the step.
     """
     at_parts, found = samples(PARTS), None
-    for watch in watches:
-        values = watch.value(at_parts)
-        below = np.flatnonzero(values[1:] < -watch.still)
+    for monitor in monitors:
+        values = monitor.value(at_parts)
+        below = np.flatnonzero(values[1:] < -monitor.still)
         if not len(below):
             continue
         k = int(below[0])
         if found is not None and PARTS[k] >= found[2]:
             continue
-        where, negative = _root(watch, samples, k, float(values[k]))
-        if where == 0.0 and watch.leaves is not None and watch.leaves(samples(PARTS[[0, -1]])):
-            opened = np.flatnonzero(values > watch.still)
+        where, negative = _root(monitor, samples, k, float(values[k]))
+        if where == 0.0 and monitor.leaves is not None and monitor.leaves(samples(PARTS[[0, -1]])):
+            opened = np.flatnonzero(values > monitor.still)
             below = below[below >= opened[0]] if len(opened) else below[:0]
             if not len(below):
                 continue
-            where, negative = _root(watch, samples, int(below[0]), float(values[below[0]]))
+            where, negative = _root(monitor, samples, int(below[0]), float(values[below[0]]))
         if found is None or where < found[1]:
-            found = watch, where, negative
+            found = monitor, where, negative
     return found
 
 
-def _root(watch: Watch, samples: Callable[[np.ndarray], Samples], k: int, at_left: float) -> tuple[float, float]:
+def _root(monitor: Monitor, samples: Callable[[np.ndarray], Samples], k: int, at_left: float) -> tuple[float, float]:
     """Within part k of the step."""
     from scipy.optimize import brentq
 
     left, right = float(PARTS[k]), float(PARTS[k + 1])
-    level = min(0.0, max(at_left, -watch.still))  # within rounding it counts as zero
+    level = min(0.0, max(at_left, -monitor.still))  # within rounding it counts as zero
 
     def value(x: float) -> float:
-        return float(watch.value(samples(np.array([x])))[0]) - level
+        return float(monitor.value(samples(np.array([x])))[0]) - level
 
     negative = right
-    if at_left <= watch.still:
+    if at_left <= monitor.still:
         start, positive = left, None
         for _ in range(HALVINGS):
             middle = 0.5 * (start + right)

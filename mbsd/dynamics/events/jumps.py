@@ -18,12 +18,12 @@ from mbsd.dynamics.events.laws.impact import impacts
 from mbsd.dynamics.events.laws.independent import independent
 from mbsd.dynamics.events.laws.stick_slip import Case, Verdict, decide
 from mbsd.dynamics.events.moment import Moment
-from mbsd.dynamics.events.watches import HALTS, OPENS, SLIPS, Watch
+from mbsd.dynamics.events.monitors import HALTS, OPENS, SLIPS, Monitor
 from mbsd.dynamics.reference.arrays import Scratch
 from mbsd.dynamics.reference.projection import project
 from mbsd.dynamics.rows.held import OPEN, RELEASED, SLIDES, STICKS
 from mbsd.dynamics.rows.joint_sticks import release
-from mbsd.dynamics.rows.switches import Touch
+from mbsd.dynamics.rows.switches import RunContact
 from mbsd.dynamics.state import TIME, State
 from mbsd.model.event import Event, Happening
 
@@ -61,50 +61,51 @@ class Jumps:
             self.switches.release(joint)
             release(self.switches.now, self.dynamics.loads, self.sticks, int(self.packed.first_row[joint]))
         if moment.released:
-            self.switches.stand_in(self.state.y[0])
+            self.switches.hold_spare(self.state.y[0])
         for row in range(self.packed.contact_rows, len(self.packed.ws.phi)):
-            self.switches.let_go(row)  # contacts push back by impacts, not by this projection; friction is no impact
+            # contacts push back by impacts, not by this projection; friction is no impact
+            self.switches.release_row(row)
         self.state.y[1] = moment.v
         self.state.y[1, :3] = 0.0
         project(self.dynamics, self.scratch, moment.t, self.state.y, 2)
 
-    def resolve(self, watch: Watch | None) -> None:
-        """Impacts, and what every contact and joint does from now on; ``watch``: what fell through zero."""
-        touches = self.switches.touches
-        if touches or self.sticks:
+    def resolve(self, monitor: Monitor | None) -> None:
+        """Impacts, and what every contact and joint does from now on; ``monitor``: what fell through zero."""
+        contacts = self.switches.contacts
+        if contacts or self.sticks:
             at = self.compliance(self.state.clock[TIME], self.state.y[0])
-            fired = watch.touch if watch is not None else None
+            fired = monitor.contact if monitor is not None else None
             closed = [
-                touch
-                for touch in touches
-                if touch.always_closed or touch is fired or at.phi[touch.gap] <= self._close(touch)
+                contact
+                for contact in contacts
+                if contact.always_closed or contact is fired or at.phi[contact.gap] <= self._close(contact)
             ]
             self._strike(at, closed)
             v = self.state.y[1]
-            rates = at.rates([touch.gap for touch in closed], v)
+            rates = at.rates([contact.gap for contact in closed], v)
             staying = [t for t, rate in zip(closed, rates, strict=True) if rate <= max(t.settle, self.still[t.gap])]
             forced: dict[str, float] = {}
-            if watch is not None and fired is not None:
-                if watch.what == OPENS and fired in staying:
+            if monitor is not None and fired is not None:
+                if monitor.what == OPENS and fired in staying:
                     staying.remove(fired)
-                if watch.what == SLIPS:
+                if monitor.what == SLIPS:
                     forced[fired.name] = float(np.sign(self.state.lam[fired.way or 0]))
-                if watch.what == HALTS:
+                if monitor.what == HALTS:
                     forced[fired.name] = 0.0
             before = [stick.state for stick in self.sticks]
-            self._set(at, decide(at, self._case(watch, staying, forced)), before)
+            self._set(at, decide(at, self._case(monitor, staying, forced)), before)
 
-    def _case(self, watch: Watch | None, staying: list[Touch], forced: dict[str, float]) -> Case:
+    def _case(self, monitor: Monitor | None, staying: list[RunContact], forced: dict[str, float]) -> Case:
         case = Case(staying, self.sticks, self.state.y[1], self.still, forced)
-        if watch is not None and watch.stick is not None:
-            case.slipping = watch.what == SLIPS
-            case.halted = watch.stick.name if watch.what == HALTS else None
+        if monitor is not None and monitor.stick is not None:
+            case.slipping = monitor.what == SLIPS
+            case.halted = monitor.stick.name if monitor.what == HALTS else None
         return case
 
-    def _close(self, touch: Touch) -> float:
-        return 1e2 * self.near[touch.gap]
+    def _close(self, contact: RunContact) -> float:
+        return 1e2 * self.near[contact.gap]
 
-    def _strike(self, at: Compliance, closed: list[Touch]) -> None:
+    def _strike(self, at: Compliance, closed: list[RunContact]) -> None:
         inertia = self.dynamics.inertia
         before = 0.5 * float(inertia @ self.state.y[1] ** 2)
         after, given = impacts(at, closed, self.state.y[1], self.still)
@@ -113,43 +114,43 @@ class Jumps:
         self.state.y[1] = after
         change = 0.5 * float(inertia @ after**2) - before
         for impulse in given:
-            self.tell(impulse.touch.name, "impact", impulse.normal, change)
+            self.tell(impulse.contact.name, "impact", impulse.normal, change)
             change = 0.0
 
     def _set(self, at: Compliance, verdict: Verdict, before: list[str]) -> None:
         sliding, sticking = self.switches.now.factors, []
-        by_name = {decision.touch.name: decision for decision in verdict.contacts if decision.normal > 0.0}
+        by_name = {decision.contact.name: decision for decision in verdict.contacts if decision.normal > 0.0}
         sliding[:] = 0.0
         rows: list[int] = []
-        for touch in self.switches.touches:
-            old = touch.state
-            self.switches.let_go(touch.gap)
-            if touch.way is not None:
-                self.switches.let_go(touch.way)
-            decision = by_name.get(touch.name)
+        for contact in self.switches.contacts:
+            old = contact.state
+            self.switches.release_row(contact.gap)
+            if contact.way is not None:
+                self.switches.release_row(contact.way)
+            decision = by_name.get(contact.name)
             if decision is None:
-                touch.set(OPEN)
+                contact.set(OPEN)
             else:
-                rows.append(touch.gap)
-                if touch.always_closed:
-                    self.switches.move_zero(touch.gap, at.phi[touch.gap])
-                touch.set(SLIDES, decision.sliding)
-                if touch.way is not None and decision.sliding == 0.0:
-                    touch.set(STICKS)
+                rows.append(contact.gap)
+                if contact.always_closed:
+                    self.switches.move_zero(contact.gap, at.phi[contact.gap])
+                contact.set(SLIDES, decision.sliding)
+                if contact.way is not None and decision.sliding == 0.0:
+                    contact.set(STICKS)
                     if old != STICKS:
-                        self.switches.move_zero(touch.way, at.phi[touch.way])
-                    sticking.append(touch.way)
-                elif touch.way is not None:
-                    sliding[touch.sliding] = touch.friction * decision.sliding
-            self._tell_change(touch, old)
+                        self.switches.move_zero(contact.way, at.phi[contact.way])
+                    sticking.append(contact.way)
+                elif contact.way is not None:
+                    sliding[contact.sliding] = contact.friction * decision.sliding
+            self._tell_change(contact, old)
         for row in independent(at, rows + sticking + self._set_joints(at, verdict.joints, before)):
-            self.switches.take_up(row)
+            self.switches.hold_row(row)
 
     def _set_joints(self, at: Compliance, signs: dict[str, float], before: list[str]) -> list[int]:
         """The rows of the joints that stick from now on; their states ``before``."""
         rows: list[int] = []
         for stick, old in zip(self.sticks, before, strict=True):
-            self.switches.let_go(stick.way)
+            self.switches.release_row(stick.way)
             if stick.state == RELEASED:
                 continue
             sign = signs[stick.name]
@@ -162,10 +163,10 @@ class Jumps:
                 self.tell(stick.name, stick.state)
         return rows
 
-    def _tell_change(self, touch: Touch, old: str) -> None:
-        new = touch.state
+    def _tell_change(self, contact: RunContact, old: str) -> None:
+        new = contact.state
         if old != new:
-            self.tell(touch.name, "opens" if new == OPEN else "closes" if old == OPEN else new)
+            self.tell(contact.name, "opens" if new == OPEN else "closes" if old == OPEN else new)
 
     def tell(self, name: str, what: str, impulse: float = 0.0, energy: float = 0.0) -> None:
         """One more of what happened, now."""

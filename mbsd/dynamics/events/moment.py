@@ -40,7 +40,7 @@ class Moment:
         self.v = v
         """(3 nb,)"""
         self.released: list[int] = []
-        """Joints that an action let go, by number."""
+        """Numbers of the joints that an action released."""
 
     def body(self, name: str) -> Frame:
         """A body's frame."""

@@ -1,6 +1,6 @@
 """A simulation with events: step by step, back to the start of the step where one happens, and on from there.
 
-    step     one step of the integrator; do watched scalars fall through zero within it?
+    step     one step of the integrator; do monitored scalars fall through zero within it?
     root     from the state before the step, integrate to shorter and shorter ends, until the scalar is zero
     jump     what changes there: jumps.py
     restart  from the new state
@@ -21,19 +21,19 @@ from mbsd.dynamics.events.dense import Quintic
 from mbsd.dynamics.events.jumps import Jumps
 from mbsd.dynamics.events.laws.resting import carried
 from mbsd.dynamics.events.moment import Moment
-from mbsd.dynamics.events.watches import (
+from mbsd.dynamics.events.monitors import (
+    Monitor,
     Samples,
-    Watch,
     checked,
-    event_watch,
-    stick_watches,
-    touch_watches,
+    contact_monitors,
+    event_monitor,
+    stick_monitors,
 )
 from mbsd.dynamics.prepare.exchange import LOOK, exchange_rows
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.rows.held import STICKS
 from mbsd.dynamics.runs.pace import Pace
-from mbsd.dynamics.runs.trail import Snapshot
+from mbsd.dynamics.runs.recording import Snapshot
 from mbsd.dynamics.state import (
     EVALUATIONS,
     NEXT,
@@ -74,9 +74,9 @@ class EventRun:
         scale = 1.0 / self.packed.row_scale()
         self.near, self.still = NEAR * scale, STILL * scale
         self.now = self.switches.now
-        self.now.events, self.now.sliding = {}, [0.0] * len(self.switches.touches)
+        self.now.events, self.now.sliding = {}, [0.0] * len(self.switches.contacts)
         self.jumps = Jumps(ready, run.scratch, state, self.near, self.still)
-        self.watches: list[Watch] = []
+        self.monitors: list[Monitor] = []
         self.happenings = self.jumps.happenings
         self.snapshots: list[Snapshot] = []
         self.held = np.zeros((len(out.t), len(self.packed.ws.phi)), bool)
@@ -124,17 +124,17 @@ class EventRun:
                 if status == REACHED and state.clock[TIME] >= end:
                     return True
                 continue
-            watch, first, last = found
-            self._find(watch, before, first, last)
+            monitor, first, last = found
+            self._find(monitor, before, first, last)
             self._note_rows()
-            if watch.stops:
+            if monitor.stops:
                 self._make_valid()
                 before_it, told = self._row(), len(self.happenings)
-                self._happen(watch)
+                self._happen(monitor)
                 if len(self.happenings) > told:  # a gap that only rounding closes is no event
                     self.rows += [before_it] if self.ended else [before_it, self._row()]
             else:
-                self._turn_side(watch)
+                self._turn_side(monitor)
                 self._restart()
         return False
 
@@ -174,8 +174,8 @@ class EventRun:
 
     # -- finding ------------------------------------------------------------------------------------------------
 
-    def _crossing(self, before: State) -> tuple[Watch, float, float] | None:
-        if not self.watches:
+    def _crossing(self, before: State) -> tuple[Monitor, float, float] | None:
+        if not self.monitors:
             return None
         quintic = Quintic(before, self.state)
 
@@ -183,20 +183,20 @@ class EventRun:
             q, v = quintic.at(x)
             return Samples(self.packed, self.dynamics, self.run.scratch, quintic.times(x), q, v)
 
-        watches = list(self.watches)
-        while watches:
-            found = first_crossing(watches, samples)
+        monitors = list(self.monitors)
+        while monitors:
+            found = first_crossing(monitors, samples)
             if found is None:
                 return None
-            watch, where, negative = found
+            monitor, where, negative = found
             times = quintic.times(np.array([where, negative]))
-            if where == 0.0 or self._true(watch, before, float(times[1])) < -watch.still:
-                return watch, float(times[0]), float(times[1])
-            watches.remove(watch)  # the quintic dips below zero, the motion does not
+            if where == 0.0 or self._true(monitor, before, float(times[1])) < -monitor.still:
+                return monitor, float(times[0]), float(times[1])
+            monitors.remove(monitor)  # the quintic dips below zero, the motion does not
         return None
 
-    def _true(self, watch: Watch, before: State, time: float) -> float:
-        """The watched scalar of the motion itself at a time (s) within the step; the state is left before it."""
+    def _true(self, monitor: Monitor, before: State, time: float) -> float:
+        """The monitored scalar of the motion itself at a time (s) within the step; the state is left before it."""
         trial = copied(before)
         if time > before.clock[TIME]:
             nowhere = self.run.nowhere
@@ -204,9 +204,9 @@ class EventRun:
             self.run.advance(trial, nowhere, time)
         at = np.array([trial.clock[TIME]])
         sample = Samples(self.packed, self.dynamics, self.run.scratch, at, trial.y[0][None], trial.y[1][None])
-        return float(watch.value(sample)[0])
+        return float(monitor.value(sample)[0])
 
-    def _find(self, watch: Watch, before: State, first: float, last: float) -> None:
+    def _find(self, monitor: Monitor, before: State, first: float, last: float) -> None:
         """Bring the state to the root, which the quintic puts at ``first`` (s) and ``last`` is beyond."""
         from scipy.optimize import brentq
 
@@ -219,7 +219,7 @@ class EventRun:
 
             def value(time: float) -> float:
                 if time not in values:
-                    values[time] = self._true(watch, before, time)
+                    values[time] = self._true(monitor, before, time)
                 return values[time]
 
             if value(max(first - reach, low)) > 0.0 and first - reach > low:
@@ -236,46 +236,46 @@ class EventRun:
         if root > start:
             self.run.advance(self.state, self.out, root)
 
-    def _turn_side(self, watch: Watch) -> None:
-        self.now.events[watch.name] = -(self.now.events[watch.name] or 1.0)
+    def _turn_side(self, monitor: Monitor) -> None:
+        self.now.events[monitor.name] = -(self.now.events[monitor.name] or 1.0)
 
     # -- jumps --------------------------------------------------------------------------------------------------
 
-    def _happen(self, watch: Watch) -> None:
+    def _happen(self, monitor: Monitor) -> None:
         time = float(self.state.clock[TIME])
         self._times = [one for one in self._times if one == time] + [time]
         if len(self._times) > AT_ONE_TIME:
             raise SimulationError(
-                f"{self.packed.name}: more than {AT_ONE_TIME} events at t = {time:.6g} s, the last of '{watch.name}' "
-                f"({watch.what}). Change its restitution or friction, or what an action does there."
+                f"{self.packed.name}: more than {AT_ONE_TIME} events at t = {time:.6g} s, the last of '{monitor.name}' "
+                f"({monitor.what}). Change its restitution or friction, or what an action does there."
             )
-        if watch.event is not None:
-            self._turn_side(watch)
-            self.jumps.tell(watch.name, "end" if watch.event.terminal else "event")
-            if watch.event.terminal:
+        if monitor.event is not None:
+            self._turn_side(monitor)
+            self.jumps.tell(monitor.name, "end" if monitor.event.terminal else "event")
+            if monitor.event.terminal:
                 self.ended = True
                 return
-            if watch.event.action is not None:
-                self.jumps.act(watch.event)
-        self.jumps.resolve(watch)
+            if monitor.event.action is not None:
+                self.jumps.act(monitor.event)
+        self.jumps.resolve(monitor)
         self._restart()
 
     def _restart(self) -> None:
-        """Forget the derivative and what was watched: both belong to the motion before."""
+        """Forget the derivative and what was monitored: both belong to the motion before."""
         state = self.state
         state.count[STARTED] = 0
         state.clock[STEP] = 0.0
         self._make_valid()
         load = max(float(np.abs(self.dynamics.weight[3:]).max()), float(np.abs(state.lam).max(initial=0.0)), 1e-300)
-        self.watches = []
-        for touch in self.switches.touches:
-            self.watches += touch_watches(touch, self.near, self.still, load)
+        self.monitors = []
+        for contact in self.switches.contacts:
+            self.monitors += contact_monitors(contact, self.near, self.still, load)
         together = self._spare if self._sharing else None
-        self.watches += stick_watches(self.sticks, together, self.still, load)
+        self.monitors += stick_monitors(self.sticks, together, self.still, load)
         for event in self.events:
             if self.now.events[event.name] == 0.0:
                 self.now.events[event.name] = float(np.sign(self._value(event)))
-            self.watches.append(event_watch(self.packed, event, self.now.events[event.name] or 1.0))
+            self.monitors.append(event_monitor(self.packed, event, self.now.events[event.name] or 1.0))
         self.snapshots.append(self.snapshot())
 
     def snapshot(self) -> Snapshot:
@@ -309,10 +309,10 @@ class EventRun:
         state, scale = self.state, self.packed.row_scale()
         time = np.array([state.clock[TIME]])
         sample = Samples(self.packed, self.dynamics, self.run.scratch, time, state.y[0][None], state.y[1][None])
-        for touch in self.switches.touches:
-            gap = float(sample.residuals()[0, touch.gap])
-            if not touch.always_closed and gap * scale[touch.gap] < -INSIDE:
+        for contact in self.switches.contacts:
+            gap = float(sample.residuals()[0, contact.gap])
+            if not contact.always_closed and gap * scale[contact.gap] < -INSIDE:
                 raise SimulationError(
-                    f"{self.packed.name}: contact '{touch.name}' starts {-gap:.3g} (m or rad) inside; "
+                    f"{self.packed.name}: contact '{contact.name}' starts {-gap:.3g} (m or rad) inside; "
                     "move the start with start_near, or turn the contact's marker"
                 )

@@ -26,7 +26,7 @@ WORN = 1e3
 
 
 def exchange_rows(ready: PreparedDynamics, state: State) -> None:
-    """Let go and take up rows of ``ready.switches`` so that they serve at ``state``; only where some are spare."""
+    """Release and hold rows of ``ready.switches`` so that they serve at ``state``; only where some are spare."""
     switches, packed = ready.switches, ready.packed
     spare = switches.spare
     if not spare:
@@ -41,7 +41,7 @@ def exchange_rows(ready: PreparedDynamics, state: State) -> None:
     wanted = {rows[k] for k in chosen}
     for row in held:
         if row not in wanted:
-            switches.let_go(row)
+            switches.release_row(row)
     for row in wanted - set(held):
-        switches.take_up(row)
+        switches.hold_row(row)
     ready.dropped = tuple(sorted({*ready.dropped, *(set(held) - wanted)}))

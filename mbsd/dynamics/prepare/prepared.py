@@ -41,7 +41,7 @@ class PreparedDynamics:
     end: float
     mobility: Mobility
     switches: Switches
-    """Contacts and joints whose rows are let go and taken up."""
+    """The contacts and joints whose rows are released and held."""
     sticks: list[JointStick]
     """Joints that stick by events."""
     advancing: dict[tuple[str, type], Often] = field(default_factory=dict)

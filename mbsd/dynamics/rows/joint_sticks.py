@@ -48,11 +48,11 @@ class JointStick:
     place: int
     """In ``held``."""
     name: str
-    """Of its friction."""
+    """The name of its friction."""
     way: int
-    """Row of s in J."""
+    """The row of s in J."""
     at: int
-    """Row of Loads.rub."""
+    """Its row in Loads.rub."""
     loads: Loads
 
     @property
@@ -62,12 +62,12 @@ class JointStick:
 
     @property
     def sign(self) -> float:
-        """Of its sliding."""
+        """The direction of its sliding: 1, -1, or 0."""
         return self.held.joints_sliding[self.place]
 
     @property
     def number(self) -> np.ndarray:
-        """Row of Loads.rub_number."""
+        """Its row of Loads.rub_number."""
         return self.loads.rub_number[self.at]
 
     def limit(self, normal: np.ndarray) -> np.ndarray:
@@ -82,7 +82,7 @@ class JointStick:
 
 
 def joint_sticks(packed: Packed, loads: Loads, held: Held) -> list[JointStick]:
-    """Of a packed mechanism with the rows of ``stuck_rows``; all slide."""
+    """Those of a packed mechanism with the rows of ``stuck_rows``; all slide at first."""
     name_of = {int(packed.first_row[k]): joint.name for k, joint in enumerate(packed.joints)}
     rows = [(at, int(way)) for at, way in enumerate(loads.rub[:, WAY]) if way >= 0]
     held.joints, held.joints_sliding = [SLIDES] * len(rows), [1.0] * len(rows)
@@ -101,7 +101,7 @@ def release(held: Held, loads: Loads, sticks: Sequence[JointStick], first_row: i
 def standing(loads: Loads, held: np.ndarray) -> Iterator[tuple[Loads, np.ndarray]]:
     """Loads with the friction that a known motion with rows ``held`` (T, m) has, and the times (t,) where they act.
 
-    What multipliers hold, and friction of joints that an action let go, is none of it.
+    What multipliers hold, and friction of joints that an action released, is no part of it.
     """
     if not len(loads.rub):
         return

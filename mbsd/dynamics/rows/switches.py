@@ -1,6 +1,6 @@
-"""Rows of J that are let go and taken up during a run: of contacts, joints that stick, and joints that actions let go.
+"""Rows of J that are released and held during a run: of contacts, joints that stick, joints that actions release.
 
-The elimination sequence is planned with all of them; a row that is let go is -1 in its block.
+The elimination sequence is planned with all of them; a released row is -1 in its block.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from mbsd.model.joint import Joint
 
 
 @dataclass(eq=False)
-class Touch:
+class RunContact:
     """A contact of a run."""
 
     held: Held
     number: int
     """Its place in ``held``."""
-    contact: Joint
+    joint: Joint
     gap: int
     """Row."""
     way: int | None
@@ -47,28 +47,28 @@ class Touch:
 
     @property
     def sign(self) -> float:
-        """Of its sliding."""
+        """The direction of its sliding: 1, -1, or 0."""
         return self.held.sliding[self.number]
 
     @property
     def name(self) -> str:
-        """Of the contact."""
-        return self.contact.name
+        """The contact's name."""
+        return self.joint.name
 
     @property
     def friction(self) -> float:
         """Coulomb's coefficient."""
-        return self.contact.params.get("friction", 0.0)
+        return self.joint.params.get("friction", 0.0)
 
     @property
     def static_friction(self) -> float:
-        """The same for what sticks."""
-        return self.contact.params.get("static_friction", 0.0)
+        """Coulomb's coefficient while it sticks."""
+        return self.joint.params.get("static_friction", 0.0)
 
     @property
     def restitution(self) -> float:
-        """Speed after over speed before."""
-        return self.contact.params.get("restitution", 0.0)
+        """The speed after an impact divided by the speed before."""
+        return self.joint.params.get("restitution", 0.0)
 
 
 SETTLE = 1e-4
@@ -76,39 +76,39 @@ SETTLE = 1e-4
 
 
 class Switches:
-    """What holds now. Made before anything is let go; then all contacts are open."""
+    """Says which rows hold now. It is made while all of them do; then all contacts are open."""
 
     def __init__(self, packed: Packed, held: Held, spare: Collection[int] = ()) -> None:
         self.packed = packed
         self.now = held
         self.place = {int(row): (k, s) for k, rows in enumerate(held.rows) for s, row in enumerate(rows) if row >= 0}
-        self.touches: list[Touch] = []
+        self.contacts: list[RunContact] = []
         special = packed.system.special
         self._number_of = {int(special[k, ROW]): int(special[k, AT]) for k in range(len(special))}
         first = len(packed.joints) - packed.contacts
         slow = SETTLE * float(np.sqrt(np.hypot(*packed.system.gravity) / packed.size or 1.0))
         friction = 0
-        for k, contact in enumerate(packed.joints[first:], first):
-            if not isinstance(contact.kind, ContactKind):
+        for k, joint in enumerate(packed.joints[first:], first):
+            if not isinstance(joint.kind, ContactKind):
                 continue  # the row of a joint that sticks
             row = int(packed.first_row[k])
-            slippery = contact.params.get("friction", 0.0) == 0.0
-            self.touches.append(
-                Touch(
+            slippery = joint.params.get("friction", 0.0) == 0.0
+            self.contacts.append(
+                RunContact(
                     held,
-                    len(self.touches),
-                    contact,
+                    len(self.contacts),
+                    joint,
                     row,
                     None if slippery else row + 1,
                     -1 if slippery else friction,
-                    contact.kind.always_closed,
+                    joint.kind.always_closed,
                     slow / packed.row_scale()[row],
                 )
             )
             friction += not slippery
-        held.contacts, held.sliding = [OPEN] * len(self.touches), [0.0] * len(self.touches)
+        held.contacts, held.sliding = [OPEN] * len(self.contacts), [0.0] * len(self.contacts)
         for row in (*spare, *range(packed.contact_rows, len(packed.ws.phi))):
-            self.let_go(row)
+            self.release_row(row)
 
     @property
     def spare(self) -> list[int]:
@@ -116,32 +116,32 @@ class Switches:
         held = {int(row) for row in self.bilateral()} | self.now.released
         return [row for row in sorted(self.place) if row < self.packed.contact_rows and row not in held]
 
-    def let_go(self, row: int) -> None:
-        """Row ``row`` of J holds no more."""
+    def release_row(self, row: int) -> None:
+        """Row ``row`` of J no longer holds."""
         k, s = self.place[row]
         self.now.rows[k, s] = -1
 
-    def take_up(self, row: int) -> None:
-        """Row ``row`` of J holds."""
+    def hold_row(self, row: int) -> None:
+        """Row ``row`` of J holds from now on."""
         k, s = self.place[row]
         self.now.rows[k, s] = row
 
     def release(self, joint: int) -> None:
-        """Let joint number ``joint`` of the packed mechanism go for good."""
+        """Release joint number ``joint`` of the packed mechanism for good."""
         for row in range(int(self.packed.first_row[joint]), int(self.packed.first_row[joint + 1])):
             self.now.released.add(row)
             if row in self.place:
-                self.let_go(row)
+                self.release_row(row)
 
-    def stand_in(self, q: np.ndarray) -> None:
-        """Take up the spare rows that no others repeat any more in pose q (3 nb,)."""
+    def hold_spare(self, q: np.ndarray) -> None:
+        """Hold the spare rows that no others repeat any more in pose q (3 nb,)."""
         left = self.spare
         if left:
             held = [int(row) for row in self.bilateral()]
             rows = [*held, *left]
             for k in independent_rows(scaled_jacobian(self.packed, q)[rows]):
                 if k >= len(held):
-                    self.take_up(rows[k])
+                    self.hold_row(rows[k])
 
     def move_zero(self, row: int, residual: float) -> None:
         """Count the way of a contact or of a joint that sticks from here, where its residual is ``residual``."""

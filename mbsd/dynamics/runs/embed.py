@@ -88,7 +88,7 @@ def can_embed(ready: PreparedDynamics) -> str | None:
     count = ready.mobility.dof - len(packed.motions)
     if ready.following:
         return "a point is on a curve that crosses itself"
-    if ready.switches.touches:
+    if ready.switches.contacts:
         return "it has contacts or limits"
     if ready.mobility.redundant_rows or ready.mobility.singular:
         return "joints are redundant, or the start is singular"

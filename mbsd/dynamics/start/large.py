@@ -203,7 +203,7 @@ def independent_large(packed: Packed, time: float, q: np.ndarray) -> tuple[list[
 
 
 def mobility_large(m: Model, packed: Packed) -> Mobility:
-    """As mbsd.kinematics.pose.mobility.mobility: at the start, and at closed poses near it with the drivers let go."""
+    """As mbsd.kinematics.pose.mobility.mobility: at the start, and at closed poses near it without the drivers."""
     light = np.concatenate([np.zeros(3), packed.column_scale() ** 2])
     q = consistent_large(m, packed, 0.0, light).q
     free = copied(m)

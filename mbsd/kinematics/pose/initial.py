@@ -5,7 +5,7 @@ moves until everything closes. Velocities: what ``start_moving`` gives is held l
 
     J v = nu,   P v = given,   kinetic energy of what was left open as small as it can be.
 
-What could not be held is told.
+What could not be kept is reported.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from mbsd.kinematics.pose.phases import let_phases_go, take_phases
 from mbsd.model.mechanism import Model
 
 TOLD = 1e-6
-"""Smallest change of a given value that is told: sizes, rad, and the same by seconds relative to the given speeds."""
+"""The smallest change of a given value that is reported: sizes, rad; of speeds relative to the given ones."""
 COORDINATES = ("x", "y", "angle")
 
 

@@ -173,7 +173,7 @@ def _independent(jac: np.ndarray) -> list[int]:
 
 
 def _nearby(packed: Packed, q: np.ndarray, tries: int = 3, seed: int = 1) -> list[np.ndarray]:
-    """Closed poses near q; the drivers are let go."""
+    """Closed poses near q, with the drivers released."""
     random = np.random.default_rng(seed)
     scale = packed.column_scale()
     none = np.zeros((len(packed.motions) + 1, 3))

@@ -2,7 +2,7 @@
 
     g = side (a - a_locked)      constraint `turn`;   g' >= 0
 
-Locked, it holds the angle at which it locked; it lets go as soon as its torque would have to pull.
+Locked, it holds the angle at which it locked; it opens as soon as its torque would have to pull.
 """
 
 from __future__ import annotations

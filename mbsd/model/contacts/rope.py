@@ -1,4 +1,4 @@
-"""Rope between two points: it pulls when it is taut and lets go when it is slack.
+"""Rope between two points: it pulls while it is taut and carries nothing while it is slack.
 
 g = length - l       constraint `radial`
 """

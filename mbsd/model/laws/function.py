@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from mbsd.model.laws.numbers import Compiled
 
 TOLD = 1e-6
-"""Part of a load that may be missed before it is told."""
+"""The fraction of a load that may be missed before it is reported."""
 REMEDY = "give breaks= where it jumps, shortest= (s) if parts of it are short, or smooth it with recorded(...)"
 
 

@@ -24,7 +24,7 @@ import numpy as np
 from mbsd.base.errors import SimulationError
 from mbsd.dynamics.events.laws.compliance import Compliance
 from mbsd.dynamics.events.laws.lcp import lemke
-from mbsd.dynamics.rows.switches import Touch
+from mbsd.dynamics.rows.switches import RunContact
 
 STIFF = 1e-12
 """Compliance of a row, as part of that of its bodies alone, below which nothing gives way."""
@@ -32,7 +32,7 @@ STIFF = 1e-12
 
 def complementarity(
     at: Compliance,
-    taking: Sequence[Touch],
+    taking: Sequence[RunContact],
     ways: Sequence[int],
     compliance: np.ndarray,
     rates: np.ndarray,
@@ -47,7 +47,7 @@ def complementarity(
     _refuse_driven(at, taking, compliance)
     c, k = len(taking), len(ways)
     n, t = slice(0, c), slice(c, c + k)
-    unit = 1.0 / np.sqrt(_alone(at, [*(touch.gap for touch in taking), *ways]))
+    unit = 1.0 / np.sqrt(_alone(at, [*(contact.gap for contact in taking), *ways]))
     g = compliance * unit * unit[:, None]
     size = float(np.abs(np.diag(g)).max(initial=0.0)) or 1.0
     g /= size
@@ -66,7 +66,7 @@ def complementarity(
     )
     z = lemke(matrix, np.concatenate([b[n], b[t], -b[t], limits * size / fastest]))
     if z is None:
-        names = ", ".join(f"'{touch.name}'" for touch in taking) or "of joints that stick"
+        names = ", ".join(f"'{contact.name}'" for contact in taking) or "of joints that stick"
         raise SimulationError(
             f"{at.packed.name}: at t = {at.time:.6g} s the contacts {names} allow no motion with rigid bodies and this "
             "friction (jamming, Painleve's paradox). Use less friction, or a contact that yields."
@@ -86,11 +86,11 @@ def gives_way(at: Compliance, row: int, compliance: float) -> bool:
     return compliance > STIFF * float(_alone(at, [row])[0])
 
 
-def _refuse_driven(at: Compliance, taking: Sequence[Touch], compliance: np.ndarray) -> None:
+def _refuse_driven(at: Compliance, taking: Sequence[RunContact], compliance: np.ndarray) -> None:
     """A contact that no force can open: joints and drivers alone decide its gap."""
-    for k, touch in enumerate(taking):
-        if not gives_way(at, touch.gap, compliance[k, k]):
+    for k, contact in enumerate(taking):
+        if not gives_way(at, contact.gap, compliance[k, k]):
             raise SimulationError(
-                f"{at.packed.name}: at t = {at.time:.6g} s joints and drivers move '{touch.name}' against its stop, "
+                f"{at.packed.name}: at t = {at.time:.6g} s joints and drivers move '{contact.name}' against its stop, "
                 "and nothing can give way. Drive less far, move the stop, or put a spring between."
             )

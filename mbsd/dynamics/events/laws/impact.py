@@ -23,7 +23,7 @@ import numpy as np
 
 from mbsd.dynamics.events.laws.complementarity import complementarity
 from mbsd.dynamics.events.laws.compliance import Compliance
-from mbsd.dynamics.rows.switches import Touch
+from mbsd.dynamics.rows.switches import RunContact
 
 ROUNDS = 200
 """After so many, all closed contacts are solved at once without rebound."""
@@ -33,28 +33,28 @@ ROUNDS = 200
 class Impulse:
     """What a contact gave in an impact."""
 
-    touch: Touch
+    contact: RunContact
     normal: float
     """N s, or N m s."""
 
 
 def impacts(
-    at: Compliance, closed: Sequence[Touch], v: np.ndarray, still: np.ndarray
+    at: Compliance, closed: Sequence[RunContact], v: np.ndarray, still: np.ndarray
 ) -> tuple[np.ndarray, list[Impulse]]:
     """Velocities after (3 nb,) and the impulses, in order. ``still`` (m,): rates below this are zero."""
     v, given = v.copy(), []
     for round_number in range(ROUNDS + 1):
-        rates = at.rates([touch.gap for touch in closed], v)
-        approaching = [touch for touch, rate in zip(closed, rates, strict=True) if rate < -still[touch.gap]]
+        rates = at.rates([contact.gap for contact in closed], v)
+        approaching = [contact for contact, rate in zip(closed, rates, strict=True) if rate < -still[contact.gap]]
         if not approaching:
             break
         last = round_number == ROUNDS
         taking = list(closed) if last else approaching
-        speeds = at.rates([touch.gap for touch in taking], v)
+        speeds = at.rates([contact.gap for contact in taking], v)
         bounce = np.array(
             [
-                0.0 if last or -rate * touch.restitution < touch.settle else touch.restitution
-                for touch, rate in zip(taking, speeds, strict=True)
+                0.0 if last or -rate * contact.restitution < contact.settle else contact.restitution
+                for contact, rate in zip(taking, speeds, strict=True)
             ]
         )
         normal, dv = _push(at, taking, v, np.zeros(len(taking)))
@@ -63,14 +63,16 @@ def impacts(
             more, dv = _push(at, taking, v, bounce * normal)
             normal = normal + more
             v[3:] += dv
-        given += [Impulse(touch, float(one)) for touch, one in zip(taking, normal, strict=True) if one > 0.0]
+        given += [Impulse(contact, float(one)) for contact, one in zip(taking, normal, strict=True) if one > 0.0]
     return v, given
 
 
-def _push(at: Compliance, taking: Sequence[Touch], v: np.ndarray, given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _push(
+    at: Compliance, taking: Sequence[RunContact], v: np.ndarray, given: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """One phase: normal impulses (c,), ``given`` ones among them, and the change of velocities (n,)."""
-    gaps = [touch.gap for touch in taking]
-    rough = [k for k, touch in enumerate(taking) if touch.way is not None]
+    gaps = [contact.gap for contact in taking]
+    rough = [k for k, contact in enumerate(taking) if contact.way is not None]
     ways = [taking[k].way or 0 for k in rough]
     directions = at.generalised([*gaps, *ways])
     answers = at.answer(directions)

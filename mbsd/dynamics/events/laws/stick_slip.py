@@ -23,7 +23,7 @@ from mbsd.dynamics.events.laws.compliance import Compliance
 from mbsd.dynamics.events.laws.sharing import share
 from mbsd.dynamics.rows.held import RELEASED, SLIDES
 from mbsd.dynamics.rows.joint_sticks import JointStick
-from mbsd.dynamics.rows.switches import Touch
+from mbsd.dynamics.rows.switches import RunContact
 from mbsd.equations.joint_friction import FAINT, MOST_PASSES, SETTLED, X
 
 AT_LIMIT = 1e-10
@@ -38,7 +38,7 @@ ROUNDING, PATIENCE = 1e-9, 20
 class Decision:
     """What a closed contact does from now on."""
 
-    touch: Touch
+    contact: RunContact
     normal: float
     """N (N or N m); 0: it opens."""
     sliding: float
@@ -57,7 +57,7 @@ class Verdict:
 class Case:
     """What is known: velocities (3 nb,), rates below ``still`` (m,) are zero."""
 
-    closed: Sequence[Touch]
+    closed: Sequence[RunContact]
     sticks: Sequence[JointStick]
     v: np.ndarray
     still: np.ndarray
@@ -85,14 +85,16 @@ class _Moment:
         closed, v, still = case.closed, case.v, case.still
         self.gamma = at.gamma(v)
         self.loads = at.loads(v)
-        self.gaps = [touch.gap for touch in closed]
+        self.gaps = [contact.gap for contact in closed]
         rates = self._rates(sticks)
         self.sliding = np.zeros(len(closed))
-        for k, touch in enumerate(closed):
-            if touch.way is not None:
-                rate = rates[touch.way]
-                self.sliding[k] = case.forced.get(touch.name, np.sign(rate) if abs(rate) > still[touch.way] else 0.0)
-        self.rough = [k for k, touch in enumerate(closed) if touch.way is not None and self.sliding[k] == 0.0]
+        for k, contact in enumerate(closed):
+            if contact.way is not None:
+                rate = rates[contact.way]
+                self.sliding[k] = case.forced.get(
+                    contact.name, np.sign(rate) if abs(rate) > still[contact.way] else 0.0
+                )
+        self.rough = [k for k, contact in enumerate(closed) if contact.way is not None and self.sliding[k] == 0.0]
         self.signs: dict[str, float] = {}
         self.resting = []
         for stick in sticks:
@@ -105,9 +107,9 @@ class _Moment:
         self.ways = [closed[k].way or 0 for k in self.rough] + [stick.way for stick in self.resting]
         directions = at.generalised([*self.gaps, *self.ways])
         pushed = directions.copy()
-        for k, touch in enumerate(closed):
+        for k, contact in enumerate(closed):
             if self.sliding[k] != 0.0:
-                pushed[:, k] -= touch.friction * self.sliding[k] * at.generalised([touch.way or 0])[:, 0]
+                pushed[:, k] -= contact.friction * self.sliding[k] * at.generalised([contact.way or 0])[:, 0]
         self.directions = directions
         dv, self.lam_of = at.answers(pushed)
         self.compliance = directions.T @ dv
@@ -117,7 +119,7 @@ class _Moment:
     def _rates(self, sticks: Sequence[JointStick]) -> dict[int, float]:
         """Of all ways by row, those at rest taken to be so exactly: others may be at rest with them."""
         case, at = self.case, self.at
-        rows = {touch.way: touch.name for touch in case.closed if touch.way is not None}
+        rows = {contact.way: contact.name for contact in case.closed if contact.way is not None}
         rows |= {stick.way: stick.name for stick in sticks}
         ways = np.array([*rows], np.int64)
         halted = np.array([name == case.halted or case.forced.get(name) == 0.0 for name in rows.values()], bool)
@@ -157,18 +159,18 @@ class _Moment:
         limits = pick @ normal + limits
         left = self._left(forces, limits)
         contacts = []
-        for k, touch in enumerate(closed):
+        for k, contact in enumerate(closed):
             holds = normal[k] > 1e-12 * largest
             direction = self.sliding[k]
             if k in rough and holds:
                 w = rough.index(k)
                 if abs(along[w]) >= limits[w] * (1.0 - AT_LIMIT):
                     direction = -float(np.sign(along[w]))
-            contacts.append(Decision(touch, float(normal[k]) if holds else 0.0, direction))
+            contacts.append(Decision(contact, float(normal[k]) if holds else 0.0, direction))
         breaking = {
-            one.touch.name: one.sliding
+            one.contact.name: one.sliding
             for k, one in enumerate(contacts)
-            if k in rough and one.sliding != 0.0 and one.touch.static_friction > one.touch.friction
+            if k in rough and one.sliding != 0.0 and one.contact.static_friction > one.contact.friction
         }
         if breaking:
             return decide(self.at, replace(self.case, forced={**self.case.forced, **breaking}))

@@ -36,7 +36,7 @@ BRIEF = 1e-6
 """Part of the span: longer cuts that reach the last ones are left to rounding."""
 ROUNDS = 8
 UNSURE = 1e-3
-"""Part of f'' nearby that rounding may hide before it is told."""
+"""The fraction of f'' nearby that rounding may hide before it is reported."""
 
 
 @dataclass

@@ -1,4 +1,4 @@
-"""What is watched along a step: scalars that are not negative now, and mean an event where they fall through zero.
+"""What is monitored along a step: scalars that are not negative now, and mean an event where they fall through zero.
 
 open contact       its gap                      open clutch        its rate
 closed contact     its normal force N           sticking contact   mu N - |T|; of a joint its limit less |T|
@@ -25,7 +25,7 @@ from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import Dynamics, Scratch
 from mbsd.dynamics.rows.held import OPEN, SLIDES, STICKS
 from mbsd.dynamics.rows.joint_sticks import JointStick
-from mbsd.dynamics.rows.switches import Touch
+from mbsd.dynamics.rows.switches import RunContact
 from mbsd.equations.assembly import tabulate
 from mbsd.model.event import Event
 
@@ -35,7 +35,7 @@ CLOSES, LOCKS, OPENS, SLIPS, HALTS, USER = "closes", "locks", "opens", "slips", 
 
 
 class Samples:
-    """Times (S,) with coordinates and velocities (S, 3 nb), and all that watches read there, computed when asked."""
+    """Times (S,) with coordinates and velocities (S, 3 nb), and all that monitors read there, computed when asked."""
 
     def __init__(
         self, packed: Packed, dynamics: Dynamics, scratch: Scratch, t: np.ndarray, q: np.ndarray, v: np.ndarray
@@ -90,7 +90,7 @@ class Samples:
 
 
 @dataclass
-class Watch:
+class Monitor:
     """One scalar."""
 
     name: str
@@ -99,7 +99,7 @@ class Watch:
     """(S,)"""
     still: float
     """Values above minus this are rounding."""
-    touch: Touch | None = None
+    contact: RunContact | None = None
     stick: JointStick | None = None
     event: Event | None = None
     stops: bool = True
@@ -108,45 +108,45 @@ class Watch:
     """From the begin and the end of a step: whether the scalar rises away from zero there, by its rates."""
 
 
-def touch_watches(touch: Touch, near: np.ndarray, still: np.ndarray, load: float) -> list[Watch]:
+def contact_monitors(contact: RunContact, near: np.ndarray, still: np.ndarray, load: float) -> list[Monitor]:
     """Of a contact in its present state. ``near``, ``still`` (m,): rounding."""
-    gap, way, name, sign = touch.gap, touch.way or 0, touch.name, touch.sign
-    if touch.state == OPEN:
-        if touch.always_closed:
-            return [Watch(name, LOCKS, lambda s: s.rates()[:, gap], still[gap], touch)]
+    gap, way, name, sign = contact.gap, contact.way or 0, contact.name, contact.sign
+    if contact.state == OPEN:
+        if contact.always_closed:
+            return [Monitor(name, LOCKS, lambda s: s.rates()[:, gap], still[gap], contact)]
 
         def leaves(s: Samples) -> bool:
             return bool((s.rates()[:, gap] > -still[gap]).all() and (s.bends()[0, gap] > 0.0))
 
-        return [Watch(name, CLOSES, lambda s: s.residuals()[:, gap], near[gap], touch, leaves=leaves)]
-    out = [Watch(name, OPENS, lambda s: -s.multipliers()[:, gap], ROUNDING * load, touch)]
-    if touch.way is None:
+        return [Monitor(name, CLOSES, lambda s: s.residuals()[:, gap], near[gap], contact, leaves=leaves)]
+    out = [Monitor(name, OPENS, lambda s: -s.multipliers()[:, gap], ROUNDING * load, contact)]
+    if contact.way is None:
         return out
-    mu = touch.static_friction
-    if touch.state == STICKS:
+    mu = contact.static_friction
+    if contact.state == STICKS:
 
         def reserve(s: Samples) -> np.ndarray:
             return -mu * s.multipliers()[:, gap] - np.abs(s.multipliers()[:, way])
 
-        out.append(Watch(name, SLIPS, reserve, ROUNDING * load, touch))
-    elif touch.state == SLIDES:
-        out.append(Watch(name, HALTS, lambda s: sign * s.rates()[:, way], still[way], touch))
+        out.append(Monitor(name, SLIPS, reserve, ROUNDING * load, contact))
+    elif contact.state == SLIDES:
+        out.append(Monitor(name, HALTS, lambda s: sign * s.rates()[:, way], still[way], contact))
     return out
 
 
-def stick_watches(
+def stick_monitors(
     sticks: Sequence[JointStick], together: Callable[[Samples], np.ndarray] | None, still: np.ndarray, load: float
-) -> list[Watch]:
+) -> list[Monitor]:
     """Of joints that stick by events; ``together`` (S,): 1 - s of those at rest, if they share their friction."""
     out, resting = [], []
     for stick in sticks:
         if stick.state == SLIDES:
-            out.append(Watch(stick.name, HALTS, _speed(stick), still[stick.way], stick=stick))
+            out.append(Monitor(stick.name, HALTS, _speed(stick), still[stick.way], stick=stick))
         elif stick.state == STICKS:
             resting.append(stick)
     if together is not None:
-        return [*out, Watch(resting[0].name, SLIPS, together, ROUNDING, stick=resting[0])]
-    return out + [Watch(stick.name, SLIPS, _reserve(stick), ROUNDING * load, stick=stick) for stick in resting]
+        return [*out, Monitor(resting[0].name, SLIPS, together, ROUNDING, stick=resting[0])]
+    return out + [Monitor(stick.name, SLIPS, _reserve(stick), ROUNDING * load, stick=stick) for stick in resting]
 
 
 def _speed(stick: JointStick) -> Callable[[Samples], np.ndarray]:
@@ -157,7 +157,7 @@ def _reserve(stick: JointStick) -> Callable[[Samples], np.ndarray]:
     return lambda s: stick.limit(s.normals()) - np.abs(s.multipliers()[:, stick.way])
 
 
-def event_watch(packed: Packed, event: Event, side: float) -> Watch:
+def event_monitor(packed: Packed, event: Event, side: float) -> Monitor:
     """Of an event of the user whose value now has the sign ``side``."""
 
     def value(s: Samples) -> np.ndarray:
@@ -168,7 +168,7 @@ def event_watch(packed: Packed, event: Event, side: float) -> Watch:
             ]
         )
 
-    return Watch(event.name, USER, value, 0.0, event=event, stops=event.direction in (0, -int(side)))
+    return Monitor(event.name, USER, value, 0.0, event=event, stops=event.direction in (0, -int(side)))
 
 
 def checked(packed: Packed, event: Event, moment: Moment) -> float:

@@ -1,4 +1,4 @@
-"""What a run left behind: its outputs, the rows of J that held at each, its events, and points to go on from."""
+"""What a run recorded: its outputs, the rows of J that held at each, its events, and points to go on from."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mbsd.model.event import Happening
 
 @dataclass
 class Snapshot:
-    """A state and all that held in it."""
+    """A state with all that events had changed, from which a run can go on."""
 
     y: np.ndarray
     """(2, 3 nb)"""
@@ -23,12 +23,12 @@ class Snapshot:
 
 
 @dataclass
-class Trail:
-    """See the file."""
+class Recording:
+    """The outputs of a run and what belongs to them."""
 
     out: Output
     held: np.ndarray
-    """(T, m)"""
+    """(T, m) which rows held at each output."""
     steps: int
     happenings: list[Happening] = field(default_factory=list)
     snapshots: list[Snapshot] = field(default_factory=list)

@@ -6,6 +6,9 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed
 
+MANY_ROWS = 200
+"""From here on rows are added all at once, which is slower for few."""
+
 
 def wrenches(packed: Packed, compact: np.ndarray, q: np.ndarray, lam: np.ndarray) -> np.ndarray:
     """(T, joints, 3) -J_b^T lam on each joint's second body b, moved from its centre of mass to the second marker.
@@ -15,14 +18,19 @@ def wrenches(packed: Packed, compact: np.ndarray, q: np.ndarray, lam: np.ndarray
     """
     system = packed.system
     out = np.zeros((len(lam), len(packed.joints), 3))
+    cosines, sines = np.cos(q[:, 2::3]), np.sin(q[:, 2::3])
     for joint, (i, j) in enumerate(packed.markers):
         rows = slice(packed.first_row[joint], packed.first_row[joint + 1])
         second = bool(system.marker_body[j])
         body, sign = (system.marker_body[j], -1.0) if second else (system.marker_body[i], 1.0)
         columns = slice(3, 6) if second else slice(0, 3)
         push = sign * np.einsum("trc,tr->tc", compact[:, rows, columns], lam[:, rows])
-        arm = marker_places(packed, q, j) - q[:, 3 * body : 3 * body + 2]
-        push[:, 2] -= arm[:, 0] * push[:, 1] - arm[:, 1] * push[:, 0]
+        carrier = system.marker_body[j]
+        x, y = system.marker_arm[j]
+        c, s = cosines[:, carrier], sines[:, carrier]
+        arm_x = q[:, 3 * carrier] + (c * x - s * y) - q[:, 3 * body]
+        arm_y = q[:, 3 * carrier + 1] + (s * x + c * y) - q[:, 3 * body + 1]
+        push[:, 2] -= arm_x * push[:, 1] - arm_y * push[:, 0]
         out[:, joint] = push
     return out
 
@@ -67,8 +75,13 @@ def times_compact(packed: Packed, compact: np.ndarray, x: np.ndarray) -> np.ndar
 
 def generalised(packed: Packed, compact: np.ndarray, lam: np.ndarray) -> np.ndarray:
     """(T, 3 nb) J^T lam for compact J (T, m, 6) and lam (T, m); ground's entries hold what ground takes."""
-    out = np.zeros((len(packed.body_names), len(lam), 3))
+    out = np.zeros((len(lam), len(packed.body_names), 3))
     for side in (0, 1):
         parts = compact[..., 3 * side : 3 * side + 3] * lam[..., None]
-        np.add.at(out, packed.system.row_body[:, side], parts.swapaxes(0, 1))
-    return out.swapaxes(0, 1).reshape(len(lam), -1)
+        bodies = packed.system.row_body[:, side]
+        if len(bodies) > MANY_ROWS:
+            np.add.at(out.swapaxes(0, 1), bodies, parts.swapaxes(0, 1))
+            continue
+        for row, body in enumerate(bodies):
+            out[:, body] += parts[:, row]
+    return out.reshape(len(lam), -1)

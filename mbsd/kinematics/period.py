@@ -77,8 +77,8 @@ def common_period(drivers: Iterable[Joint]) -> float | None:
         if abs(gap) > RETURNED * max(1.0, abs(float(ends[0, 0]))):
             return None
         periods.append(float(law.period))
-    if not periods:
-        return None
+    if len(periods) < 2:
+        return periods[0] if periods else None
     longest = max(periods)
     turns = 1
     for other in periods:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -70,9 +71,15 @@ def refuse_too_many(m: Model, count: int) -> None:
     )
 
 
+@cache
+def _memory() -> int:
+    """Bytes that this machine has."""
+    return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+
+
 def refuse_beyond_memory(what: str, numbers: int, remedy: str) -> None:
     """Raise ModelError where so many numbers of 8 bytes are more than the memory of this machine."""
-    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    memory = _memory()
     if 8 * numbers > memory:
         raise ModelError(
             f"{what} need about {8e-9 * float(numbers):.3g} GB, this machine has {1e-9 * memory:.3g} GB. {remedy}."

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import math
 from pathlib import Path
@@ -13,6 +14,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
 from mbsd import AssemblyError, InitialConditionWarning, Mechanism, MobilityError, ModelError, constant_rate, harmonic
+from mbsd.base.kept import Kept
 from mbsd.compiling.jit import OFTEN
 from mbsd.dynamics.prepare import prepare
 from mbsd.dynamics.runs.choose import integrate
@@ -284,3 +286,58 @@ def test_the_same_run_over_and_over_gives_the_same_bytes() -> None:
                 np.testing.assert_array_equal(one, first)
         [loop] = ready.advancing.values()
         assert not isinstance(loop._function, Dispatcher)
+
+
+def _swinging() -> Mechanism:
+    m = Mechanism("swinging")
+    rod, bob = m.bar("rod", 0.5, 1.2), m.bar("bob", 0.3, 0.4)
+    m.revolute("pin", m.ground.origin, rod.start)
+    m.revolute("knee", rod.end, bob.start)
+    m.torsion_spring("clock", m.ground, rod, 2.0)
+    m.start_near(rod=20, bob=-30)
+    return m
+
+
+def _turned(m: Mechanism) -> None:
+    m.start_near(rod=50, bob=-30)
+
+
+def _moving(m: Mechanism) -> None:
+    m.start_moving(rod=0.7)
+
+
+def _lighter(m: Mechanism) -> None:
+    m.change("clock", stiffness=3.0)
+
+
+def _heavier(m: Mechanism) -> None:
+    m.gravity = (0.0, -20.0)
+
+
+def _held(m: Mechanism) -> None:
+    m.weld("held", m.bodies["rod"].origin, m.bodies["bob"].at(0.1, 0.0))
+    del m.joints["knee"]
+
+
+@pytest.mark.parametrize("change", [_turned, _moving, _lighter, _heavier, _held])
+def test_what_is_kept_between_runs_is_what_a_fresh_run_finds(change) -> None:
+    """And nobody writes into it: the same model again gives the same bytes."""
+
+    def run(m: Mechanism) -> bytes:
+        sol = m.simulate(0.3, steps=6)
+        return sol.q.tobytes() + sol.wrench.tobytes() + repr(sol.mobility).encode()
+
+    kept = [one for one in gc.get_objects() if isinstance(one, Kept)]
+    assert len(kept) > 3
+    m = _swinging()
+    before = run(m)
+    assert run(m) == before
+    change(m)
+    after = run(m)
+    assert after != before
+    for one in kept:
+        one._results.clear()
+    anew = _swinging()
+    change(anew)
+    assert run(anew) == after == run(m)
+    assert run(_swinging()) == before

@@ -20,7 +20,7 @@ from mbsd.dynamics.rows.switches import Switches, friction_rows
 from mbsd.dynamics.start.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
 from mbsd.kinematics.limits.contact_rows import all_contacts, with_contacts
 from mbsd.kinematics.pose.initial import consistent
-from mbsd.kinematics.pose.mobility import independent_rows, joint_mobility, scaled_jacobian
+from mbsd.kinematics.pose.mobility import joint_mobility, rows_at
 from mbsd.kinematics.prepared import refuse_bad_laws
 from mbsd.model.mechanism import Model
 from mbsd.results.mobility import Mobility
@@ -113,7 +113,7 @@ def _inverse(inertia: np.ndarray) -> np.ndarray:
 def _rows(packed: Packed, q: np.ndarray) -> tuple[list[int], Mobility]:
     """Independent rows, those of joints before those of drivers."""
     mobility = joint_mobility(packed, q)
-    return independent_rows(scaled_jacobian(packed, q)), mobility
+    return rows_at(packed, q), mobility
 
 
 def _refuse_superfluous_drivers(packed: Packed, mobility: Mobility) -> None:

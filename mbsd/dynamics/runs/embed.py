@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.base.codes import LAW_VALUE, LINEAR, POWER, TURN
+from mbsd.base.kept import Kept
 from mbsd.dynamics.embedding.arrays import (
     AVOID,
     BASE,
@@ -102,22 +103,55 @@ def can_embed(ready: PreparedDynamics) -> str | None:
 def embedded_at_start(ready: PreparedDynamics) -> Embedded | None:
     """The mechanism in independent coordinates that suit its start, or None where there are none; found once."""
     if ready.independent is UNKNOWN:
-        ready.independent = None if can_embed(ready) else embed(ready, ready.initial.q, ready.initial.v, ready.start)
+        ready.independent = None if can_embed(ready) else _at_start(ready)
     return ready.independent
+
+
+_CHOICES: Kept[tuple[Plan, float] | None] = Kept()
+"""Choices at a start, by all numbers that they depend on, and how fast bodies move under them."""
+
+
+def _at_start(ready: PreparedDynamics) -> Embedded | None:
+    packed, loads, initial = ready.packed, ready.dynamics.loads, ready.initial
+    numbers = packed.numbers()
+    if numbers is None or len(loads.user) or len(loads.interaction):
+        return embed(ready, initial.q, initial.v, ready.start)
+    parts = initial.q, initial.v, loads.element, loads.place, loads.term, loads.number, *ready.dynamics.laws
+
+    def chosen() -> tuple[Plan, float] | None:
+        return _best(ready, initial.q, initial.v, ready.start)
+
+    key = *numbers, *(part.tobytes() for part in parts), ready.start, ready.mobility.dof
+    return _embedded(ready, _CHOICES.get(key, chosen))
 
 
 def embed(ready: PreparedDynamics, q: np.ndarray, v: np.ndarray, time: float) -> Embedded | None:
     """The best choice of coordinates at a consistent q, v (3 nb,), or None where there is none."""
-    count = ready.mobility.dof - len(ready.packed.motions)
+    return _embedded(ready, _best(ready, q, v, time))
+
+
+def _best(ready: PreparedDynamics, q: np.ndarray, v: np.ndarray, time: float) -> tuple[Plan, float] | None:
+    """The same as a plan, and how fast bodies move under it."""
     best = None
-    for plan in choices(ready.packed, q, count):
-        made = _made(ready, plan, count)
-        made.sensitivity = _sensitivity(ready, made, q, v, time)
-        if made.sensitivity < POOR and (best is None or made.sensitivity < best.sensitivity):
-            best = made
-        if best is not None and best.sensitivity <= GOOD:
+    for plan in choices(ready.packed, q, _freedoms(ready)):
+        found = _sensitivity(ready, _made(ready, plan, _freedoms(ready)), q, v, time)
+        if found < POOR and (best is None or found < best[1]):
+            best = plan, found
+        if best is not None and best[1] <= GOOD:
             break
     return best
+
+
+def _embedded(ready: PreparedDynamics, best: tuple[Plan, float] | None) -> Embedded | None:
+    if best is None:
+        return None
+    made = _made(ready, best[0], _freedoms(ready))
+    made.sensitivity = best[1]
+    return made
+
+
+def _freedoms(ready: PreparedDynamics) -> int:
+    return ready.mobility.dof - len(ready.packed.motions)
 
 
 def scratch_for(ready: PreparedDynamics, made: Embedded, stages: int, q: np.ndarray) -> EmbeddingScratch:

@@ -11,11 +11,12 @@ What could not be kept is reported.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mbsd.arrays.packing import Packed
+from mbsd.base.kept import Kept
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.close import CLOSED, LONGEST_STEP, assemble, close
 from mbsd.kinematics.pose.mobility import independent_rows
@@ -41,15 +42,28 @@ class Initial:
     """One sentence for each start_moving value that the joints forbid."""
 
 
+_CONSISTENT: Kept[tuple[Initial, np.ndarray]] = Kept()
+"""Initial conditions, and the angle offsets that go with them."""
+
+
 def consistent(m: Model, packed: Packed, time: float, metric: np.ndarray) -> Initial:
     """Initial conditions at ``time`` (s). Raises AssemblyError where the links cannot be closed.
 
     ``metric`` (3 nb,) is the inverse of the masses that weigh velocities which were not given.
     """
     drive = packed.drives(np.array([time]))[0]
-    q, told = start_pose(m, packed, time, drive)
-    v, told_velocities = _velocities(m, packed, q, drive, metric)
-    return Initial(q, v, tuple(told), tuple(told_velocities))
+
+    def found() -> tuple[Initial, np.ndarray]:
+        q, told = start_pose(m, packed, time, drive)
+        v, told_velocities = _velocities(m, packed, q, drive, metric)
+        return Initial(q, v, tuple(told), tuple(told_velocities)), packed.system.angle_offset.copy()
+
+    numbers = packed.numbers()
+    if numbers is None:
+        return found()[0]
+    given = repr(m.starts), repr(m.velocities), drive.tobytes(), metric.tobytes()
+    initial, packed.system.angle_offset[:] = _CONSISTENT.get((*numbers, tuple(packed.body_names), *given), found)
+    return replace(initial, q=initial.q.copy(), v=initial.v.copy())
 
 
 def start_pose(m: Model, packed: Packed, time: float, drive: np.ndarray) -> tuple[np.ndarray, list[str]]:

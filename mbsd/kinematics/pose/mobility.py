@@ -17,6 +17,7 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import MobilityError, SingularPoseError
+from mbsd.base.kept import Kept
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.close import CLOSED, close, rough_pose
 from mbsd.kinematics.pose.phases import let_phases_go, take_phases
@@ -31,8 +32,38 @@ BETTER = 4.0
 """Rows are exchanged for others whose least singular value is this many times larger."""
 
 
+_MOBILITY: Kept[Mobility] = Kept()
+_ROWS: Kept[tuple[int, ...]] = Kept()
+_CHOSEN: Kept[tuple[int, ...]] = Kept()
+"""By all that J at a pose depends on."""
+
+
 def joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
     """Mobility of the joints alone at the closed pose q (3 nb,)."""
+    key = _key(packed, q)
+    return _joint_mobility(packed, q) if key is None else _MOBILITY.get(key, lambda: _joint_mobility(packed, q))
+
+
+def rows_at(packed: Packed, q: np.ndarray) -> list[int]:
+    """Rows of J at q (3 nb,) that are independent of those before them."""
+
+    def found() -> tuple[int, ...]:
+        return tuple(independent_rows(scaled_jacobian(packed, q)))
+
+    key = _key(packed, q)
+    return list(found() if key is None else _ROWS.get(key, found))
+
+
+def _key(packed: Packed, q: np.ndarray) -> tuple[object, ...] | None:
+    """What J at q (3 nb,) and the words about it depend on; None where that is not told by numbers."""
+    numbers = packed.numbers()
+    if numbers is None:
+        return None
+    return *numbers, q.tobytes(), *packed.body_names, *(joint.name for joint in packed.joints), packed.driver_rows
+
+
+def _joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
+    """The same, found anew."""
     rows = packed.driver_rows
     here = scaled_jacobian(packed, q)[:rows]
     best, start = here, len(independent_rows(here))
@@ -72,6 +103,15 @@ def choose_rows(packed: Packed, q: np.ndarray, time: float, joints: Mobility) ->
 
     Raises MobilityError for a missing or superfluous driver, SingularPoseError where only this pose is at fault.
     """
+
+    def chosen() -> tuple[int, ...]:
+        return tuple(_chosen(packed, q, time, joints))
+
+    key = _key(packed, q)
+    return np.array(chosen() if key is None else _CHOSEN.get(key, chosen))
+
+
+def _chosen(packed: Packed, q: np.ndarray, time: float, joints: Mobility) -> list[int]:
     here, kept, best = _best_rows(packed, q)
     _refuse_idle_drivers(packed, joints, kept, time)
     if len(kept) < packed.coordinates:
@@ -88,7 +128,7 @@ def choose_rows(packed: Packed, q: np.ndarray, time: float, joints: Mobility) ->
             f"{packed.name}: the start pose at t = {time:.6g} s is singular (a toggle or change point): "
             "the drivers do not fix the motion here. Start a little before or after it, or drive another body."
         )
-    return np.array(kept)
+    return kept
 
 
 def best_rows(packed: Packed, known: np.ndarray) -> np.ndarray | None:

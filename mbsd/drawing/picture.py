@@ -1,4 +1,4 @@
-"""A drawing that a notebook shows by itself and a script saves."""
+"""A drawing that a notebook shows without being asked and a script saves."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The skeleton as plain polylines, for programs that draw by themselves: the same symbols, no matplotlib."""
+"""The skeleton as plain polylines, for programs that draw on their own: the same symbols, no matplotlib."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Events of the user, and what a simulation tells about the events it met."""
+"""Events of the user, and what a simulation reports about the events it met."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from mbsd.results.mobility import Mobility
 
 SHOWN = 40
-"""Bodies: a notebook shows no larger mechanism in motion by itself."""
+"""Bodies: a notebook shows no larger mechanism in motion unasked."""
 
 
 @dataclass(frozen=True)

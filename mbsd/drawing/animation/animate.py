@@ -78,7 +78,7 @@ def animate(
     except ImportError as error:
         raise ModelError("an animation needs matplotlib: install mbsd[animate]") from error
     if suffix == ".mp4":
-        ffmpeg()  # told now, not after the last picture
+        ffmpeg()  # reported now, not after the last picture
     else:
         fps = 100.0 / max(2, round(100.0 / fps))  # its times are hundredths of a second; most viewers slow down below 2
     clip = clip_of(sol, rate, fps)

@@ -71,7 +71,7 @@ def _run(path: Path, command: list[str], pictures: Iterable[np.ndarray]) -> None
         process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=chat)
         try:
             assert process.stdin is not None
-            with suppress(BrokenPipeError):  # its last word tells why
+            with suppress(BrokenPipeError):  # its last word is the reason
                 for picture in pictures:
                     process.stdin.write(np.ascontiguousarray(picture))
                 process.stdin.close()

@@ -57,7 +57,7 @@ def _crossings(places: np.ndarray, edges: list[tuple[int, int]], sizes: np.ndarr
 
 
 def _side(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> np.ndarray:
-    """Sign tells on which side of the line from a to b the point p lies."""
+    """The sign says on which side of the line from a to b the point p lies."""
     return (b[..., 0] - a[..., 0]) * (p[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (p[..., 0] - a[..., 0])
 
 

@@ -2,7 +2,7 @@
 
     x = t / h:   q = q0 + x (h v0) + x^2 (h^2 a0 / 2) + x^3 c3 + x^4 c4 + x^5 c5
 
-It only tells where to look for an event; the event itself is found by integrating to it.
+It only shows where to look for an event; the event itself is found by integrating to it.
 Source: Hairer, Norsett, Wanner, Solving ODEs I, II.6 (Hermite interpolation).
 """
 

@@ -182,7 +182,7 @@ def _of_functions(
         try:
             out += _of_function(packed, force.name, Sampled(values), start, end, given_cuts(breaks, start, end), looks)
         except ModelError:
-            continue  # it fails at some time: the run tells when it gets there, if it does
+            continue  # it fails at some time: the run reports it when it gets there, if it does
     return out
 
 

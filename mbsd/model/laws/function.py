@@ -171,7 +171,7 @@ def function(
 
     The fit looks at 4180 times beside its nodes, so it sees what lasts 1/3500 of the span or longer, and looks closer
     where something happens. ``shortest`` (s): how long the shortest thing in it lasts, if that is less, or to save
-    calls if it is more. ``breaks`` (s): where f or a derivative jumps; most of these it finds by itself. f of a force
+    calls if it is more. ``breaks`` (s): where f or a derivative jumps; most of these are found without. f of a force
     or torque may jump, f and f' of a driver may not.
     """
     for name, law in (("f", f), ("df", df), ("ddf", ddf)):

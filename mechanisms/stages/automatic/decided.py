@@ -2,7 +2,7 @@
 
 Pins as thick as the links allow come first. Where these leave no order of layers, thinner ones are tried, down to half
 of that; then pivots are sunk into their links where something passes close above; then pivots hang from bridges; then a
-body is built up of two webs; then springs are left out, and that is told.
+body is built up of two webs; then springs are left out, and that is reported.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ class _Tried:
         return None
 
     def with_some_springs(self, sizes: Sizes, names: Sequence[str], bridges: bool) -> Found | None:
-        """Those springs, one after the other, that leave an order of layers; of the others it is told."""
+        """Those springs, one after the other, that leave an order of layers; the others are reported."""
         left_out = frozenset(names)
         best = self.found(sizes, Springs(False, left_out), True, bridges)
         if best is None:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.layout import Layout
 
 TOLD = 4
-"""So many meetings are told."""
+"""So many meetings are reported."""
 SLOTTED = "the slotted plate of "
 CROSSED = (
     "; slots on ground that cross fit where their pins are pinned to small bodies on prismatic joints, which get one "

@@ -79,7 +79,7 @@ class Panel:
         return scale is not None and float(mark.size.max()) > 2e-3 * scale.largest
 
     def _inks(self) -> list[str]:
-        """Quiet colours beside arrows; each is another, so that a body can be told by it."""
+        """Quiet colours beside arrows; each is another, so that a body is recognised by it."""
         count = len(self.scene.tracks.views)
         if not self.quantities:
             return [colour(k) for k in range(count)]

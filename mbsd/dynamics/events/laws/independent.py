@@ -1,7 +1,7 @@
 """Which of the rows of closed contacts hold independently of each other and of all joints.
 
 A box on three points of a line, or with both feet sticking, has more contact rows than freedoms that they take. The
-others hold by themselves; their forces are counted as zero.
+others hold without them; their forces are counted as zero.
 """
 
 from __future__ import annotations

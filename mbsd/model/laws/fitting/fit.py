@@ -121,7 +121,7 @@ def _shrinks(leaves: Leaves, core: int) -> bool:
 
 
 def _corners(leaves: Leaves, load: bool, allowed: float) -> list[Cut]:
-    """Where two pieces meet that are smooth by themselves but not together."""
+    """Where two pieces meet that are smooth each, but not together."""
     width = leaves.width
     slope = leaves.values @ SLOPE[[0, -1]].T * (2 / width)[:, None]
     bend = leaves.values @ BEND[[0, -1]].T * ((2 / width) ** 2)[:, None]

@@ -39,12 +39,12 @@ FAINT = 1e-3
 """Part of (range of f) / span^2 below which f'' is none."""
 MOST_CALLS = 500_000
 HIDDEN = 100.0
-"""Rounding that may hide this many tolerances of f'' tells that a piece shrank onto a point."""
+"""Rounding that may hide this many tolerances of f'' shows that a piece shrank onto a point."""
 SCATTER, LEVEL = 0.5, 4
 SMALL, SMALL_LOAD = 1e-3, 1e-6
 """Coefficients that fall by less after so many halvings, and are below this part of f, are scatter of f."""
 POINT = 1e-9
-"""A piece narrower than this part of the span tells a jump of f or f' from one of f''."""
+"""A piece narrower than this part of the span distinguishes a jump of f or f' from one of f''."""
 KINK, JUMP = 1e-4, 1e-7
 """Jumps of f' and f, of their usual size, that a driver cannot follow."""
 

@@ -1,4 +1,4 @@
-"""What a kind of joint, force or contact puts on its bodies, and the registries; the package's docstring tells how."""
+"""What a kind of joint, force or contact puts on its bodies, and the registries; the package's docstring says how."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """The rules of the layers as clauses for a satisfiability solver.
 
-A layer is told by the literals "at least k", k = 1, 2, ... (order encoding). Two items that meet in the plane are apart
+A layer is set by the literals "at least k", k = 1, 2, ... (order encoding). Two items that meet in the plane are apart
 where one is below the other: the difference of two layers is at least a number, for all bodies that the items' ends
 depend on. Each such difference is a literal that implies one clause for every layer, so unit propagation alone finds
 every circle of bodies each above the next. (Tamura et al., Compiling finite linear CSP into SAT, Constraints 14, 2009.)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,9 +22,17 @@ FINE = 250
 POINTS = 80_000
 
 
-def gap_places(film: Film, clearance: Clearance) -> list[list[float] | None]:
-    """For each pair x, y, z (m) at the time of its least gap; None beyond MOST, and for pieces that are not there."""
-    out: list[list[float] | None] = []
+@dataclass(frozen=True)
+class GapPlace:
+    """Where a gap is: in the frame of a body where it is the same in every pose, else in the world (m)."""
+
+    at: tuple[float, float, float]
+    body: str | None
+
+
+def gap_places(film: Film, clearance: Clearance) -> list[GapPlace | None]:
+    """For each pair, at the time of its least gap; None beyond MOST, and for pieces that are not there."""
+    out: list[GapPlace | None] = []
     for number, pair in enumerate(clearance.pairs):
         found = [
             film.parts.bodies[body].pieces.get(piece) if body in film.parts.bodies else None
@@ -33,12 +42,16 @@ def gap_places(film: Film, clearance: Clearance) -> list[list[float] | None]:
             out.append(None)
             continue
         at = Moment(float(film.poses.time[0]) if pair.time is None else pair.time, 0)
+        poses = [film.poses.body(body, at) for body in pair.bodies]
         surfaces = [
-            _placed(read_triangles(film.folder / piece.stl), film.poses.body(body, at))
-            for body, piece in zip(pair.bodies, found, strict=True)
+            _placed(read_triangles(film.folder / piece.stl), pose)
+            for pose, piece in zip(poses, found, strict=True)
             if piece is not None
         ]
-        out.append([float(value) for value in middle(*surfaces)])
+        x, y, z = (float(value) for value in middle(*surfaces))
+        if pair.time is None:
+            x, y = _seen(x, y, poses[1])
+        out.append(GapPlace((x, y, z), pair.bodies[1] if pair.time is None else None))
     return out
 
 
@@ -50,7 +63,7 @@ def middle(first: Array, second: Array) -> Array:
     a, b = (_points(one, size / FINE) for one in near)
     distance, index = KDTree(b).query(a)
     k = int(np.argmin(distance))
-    return (a[k] + b[index[k]]) / 2
+    return (a[k] + b[int(np.asarray(index)[k])]) / 2
 
 
 def _beside(one: Array, other: Array, reach: float) -> Array:
@@ -81,3 +94,9 @@ def _placed(triangles: Array, pose: tuple[float, float, float]) -> Array:
     c, s = math.cos(theta), math.sin(theta)
     turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
     return triangles @ turn + np.array([x, y, 0.0])
+
+
+def _seen(x: float, y: float, pose: tuple[float, float, float]) -> tuple[float, float]:
+    """A place of the world in a body's frame."""
+    u, v, c, s = x - pose[0], y - pose[1], math.cos(pose[2]), math.sin(pose[2])
+    return c * u + s * v, c * v - s * u

@@ -4,7 +4,8 @@ arrows    full: length of the largest (m); longest: cut at so many of it; tiny: 
           scales {unit: {largest, reference, cut, words}}; list [{quantity, name, unit, place, value (2 T,), z}]
 arcs      full: sweep of the largest (rad); scale as above or null; list [{quantity, name, place (2 T,), value (T,),
           radius, z}]
-clearance limit (m), pairs [{bodies, pieces, gap (as proven), time, at}] nearest first; at is where, or null
+clearance limit (m), pairs [{bodies, pieces, gap (as proven), time, at, on}] nearest first; at (m) is where,
+              in the frame of the body `on` or in the world, or null
 """
 
 from __future__ import annotations
@@ -81,8 +82,15 @@ def clearance_of(clearance: Clearance, film: Film | None = None) -> dict[str, An
     return {
         "limit": clearance.limit,
         "pairs": [
-            {"bodies": list(one.bodies), "pieces": list(one.pieces), "gap": one.proven, "time": one.time, "at": at}
-            for one, at in zip(clearance.pairs[:PAIRS], places[:PAIRS], strict=True)
+            {
+                "bodies": list(one.bodies),
+                "pieces": list(one.pieces),
+                "gap": one.proven,
+                "time": one.time,
+                "at": list(place.at) if place else None,
+                "on": place.body if place else None,
+            }
+            for one, place in zip(clearance.pairs[:PAIRS], places[:PAIRS], strict=True)
         ],
     }
 

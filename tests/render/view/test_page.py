@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from PIL import Image
+from scipy.ndimage import uniform_filter
 
 from render import view
 from render.film.framing import SENSOR, axes
@@ -29,8 +30,8 @@ ACCENT = {"3d": (255, 138, 76), "2d": (255, 138, 76)}
 JOINTS = ("B", "C", "B", "A", "C", "D", "B", "C", "B", "C")
 STEPS = (0, 31, 77, 110, 150, 190, 222, 260, 301, 340)
 WIDTH, HEIGHT = 1000, 620
-REACH = 17
-"""Of the ring around what is selected, and a little more (pixels)."""
+REACH = 5
+"""Radius of the dot in what is selected (pixels)."""
 
 
 @pytest.fixture(scope="module")
@@ -179,10 +180,11 @@ def _projected(out: Out, joint: str, place: tuple[float, float], stage: dict[str
 
 
 def _mark(picture: Path, colour: tuple[int, int, int]) -> tuple[float, float]:
-    """Middle of the ring around what is selected: of the box around its pixels, those of other things left out."""
+    """Middle of the dot in what is selected: the place with the most pixels of its colour around it."""
     pixels = np.asarray(Image.open(picture).convert("RGB")).astype(int)
-    places = np.argwhere(np.abs(pixels - colour).max(axis=2) < 4)
-    assert len(places) > 20, picture
-    away = np.abs(places - np.median(places, axis=0)).max(axis=1)
-    rows, columns = places[away <= REACH].T
-    return float(columns.min() + columns.max() + 1) / 2, float(rows.min() + rows.max() + 1) / 2
+    there = (np.abs(pixels - colour).max(axis=2) < 3).astype(float)
+    around = uniform_filter(there, 2 * REACH + 1, mode="constant")
+    row, column = np.unravel_index(int(around.argmax()), around.shape)
+    rows, columns = np.nonzero(there[row - REACH : row + REACH + 1, column - REACH : column + REACH + 1])
+    assert len(rows) > 30, picture
+    return float(column - REACH + columns.mean() + 0.5), float(row - REACH + rows.mean() + 0.5)

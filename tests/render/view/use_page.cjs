@@ -18,7 +18,7 @@ const box = (page, name) => page.evaluate((one) => {
 (async () => {
   const seen = { pins: [] }, browser = await launch(), size = { width: plan.width, height: plan.height };
   const { page, errors, context } = await open(browser, file, { ...size, theme: "dark" });
-  seen.stage = await box(page, ".stage");
+  seen.stage = await box(page, ".scene");
   await page.evaluate(() => window.mbsd.app.store.set({ shown: {} }));
   for (const [view, moments] of Object.entries(plan.moments)) {
     await page.evaluate((one) => window.mbsd.app.store.set({ view: one }), view);
@@ -44,7 +44,7 @@ const box = (page, name) => page.evaluate((one) => {
   await page.keyboard.press("ArrowRight");
   seen.stepped = await state(page);
   await page.keyboard.press("Space");
-  await page.waitForTimeout(500);
+  await page.waitForFunction(() => window.mbsd.app.store.state.time > 0.03, null, { timeout: 60000 });
   seen.playing = await state(page);
   await page.keyboard.press("Space");
   await page.keyboard.press("End");
@@ -87,7 +87,7 @@ const box = (page, name) => page.evaluate((one) => {
   seen.updated = { ...(await state(page)), title: await page.evaluate(() => document.querySelector("h1").textContent) };
   await page.setViewportSize({ width: 390, height: 780 });
   await frame(page);
-  seen.phone = await page.evaluate(() => ({ wide: document.documentElement.scrollWidth, stage: document.querySelector(".stage").getBoundingClientRect().height }));
+  seen.phone = await page.evaluate(() => ({ wide: document.documentElement.scrollWidth, stage: document.querySelector(".scene").getBoundingClientRect().height }));
   seen.errors = errors;
   await context.close();
   await browser.close();

@@ -23,12 +23,12 @@ export function layout(root, app) {
   const noticeLine = el("div", { class: "notice", role: "status", hidden: true });
   const views2 = { solid: el("canvas", { class: "view", tabindex: "0", "aria-label": "The parts; drag to turn, wheel to zoom, right button to move" }), plane: el("canvas", { class: "view", tabindex: "0", "aria-label": "The skeleton; click a joint or body for its curves" }) };
   const labels = el("div", { class: "labels", "aria-hidden": "true" });
-  const stage = el("main", { class: "stage" }, views2.plane, views2.solid, labels, chips, legend, noticeLine);
+  const stage = el("div", { class: "scene" }, views2.plane, views2.solid, labels, legend, noticeLine);
   const slot = el("div", { class: "slot" });
   const side = el("aside", { class: "side", "aria-label": "Curves" }, slot);
   const bar = el("footer", { class: "bar" });
   root.classList.add("mbsd");
-  root.replaceChildren(header, stage, side, bar);
+  root.replaceChildren(header, el("main", { class: "stage" }, chips, stage), side, bar);
 
   const words = {};
   const parts = {

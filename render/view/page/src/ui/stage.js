@@ -43,8 +43,7 @@ export class Stage {
   resize() {
     const { width, height } = this.app.parts.stage.getBoundingClientRect();
     if (!width || !height) return;
-    const ratio = Math.min(window.devicePixelRatio || 1, 2), { chips } = this.app.parts;
-    this.plane.free = [chips.offsetHeight + 18, 0, 0, 0];
+    const ratio = Math.min(window.devicePixelRatio || 1, 2);
     this.plane.resize(width, height, ratio);
     this.solid?.resize(width, height, ratio);
   }

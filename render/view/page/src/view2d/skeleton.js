@@ -11,6 +11,9 @@ import { thingAt } from "./pick.js";
 import { listen } from "./pointer.js";
 import { drawTrails } from "./trails.js";
 
+/** Radius of the dot in what is selected, in pixels. */
+const DOT = 5;
+
 export class Skeleton {
   /**
    * @param {HTMLCanvasElement} canvas  @param {import("../app.js").App} app
@@ -138,6 +141,10 @@ export class Skeleton {
         g.beginPath();
         g.arc(...this.paper.pixel(...place), Math.max(0.62 * payload.skeleton.unit * this.paper.scale + 5, 11), 0, 7);
         g.stroke();
+        g.fillStyle = colours.driver;
+        g.beginPath();
+        g.arc(...this.paper.pixel(...place), DOT, 0, 7);
+        g.fill();
       }
     }
     g.globalAlpha = 1;

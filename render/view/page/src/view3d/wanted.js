@@ -13,9 +13,9 @@ export function wantedLabels(app) {
     if (place) add(selected.kind, selected.name, place, heightOf(app, selected));
   }
   if (shown.clearance) {
-    for (const { at, gap, time, bodies } of gaps(payload)) {
+    for (const { at, gap, time, bodies } of gaps(payload, motion)) {
       const act = time === null ? undefined : () => store.set({ playing: false, time });
-      out.push({ key: `gap ${at}`, text: `${millimetres(gap)} ${bodies.join(" – ")}`.replaceAll("_", " "), at, kind: "gap", act });
+      out.push({ key: `gap ${bodies}`, text: `${millimetres(gap)} ${bodies.join(" – ")}`.replaceAll("_", " "), at, kind: "gap", act });
     }
   }
   return out;
@@ -28,13 +28,25 @@ export function wantedMarks(app) {
     for (const name in payload.bodies) if (payload.bodies[name].mass > 0) out.push({ kind: "centre", at: [...motion.centre(name), heights.bodies[name] ?? 0] });
   }
   if (shown.names) for (const name in payload.joints) out.push({ kind: "joint", at: [...motion.joint(name), heights.joints[name] ?? 0] });
-  if (shown.clearance) for (const { at } of gaps(payload)) out.push({ kind: "gap", at });
+  if (shown.clearance) for (const { at } of gaps(payload, motion)) out.push({ kind: "gap", at });
   const place = selected && app.placeOf(selected);
   if (place) out.push({ kind: "selected", at: [...place, heightOf(app, selected)] });
   return out;
 }
 
-const gaps = (payload) => (payload.clearance?.pairs ?? []).filter((pair) => pair.at).slice(0, 6);
+const MOST = 6;
+
+/** The least gap of each pair of bodies, where it is now. */
+function gaps(payload, motion) {
+  const seen = new Map();
+  for (const pair of payload.clearance?.pairs ?? []) {
+    const key = [...pair.bodies].sort().join(" ");
+    if (!pair.at || seen.has(key)) continue;
+    const [x, y, z] = pair.at;
+    seen.set(key, pair.on ? { ...pair, at: [...motion.place({ body: pair.on, x, y }), z] } : pair);
+  }
+  return [...seen.values()].slice(0, MOST);
+}
 
 const millimetres = (gap) => `${(1000 * gap).toFixed(gap < 0.01 ? 2 : 1)} mm`;
 

@@ -1,0 +1,39 @@
+/**
+ * How fast WebGL in software draws a page: node frames.cjs FILE [WIDTH HEIGHT SECONDS]. Prints frames, frames a second,
+ * and the processor time of the browser for a frame, which another load of the machine does not change much (Linux).
+ */
+const fs = require("node:fs");
+const { launch, open } = require("./browser.cjs");
+
+const [, , file, width = 1280, height = 720, seconds = 10] = process.argv;
+
+/** Seconds of processor time of all processes below this one. */
+function used() {
+  const parents = new Map(), times = new Map();
+  for (const pid of fs.readdirSync("/proc").filter((name) => /^\d+$/.test(name))) {
+    try {
+      const fields = fs.readFileSync(`/proc/${pid}/stat`, "utf8").replace(/^.*\) /, "").split(" ");
+      parents.set(pid, fields[1]);
+      times.set(pid, (Number(fields[11]) + Number(fields[12])) / 100);
+    } catch { /* it has ended */ }
+  }
+  const ours = (pid) => pid === String(process.pid) || (parents.has(pid) && ours(parents.get(pid)));
+  return [...times].filter(([pid]) => pid !== String(process.pid) && ours(pid)).reduce((sum, [, time]) => sum + time, 0);
+}
+
+(async () => {
+  const browser = await launch();
+  const { page } = await open(browser, file, { width: Number(width), height: Number(height) });
+  await page.evaluate(() => new Promise((done) => { window.mbsd.app.redraw(); setTimeout(done, 1500); }));
+  const before = used();
+  const frames = await page.evaluate((time) => new Promise((done) => {
+    const { app } = window.mbsd, { stage } = app, draw = stage.draw.bind(stage);
+    let count = 0;
+    stage.draw = () => { draw(); count++; };
+    app.play(true);
+    setTimeout(() => done(count), 1000 * time);
+  }), Number(seconds));
+  const busy = used() - before;
+  console.log(JSON.stringify({ frames, "frames a second": frames / seconds, "processor seconds a frame": Number((busy / frames).toFixed(4)) }));
+  await browser.close();
+})();

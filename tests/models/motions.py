@@ -242,7 +242,8 @@ def plain_skeleton(motion: Motion, poses: int = 12) -> Skeleton:
 
 def _moving(motion: Motion, bars: list[Stroke], names: list[Name]) -> Moving:
     """The bars, each carried by its body, and names that stay."""
-    places = np.array([(body.x, body.y) for body in motion.bodies.values()])
+    things = [*motion.bodies.values(), *motion.joints.values(), *motion.points.values()]
+    places = np.array([(thing.x, thing.y) for thing in things])
     low, high = places.min(axis=(0, 2)), places.max(axis=(0, 2))
     ground = Carrier(kind="ground")
     return Moving(

@@ -160,6 +160,9 @@ view-%: install always ## one HTML page with the machine, its forces and its plo
 	@$(STAGE) shot "$$MECHANISM"
 	@$(PICTURE) view "$$MECHANISM"
 
+live-%: install always ## a page that follows the editor: sliders, dragging, fits to a path; prints its address
+	@$(PYTHON) -m studio.live "$$MECHANISM"
+
 poster-%: install always ## one picture at its best: out/<name>/poster.png
 	$(upto_shot)
 	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}

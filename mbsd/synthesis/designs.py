@@ -53,21 +53,22 @@ class Designs:
         self.pins: list[Pin] = pins(m, packed)
         self.links = four_bar(m, packed) if grashof else []
         self.turned = list(dict.fromkeys(body for pin in self.pins for body in pin.bodies))
+        self._used = np.zeros(0, bool)
+        """Of what a function of the author may move, what it has moved so far."""
         middle = (varied.low + varied.high) / 2
         self.at_once = in_closed_form(self.ready)
         if build is not None:
             self.at_once = self.at_once and all(self._only_places(x) for x in (varied.low, middle, varied.high))
-        moved = self.changes(middle[None])[1]
-        self.sweeps = {
-            fine: DesignSweeps(m, self.ready, one, moved, self.turned) for fine, one in grids.items() if self.at_once
-        }
+        self._sweeps: dict[bool, DesignSweeps] = {}
 
     def __call__(self, x: np.ndarray, fine: bool = False, threads: int | None = None) -> Paths:
         """Of designs x (n, k)."""
         self.evaluations += len(x)
         values, moved = self.changes(x)
         if self.at_once:
-            found = self.sweeps[fine](values, threads)
+            if fine not in self._sweeps:
+                self._sweeps[fine] = DesignSweeps(self.m, self.ready, self.grids[fine], moved, self.turned)
+            found = self._sweeps[fine](values, threads)
             path, angles, closes = found.points[self.trace], found.angles, found.closes
         else:
             path, angles, closes = self._one_by_one(x, self.grids[fine])
@@ -104,7 +105,11 @@ class Designs:
             moved = [Moved([(number, axis)]) for number in range(2 * len(packed.joints)) for axis in (0, 1)]
             moved += [Moved(trace=(k, axis)) for k in range(len(self.m.traces)) for axis in (0, 1)]
             moved += [Moved(rod=k) for k in range(len(packed.system.distance_length))]
-            return np.array(rows) - self._places(self.m), moved
+            found = np.array(rows) - self._places(self.m)
+            used = found.any(axis=0)
+            if not len(self._used) or (used & ~self._used).any():
+                self._used, self._sweeps = used | (self._used if len(self._used) else False), {}
+            return found[:, self._used], [one for one, some in zip(moved, self._used, strict=True) if some]
         lengths, places = {}, {}
         for name, part, single in self.varied.columns():
             if single:

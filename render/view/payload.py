@@ -45,8 +45,11 @@ from shared.contract.skeleton import Carrier, Moving, Stroke
 ANGLES = ("angle", "relative_angle")
 
 
-def payload(motion: Motion, moving: Moving, shot: Shot | None = None) -> dict[str, Any]:
-    """Everything but the parts. ``motion`` may have more bodies than the skeleton: rods of the parts."""
+def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bool = True) -> dict[str, Any]:
+    """Everything but the parts; arrows and arcs only if ``arrows``.
+
+    ``motion`` may have more bodies than the skeleton: rods of the parts.
+    """
     shot = shot or Shot()
     clock = Clock(motion, shot)
     size = max(float(np.ptp([moving.low, moving.high], axis=0).max()), 10 * moving.unit)
@@ -85,8 +88,7 @@ def payload(motion: Motion, moving: Moving, shot: Shot | None = None) -> dict[st
             for time, words in marks(motion)
         ],
         "skeleton": skeleton(moving),
-        "arrows": arrows_of(motion, size),
-        "arcs": arcs_of(motion, size),
+        **({"arrows": arrows_of(motion, size), "arcs": arcs_of(motion, size)} if arrows else {}),
         "trails": [
             {"point": one.point, "colour": list(one.colour), "tail": one.tail, "radius": one.radius * size, "z": 0.0}
             for one in trails_of(motion, shot)

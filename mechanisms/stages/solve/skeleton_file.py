@@ -12,6 +12,7 @@ from shared.contract.skeleton import Carried, CarriedName, Carrier, End, Moving,
 
 if TYPE_CHECKING:
     from mbsd import Solution
+    from mbsd.drawing.view.carried import Moving as Drawn
 
 POSES = 12
 """In equal times; the end of the motion is not among them, because it often is the start again."""
@@ -43,11 +44,11 @@ def skeleton_of(solution: Solution, provenance: Provenance) -> Skeleton:
     )
 
 
-def moving_of(solution: Solution) -> Moving:
-    """The whole skeleton for any moment."""
+def moving_of(solution: Solution, drawn: Drawn | None = None) -> Moving:
+    """The whole skeleton for any moment; ``drawn``, if it is drawn already."""
     from mbsd.drawing.view.carried import moving
 
-    found = moving(solution)
+    found = moving(solution) if drawn is None else drawn
     steady = found.steady
     digits = max(0, math.ceil(-math.log10(FINENESS * steady.unit)))
     return Moving(

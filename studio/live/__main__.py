@@ -1,0 +1,69 @@
+"""``python -m studio.live NAME``: a page of one mechanism that follows the editor, served on this machine alone."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import socket
+import webbrowser
+
+from shared.stage.console import run_cli, say
+from shared.stage.errors import UserError
+from shared.stage.paths import known_name
+
+LIMIT = 30.0
+"""Seconds that mechanism.py may take to be solved, if nothing else is said."""
+GRACE = 2
+"""Seconds that open pages get when the server ends."""
+
+
+def main() -> int:
+    """Serve until it is stopped."""
+    parser = argparse.ArgumentParser(prog="python -m studio.live", description="A page that follows the editor.")
+    parser.add_argument("name", help="mechanism or variant; four-bar and four_bar are one")
+    parser.add_argument("--port", type=int, default=0, help="of 127.0.0.1; any free one if not given")
+    parser.add_argument("--limit", type=float, default=LIMIT, help="seconds that solving may take; 30 if not given")
+    parser.add_argument("--no-parts", action="store_true", help="make no parts in the background")
+    parser.add_argument("--open", action="store_true", help="open the page in the browser")
+    arguments = parser.parse_args()
+    name = known_name(arguments.name)
+    if not arguments.limit > 0:
+        raise UserError(f"live: --limit {arguments.limit:g} is no time; give seconds above 0")
+    with bound(arguments.port) as listener:
+        asyncio.run(_serve(name, listener, arguments))
+    return 0
+
+
+def bound(port: int) -> socket.socket:
+    """A socket of loopback; raises UserError where the port is taken or is none."""
+    listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listener.bind(("127.0.0.1", port))
+    except (OSError, OverflowError) as error:
+        listener.close()
+        raise UserError(
+            f"live: port {port} of 127.0.0.1 cannot be used ({error}); leave --port out for a free one"
+        ) from error
+    return listener
+
+
+async def _serve(name: str, listener: socket.socket, arguments: argparse.Namespace) -> None:
+    import uvicorn
+
+    from studio.live.page import page
+    from studio.live.server import LARGEST, Live
+
+    live = Live(name, listener.getsockname()[1], page, arguments.limit, not arguments.no_parts)
+    say("live", f"{name}: {live.address} (Ctrl-C ends it)")
+    if arguments.open:
+        asyncio.get_running_loop().call_later(1.0, webbrowser.open, live.address)
+    config = uvicorn.Config(
+        live.app, log_level="warning", access_log=False, lifespan="on", ws_max_size=LARGEST, server_header=False,
+        proxy_headers=False, timeout_graceful_shutdown=GRACE,
+    )  # fmt: skip
+    await uvicorn.Server(config).serve(sockets=[listener])
+
+
+if __name__ == "__main__":
+    run_cli(main)

@@ -1,0 +1,88 @@
+"""What all open pages see of a mechanism: last good motion, numbers, error; and the messages that tell it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from studio.live.frames import framed
+from studio.live.history import History
+
+Push = Callable[[bytes, bool], None]
+LINES = 50
+"""Of what was printed, so many lines are kept for a page that opens later."""
+
+
+class Board:
+    """State and messages; ``push`` sends a frame to all pages, and says whether it replaces an older such."""
+
+    def __init__(self, push: Push) -> None:
+        self._push = push
+        self.history = History()
+        self.numbers: list[dict[str, Any]] = []
+        """Of Params as the file has it, with their ranges."""
+        self.payload: bytes | None = None
+        """Of the last good motion."""
+        self.solid: bytes | None = None
+        """Of the last good motion as its file has it, what the page says of the parts."""
+        self.error: str | None = None
+        self._stop: dict[str, Any] | None = None
+        self._lines: list[str] = []
+
+    def tell(self, header: dict[str, Any], payload: bytes = b"", replaces: bool = False) -> None:
+        """Send all pages a message."""
+        self._push(framed(header, payload), replaces)
+
+    def greeting(self, **more: Any) -> list[bytes]:
+        """What a page gets that has just opened: all that there is."""
+        state = {"numbers": self.numbers, "error": self.error, "lines": self._lines, "stop": self._stop}
+        out = [framed({"kind": "state", **state, **self._values(), **more}, self.payload or b"")]
+        if self.solid is not None and not self.history.now:
+            out.append(framed({"kind": "solid"}, self.solid))
+        return out
+
+    def begin(self) -> None:
+        """The files are being solved."""
+        self._lines = []
+        self.tell({"kind": "solving"})
+
+    def solved(self, numbers: list[dict[str, Any]]) -> None:
+        """They are, and Params has these numbers; parts of other numbers are taken away."""
+        self.error = None
+        if numbers != self.numbers and self.solid is not None:
+            self.solid = None
+            self.tell({"kind": "solid"})
+        self.numbers = numbers
+        self.history.keep({number["name"] for number in numbers})
+        self.tell({"kind": "solved", "numbers": numbers, **self._values()})
+
+    def motion(self, header: dict[str, Any], payload: bytes, values: dict[str, float]) -> None:
+        """A new motion, with these numbers other than the file's."""
+        self.payload, self._stop = payload, header.get("stop")
+        self.tell({"kind": "motion", "stop": self._stop, "values": values}, payload, replaces=True)
+        if self.solid is not None and not values:
+            self.tell({"kind": "solid"}, self.solid)
+
+    def parts(self, payload: bytes) -> None:
+        """The parts of the motion as the file has it; none where it is empty."""
+        self.solid = payload or None
+        if self.solid is not None and not self.history.now:
+            self.tell({"kind": "solid"}, self.solid)
+
+    def fail(self, text: str) -> None:
+        """The files cannot be solved; the last good motion stays."""
+        self.error = text
+        self.tell({"kind": "error", "text": text})
+
+    def line(self, text: str) -> None:
+        """Something was printed."""
+        self._lines = [*self._lines, text][-LINES:]
+        self.tell({"kind": "line", "text": text})
+
+    def tell_values(self) -> None:
+        """The numbers that differ from the file, and whether there is something to undo."""
+        self.tell({"kind": "values", **self._values()})
+
+    def _values(self) -> dict[str, Any]:
+        history = self.history
+        return {"values": history.now, "can_undo": history.can_undo, "can_redo": history.can_redo}

@@ -1,0 +1,125 @@
+"""Dragging a joint or a traced point: the least change of the lengths that brings it where it is dragged.
+
+Of all numbers x with P(x) = to, the one nearest to those x0 at which the drag began, in parts of their sizes s:
+
+    x <- x0 + s^2 J^T (J s^2 J^T)^-1 (to - P(x) + J (x - x0)),    J = dP / dx
+
+Numbers that move a driver (a speed) are left alone, and whole ones.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from mbsd import Mechanism, MechanismError
+from mbsd.arrays.packing import pack
+from mbsd.synthesis.designs import Designs
+from mbsd.synthesis.varied import Varied
+from shared.stage.errors import UserError
+from studio.live.child.author import Author
+from studio.live.numbers import numbers_of
+
+DRAGGED = "dragged by the page"
+"""The name of the trace that follows what is dragged."""
+DIFFERENCE = 1e-6
+"""Of a number's size, for the slopes."""
+ROUNDS = 8
+NEAR = 1e-7
+"""Of the mechanism's size: so near to the place asked for is there."""
+LONGEST = 0.3
+"""Of its size, by which a number changes in a round at most."""
+LEAST = 0.02
+"""Of its size at the start, below which a number does not shrink: it keeps its sign."""
+STEPS = 60
+"""Of the motion up to the moment of the drag."""
+
+
+def dragged(
+    author: Author, values: dict[str, float], thing: dict[str, str], time: float, to: list[float]
+) -> dict[str, float]:
+    """``values`` with those that bring a joint or point to the place ``to`` (m) at ``time`` (s), as near as may be.
+
+    Raises UserError where it has no place that lengths decide.
+    """
+    names, start = lengths(author, values)
+    base = _traced(author, values, {}, thing)
+    if not base.drivers:
+        raise UserError(
+            f"{author.name}: forces move it, so no length decides where '{thing['name']}' is at {time:g} s; "
+            "change its numbers by their sliders"
+        )
+    size = np.where(np.abs(start) > 0, np.abs(start), max(float(np.abs(start).max(initial=0.0)), 1e-6))
+    delta = DIFFERENCE * size
+
+    def build(**numbers: Any) -> Mechanism:
+        return _traced(author, values, numbers, thing)
+
+    varied = Varied(dict.fromkeys(names, 0), start - delta, start + delta)
+    grid = np.linspace(0.0, time, STEPS + 1) if time > 0 else np.zeros(1)
+    try:
+        designs = Designs(base, varied, build, DRAGGED, {True: grid, False: grid}, grashof=False)
+    except MechanismError as error:
+        raise UserError(str(error)) from error
+    x = _nearest(designs, start, size, delta, np.asarray(to, float))
+    return values | {name: float(value) for name, value in zip(names, x, strict=True)}
+
+
+def lengths(author: Author, values: dict[str, float]) -> tuple[list[str], np.ndarray]:
+    """Numbers of Params that move no driver, and their values now; one that the model does not take is none."""
+    p = author.changed(values)
+    now = {number.name: number.value for number in numbers_of(p) if not number.whole}
+    grid = np.linspace(0.0, 1.0, 5)
+
+    def drives(change: dict[str, float]) -> bytes | None:
+        try:
+            packed = pack(author.build(author.changed(values | change)))
+            packed.settle_laws(0.0, 1.0)
+            return packed.drives(grid).tobytes()
+        except (MechanismError, UserError):
+            return None
+
+    if author.steady is None:
+        own = drives({})
+        author.steady = [name for name, value in now.items() if drives({name: value * 1.01 or 0.01}) == own]
+    return author.steady, np.array([now[name] for name in author.steady])
+
+
+def _nearest(designs: Designs, start: np.ndarray, size: np.ndarray, delta: np.ndarray, to: np.ndarray) -> np.ndarray:
+    """The numbers (k,) that bring the end of the path to ``to``, nearest to ``start``."""
+    least = np.where(start > 0, LEAST * size, -np.inf)
+    most = np.where(start < 0, -LEAST * size, np.inf)
+    extent = designs.ready.packed.size
+    x = best = start
+    off = np.inf
+    for _ in range(ROUNDS):
+        found = designs(np.vstack([x, x + np.diag(delta)]))
+        place = found.path[:, -1]
+        if not found.closes.all():
+            x = (x + best) / 2  # too far: it does not close there
+            continue
+        gap = to - place[0]
+        if np.hypot(*gap) < off:
+            best, off = x, float(np.hypot(*gap))
+        if off < NEAR * extent:
+            break
+        slope = ((place[1:] - place[0]) / delta[:, None]).T * size  # (2, k) in sizes
+        square = slope @ slope.T
+        square += 1e-9 * max(float(np.trace(square)), 1e-300) * np.eye(2)
+        wanted = start + size * (slope.T @ np.linalg.solve(square, gap + slope @ ((x - start) / size)))
+        x = np.clip(x + np.clip(wanted - x, -LONGEST * size, LONGEST * size), least, most)
+    return best
+
+
+def _traced(author: Author, values: dict[str, float], numbers: dict[str, float], thing: dict[str, str]) -> Mechanism:
+    m = author.build(author.changed(values | numbers))
+    kind, name = thing["kind"], thing["name"]
+    if kind == "joint" and name in m.joints:
+        marker = m.joints[name].j
+    elif kind == "point" and name in m.traces:
+        marker = m.traces[name]
+    else:
+        raise UserError(f"{author.name}: there is no {kind} '{name}' to drag")
+    m.trace(DRAGGED, marker)
+    return m

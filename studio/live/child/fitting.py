@@ -1,0 +1,70 @@
+"""The lengths of Params that make a traced point follow a drawn path."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+from mbsd import Mechanism, MechanismError, fit_path
+from shared.stage.errors import UserError
+from studio.live.child.author import Author
+from studio.live.child.dragging import lengths
+from studio.live.numbers import numbers_of
+
+PERIOD = 0.1
+"""Seconds between two words on how far it is."""
+
+
+def fitted(author: Author, request: dict[str, Any], reply: Callable[..., None]) -> None:
+    """Fit, and reply with progress and what was found. Raises UserError.
+
+    ``request``: point, path ([[x, y], ...] in m), closed, vary ({name: [low, high]}, or null for all lengths within
+    the ranges of their sliders), starts, generations, seed, grashof, least_transmission (rad); values are where it
+    begins.
+    """
+    values = request.get("values") or {}
+    p = author.changed(values)
+    m = author.build(p)
+    vary = request.get("vary") or _all_lengths(author, values)
+    last = 0.0
+
+    def build(**numbers: Any) -> Mechanism:
+        return author.build(author.changed(values | numbers))
+
+    def progress(done: float, error: float) -> None:
+        nonlocal last
+        now = time.monotonic()
+        if now - last >= PERIOD:
+            last = now
+            reply({"kind": "progress", "done": done, "error": error})
+
+    try:
+        fit = fit_path(
+            m, request["path"], {name: tuple(bounds) for name, bounds in vary.items()}, point=request.get("point"),
+            closed=bool(request.get("closed")), build=build, grashof=bool(request.get("grashof")),
+            least_transmission=float(request.get("least_transmission") or 0.0), starts=int(request.get("starts") or 2),
+            seed=int(request.get("seed") or 0), generations=int(request.get("generations") or 60), progress=progress,
+        )  # fmt: skip
+    except MechanismError as error:
+        raise UserError(str(error)) from error
+    found = values | {name: value for name, value in fit.values.items() if isinstance(value, float)}
+    reply(
+        {
+            "kind": "fitted",
+            "values": found,
+            "mean": fit.mean,
+            "largest": fit.largest,
+            "least_transmission": fit.least_transmission,
+            "path": fit.path.round(9).tolist(),
+        }
+    )
+
+
+def _all_lengths(author: Author, values: dict[str, float]) -> dict[str, tuple[float, float]]:
+    names, _ = lengths(author, values)
+    ranges = {number.name: (number.low, number.high) for number in numbers_of(author.changed(values))}
+    moving = {name: ranges[name] for name in names if ranges[name][0] < ranges[name][1]}
+    if not moving:
+        raise UserError(f"{author.name}: Params has no number that changes a length; there is nothing to fit")
+    return moving

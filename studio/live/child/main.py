@@ -1,0 +1,103 @@
+"""The child's loop: it reads requests from a pipe, and answers with frames (studio/live/frames.py).
+
+    {"do": "open"}                                 -> motion, with numbers and files
+    {"do": "set", "values": {...}}                 -> motion
+    {"do": "solid"}                                -> solid: of the payload, what the parts change
+    {"do": "drag", "values", "thing", "time", "to"} -> motion, with the values that put the thing there
+    {"do": "fit", ...}                             -> progress ..., fitted
+
+Every answer has the request's "id". What cannot be done is {"kind": "error", "text"}; what the author's code prints is
+{"kind": "line", "text"}.
+"""
+
+from __future__ import annotations
+
+import threading
+import traceback
+from collections.abc import Callable
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from typing import Any
+
+from shared.stage.errors import UserError
+from studio.live.child import guard, spoken
+from studio.live.child.author import Answer, Author
+from studio.live.child.dragging import dragged
+from studio.live.child.fitting import fitted
+from studio.live.frames import framed, unframed
+from studio.live.numbers import numbers_of
+
+Send = Callable[..., None]
+
+
+def main(pipe: Connection, name: str, server: int, most_bytes: int) -> None:
+    """Serve until the pipe is closed."""
+    sending = threading.Lock()
+
+    def send(header: dict[str, Any], payload: bytes = b"") -> None:
+        frame = framed(header, payload)
+        with sending:
+            pipe.send_bytes(frame)
+
+    guard.watch(server, most_bytes, lambda text: send({"kind": "error", "id": -1, "text": text}))
+    with suppress(EOFError, OSError), spoken.to(lambda text: send({"kind": "line", "text": text})):
+        _serve(pipe, name, send)
+
+
+def _serve(pipe: Connection, name: str, send: Send) -> None:
+    author: Author | None = None
+    while True:
+        request, _ = unframed(pipe.recv_bytes())
+        number = request.get("id")
+
+        def reply(header: dict[str, Any], payload: bytes = b"", number: Any = number) -> None:
+            send({"id": number, **header}, payload)
+
+        try:
+            if author is None or request["do"] == "open":
+                author = Author(name, lambda files, reply=reply: reply({"kind": "files", "files": [*map(str, files)]}))
+            HANDLERS[request["do"]](author, request, reply)
+        except UserError as error:
+            reply({"kind": "error", "text": str(error)})
+        except (Exception, SystemExit, KeyboardInterrupt) as error:
+            text = "".join(traceback.format_exception_only(error)).strip()
+            reply({"kind": "error", "text": f"{name}: {text}"})
+
+
+def _open(author: Author, request: dict[str, Any], reply: Send) -> None:
+    answer = author.answer(request.get("values") or {})
+    numbers = [vars(number) for number in numbers_of(author.params)]
+    _motion(answer, reply, numbers=numbers)
+
+
+def _set(author: Author, request: dict[str, Any], reply: Send) -> None:
+    _motion(author.answer(request["values"], not request.get("final"), bool(request.get("arrows"))), reply)
+
+
+def _solid(author: Author, request: dict[str, Any], reply: Send) -> None:
+    author.answer({})
+    found = author.solid()
+    reply({"kind": "solid"}, found or b"")
+
+
+def _drag(author: Author, request: dict[str, Any], reply: Send) -> None:
+    values = dragged(author, request["values"], request["thing"], request["time"], request["to"])
+    _motion(author.answer(values, not request.get("final"), bool(request.get("arrows"))), reply, values=values)
+
+
+def _fit(author: Author, request: dict[str, Any], reply: Send) -> None:
+    fitted(author, request, reply)
+
+
+def _motion(answer: Answer, reply: Send, **more: Any) -> None:
+    stop = vars(answer.stop) if answer.stop else None
+    reply({"kind": "motion", "stop": stop, **more}, answer.payload)
+
+
+HANDLERS: dict[str, Callable[[Author, dict[str, Any], Send], None]] = {
+    "open": _open,
+    "set": _set,
+    "drag": _drag,
+    "solid": _solid,
+    "fit": _fit,
+}

@@ -1,0 +1,61 @@
+"""Solutions as the page shows them: the bytes of its payload."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from mbsd import Mechanism, Solution
+from mbsd.drawing.view.carried import Moving, moving
+from mbsd.drawing.view.redrawn import redrawn
+from mechanisms.stages.solve.motion_file import to_motion
+from mechanisms.stages.solve.skeleton_file import moving_of
+from render.view.binary import encode
+from render.view.payload import payload
+from shared.contract import Motion, Parts
+from shared.contract.shot import Shot
+from shared.contract.skeleton import Moving as Told
+from shared.contract.spanning import with_rods
+
+OF_PARTS = ("bodies", "arrows", "arcs", "trails", "clearance", "solid")
+"""Of the payload, what changes once there are parts."""
+
+
+class Shown:
+    """Makes payloads of one mechanism; ``quick`` ones keep size of symbols and extent of the last whole one."""
+
+    def __init__(self) -> None:
+        self._last: tuple[Moving, Mechanism] | None = None
+        self._motion: tuple[Motion, Told] | None = None
+
+    def of(
+        self,
+        solution: Solution,
+        parts: Parts | None,
+        sources: Mapping[str, Any],
+        shot: Shot | None,
+        quick: bool,
+        arrows: bool = True,
+    ) -> bytes:
+        """Bytes of the payload without its parts; raises UserError for a shot that names what is not there."""
+        skeleton = redrawn(solution, *self._last) if quick and self._last is not None else None
+        if skeleton is None:
+            skeleton = moving(solution)
+            self._last = skeleton, copy.copy(solution.mechanism)
+        motion = to_motion(solution, parts, "", {}, sources)
+        told = moving_of(solution, skeleton)
+        self._motion = motion, told
+        return encode(payload(motion, told, shot, arrows or not quick), compress=False)
+
+    def solid(self, parts: Parts, shot: Shot | None, folder: Path) -> bytes:
+        """Of the last motion, what the payload says once its parts are there. Raises UserError."""
+        from render.film.film import Film
+        from render.view.solid import with_parts
+
+        assert self._motion is not None
+        motion, told = self._motion
+        motion = with_rods(motion, parts)
+        whole = with_parts(payload(motion, told, shot), Film(motion, parts, shot or Shot(), folder))
+        return encode({key: whole[key] for key in OF_PARTS}, compress=False)

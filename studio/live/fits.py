@@ -1,0 +1,51 @@
+"""A fit of the lengths to a drawn path, in a child of its own: the sliders go on, and it can be ended at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from studio.live.children import Child, Nursery
+
+Tell = Callable[[dict[str, Any]], None]
+
+
+class Fit:
+    """At most one at a time; a newer one ends it."""
+
+    def __init__(self, name: str, nursery: Nursery, tell: Tell, found: Callable[[dict[str, float]], None]) -> None:
+        self._name, self._nursery, self._tell, self._found = name, nursery, tell, found
+        self._child: Child | None = None
+
+    def begin(self, wish: dict[str, Any], values: dict[str, float]) -> None:
+        """Fit from these numbers; it may take as long as it does."""
+        self.end()
+        self._child = self._nursery.child(self._name, self._heard, limit=0)
+        self._child.ask(0, {**wish, "do": "fit", "values": values})
+        self._tell({"kind": "progress", "done": 0.0, "error": None})
+
+    def cancel(self) -> None:
+        """End it, and say so."""
+        if self._child is not None:
+            self.end()
+            self._tell({"kind": "fitted", "cancelled": True})
+
+    def end(self) -> None:
+        """End it, if there is one."""
+        if self._child is not None:
+            self._child.kill()
+            self._child = None
+
+    def _heard(self, child: Child, header: dict[str, Any], _: bytes) -> None:
+        if child is not self._child:
+            return
+        match header.get("kind"):
+            case "progress":
+                self._tell(header)
+            case "error":
+                self.end()
+                self._tell({"kind": "fitted", "error": header["text"]})
+            case "fitted":
+                self.end()
+                self._tell(header)
+                self._found(header["values"])

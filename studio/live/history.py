@@ -1,0 +1,55 @@
+"""Undo and redo of the numbers that sliders, drags and fits have set."""
+
+from __future__ import annotations
+
+MOST = 500
+"""Steps that are kept."""
+
+
+class History:
+    """States of the changed numbers, by name, and which of them is now."""
+
+    def __init__(self) -> None:
+        self._states: list[dict[str, float]] = [{}]
+        self._now = 0
+
+    @property
+    def now(self) -> dict[str, float]:
+        """The numbers that differ from the file."""
+        return dict(self._states[self._now])
+
+    @property
+    def can_undo(self) -> bool:
+        """Whether there is a state before this one."""
+        return self._now > 0
+
+    @property
+    def can_redo(self) -> bool:
+        """Whether something was undone."""
+        return self._now < len(self._states) - 1
+
+    def put(self, values: dict[str, float]) -> None:
+        """A new state; what was undone is forgotten."""
+        if values == self._states[self._now]:
+            return
+        self._states = [*self._states[: self._now + 1], dict(values)][-MOST:]
+        self._now = len(self._states) - 1
+
+    def undo(self) -> dict[str, float]:
+        """The state before."""
+        self._now = max(self._now - 1, 0)
+        return self.now
+
+    def redo(self) -> dict[str, float]:
+        """The state after."""
+        self._now = min(self._now + 1, len(self._states) - 1)
+        return self.now
+
+    def keep(self, names: set[str]) -> None:
+        """Forget numbers that are no longer there, in all states."""
+        self._states = [{name: value for name, value in one.items() if name in names} for one in self._states]
+
+    def written(self, names: set[str]) -> None:
+        """The file now holds these: no state changes them any more, so that they are as the file has them."""
+        now = {name: value for name, value in self.now.items() if name not in names}
+        self._states, self._now = [now], 0

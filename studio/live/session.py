@@ -1,0 +1,235 @@
+"""One mechanism as all open pages see it: its last good motion, its numbers, what is being solved.
+
+A save begins a new child with the files as they are now; until it has solved them the child of the last good motion
+serves on, so a broken edit takes nothing away. Of many wishes of a slider the newest counts.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from shared.stage.errors import UserError
+from shared.stage.paths import mechanism_folder
+from studio.live.background import Stages
+from studio.live.board import Board, Push
+from studio.live.children import Child, Nursery
+from studio.live.fits import Fit
+from studio.live.watching import Watch
+from studio.live.wishes import finite, place_of
+from studio.live.write_back import write_back
+
+
+class Session:
+    """What the server keeps of a mechanism."""
+
+    def __init__(self, name: str, nursery: Nursery, push: Push, parts: bool = True) -> None:
+        self.name, self._nursery, self._wants_parts = name, nursery, parts
+        self.watch = Watch(mechanism_folder(name))
+        self.board = Board(push)
+        self.history = self.board.history
+        self._count = itertools.count(1)
+        self._good: Child | None = None
+        self._new: Child | None = None
+        self._wish: dict[str, Any] | None = None
+        self._wished: dict[str, Any] | None = None
+        self._parts_ready = False
+        self.stages = Stages(name, self.board.line, self._parts_made)
+        self.fit = Fit(name, nursery, self.board.tell, self._fitted)
+
+    # -- files ----------------------------------------------------------------------------------------------------
+
+    def changed(self, files: set[Path]) -> None:
+        """Some of the author's files have another content, or the server has just begun."""
+        if files and all(file.name == "parts.py" and file.parent == self.watch.folder for file in files):
+            self._make_parts()
+            return
+        self.reload()
+
+    def reload(self, parts_ready: bool = False) -> None:
+        """Load and solve the files as they are now; with parts that have just been made for them."""
+        self.fit.end()
+        self.stages.end()
+        self._parts_ready = parts_ready
+        if self._new is not None:
+            self._new.kill()
+        self.board.begin()
+        self._new = self._nursery.child(self.name, self._heard_new)
+        self._new.ask(next(self._count), {"do": "open", "values": self.history.now})
+
+    def _heard_new(self, child: Child, header: dict[str, Any], payload: bytes) -> None:
+        match header.get("kind"):
+            case "files":
+                self.watch.follow(Path(file) for file in header["files"])
+            case "line":
+                self.board.line(header["text"])
+            case "error" if child is self._new:
+                child.kill()
+                self._new = None
+                if not self._without_changes(header["text"]):
+                    self.board.fail(header["text"])
+            case "motion" if child is self._new:
+                self._new = None
+                if self._good is not None:
+                    self._good.kill()
+                self._good = child
+                self.board.solved(header["numbers"])
+                self.board.motion(header, payload, self.history.now)
+                if self._parts_ready:
+                    self._parts_ready = False
+                    self._solve({"do": "solid"})
+                else:
+                    self._make_parts()
+            case _:
+                self._heard(child, header, payload)
+
+    def _without_changes(self, text: str) -> bool:
+        """Where the sliders' numbers do not fit the new file, it is solved once more as it stands."""
+        if not self.history.now:
+            return False
+        self.board.line(f"the numbers of the sliders do not fit this file, so they were let go: {text}")
+        self.history.put({})
+        self.reload()
+        return True
+
+    # -- wishes of the page -----------------------------------------------------------------------------------------
+
+    def ask(self, wish: dict[str, Any]) -> None:
+        """A wish of a page, one of WISHES. Raises UserError for what cannot be."""
+        do = wish.get("do")
+        if do not in WISHES:
+            raise UserError(f"the page asks for {do!r}; there is: {', '.join(WISHES)}")
+        WISHES[do](self, wish)
+
+    def _set(self, wish: dict[str, Any]) -> None:
+        values = self.history.now | finite(wish.get("values"))
+        if wish.get("final"):
+            self.history.put(values)
+            self.board.tell_values()
+        self._solve({"do": "set", "values": values, **_how(wish)})
+
+    def _drag(self, wish: dict[str, Any]) -> None:
+        self._solve({"do": "drag", "values": self.history.now, **_how(wish), **place_of(wish)})
+
+    def _undo(self, _: dict[str, Any]) -> None:
+        # A drag that was let go but is not solved yet is what there is to undo.
+        values = self.history.now if self._drop_drag() else self.history.undo()
+        self._solve({"do": "set", "values": values, "final": True})
+        self.board.tell_values()
+
+    def _drop_drag(self) -> bool:
+        """Forget a drag that is being solved or waits; whether there was one that had ended."""
+        busy = self._wished if self._good is not None and self._good.busy else None
+        drags = [one for one in (busy, self._wish) if one is not None and one["do"] == "drag" and one.get("final")]
+        for one in drags:
+            one["final"] = False
+        return bool(drags)
+
+    def _redo(self, _: dict[str, Any]) -> None:
+        self._solve({"do": "set", "values": self.history.redo(), "final": True})
+        self.board.tell_values()
+
+    def _write(self, wish: dict[str, Any]) -> None:
+        if self.board.error is not None:
+            raise UserError("mechanism.py has an error, so nothing is written into it; cure it first")
+        names = wish.get("names") or list(self.history.now)
+        whole = {number["name"] for number in self.board.numbers if number["whole"]}
+        now = self.history.now
+        values = {name: round(now[name]) if name in whole else now[name] for name in names if name in now}
+        if not values:
+            raise UserError("no number differs from the file, so there is nothing to write")
+        path = write_back(self.name, values)
+        self.history.written(set(values))
+        self.board.tell_values()
+        self.board.line(f"{', '.join(values)} written into mechanisms/{path.parent.name}/{path.name}")
+
+    def _fit(self, wish: dict[str, Any]) -> None:
+        self.fit.begin(wish, self.history.now)
+
+    def _cancel(self, _: dict[str, Any]) -> None:
+        self.fit.cancel()
+
+    def _fitted(self, values: dict[str, float]) -> None:
+        self.history.put(values)
+        self.board.tell_values()
+        self._solve({"do": "set", "values": values, "final": True})
+
+    def _solve(self, request: dict[str, Any]) -> None:
+        """Let the good child solve this, after what it is doing; of several that wait the newest counts."""
+        if self._good is None or self._good.ended:
+            return
+        if self._good.busy:
+            self._wish = request
+            return
+        self._wish, self._wished = None, request
+        self._good.ask(next(self._count), request)
+
+    def _heard(self, child: Child, header: dict[str, Any], payload: bytes) -> None:
+        """Of the good child, which answers wishes."""
+        if child is not self._good:
+            return
+        kind, asked = header.get("kind"), self._wished
+        if kind == "line":
+            self.board.line(header["text"])
+            return
+        if kind not in ("motion", "error", "solid"):
+            return
+        if kind == "solid":
+            self.board.parts(payload)
+        elif kind == "motion":
+            values = header.get("values") or (asked or {}).get("values") or {}
+            if asked and asked["do"] == "drag" and asked.get("final"):
+                self.history.put(header["values"])
+                self.board.tell_values()
+            self.board.motion(header, payload, values)
+        elif (asked or {}).get("do") == "solid":
+            self.board.line(header["text"])
+        else:
+            self.board.tell({"kind": "refused", "text": header["text"], "values": (asked or {}).get("values")})
+        if child.ended:
+            self._good = None
+            self.reload()
+        elif self._wish is not None:
+            self._solve(self._wish)
+
+    # -- the rest ---------------------------------------------------------------------------------------------------
+
+    def greeting(self) -> list[bytes]:
+        """What a page gets that has just opened."""
+        return self.board.greeting(name=self.name, solving=self._new is not None)
+
+    def end(self) -> None:
+        """End all that runs for it."""
+        self.stages.end()
+        self.fit.end()
+        for child in (self._good, self._new):
+            if child is not None:
+                child.kill()
+
+    def _make_parts(self) -> None:
+        if self._wants_parts:
+            self.stages.begin()
+            self.board.tell({"kind": "parts", "state": "making"})
+
+    def _parts_made(self, good: bool) -> None:
+        self.board.tell({"kind": "parts", "state": "ready" if good else "failed"})
+        if good and self._new is None:
+            self.reload(parts_ready=True)
+
+
+WISHES: dict[str, Callable[[Session, dict[str, Any]], None]] = {
+    "set": Session._set,
+    "drag": Session._drag,
+    "undo": Session._undo,
+    "redo": Session._redo,
+    "write": Session._write,
+    "fit": Session._fit,
+    "cancel": Session._cancel,
+}
+
+
+def _how(wish: dict[str, Any]) -> dict[str, bool]:
+    """Whether a slider or pointer was let go, and whether arrows are seen while it moves."""
+    return {word: bool(wish.get(word)) for word in ("final", "arrows")}

@@ -1,0 +1,96 @@
+"""Which of the author's files have changed, by their content: a touch is no change."""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+import os
+from collections.abc import AsyncIterator, Callable, Iterable
+from pathlib import Path
+
+from watchfiles import awatch
+
+DEBOUNCE, STEP = 120, 15
+"""Milliseconds: changes within are one; and of quiet that end it sooner."""
+LARGEST = 1 << 26
+"""Bytes of a file whose content is compared; of larger ones size and time."""
+
+
+class Watch:
+    """Looks at a folder and at single files elsewhere."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._files: set[Path] = set()
+        self._states: dict[Path, str] = {}
+        self._again = asyncio.Event()
+
+    def follow(self, files: Iterable[Path]) -> None:
+        """From now on look at these files, too; Python files of the folder are always looked at."""
+        new = {Path(os.path.abspath(file)) for file in files} - self._files
+        if not new:
+            return
+        self._files |= new
+        for file in new:
+            self._states.setdefault(file, state(file))
+        self._again.set()
+
+    async def changes(self, ended: Callable[[], bool]) -> AsyncIterator[set[Path]]:
+        """Sets of files whose content has changed, until ``ended``."""
+        self._changed(self._all())
+        while not ended():
+            self._again.clear()
+            stop = asyncio.Event()
+            waiting = asyncio.ensure_future(self._until_again(stop))
+            try:
+                folders = {self.folder, *(file.parent for file in self._files)}
+                there = [folder for folder in folders if folder.is_dir()]
+                watched = awatch(*there, stop_event=stop, debounce=DEBOUNCE, step=STEP, recursive=False)
+                first = self._changed(self._all())  # what changed while nobody looked
+                if first:
+                    yield first
+                async for _ in watched:
+                    found = self._changed(self._all())
+                    if found:
+                        yield found
+                    if ended() or not self.folder.is_dir():
+                        break
+            except (OSError, RuntimeError):
+                pass
+            finally:
+                waiting.cancel()
+            if not ended() and not self._again.is_set():
+                await asyncio.sleep(0.2)  # a folder that is gone may come back
+
+    async def _until_again(self, stop: asyncio.Event) -> None:
+        await self._again.wait()
+        stop.set()
+
+    def _all(self) -> set[Path]:
+        try:
+            own = {self.folder / name for name in os.listdir(self.folder) if name.endswith(".py")}
+        except OSError:
+            own = set()
+        return own | self._files | {file for file in self._states if file.parent == self.folder}
+
+    def _changed(self, files: set[Path]) -> set[Path]:
+        found = set()
+        for file in files:
+            now = state(file)
+            if self._states.get(file) != now:
+                found.add(file)
+            self._states[file] = now
+        return found
+
+
+def state(file: Path) -> str:
+    """A hash of a file's content, or a word for what is no file."""
+    try:
+        status = file.stat()
+        if not os.path.isfile(file):
+            return "folder"
+        if status.st_size > LARGEST:
+            return f"{status.st_size} {status.st_mtime_ns}"
+        return hashlib.sha256(file.read_bytes()).hexdigest()
+    except OSError:
+        return "missing"

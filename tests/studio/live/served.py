@@ -1,0 +1,193 @@
+"""A live server in a thread of the test, and a page that speaks with it."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import multiprocessing.forkserver
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+import uvicorn
+from websockets.sync.client import ClientConnection, connect
+
+import mechanisms
+from mechanisms.stages.loading import loading
+from shared.stage import paths
+from studio.live import children
+from studio.live.__main__ import bound
+from studio.live.frames import unframed
+from studio.live.server import LARGEST, Live
+from studio.live.session import Session
+from tests.studio.live import elsewhere
+
+WAIT = 240.0
+"""Seconds that a test waits at most; a machine may be busy."""
+
+ARM = '''"""A crank whose end is traced."""
+
+from dataclasses import dataclass
+from math import tau
+
+from mbsd import Mechanism, constant_rate
+
+STEPS = 24
+
+
+@dataclass(frozen=True)
+class Params:
+    """m, rad/s."""
+
+    length: float = 0.2  # of the crank
+    speed: float = tau
+
+
+def build(p: Params) -> Mechanism:
+    """One crank."""
+    m = Mechanism("arm")
+    crank = m.bar("crank", p.length, mass=1.0)
+    m.revolute("A", m.ground.at(0, 0), crank.start)
+    m.drive_angle("motor", crank, constant_rate(p.speed))
+    m.trace("P", crank.end)
+    m.start_near(crank=0)
+    return m
+'''
+
+FOUR_BAR = '''"""A four-bar."""
+
+from dataclasses import dataclass, field
+from math import pi
+
+from mbsd import Mechanism, constant_rate
+
+STEPS = 48
+
+
+@dataclass(frozen=True)
+class Params:
+    """m, rad/s."""
+
+    ground: float = 0.120
+    crank: float = field(default=0.040, metadata={"range": (0.02, 0.2)})
+    coupler: float = 0.120
+    rocker: float = 0.090
+    tracer: tuple[float, float] = (0.060, 0.030)  # on the coupler
+    teeth: int = 3
+    speed: float = 2 * pi
+
+
+def build(p: Params) -> Mechanism:
+    """Pins A to D."""
+    m = Mechanism("links")
+    crank, coupler, rocker = m.bar("crank", p.crank), m.bar("coupler", p.coupler), m.bar("rocker", p.rocker)
+    m.revolute("A", m.ground.at(0, 0), crank.start)
+    m.revolute("B", crank.end, coupler.start)
+    m.revolute("C", coupler.end, rocker.end)
+    m.revolute("D", m.ground.at(p.ground, 0), rocker.start)
+    m.drive_angle("motor", crank, constant_rate(p.speed))
+    m.trace("P", coupler.at(*p.tracer))
+    m.start_near(crank=0, coupler=45, rocker=100)
+    return m
+'''
+
+
+class Page:
+    """What a browser's page hears and says."""
+
+    def __init__(self, socket: ClientConnection) -> None:
+        self._socket = socket
+
+    def say(self, **wish: Any) -> None:
+        self._socket.send(json.dumps(wish))
+
+    def hear(self, *kinds: str, wanted: Callable[[dict[str, Any]], bool] = lambda header: True) -> Any:
+        """The next message of one of these kinds, with its payload under ``payload``; others are passed over."""
+        ends = time.monotonic() + WAIT
+        while True:
+            frame = self._socket.recv(timeout=max(ends - time.monotonic(), 0.01))
+            assert isinstance(frame, bytes)
+            header, payload = unframed(frame)
+            header["payload"] = payload
+            if header["kind"] in kinds and wanted(header):
+                return header
+
+
+class Served:
+    """A server, its folder of mechanisms, and doors for pages."""
+
+    def __init__(self, live: Live, folder: Path) -> None:
+        self.live, self.folder = live, folder
+
+    @property
+    def session(self) -> Session:
+        assert self.live.session is not None
+        return self.live.session
+
+    @contextmanager
+    def page(self, origin: str | None = None) -> Iterator[Page]:
+        place = f"127.0.0.1:{self.live.port}"
+        with connect(
+            f"ws://{place}/{self.live.token}/socket",
+            origin=origin or f"http://{place}",
+            max_size=None,
+            open_timeout=WAIT,
+        ) as socket:
+            yield Page(socket)
+
+    def write(self, text: str | bytes, file: str = "mechanism.py") -> None:
+        """As editors do: a new file takes the place of the old one."""
+        folder = self.folder / self.session.name
+        beside = folder / "unsaved"
+        beside.write_bytes(text.encode() if isinstance(text, str) else text)
+        beside.replace(folder / file)
+
+
+def blank(_: Session) -> bytes:
+    """A page where none is looked at."""
+    return b"<!doctype html>"
+
+
+@contextmanager
+def served(
+    folder: Path, name: str, source: str, limit: float, parts: bool = False, show: Callable[[Session], bytes] = blank
+) -> Iterator[Served]:
+    """A server of one mechanism of a test's own."""
+    (folder / name).mkdir(parents=True)
+    (folder / name / "mechanism.py").write_text(source)
+    patch = pytest.MonkeyPatch()
+    patch.setenv(elsewhere.FOLDER, str(folder))
+    patch.setattr(children, "WARM", ["tests.studio.live.elsewhere"])
+    for module in (paths, loading):
+        patch.setattr(module, "MECHANISMS", folder)
+    patch.setattr(paths, "ROOT", folder.parent)
+    patch.setattr(mechanisms, "__path__", [*mechanisms.__path__, str(folder)])
+    _forget_forkserver()
+    listener = bound(0)
+    live = Live(name, listener.getsockname()[1], show, limit, parts)
+    config = uvicorn.Config(live.app, log_level="warning", lifespan="on", ws_max_size=LARGEST, server_header=False)
+    server = uvicorn.Server(config)
+    thread = threading.Thread(target=lambda: asyncio.run(server.serve(sockets=[listener])), daemon=True)
+    thread.start()
+    try:
+        ends = time.monotonic() + WAIT
+        while not server.started and time.monotonic() < ends:
+            time.sleep(0.02)
+        assert server.started
+        yield Served(live, folder)
+    finally:
+        server.should_exit = True
+        thread.join(WAIT)
+        listener.close()
+        patch.undo()
+        _forget_forkserver()
+    assert not thread.is_alive()
+
+
+def _forget_forkserver() -> None:
+    """One that other tests have started has other mechanisms."""
+    multiprocessing.forkserver._forkserver._stop()

@@ -20,6 +20,8 @@ class Board:
         self, names: Sequence[str], fresh: Mapping[str, Collection[str]] | None = None, steps: Sequence[Step] = STEPS
     ) -> None:
         self.names, self.steps = list(names), {step.name: step for step in steps}
+        self.away: set[str] = set()
+        """Mechanisms that another process has; films of the others do not wait for their probes."""
         known = fresh or {}
         self._states: dict[tuple[str, str], State] = {}
         for name in names:
@@ -60,8 +62,9 @@ class Board:
         return all(state in OVER for state in self._states.values())
 
     def is_measured(self) -> bool:
-        """Whether the probe of every film that is to be made is over."""
-        return all(self._states[name, PROBE] in OVER for name in self.names) if PROBE in self.steps else True
+        """Whether the probe of every film that this run can make now is over."""
+        here = [name for name in self.names if name not in self.away] if PROBE in self.steps else []
+        return all(self._states[name, PROBE] in OVER for name in here)
 
     def ready(self, renders: bool) -> Iterator[tuple[str, str]]:
         """Mechanism and step of what may start now, the most urgent first, to render or beside the render.

@@ -98,9 +98,11 @@ class Coordinator:
                 continue
             if who:
                 self._elsewhere[name] = now + ELSEWHERE
+                self.board.away.add(name)
                 self.books.elsewhere(name, f"another run is at it ({who})")
                 continue
             self._elsewhere.pop(name, None)
+            self.board.away.discard(name)
             self.books.started(name, step)
             try:
                 process = Process(name, step, command(step, name, self.asked), not renders, self.environment)
@@ -154,6 +156,7 @@ class Coordinator:
         elif process.code() == BUSY:
             self._tries[name, step] -= 1
             self._elsewhere[name] = time.monotonic() + BUSY_ELSEWHERE
+            self.board.away.add(name)
             self.board.wait(name, step)
             self.books.elsewhere(name, "another process renders it")
         else:

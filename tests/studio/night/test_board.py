@@ -78,3 +78,13 @@ def test_steps_beside_the_render_come_in_the_order_in_which_it_needs_them():
         board.done(name, "parts")
         board.done(name, "solve")
     assert [step for _, step in board.ready(False)] == ["shot", "shot", "clearance", "clearance", "plots", "plots"]
+
+
+def test_a_mechanism_that_another_process_has_holds_no_film_up():
+    board = Board(["a", "b"])
+    for step in ("parts", "solve", "shot", "clearance", PROBE):
+        board.done("b", step)
+    assert list(board.ready(True)) == []
+    board.away.add("a")
+    assert list(board.ready(True)) == [("b", FILM)]
+    assert not board.is_over()

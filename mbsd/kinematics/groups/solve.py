@@ -1,6 +1,7 @@
 """The compiled closed forms: positions, velocities and accelerations of all groups at all times.
 
-PRP, ROD, SLIDE and trains are in slides.py, blocks of Newton-Raphson in newton/, carried points in points.py.
+RRP, RPR and YOKE are in one_slide.py, PRP, ROD, SLIDE and trains in slides.py, blocks of Newton-Raphson in newton/,
+carried points in points.py.
 
     RRR   C where the circles about P and Q meet;  with u = C - P, w = C - Q:
           omega_A u_perp - omega_B w_perp = q' - p'
@@ -31,7 +32,8 @@ from mbsd.compiling.jit import kernel
 from mbsd.kinematics.groups.blocks import BLOCK, CARRIES_ON, DOUBTED_BEFORE, NEAR_AT, ROWS_AT, TRAIN, TREE_AT
 from mbsd.kinematics.groups.groups import DRIVEN, PRP, RPR, RRP, RRR, SLIDE, WELDED, YOKE
 from mbsd.kinematics.groups.newton.call import call_block
-from mbsd.kinematics.groups.points import DOUBTED, MEETING, SOLVED, aim, carried, dip, follow, hang, reach, wound
+from mbsd.kinematics.groups.one_slide import solve_rpr, solve_rrp, solve_yoke
+from mbsd.kinematics.groups.points import DOUBTED, SOLVED, aim, carried, dip, hang, reach, wound
 from mbsd.kinematics.groups.slides import solve_prp, solve_rod, solve_slide, solve_train
 from mbsd.kinematics.law_step import jumps
 
@@ -50,7 +52,6 @@ def solve_groups(
     """
     p = point[0]
     r = point[1]
-    g = point[2]
     for k in range(first_row, times.shape[0]):
         qk = q[k]
         vk = v[k]
@@ -130,115 +131,21 @@ def solve_groups(
                 hang(qk, vk, ak, turn, body, p, n[2], n[3])
                 hang(qk, vk, ak, turn, other, r, n[8], n[9])
             elif kind == RRP:
-                carried(qk, vk, ak, turn, k1, n[0], n[1], p)
-                carried(qk, vk, ak, turn, k2, n[6], n[7], r)
-                lx = n[4] - n[2]
-                ly = n[5] - n[3]
-                square = lx * lx + ly * ly
-                ex = turn[k2, 0] * n[8] - turn[k2, 1] * n[9]
-                ey = turn[k2, 1] * n[8] + turn[k2, 0] * n[9]
-                dx = r[0] - p[0]
-                dy = r[1] - p[1]
-                along = dx * ex + dy * ey
-                across = dx * ey - dy * ex
-                left = square - across * across
-                state = reach(left, square)
+                state = solve_rrp(groups.body[e], n, qk, vk, ak, last, turn, point)
                 if state != SOLVED:
                     return state, k, 0.0
-                root = n[13] * math.sqrt(left)
-                slide = root - along
-                sx = slide * ex
-                sy = slide * ey
-                ux = dx + sx
-                uy = dy + sy
-                aim(turn, qk, last[at + 2], body, ux, uy, lx, ly)
-                spin = vk[3 * k2 + 2]
-                rate_of_left = -2.0 * across * ((r[2] - p[2]) * ey - (r[3] - p[3]) * ex + spin * along)
-                turning = ak[3 * k2 + 2]
-                carried_x = r[2] - spin * sy
-                carried_y = r[3] + spin * sx
-                fx = carried_x - p[2]
-                fy = carried_y - p[3]
-                inverse = 1.0 / root
-                omega = (ex * fy - ey * fx) * inverse
-                rate = -(ux * fx + uy * fy) * inverse
-                g[0] = r[0] + sx
-                g[1] = r[1] + sy
-                g[2] = carried_x + rate * ex
-                g[3] = carried_y + rate * ey
-                carried_x = r[4] - turning * sy - spin * spin * sx - 2.0 * spin * rate * ey
-                carried_y = r[5] + turning * sx - spin * spin * sy + 2.0 * spin * rate * ex
-                fx = carried_x - p[4] + omega * omega * ux
-                fy = carried_y - p[5] + omega * omega * uy
-                vk[at + 2] = omega
-                ak[at + 2] = (ex * fy - ey * fx) * inverse
-                rate = -(ux * fx + uy * fy) * inverse
-                g[4] = carried_x + rate * ex
-                g[5] = carried_y + rate * ey
-                hang(qk, vk, ak, turn, body, p, n[2], n[3])
-                if other >= 0:
-                    follow(qk, vk, ak, turn, other, k2, n[10])
-                    hang(qk, vk, ak, turn, other, g, n[11], n[12])
+                left = point[3, 0]
+                rate_of_left = point[3, 1]
             elif kind == RPR:
-                carried(qk, vk, ak, turn, k1, n[0], n[1], p)
-                carried(qk, vk, ak, turn, k2, n[7], n[8], r)
-                dx = r[0] - p[0]
-                dy = r[1] - p[1]
-                square = dx * dx + dy * dy
-                left = square - n[6] * n[6]
-                state = reach(left, square)
-                if not left > tiny:
-                    state = min(state, MEETING)
+                state = solve_rpr(groups.body[e], n, qk, vk, ak, last, tiny, turn, point)
                 if state != SOLVED:
                     return state, k, 0.0
-                root = n[12] * math.sqrt(left)
-                aim(turn, qk, last[at + 2], body, dx, dy, root * n[4] - n[6] * n[5], root * n[5] + n[6] * n[4])
-                ex = turn[body, 0] * n[4] - turn[body, 1] * n[5]
-                ey = turn[body, 1] * n[4] + turn[body, 0] * n[5]
-                fx = r[2] - p[2]
-                fy = r[3] - p[3]
-                inverse = 1.0 / root
-                omega = (ex * fy - ey * fx) * inverse
-                rate = dx * fx + dy * fy
-                rate_of_left = 2.0 * rate
-                rate *= inverse
-                fx = r[4] - p[4] + omega * omega * dx + 2.0 * omega * rate * ey
-                fy = r[5] - p[5] + omega * omega * dy - 2.0 * omega * rate * ex
-                vk[at + 2] = omega
-                ak[at + 2] = (ex * fy - ey * fx) * inverse
-                hang(qk, vk, ak, turn, body, p, n[2], n[3])
-                if other >= 0:
-                    follow(qk, vk, ak, turn, other, body, n[9])
-                    hang(qk, vk, ak, turn, other, r, n[10], n[11])
+                left = point[3, 0]
+                rate_of_left = point[3, 1]
             elif kind == YOKE:
-                carried(qk, vk, ak, turn, k1, n[0], n[1], p)
-                carried(qk, vk, ak, turn, k2, n[6], n[7], r)
-                ex = turn[k1, 0] * n[2] - turn[k1, 1] * n[3]
-                ey = turn[k1, 1] * n[2] + turn[k1, 0] * n[3]
-                nx = turn[k1, 0] * n[4] - turn[k1, 1] * n[5]
-                ny = turn[k1, 1] * n[4] + turn[k1, 0] * n[5]
-                spin = vk[3 * k1 + 2]
-                turning = ak[3 * k1 + 2]
-                dx = r[0] - p[0]
-                dy = r[1] - p[1]
-                inverse = 1.0 / (nx * ex + ny * ey)
-                slide = (nx * dx + ny * dy) * inverse
-                sx = slide * ex
-                sy = slide * ey
-                fx = r[2] - p[2] + spin * dy
-                fy = r[3] - p[3] - spin * dx
-                rate = (nx * fx + ny * fy) * inverse
-                ux = r[4] - p[4] + turning * dy + spin * spin * dx + 2.0 * spin * fy
-                uy = r[5] - p[5] - turning * dx + spin * spin * dy - 2.0 * spin * fx
-                along = (nx * ux + ny * uy) * inverse
-                g[0] = p[0] + sx
-                g[1] = p[1] + sy
-                g[2] = p[2] - spin * sy + rate * ex
-                g[3] = p[3] + spin * sx + rate * ey
-                g[4] = p[4] - turning * sy - spin * spin * sx - 2.0 * spin * rate * ey + along * ex
-                g[5] = p[5] + turning * sx - spin * spin * sy + 2.0 * spin * rate * ex + along * ey
-                follow(qk, vk, ak, turn, body, k1, n[8])
-                hang(qk, vk, ak, turn, body, g, n[9], n[10])
+                solve_yoke(groups.body[e], n, qk, vk, ak, turn, point)
+                left = point[3, 0]
+                rate_of_left = point[3, 1]
             elif kind == BLOCK:
                 head = blocks.head[groups.motion[e]]
                 state = call_block(

@@ -276,7 +276,7 @@ hunt-parts: install ## parts of N random mechanisms (1000), goes on where it sto
 
 torture: install ## N nights of postage stamps (20), killed and damaged meanwhile; SEED=1: out/torture.json
 	$(ALL_KERNELS)
-	@$(PYTHON) -m tools.torture --n "$${N:-20}" --seed "$$SEED"
+	@$(PYTHON) -m tools.torture --n "$${N:-20}" --seed "$$SEED" --only="$$ONLY"
 
 schema: install ## write docs/schema/ from shared/contract/ and the solver's joints and laws
 	@$(PYTHON) -m tools.schema

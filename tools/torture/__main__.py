@@ -3,6 +3,7 @@
 --n 100 --seed 1    a hundred rounds: a run of make with a random fault at a random moment (kills, a full disk, damaged
                     files, two runs at once), then the same command again, which has to end with the right films;
                     the run is make run-all or make overnight
+--only fetch        faults with this word in their names alone
 --keep              keep the project's folder after a round that went wrong, and end there
 
 Exit code 1 if a film was wrong or short, a picture was lost or more than one rendered twice in a round, a run hung or
@@ -44,6 +45,7 @@ def main() -> int:
     )
     parser.add_argument("--n", type=_count, default=ROUNDS)
     parser.add_argument("--seed", type=int, default=SEED)
+    parser.add_argument("--only", default="", help="faults with this word in their names")
     parser.add_argument("--keep", action="store_true")
     arguments = parser.parse_args()
     report = out_root() / "torture.json"  # before the project sets a folder of its own
@@ -65,6 +67,9 @@ def main() -> int:
             warn(
                 "torture", "a small disk can be mounted by root alone, so no disk gets full; the tests do that as well"
             )
+        faults = [fault for fault in faults if arguments.only in fault.name]
+        if not faults:
+            raise UserError(f"torture: no fault of this machine has {arguments.only!r} in its name")
         for number, fault in _rounds(faults, arguments.n, arguments.seed):
             outcome = play(project, fault, random.Random(f"{arguments.seed} {number}"), reference, length)
             outcomes.append(outcome)

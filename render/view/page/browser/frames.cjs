@@ -24,7 +24,11 @@ function used() {
 (async () => {
   const browser = await launch();
   const { page } = await open(browser, file, { width: Number(width), height: Number(height) });
-  await page.evaluate(() => new Promise((done) => { window.mbsd.app.redraw(); setTimeout(done, 1500); }));
+  await page.evaluate(() => new Promise((done) => { const { app } = window.mbsd, draw = app.stage.draw.bind(app.stage);
+    let count = 0;
+    app.stage.draw = () => { draw(); if (++count === 6) { app.stage.draw = draw; app.play(false); done(); } }; // shaders are compiled by then
+    app.play(true);
+  }));
   const before = used();
   const frames = await page.evaluate((time) => new Promise((done) => {
     const { app } = window.mbsd, { stage } = app, draw = stage.draw.bind(stage);

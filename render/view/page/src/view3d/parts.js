@@ -5,15 +5,18 @@ import { materialOf, setGlass } from "./materials.js";
 import { geometryOf } from "./meshes.js";
 
 export class Parts {
-  /** @param {any} solid payload.solid  @param {() => void} ready called when springs and belts are there */
-  constructor(solid, ready) {
+  /**
+   * @param {any} solid payload.solid  @param {boolean} soft whether WebGL is in software
+   * @param {() => void} ready called when springs and belts are there
+   */
+  constructor(solid, soft, ready) {
     this.solid = solid;
     this.group = new Group();
     /** @type {Map<string, Group>} */
     this.bodies = new Map();
     this.rollers = [];
     this.meshes = [];
-    this.materials = solid.surfaces.map(materialOf);
+    this.materials = solid.surfaces.map((surface) => materialOf(surface, soft));
     const geometries = solid.meshes.map((mesh) => geometryOf(mesh, solid.step));
     for (const piece of solid.pieces) {
       const mesh = new Mesh(geometries[piece.mesh], this.materials[piece.surface]);

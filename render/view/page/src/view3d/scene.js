@@ -12,13 +12,15 @@ import { Trails } from "./trails.js";
 import { wantedLabels, wantedMarks } from "./wanted.js";
 
 const SENSOR = 36, ASPECT = 16 / 9, NEAR = 15, STILL = 5;
+/** Pixels of the picture for one of the page while WebGL in software plays. */
+const COARSE = 0.5;
 
 export class Solid {
   /** @param {HTMLCanvasElement} canvas  @param {import("../app.js").App} app  Throws where there is no WebGL. */
   constructor(canvas, app) {
     this.canvas = canvas;
     this.app = app;
-    if (!document.createElement("canvas").getContext("webgl2")) throw new Error("a context of WebGL 2 is refused");
+    this.soft = inSoftware();
     this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
     this.renderer.toneMapping = NeutralToneMapping;
     this.renderer.shadowMap.enabled = true;
@@ -52,7 +54,7 @@ export class Solid {
     const { payload, motion } = this.app, { solid } = payload;
     if (this.parts?.solid !== solid) {
       if (this.parts) this.machine.remove(this.parts.group);
-      this.parts = new Parts(solid, () => this.app.redraw());
+      this.parts = new Parts(solid, this.soft, () => this.app.redraw());
       this.machine.add(this.parts.group);
       this.radius = solid.size / 2;
       this.machine.scale.setScalar(1 / this.radius);
@@ -89,6 +91,7 @@ export class Solid {
 
   resize(width, height, ratio) {
     this.size = [width, height];
+    this.ratio = ratio;
     this.renderer.setPixelRatio(ratio);
     this.renderer.setSize(width, height, false);
     this.aim();
@@ -111,7 +114,8 @@ export class Solid {
 
   draw() {
     const { payload, motion, store, dark } = this.app, { shown } = store.state, { solid } = payload;
-    const look = dark ? "studio" : "daylight";
+    const look = dark ? "studio" : "daylight", ratio = this.soft && store.state.playing ? COARSE : this.ratio;
+    if (this.renderer.getPixelRatio() !== ratio) this.renderer.setPixelRatio(ratio);
     if (this.look !== look) {
       this.studio.set(look, solid.camera.azimuth, (solid.floor - solid.middle[2]) / this.radius);
       this.look = look;
@@ -160,4 +164,14 @@ export class Solid {
     const name = hit?.object.userData.body;
     return name && name in payload.bodies ? { kind: "body", name } : null;
   }
+}
+
+/** Whether WebGL draws without a graphics card. Throws where there is none at all. */
+function inSoftware() {
+  const probe = document.createElement("canvas").getContext("webgl2");
+  if (!probe) throw new Error("a context of WebGL 2 is refused");
+  const info = probe.getExtension("WEBGL_debug_renderer_info");
+  const name = probe.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : probe.RENDERER);
+  probe.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
 }

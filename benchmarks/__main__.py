@@ -5,6 +5,7 @@ python -m benchmarks calls            the calls as users make them alone, only s
 python -m benchmarks dynamics         the dynamics problems alone, only shown
 python -m benchmarks machines         gears, a Geneva, a cam and a stiff contact alone, only shown
 python -m benchmarks film [--help]     what a film costs (make bench-film)
+python -m benchmarks cluster          what a cluster costs, a task and a worker, only shown
 python -m benchmarks start            the table of start-up (make bench-start)
 python -m benchmarks table            the tables again from the last run
 python -m benchmarks tune [names]     the sweeps for the best settings, of some codes or problems
@@ -51,6 +52,10 @@ def main() -> int:
             return _tell(bars)
         case ["film", *words]:
             return film.measured(words)
+        case ["cluster"]:
+            from benchmarks.cluster import measure as cluster
+
+            return cluster.measured()
         case ["start"]:
             return start.measured()
         case ["table"]:
@@ -59,8 +64,8 @@ def main() -> int:
             tune_all(names)
         case other:
             raise UserError(
-                f"bench: {' '.join(other)}? There is: calls, dynamics, film, machines, start, table, tune [names], "
-                "or nothing for all"
+                f"bench: {' '.join(other)}? There is: calls, cluster, dynamics, film, machines, start, table, "
+                "tune [names], or nothing for all"
             )
     return 0
 

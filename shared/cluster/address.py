@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from shared.stage.errors import UserError
 
@@ -80,3 +80,16 @@ def connected(where: str = "") -> Iterator[Client]:
         yield client
     finally:
         client.close(timeout=2)
+
+
+def workers_of(client: Client) -> dict[str, Any] | None:
+    """All workers that the scheduler knows now, by address; None if it does not answer.
+
+    The scheduler is asked itself: what the client keeps is replaced now and then by a list without workers.
+    """
+    scheduler: Any = client.scheduler
+    try:
+        found: Any = client.sync(scheduler.identity, n_workers=-1)
+    except OSError:
+        return None
+    return found["workers"]

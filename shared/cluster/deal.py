@@ -8,11 +8,14 @@ import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
+from shared.cluster.address import workers_of
 from shared.cluster.hand import Group, Hand
 from shared.cluster.hands import Report, perform
 from shared.cluster.identity import PACKAGES, differences, identity
+from shared.cluster.shares import stolen, unclaimed
 from shared.stage.console import duration, say, warn
 from shared.stage.errors import UserError
 
@@ -29,16 +32,13 @@ FETCH = 60.0
 """Seconds that a finished result may be on its way."""
 ATTEMPTS = 3
 """On workers, after which an order itself is at fault."""
-COPIES = 2
-"""Of an order at most, towards the end, when workers would have nothing to do."""
 
 
 class Deal:
     """One kind of work for all workers of a cluster.
 
-    ``work(files, common, order)`` is a function of a module of the project, ``common`` the name of the content that all
-    orders share, ``needed`` all contents by name as functions that give their bytes, ``orders`` what is to be done by
-    key.
+    ``work(files, common, order)`` is a function of the project, ``common`` the name of the content that all orders
+    share, ``needed`` all contents by name as functions that give their bytes, ``orders`` what is to be done by key.
     Workers whose sources of ``rooms`` differ are refused by name. ``patience`` (s) is a silence that is never too long.
     """
 
@@ -83,9 +83,7 @@ class Deal:
         finally:
             self._fetchers.shutdown(wait=False, cancel_futures=True)
             for hand in self.hands.values():
-                for group in hand.groups:
-                    group.future.release()
-                hand.groups.clear()
+                self._take_back(hand)
 
     def _survey(self) -> None:
         """Who came, who went, who stalls."""
@@ -94,15 +92,15 @@ class Deal:
         self._surveyed = time.monotonic()
         if self.client.status in ("closed", "closing"):
             raise UserError("the scheduler has gone; nothing was lost, the same command goes on")
-        there = self.client.scheduler_info(n_workers=-1)["workers"]
-        for name in there:
-            if name not in self.hands:
-                self.hands[name] = Hand(name, self.patience)
-                self._ask(self.hands[name])
-        for name in [name for name in self.hands if name not in there]:
-            hand = self.hands.pop(name)
+        there = workers_of(self.client)
+        if there is None:
+            return
+        for name in there.keys() - self.hands.keys():
+            self.hands[name] = Hand(name, self.patience)
+            self._ask(self.hands[name])
+        for hand in [self.hands.pop(name) for name in self.hands.keys() - there.keys()]:
             if hand.fit:
-                say("cluster", f"worker {name} has gone; what it had to do goes to others")
+                say("cluster", f"worker {hand.name} has gone; what it had to do goes to others")
             self._take_back(hand)
         for hand in self.hands.values():
             if hand.is_overdue():
@@ -116,10 +114,8 @@ class Deal:
         rooms, packages = self.rooms, self.packages
 
         def asked() -> dict[str, str]:  # of no module, so it travels as it is
-            try:
-                from shared.cluster.identity import identity
-            except ImportError as error:
-                return {"missing": str(error)}
+            from shared.cluster.identity import identity
+
             return identity(rooms, packages)
 
         self._submit(hand, Group([]), asked)
@@ -147,40 +143,15 @@ class Deal:
         ready = [hand for hand in self.hands.values() if hand.is_ready()]
         ready.sort(key=lambda hand: (len(hand.groups), hand.each, hand.name))
         for hand in ready:
-            keys = self._next(hand) if self._pending else []
+            keys = (
+                unclaimed(hand, self.hands.values(), self._pending, self._left, self._failed_on)
+                if self._pending
+                else []
+            )
             if not keys and not hand.groups:
-                keys = self._steal(hand)
+                keys = stolen(hand, self.hands.values(), self._left)
             if keys:
                 self._send(hand, keys)
-
-    def _next(self, hand: Hand) -> list[str]:
-        """Orders that nobody has; those that failed on this worker only if there is no other."""
-        able = sum(one.fit and not one.aside for one in self.hands.values())
-        size, keys, passed = hand.size(math.ceil(len(self._pending) / (2 * max(able, 1)))), [], []
-        while self._pending and len(keys) < size:
-            key = self._pending.popleft()
-            if key not in self._left:
-                continue
-            unlucky = hand.name in self._failed_on.get(key, ()) and len(self._failed_on[key]) < able
-            (passed if unlucky else keys).append(key)
-        self._pending.extendleft(reversed(passed))
-        return keys
-
-    def _steal(self, hand: Hand) -> list[str]:
-        """Copies of orders that another worker would do much later than this one."""
-        copies = Counter(key for one in self.hands.values() for group in one.groups for key in group.keys)
-        best: list[tuple[float, str]] = []
-        for other in self.hands.values():
-            found = [
-                (seconds, key)
-                for key, seconds in other.remaining().items()
-                if other is not hand and key in self._left and copies[key] < COPIES
-            ]
-            if found and (not best or found[-1][0] > best[-1][0]):
-                best = found
-        own = hand.each if math.isfinite(hand.each) else 5.0
-        worth = [key for seconds, key in best if seconds > 1.5 * own + 0.1]
-        return worth[-hand.size(math.ceil(len(worth) / 2)) :] if worth else []
 
     def _send(self, hand: Hand, keys: list[str]) -> None:
         sent = {name: self.needed[name]() for name in hand.lacks}
@@ -193,7 +164,11 @@ class Deal:
             function, *arguments, workers=[hand.name], allow_other_workers=False, pure=False, retries=0
         )
         hand.take(group)
-        group.future.add_done_callback(lambda _: self._fetchers.submit(self._fetch, hand, group))
+        group.future.add_done_callback(lambda _: self._fetch_later(hand, group))
+
+    def _fetch_later(self, hand: Hand, group: Group) -> None:
+        with suppress(RuntimeError):  # all is done, and this one was not needed
+            self._fetchers.submit(self._fetch, hand, group)
 
     def _fetch(self, hand: Hand, group: Group) -> None:
         try:
@@ -230,8 +205,6 @@ class Deal:
     def _judge(self, hand: Hand, answer: Any) -> None:
         """Whether a worker is as we are."""
         differ = differences(answer, self.ours) if isinstance(answer, dict) else f"{type(answer).__name__}: {answer}"
-        if isinstance(answer, dict) and "missing" in answer:
-            differ = f"it does not find the project ({answer['missing']})"
         if differ:
             self._refused[hand.name] = hand.aside = differ
             warn("cluster", f"worker {hand.name} is refused: {differ}")

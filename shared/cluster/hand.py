@@ -70,7 +70,8 @@ class Hand:
         self.groups.append(group)
 
     def drop(self, group: Group) -> None:
-        """It is through with a group."""
+        """It is through with a group, so it lives."""
+        self.stalled = False
         if group in self.groups:
             self.groups.remove(group)
             self.began = time.monotonic()
@@ -83,7 +84,7 @@ class Hand:
             known = math.isfinite(self.each) and self.made > 1
             self.each = 0.6 * self.each + 0.4 * pace if known else pace
             self.made += done
-            self.failures, self.stalled = 0, False
+            self.failures = 0
 
     def fail(self, reason: str) -> bool:
         """It failed; True where it is left out from now on."""

@@ -47,5 +47,5 @@ def hanging(files: Mapping[str, Path], common: str, order: Any) -> str:
     from distributed import get_worker
 
     if order == get_worker().address:
-        time.sleep(3.0)
+        time.sleep(4.0)
     return get_worker().address

@@ -1,0 +1,132 @@
+"""``python -m benchmarks cluster``: the coordinator's cost a task, and two workers against one."""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import psutil
+
+from benchmarks.cluster import work
+from shared.cluster import hand
+from shared.cluster.__main__ import scheduler_command, worker_command
+from shared.cluster.address import connected, workers_of
+from shared.cluster.contents import content_hash
+from shared.cluster.deal import Deal
+from shared.stage.console import say
+from shared.stage.errors import UserError
+from shared.stage.paths import ROOT
+
+COUNTS = ((64, 100), (64, 1000), (64, 10_000), (8, 10_000), (1, 1000))
+"""Workers and tasks."""
+SECONDS, TASKS = 0.5, 40
+"""Processor time of a task, and how many there are, for two workers against one."""
+WANTED = 1.8
+
+
+def measured() -> int:
+    """Print both tables; 1 if two workers do less than 1.8 times the work of one."""
+    with tempfile.TemporaryDirectory() as folder:
+        os.environ["MBSD_OUT"] = folder
+        print("| workers | tasks | in groups of | wall, ms a task | coordinator, ms a task | scheduler, ms a task |")
+        print("|---|---|---|---|---|---|")
+        for workers, tasks in COUNTS:
+            for largest in (1, hand.LARGEST):
+                print(_row(workers, tasks, largest), flush=True)
+        one, two = _burnt(1), _burnt(2)
+    ratio = one / two
+    say(
+        "bench",
+        f"{TASKS} tasks of {SECONDS} s: one worker {one:.1f} s, two on separate cores {two:.1f} s: {ratio:.2f}x",
+    )
+    return 0 if ratio >= WANTED else 1
+
+
+def _row(workers: int, tasks: int, largest: int) -> str:
+    with _cluster([[sys.executable, "-m", "benchmarks.cluster.simulated", "ADDRESS", str(workers)]]) as (
+        where,
+        process,
+    ):
+        hand.LARGEST, kept = largest, hand.LARGEST
+        try:
+            _deal(where, workers, work.nothing, dict.fromkeys(map(str, range(workers)), 0))  # all are known, none lacks
+            scheduler = psutil.Process(process)
+            before, own = scheduler.cpu_times(), time.process_time()
+            wall = _deal(where, workers, work.nothing, dict.fromkeys(map(str, range(tasks)), 0))
+            after, own = scheduler.cpu_times(), time.process_time() - own
+        finally:
+            hand.LARGEST = kept
+    theirs = after.user + after.system - before.user - before.system
+    costs = " | ".join(f"{1000 * seconds / tasks:.2f}" for seconds in (wall, own, theirs))
+    return f"| {workers} | {tasks} | {largest} | {costs} |"
+
+
+def _burnt(workers: int) -> float:
+    """Wall seconds of all tasks by workers with a core each."""
+    pinned = [["taskset", "-c", str(core)] if sys.platform == "linux" else [] for core in range(workers)]
+    with _cluster([[*pin, *worker_command("ADDRESS", "127.0.0.1", f"w{n}")] for n, pin in enumerate(pinned)]) as (
+        where,
+        _,
+    ):
+        _deal(where, workers, work.burning, dict.fromkeys(map(str, range(workers)), 0.01))
+        return _deal(where, workers, work.burning, dict.fromkeys(map(str, range(TASKS)), SECONDS))
+
+
+def _deal(where: str, workers: int, task: Callable[..., Any], orders: dict[str, Any]) -> float:
+    content = b"the scene"
+    name = content_hash(content)
+    with connected(where) as client:
+        end = time.monotonic() + 300
+        while len(workers_of(client) or ()) < workers:
+            if time.monotonic() > end:
+                raise UserError(f"bench: {workers} workers did not start within five minutes")
+            time.sleep(0.1)
+        started = time.perf_counter()
+        done = list(Deal(client, task, name, {name: lambda: content}, orders, ("shared/cluster",)).results())
+        seconds = time.perf_counter() - started
+    if len(done) != len(orders):
+        raise UserError(f"bench: {len(done)} of {len(orders)} tasks came back")
+    return seconds
+
+
+@contextmanager
+def _cluster(workers: list[list[str]]) -> Iterator[tuple[str, int]]:
+    """A scheduler and these workers; its address and process."""
+    with socket.socket() as one:
+        one.bind(("127.0.0.1", 0))
+        port = one.getsockname()[1]
+    where = f"tcp://127.0.0.1:{port}"
+    commands = [scheduler_command("127.0.0.1", port)]
+    commands += [[where if word == "ADDRESS" else word for word in command] for command in workers]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    started: list[subprocess.Popen[bytes]] = []
+    with (Path(os.environ["MBSD_OUT"]) / "log").open("wb") as log:
+        try:
+            for command in commands:
+                started.append(subprocess.Popen(command, cwd=ROOT, env=environment, stdout=log, stderr=log))
+                _wait_for(port)
+            yield where, started[0].pid
+        finally:
+            for process in reversed(started):
+                process.terminate()
+            for process in started:
+                process.wait(timeout=60)
+
+
+def _wait_for(port: int) -> None:
+    end = time.monotonic() + 60
+    while time.monotonic() < end:
+        try:
+            socket.create_connection(("127.0.0.1", port), 1).close()
+            return
+        except OSError:
+            time.sleep(0.1)
+    raise UserError("bench: the scheduler did not start within a minute")

@@ -1,0 +1,24 @@
+"""Tasks in the place of frames."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+PICTURE = bytes(20_000)
+"""As large as a picture of a postage stamp."""
+
+
+def nothing(files: Mapping[str, Path], common: str, order: Any) -> bytes:
+    """A picture at once."""
+    return PICTURE
+
+
+def burning(files: Mapping[str, Path], common: str, order: float) -> float:
+    """So many seconds of processor time; returns the seconds that passed."""
+    started, end = time.perf_counter(), time.thread_time() + order
+    while time.thread_time() < end:
+        sum(range(2000))
+    return time.perf_counter() - started

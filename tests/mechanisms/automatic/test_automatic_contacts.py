@@ -16,6 +16,7 @@ from mechanisms.stages.automatic.cams.cams import Cam
 from mechanisms.stages.automatic.layout.profiles import distances
 from mechanisms.stages.automatic.rolling.roads import Road
 from mechanisms.stages.automatic.rolling.rounds import Round
+from mechanisms.stages.parts.mesh_check import only_solid
 
 
 def _room(scale: float = 1.0, turn: float = 0.0, stiffness: float = 0.0) -> Mechanism:
@@ -183,3 +184,15 @@ def test_a_cradle_of_bars_with_discs_has_one_layer() -> None:
     assert [part.look for part in rounds] == ["disc"] * 3
     assert len({made.levels[bar.name] for bar in bars}) == 1
     assert all(solid.shape.val().isValid() for solids in made.solids().values() for solid in solids)
+
+
+def test_a_box_on_two_feet_is_one_solid_without_tyres() -> None:
+    m = Mechanism("box", gravity=(0.0, -9.81))
+    box = m.body("box", mass=0.5, inertia=5e-4)
+    for number, x in enumerate((-0.04, 0.04)):
+        m.rigid_contact(f"foot{number}", m.ground.origin, box.at(x, -0.02), 0.006, friction=0.3)
+    m.start_near(box=(0, 0.03, 0))
+    made, rounds, _ = _made(m)
+    assert [part.look for part in rounds] == ["disc", "disc"]
+    plate = made.solids(engraved_too=False)["box"][0]
+    assert only_solid(plate.shape, "box").isValid()

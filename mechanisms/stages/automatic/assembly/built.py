@@ -56,7 +56,7 @@ def _plate(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
     shape, holes = plates[0].shape, sum(plate.through_holes for plate in plates)
     for plate in plates[1:]:
         shape = shape.union(plate.shape)
-    if not beside:
+    if not beside and shape.solids().size() == 1:
         return with_eyes(shape, eyes, thickness, 0.0), holes + sum(eye.bore > 0 for _, _, eye in eyes)
     link, own = body_shape(eyes, thickness)
     bores = [(x, y, Eye(eye.radius, eye.bore)) for x, y, eye in eyes]

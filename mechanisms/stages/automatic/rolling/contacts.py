@@ -2,8 +2,8 @@
 
 A surface is where the model has it. What touches is smaller by a clearance (cams.py), and where a contact hardly yields
 also by as much as it presses in; where one sees that, the two pieces may touch by design. A body without joints is a
-ball, or where there is friction, which turns it, a wheel with a tyre; a body with joints gets a disc. What touches a
-disc that is itself on ground, or a yielding profile of a moving body, has no parts.
+ball, or where there is friction, which turns it, a wheel with a tyre; one with joints, or with several places that
+touch, gets discs. What touches a disc that is itself on ground, or a yielding profile of a moving body, has no parts.
 """
 
 from __future__ import annotations
@@ -186,9 +186,15 @@ def _round(m: Mechanism, touch: Touch, layout: Layout, gap: float) -> tuple[Roun
 
 def _look(m: Mechanism, body: str, turned: bool) -> Look:
     """Of what touches without being a tyre."""
-    if any(body in joint.bodies for joint in m.joints.values()):
+    if any(body in joint.bodies for joint in m.joints.values()) or _feet(m, body) > 1:
         return "disc"
     return "wheel" if turned else "ball"
+
+
+def _feet(m: Mechanism, body: str) -> int:
+    """At how many places of it a body touches something: one with several cannot roll."""
+    touches = [touch for touch in (*m.contacts.values(), *m.forces.values()) if "radius" in touch.params]
+    return len({(touch.j.x, touch.j.y) for touch in touches if touch.j.body.name == body})
 
 
 def _set_back(touch: Touch, layout: Layout) -> float:

@@ -6,6 +6,7 @@ python -m benchmarks dynamics         the dynamics problems alone, only shown
 python -m benchmarks machines         gears, a Geneva, a cam and a stiff contact alone, only shown
 python -m benchmarks film [--help]     what a film costs (make bench-film)
 python -m benchmarks cluster          what a cluster costs, a task and a worker, only shown
+python -m benchmarks synthesis        lengths for a path alone, only shown
 python -m benchmarks start            the table of start-up (make bench-start)
 python -m benchmarks table            the tables again from the last run
 python -m benchmarks tune [names]     the sweeps for the best settings, of some codes or problems
@@ -30,6 +31,7 @@ from benchmarks.four_bar import STEPS
 from benchmarks.machines import measure as machines
 from benchmarks.rows import Bar, Row
 from benchmarks.start import measure as start
+from benchmarks.synthesis import measure as synthesis
 from shared.stage.console import run_cli, say
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
@@ -46,8 +48,10 @@ def main() -> int:
     match sys.argv[1:]:
         case []:
             return _all()
-        case ["calls" | "dynamics" | "machines" as part]:
-            found, bars = {"calls": calls, "dynamics": dynamics, "machines": machines}[part].measured()
+        case ["calls" | "dynamics" | "machines" | "synthesis" as part]:
+            found, bars = {"calls": calls, "dynamics": dynamics, "machines": machines, "synthesis": synthesis}[
+                part
+            ].measured()
             rows.show_all(found)
             return _tell(bars)
         case ["film", *words]:
@@ -85,7 +89,14 @@ def _all() -> int:
         ratio = best[code].seconds / found[0].seconds
         bars.append(Bar(found[0].problem, wanted, ratio, code, best[code].settings, exact and ratio >= wanted))
     everything = list(found)
-    for part in (calls.measured, batch.measured, machines.measured, dynamics.measured, scaling.measured):
+    for part in (
+        calls.measured,
+        batch.measured,
+        synthesis.measured,
+        machines.measured,
+        dynamics.measured,
+        scaling.measured,
+    ):
         more, more_bars = part()
         everything += more
         bars += more_bars

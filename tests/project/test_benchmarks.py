@@ -14,6 +14,7 @@ from benchmarks.dynamics.equations import Chain, Equations
 from benchmarks.dynamics.settings import load
 from benchmarks.machines import mbsd_code
 from benchmarks.rows import Bar, Row
+from benchmarks.synthesis import measure as synthesis
 
 PACKAGES = {"exudyn": "exudyn", "mujoco": "mujoco", "sundials": "sksundae"}
 QUICK = ("A01 pendulum", "A02 N=1", "A03 squeezer")
@@ -177,3 +178,11 @@ def test_the_ball_comes_back() -> None:
     tops = [machines.height(t) for t in np.linspace(0.8, 1.0, 20_001)]
     assert max(tops) == pytest.approx(machines.HEIGHT, abs=1e-6)
     assert machines.height(0.0) == machines.HEIGHT
+
+
+def test_our_synthesis_passes_through_its_points() -> None:
+    fitted = synthesis._ours()
+    assert synthesis.error(fitted) < synthesis.EXACT
+    point = fitted.traces["P"]
+    fitted.traces["P"] = point.body.at(point.x + 1e-3, point.y)
+    assert synthesis.error(fitted) > 1e-4

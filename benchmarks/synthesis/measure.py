@@ -1,0 +1,111 @@
+"""Rows of path synthesis: fit_path beside pylinkage's path_generation on the same points."""
+
+from __future__ import annotations
+
+import math
+import time
+import warnings
+from collections.abc import Sequence
+from importlib import metadata
+from typing import Any
+
+import numpy as np
+
+import mbsd
+from benchmarks.rows import Bar, Row
+from benchmarks.synthesis import POINTS, PROBLEM, STEPS
+from mbsd.synthesis.matching import at, feet
+
+BAR = 1.5
+"""How many times the processor time of mbsd pylinkage takes at least."""
+EXACT = 1e-9
+TIME = "; processor time"
+ROUNDS = 3
+VARY = {
+    "crank": (0.05, 0.2),
+    "coupler": (0.2, 0.5),
+    "rocker": (0.2, 0.5),
+    "A": ((-0.1, 0.1), (-0.1, 0.1)),
+    "D": ((0.2, 0.6), (-0.1, 0.1)),
+    "P": ((0.0, 0.4), (-0.2, 0.2)),
+}
+
+
+def four_bar(lengths: Sequence[float], a: Any, d: Any, p: Any, start: dict[str, float]) -> mbsd.Mechanism:
+    """Crank, coupler and rocker on the pivots a and d; p in the coupler's frame (m), start in degrees."""
+    m = mbsd.Mechanism("path")
+    crank, coupler, rocker = (m.bar(name, n) for name, n in zip(("crank", "coupler", "rocker"), lengths, strict=True))
+    m.revolute("A", m.ground.at(*a), crank.start)
+    m.revolute("B", crank.end, coupler.start)
+    m.revolute("C", coupler.end, rocker.end)
+    m.revolute("D", m.ground.at(*d), rocker.start)
+    m.drive_angle("motor", crank, mbsd.constant_rate(math.tau))
+    m.trace("P", coupler.at(*p))
+    m.start_near(**start)
+    return m
+
+
+def error(m: mbsd.Mechanism) -> float:
+    """Largest distance (m) of a point from the path of P."""
+    point = m.sweep(steps=STEPS).point("P")
+    path = np.column_stack([point.x, point.y])
+    return float(np.hypot(*(at(path, feet(path, POINTS, True), True) - POINTS).T).max())
+
+
+def _ours() -> mbsd.Mechanism:
+    start = {"crank": 0.0, "coupler": 45.0, "rocker": 90.0}
+    m = four_bar((0.1, 0.38, 0.3), (0.0, 0.0), (0.4, 0.02), (0.2, 0.1), start)
+    return mbsd.fit_path(m, POINTS, VARY, starts=1).mechanism
+
+
+def _theirs() -> list[Any]:
+    from pylinkage.synthesis import path_generation
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        found = path_generation([(float(x), float(y)) for x, y in POINTS], max_solutions=1)
+    return found.raw_solutions
+
+
+def as_mechanism(one: Any) -> mbsd.Mechanism:
+    """A design of pylinkage, driven from the pose that it gives to the next whole turn."""
+    a, b, c, d, p = (
+        np.array(place, float)
+        for place in (one.ground_pivot_a, one.crank_pivot_b, one.coupler_pivot_c, one.ground_pivot_d, one.coupler_point)
+    )
+    along = (c - b) / np.hypot(*(c - b))
+    on_coupler = along @ (p - b), along[0] * (p - b)[1] - along[1] * (p - b)[0]
+    lengths = [float(np.hypot(*line)) for line in (b - a, c - b, c - d)]
+    turns = [math.atan2(*line[::-1]) for line in (b - a, c - b, c - d)]
+    start = dict(zip(("crank", "coupler", "rocker"), map(math.degrees, turns), strict=True))
+    m = four_bar(lengths, a, d, on_coupler, start)
+    m.drivers.clear()
+    m.drive_angle("motor", m.bodies["crank"], mbsd.constant_rate(math.tau, start=turns[0]))
+    return m
+
+
+def _timed(run: Any) -> tuple[float, Any]:
+    """The best processor time of some runs (s), and what the last one found."""
+    run()
+    best, found = math.inf, None
+    for _ in range(ROUNDS):
+        began = time.process_time()
+        found = run()
+        best = min(best, time.process_time() - began)
+    return best, found
+
+
+def measured() -> tuple[list[Row], list[Bar]]:
+    """Both rows, and the bar."""
+    ours, mechanism = _timed(_ours)
+    theirs, designs = _timed(_theirs)
+    errors = [error(as_mechanism(one)) for one in designs]
+    rows = [
+        Row(PROBLEM, "mbsd", mbsd.__version__, f"fit_path, one start, nine numbers free{TIME}", ours, error(mechanism)),
+        Row(
+            PROBLEM, "pylinkage", metadata.version("pylinkage"), f"path_generation, its first solution{TIME}", theirs,
+            min(errors, default=math.inf),
+        ),
+    ]  # fmt: skip
+    good = rows[0].error < EXACT and theirs / ours >= BAR
+    return rows, [Bar(PROBLEM, BAR, theirs / ours, "pylinkage", rows[1].settings, good)]

@@ -68,8 +68,8 @@ def main() -> int:
             tune_all(names)
         case other:
             raise UserError(
-                f"bench: {' '.join(other)}? There is: calls, cluster, dynamics, film, machines, start, table, "
-                "tune [names], or nothing for all"
+                f"bench: {' '.join(other)}? There is: calls, cluster, dynamics, film, machines, start, synthesis, "
+                "table, tune [names], or nothing for all"
             )
     return 0
 

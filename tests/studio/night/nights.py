@@ -22,9 +22,8 @@ class Night:
     def __post_init__(self) -> None:
         self.folder.mkdir(exist_ok=True)
         script = self.folder / "python"
-        script.write_text(
-            f"#!/bin/sh\nexec '{sys.executable}' -I -S '{Path(__file__).with_name('stand_in.py')}' \"$@\"\n"
-        )
+        stand_in = Path(__file__).with_name("stand_in.py")
+        script.write_text(f"#!/bin/sh\nexec '{sys.executable}' -I -S '{stand_in}' '{self.folder}' \"$@\"\n")
         script.chmod(0o755)
 
     def tell(self, name: str, step: str, words: str) -> None:
@@ -39,7 +38,7 @@ class Night:
     def start(self, only: str, *words: str, command: str = "run", **variables: str) -> subprocess.Popen[str]:
         """Start one; what it says can be read from its pipes."""
         inherited = {key: value for key, value in os.environ.items() if key not in ("MBSD_MAKE", "TMUX")}
-        variables |= {"MBSD_STAND_IN": str(self.folder), "MBSD_OUT": str(self.folder / "out")}
+        variables |= {"MBSD_OUT": str(self.folder / "out")}
         more = [f"--python={self.folder}/python", *words]
         return subprocess.Popen(
             [sys.executable, "-m", "studio.night", command, "--preset=draft", f"--only={only}", *more],

@@ -1,6 +1,6 @@
 """Stands for the interpreter that runs the stages: each notes that it ran, and does what a file of its name says.
 
-``python stand_in.py -m mechanisms|render STEP NAME ...`` with a folder in MBSD_STAND_IN. Files there: ``<name>.<step>``
+``python stand_in.py FOLDER -m mechanisms|render STEP NAME ...``. In the folder a file ``<name>.<step>``
 holds words such as ``fail``, ``crash``, ``once crash``, ``busy``, ``sleep 5``, ``wait FILE``, ``hang``; ``ran.txt``
 gets a line each time.
 """
@@ -14,8 +14,17 @@ import time
 from pathlib import Path
 
 
+def sleep(seconds: float) -> None:
+    """Sleep, but end with the night, as every stage does (shared/stage/lineage.py)."""
+    end, parent = time.monotonic() + seconds, os.getppid()
+    while time.monotonic() < end:
+        if os.getppid() != parent:
+            sys.exit(1)
+        time.sleep(0.05)
+
+
 def main() -> int:
-    folder = Path(os.environ["MBSD_STAND_IN"])
+    folder = Path(sys.argv.pop(1))
     step = sys.argv[3]
     if step == "overview":
         print("TABLE", *sys.stdin.read().split("\n"), sep="\n")
@@ -42,12 +51,12 @@ def main() -> int:
             return 75
         case ["hang"]:
             signal.signal(signal.SIGTERM, signal.SIG_IGN)
-            time.sleep(600)
+            sleep(600)
         case ["wait", path]:
             while not Path(path).exists():
                 time.sleep(0.05)
         case ["sleep", seconds]:
-            time.sleep(float(seconds))
+            sleep(float(seconds))
         case _:
             pass
     print(f"{step}: {name}: done", flush=True)

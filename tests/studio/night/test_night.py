@@ -94,6 +94,7 @@ def test_whatever_ends_a_night_ends_its_stages_and_status_tells(night: Night, ho
     night.tell("four_bar", "film", "sleep 300")
     run = night.start("four_bar")
     until(lambda: "four_bar film" in night.ran())
+    assert alive(night)
     assert "at work as process" in night.say("status")
     os.kill(run.pid, how)
     code, _, _ = finished(run)

@@ -31,14 +31,14 @@ class GapPlace:
 
 
 def gap_places(film: Film, clearance: Clearance) -> list[GapPlace | None]:
-    """For each pair, at the time of its least gap; None beyond MOST, and for pieces that are not there."""
+    """For each pair, at the time of its least gap; None beyond MOST, for missing pieces, and between layers."""
     out: list[GapPlace | None] = []
     for number, pair in enumerate(clearance.pairs):
         found = [
             film.parts.bodies[body].pieces.get(piece) if body in film.parts.bodies else None
             for body, piece in zip(pair.bodies, pair.pieces, strict=True)
         ]
-        if number >= MOST or None in found:
+        if number >= MOST or None in found or pair.proof == "layers":
             out.append(None)
             continue
         at = Moment(float(film.poses.time[0]) if pair.time is None else pair.time, 0)

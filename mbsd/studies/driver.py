@@ -6,7 +6,7 @@ import math
 import queue
 from collections import deque
 from collections.abc import Iterator, Sequence
-from concurrent.futures import BrokenExecutor, Future
+from concurrent.futures import BrokenExecutor, Future, wait
 from typing import Protocol
 
 from mbsd.studies.points import Point
@@ -99,7 +99,7 @@ def _size(each: float, left: int, workers: Workers) -> int:
 def _one_by_one(workers: Workers, part: Numbered) -> Iterator[list[tuple[int, Result]]]:
     """A chunk that may have ended a process: halved until the point that does so stands alone."""
     try:
-        done = workers.submit([point for _, point in part]).result()
+        done = _awaited(workers, workers.submit([point for _, point in part]))
     except BrokenExecutor:
         workers.mend()
         if len(part) == 1:
@@ -109,3 +109,10 @@ def _one_by_one(workers: Workers, part: Numbered) -> Iterator[list[tuple[int, Re
             yield from _one_by_one(workers, half)
         return
     yield [(number, result) for (number, _), result in zip(part, done.results, strict=True)]
+
+
+def _awaited(workers: Workers, future: Future[Done]) -> Done:
+    """The result; meanwhile the workers are looked after, as one may go and its chunk with it."""
+    while not wait([future], timeout=WAIT).done:
+        workers.look_after()
+    return future.result()

@@ -68,7 +68,6 @@ class Cluster:
         self._refused: dict[str, str] = {}
         self._away: dict[Promise[Done], tuple[Any, list[Point], frozenset[str]]] = {}
         self._looked = 0.0
-        self._there: dict[str, Any] = {}
         self._look()
 
     @property
@@ -127,8 +126,8 @@ class Cluster:
             promise.set_exception(BrokenExecutor(str(error)) if killed else error)
 
     def _workers(self) -> dict[str, Any]:
-        """As they were when they were looked at last."""
-        return self._there
+        # The scheduler itself: what the client keeps is replaced now and then by a list without workers.
+        return self.client.sync(self.client.scheduler.identity, n_workers=-1)["workers"]
 
     def _living(self) -> frozenset[str]:
         return frozenset(name for name in self._workers() if self._fit.get(name))
@@ -136,10 +135,6 @@ class Cluster:
     def _look(self) -> None:
         """Ask workers that are new what they compute with."""
         self._looked = time.monotonic()
-        try:  # the scheduler itself: what the client keeps is replaced now and then by a list without workers
-            self._there = self.client.sync(self.client.scheduler.identity, n_workers=-1)["workers"]
-        except OSError:
-            return
         new = [name for name in self._workers() if name not in self._fit]
         if not new:
             return

@@ -37,6 +37,26 @@ def shortest_tip(ring: float, mate: float) -> float:
     return math.hypot(ring * math.cos(PRESSURE), (ring - mate) * math.sin(PRESSURE))
 
 
+def foul_inside(pinion: float, tip: float, ring: float, ring_tip: float) -> bool:
+    """Whether tips of a pinion cross those of its ring gear beside the line of centres; pitch and tip radii.
+
+    Trochoid interference (KHK, Gear technical reference, Internal gears):
+
+        no interference where  theta_1 r_1 / r_2 + inv(alpha) - inv(alpha_a2) >= theta_2
+        theta_1 = acos((r_a2^2 - r_a1^2 - a^2) / (2 a r_a1)) + inv(alpha_a1) - inv(alpha)
+        theta_2 = acos((a^2 + r_a2^2 - r_a1^2) / (2 a r_a2)),        a = r_2 - r_1,  cos(alpha_a) = r cos(alpha) / r_a
+    """
+    away = ring - pinion
+    crossing = (ring_tip**2 - tip**2 - away**2) / (2 * away * tip)
+    if crossing >= 1.0:
+        return False
+    own = math.acos(min(pinion * math.cos(PRESSURE) / tip, 1.0))
+    other = math.acos(min(ring * math.cos(PRESSURE) / ring_tip, 1.0))
+    first = math.acos(max(crossing, -1.0)) + involute(own) - involute(PRESSURE)
+    second = math.acos(max(min((away**2 + ring_tip**2 - tip**2) / (2 * away * ring_tip), 1.0), -1.0))
+    return first * pinion / ring + involute(PRESSURE) - involute(other) < second
+
+
 def longest_rack_tip(pinion: float) -> float:
     """Greatest height of a rack's teeth above the pitch line that meet the pinion's flanks above its base circle."""
     return pinion * math.sin(PRESSURE) ** 2

@@ -96,7 +96,7 @@ class Cam:
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """As a pin in a slot."""
-        return self.pin.needs(levels, layout) if self.roller is not None else []
+        return self.pin.needs_under(self, levels, layout) if self.roller is not None else []
 
 
 @kind("cam_roller")

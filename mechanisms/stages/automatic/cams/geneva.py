@@ -67,7 +67,7 @@ class GenevaDrive:
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """As a pin in a slot."""
-        return self.pin.needs(levels, layout)
+        return self.pin.needs_under(self, levels, layout)
 
     def _ends(self) -> list[tuple[str, tuple[float, float, float]]]:
         return [(self.crank, self.crank_at), (self.wheel, self.wheel_at)]

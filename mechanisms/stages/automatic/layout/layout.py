@@ -212,9 +212,10 @@ class Layout:
     def _may_meet(self, first: Item, second: Item) -> bool:
         if first.body == second.body == "ground":
             return bool(first.stands and second.stands) and first.stands != second.stands
+        if first.body == second.body:
+            return self._are_stepped(first, second) or self._are_stepped(second, first)
         return not (
-            first.body == second.body
-            or first.what in second.meshes
+            first.what in second.meshes
             or second.what in first.meshes
             or (first.only and second.what not in first.only)
             or (second.only and first.what not in second.only)
@@ -222,6 +223,13 @@ class Layout:
             or (second.spared and second.body in first.spares)
             or frozenset(self.webs.get(item.body, item.body) for item in (first, second)) in self.touching
         )
+
+    def _are_stepped(self, first: Item, second: Item) -> bool:
+        """Whether the first is a wheel on a tube, the second its body's plate or another wheel of it."""
+        wheels = [wheel for wheel in self.wheels.get(first.body, []) if not wheel.ring]
+        if not any(wheel is first.source and wheel.layer == first.what for wheel in wheels):
+            return False
+        return second.what == second.body or any(w is second.source and w is not first.source for w in wheels)
 
     def is_covered(self, source: object, half_layer: int, levels: Levels) -> bool:
         """Whether something that meets an item of the feature ``source`` in the plane is at a half layer."""

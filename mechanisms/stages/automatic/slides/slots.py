@@ -98,14 +98,20 @@ class Slot:
                 yield Item(f"a post of {plate}", "ground", disc(x, y, POST / 2 + 1.0), post, source=self, stands=plate)
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Room for a washer between the plates, and for the head above where the pin comes from below."""
+        """As :meth:`needs_under`, where the slot itself is a feature."""
+        return self.needs_under(self, levels, layout)
+
+    def needs_under(self, source: object, levels: Levels, layout: Layout) -> Iterable[Need]:
+        """Room for a washer between the plates, and for the head above where the pin comes from below; ``source`` is
+        the feature that has the slot.
+        """
         fit, pivot = layout.sizes.pivot.fit, layout.sizes.pivot
         low, high = min(levels[name] for name in self.layers), max(levels[name] for name in self.layers)
         if self.pin == "ground" and low == 0:
             yield Need(BASE, layout.sizes.pedestal + pivot.washer_room + fit.axial)
         elif high == low + 1:
             yield Need(low, pivot.washer_room + fit.axial)
-        if layout.is_covered(self, 2 * (high + 1), levels):
+        if layout.is_covered(source, 2 * (high + 1), levels):
             yield Need(high, layout.sizes.head.height + 2 * fit.axial)
 
 

@@ -75,14 +75,14 @@ def _on_tube(wheel: Wheel, plan: Plan, heights: Heights) -> None:
     """A wheel in a layer of its own: one piece with the tube that reaches to its body's plate."""
     inner, outer = TUBE
     thickness = heights.thickness
-    shape, _ = shape_of(wheel, thickness, [(0.0, 0.0, Eye(outer, 0.0))])
+    shape, windows = shape_of(wheel, thickness, [(0.0, 0.0, Eye(outer, 0.0))])
     low, high = _to_plate(wheel, plan, heights)
     z = heights.bottom(wheel.layer)
     if high > low:
         tube = extruded(circle(0, 0, outer), high - low + 1.0, low - z - (1.0 if low > z else 0.0))
         shape = shape.union(tube)
     shape = shape.cut(extruded(circle(0, 0, inner), high - low + thickness + 4.0, min(low - z, 0.0) - 2.0))
-    plan.make(wheel.body, f"gear_{wheel.name}", placed(shape, wheel.x, wheel.y, z), "aluminium", 1)
+    plan.make(wheel.body, f"gear_{wheel.name}", placed(shape, wheel.x, wheel.y, z), "aluminium", 1 + windows)
 
 
 def _cup(wheel: Wheel, plan: Plan, heights: Heights) -> None:

@@ -10,9 +10,11 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from mbsd.model.teeth import with_radii
 from mechanisms.stages.automatic.layout.extents import Extent, extent
-from mechanisms.stages.automatic.layout.features import kind
+from mechanisms.stages.automatic.layout.features import FORCE_KINDS, kind
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.wheels import racks, wheels
 from mechanisms.stages.automatic.wheels.belts import BELTS, belts
@@ -20,6 +22,7 @@ from mechanisms.stages.automatic.wheels.pulleys import Pulley
 from mechanisms.stages.automatic.wheels.racks import Rack, add_way
 from mechanisms.stages.automatic.wheels.trains import Mesh, in_phase
 from mechanisms.stages.automatic.wheels.wheels import Wheel
+from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
@@ -30,6 +33,8 @@ if TYPE_CHECKING:
 GEARS, RACKS = "gear_pair", "rack_and_pinion"
 SAME = 0.02
 """Wheels nearer than this (rmm) have one centre."""
+CENTRES = 0.02
+"""How far the distance of two centres may be from that of their radii, as a part of it: the teeth still mesh."""
 
 
 @extent(GEARS)
@@ -68,6 +73,7 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
             ring = bool(joint.params["internal"])
             first = wheel_at(found, joint.name, joint.i, sized["radius_i"], ring, layout)
             second = wheel_at(found, joint.name, joint.j, sized["radius_j"], False, layout)
+            _hold(m, joint, first, second, layout)
         first.mates.append(second)
         second.mates.append(first)
         meshes.append(Mesh(first, second, joint))
@@ -81,6 +87,21 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
     pairs += [(mesh.first, mesh.second) for mesh in meshes]
     layout.together += [(one.layer, mate.layer) for one, mate in pairs]
     return [*found, *bars, *pulleys, *bands]
+
+
+def _hold(m: Mechanism, joint: Joint, first: Wheel, second: Wheel, layout: Layout) -> None:
+    """Raises UserError unless the centres of two wheels stay as far apart as their radii want."""
+    wanted = abs(first.radius - second.radius) if first.ring else first.radius + second.radius
+    way = layout.seen(second.body, (second.x, second.y), first.body) - (first.x, first.y)
+    apart = np.hypot(*way.T)
+    if np.abs(apart - wanted).max() <= CENTRES * wanted:
+        return
+    scale = layout.sizes.scale
+    raise UserError(
+        f"{m.name}: gear_pair '{joint.name}': the centres of {first.body} and {second.body} are "
+        f"{apart.min() * scale:.4g} to {apart.max() * scale:.4g} mm apart over the motion, where teeth of these radii "
+        f"mesh at {wanted * scale:.4g} mm; hold them there by pins or an arm, or write mechanisms/{m.name}/parts.py"
+    )
 
 
 def wheel_at(found: list[Wheel], name: str, marker: Marker, radius: float, ring: bool, layout: Layout) -> Wheel:
@@ -111,10 +132,18 @@ def settle(found: Sequence[Wheel], layout: Layout) -> None:
 
 
 def _has_arm(wheel: Wheel, layout: Layout) -> bool:
-    """Whether a joint is on a pulley's body beyond the pulley."""
-    ends = [end for joint in layout.m.joints.values() for end in (joint.i, joint.j) if end.body.name == wheel.body]
-    away = [math.dist(layout.place(end), (wheel.x, wheel.y)) for end in ends]
-    return isinstance(wheel, Pulley) and max(away, default=0.0) + layout.sizes.hardware > wheel.root
+    """Whether a joint, a spring, a traced point or a bar's end is on a pulley's body beyond the pulley."""
+    if not isinstance(wheel, Pulley):
+        return False
+    m, body = layout.m, layout.m.bodies[wheel.body]
+    forces = [force for force in m.forces.values() if force.kind.name in FORCE_KINDS]
+    markers = [end for one in (*m.joints.values(), *forces) for end in (one.i, one.j)]
+    markers += m.traces.values()
+    places = [layout.place(marker) for marker in markers if marker.body.name == wheel.body] or [(wheel.x, wheel.y)]
+    if body.length is not None:
+        places += [(0.0, 0.0), (layout.sizes.of_metres(body.length), 0.0)]
+    reach = max(math.dist(place, (wheel.x, wheel.y)) for place in places)
+    return reach + layout.sizes.hardware > wheel.root
 
 
 def _rack(bars: list[Rack], name: str, marker: Marker, layout: Layout) -> Rack:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from mechanisms.stages.automatic.wheels.racks import Rack
 from mechanisms.stages.automatic.wheels.teeth import module_of
 from mechanisms.stages.automatic.wheels.wheels import Wheel
-from shared.shapes.involute import ADDENDUM, longest_rack_tip, longest_tip, shortest_tip
+from shared.shapes.involute import ADDENDUM, foul_inside, longest_rack_tip, longest_tip, shortest_tip
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
 
@@ -23,6 +23,8 @@ type Toothed = Wheel | Rack
 
 RING_TIP = 0.9
 """Height of a ring's teeth inside the pitch circle, in modules."""
+LESS = 8
+"""Teeth that a pinion has less than its ring gear, so that their tips do not cross: enough for 12 to 200 teeth."""
 MISS = 0.02
 """Part of a pitch by which teeth may miss each other."""
 
@@ -80,6 +82,19 @@ def _count(m: Mechanism, train: list[Toothed], meshes: Sequence[Mesh], layout: L
         wheel.teeth = round(2 * wheel.radius / wheel.module)
     for one in train:
         one.tip = _tip(one)
+    for mesh in meshes:
+        _refuse_foul(m, mesh)
+
+
+def _refuse_foul(m: Mechanism, mesh: Mesh) -> None:
+    """Raises UserError where a pinion has too many teeth for its ring gear."""
+    ring, pinion = mesh.first, mesh.second
+    if isinstance(ring, Wheel) and ring.ring and foul_inside(pinion.radius, pinion.tip, ring.radius, ring.tip):
+        raise UserError(
+            f"{m.name}: gear_pair '{mesh.joint.name}': the tips of {pinion.body} with {pinion.teeth} teeth cross those "
+            f"of the ring gear of {ring.body} with {ring.teeth} away from where they mesh; give the pinion at least "
+            f"{LESS} teeth less than the ring, or write mechanisms/{m.name}/parts.py"
+        )
 
 
 def _tip(one: Toothed) -> float:

@@ -127,7 +127,7 @@ def styluses(layout: Layout, tall: bool) -> list[Feature]:
 
 
 def weights(layout: Layout, heavy: bool) -> list[Feature]:
-    """For bars with a free end, and for bodies with one joint whose centre of mass is elsewhere.
+    """For bars with a free end, and for bodies with one joint, but no wheels, whose centre of mass is elsewhere.
 
     ``heavy``: only for ends of bars where their centre of mass is, even if they are traced.
     """
@@ -140,7 +140,7 @@ def weights(layout: Layout, heavy: bool) -> list[Feature]:
         centre = (layout.sizes.of_metres(body.com[0]), layout.sizes.of_metres(body.com[1]))
         if body.length is not None:
             ends = [(0.0, 0.0), (layout.sizes.of_metres(body.length), 0.0)]
-        elif len(here) < 2 and name not in free:
+        elif len(here) < 2 and name not in free and name not in layout.wheels:
             ends = [centre]
         else:
             continue

@@ -54,6 +54,25 @@ def test_geneva_has_room_for_its_hubs_and_pins(slots: int) -> None:
     assert 2 * shape.rim * math.sin(math.pi / slots) > 2 * shape.slot
 
 
+@pytest.mark.parametrize(("top", "head"), [("arm", True), ("wheel", False)])
+def test_head_of_the_pin_of_a_geneva_has_room_under_an_arm_that_carries_both(top: str, head: bool) -> None:
+    m = Mechanism("carried")
+    arm, crank, wheel = m.body("arm"), m.body("crank"), m.body("wheel")
+    m.revolute("A", m.ground.at(0, 0), arm.origin)
+    m.revolute("O", arm.at(0, 0), crank.origin)
+    m.revolute("W", arm.at(0.1, 0), wheel.origin)
+    m.geneva("index", crank.origin, wheel.origin, 4, 0.1 * math.sin(math.pi / 4))
+    m.drive_angle("turn", arm, constant_rate(0.2))
+    m.drive_relative_angle("motor", arm, crank, constant_rate(1.0))
+    m.start_near(wheel=5)
+    made = _made(m, 2 * math.pi)
+    drive = next(feature for feature in made.layout.features if isinstance(feature, GenevaDrive))
+    levels = {"crank": 0, "wheel": 1, "arm": 2} if top == "arm" else {"arm": 0, "crank": 1, "wheel": 2}
+    above = [need for need in drive.needs(levels, made.layout) if need.gap == levels["wheel"]]
+    assert bool(above) == head
+    assert all(need.height > made.sizes.head.height for need in above)
+
+
 def test_roller_is_short_of_the_cam_by_the_clearance_all_the_way() -> None:
     made = _made(_follower(flat=False), 1.0)
     assert made.levels["cam"] != made.levels["follower"]

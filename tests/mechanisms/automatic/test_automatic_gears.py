@@ -6,13 +6,14 @@ import math
 
 import numpy as np
 import pytest
+from manifold3d import CrossSection
 
 from mbsd import Mechanism, constant_rate
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.wheels.gear_solids import wheel_shape
 from mechanisms.stages.automatic.wheels.teeth import module_of
 from mechanisms.stages.automatic.wheels.wheels import Wheel
-from shared.shapes.involute import longest_tip
+from shared.shapes.involute import foul_inside, longest_tip, shortest_tip, toothed
 from shared.stage.errors import UserError
 from tests.models.outlines import gap
 from tests.shared.shape_checks import checked
@@ -105,6 +106,46 @@ def test_radii_without_whole_teeth_are_told() -> None:
     m.gear_pair("mesh", a.origin, b.origin, radius_i=0.05, radius_j=0.05 * math.sqrt(2))
     m.drive_angle("motor", a, constant_rate(1.0))
     with pytest.raises(UserError, match=r"pitch radii a 50 mm, b 70\.71 mm have no whole numbers of teeth"):
+        _ = Automatic(m, m.sweep(1.0, steps=20)).levels
+
+
+@pytest.mark.parametrize(("pinion", "less", "fits"), [(20, 4, False), (20, 7, False), (20, 8, True), (40, 8, True)])
+def test_a_pinion_with_nearly_as_many_teeth_as_its_ring_is_refused(pinion: int, less: int, fits: bool) -> None:
+    """Their tips would cross away from where they mesh."""
+    m = pair((pinion + less, pinion), internal=True)
+    made = Automatic(m, m.sweep(0.5, steps=20))
+    if fits:
+        assert set(made.levels) == {"a", "b"}
+        return
+    with pytest.raises(
+        UserError, match=rf"b with {pinion} teeth cross .* ring gear of a with {pinion + less} .* 8 teeth"
+    ):
+        _ = made.levels
+
+
+@pytest.mark.parametrize("pinion", [12, 20, 57, 200])
+def test_tips_that_do_not_foul_overlap_nowhere(pinion: int) -> None:
+    """The formula beside the outlines themselves, for every difference of teeth that may be in doubt."""
+    fouls = []
+    for ring in range(pinion + 3, pinion + 11):
+        tip, inner = pinion / 2 + 1.0, max(ring / 2 - 0.9, shortest_tip(ring / 2, pinion / 2))
+        fouls.append(foul_inside(pinion / 2, tip, ring / 2, inner))
+        if not fouls[-1]:
+            hole = toothed(ring, 1.0, ring / 2 + 1.25, inner, -0.03, 0.0)
+            gear = toothed(pinion, 1.0, tip, pinion / 2 - 1.25, 0.06, 0.0) + np.array([(ring - pinion) / 2, 0.0])
+            assert (CrossSection([gear]) - CrossSection([hole])).area() < 1e-9
+    assert fouls == sorted(fouls, reverse=True)
+    assert not fouls[5]
+
+
+def test_wheels_whose_centres_nothing_holds_are_refused() -> None:
+    m = Mechanism("loose")
+    a, b = m.body("a"), m.body("b")
+    m.revolute("A", m.ground.at(0, 0), a.origin)
+    m.revolute("B", m.ground.at(0.2, 0), b.origin)
+    m.gear_pair("mesh", a.origin, b.origin, radius_i=0.05, radius_j=0.05)
+    m.drive_angle("motor", a, constant_rate(1.0))
+    with pytest.raises(UserError, match=r"'mesh': the centres of a and b are 200 to 200 mm apart .* mesh at 100 mm"):
         _ = Automatic(m, m.sweep(1.0, steps=20)).levels
 
 

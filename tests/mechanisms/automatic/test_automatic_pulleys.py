@@ -33,3 +33,18 @@ def test_a_pulley_without_room_has_none() -> None:
     pulley.radius -= 3.0
     assert pulley.root < 12.0
     assert shape_of(pulley, 7.0, [(0.0, 0.0, Eye(13.0, 11.0))])[1] == 1
+
+
+def test_a_pulley_whose_body_reaches_beyond_it_lies_in_a_layer_of_its_own() -> None:
+    """A belt would run through the plate that reaches to the traced point."""
+    m = belt_drive.build(belt_drive.Params())
+    far = 2.0 * m.joints["belt"].params["radius_i"]
+    m.trace("far", m.bodies["small"].at(far, 0.0))
+    made = Automatic(m, m.sweep(steps=12))
+    levels = made.decided
+    (pulley,) = made.layout.wheels["small"]
+    assert not pulley.shares
+    assert levels[pulley.layer] != levels["small"]
+    (disc,) = [solid for solid in made.solids(False)["small"] if solid.name.startswith("gear_")]
+    solid = only_solid(disc.shape, disc.name)
+    check_mesh(read_mesh(stl_bytes(solid)), solid.Volume(), disc.through_holes, disc.name)

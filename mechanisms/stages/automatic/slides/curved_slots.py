@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from mechanisms.stages.automatic.layout.extents import Extent, extent
 from mechanisms.stages.automatic.layout.features import build, kind
@@ -116,10 +117,14 @@ def _offset(joint: Joint) -> np.ndarray:
 
 
 def _evenly(path: np.ndarray, count: int) -> np.ndarray:
-    """(count, 2) places along a path with the same way from each to the next."""
-    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
-    at = np.linspace(0.0, way[-1], count)
-    return np.stack([np.interp(at, way, path[:, k]) for k in (0, 1)], axis=1)
+    """(count, 2) places on the spline through a path, with nearly the same way from each to the next.
+
+    Chords would take from the pin's clearance where the curve bends.
+    """
+    steps = np.hypot(*np.diff(path, axis=0).T)
+    way = np.concatenate([[0.0], np.cumsum(steps)])
+    apart = np.concatenate([[True], steps > 0.0])
+    return CubicSpline(way[apart], path[apart])(np.linspace(0.0, way[-1], count))
 
 
 def _run_through(whole: np.ndarray, closed: bool, seen: np.ndarray, layout: Layout) -> tuple[np.ndarray, bool]:

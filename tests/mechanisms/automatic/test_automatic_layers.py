@@ -8,15 +8,19 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, MechanismError
+from mbsd import Mechanism, MechanismError, constant_rate
+from mechanisms.stages.automatic.assembly.body_shape import body_shape
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.layout.features import KINDS
 from mechanisms.stages.automatic.layout.items import Item, Reach, spans_meet
 from mechanisms.stages.automatic.layout.planar import Rounded, around, convex_hull, core_gaps, disc, least_gap
 from mechanisms.stages.automatic.layout.sizes import sizes, standard
 from mechanisms.stages.automatic.pins.bridges import Bridge
+from mechanisms.stages.automatic.pins.pins import Pin
+from shared.shapes.link import Eye
 from shared.stage.errors import UserError
 from tests.models.linkages import crank_shaper, drag_link, four_bar, hands, jansen_leg, lift, slider_crank, watt
+from tests.shared.shape_checks import checked
 
 
 def _samples(core: np.ndarray, count: int = 60) -> np.ndarray:
@@ -228,3 +232,43 @@ def test_the_outline_holds_all_eyes() -> None:
     shape = around([(0, 0), (10, 0), (10, 10), (3, 2)], 2.0)
     assert len(shape.core) == 3
     assert math.isclose(shape.reach[1], math.hypot(5, 5) + 2.0)
+
+
+def test_pins_that_end_on_both_sides_of_an_empty_layer_do_not_meet_in_it() -> None:
+    """The slider passes close under the crank's axis, whose pin hangs from a bridge: both pins reach into layer 2."""
+    m = Mechanism("close")
+    crank, rod, slider = m.bar("crank", 0.271), m.bar("rod", 0.296), m.body("slider")
+    m.revolute("A", m.ground.at(0, 0), crank.start)
+    m.revolute("B", crank.end, rod.start)
+    m.revolute("C", rod.end, slider.origin)
+    m.prismatic("guide", m.ground.at(0, 0.005), slider.origin)
+    m.drive_angle("motor", crank, constant_rate(1.0))
+    m.start_near(crank=0, rod=5, slider=0)
+    made = Automatic(m, m.sweep())
+    layout = made.layout
+    pins = {feature.name: feature for feature in layout.features if isinstance(feature, Pin)}
+    upper, lower = pins["A"], pins["C"]
+    levels = {**made.decided, "crank": 3, "rod": 1, "slider": 0, upper.choice: 1, lower.choice: 0}
+    room = {need.gap: need.height for pin in (upper, lower) for need in pin.needs(levels, layout)}
+    assert room[1] >= made.sizes.end_room
+    assert room[2] >= made.sizes.clip_room
+    levels["crank"] = 5  # with two empty layers between them they are far enough from each other
+    assert 1 not in {need.gap for need in lower.needs(levels, layout)}
+
+
+@pytest.mark.parametrize(
+    "eyes",
+    [
+        [(5.0, 0.0, 13.0), (177.417, 20.293, 9.0), (225.338, 25.101, 9.0)],
+        [(0.0, 0.0, 13.0), (474.018, 0.0, 13.0), (477.943, 26.412, 12.5)],
+        [(0.0, 0.0, 13.0), (203.371, 0.0, 12.5), (156.945, -140.65, 9.0), (172.253, -95.405, 9.0)],
+    ],
+)
+@pytest.mark.parametrize("turn", [0.0, 2.0])
+def test_plates_round_eyes_that_others_nearly_hold_are_sound(eyes: list[tuple[float, ...]], turn: float) -> None:
+    """An eye within the hull of the others' circles is no corner of it; flat triangles have no waists."""
+    c, s = math.cos(turn), math.sin(turn)
+    placed = [(c * x - s * y, s * x + c * y, Eye(r, 8.0)) for x, y, r in eyes]
+    shape, holes = body_shape(placed, 7.0)
+    checked(shape, holes)
+    assert holes == len(eyes)

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, constant_rate
+from mbsd.model.plane_curves import curve_pieces
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.layout.profiles import distances
+from mechanisms.stages.automatic.layout.profiles import curve_path, distances
 from mechanisms.stages.automatic.rolling.roads import Road
 from mechanisms.stages.automatic.rolling.rounds import Round
 
@@ -64,3 +65,14 @@ def test_wheel_tyre_and_road_are_sound() -> None:
     assert box.xlen > np.ptp(path[:, 0]) - 1e-6
     outer = 0.5 * tyre.shape.val().BoundingBox().xlen
     assert outer == pytest.approx(wheel.made, abs=0.05)
+
+
+@pytest.mark.parametrize("size", [0.01, 1.0, 100.0])
+def test_chords_of_a_curve_stay_with_the_curve(size: float) -> None:
+    points = [[size * x, size * y] for x, y in ((-2, 0.0), (-1, -0.25), (0, 0.17), (1, -0.26), (2, 0.14))]
+    path = curve_path(points, False)
+    breaks, pieces = curve_pieces(np.array(points), False)
+    middles = (pieces * (0.5 * np.diff(breaks)[:, None, None]) ** np.arange(6)).sum(axis=2)
+    assert distances(middles, path).max() < 3e-5 * 4 * size
+    assert path[0] == pytest.approx(points[0])
+    assert path[-1] == pytest.approx(points[-1])

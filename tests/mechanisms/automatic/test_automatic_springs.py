@@ -160,3 +160,15 @@ def test_ball_studs_are_one_solid(balls: list[float]) -> None:
 def test_a_stud_whose_balls_overlap_is_refused() -> None:
     with pytest.raises(ValueError, match="overlap between"):
         ball_stud(4.0, 0.0, 20.0, [18.0, 20.0], 3.5)
+
+
+@pytest.mark.parametrize("scale", [0.1, 1.0, 30.0])
+def test_a_ball_on_a_rope_has_room_for_the_collar_of_its_stud(scale: float) -> None:
+    """The rope is thinner than a plate, so that it asks for no room beside its layer."""
+    m = Mechanism("bob")
+    mass = m.body("mass", mass=1.0, inertia=0.1 * scale**2)
+    m.rope("rope", m.ground.at(0, 0), mass.origin, length=0.3 * scale)
+    m.start_near(mass=(0.1 * scale, -0.25 * scale, 0))
+    made = Automatic(m, m.simulate(0.2, steps=20))
+    (stud,) = [solid for solid in made.solids(False)["mass"] if solid.name.startswith("stud_")]
+    assert stud.shape.val().isValid()

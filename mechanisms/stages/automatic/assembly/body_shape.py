@@ -12,7 +12,7 @@ import numpy as np
 from mechanisms.stages.automatic.layout.planar import convex_hull
 from mechanisms.stages.loading.author_errors import is_of_kernel
 from shared.shapes.link import Eye, link, plate_link
-from shared.shapes.outline import inset_corners
+from shared.shapes.outline import hull_holds, inset_corners
 from shared.shapes.solid import placed
 
 if TYPE_CHECKING:
@@ -43,12 +43,22 @@ def body_shape(eyes: list[PlacedEye], thickness: float) -> tuple[cq.Workplane, i
         return plate_link([(x, y, eye), (x, y + 0.5 * eye.radius, Eye(eye.radius, 0.0))], thickness), int(eye.bore > 0)
     bores = sum(eye.bore > 0 for _, _, eye in eyes)
     hull = convex_hull(points, 1e-4)
-    corners = [int(np.argmin(np.linalg.norm(points - corner, axis=1))) for corner in hull]
+    corners = _outermost([int(np.argmin(np.linalg.norm(points - corner, axis=1))) for corner in hull], eyes)
     inner = [eye for k, eye in enumerate(eyes) if k not in corners]
     if len(corners) == 2:
         return _bar([eyes[k] for k in corners], inner, thickness), bores
     shape, windows = _plate([eyes[k] for k in corners], inner, thickness)
     return shape, bores + windows
+
+
+def _outermost(corners: list[int], eyes: list[PlacedEye]) -> list[int]:
+    """Those corners whose eyes the hull round the others does not hold already, in their order."""
+    circles = {k: (eyes[k][0], eyes[k][1], eyes[k][2].radius) for k in corners}
+    for k in corners:
+        others = [circle for other, circle in circles.items() if other != k]
+        if len(others) > 1 and hull_holds(others, circles[k]):
+            del circles[k]
+    return list(circles)
 
 
 def _bar(ends: list[PlacedEye], inner: list[PlacedEye], thickness: float) -> cq.Workplane:
@@ -93,6 +103,8 @@ def _plate(corners: list[PlacedEye], inner: list[PlacedEye], thickness: float) -
     waist = 2.0 * float(lengths.max())
     rims = _rims(corners, points, lengths, waist)
     ways = [partial(plate_link, corners, thickness, waist=waist, rims=rims, edge=edge) for edge in EDGES]
+    if rims is None:  # sides that curve inwards may cross each other
+        ways += [partial(plate_link, corners, thickness, edge=edge) for edge in EDGES]
     return first_made(ways), 0 if rims is None else 1
 
 

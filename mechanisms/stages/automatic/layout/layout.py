@@ -231,11 +231,14 @@ class Layout:
             return False
         return second.what == second.body or any(w is second.source and w is not first.source for w in wheels)
 
-    def is_covered(self, source: object, half_layer: int, levels: Levels) -> bool:
-        """Whether something that meets an item of the feature ``source`` in the plane is at a half layer."""
+    def is_covered(self, source: object, half_layer: int, levels: Levels, further: int = 0) -> bool:
+        """Whether something that meets an item of the feature ``source`` in the plane is at a half layer, or up to
+        ``further`` ones from there: what ends in the gap beyond an empty layer may reach into that layer, too.
+        """
         mine = {k for k, item in enumerate(self.items) if item.source is source}
         others = {j if i in mine else i for i, j in self.conflicts if (i in mine) != (j in mine)}
-        return any(spans_meet(self.items[k].reach.span(levels), (half_layer, half_layer)) for k in others)
+        looked = min(half_layer, half_layer + further), max(half_layer, half_layer + further)
+        return any(spans_meet(self.items[k].reach.span(levels), looked) for k in others)
 
     def room_on_base(self, x: float, y: float) -> float:
         """Half of the distance (rmm) from a place on ground to the next place where something stands there."""

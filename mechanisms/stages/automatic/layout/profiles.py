@@ -13,19 +13,29 @@ if TYPE_CHECKING:
     from mbsd.model.laws.curve import Curve
     from mechanisms.stages.automatic.layout.layout import Layout
 
+STRAY, MOST = 2e-5, 12
 FINE = 240
 """Places of a profile between its ends, at least."""
 
 
 def curve_path(points: Sequence[Sequence[float]], closed: bool) -> np.ndarray:
-    """(n, 2) places (m) of the smooth curve through ``points``, in the axes of its marker."""
+    """(n, 2) places (m) of the smooth curve through ``points``, in the axes of its marker: so many that chords stray
+    from the curve by STRAY of its size at most, and no more than MOST in each of its polynomials.
+    """
     from mbsd.model.plane_curves import curve_pieces
 
     breaks, coefficients = curve_pieces(np.array(points, dtype=float), closed)
+    widths = np.diff(breaks)
+    bend = np.hypot(*(2.0 * coefficients[:, :, 2]).T)
+    size = float(np.ptp(coefficients[:, :, 0], axis=0).max())
+    count = math.ceil(math.sqrt(float((bend * widths**2).max()) / (8.0 * STRAY * max(size, 1e-300))))
+    parts = np.arange(min(max(count, 1), MOST)) / min(max(count, 1), MOST)
+    powers = (widths[:, None] * parts)[:, :, None] ** np.arange(6)  # (pieces, parts, 6)
+    path = np.einsum("pkc,pdc->pkd", powers, coefficients).reshape(-1, 2)
     if closed:
-        return coefficients[:, :, 0]
-    end = (coefficients[-1] * (breaks[-1] - breaks[-2]) ** np.arange(6)).sum(axis=1)
-    return np.vstack([coefficients[:, :, 0], end])
+        return path
+    end = (coefficients[-1] * widths[-1] ** np.arange(6)).sum(axis=1)
+    return np.vstack([path, end])
 
 
 def profile_path(profile: Curve, first: float, last: float) -> np.ndarray:

@@ -122,9 +122,9 @@ class Pin:
         if hangs:
             if self.on_ground:
                 yield Need(top, pivot.washer_room + running)
-            if stack[0] == 0 or layout.is_covered(self, 2 * (stack[0] - 1), levels):
+            if stack[0] == 0 or layout.is_covered(self, 2 * (stack[0] - 1), levels, -1):
                 yield Need(stack[0] - 1, sizes.clip_room)
-        elif not self.is_flush(levels, layout) and layout.is_covered(self, 2 * (top + 1), levels):
+        elif not self.is_flush(levels, layout) and layout.is_covered(self, 2 * (top + 1), levels, 1):
             yield Need(top, sizes.clip_room if self.on_ground else sizes.end_room)
         wheel = layout.wheel_at(*self.places["ground"]) if self.on_ground and not hangs else None
         if wheel is not None and stack[0] == levels[wheel.layer] + 1:

@@ -68,7 +68,7 @@ class Weld:
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """Room for the heads under what passes over them."""
         fit, top = layout.sizes.pivot.fit, max(levels[body] for body in self.movers)
-        if layout.is_covered(self, 2 * (top + 1), levels):
+        if layout.is_covered(self, 2 * (top + 1), levels, 1):
             yield Need(top, HEAD.height + fit.seat + fit.axial)
         if len(self.movers) == 1 and top == 0:
             yield Need(BASE, layout.sizes.pedestal)

@@ -111,7 +111,7 @@ class Slot:
             yield Need(BASE, layout.sizes.pedestal + pivot.washer_room + fit.axial)
         elif high == low + 1:
             yield Need(low, pivot.washer_room + fit.axial)
-        if layout.is_covered(source, 2 * (high + 1), levels):
+        if layout.is_covered(source, 2 * (high + 1), levels, 1):
             yield Need(high, layout.sizes.head.height + 2 * fit.axial)
 
 

@@ -93,7 +93,7 @@ class Weight:
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """Room for its head."""
         level = levels[self.body]
-        if layout.is_covered(self, 2 * (level + 1), levels):
+        if layout.is_covered(self, 2 * (level + 1), levels, 1):
             yield Need(level, WEIGHT + layout.sizes.pivot.fit.seat + layout.sizes.pivot.fit.axial)
 
     def build(self, plan: Plan, heights: Heights) -> None:
@@ -127,12 +127,14 @@ def styluses(layout: Layout, tall: bool) -> list[Feature]:
 
 
 def weights(layout: Layout, heavy: bool) -> list[Feature]:
-    """For bars with a free end, and for bodies with one joint, but no wheels, whose centre of mass is elsewhere.
+    """For bars with a free end, and for bodies with one joint, but no wheels or tyres, whose centre of mass is
+    elsewhere.
 
     ``heavy``: only for ends of bars where their centre of mass is, even if they are traced.
     """
     found: list[Feature] = []
     free = {feature.body for feature in layout.features if isinstance(feature, FreeBody)}
+    round_bodies = {*layout.wheels, *(body for body, _, _ in layout.rounds)}
     taken = [a for feature in layout.features for a in feature.anchors(layout)]
     for name in layout.bodies:
         body = layout.m.bodies[name]
@@ -140,7 +142,7 @@ def weights(layout: Layout, heavy: bool) -> list[Feature]:
         centre = (layout.sizes.of_metres(body.com[0]), layout.sizes.of_metres(body.com[1]))
         if body.length is not None:
             ends = [(0.0, 0.0), (layout.sizes.of_metres(body.length), 0.0)]
-        elif len(here) < 2 and name not in free and name not in layout.wheels:
+        elif len(here) < 2 and name not in free and name not in round_bodies:
             ends = [centre]
         else:
             continue

@@ -4,6 +4,7 @@ on the end of a joint's pin.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 BALL = 3.8
 """Radius of a stud's ball."""
+SHANK, COLLAR_HEIGHT = 4.6, 1.4
+"""Diameter of a stud's shank, and height of the collar between a plate and a ball."""
 EYE, POST, FOOT = 9.0, 5.5, 9.0
 """Radii of a stud's eye, of the room for studs and posts, and of a post's foot."""
 HOOK = 0.1
@@ -162,5 +165,11 @@ class Stud:
             yield Item(f"{self.what} from below", self.body, disc(self.x, self.y, EYE), under, spares, self, only=held)
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Nothing beside what springs and pins need."""
-        return []
+        """Room for its collar between its plate and a ball in the next layer; springs and pins ask for the rest."""
+        if self.pin is not None or self.body == "ground":
+            return
+        fit, ball = layout.sizes.pivot.fit, math.sqrt(BALL**2 - (SHANK / 2) ** 2)
+        for layer in self.layers:
+            if abs(levels[layer] - levels[self.body]) == 1:
+                height = COLLAR_HEIGHT + 2 * fit.seat + ball - layout.sizes.thickness / 2
+                yield Need(min(levels[layer], levels[self.body]), height)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from mechanisms.stages.automatic.layout.features import build
 from mechanisms.stages.automatic.layout.plan import Foot
 from mechanisms.stages.automatic.pins.pin_solids import upper_end
-from mechanisms.stages.automatic.pins.springs.stretching import BALL, EYE, FOOT, POST, Stud
+from mechanisms.stages.automatic.pins.springs.stretching import BALL, COLLAR_HEIGHT, EYE, FOOT, POST, SHANK, Stud
 from shared.shapes.base import column
 from shared.shapes.link import Eye
 from shared.shapes.solid import Hold, Solid, placed
@@ -20,9 +20,8 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.pins.pins import Pin
 
-SHANK, COLLAR = 4.6, 4.6
-"""Diameter of its shank, and radius of the collars on it."""
-COLLAR_HEIGHT = 1.4
+COLLAR = 4.6
+"""Radius of the collars on its shank."""
 
 
 @build.register(Stud)

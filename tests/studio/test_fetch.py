@@ -176,7 +176,7 @@ def test_no_path(out_root: Path, folder: str) -> None:
     ("host", "folder", "source"),
     [
         ("anna@box", "", "anna@box:mbsd/out/films"),
-        ("box.example.org", "~/work/mbsd/", "box.example.org:work/mbsd/out/films"),
+        ("box.example.org", "~/code/mbsd/", "box.example.org:code/mbsd/out/films"),
         ("anna@[fe80::1%eth0]", "/srv/mbsd-1.0", "anna@[fe80::1%eth0]:/srv/mbsd-1.0/out/films"),
     ],
 )

@@ -10,10 +10,10 @@ import asyncio
 import multiprocessing
 import os
 import signal
+import socket
 import threading
 from collections.abc import Callable
 from contextlib import suppress
-from multiprocessing.connection import Connection
 from typing import Any
 
 from studio.live.child import entry
@@ -53,6 +53,7 @@ class Child:
     def __init__(self, context: Any, name: str, heard: Heard, limit: float, most_bytes: int) -> None:
         self._heard, self._limit, self._loop = heard, limit, asyncio.get_running_loop()
         self._pipe, theirs = context.Pipe()
+        self._end = socket.socket(fileno=os.dup(self._pipe.fileno()))
         self._process = context.Process(target=entry.main, args=(theirs, name, os.getpid(), most_bytes), daemon=True)
         self._process.start()
         theirs.close()
@@ -60,48 +61,50 @@ class Child:
         self.busy = False
         self.ended = False
         self._waiting: int | None = None
-        threading.Thread(target=self._listen, args=(self._pipe,), daemon=True).start()
+        threading.Thread(target=self._listen, daemon=True).start()
 
     def ask(self, number: int, request: dict[str, Any]) -> None:
         """Send one request; its answer, or what ended the child, is heard."""
         self.busy, self._waiting = True, number
         if self._limit > 0:
             self._deadline = self._loop.call_later(self._limit, self._too_long, number)
-        try:
+        with suppress(OSError):  # the listener hears of its end, too
             self._pipe.send_bytes(framed({"id": number, **request}))
-        except OSError:
-            self._gone()
 
     def kill(self) -> None:
         """End it now; nothing more is heard of it."""
+        if self.ended:
+            return
         self.ended = True
         self._stop_clock()
         with suppress(OSError, ValueError, AttributeError):
             self._process.kill()
-        self._loop.run_in_executor(None, self._bury)
+        with suppress(OSError):  # a grandchild may hold the other end, so its end would not come by itself
+            self._end.shutdown(socket.SHUT_RDWR)
 
     @property
     def pid(self) -> int:
         """Of the process."""
         return self._process.pid
 
-    def _bury(self) -> None:
-        with suppress(OSError, ValueError, AssertionError):
-            self._process.join(10)
-            self._process.close()
-        with suppress(OSError):
-            self._pipe.close()
+    def _listen(self) -> None:
+        """In a thread: pass on what the child says until its pipe ends, and await the end of its process.
 
-    def _listen(self, pipe: Connection) -> None:
-        """In a thread: pass on what the child says until its pipe ends."""
+        Nobody else closes the pipe: its descriptor is another child's as soon as it is closed.
+        """
         while True:
             try:
-                header, payload = unframed(pipe.recv_bytes(LARGEST))
+                header, payload = unframed(self._pipe.recv_bytes(LARGEST))
             except (EOFError, OSError, ValueError):
                 break
             if not self._pass_on(self._take, header, payload):
-                return
-        self._pass_on(self._gone)
+                break
+        self._process.join(1)
+        code = self._process.exitcode
+        self._process.kill()
+        self._process.join(2)
+        if not self._pass_on(self._gone, code):
+            self._close()
 
     def _pass_on(self, function: Callable[..., None], *arguments: Any) -> bool:
         try:
@@ -128,16 +131,21 @@ class Child:
         )
         self._heard(self, {"kind": "error", "id": number, "text": text}, b"")
 
-    def _gone(self) -> None:
-        """The pipe has ended while nobody wanted it to."""
+    def _gone(self, code: int | None) -> None:
+        """The pipe has ended, by ``kill`` or while nobody wanted it to."""
+        self._close()
         if self.ended:
             return
-        self._process.join(1)
-        code = self._process.exitcode
-        self.kill()
-        how = _ending(code)
-        text = f"mechanism.py ended the process it ran in ({how}); no file of a mechanism should do that"
+        self.ended = True
+        self._stop_clock()
+        text = f"mechanism.py ended the process it ran in ({_ending(code)}); no file of a mechanism should do that"
         self._heard(self, {"kind": "error", "id": self._waiting, "text": text}, b"")
+
+    def _close(self) -> None:
+        self._end.close()
+        self._pipe.close()
+        with suppress(ValueError):  # it runs on in spite of SIGKILL, which a broken disk can do
+            self._process.close()
 
     def _stop_clock(self) -> None:
         if self._deadline is not None:

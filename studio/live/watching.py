@@ -12,6 +12,9 @@ from watchfiles import awatch
 
 DEBOUNCE, STEP = 120, 15
 """Milliseconds: changes within are one; and of quiet that end it sooner."""
+LOOK_AGAIN = 1000
+"""Milliseconds without a word from the system, after which contents are compared all the same: some file systems tell
+of no change, and one can fall between two watches."""
 LARGEST = 1 << 26
 """Bytes of a file whose content is compared; of larger ones size and time."""
 
@@ -45,7 +48,10 @@ class Watch:
             try:
                 folders = {self.folder, *(file.parent for file in self._files)}
                 there = [folder for folder in folders if folder.is_dir()]
-                watched = awatch(*there, stop_event=stop, debounce=DEBOUNCE, step=STEP, recursive=False)
+                watched = awatch(
+                    *there, stop_event=stop, debounce=DEBOUNCE, step=STEP, recursive=False,
+                    rust_timeout=LOOK_AGAIN, yield_on_timeout=True,
+                )  # fmt: skip
                 first = self._changed(self._all())  # what changed while nobody looked
                 if first:
                     yield first

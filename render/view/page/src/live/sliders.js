@@ -32,7 +32,7 @@ export class Sliders {
     const range = el("input", { type: "range", id, class: "scrub", "aria-label": name });
     const field = el("input", { type: "number", class: "number", "aria-label": `${name}, as a number` });
     const back = el("button", { type: "button", class: "back", title: "As the file has it", "aria-label": `${name} as the file has it` }, "↺");
-    const row = { number, range, field, back };
+    const row = { number, range, field, back, typed: false };
     this.rows.set(name, row);
     const send = (value, final) => {
       if (!Number.isFinite(value)) return void this.put(row, this.values?.[name]);
@@ -42,14 +42,16 @@ export class Sliders {
     };
     range.addEventListener("input", () => send(rounded(range.valueAsNumber, row.number), false));
     range.addEventListener("change", () => send(rounded(range.valueAsNumber, row.number), true));
-    field.addEventListener("change", () => send(field.valueAsNumber, true));
+    field.addEventListener("input", () => { row.typed = true; });
+    field.addEventListener("change", () => { row.typed = false; send(field.valueAsNumber, true); });
+    field.addEventListener("blur", () => { row.typed = false; this.put(row, this.values?.[name]); });
     back.addEventListener("click", () => send(row.number.value, true));
     range.addEventListener("pointerdown", () => { this.held = name; });
     for (const end of ["pointerup", "pointercancel", "blur"]) range.addEventListener(end, () => { this.held = null; });
     return el("div", { class: "slide" }, el("label", { for: id }, name), range, field, back);
   }
 
-  /** Show the numbers that differ from the file; the one that is being dragged is left alone. */
+  /** Show the numbers that differ from the file; the one that is being dragged or typed is left alone. */
   show(values) {
     this.values = values;
     for (const [name, row] of this.rows) if (name !== this.held) this.put(row, values[name]);
@@ -62,7 +64,7 @@ export class Sliders {
     range.value = now;
     range.style.setProperty("--part", String((now - range.min) / (range.max - range.min || 1)));
     range.setAttribute("aria-valuetext", shown(now));
-    field.value = shown(now);
+    if (!row.typed) field.value = shown(now);
     back.hidden = now === number.value;
   }
 }

@@ -70,7 +70,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install check list run-all all overnight status stop view-all gallery showreel fetch new test lint format bench bench-start bench-film hunt hunt-parts torture check-numbers record-numbers schema docs integrators wheel lock clean clean-all always
+.PHONY: help install check list run-all all overnight status stop view-all view-engines gallery showreel fetch new test lint format bench bench-start bench-film hunt hunt-parts torture check-numbers record-numbers schema docs integrators wheel lock clean clean-all always
 
 # A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
 define upto_motion
@@ -198,6 +198,9 @@ view-all: install ## view-<name> for every mechanism, and a picture of each page
 	@for file in mechanisms/*/mechanism.py; do one=$${file%/mechanism.py}; one=$${one#mechanisms/}; \
 	"$(MAKE)" --no-print-directory "view-$$one" || echo "view-all: no page of $$one" >&2; done
 	@$(PICTURE) pages
+
+view-engines: install ## pages used in Firefox and Safari's engine: a small four-bar, or ONLY=four_bar,pendulum
+	@$(PYTHON) -m tools.engines --name="$$ONLY"
 
 gallery: install ## posters of all mechanisms (PRESET) and the page that shows them: docs/gallery/
 	@for file in mechanisms/*/mechanism.py; do one=$${file%/mechanism.py}; one=$${one#mechanisms/}; \

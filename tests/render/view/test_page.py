@@ -12,26 +12,18 @@ from typing import Any
 
 import numpy as np
 import pytest
-from PIL import Image
-from scipy.ndimage import uniform_filter
 
 from render import view
-from render.film.framing import SENSOR, axes
-from render.film.inputs import read_film
-from render.film.poses import Moment
-from render.presets import ASPECT
 from render.view.bundle import PAGE, node, node_modules
 from shared.contract import read_motion
 from shared.contract.shot import Shot
 from shared.stage.paths import Out
 from tests.render import film_fixture
+from tests.render.view.pins import dot, projected
 
-ACCENT = {"3d": (255, 138, 76), "2d": (255, 138, 76)}
 JOINTS = ("B", "C", "B", "A", "C", "D", "B", "C", "B", "C")
 STEPS = (0, 31, 77, 110, 150, 190, 222, 260, 301, 340)
 WIDTH, HEIGHT = 1000, 620
-REACH = 5
-"""Radius of the dot in what is selected (pixels)."""
 
 
 @pytest.fixture(scope="module")
@@ -83,8 +75,8 @@ def test_pins_are_within_two_pixels_of_where_data_json_projects(page: Any) -> No
             (ox, oy), scale = seen["paper"]["origin"], seen["paper"]["scale"]
             wanted = ox + scale * place[0], oy - scale * place[1]
         else:
-            wanted = _projected(out, pin["joint"], place, seen["stage"])
-        found = _mark(folder / pin["picture"], ACCENT[pin["view"]])
+            wanted = projected(out, pin["joint"], place, seen["stage"])
+        found = dot(folder / pin["picture"])
         assert np.hypot(found[0] - wanted[0], found[1] - wanted[1]) < 2.0, (pin, found, wanted)
 
 
@@ -166,25 +158,3 @@ def test_the_lock_has_no_addresses() -> None:
     assert len(packages) >= 4
     assert all("integrity" in one and "resolved" not in one for one in packages)
     assert "://" not in "".join(str(one.get("resolved")) for one in packages)
-
-
-def _projected(out: Out, joint: str, place: tuple[float, float], stage: dict[str, float]) -> tuple[float, float]:
-    """Pixels in the stage of a joint's label place, by the film's camera."""
-    film = read_film(out)
-    pose = film.camera(0)
-    z = film.heights.label(joint, Moment(0.0, 0))[2]
-    u, v, w = axes(pose.azimuth, pose.elevation) @ (np.array([*place, z]) - np.array(pose.position))
-    aspect = stage["width"] / stage["height"]
-    scale = stage["height"] * min(aspect, ASPECT) / (SENSOR / pose.lens)
-    return stage["width"] / 2 + scale * u / w, stage["height"] / 2 - scale * v / w
-
-
-def _mark(picture: Path, colour: tuple[int, int, int]) -> tuple[float, float]:
-    """Middle of the dot in what is selected: the place with the most pixels of its colour around it."""
-    pixels = np.asarray(Image.open(picture).convert("RGB")).astype(int)
-    there = (np.abs(pixels - colour).max(axis=2) < 3).astype(float)
-    around = uniform_filter(there, 2 * REACH + 1, mode="constant")
-    row, column = np.unravel_index(int(around.argmax()), around.shape)
-    rows, columns = np.nonzero(there[row - REACH : row + REACH + 1, column - REACH : column + REACH + 1])
-    assert len(rows) > 30, picture
-    return float(column - REACH + columns.mean() + 0.5), float(row - REACH + rows.mean() + 0.5)

@@ -1,4 +1,5 @@
 /** One chart: curves over time, the moment as a line that can be dragged, values of the moment beside the names. */
+import "./language.js";
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { writer } from "../data/numbers.js";
@@ -29,7 +30,7 @@ export class Chart {
       padding: [6, 12, 0, 0],
       scales: { x: { time: false, range: [app.clock.start, app.clock.end] }, y: { range: room } },
       axes: [
-        { font: AXIS, stroke: colours.quiet, grid: { stroke: colours.grid, width: 1 }, ticks: { show: false }, size: 24, gap: 4, space: 60 },
+        { font: AXIS, stroke: colours.quiet, grid: { stroke: colours.grid, width: 1 }, ticks: { show: false }, size: 24, gap: 4, space: 60, values: (_, ticks) => shortest(ticks) },
         { font: AXIS, stroke: colours.quiet, grid: { stroke: colours.grid, width: 1 }, ticks: { show: false }, size: 54, gap: 4, space: 30, values: (_, ticks) => shortest(ticks) },
       ],
       series: [{}, ...chart.lines.map((line, k) => ({ label: line.name, stroke: colours.body(k), width: 2, points: { show: false } }))],

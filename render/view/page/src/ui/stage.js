@@ -34,6 +34,7 @@ export class Stage {
       } catch (error) {
         this.missing = true;
         app.parts.root.dataset.flat = "";
+        app.store.set({ shown: { ...app.store.state.shown, names: true } });
         app.notice("This browser has no WebGL: here are the skeleton and the curves, without the parts.", "plain");
         console.info(`no WebGL: ${error.message}`);
       }

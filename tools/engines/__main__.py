@@ -1,0 +1,102 @@
+"""``python -m tools.engines``: the page in Firefox and in Safari's engine, from the disk, as people use it.
+
+--name four_bar,pendulum   the pages of these mechanisms, which make view-<name> has made; without it a small four-bar
+--only firefox             in this browser alone: firefox, webkit
+
+It looks at pins, scrubs, clicks, drags and types, in a phone's width and without WebGL, and ends with 1 if anything is
+not as it should be or a browser is missing. Pictures of what was seen are in out/engines/.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from shared.stage.console import run_cli, say, warn
+from shared.stage.errors import UserError
+from shared.stage.paths import Out, mechanism_name, out_root
+from tools.engines.firefox import Firefox
+from tools.engines.screen import screen
+from tools.engines.use import listening, use, use_flat
+from tools.engines.webkit import WebKit
+
+ENGINES = {
+    "firefox": (Firefox, ("firefox-esr", "firefox"), "firefox-esr"),
+    "webkit": (WebKit, ("WebKitWebDriver",), "webkit2gtk-driver"),
+}
+
+
+def main() -> int:
+    """Use every page in every browser and say what was wrong; 1 if anything was."""
+    parser = argparse.ArgumentParser(
+        prog="python -m tools.engines", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--name", default="")
+    parser.add_argument("--only", choices=["", *ENGINES], default="")
+    asked = parser.parse_args()
+    engines = [asked.only] if asked.only else list(ENGINES)
+    programs = {name: _program(*ENGINES[name][1:]) for name in engines}
+    hidden = _program(("Xvfb",), "xvfb")
+    pictures = out_root() / "engines"
+    faults = 0
+    with tempfile.TemporaryDirectory(prefix="mbsd-engines-") as folder, screen(hidden) as environment:
+        outs = [Out(mechanism_name(name)) for name in asked.name.split(",")] if asked.name else [_small(Path(folder))]
+        for out in outs:
+            if not out.view.is_file():
+                raise UserError(f"{out.name} has no page; make view-{out.name.replace('_', '-')} makes it")
+            for name in engines:
+                place = Path(folder) / f"{name}-{out.name}"
+                place.mkdir()
+                for fault in _faults(name, programs[name], out, place, pictures / f"{out.name}-{name}", environment):
+                    faults += 1
+                    warn("engines", f"{out.name}: {name}: {fault}")
+    return int(faults > 0)
+
+
+def _faults(
+    name: str, program: str, out: Out, place: Path, pictures: Path, environment: dict[str, str]
+) -> Iterator[str]:
+    kind = ENGINES[name][0]
+    page = listening(out.view, place / "view.html")
+    pictures.mkdir(parents=True, exist_ok=True)
+    found = 0
+    for flat in (False, True):
+        browser = kind(program, place / f"profile-{flat}", environment, webgl=not flat)
+        try:
+            for fault in use_flat(browser, page, pictures) if flat else use(browser, out, page, pictures):
+                found += 1
+                yield f"{browser.version}: {fault}"
+        except UserError as error:
+            found += 1
+            yield f"{browser.version}: {error}"
+        finally:
+            browser.close()
+    if not found:
+        say("engines", f"{out.name}: {name} {browser.version}: all is well")
+
+
+def _small(folder: Path) -> Out:
+    """The four-bar of the tests, its page written."""
+    from render import view
+    from shared.contract.shot import Shot
+    from tests.render import film_fixture
+
+    os.environ["MBSD_OUT"] = str(folder / "out")
+    out = film_fixture.write(Shot(trails=()))
+    view.run(out.name)
+    return out
+
+
+def _program(names: tuple[str, ...], package: str) -> str:
+    found = next(filter(None, map(shutil.which, names)), None)
+    if found is None:
+        raise UserError(f"{names[0]} is not installed; Debian: apt-get install {package}")
+    return found
+
+
+if __name__ == "__main__":
+    run_cli(main)

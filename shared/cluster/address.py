@@ -93,3 +93,13 @@ def workers_of(client: Client) -> dict[str, Any] | None:
     except OSError:
         return None
     return found["workers"]
+
+
+def tasks_of(client: Client) -> dict[str, int]:
+    """Tasks that each worker has, of all clients, by address; none where the scheduler does not answer."""
+    scheduler: Any = client.scheduler
+    try:
+        found: Any = client.sync(scheduler.processing, workers=None)
+    except OSError:
+        return {}
+    return {worker: len(tasks) for worker, tasks in found.items()}

@@ -5,16 +5,17 @@ from __future__ import annotations
 import math
 import queue
 import time
+import zlib
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-from shared.cluster.address import workers_of
+from shared.cluster.address import tasks_of, workers_of
 from shared.cluster.hand import Group, Hand
 from shared.cluster.hands import Report, perform
-from shared.cluster.identity import PACKAGES, differences, identity
+from shared.cluster.identity import PACKAGES, asker, differences, identity
 from shared.cluster.shares import stolen, unclaimed
 from shared.stage.console import duration, say, warn
 from shared.stage.errors import UserError
@@ -39,7 +40,8 @@ class Deal:
 
     ``work(files, common, order)`` is a function of the project, ``common`` the name of the content that all orders
     share, ``needed`` all contents by name as functions that give their bytes, ``orders`` what is to be done by key.
-    Workers whose sources of ``rooms`` differ are refused by name. ``patience`` (s) is a silence that is never too long.
+    Workers whose sources of ``rooms`` differ are refused by name. ``patience`` (s) is a silence that is never too long;
+    for ``grace`` (s) no worker whose pace is unknown is helped by others that have nothing to do.
     """
 
     def __init__(
@@ -52,9 +54,11 @@ class Deal:
         rooms: Sequence[str],
         patience: float = 300.0,
         packages: Sequence[str] = PACKAGES,
+        grace: float = 0.0,
     ) -> None:
         self.client, self.work, self.common, self.needed, self.orders = client, work, common, needed, orders
-        self.rooms, self.patience, self.packages = tuple(rooms), patience, tuple(packages)
+        self.rooms, self.packages = tuple(rooms), tuple(packages)
+        self.patience, self.grace = patience, grace
         self.ours = identity(self.rooms, self.packages)
         self.hands: dict[str, Hand] = {}
         self.late = 0
@@ -92,33 +96,24 @@ class Deal:
         self._surveyed = time.monotonic()
         if self.client.status in ("closed", "closing"):
             raise UserError("the scheduler has gone; nothing was lost, the same command goes on")
-        there = workers_of(self.client)
+        there, busy = workers_of(self.client), tasks_of(self.client)
         if there is None:
             return
         for name in there.keys() - self.hands.keys():
-            self.hands[name] = Hand(name, self.patience)
-            self._ask(self.hands[name])
+            self.hands[name] = Hand(name, self.patience, self.grace)
+            self._submit(self.hands[name], Group([]), asker(self.rooms, self.packages))
         for hand in [self.hands.pop(name) for name in self.hands.keys() - there.keys()]:
             if hand.fit:
                 say("cluster", f"worker {hand.name} has gone; what it had to do goes to others")
             self._take_back(hand)
         for hand in self.hands.values():
+            hand.tasks = busy.get(hand.name, 0)
             if hand.is_overdue():
                 silent = duration(time.monotonic() - hand.began)
                 warn("cluster", f"worker {hand.name} has been silent for {silent}; what it had to do goes to others")
                 hand.stalled = True
                 self._requeue([key for group in hand.groups for key in group.keys])
         self._refuse_none()
-
-    def _ask(self, hand: Hand) -> None:
-        rooms, packages = self.rooms, self.packages
-
-        def asked() -> dict[str, str]:  # of no module, so it travels as it is
-            from shared.cluster.identity import identity
-
-            return identity(rooms, packages)
-
-        self._submit(hand, Group([]), asked)
 
     def _refuse_none(self) -> None:
         """Raise UserError where no worker has been fit for long."""
@@ -141,17 +136,18 @@ class Deal:
 
     def _hand_out(self) -> None:
         ready = [hand for hand in self.hands.values() if hand.is_ready()]
-        ready.sort(key=lambda hand: (len(hand.groups), hand.each, hand.name))
-        for hand in ready:
-            keys = (
-                unclaimed(hand, self.hands.values(), self._pending, self._left, self._failed_on)
-                if self._pending
-                else []
-            )
+        for hand in sorted(ready, key=self._turn):
+            hands, keys = self.hands.values(), list[str]()
+            if self._pending:
+                keys = unclaimed(hand, hands, self._pending, self._left, self._failed_on)
             if not keys and not hand.groups:
-                keys = stolen(hand, self.hands.values(), self._left)
+                keys = stolen(hand, hands, self._left)
             if keys:
                 self._send(hand, keys)
+
+    def _turn(self, hand: Hand) -> tuple[float, ...]:
+        """Who comes first: of equal workers one that has nothing to do for others, and not all deals the same one."""
+        return len(hand.groups), hand.each, hand.tasks, zlib.crc32(f"{self.common} {hand.name}".encode())
 
     def _send(self, hand: Hand, keys: list[str]) -> None:
         sent = {name: self.needed[name]() for name in hand.lacks}

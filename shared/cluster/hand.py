@@ -36,6 +36,8 @@ class Hand:
     name: str
     patience: float
     """Seconds of silence that are never too long."""
+    grace: float = 0.0
+    """Seconds in which nobody does its orders too, as long as its pace is unknown."""
     fit: bool = False
     aside: str = ""
     """Why it is left out."""
@@ -50,6 +52,8 @@ class Hand:
     began: float = 0.0
     """When it got at its first group."""
     made: int = 0
+    tasks: int = 0
+    """That it had when it was looked at last, those of other coordinators included."""
 
     def is_ready(self) -> bool:
         """Whether it can get another group."""
@@ -106,5 +110,7 @@ class Hand:
         passed = time.monotonic() - self.began
         keys = [key for group in self.groups for key in group.keys]
         if not math.isfinite(self.each) or self.stalled:
+            if passed < self.grace and not self.stalled:
+                return {}
             return dict.fromkeys(keys, math.inf)
         return {key: max((at + 1) * self.each - passed, 0.0) for at, key in enumerate(keys)}

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import functools
 import platform
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from importlib import metadata
+from pathlib import Path
 
 from shared.stage.files import sources_hash
 from shared.stage.paths import ROOT
@@ -26,7 +27,23 @@ def identity(rooms: Iterable[str], packages: Iterable[str] = PACKAGES) -> dict[s
             found[package] = metadata.version(package)
         except metadata.PackageNotFoundError:
             found[package] = "none"
-    return found | {f"sources of {room}": sources_hash(ROOT / room)[:12] for room in rooms}
+    return found | {f"sources of {room}": sources_of(room) for room in rooms}
+
+
+def sources_of(room: str, root: Path = ROOT) -> str:
+    """A short hash of the Python sources of a room, or of one file, in the project at ``root``."""
+    return sources_hash(root / room)[:12]
+
+
+def asker(rooms: tuple[str, ...], packages: tuple[str, ...]) -> Callable[[], dict[str, str]]:
+    """A function that a worker with other sources understands as well, as it travels itself and not by its name."""
+
+    def asked() -> dict[str, str]:
+        from shared.cluster.identity import identity
+
+        return identity(rooms, packages)
+
+    return asked
 
 
 def differences(theirs: Mapping[str, str], ours: Mapping[str, str]) -> str:

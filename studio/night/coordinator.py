@@ -10,6 +10,7 @@ import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 
+from shared.cluster.address import address
 from shared.stage.console import duration
 from shared.stage.errors import BUSY, UserError
 from studio.night import watch
@@ -27,6 +28,8 @@ ELSEWHERE = 2.0
 """Seconds between two tries for a mechanism that another run has."""
 BUSY_ELSEWHERE = 10.0
 """The same where another process, which is no run, has the frames of a film."""
+AWAY, MOST_AWAY = ("parts",), 4
+"""Steps that workers of a cluster do, and how many of them wait for these at once beside what takes a core here."""
 LONGEST_TICK = 5.0
 """Seconds of silence that one look counts at most."""
 
@@ -76,11 +79,16 @@ class Coordinator:
         if not rendering:
             rendering = self._start_first(renders=True)
         places = max(self.cores - 1, 0) if rendering else self.cores
-        while len(self._beside()) < places and self._start_first(renders=False):
+        while self._is_place_free(places) and self._start_first(renders=False):
             pass
 
     def _beside(self) -> list[Process]:
         return [process for process in self.running if not self.steps[process.step].renders]
+
+    def _is_place_free(self, places: int) -> bool:
+        beside = self._beside()
+        away = sum(process.step in AWAY for process in beside) if address() else 0
+        return len(beside) - min(away, MOST_AWAY) < places
 
     def _start_first(self, renders: bool) -> bool:
         """Start the most urgent step whose mechanism no other run has; False if there is none."""

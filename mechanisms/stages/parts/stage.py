@@ -8,30 +8,29 @@ model and its motion (mechanisms/automatic). A file whose bytes would be the sam
 
 from __future__ import annotations
 
-import hashlib
 import sys
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
+
+import msgspec
 
 from mechanisms.stages.loading.inputs import Inputs, observed
 from mechanisms.stages.loading.loading import author_code, has, load, package_of, params
-from mechanisms.stages.loading.recording import recording
+from mechanisms.stages.loading.recording import Recorder, recording
 from mechanisms.stages.parts.plain_values import plain_text
 from mechanisms.stages.parts.traced_params import fields_of, traced
-from shared.contract import BodyParts, End, Held, Parts, Piece, Provenance, Rolling, write_parts
+from shared.cluster.address import address
+from shared.contract import Parts, Provenance, write_parts
 from shared.contract.materials import MATERIALS
-from shared.shapes.units import metres
 from shared.stage.console import say, warn
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import ROOT, Out, mechanism_folder
 from shared.stage.stages import Stage, contract_sources, key_of, versions
 
-if TYPE_CHECKING:
-    from shared.shapes.bodies import Place
-
 _STAGES = ROOT / "mechanisms" / "stages"
-_STAGE = ("stage", "returned_parts", "mass_properties", "mesh_check", "traced_params")
+_STAGE = ("stage", "described_body", "returned_parts", "mass_properties", "mesh_check", "traced_params")
 SOURCES = [
     ROOT / "shared" / "shapes",
     _STAGES / "parts_files.py",
@@ -62,29 +61,61 @@ def run(name: str) -> None:
     if _is_fresh(out, given, by_itself):
         say("parts", f"{out.name}: nothing to do")
         return
-    from mechanisms.stages.loading.loaded_files import loaded_inputs
+    found = _of_cluster(out.name, given, by_itself) if address() else None
+    found = found or _made_here(out.name, given, by_itself, before, recorder)
+    written = _write(out, found.files, found.document)
+    outputs = [out.parts, *(out.parts_folder / file for file in found.files)]
+    notes = {"parameters": found.reads, "inputs": found.inputs.names()}
+    Stage(out, "parts", found.document.provenance.inputs, outputs).done(**notes)
+    say("parts", _summary(out.name, found.document, written))
 
-    bodies, reads, inputs = _build(out.name, given)
-    if by_itself or _more_than_values(out.name, given, reads):
-        mechanism = loaded_inputs(mechanism_folder(name) / "mechanism.py", package_of(out.name), before)
+
+class _Found(NamedTuple):
+    """All that the stage writes."""
+
+    document: Parts
+    files: Mapping[str, bytes]
+    reads: list[str]
+    inputs: Inputs
+
+
+def _made_here(name: str, given: Any, by_itself: bool, before: set[str], recorder: Recorder) -> _Found:
+    """Run the author's code; ``recorder`` has seen what mechanism.py read."""
+    from mechanisms.stages.loading.loaded_files import loaded_inputs
+    from mechanisms.stages.parts.described_body import described_body
+
+    bodies, reads, inputs = _build(name, given)
+    if by_itself or _more_than_values(name, given, reads):
+        mechanism = loaded_inputs(mechanism_folder(name) / "mechanism.py", package_of(name), before)
         inputs = inputs.joined(mechanism).joined(recorder.inputs())
     key = _key(given, reads, inputs, by_itself)
     files: dict[str, bytes] = {}
     rods = getattr(bodies, "rods", {})
-    described = {body: _body(out.name, body, solids, files, rods.get(body)) for body, solids in bodies.items()}
+    described = {body: described_body(name, body, solids, files, rods.get(body)) for body, solids in bodies.items()}
     document = Parts(
-        mechanism=out.name,
+        mechanism=name,
         provenance=Provenance(inputs=key, versions=versions(*PACKAGES)),
         bodies=described,
         without_solids=sorted(getattr(bodies, "left_out", ())),
         may_touch=sorted(getattr(bodies, "touching", ())),
         pieces_may_touch=sorted(getattr(bodies, "pieces_touching", ())),
     )
-    written = _write(out, files, document)
-    Stage(out, "parts", key, [out.parts, *(out.parts_folder / file for file in files)]).done(
-        parameters=reads, inputs=inputs.names()
-    )
-    say("parts", _summary(out.name, document, written))
+    return _Found(document, files, reads, inputs)
+
+
+def _of_cluster(name: str, given: Any, by_itself: bool) -> _Found | None:
+    """The parts that a worker of the cluster made; None where they did not follow from what is here."""
+    from mechanisms.stages.parts.on_cluster.dealt import made_elsewhere
+
+    made = made_elsewhere(name)
+    if made is None:
+        return None
+    document = msgspec.json.decode(made.document, type=Parts)
+    reads, inputs = made.notes["parameters"], observed(made.notes["inputs"])
+    if inputs is None or _key(given, reads, inputs, by_itself) != document.provenance.inputs:
+        warn("parts", f"{name}: its files read something that the worker has not, or has otherwise; it is made here")
+        return None
+    return _Found(document, made.files, reads, inputs)
 
 
 def are_current(name: str) -> bool:
@@ -162,73 +193,7 @@ def _build(name: str, given: Any) -> tuple[dict[str, list[Any]], list[str], Inpu
     return bodies, sorted(seen), loaded.joined(recorder.inputs())
 
 
-def _body(
-    name: str, body: str, solids: list[Any], files: dict[str, bytes], places: tuple[Place, Place] | None
-) -> BodyParts:
-    from mechanisms.stages.parts.mass_properties import combined
-
-    pieces = {solid.name: _piece(name, body, solid, files) for solid in solids}
-    main = pieces[solids[0].name]
-    mass = combined(piece.mass for piece in pieces.values())
-    return BodyParts(pieces=pieces, mass=mass, z=(sum(main.z_range)) / 2, spans=places and spans(places))
-
-
-def spans(places: tuple[Place, Place]) -> tuple[End, End]:
-    """The places (mm) that a rod joins, as parts.json has them."""
-    first, second = (End(body=body, x=metres(x), y=metres(y)) for body, x, y in places)
-    return first, second
-
-
-def _piece(name: str, body: str, solid: Any, files: dict[str, bytes]) -> Piece:
-    """Check one solid, add its files to ``files``, and describe it."""
-    from mechanisms.stages.loading.author_errors import is_of_kernel
-    from mechanisms.stages.parts.mass_properties import mass_of
-    from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
-    from mechanisms.stages.parts_files import read_mesh, step_bytes, stl_bytes
-
-    where = f"{name}: {body}: {solid.name}"
-    if not callable(getattr(solid.shape, "solids", None)):
-        raise UserError(
-            f"{where}: its shape is of type {type(solid.shape).__name__}; Solid takes a cadquery.Workplane "
-            "(cq.Workplane(obj=shape) makes one of a shape)"
-        )
-    try:
-        shape = only_solid(solid.shape, where)
-        step = step_bytes(shape, solid.name)  # before the mesh, which the shape would carry along
-        stl = stl_bytes(shape, solid.tolerance)
-    except Exception as error:
-        if not is_of_kernel(error):
-            raise
-        raise UserError(
-            f"{where}: the CAD kernel cannot mesh or write this solid ({type(error).__name__}: {error}); look at its "
-            "last fillet, chamfer or cut: make it smaller, or apply it earlier"
-        ) from error
-    mesh = read_mesh(stl)
-    check_mesh(mesh, shape.Volume(), solid.through_holes, where)
-    files[f"{solid.name}.stl"] = stl
-    files[f"{solid.name}.step"] = step
-    return Piece(
-        material=solid.material,
-        stl=f"{solid.name}.stl",
-        step=f"{solid.name}.step",
-        mass=mass_of(shape, MATERIALS[solid.material].density),
-        z_range=(metres(float(mesh.bounds[0][2])), metres(float(mesh.bounds[1][2]))),
-        triangles=len(mesh.faces),
-        stl_sha256=hashlib.sha256(stl).hexdigest(),
-        rolls=_rolling(solid.rolls),
-        holds={hold.force: Held(z=metres(hold.z), radius=metres(hold.radius)) for hold in solid.holds},
-        buy=solid.buy,
-    )
-
-
-def _rolling(roll: Any) -> Rolling | None:
-    if roll is None:
-        return None
-    x, y, radius = (metres(length) for length in (roll.x, roll.y, roll.radius))
-    return Rolling(joint=roll.joint, x=x, y=y, radius=radius, marks=roll.marks)
-
-
-def _write(out: Out, files: dict[str, bytes], document: Parts) -> int:
+def _write(out: Out, files: Mapping[str, bytes], document: Parts) -> int:
     """Write what differs from what is there, remove what no solid makes any more; the number of files written.
 
     parts.json is written last, so it never names a file that is not there.
@@ -245,7 +210,7 @@ def _write(out: Out, files: dict[str, bytes], document: Parts) -> int:
     return written
 
 
-def _leftovers(folder: Path, files: dict[str, bytes]) -> list[Path]:
+def _leftovers(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
     return [path for path in sorted(folder.iterdir()) if path.suffix in (".stl", ".step") and path.name not in files]
 
 

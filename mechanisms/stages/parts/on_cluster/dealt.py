@@ -1,0 +1,52 @@
+"""The parts of a mechanism asked of the workers of the cluster. What none of them can tell is left to this machine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import msgspec
+
+from mechanisms.stages.parts.on_cluster import built
+from mechanisms.stages.parts.on_cluster.author_files import Order, by_content, collected
+from mechanisms.stages.parts.on_cluster.built import Made
+from shared.cluster.address import connected
+from shared.cluster.contents import content_hash
+from shared.cluster.deal import Deal
+from shared.cluster.identity import identity
+from shared.cluster.preload import OF_PARTS, PARTS
+from shared.stage.console import say, warn
+from shared.stage.signals import terminable
+
+PATIENCE = 600.0
+"""Seconds in which a worker must have made the parts of a mechanism, or counts as stalled."""
+GRACE = 120.0
+"""Seconds after which a worker that has nothing to do makes them too; the first answer counts."""
+
+
+def made_elsewhere(name: str) -> Made | None:
+    """The parts of ``name`` as a worker made them; None where the stage there refused, which is to be told from here.
+
+    Raises UserError if no scheduler answers, no worker is fit, or several workers fail.
+    """
+    files = collected(name)
+    contents = by_content(files)
+    order = Order(
+        name=name,
+        files={path: content_hash(content) for path, content in files.items()},
+        program=identity(PARTS, OF_PARTS),
+    )
+    common = msgspec.json.encode(order)
+    contents[content_hash(common)] = common
+    needed = {key: _given(content) for key, content in contents.items()}
+    with terminable(), connected() as client:
+        deal = Deal(client, built.parts, content_hash(common), needed, {name: name}, PARTS, PATIENCE, OF_PARTS, GRACE)
+        for _, made, worker in deal.results():
+            if not made.refusal:
+                say("parts", f"{name}: made by worker {worker}")
+                return made
+            warn("parts", f"{name}: worker {worker}: {made.refusal}; it is tried here")
+    return None
+
+
+def _given(content: bytes) -> Callable[[], bytes]:
+    return lambda: content

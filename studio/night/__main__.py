@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from shared.stage.console import run_cli
-from studio.night.options import Options, options
+from studio.night.plan.options import Options, options
 
 
 def main() -> int | None:
@@ -30,15 +30,15 @@ def main() -> int | None:
     arguments = parser.parse_args()
     if arguments.command == "fresh":
         from render.presets import preset_named
-        from studio.night import freshness
+        from studio.night.plan import freshness
 
         return freshness.tell(arguments.names, preset_named(arguments.preset), arguments.show, arguments.spectra)
     if arguments.command == "status":
-        from studio.night import status
+        from studio.night.commands import status
 
         return status.tell()
     if arguments.command == "stop":
-        from studio.night import stopping
+        from studio.night.commands import stopping
 
         return stopping.stop()
     return _work(arguments.command, _options(arguments))
@@ -49,7 +49,7 @@ def _work(command: str, asked: Options) -> int:
         from studio.night import night
 
         return night.run(asked)
-    from studio.night import background
+    from studio.night.commands import background
 
     return background.start(asked)
 

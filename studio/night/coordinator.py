@@ -14,13 +14,13 @@ from shared.cluster.address import address
 from shared.stage.console import duration
 from shared.stage.errors import BUSY, UserError
 from studio.night import watch
-from studio.night.board import Board
-from studio.night.books import Books
-from studio.night.log import Log
-from studio.night.options import Options
+from studio.night.files.log import Log
+from studio.night.files.runs import Claims, Run
+from studio.night.plan.board import Board
+from studio.night.plan.options import Options
+from studio.night.plan.steps import FILM, STEPS, Step, command
 from studio.night.process import Process
-from studio.night.runs import Claims, Run
-from studio.night.steps import FILM, STEPS, Step, command
+from studio.night.progress.books import Books
 
 TICK = 0.1
 """Seconds between two looks at the processes."""

@@ -7,12 +7,12 @@ import time
 
 from shared.stage.console import duration
 from shared.stage.paths import NAME_RULE, ROOT
-from studio.night.board import Board
 from studio.night.coordinator import Coordinator
-from studio.night.freshness import fresh_steps
-from studio.night.log import Log
-from studio.night.options import Options
-from studio.night.runs import Run, taken
+from studio.night.files.log import Log
+from studio.night.files.runs import Run, taken
+from studio.night.plan.board import Board
+from studio.night.plan.freshness import fresh_steps
+from studio.night.plan.options import Options
 
 STOPPED = 130
 """Exit code of a run that was asked to stop, as after Ctrl-C."""

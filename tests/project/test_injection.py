@@ -18,7 +18,7 @@ from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from shared.stage.paths import ROOT, Out, mechanism_name
 from shared.stage.stages import Stage
-from studio.night import options
+from studio.night.plan import options
 from tests.render import film_fixture
 
 NASTY = [

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from studio.night import runs
+from studio.night.files import runs
 from tools.torture.project import COORDINATOR, Project
 from tools.torture.stage import MODULE
 

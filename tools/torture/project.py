@@ -14,7 +14,7 @@ from pathlib import Path
 from render.frames.store import FrameStore
 from shared.contract.shot import Camera, Shot
 from shared.stage.paths import ROOT, Out
-from studio.night import record, runs
+from studio.night.files import record, runs
 from tools.torture.processes import Process, processes
 from tools.torture.stage import RENDERED
 

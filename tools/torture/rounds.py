@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from render.blender.picture_file import is_as_named
-from studio.night import runs
+from studio.night.files import runs
 from tools.torture.faults import BLENDER, FILM, MAKE, STAGE, Fault
 from tools.torture.hits import TARGETS
 from tools.torture.project import Project

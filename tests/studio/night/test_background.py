@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from studio.night import logout
+from studio.night.commands import logout
 from tests.studio.night.nights import Night, finished, until
 
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from render.presets import PRESETS
-from studio.night import forecast as told
-from studio.night.forecast import START, Forecast, forecast
-from studio.night.frames import Frames
+from studio.night.progress import forecast as told
+from studio.night.progress.forecast import START, Forecast, forecast
+from studio.night.progress.frames import Frames
 
 PREVIEW = PRESETS["preview"]
 NOW = datetime(2026, 3, 1, 22, 30)
@@ -65,7 +65,7 @@ def test_nothing_left_is_told_as_such(tmp_path: Path):
 
 def test_the_pace_of_a_run_replaces_that_of_the_probe(out_root: Path, monkeypatch: pytest.MonkeyPatch):
     clock = [0.0]
-    monkeypatch.setattr("studio.night.frames.time.monotonic", lambda: clock[0])
+    monkeypatch.setattr("studio.night.progress.frames.time.monotonic", lambda: clock[0])
     one = film("a", 10, 0, 10.0, size=0.0)
     folder = out_root / "a" / "frames" / "preview"
     folder.mkdir(parents=True)

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from render.presets import PRESETS
-from studio.night.options import Options
-from studio.night.steps import STEPS, command
+from studio.night.plan.options import Options
+from studio.night.plan.steps import STEPS, command
 from tests.project.making import STAGES, planned
 from tests.studio.night.nights import Night, finished, until
 

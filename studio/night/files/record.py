@@ -8,7 +8,7 @@ import msgspec
 
 from shared.stage import jsonfile
 from shared.stage.errors import UserError
-from studio.night.runs import Run
+from studio.night.files.runs import Run
 
 
 class FilmRecord(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):

@@ -16,8 +16,8 @@ from render.presets import Preset
 from shared.stage.errors import UserError
 from shared.stage.memory import remembered
 from shared.stage.paths import ROOT
-from studio.night.options import Options
-from studio.night.steps import STEPS
+from studio.night.plan.options import Options
+from studio.night.plan.steps import STEPS
 
 SILENCE = 60.0
 """Seconds that a mechanism may take to be asked."""

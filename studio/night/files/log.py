@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import IO
 
 from shared.stage import console
-from studio.night.runs import log_file
+from studio.night.files.runs import log_file
 
 LONGEST = 20e6
 """Bytes of the log after which a new one begins; the old one stays as log-before.txt."""

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from render.presets import Preset
 from shared.stage.console import duration
-from studio.night.frames import Frames
+from studio.night.progress.frames import Frames
 
 START = 6.0
 """Seconds in which Blender is loaded and the scene is built, once a film."""

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from datetime import datetime, timedelta
 
 from shared.stage.console import duration
-from studio.night import record, runs
-from studio.night.record import FilmRecord, NightRecord
-from studio.night.runs import Run
+from studio.night.files import record, runs
+from studio.night.files.record import FilmRecord, NightRecord
+from studio.night.files.runs import Run
 
 HEAD = ("film", "frames", "each", "left", "at")
 

@@ -7,8 +7,8 @@ import time
 from shared.stage.console import duration, say
 from shared.stage.errors import UserError
 from shared.stage.files import refusal
-from studio.night import record, runs
-from studio.night.runs import Run
+from studio.night.files import record, runs
+from studio.night.files.runs import Run
 
 LOOK = 0.2
 """Seconds between two looks."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from studio.night.options import Options
+from studio.night.plan.options import Options
 
 
 @dataclass(frozen=True)

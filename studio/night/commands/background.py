@@ -17,9 +17,10 @@ from shared.stage.errors import UserError
 from shared.stage.files import refusal
 from shared.stage.lineage import VARIABLE
 from shared.stage.paths import ROOT, out_root, refuse_links
-from studio.night import logout, record, runs
-from studio.night.options import Options
-from studio.night.runs import Run
+from studio.night.commands import logout
+from studio.night.files import record, runs
+from studio.night.files.runs import Run
+from studio.night.plan.options import Options
 
 BEGIN = 30.0
 """Seconds that a run has to appear."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Literal
 
-from studio.night.steps import FILM, PROBE, STEPS, Step, followers
+from studio.night.plan.steps import FILM, PROBE, STEPS, Step, followers
 
 State = Literal["waiting", "running", "fresh", "done", "failed", "blocked"]
 """``fresh``: there was nothing to do; ``blocked``: a step that it needs has failed."""

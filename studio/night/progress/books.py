@@ -9,15 +9,15 @@ from datetime import datetime
 from typing import Literal
 
 from shared.stage.paths import out_root
-from studio.night import record
-from studio.night.board import Board
-from studio.night.forecast import Forecast, forecast
-from studio.night.frames import Frames
-from studio.night.log import Log
-from studio.night.options import Options
-from studio.night.record import FilmRecord, NightRecord
-from studio.night.runs import Run
-from studio.night.steps import FILM, PROBE
+from studio.night.files import record
+from studio.night.files.log import Log
+from studio.night.files.record import FilmRecord, NightRecord
+from studio.night.files.runs import Run
+from studio.night.plan.board import Board
+from studio.night.plan.options import Options
+from studio.night.plan.steps import FILM, PROBE
+from studio.night.progress.forecast import Forecast, forecast
+from studio.night.progress.frames import Frames
 
 GAP = 0.5
 """Seconds between two writings of the record, where only pictures were made."""

@@ -1,0 +1,1 @@
+"""What runs keep in out/night: locks, records, the log."""

@@ -18,6 +18,7 @@ HOST ?=
 FOLDER ?=
 ONLY ?=
 WATTS ?=
+ANYWAY ?=
 SEED ?= 1
 CLUSTER ?=
 CLUSTER_TLS ?=
@@ -42,11 +43,12 @@ override FOLDER := $(value FOLDER)
 override ONLY := $(value ONLY)
 override SEED := $(value SEED)
 override WATTS := $(value WATTS)
+override ANYWAY := $(value ANYWAY)
 override CLUSTER := $(value CLUSTER)
 override CLUSTER_TLS := $(value CLUSTER_TLS)
 override MECHANISM = $(subst -,_,$*)
 export PRESET SHEET_PRESET FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N HOST FOLDER ONLY WATTS SEED
-export CLUSTER CLUSTER_TLS
+export CLUSTER CLUSTER_TLS ANYWAY
 
 PRESETS := draft preview production final
 ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
@@ -57,7 +59,7 @@ PYTHON := .venv/bin/python
 STAGE = $(PYTHON) -m mechanisms
 PICTURE = $(PYTHON) -m render
 NIGHT = $(PYTHON) -m studio.night
-OF_NIGHT = --preset "$$PRESET" --only="$$ONLY" --show="$$SHOW" --spectra="$$SPECTRA" --watts="$$WATTS" --python="$(PYTHON)"
+OF_NIGHT = --preset "$$PRESET" --only="$$ONLY" --show="$$SHOW" --spectra="$$SPECTRA" --watts="$$WATTS" --anyway="$$ANYWAY" --python="$(PYTHON)"
 # install compiles the kernels in the background; these want all of them, and nothing else running.
 ALL_KERNELS = @$(PYTHON) -m tools.compiling wait
 

@@ -19,6 +19,7 @@ def main() -> int | None:
         sub.add_argument("--show", default="", help="what films show, in place of what their shots say")
         sub.add_argument("--spectra", default="", help="spectra to plot of every mechanism that has them")
         sub.add_argument("--watts", default="", help="power of the machine while it renders (W), to tell the energy")
+        sub.add_argument("--anyway", default="", help="1: begin though the disk is surely too small")
         sub.add_argument("--python", default="", help="the interpreter that runs the stages; this one if not given")
     fresh = commands.add_parser("fresh", help="which steps of mechanisms have nothing to do, a line of JSON each")
     fresh.add_argument("--preset", default="preview")
@@ -56,7 +57,13 @@ def _work(command: str, asked: Options) -> int:
 
 def _options(arguments: argparse.Namespace) -> Options:
     return options(
-        arguments.only, arguments.preset, arguments.show, arguments.spectra, arguments.watts, arguments.python
+        arguments.only,
+        arguments.preset,
+        arguments.show,
+        arguments.spectra,
+        arguments.watts,
+        arguments.python,
+        arguments.anyway,
     )
 
 

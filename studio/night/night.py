@@ -6,6 +6,7 @@ import subprocess
 import time
 
 from shared.stage.console import duration
+from shared.stage.errors import UserError
 from shared.stage.paths import NAME_RULE, ROOT
 from studio.night.coordinator import Coordinator
 from studio.night.files.log import Log
@@ -13,6 +14,7 @@ from studio.night.files.runs import Run, taken
 from studio.night.plan.board import Board
 from studio.night.plan.freshness import fresh_steps
 from studio.night.plan.options import Options
+from studio.night.progress.disk import refuse_before_start
 
 STOPPED = 130
 """Exit code of a run that was asked to stop, as after Ctrl-C."""
@@ -21,7 +23,7 @@ STOPPED = 130
 def run(asked: Options) -> int:
     """Make everything that ``asked`` names; 0 if all of it is there, 1 if something failed, 130 if it was stopped.
 
-    Raises UserError where the folder of results cannot be used.
+    Raises UserError where the folder of results cannot be used. A disk that is surely too small is told, and 1 given.
     """
     started = time.monotonic()
     with taken() as night, Log(night.number) as log:
@@ -32,7 +34,12 @@ def run(asked: Options) -> int:
         log.say(f"{len(asked.names)} mechanisms at {asked.preset}, something to do for {work}")
         at_work = Coordinator(asked, night, log, board)
         try:
+            refuse_before_start(asked, tuple(name for name in asked.names if board.outcome(name) != "done"))
             finished = at_work.go()
+        except UserError as error:
+            log.fail(str(error))
+            at_work.books.close("failed")
+            return 1
         except BaseException:
             at_work.books.close("stopped")
             log.say("stopped; what is finished is kept, the same command goes on from here")

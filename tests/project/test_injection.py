@@ -111,10 +111,11 @@ def test_words_of_one_make_are_not_executed_by_the_makes_it_starts(tree: Path) -
 def test_words_of_a_night_reach_python_as_they_are(tree: Path, word: str) -> None:
     before = files_of(tree)
     for command, target in (("run", "all"), ("start", "overnight")):
-        done = make(tree, target, f"ONLY={word}", WATTS=word)
+        done = make(tree, target, f"ONLY={word}", WATTS=word, ANYWAY=word)
         assert done.stdout.startswith(f"<-m>\n<studio.night>\n<{command}>\n"), done.stderr
         assert f"<--only={word}>\n" in done.stdout
         assert f"<--watts={word}>\n" in done.stdout
+        assert f"<--anyway={word}>\n" in done.stdout
     assert files_of(tree) == before
 
 

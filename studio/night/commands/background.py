@@ -21,6 +21,7 @@ from studio.night.commands import logout
 from studio.night.files import record, runs
 from studio.night.files.runs import Run
 from studio.night.plan.options import Options
+from studio.night.progress.disk import refuse_before_start
 
 BEGIN = 30.0
 """Seconds that a run has to appear."""
@@ -33,12 +34,13 @@ def start(asked: Options) -> int:
     """Start the run, say how to attach and what it takes; on a terminal wait for its forecast, which Ctrl-C ends.
 
     Where a run is at work already it is named, and the new one joins it: it takes what the other has not. Raises
-    UserError where the results cannot be written, or the run does not begin.
+    UserError where the results cannot be written, the disk is surely too small, or the run does not begin.
     """
     for run in runs.alive():
         found = record.read(run)
         who = f" (process {found.process} on {found.host}, since {found.started})" if found else ""
         warn("night", f"run {run.number} is at work already{who}; this one takes what that one is not at")
+    refuse_before_start(asked, asked.names)
     before = {run.number for run in runs.alive()}
     environment = {key: value for key, value in os.environ.items() if key not in OF_MAKE}
     attach = _launch(_command(asked), environment)
@@ -62,6 +64,7 @@ def _command(asked: Options) -> list[str]:
     words += [f"--only={','.join(asked.names)}"] if not asked.whole else []
     words += [f"--show={asked.show}", f"--spectra={asked.spectra}"]
     words += [f"--watts={asked.watts:g}"] if asked.watts is not None else []
+    words += ["--anyway=1"] if asked.anyway else []
     return [*words, f"--python={asked.python}"]
 
 

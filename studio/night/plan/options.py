@@ -31,9 +31,11 @@ class Options:
     """Folders with a mechanism.py whose name is none."""
     whole: bool = False
     """Whether these are all mechanisms, rather than those of ONLY."""
+    anyway: bool = False
+    """Whether it begins on a disk that is surely too small."""
 
 
-def options(only: str, preset: str, show: str, spectra: str, watts: str, python: str) -> Options:
+def options(only: str, preset: str, show: str, spectra: str, watts: str, python: str, anyway: str = "") -> Options:
     """Options from words as the Makefile has them. Raises UserError naming the word that cannot be."""
     wanted = only_of(only)
     return Options(
@@ -45,6 +47,7 @@ def options(only: str, preset: str, show: str, spectra: str, watts: str, python:
         python=python or sys.executable,
         unfit=() if wanted else tuple(unfit_folders()),
         whole=not wanted,
+        anyway=anyway not in ("", "0"),
     )
 
 

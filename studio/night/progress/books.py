@@ -16,6 +16,7 @@ from studio.night.files.runs import Run
 from studio.night.plan.board import Board
 from studio.night.plan.options import Options
 from studio.night.plan.steps import FILM, PROBE
+from studio.night.progress.disk import refuse
 from studio.night.progress.forecast import Forecast, forecast
 from studio.night.progress.frames import Frames
 
@@ -121,15 +122,17 @@ class Books:
         return forecast(known, len(films) - len(known), self.asked.preset, out_root())
 
     def tell_forecast(self, word: str) -> None:
-        """Say the forecast, and warn where the disk is too small for it."""
+        """Say the forecast, and warn where the disk may be too small for it; raises UserError where it surely is."""
         first, self._told = self._told is None, time.monotonic()
         self._read_what_is_there()
         found = self.forecast()
         self._record.forecast = found.words(datetime.now(), self.asked.watts)
         self.log.say(f"{word}: {self._record.forecast}")
+        if first:
+            refuse(self.asked, found)
         if first and not found.fits:
             self.log.warn(
-                f"the disk is too small for all of it; films are made as long as there is room. Free some space on "
+                f"the disk may be too small for all of it; films are made as long as there is room. Free some space on "
                 f"the disk of {out_root()}, take a smaller PRESET or set MBSD_OUT to another disk"
             )
 

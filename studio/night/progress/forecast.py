@@ -16,6 +16,8 @@ START = 6.0
 """Seconds in which Blender is loaded and the scene is built, once a film."""
 BYTES = 1.3
 """Of a picture of the studio, a pixel, until one was measured."""
+LEAST, SURE = 0.3, 0.7
+"""The same at the least; and the part of what was measured that the others of that film surely have."""
 FILM = 0.1
 """Size of a film, of that of its pictures."""
 RESERVE = 200e6
@@ -37,11 +39,18 @@ class Forecast:
     bytes: float
     free: float | None
     """Bytes free on the disk; None where it cannot be asked."""
+    least: float = 0.0
+    """Bytes that the pictures surely have."""
 
     @property
     def fits(self) -> bool:
         """Whether the disk has room."""
         return self.free is None or self.bytes + RESERVE <= self.free or not self.pictures
+
+    @property
+    def can_fit(self) -> bool:
+        """Whether it is not sure that the disk has no room."""
+        return self.free is None or self.least + RESERVE <= self.free or not self.pictures
 
     def ends(self, now: datetime) -> str:
         """The hour at which the night is over; with the day if it is another."""
@@ -82,11 +91,12 @@ def forecast(films: Collection[Frames], unread: int, preset: Preset, disk: Path)
         seconds = 0.0
     guess = BYTES * preset.width * preset.height
     needed = sum((film.left + FILM * film.all) * (film.size or guess) for film in left)
+    least = sum(film.left * (SURE * film.size or LEAST * preset.width * preset.height) for film in left)
     try:
         free = float(shutil.disk_usage(next(p for p in (disk, *disk.parents) if p.exists())).free)
     except OSError:
         free = None
-    return Forecast(len(left) + unread, pictures, seconds, unknown, unread, needed, free)
+    return Forecast(len(left) + unread, pictures, seconds, unknown, unread, needed, free, least)
 
 
 def size(count: float) -> str:

@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from render.presets import PRESETS
+from shared.contract.shot import Shot
+from shared.stage.errors import UserError
+from studio.night import night
+from studio.night.commands import background
+from studio.night.coordinator import Coordinator
+from studio.night.files import record, runs
+from studio.night.plan.options import Options
+from studio.night.plan.steps import FILM, STEPS
 from studio.night.progress import forecast as told
 from studio.night.progress.forecast import START, Forecast, forecast
 from studio.night.progress.frames import Frames
+from tests.render import film_fixture
 
 PREVIEW = PRESETS["preview"]
 NOW = datetime(2026, 3, 1, 22, 30)
@@ -79,3 +90,58 @@ def test_the_pace_of_a_run_replaces_that_of_the_probe(out_root: Path, monkeypatc
     assert (one.done, one.left, one.size) == (4, 6, 1000.0)
     one.begin()
     assert one.each == 10.0
+
+
+def test_only_a_disk_that_surely_cannot_hold_the_pictures_is_too_small(tmp_path: Path):
+    films = [film("a", 100, 40, 10.0, size=1e6), film("b", 10, 0, None, size=0.0)]
+    found = forecast(films, 3, PREVIEW, tmp_path)
+    assert found.least == pytest.approx(60 * 0.7e6 + 10 * 0.3 * 1280 * 720)
+    assert found.least < found.bytes
+    for free, can in ((found.least + told.RESERVE, True), (found.least + told.RESERVE - 1, False), (None, True)):
+        assert replace(found, free=free).can_fit == can
+    assert replace(found, pictures=0, free=0.0).can_fit
+
+
+def test_a_night_that_the_disk_cannot_hold_is_refused_with_the_numbers_or_begun_anyway(
+    out_root: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    film_fixture.write(Shot(turns=2, seconds_per_turn=1.0), "four_bar")
+    began: list[str] = []
+    monkeypatch.setattr(night, "fresh_steps", lambda _: {})
+    monkeypatch.setattr(night, "_table", lambda *_: None)
+    monkeypatch.setattr(Coordinator, "go", lambda self: began.append("run") or True)
+    monkeypatch.setattr(background, "_launch", lambda *_: began.append("start") or "")
+    monkeypatch.setattr(background, "_begun", lambda _: runs.Run(1))
+    monkeypatch.setattr(told.shutil, "disk_usage", lambda _: SimpleNamespace(free=250e6))
+    asked = Options(("four_bar",), PRESETS["final"])
+    assert night.run(asked) == 1
+    said = capsys.readouterr().err
+    assert "pictures of final are still to be made and need " in said
+    assert "has 250 MB free, of which 200 MB stay free" in said
+    assert "error: four_bar" not in said
+    with pytest.raises(UserError, match="ANYWAY=1 begins all the same"):
+        background.start(asked)
+    assert not began
+    night.run(replace(asked, anyway=True))
+    background.start(replace(asked, anyway=True))
+    night.run(replace(asked, preset=PRESETS["draft"]))
+    assert began == ["run", "start", "run"]
+
+
+def test_a_disk_that_turns_out_too_small_when_the_forecast_stands_ends_the_night_before_its_films(
+    out_root: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    film_fixture.write(Shot(turns=2, seconds_per_turn=1.0), "four_bar")
+    monkeypatch.setattr(
+        night, "fresh_steps", lambda _: {"four_bar": [step.name for step in STEPS if step.name != FILM]}
+    )
+    monkeypatch.setattr(night, "refuse_before_start", lambda *_: None)
+    monkeypatch.setattr(told.shutil, "disk_usage", lambda _: SimpleNamespace(free=250e6))
+    assert night.run(Options(("four_bar",), PRESETS["final"], python="/bin/false")) == 1
+    said = capsys.readouterr()
+    assert "forecast: 1 film, " in said.out
+    assert "ANYWAY=1 begins all the same" in said.err
+    found = record.read(runs.Run(1))
+    assert found is not None
+    assert found.ended == "failed"
+    assert found.films["four_bar"].steps[FILM] == "waiting"

@@ -1,0 +1,30 @@
+"""Whether a night is begun at all: not where the disk surely cannot hold its pictures."""
+
+from __future__ import annotations
+
+from shared.stage.errors import UserError
+from shared.stage.paths import out_root
+from studio.night.plan.options import Options
+from studio.night.progress.forecast import RESERVE, Forecast, forecast, size
+from studio.night.progress.frames import Frames
+
+
+def refuse_before_start(asked: Options, names: tuple[str, ...]) -> None:
+    """Raise UserError where films of ``names`` that were solved already surely need more than the disk has."""
+    if asked.anyway:
+        return
+    films = [Frames(name, asked.preset) for name in names]
+    known = [film for film in films if film.read(asked.show)]
+    refuse(asked, forecast(known, len(films) - len(known), asked.preset, out_root()))
+
+
+def refuse(asked: Options, found: Forecast) -> None:
+    """Raise UserError with the numbers where ``found`` surely exceeds what is free, and nobody said ANYWAY."""
+    if asked.anyway or found.can_fit or found.free is None:
+        return
+    raise UserError(
+        f"{found.pictures} pictures of {asked.preset.name} are still to be made and need {size(found.least)} of disk "
+        f"at the least; {out_root()} has {size(found.free)} free, of which {size(RESERVE)} stay free. Free some space, "
+        "take a smaller PRESET, or set MBSD_OUT to another disk; ANYWAY=1 begins all the same and makes films as long "
+        "as there is room"
+    )

@@ -27,13 +27,20 @@ from shared.stage.paths import ROOT
 
 COUNTS = ((64, 100), (64, 1000), (64, 10_000), (8, 10_000), (1, 1000))
 """Workers and tasks."""
-SECONDS, TASKS = 0.5, 40
-"""Processor time of a task, and how many there are, for two workers against one."""
+SECONDS, TASKS = 0.5, 60
+"""Of a task, and how many there are, for two workers against one."""
 WANTED = 1.8
+IDLE = 0.5
+"""Load of the machine, in cores, up to which tasks that take processor time say something."""
 
 
 def measured() -> int:
-    """Print both tables; 1 if two workers do less than 1.8 times the work of one."""
+    """Print the table and the ratio; 1 if two workers do less than 1.8 times the work of one.
+
+    Tasks that wait need no core, so a machine that others use tells of them what the deal itself costs. On one that
+    does nothing else tasks that take processor time are measured as well.
+    """
+    load = os.getloadavg()[0]
     with tempfile.TemporaryDirectory() as folder:
         os.environ["MBSD_OUT"] = folder
         print("| workers | tasks | in groups of | wall, ms a task | coordinator, ms a task | scheduler, ms a task |")
@@ -41,13 +48,18 @@ def measured() -> int:
         for workers, tasks in COUNTS:
             for largest in (1, hand.LARGEST):
                 print(_row(workers, tasks, largest), flush=True)
-        one, two = _burnt(1), _burnt(2)
-    ratio = one / two
-    say(
-        "bench",
-        f"{TASKS} tasks of {SECONDS} s: one worker {one:.1f} s, two on separate cores {two:.1f} s: {ratio:.2f}x",
-    )
-    return 0 if ratio >= WANTED else 1
+        ratios = [_ratio(work.waiting, f"{SECONDS} s each")]
+        if load <= IDLE:
+            ratios.append(_ratio(work.burning, f"{SECONDS} s of processor time each"))
+        else:
+            say("bench", f"a load of {load:.1f}: tasks that take processor time were left out")
+    return 0 if min(ratios) >= WANTED else 1
+
+
+def _ratio(task: Callable[..., Any], what: str) -> float:
+    one, two = _taken(1, task), _taken(2, task)
+    say("bench", f"{TASKS} tasks, {what}: one worker {one:.1f} s, two on separate cores {two:.1f} s: {one / two:.2f}x")
+    return one / two
 
 
 def _row(workers: int, tasks: int, largest: int) -> str:
@@ -69,15 +81,15 @@ def _row(workers: int, tasks: int, largest: int) -> str:
     return f"| {workers} | {tasks} | {largest} | {costs} |"
 
 
-def _burnt(workers: int) -> float:
+def _taken(workers: int, task: Callable[..., Any]) -> float:
     """Wall seconds of all tasks by workers with a core each."""
     pinned = [["taskset", "-c", str(core)] if sys.platform == "linux" else [] for core in range(workers)]
     with _cluster([[*pin, *worker_command("ADDRESS", "127.0.0.1", f"w{n}")] for n, pin in enumerate(pinned)]) as (
         where,
         _,
     ):
-        _deal(where, workers, work.burning, dict.fromkeys(map(str, range(workers)), 0.01))
-        return _deal(where, workers, work.burning, dict.fromkeys(map(str, range(TASKS)), SECONDS))
+        _deal(where, workers, task, dict.fromkeys(map(str, range(workers)), 0.01))
+        return _deal(where, workers, task, dict.fromkeys(map(str, range(TASKS)), SECONDS))
 
 
 def _deal(where: str, workers: int, task: Callable[..., Any], orders: dict[str, Any]) -> float:

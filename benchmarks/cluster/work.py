@@ -16,6 +16,12 @@ def nothing(files: Mapping[str, Path], common: str, order: Any) -> bytes:
     return PICTURE
 
 
+def waiting(files: Mapping[str, Path], common: str, order: float) -> float:
+    """So many seconds that take no core."""
+    time.sleep(order)
+    return order
+
+
 def burning(files: Mapping[str, Path], common: str, order: float) -> float:
     """So many seconds of processor time; returns the seconds that passed."""
     started, end = time.perf_counter(), time.thread_time() + order

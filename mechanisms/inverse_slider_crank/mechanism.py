@@ -4,9 +4,12 @@ The slider follows its wished law; what is computed is the torque of a motor on 
 
 from dataclasses import dataclass
 from math import cos, pi
+from typing import TYPE_CHECKING
 
 from mbsd import Mechanism, function
-from mbsd.results.solution import Solution
+
+if TYPE_CHECKING:  # a result loads the compiler
+    from mbsd import Solution
 
 
 @dataclass(frozen=True)
@@ -41,6 +44,6 @@ def place(p: Params, t: float) -> float:
     return p.near + (p.far - p.near) * ((1 - cos(2 * pi * t / p.time)) / 2) ** 2
 
 
-def motion(m: Mechanism, p: Params) -> Solution:
+def motion(m: Mechanism, p: Params) -> "Solution":
     """The sweep with the motor's torque in place of the driver's force."""
     return m.inverse_dynamics(m.sweep(), ["motor"]).solution

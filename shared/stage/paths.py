@@ -10,6 +10,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from shared.stage.errors import UserError
+from shared.stage.memory import recalled
 from shared.stage.suggestions import did_you_mean
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -30,11 +31,13 @@ def refuse_links(path: Path) -> None:
     Stages overwrite and delete what is no longer theirs in these folders, so they must not lead to files of others.
     :func:`out_root` itself and what is above it may be links: that is how results go to another disk.
     """
+    recalled(("no link", path, os.environ.get("MBSD_OUT")), lambda: _refuse_links(path))
+
+
+def _refuse_links(path: Path) -> str:
     root = Path(os.path.abspath(out_root()))
     path = Path(os.path.abspath(path))
-    if not path.is_relative_to(root):
-        return
-    below = [path, *path.parents][: len(path.parts) - len(root.parts)]
+    below = [path, *path.parents][: len(path.parts) - len(root.parts)] if path.is_relative_to(root) else []
     for place in reversed(below):
         if place.is_symlink():
             raise UserError(
@@ -42,6 +45,7 @@ def refuse_links(path: Path) -> None:
                 f"must not be a link: remove it (rm {shlex.quote(str(place))}). For results on another disk, make "
                 f"{root} itself a link or set MBSD_OUT"
             )
+    return ""
 
 
 def canonical_name(name: str) -> str:

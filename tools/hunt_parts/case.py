@@ -137,7 +137,7 @@ def overlapping(pieces: list[MeshPiece]) -> str:
 def proven(m: Mechanism, solution: Solution, bodies: Bodies, pieces: list[MeshPiece]) -> str:
     """The nearest pair. Raises UserError if two pieces of different bodies come too near."""
     from mechanisms.stages.clearance.stage import check
-    from mechanisms.stages.parts.stage import spans
+    from mechanisms.stages.parts.described_body import spans
     from mechanisms.stages.solve.motion_file import to_motion
     from shared.contract import BodyParts, Mass, Parts, Provenance
 

@@ -12,6 +12,7 @@ from contextlib import suppress
 
 from shared.stage.paths import ROOT
 
+COMMAND = [sys.executable, "-m", "mechanisms"]
 Told = Callable[[str], None]
 NICE = 10
 """The parts wait for the page, not the page for them."""
@@ -54,7 +55,7 @@ class Stages:
 
     async def _stage(self, *words: str) -> bool | None:
         stage, *options = words
-        command = [sys.executable, "-m", "mechanisms", stage, self.name, *options]
+        command = [*COMMAND, stage, self.name, *options]
         environment = os.environ | {"NO_COLOR": "1", "TERM": "dumb"}
         process = await asyncio.create_subprocess_exec(
             *command, cwd=ROOT, env=environment, stdin=asyncio.subprocess.DEVNULL, stdout=PIPE, stderr=STDOUT,

@@ -24,10 +24,12 @@ class Board:
         self.payload: bytes | None = None
         """Of the last good motion."""
         self.solid: bytes | None = None
-        """Of the last good motion as its file has it, what the page says of the parts."""
+        """Of the last good motion as its file has it, what the page says of its parts, with numbers of that motion."""
         self.error: str | None = None
         self._stop: dict[str, Any] | None = None
         self._lines: list[str] = []
+        self._again = False
+        """Whether the same files are being solved once more."""
 
     def tell(self, header: dict[str, Any], payload: bytes = b"", replaces: bool = False) -> None:
         """Send all pages a message."""
@@ -41,20 +43,24 @@ class Board:
             out.append(framed({"kind": "solid"}, self.solid))
         return out
 
-    def begin(self) -> None:
-        """The files are being solved."""
-        self._lines = []
-        self.tell({"kind": "solving"})
+    def begin(self, parts_ready: bool = False) -> None:
+        """The files are being solved; once more, where ``parts_ready``: what was printed about the parts stays."""
+        self._again = parts_ready
+        if not parts_ready:
+            self._lines = []
+        self.tell({"kind": "solving", "again": parts_ready})
 
-    def solved(self, numbers: list[dict[str, Any]]) -> None:
-        """They are, and Params has these numbers; parts of other numbers are taken away."""
-        self.error = None
-        if numbers != self.numbers and self.solid is not None:
-            self.solid = None
+    def solved(self, numbers: list[dict[str, Any]]) -> bool:
+        """They are, and Params has these numbers; parts of other numbers are taken away. Whether some stay in sight."""
+        self.error, self._again = None, False
+        seen, self.solid = self.solid is not None, None  # it has numbers of the motion before
+        if numbers != self.numbers and seen:
+            seen = False
             self.tell({"kind": "solid"})
         self.numbers = numbers
         self.history.keep({number["name"] for number in numbers})
         self.tell({"kind": "solved", "numbers": numbers, **self._values()})
+        return seen
 
     def motion(self, header: dict[str, Any], payload: bytes, values: dict[str, float]) -> None:
         """A new motion, with these numbers other than the file's."""
@@ -75,7 +81,9 @@ class Board:
         self.tell({"kind": "error", "text": text})
 
     def line(self, text: str) -> None:
-        """Something was printed."""
+        """Something was printed; what was said already, before there were parts, is not said again."""
+        if self._again and text in self._lines:
+            return
         self._lines = [*self._lines, text][-LINES:]
         self.tell({"kind": "line", "text": text})
 

@@ -35,7 +35,9 @@ class Session:
         self._new: Child | None = None
         self._wish: dict[str, Any] | None = None
         self._wished: dict[str, Any] | None = None
-        self._parts_ready = False
+        self._parts_ready = self._solid_wanted = False
+        self._opened: dict[str, float] = {}
+        """Numbers with which the files are being solved."""
         self.stages = Stages(name, self.board.line, self._parts_made)
         self.fit = Fit(name, nursery, self.board.tell, self._fitted)
 
@@ -55,9 +57,9 @@ class Session:
         self._parts_ready = parts_ready
         if self._new is not None:
             self._new.kill()
-        self.board.begin()
-        self._new = self._nursery.child(self.name, self._heard_new)
-        self._new.ask(next(self._count), {"do": "open", "values": self.history.now})
+        self.board.begin(parts_ready)
+        self._new, self._opened = self._nursery.child(self.name, self._heard_new), self.history.now
+        self._new.ask(next(self._count), {"do": "open", "values": self._opened})
 
     def _heard_new(self, child: Child, header: dict[str, Any], payload: bytes) -> None:
         match header.get("kind"):
@@ -74,14 +76,17 @@ class Session:
                 self._new = None
                 if self._good is not None:
                     self._good.kill()
-                self._good = child
-                self.board.solved(header["numbers"])
-                self.board.motion(header, payload, self.history.now)
-                if self._parts_ready:
-                    self._parts_ready = False
-                    self._solve({"do": "solid"})
-                else:
+                self._good, self._wish = child, None  # what waited for the old child is in the history, or was let go
+                shown = self.board.solved(header["numbers"])
+                self.board.motion(header, payload, self._opened)
+                self._solid_wanted = shown or self._parts_ready
+                if not self._parts_ready:
                     self._make_parts()
+                self._parts_ready = False
+                if self.history.now != self._opened:  # numbers were set meanwhile
+                    self._solve({"do": "set", "values": self.history.now, "final": True})
+                else:
+                    self._go_on()
             case _:
                 self._heard(child, header, payload)
 
@@ -191,14 +196,22 @@ class Session:
         if child.ended:
             self._good = None
             self.reload()
-        elif self._wish is not None:
+        else:
+            self._go_on()
+
+    def _go_on(self) -> None:
+        """Let the good child do what waits."""
+        if self._wish is not None:
             self._solve(self._wish)
+        elif self._solid_wanted:
+            self._solid_wanted = False
+            self._solve({"do": "solid"})
 
     # -- the rest ---------------------------------------------------------------------------------------------------
 
     def greeting(self) -> list[bytes]:
         """What a page gets that has just opened."""
-        return self.board.greeting(name=self.name, solving=self._new is not None)
+        return self.board.greeting(name=self.name, solving=self._new is not None, making=self.stages.running)
 
     def end(self) -> None:
         """End all that runs for it."""

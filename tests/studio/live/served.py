@@ -7,9 +7,10 @@ import json
 import multiprocessing.forkserver
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import pytest
@@ -154,11 +155,18 @@ def blank(_: Session) -> bytes:
 
 @contextmanager
 def served(
-    folder: Path, name: str, source: str, limit: float, parts: bool = False, show: Callable[[Session], bytes] = blank
+    folder: Path,
+    name: str,
+    source: str,
+    limit: float,
+    parts: bool = False,
+    show: Callable[[Session], bytes] = blank,
+    files: Mapping[str, str] = MappingProxyType({}),
 ) -> Iterator[Served]:
     """A server of one mechanism of a test's own."""
     (folder / name).mkdir(parents=True)
-    (folder / name / "mechanism.py").write_text(source)
+    for file, text in {"mechanism.py": source, **files}.items():
+        (folder / name / file).write_text(text)
     patch = pytest.MonkeyPatch()
     patch.setenv(elsewhere.FOLDER, str(folder))
     patch.setattr(children, "WARM", ["tests.studio.live.elsewhere"])

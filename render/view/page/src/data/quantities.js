@@ -71,7 +71,7 @@ function overview(payload) {
   const spins = Object.entries(bodies).filter(([, one]) => some([one.omega])).map(([name, one]) => [name, one.omega]);
   if (spins.length) charts.push(chart("Angular velocities", "rad/s", ...spins.slice(0, 6)));
   if (some([energy.kinetic], energy.potential)) charts.push(chart("Energy", "J", ["kinetic", energy.kinetic], ["potential", energy.potential]));
-  charts.push(chart("Distance from singular poses", "1", ["margin", payload.margin]));
+  if (varies(payload.margin)) charts.push(chart("Distance from singular poses", "1", ["margin", payload.margin]));
   return charts;
 }
 
@@ -79,6 +79,12 @@ function size(u, v) {
   const out = new Float32Array(u.length);
   for (let k = 0; k < out.length; k++) out[k] = Math.hypot(u[k], v[k]);
   return out;
+}
+
+/** Whether a curve says more than one number. */
+function varies(values) {
+  const low = values.reduce((a, b) => Math.min(a, b), Infinity), high = values.reduce((a, b) => Math.max(a, b), -Infinity);
+  return high - low > 1e-6 * Math.max(Math.abs(low), Math.abs(high));
 }
 
 /** Whether any of these is more than rounding beside the others. */

@@ -78,16 +78,20 @@ export class Live {
         this.numbers(header);
         await this.motion(header, payload);
         this.failed(header.error);
-        if (header.solving) this.says("solving");
+        this.making = header.making;
+        this.says(header.solving ? "solving" : this.error === undefined ? this.idle : this.state.textContent, this.state.dataset.kind);
         break;
-      case "solving": this.printed([], true); this.says("solving"); break;
+      case "solving": if (!header.again) this.printed([], true); this.says("solving"); break;
       case "solved": this.numbers(header); this.failed(null); break;
       case "motion": await this.motion(header, payload); break;
       case "solid": app.update(payload.length ? await this.decode(payload) : { solid: null }); break;
       case "values": this.history(header); break;
       case "error": this.failed(header.text); break;
       case "refused": this.refused(header.text); break;
-      case "parts": this.says({ making: "making parts", ready: "", failed: "no parts" }[header.state] ?? ""); break;
+      case "parts":
+        this.making = header.state === "making";
+        if (this.error === undefined) this.says(header.state === "failed" ? "no parts" : this.idle);
+        break;
       case "line": this.printed([header.text]); break;
       case "progress": case "fitted": this.fit.take(header);
     }
@@ -102,8 +106,11 @@ export class Live {
     this.app.update(patch);
     this.fit.update();
     this.frames++;
-    if (this.error === undefined) this.says("");
+    if (this.error === undefined) this.says(this.idle);
   }
+
+  /** What is said while nothing is solved. */
+  get idle() { return this.making ? "making parts" : ""; }
 
   numbers(header) {
     this.file = header.numbers;
@@ -122,7 +129,7 @@ export class Live {
   failed(text) {
     this.error = text ?? undefined;
     this.app.notice(text, "error");
-    this.says(text ? "error in the file; this is the last good motion" : "", text ? "bad" : "");
+    this.says(text ? "error in the file; this is the last good motion" : this.idle, text ? "bad" : "");
   }
 
   refused(text) {
@@ -150,5 +157,6 @@ export class Live {
     const kept = anew ? [] : this.lines.textContent.split("\n").filter(Boolean);
     this.lines.textContent = [...kept, ...lines].slice(-LINES).join("\n");
     this.lines.hidden = !this.lines.textContent;
+    this.lines.scrollTop = this.lines.scrollHeight;
   }
 }

@@ -17,16 +17,16 @@ export class Stage {
     this.update();
   }
 
-  get flat() { return !this.solid || this.app.store.state.view === "2d"; }
+  /** The 3D view stays where parts are taken away: its canvas serves one renderer alone. */
+  get flat() { return !this.solid || !this.app.payload.solid || this.app.store.state.view === "2d"; }
   get shown() { return this.flat ? this.plane : this.solid; }
 
   /** Take what the app's payload is now. */
   update() {
     this.plane.update();
     const { app } = this, { solid } = app.payload;
-    if (!solid) this.solid = null;
-    else if (this.solid) this.solid.update();
-    else if (!this.missing) {
+    if (solid && this.solid) this.solid.update();
+    else if (solid && !this.missing) {
       try {
         this.solid = new Solid(app.parts.canvases.solid, app);
         this.resize();

@@ -72,5 +72,12 @@ export class Parts {
     this.mixer?.setTime(Math.min(motion.t - motion.start, this.length * (1 - 1e-7)));
   }
 
+  /** Others take their place. */
+  dispose() {
+    this.group.removeFromParent();
+    this.group.traverse((one) => { one.geometry?.dispose(); });
+    for (const material of this.materials) material.dispose();
+  }
+
   glass(on) { for (const material of this.materials) setGlass(material, on); }
 }

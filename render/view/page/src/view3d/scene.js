@@ -53,7 +53,7 @@ export class Solid {
   update() {
     const { payload, motion } = this.app, { solid } = payload;
     if (this.parts?.solid !== solid) {
-      if (this.parts) this.machine.remove(this.parts.group);
+      this.parts?.dispose();
       this.parts = new Parts(solid, this.soft, () => this.app.redraw());
       this.machine.add(this.parts.group);
       this.radius = solid.size / 2;

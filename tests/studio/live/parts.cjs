@@ -1,0 +1,74 @@
+/** Parts in a live page: node parts.cjs ADDRESS FOLDER. What to write into the files is asked for on standard output. */
+const path = require("node:path");
+const readline = require("node:readline");
+const { launch } = require(path.resolve(__dirname, "../../../render/view/page/browser/browser.cjs"));
+
+const [address, folder] = process.argv.slice(2);
+const lines = readline.createInterface({ input: process.stdin })[Symbol.asyncIterator]();
+const ask = async (word, what = "ask") => { console.log(`${what} ${word}`); await lines.next(); };
+
+async function main() {
+  const browser = await launch(), saw = {}, errors = [];
+  const context = await browser.newContext({ viewport: { width: 900, height: 640 }, colorScheme: "dark", reducedMotion: "reduce" });
+  const page = await context.newPage();
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && !/GPU stall|GL Driver/.test(message.text()) && errors.push(message.text()));
+  page.on("pageerror", (error) => errors.push(String(error.stack ?? error)));
+  const until = (f, argument) => page.waitForFunction(f, argument, { timeout: 120000 }).catch(async (error) => { throw new Error(`${error.stack} ${await page.evaluate(() => document.querySelector(".live")?.innerText)}`); });
+  const picture = (name) => page.screenshot({ path: `${folder}/parts-${name}.png` });
+  const state = () => page.evaluate(() => ({ solid: !!mbsd.app.payload.solid, state: document.querySelector(".live .state").textContent }));
+  /** Length of the crank's piece (m), once parts of about that length are shown and nothing more is awaited. */
+  const shown = async (length) => {
+    await until((wanted) => {
+      const { solid } = mbsd.app.payload, parts = mbsd.app.stage.solid?.parts;
+      if (!solid || !parts || document.querySelector(".live .state").textContent) return false;
+      const { boundingBox } = (parts.meshes[0].geometry.computeBoundingBox(), parts.meshes[0].geometry);
+      window.found = boundingBox.max.x - boundingBox.min.x;
+      return Math.abs(window.found - wanted) < 0.01;
+    }, length);
+    return page.evaluate(() => window.found);
+  };
+  const tip = (length) => until((wanted) => Math.abs(mbsd.app.payload.points.P.x[0] - wanted) < 1e-6, length);
+  await page.goto(address);
+  await until(() => document.querySelector(".live .state")?.textContent === "making parts");
+  saw.first = await state();
+  saw.parts = await shown(0.2);
+  await picture("first");
+
+  await ask("longer");
+  await tip(0.3);
+  await until(() => document.querySelector(".live .state").textContent === "making parts");
+  saw.longer = await state();
+  await ask("longer", "count");
+  await ask("break");
+  await until(() => /error in the file/.test(document.querySelector(".live .state").textContent));
+  saw.notice = await page.locator(".notice").textContent();
+  await ask("broken", "count");
+  await ask("cure");
+  await tip(0.2);
+  saw.cured = await shown(0.2);
+
+  await page.evaluate(() => {
+    window.seen = { gone: 0, uneven: 0 };
+    const { app } = mbsd, update = app.update.bind(app);
+    app.update = (patch) => {
+      update(patch);
+      window.seen.gone += !app.payload.solid;
+      window.seen.uneven += app.payload.bodies.crank.theta.length !== app.payload.time.length;
+    };
+  });
+  await ask("finer");
+  await until(() => mbsd.app.payload.time.length === 37);
+  await shown(0.2);
+  saw.finer = { steps: await page.evaluate(() => mbsd.app.payload.time.length), ...(await page.evaluate(() => window.seen)) };
+
+  await ask("wrong");
+  await until(() => /no parts/.test(document.querySelector(".live .state").textContent));
+  saw.wrong = await page.locator(".printed").textContent();
+  saw.kept = (await state()).solid;
+  await picture("wrong");
+  saw.errors = errors;
+  await browser.close();
+  process.stdout.write(`saw ${JSON.stringify(saw)}\n`, () => process.exit(0));
+}
+
+main().catch((error) => { console.log(`failed ${error.stack}`); process.exit(1); });

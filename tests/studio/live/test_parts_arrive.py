@@ -1,0 +1,102 @@
+"""Parts come when they are made: the skeleton is there first, errors and newer files end what is being made."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+
+from render.view.bundle import node, node_modules
+from studio.live import background
+from studio.live.page import page
+from tests.studio.live.served import ARM, served
+
+SCRIPT = Path(__file__).parent / "parts.cjs"
+PARTS = '''"""A box for the crank."""
+
+import cadquery as cq
+
+from mechanisms.arm.mechanism import Params
+from shared.shapes.solid import Solid
+
+
+def parts(p: Params) -> dict[str, list[Solid]]:
+    """One piece."""
+    box = cq.Workplane().box(1000 * p.length, 20, 10, centered=(False, True, False))
+    return {"crank": [Solid("bar", box, "aluminium", 0)]}
+'''
+SLOW = "import time\n\ntime.sleep(300)\n" + PARTS
+WRONG = "raise RuntimeError('no unobtainium')\n"
+BROKEN = ARM.replace("p.length", "p.lenght")
+
+
+def long(length: float) -> str:
+    return ARM.replace("length: float = 0.2 ", f"length: float = {length!r} ")
+
+
+def test_parts_follow_the_skeleton(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "mechanisms"
+    monkeypatch.setenv("MBSD_TEST_PARTS", str(folder))
+    monkeypatch.setattr(background, "COMMAND", [sys.executable, "-m", "tests.studio.live.stage"])
+    environment = os.environ | {"NODE_PATH": str(node_modules())}
+    edits = {
+        "longer": [("parts.py", SLOW), ("mechanism.py", long(0.3))],
+        "break": [("mechanism.py", BROKEN)],
+        "cure": [("parts.py", PARTS), ("mechanism.py", ARM)],
+        "finer": [("mechanism.py", ARM.replace("STEPS = 24", "STEPS = 36"))],
+        "wrong": [("parts.py", WRONG)],
+    }
+    left: dict[str, int] = {}
+    with served(folder, "arm", ARM, 200.0, parts=True, show=page, files={"parts.py": PARTS}) as live:
+        command = [str(node()), str(SCRIPT), live.live.address, os.environ.get("MBSD_PICTURES", str(tmp_path))]
+        with subprocess.Popen(
+            command, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1
+        ) as browser:
+            assert browser.stdout is not None
+            assert browser.stdin is not None
+            word = told = ""
+            for line in browser.stdout:
+                word, _, told = line.partition(" ")
+                if word == "count":
+                    left[told.strip()] = _stages(0 if told.strip() == "broken" else None)
+                elif word == "ask":
+                    for file, text in edits[told.strip()]:
+                        live.write(text, file)
+                else:
+                    break
+                browser.stdin.write("done\n")
+                browser.stdin.flush()
+            rest = browser.stdout.read()
+    assert word == "saw", told + rest
+    saw = json.loads(told)
+    assert saw["errors"] == []
+    assert saw["first"] == {"solid": False, "state": "making parts"}
+    assert saw["parts"] == pytest.approx(0.2, abs=0.001)
+    assert saw["longer"] == {"solid": False, "state": "making parts"}, "the old parts have the wrong length"
+    assert left == {"longer": 1, "broken": 0}, "an error ends the older run"
+    assert "lenght" in saw["notice"]
+    assert saw["cured"] == pytest.approx(0.2, abs=0.001)
+    assert saw["finer"] == {"steps": 37, "gone": 0, "uneven": 0}, "parts stay in sight while only the motion changes"
+    assert "unobtainium" in saw["wrong"]
+    assert saw["kept"], "the last parts"
+
+
+def _stages(wanted: int | None) -> int:
+    """Processes that make parts; where some must end, they get a moment to do so."""
+    ends = time.monotonic() + 20
+    while True:
+        found = 0
+        for one in psutil.Process().children(recursive=True):
+            try:
+                found += one.status() != psutil.STATUS_ZOMBIE and "tests.studio.live.stage" in one.cmdline()
+            except psutil.NoSuchProcess:
+                continue
+        if wanted is None or found == wanted or time.monotonic() > ends:
+            return found
+        time.sleep(0.1)

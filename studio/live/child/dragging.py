@@ -4,23 +4,28 @@ Of all numbers x with P(x) = to, the one nearest to those x0 at which the drag b
 
     x <- x0 + s^2 J^T (J s^2 J^T)^-1 (to - P(x) + J (x - x0)),    J = dP / dx
 
-Numbers that move a driver (a speed) are left alone, and whole ones.
+Numbers that move a driver (a speed) are left alone, and whole ones. Where drivers decide the motion, P is the place at
+the moment of the drag; where forces do, it is that of the start pose, which lengths and start angles decide.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from mbsd import Mechanism, MechanismError
 from mbsd.arrays.packing import pack
+from mbsd.kinematics.pose.initial import start_pose
 from mbsd.synthesis.designs import Designs
 from mbsd.synthesis.varied import Varied
 from shared.stage.errors import UserError
 from studio.live.child.author import Author
 from studio.live.numbers import numbers_of
 
+Places = Callable[[np.ndarray], np.ndarray]
+"""Numbers (n, k) in, places (n, 2) out (m); NaN where the links do not close."""
 DRAGGED = "dragged by the page"
 """The name of the trace that follows what is dragged."""
 DIFFERENCE = 1e-6
@@ -45,11 +50,8 @@ def dragged(
     """
     names, start = lengths(author, values)
     base = _traced(author, values, {}, thing)
-    if not base.drivers:
-        raise UserError(
-            f"{author.name}: forces move it, so no length decides where '{thing['name']}' is at {time:g} s; "
-            "change its numbers by their sliders"
-        )
+    if base.mobility().dof > len(base.drivers):
+        return _at_start(author, values, thing, time, to, base)
     size = np.where(np.abs(start) > 0, np.abs(start), max(float(np.abs(start).max(initial=0.0)), 1e-6))
     delta = DIFFERENCE * size
 
@@ -62,8 +64,56 @@ def dragged(
         designs = Designs(base, varied, build, DRAGGED, {True: grid, False: grid}, grashof=False)
     except MechanismError as error:
         raise UserError(str(error)) from error
-    x = _nearest(designs, start, size, delta, np.asarray(to, float))
+
+    def places(x: np.ndarray) -> np.ndarray:
+        found = designs(x)
+        return np.where(found.closes[:, None], found.path[:, -1], np.nan)
+
+    x = _nearest(places, designs.ready.packed.size, start, size, delta, np.asarray(to, float))
     return values | {name: float(value) for name, value in zip(names, x, strict=True)}
+
+
+def _at_start(
+    author: Author, values: dict[str, float], thing: dict[str, str], time: float, to: list[float], base: Mechanism
+) -> dict[str, float]:
+    """Where forces move the mechanism: numbers that put the thing there in the start pose."""
+    if time > 0:
+        raise UserError(
+            f"{author.name}: forces move it, so numbers decide where '{thing['name']}' is at its start alone, not at "
+            f"{time:g} s; go to the start (Home) and drag it there"
+        )
+    now = {number.name: number.value for number in numbers_of(author.changed(values)) if not number.whole}
+    names, start, extent = list(now), np.array(list(now.values())), pack(base).size
+    delta = DIFFERENCE * np.where(start == 0, max(extent, 1.0), np.abs(start))
+
+    def places(x: np.ndarray) -> np.ndarray:
+        return np.array(
+            [_start_place(author, values | dict(zip(names, map(float, row), strict=True)), thing) for row in x]
+        )
+
+    around = places(np.vstack([start, start + np.diag(delta)]))
+    moving = np.hypot(*(around[1:] - around[0]).T) > 1e-4 * DIFFERENCE * extent  # masses, springs and dampers do not
+    if not moving.any():
+        raise UserError(f"{author.name}: no number of Params decides where '{thing['name']}' is at the start")
+    names, start, delta = [name for name, one in zip(names, moving, strict=True) if one], start[moving], delta[moving]
+    size = np.where(start == 0, max(float(np.abs(start).max()), extent), np.abs(start))
+    x = _nearest(places, extent, start, size, delta, np.asarray(to, float))
+    return values | {name: float(value) for name, value in zip(names, x, strict=True)}
+
+
+def _start_place(author: Author, values: dict[str, float], thing: dict[str, str]) -> np.ndarray:
+    try:
+        m = _traced(author, values, {}, thing)
+        packed = pack(m)
+        packed.settle_laws(0.0, 1.0)
+        q = start_pose(m, packed, 0.0, packed.drives(np.zeros(1))[0])[0].reshape(-1, 3)
+    except (MechanismError, UserError):
+        return np.full(2, np.nan)
+    marker = m.traces[DRAGGED]
+    body = packed.body_names.index(marker.body.name)
+    x, y = np.array([marker.x, marker.y]) - packed.com[body]
+    c, s = np.cos(q[body, 2]), np.sin(q[body, 2])
+    return q[body, :2] + (c * x - s * y, s * x + c * y)
 
 
 def lengths(author: Author, values: dict[str, float]) -> tuple[list[str], np.ndarray]:
@@ -86,17 +136,17 @@ def lengths(author: Author, values: dict[str, float]) -> tuple[list[str], np.nda
     return author.steady, np.array([now[name] for name in author.steady])
 
 
-def _nearest(designs: Designs, start: np.ndarray, size: np.ndarray, delta: np.ndarray, to: np.ndarray) -> np.ndarray:
-    """The numbers (k,) that bring the end of the path to ``to``, nearest to ``start``."""
+def _nearest(
+    places: Places, extent: float, start: np.ndarray, size: np.ndarray, delta: np.ndarray, to: np.ndarray
+) -> np.ndarray:
+    """The numbers (k,) that bring the thing to ``to``, nearest to ``start``."""
     least = np.where(start > 0, LEAST * size, -np.inf)
     most = np.where(start < 0, -LEAST * size, np.inf)
-    extent = designs.ready.packed.size
     x = best = start
     off = np.inf
     for _ in range(ROUNDS):
-        found = designs(np.vstack([x, x + np.diag(delta)]))
-        place = found.path[:, -1]
-        if not found.closes.all():
+        place = places(np.vstack([x, x + np.diag(delta)]))
+        if not np.isfinite(place).all():
             x = (x + best) / 2  # too far: it does not close there
             continue
         gap = to - place[0]

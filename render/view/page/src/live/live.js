@@ -54,8 +54,16 @@ export class Live {
 
   /** While a joint or point is dragged in the 2D view: phase is start, move or end. */
   drag(thing, to, phase) {
-    const { store } = this.app;
-    if (phase === "start") store.set({ playing: false });
+    const { store, payload, clock } = this.app;
+    if (phase === "start") {
+      store.set({ playing: false });
+      this.late = payload.analysis !== "sweep" && store.state.time > clock.start;
+      if (this.late) {
+        store.set({ time: clock.start });
+        this.refused(`Forces move this machine, so its numbers decide where ${thing.name} is at the start alone. This is the start: drag it here.`);
+      }
+    }
+    if (this.late) return;
     this.moving = phase !== "end"; // a move that waits for its frame is not sent after the end
     const wish = { do: "drag", thing, time: store.state.time, to, final: phase === "end", arrows: this.arrows };
     if (phase === "end") this.say(wish);

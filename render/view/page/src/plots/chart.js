@@ -76,7 +76,7 @@ function room(_, low, high) {
 
 function shortest(ticks) {
   const top = Math.max(...ticks.map(Math.abs));
-  if (top && (top < 1e-3 || top >= 1e5)) return ticks.map((tick) => (tick ? tick.toExponential(0).replace("e+", "e") : "0").replace("-", "−"));
+  if (top && (top < 1e-3 || top >= 1e5)) return ticks.map((tick) => (tick ? Number(tick.toPrecision(3)).toExponential().replace("e+", "e") : "0").replaceAll("-", "−"));
   return ticks.map((tick) => String(Number(tick.toPrecision(6))).replace("-", "−"));
 }
 

@@ -33,6 +33,7 @@ def stl_bytes(solid: Any, tolerance: float | None = None) -> bytes:
     normals that differ in their last bits. Raises UserError if the kernel cannot write its file.
     """
     volume, tolerance = solid.Volume(), tolerance or TOLERANCE
+    solid = _ruled(solid)
     for finer in (1, 2, 4):
         triangles = _mesh(solid, tolerance / finer, ANGLE / finer)
         if abs(_volume(triangles["corners"].astype(float)) / volume - 1) < VOLUME_GOAL:
@@ -58,6 +59,19 @@ def _before(p: np.ndarray, q: np.ndarray) -> np.ndarray:
     """(n,): whether points p (n, 3) come before q: by x, of equal ones by y, then by z."""
     (px, py, pz), (qx, qy, qz) = p.T, q.T
     return (px < qx) | ((px == qx) & ((py < qy) | ((py == qy) & (pz < qz))))
+
+
+def _ruled(solid: Any) -> Any:
+    """The solid with its extruded curves as B-spline surfaces, which are the same surfaces.
+
+    Of an extruded spline the kernel divides the height as finely as the curve and makes a hundred times the triangles,
+    whose corners stand out from the chords of the wall's edges; of a B-spline surface it knows the straight direction.
+    """
+    if all(face.geomType() != "EXTRUSION" for face in solid.Faces()):
+        return solid
+    from OCP.ShapeCustom import ShapeCustom
+
+    return type(solid)(ShapeCustom.ConvertToBSpline_s(solid.wrapped, True, False, False, False))
 
 
 def _mesh(solid: Any, tolerance: float, angle: float) -> np.ndarray:

@@ -14,7 +14,7 @@ WRONG = (COLLIDES, UNSOUND, ERROR, HUNG)
 _NAMED = re.compile(r"'[^']*'")
 _NUMBER = re.compile(r"[-+]?\d[\d.e+-]*")
 _REASONS = ("no order of layers", "has no parts by itself", "have no parts by themselves", "must hang from a bridge")
-_PROVEN = "between two samples of data.json"
+_PROVEN, _GIVEN_UP = "between two samples of data.json", "was given up: their"
 
 
 def reason(text: str) -> str:
@@ -25,5 +25,7 @@ def reason(text: str) -> str:
             return f"{words}: {next(word for word in kind.groups() if word)}" if kind else words
     if _PROVEN in text:
         return "the motion is too quick for its samples to prove it"
+    if _GIVEN_UP in text:
+        return "the search for the least gap was given up"
     text = text.partition(": ")[2] or text
     return _NUMBER.sub("0", _NAMED.sub("'...'", text))[:110]

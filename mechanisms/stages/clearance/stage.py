@@ -203,7 +203,15 @@ def _refusal(name: str, refused: list[tuple[Sweep, Least]], limit: float) -> str
         "move one to another layer, make it smaller, or cut it out where the other passes (parts.py; there may_touch "
         "names bodies that touch by design, pieces_may_touch two pieces)"
     )
-    if least.gap >= limit:
+    if least.gap >= limit and least.given_up and least.gap - least.error >= limit:
+        text = (
+            f"{name}: {pair} come as near as {least.gap:.3g} mm where they were measured, and the search for a nearer "
+            f"pose was given up: their {len(sweep.mover.triangles)} and {len(sweep.still.triangles)} facets run too "
+            f"long beside each other, so that no more than {least.proven:.3g} mm is proven, required {limit / 2:g} mm; "
+            "more steps do not help, but fewer facets do (a larger tolerance of the Solid in parts.py), more room "
+            "between the two, or a shorter motion"
+        )
+    elif least.gap >= limit:
         text = (
             f"{name}: {pair} come as near as {least.gap:.3g} mm, and between two samples of data.json they may be "
             f"{least.error:.3g} mm from where they are taken to be, so no more than {least.proven:.3g} mm is proven, "

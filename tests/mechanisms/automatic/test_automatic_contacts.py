@@ -17,6 +17,7 @@ from mechanisms.stages.automatic.layout.profiles import distances
 from mechanisms.stages.automatic.rolling.roads import Road
 from mechanisms.stages.automatic.rolling.rounds import Round
 from mechanisms.stages.parts.mesh_check import only_solid
+from shared.stage.errors import UserError
 
 
 def _room(scale: float = 1.0, turn: float = 0.0, stiffness: float = 0.0) -> Mechanism:
@@ -102,6 +103,19 @@ def test_friction_makes_a_wheel_and_a_point_gets_a_nose() -> None:
     model = made.sizes.of_metres(0.3)
     assert buffer.path[0, 0] - model == pytest.approx(nose.radius)  # both set back by the nose
     assert made.levels["wheel"] >= 0
+
+
+def test_a_wheel_whose_road_would_reach_its_hub_is_refused() -> None:
+    """Else the road would go through hub and rim."""
+    m = Mechanism("car", gravity=(0.0, -9.81))
+    wheel = m.body("wheel", mass=20.0, inertia=1.0)
+    m.tyre("tyre", m.ground.origin, wheel.origin, 0.3, 50.0, damping=5.0)
+    m.start_near(wheel=(0.0, 0.3, 0.0))
+    made = Automatic(m, m.simulate(0.5, steps=60))
+    with pytest.raises(
+        UserError, match=r"car: 'tyre' lets the wheel of wheel be pressed .* mm .* make the contact stiffer"
+    ):
+        made.solids()
 
 
 def test_profiles_of_tyres_reach_as_far_as_the_wheel() -> None:

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from mechanisms.stages.clearance.path import BodyPath, RelativePath, paths, points
 from mechanisms.stages.clearance.pieces import MeshPiece
 from mechanisms.stages.clearance.search.facets import nearest, separation
+from mechanisms.stages.clearance.search.outline_search import OutlineSearch
 from mechanisms.stages.clearance.search.search import RESOLUTION as SHARP
 from mechanisms.stages.clearance.search.search import Search
 from mechanisms.stages.clearance.search.spans import Spans
@@ -75,6 +76,27 @@ def test_a_cam_and_a_roller_that_run_close_all_the_time(gap: float, steps: int) 
     assert gap - 1e-6 <= 1e3 * pair.gap <= gap + sagitta
     assert 1e3 * (pair.gap - pair.proven) <= SHARP + 1e-3
     assert pair.poses < 3000
+
+
+@pytest.mark.parametrize(("gap", "above"), [(0.2, 0.06), (0.028, 0.0425)])
+def test_a_search_that_is_given_up_tells_what_the_outlines_prove(
+    gap: float, above: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A collar low on the cam, which the roller passes just above: the outlines come nearer than the pieces do."""
+    monkeypatch.setattr(Search, "most", 20)
+    monkeypatch.setattr(OutlineSearch, "most", 10_000_000)
+    motion = cam_motion(np.linspace(0.0, 1.0, 49), 10.0, 40.0 + gap)
+    cam, collar = (disc("cam", "cam", 10.0, 0.0, r, 0.0, top, 240) for r, top in ((29.9, 8.0), (30.0, 4.9)))
+    mesh = (cam.manifold + collar.manifold).to_mesh64()
+    cam = MeshPiece("cam", "cam", np.asarray(mesh.vert_properties)[np.asarray(mesh.tri_verts)])
+    roller = disc("follower", "roller", 0, 0, 10.0, 4.9 + above, 7.0, 120)
+    if gap < 0.1:
+        with pytest.raises(UserError, match=r"given up: .* is proven, required 0.025 mm; more steps do not help"):
+            checked([cam, roller], motion)
+        return
+    (pair,) = checked([cam, roller], motion).pairs
+    nearest = math.hypot(gap, above)
+    assert gap - SHARP <= 1e3 * pair.proven < nearest < 1e3 * pair.gap + 1e-9
 
 
 def test_what_is_proven_holds_between_the_samples() -> None:

@@ -12,6 +12,7 @@ from shared.shapes.outline import circle
 from shared.shapes.pin import washer
 from shared.shapes.solid import placed
 from shared.shapes.stud import ball as sphere
+from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.order.heights import Heights
@@ -34,9 +35,20 @@ def round_solids(part: Round, plan: Plan, heights: Heights) -> None:
 
 
 def tyred_wheel(wheel: Round, plan: Plan, heights: Heights) -> None:
-    """A disc with holes becomes its body's plate, with a tyre round it."""
+    """A disc with holes becomes its body's plate, with a tyre round it.
+
+    Raises UserError if it is pressed in farther than a tyre can be thick.
+    """
     fit, (x, y), hub = plan.layout.sizes.pivot.fit, wheel.at, wheel.hub(plan.layout)
     tyre = max(min(TYRE * wheel.made, 5.0), min(wheel.pressed + fit.running, wheel.made - hub - RIM))
+    if wheel.pressed > tyre:
+        scale = plan.layout.sizes.scale
+        raise UserError(
+            f"{plan.layout.m.name}: '{wheel.name}' lets the wheel of {wheel.body} be pressed "
+            f"{wheel.pressed * scale:.3g} mm into what it runs on, and with a radius of {wheel.made * scale:.3g} mm "
+            f"its tyre is {tyre * scale:.3g} mm thick at most; make the contact stiffer or the radius larger, "
+            "or let the wheel start nearer to the surface"
+        )
     rim = wheel.made - tyre - fit.seat
     shape = extruded(circle(0, 0, rim), heights.thickness).faces("|Z").edges().chamfer(0.4)
     alone = all(math.hypot(a.x - x, a.y - y) < 0.01 for a in plan.layout.anchors[wheel.body])

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from mechanisms.stages.clearance.pieces import height_between
-from mechanisms.stages.clearance.search.outline_search import least_by_outlines
+from mechanisms.stages.clearance.search.outline_search import least_by_outlines, proven_by_outlines
 from mechanisms.stages.clearance.search.search import RESOLUTION, Least, Search
 from mechanisms.stages.clearance.search.sweep import Sweep
 from mechanisms.stages.clearance.tree import Tree
@@ -17,7 +17,10 @@ FIRST = 5
 
 
 def least_gap(sweep: Sweep, reach: float) -> Least:
-    """The least gap over the motion, ``reach`` (mm) if it is larger; an overlap ends the search."""
+    """The least gap over the motion, ``reach`` (mm) if it is larger; an overlap ends the search.
+
+    Where the search in space is given up, what the outlines prove holds still.
+    """
     starts = np.linspace(sweep.times[0], sweep.times[-1], FIRST)
     gaps = {float(time): sweep.gap_at(float(time), reach) for time in starts}
     best = min(gaps, key=gaps.__getitem__)
@@ -29,8 +32,14 @@ def least_gap(sweep: Sweep, reach: float) -> Least:
     found = _search(sweep, sweep.still.sides, sweep.mover.sides, gaps[best], best, len(gaps))
     height = height_between(sweep.still, sweep.mover)
     if height >= found.gap - RESOLUTION:
-        return replace(found, proven=min(found.proven, height))
-    return _search(sweep, sweep.still.tree, sweep.mover.tree, found.gap, found.time, found.poses)
+        found = replace(found, proven=min(found.proven, height))
+    elif not found.given_up:
+        found = _search(sweep, sweep.still.tree, sweep.mover.tree, found.gap, found.time, found.poses)
+    else:  # more facets would be given up, too
+        found = replace(found, proven=0.0)
+    if found.given_up and found.gap > 0:
+        return replace(found, proven=max(found.proven, proven_by_outlines(sweep, found.gap, found.time)))
+    return found
 
 
 def _search(sweep: Sweep, still: Tree, mover: Tree, gap: float, time: float, poses: int) -> Least:

@@ -95,8 +95,25 @@ def least_by_outlines(sweep: Sweep, gap: float, time: float, poses: int) -> Leas
         gap, time, poses = _measured(sweep, found, gap, time)
         if found.gap < gap - ALIKE:
             return None
-    slack = 4 * ROUNDING * (sweep.still.radius + sweep.mover.radius)
-    return Least(gap, time, min(max(found.proven - slack, 0.0), beyond, gap), poses, found.error)
+    return Least(
+        gap, time, min(max(found.proven - _slack(sweep), 0.0), beyond, gap), poses, found.error, found.given_up
+    )
+
+
+def proven_by_outlines(sweep: Sweep, gap: float, time: float) -> float:
+    """How far (mm) outlines prove the pieces to stay apart, of the ``gap`` that was measured at ``time``.
+
+    Walls that lean or bulge bring the outlines nearer than the pieces, so that it may be much less than the least gap.
+    """
+    both = _outlines(sweep, gap)
+    if both is None:
+        return 0.0
+    found = OutlineSearch(*both, sweep.path, sweep.still.centre).run(gap, time, 0)
+    return min(max(found.proven - _slack(sweep), 0.0), gap)
+
+
+def _slack(sweep: Sweep) -> float:
+    return 4 * ROUNDING * (sweep.still.radius + sweep.mover.radius)
 
 
 def _measured(sweep: Sweep, found: Least, gap: float, time: float) -> tuple[float, float, int]:

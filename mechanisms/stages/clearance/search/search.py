@@ -46,12 +46,15 @@ class Least:
     poses: int
     error: float = 0.0
     """What the time between samples takes off the proven gap (mm)."""
+    given_up: bool = False
+    """Whether the search ended at :data:`MOST` candidates."""
 
 
 class Search:
     """Branch and bound for one pair; a candidate is a row (node of the still piece, node of the mover, span)."""
 
     resolution = RESOLUTION
+    most = MOST
 
     def __init__(self, still: Tree, mover: Tree, path: RelativePath, offset: np.ndarray) -> None:
         """``offset`` (2,): the origin of ``still`` in its body's frame (mm); that of ``mover`` is ``path.centre``."""
@@ -64,6 +67,7 @@ class Search:
         self.best = self.time = self.proven = self.off = 0.0
         self.looked = 0
         """Candidates looked at."""
+        self.given_up = False
 
     def run(self, best: float, time: float, poses: int) -> Least:
         """Until nothing is left that could be nearer than what is known, less the resolution.
@@ -77,7 +81,8 @@ class Search:
         while todo and self.best > 0:
             rows, low = self._taken(todo)
             self.looked += len(rows)
-            if self.looked > MOST:
+            if self.looked > self.most:
+                self.given_up = True
                 for rest in (*todo, (rows, low)):
                     self._settle(*rest)
                 break
@@ -86,7 +91,7 @@ class Search:
                 todo.append(fresh)
         gap = self.best
         proven = min(max(self.proven, 0.0), gap) if gap > 0 else 0.0
-        return Least(gap, self.time, proven, poses + len(self.spans), self.off)
+        return Least(gap, self.time, proven, poses + len(self.spans), self.off, self.given_up)
 
     @staticmethod
     def _taken(todo: list[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import sys
 from pathlib import Path
 
@@ -47,6 +48,8 @@ SECTIONS = (
             "mbsd/kinematics/newton.py",
             "mbsd/kinematics/elimination.py",
             "mbsd/kinematics/groups",
+            "mbsd/kinematics/groups/carrying",
+            "mbsd/kinematics/groups/kinds",
             "mbsd/kinematics/groups/newton/block.py",
         ),
     ),
@@ -71,7 +74,7 @@ SECTIONS = (
     (
         "Independent coordinates",
         "What forward dynamics does where a mechanism falls apart into driven bodies and Assur groups.",
-        ("mbsd/dynamics/embedding", "mbsd/dynamics/embedding/groups"),
+        ("mbsd/dynamics/embedding",),
     ),
     (
         "Integrators",
@@ -124,7 +127,8 @@ def _entry(file: Path) -> str:
     if len(rest.splitlines()) < FEWEST_LINES or file.name.startswith("__"):
         return ""
     source = file.relative_to(ROOT).as_posix()
-    title = file.stem.replace("_", " ").capitalize()
+    named = re.match(r"([A-Z]{2,}):", first)
+    title = named[1] if named else file.stem.replace("_", " ").capitalize()
     return f"### {title}\n\n{' '.join(first.split())}\n\n```text\n{rest}\n```\n\n`{source}`\n"
 
 

@@ -18,10 +18,12 @@ from mbsd.arrays.packing import Packed
 from mbsd.base.cores import cores
 from mbsd.base.errors import ModelError
 from mbsd.kinematics.groups.blocks import BLOCK
+from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
 from mbsd.kinematics.groups.designs import place_designs
-from mbsd.kinematics.groups.groups import BRANCH, DRIVEN, PRP, RPR, RRP, SLIDE, WELDED, YOKE, Groups
+from mbsd.kinematics.groups.groups import DRIVEN, Groups
+from mbsd.kinematics.groups.kinds.driven import OFFSET, SENSE
 from mbsd.kinematics.groups.plan import plan_groups
-from mbsd.kinematics.groups.solve import DOUBTED, SOLVED
+from mbsd.kinematics.groups.registry import BRANCH, KINDS
 from mbsd.kinematics.prepared import Prepared
 from mbsd.kinematics.steps import divisions
 from mbsd.model.body import Marker
@@ -173,21 +175,13 @@ def _turns(groups: Groups, drives: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """What no design changes: cosine and sine of driven angles, other laws (T, g, 2); turns of A and B (g, 2, 2)."""
     driven = np.zeros((len(drives), len(groups.kind), 2))
     fixed = np.zeros((len(groups.kind), 2, 2))
-    constant = {
-        WELDED: ((0, 4),),
-        RRP: ((1, 10),),
-        RPR: ((1, 9),),
-        YOKE: ((0, 8),),
-        PRP: ((0, 4), (1, 11)),
-        SLIDE: ((0, 4),),
-    }
     for e, kind in enumerate(groups.kind):
         if kind == DRIVEN:
-            angle = groups.number[e, 5] * (groups.number[e, 4] + drives[:, groups.motion[e], 0])
+            angle = groups.number[e, SENSE] * (groups.number[e, OFFSET] + drives[:, groups.motion[e], 0])
             driven[:, e] = np.column_stack([np.cos(angle), np.sin(angle)])
         else:
             driven[:, e, 0] = drives[:, groups.motion[e], 0]
-        for side, column in constant.get(int(kind), ()):
+        for side, column in KINDS[kind].angles:
             angle = groups.number[e, column]
             fixed[e, side] = math.cos(angle), math.sin(angle)
     return driven, fixed

@@ -18,10 +18,10 @@ from mbsd.equations.constraints.relative import ACTIVE, ROW
 from mbsd.kinematics import newton as kinematics
 from mbsd.kinematics.elimination import Elimination, Factors, plan
 from mbsd.kinematics.groups.blocks import Blocks, no_blocks
+from mbsd.kinematics.groups.carrying.rates import DOUBTED, OPEN, SOLVED
 from mbsd.kinematics.groups.groups import Groups
 from mbsd.kinematics.groups.parts import plan_parts
 from mbsd.kinematics.groups.plan import describe, plan_groups
-from mbsd.kinematics.groups.points import DOUBTED, OPEN, SOLVED
 from mbsd.kinematics.groups.solve import solve_groups
 from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.pose.mobility import best_rows, choose_rows, joint_mobility, refuse_overdriven

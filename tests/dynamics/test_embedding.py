@@ -17,7 +17,8 @@ from mbsd.dynamics.runs import embedded_run
 from mbsd.dynamics.runs.choose import integrate
 from mbsd.dynamics.runs.embed import embed, embedded_at_start
 from mbsd.dynamics.simulate import integrator_named
-from mbsd.kinematics.groups.groups import NAMES
+from mbsd.kinematics.groups.groups import KIND
+from mbsd.kinematics.groups.registry import NAMES
 from mbsd.results.solution import Solution
 from tests.models.assur_models import MODELS
 
@@ -91,7 +92,7 @@ def test_every_group_is_tried() -> None:
         for m in (freed(name), with_pendulum(name)):
             made = embedded_at_start(prepare_dynamics(m, 0.0, 1.0))
             if made is not None:
-                seen |= {NAMES[kind] for kind in made.arrays.group[:, 0]}
+                seen |= {NAMES[kind] for kind in made.arrays.group[:, KIND]}
     assert seen == set(NAMES)
 
 

@@ -108,14 +108,14 @@ rod = m.bar("rod", 0.3, mass=0.2)
 m.revolute("A", m.ground.origin, rod.start)
 m.simulate(1.0, steps=20)
 from mbsd.dynamics.embedding import bridge, equations
-from mbsd.dynamics.embedding.groups import one_slide
+from mbsd.kinematics.groups.kinds import rrp
 from mbsd.dynamics.reference import acceleration, projection
 from mbsd.equations import user_forces
 from mbsd.equations.constraints import relative
 from mbsd.equations.interactions import apply
 unused = [
     acceleration.derivative, projection.project, bridge.bridge.kernel, equations.reduced.kernel, equations.write_alone,
-    one_slide.solve_rrp.kernel, relative.rows.kernel, apply.apply_interactions.kernel,
+    rrp.embed_rrp.kernel, relative.rows.kernel, apply.apply_interactions.kernel,
     user_forces.apply_user_forces.kernel,
 ]
 print([one.py_func.__name__ for one in unused if one.overloads])

@@ -11,7 +11,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from mbsd import AssemblyError, Marker, Mechanism, MechanismError, constant_rate, function
-from mbsd.kinematics.groups.groups import NAMES
+from mbsd.kinematics.groups.carrying.columns import SIGN
+from mbsd.kinematics.groups.groups import NUMBERS
+from mbsd.kinematics.groups.registry import KINDS, NAMES
 from mbsd.kinematics.prepared import Prepared, prepare
 from tests.models.assur_models import MODELS, crank, four_bar
 
@@ -43,6 +45,16 @@ def test_closed_forms_are_what_newton_finds(name: str) -> None:
 def test_every_group_is_tried() -> None:
     tried = " ".join(prepare(model(), 0.0, 1.0).route for model in MODELS.values())
     assert all(name in tried for name in NAMES)
+
+
+@pytest.mark.parametrize("code", range(len(KINDS)))
+def test_a_group_is_registered_under_its_code_and_fits_its_tables(code: int) -> None:
+    kind = KINDS[code]
+    assert kind.code == code
+    assert bool(kind.one) == bool(kind.of_one)
+    assert bool(kind.two) == bool(kind.of_two)
+    assert len(kind.embedded([1.0 + 0.1 * k for k in range(NUMBERS)])) <= SIGN
+    assert all(column < NUMBERS for _, column in kind.angles)
 
 
 @settings(max_examples=25, deadline=None)

@@ -22,15 +22,15 @@ from mbsd.model.laws.examples import EXAMPLES
 from tests.models.four_bars import angles, model
 from tools.hunt import case, pool
 from tools.hunt.__main__ import hunt
-from tools.hunt.agreement import SAME, Growth, Words, compare_driven, compare_free
-from tools.hunt.checks import driven_problems, odd_steps, one_assembly, smooth
-from tools.hunt.described import on_a_base, seen_from
-from tools.hunt.free_case import nudged
-from tools.hunt.law_error import of_law
+from tools.hunt.judging.agreement import SAME, Growth, Words, compare_driven, compare_free
+from tools.hunt.judging.checks import driven_problems, odd_steps, one_assembly, smooth
+from tools.hunt.judging.law_error import of_law
 from tools.hunt.outcome import AGREED, BASE, HUNG, WRONG, CaseResult, Outcome
 from tools.hunt.pool import results
-from tools.hunt.reordered import exchanged, shuffled
+from tools.hunt.solving.free_case import nudged
 from tools.hunt.subject import Subject, all_families
+from tools.hunt.words.described import on_a_base, seen_from
+from tools.hunt.words.reordered import exchanged, shuffled
 
 LENGTHS = (0.4, 0.1, 0.38, 0.3)
 
@@ -264,7 +264,7 @@ def test_closed_forms_tell_a_small_error(kind: str) -> None:
 
 
 def test_a_law_that_is_raised_is_still_of_its_kind() -> None:
-    from tools.hunt.raised import Raised, raised
+    from tools.hunt.words.raised import Raised, raised
 
     t = np.linspace(0.0, 1.4, 9)
     for law in EXAMPLES:

@@ -1,6 +1,6 @@
 """Draws the pictures of docs/ from what the code of their pages computes: ``make docs``, or ``-m tools.figures NAME``.
 
-Each file beside this one belongs to the page of its name. Its ``pictures`` gets the variables that the page's code
+Each file of ``pages/`` belongs to the page of its name. Its ``pictures`` gets the variables that the page's code
 leaves behind and returns figures by file name.
 """
 
@@ -26,14 +26,13 @@ from matplotlib import pyplot
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
-import tools.figures
+import tools.figures.pages
 from mbsd.drawing.picture import Picture, Svg
 from tools.figures.look import STYLE
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 BLOCK = re.compile(r"^```python\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
-NOT_PAGES = ("__main__", "look")
-PAGES = tuple(sorted(m.name for m in pkgutil.iter_modules(tools.figures.__path__) if m.name not in NOT_PAGES))
+PAGES = tuple(sorted(m.name for m in pkgutil.iter_modules(tools.figures.pages.__path__)))
 
 
 def drawn(page: str) -> dict[str, bytes]:
@@ -41,7 +40,7 @@ def drawn(page: str) -> dict[str, bytes]:
     with mpl.rc_context(STYLE):  # pyright: ignore[reportArgumentType]
         variables = _run(page)
         out = {}
-        for name, picture in importlib.import_module(f"tools.figures.{page}").pictures(variables).items():
+        for name, picture in importlib.import_module(f"tools.figures.pages.{page}").pictures(variables).items():
             out[name] = _bytes(picture)
         pyplot.close("all")
     return out

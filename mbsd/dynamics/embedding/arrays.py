@@ -1,25 +1,14 @@
 """Arrays of the embedding: what the compiled loops read (Embedding) and what each evaluation overwrites.
 
 z has f coordinates. C = f columns, one more (of the time) where drivers are; each column of ``rate`` is the rate of all
-bodies for one of them, and a last one holds the convective acceleration c.
+bodies for one of them, and a last one holds the convective acceleration c. Columns that closed forms use are named in
+mbsd/kinematics/groups/groups.py and carrying/columns.py.
 """
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-X, Y, COS, SIN, OMEGA, MASS, INERTIA = range(7)
-"""Columns of EmbeddingScratch.body: place of the centre of mass, turn, rate of turning; kg, kg m^2."""
-KIND, FIRST, SECOND, K1, K2, LAW, COORDINATE = range(7)
-"""Columns of Embedding.group: kind, bodies A and B, known bodies, law of a driver, coordinate; -1 or law 0 for none."""
-NUMBERS = 20
-SIGN, NEAR, SINE, AVOID = 16, 17, 18, 19
-"""Columns of Embedding.number that change: branch, whether it may change within a step, squared sine of its angle;
-and the squared sine below which the pose is unclear, a number of the run."""
-THETA, BEND, TURNS = 0, 1, 2
-"""Columns of EmbeddingScratch.base: angle, convective acceleration, then the rates of turning."""
-VALUE, SPEED, BASE = 0, 1, 2
-"""Columns of EmbeddingScratch.coordinate."""
 SENSITIVITY, LIMIT = 0, 1
 """Of EmbeddingScratch.watch."""
 
@@ -38,7 +27,7 @@ class Embedding(NamedTuple):
     gravity: Any
     """(2,) m/s^2."""
     group: Any
-    """(g, 7) in the order of their solution; columns above."""
+    """(g, 7) in the order of their solution."""
     number: Any
     """(g, 20); mbsd/dynamics/embedding/numbers.py."""
     size: Any
@@ -57,11 +46,11 @@ class EmbeddingScratch(NamedTuple):
     cos_sin: Any
     """(nb, 2) of the body angles, where there are forces."""
     body: Any
-    """(nb, 7) columns above."""
+    """(nb, 7)"""
     rate: Any
     """(nb, 3 (C + 1))"""
     base: Any
-    """(nb, C + 2) at the last accepted pose; columns above."""
+    """(nb, C + 2) at the last accepted pose."""
     coordinate: Any
     """(C + 1, 3) value, speed, and value at the last accepted pose; the last row is the time since then."""
     q: Any

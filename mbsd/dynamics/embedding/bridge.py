@@ -16,10 +16,11 @@ from __future__ import annotations
 import numpy as np
 
 from mbsd.compiling.jit import internal, lazy
-from mbsd.dynamics.embedding.arrays import AVOID, COS, INERTIA, MASS, SIN, SPEED, TURNS, VALUE
-from mbsd.dynamics.embedding.groups.branch import FLOOR, SOLVED
-from mbsd.dynamics.embedding.groups.groups import solve_groups
+from mbsd.dynamics.embedding.groups import solve_groups
 from mbsd.equations.laws import evaluate_laws
+from mbsd.kinematics.groups.carrying.branch import FLOOR
+from mbsd.kinematics.groups.carrying.columns import AVOID, COS, INERTIA, MASS, SIN, SPEED, TURNS, VALUE
+from mbsd.kinematics.groups.carrying.rates import SOLVED
 
 
 def _weights(x: np.ndarray) -> np.ndarray:

@@ -15,7 +15,8 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.kinematics.groups.groups import SLIDE
-from mbsd.kinematics.groups.numbers import Link
+from mbsd.kinematics.groups.kinds.slide import ANGLE, G_X, S1_X, SA_X
+from mbsd.kinematics.groups.links import Link
 from mbsd.kinematics.groups.plan import Plan, links_of
 
 MOST = 6
@@ -33,7 +34,7 @@ class Coordinate:
     body: int
     other: int
     slide: np.ndarray | None
-    """(7,) numbers of a driven slide (mbsd/kinematics/groups/groups.py), or None for an angle."""
+    """(7,) numbers of a driven slide (mbsd/kinematics/groups/kinds/slide.py), or None for an angle."""
 
     def at(self, q: np.ndarray) -> float:
         """Its value (rad, m) at q (3 nb,)."""
@@ -56,13 +57,13 @@ class Coordinate:
 
     def _arms(self, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         assert self.slide is not None
-        return _turned(self.slide[5:7], pose[self.body, 2]), _turned(self.slide[:2], pose[self.other, 2])
+        return _turned(self.slide[SA_X:], pose[self.body, 2]), _turned(self.slide[S1_X:G_X], pose[self.other, 2])
 
     def _reach(self, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         assert self.slide is not None
         point, base = self._arms(pose)
         reach = pose[self.body, :2] + point - pose[self.other, :2] - base
-        return _turned(self.slide[2:4], pose[self.other, 2]), reach
+        return _turned(self.slide[G_X:ANGLE], pose[self.other, 2]), reach
 
 
 def choices(packed: Packed, q: np.ndarray, count: int) -> Iterator[Plan]:

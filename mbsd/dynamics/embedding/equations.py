@@ -11,27 +11,14 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, inlined, internal, kernel, lazy, merged
-from mbsd.dynamics.embedding.arrays import (
-    BASE,
-    BEND,
-    COS,
-    LIMIT,
-    NEAR,
-    SENSITIVITY,
-    SIN,
-    SINE,
-    SPEED,
-    THETA,
-    TURNS,
-    VALUE,
-    X,
-    Y,
-)
+from mbsd.dynamics.embedding.arrays import LIMIT, SENSITIVITY
 from mbsd.dynamics.embedding.bridge import bridge
-from mbsd.dynamics.embedding.groups.branch import SOLVED, WIDE, predicted
-from mbsd.dynamics.embedding.groups.groups import solve_groups
+from mbsd.dynamics.embedding.groups import solve_groups
 from mbsd.equations.laws import evaluate_laws
 from mbsd.equations.loads import apply_loads
+from mbsd.kinematics.groups.carrying.branch import WIDE, predicted
+from mbsd.kinematics.groups.carrying.columns import BASE, BEND, COS, NEAR, SIN, SINE, SPEED, THETA, TURNS, VALUE, X, Y
+from mbsd.kinematics.groups.carrying.rates import SOLVED
 
 FLOOR = 1e-14
 """Part of its diagonal that elimination must leave of M_z."""

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.base.errors import SimulationError
-from mbsd.dynamics.embedding.arrays import KIND
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.runs.embed import can_embed, embed, embedded_at_start
 from mbsd.dynamics.runs.embedded_run import EmbeddedRun
 from mbsd.dynamics.state import PAUSED, REACHED, TIME, Output, State, copied
-from mbsd.kinematics.groups.groups import BRANCH
+from mbsd.kinematics.groups.groups import KIND
+from mbsd.kinematics.groups.registry import BRANCH
 
 if TYPE_CHECKING:
     from mbsd.dynamics.runs.pace import Pace

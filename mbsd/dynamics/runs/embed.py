@@ -9,28 +9,15 @@ import numpy as np
 
 from mbsd.base.codes import LAW_VALUE, LINEAR, POWER, TURN
 from mbsd.base.kept import Kept
-from mbsd.dynamics.embedding.arrays import (
-    AVOID,
-    BASE,
-    COS,
-    INERTIA,
-    LIMIT,
-    MASS,
-    NEAR,
-    SENSITIVITY,
-    SPEED,
-    THETA,
-    TURNS,
-    Embedding,
-    EmbeddingScratch,
-)
+from mbsd.dynamics.embedding.arrays import LIMIT, SENSITIVITY, Embedding, EmbeddingScratch
 from mbsd.dynamics.embedding.bridge import KEPT
 from mbsd.dynamics.embedding.coordinates import MOST, Coordinate, choices, coordinates_of
 from mbsd.dynamics.embedding.equations import look
-from mbsd.dynamics.embedding.groups.branch import FLOOR
 from mbsd.dynamics.embedding.numbers import group_numbers, group_table
 from mbsd.dynamics.prepare.prepared import UNKNOWN, PreparedDynamics
 from mbsd.dynamics.state import Settings
+from mbsd.kinematics.groups.carrying.branch import FLOOR
+from mbsd.kinematics.groups.carrying.columns import AVOID, BASE, COS, INERTIA, MASS, NEAR, SPEED, THETA, TURNS
 from mbsd.kinematics.groups.plan import Plan
 
 GOOD = 3.0

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from mbsd.arrays.packing import Packed
 from mbsd.equations.constraints.relative import ARM, AT, ROW
 from mbsd.kinematics.groups.blocks import ACROSS, ALONG, APART, FREE, PIN, SLIDE, SPECIAL, TURNED, WELD
-from mbsd.kinematics.groups.numbers import Link
+from mbsd.kinematics.groups.links import Link
 from mbsd.kinematics.groups.plan import Plan
 from mbsd.kinematics.steps import strides
 

@@ -14,10 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 BLOCK, TRAIN = 9, 10
-"""Kinds after those of groups.py. TRAIN: a pinned body whose angle is a sum of known angles (trains.py):
-P on K1, P on A, constant, 1 if other groups stand on it."""
-CARRIES_ON = 5
-"""Its number that says so."""
+"""Kinds after those of groups.py. TRAIN: a pinned body whose angle is a sum of known angles (kinds/train.py)."""
 PIN, SLIDE, WELD, FREE = range(4)
 """How a body hangs."""
 UNKNOWNS = (1, 1, 0, 3)
@@ -36,7 +33,7 @@ STRIDE, SIZE = 7, 8
 LARGEST = 12
 """Unknowns of one block; with more the mechanism is solved as a whole, with its sparse factors."""
 DOUBTED_BEFORE = 4
-"""Beside the states of points.py: a pose is needed in the step before this one."""
+"""Beside the states of carrying/rates.py: a pose is needed in the step before this one."""
 
 
 class Blocks(NamedTuple):

@@ -20,7 +20,6 @@ from mbsd.kinematics.groups.blocks import (
     BLOCK,
     BODIES,
     CARRIES,
-    CARRIES_ON,
     EQUATIONS,
     HANGS,
     LARGEST,
@@ -33,7 +32,9 @@ from mbsd.kinematics.groups.blocks import (
     with_scratch,
 )
 from mbsd.kinematics.groups.groups import Groups
-from mbsd.kinematics.groups.numbers import Link
+from mbsd.kinematics.groups.kinds.train import CARRIES_ON
+from mbsd.kinematics.groups.kinds.welded import welded
+from mbsd.kinematics.groups.links import Link
 from mbsd.kinematics.groups.plan import Plan, links_of_joints
 from mbsd.kinematics.groups.trains import Trains
 
@@ -125,10 +126,10 @@ class _Parts:
         for body, hangs, link in tree:
             assert link is not None
             if hangs == WELD:
-                self.plan.take(self.plan.numbers.welded(body, link), (body,))
+                self.plan.take(welded(self.plan.places, body, {"W": link}), (body,))
                 continue
             sums = self.trains.sums[body]
-            numbers = [*self.plan.numbers.pin(link), sums.constant, 0.0]
+            numbers = [*self.plan.places.pin(link), sums.constant, 0.0]
             self.plan.take((TRAIN, (body, -1, link.other, 0), len(self.train), numbers), (body,))
             self.train.append([len(self.shares), len(sums.shares)])
             self.shares += sums.shares.items()
@@ -185,7 +186,7 @@ class _Parts:
         for body, hangs, link in tree:
             parent = link.other if link else 0
             self.tree.append([body, members.get(parent, -1), parent, hangs, unknown])
-            self.frame.append([0.0] * 7 if link is None else self.plan.numbers.hanging(link))
+            self.frame.append([0.0] * 7 if link is None else self.plan.places.hanging(link))
             unknown += UNKNOWNS[hangs]
         self.equations += equations
         self.numbers += numbers

@@ -14,11 +14,13 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.kinematics.groups.blocks import BLOCK, BODIES, BODY, TRAIN, TREE_AT, Blocks
-from mbsd.kinematics.groups.groups import NAMES, NUMBERS, Groups
-from mbsd.kinematics.groups.numbers import Link, Numbers
+from mbsd.kinematics.groups.groups import NUMBERS, Groups
+from mbsd.kinematics.groups.kind import Made
+from mbsd.kinematics.groups.links import Link, Places
+from mbsd.kinematics.groups.registry import KINDS, NAMES
 from mbsd.model.joint import Joint
 
-COVERED = {
+LETTERS = {
     ("point",): "R",
     ("slot", "angle"): "P",
     ("point", "angle"): "W",
@@ -27,6 +29,8 @@ COVERED = {
     ("distance",): "L",
     ("along",): "A",
 }
+"""How groups call joints and drivers, by their constraints: pin, slide, weld, slot, driver of an angle, rod or
+actuator, driver along an axis."""
 DRIVERS = "DA"
 """What only a driver is made of; a distance is a rod or an actuator."""
 
@@ -68,7 +72,7 @@ def links_of(packed: Packed) -> list[list[Link]] | None:
 
 def link_kind(joint: Joint) -> str | None:
     """How groups call a joint or driver; None if none covers it."""
-    kind = COVERED.get(tuple(joint.kind.constraints))
+    kind = LETTERS.get(tuple(joint.kind.constraints))
     return None if kind is None or ((kind in DRIVERS) != joint.kind.driven and kind != "L") else kind
 
 
@@ -102,9 +106,9 @@ class Plan:
     """
 
     def __init__(self, packed: Packed, pose: np.ndarray, links: list[list[Link]]) -> None:
-        self.packed, self.links, self.numbers = packed, links, Numbers(packed.system, pose)
+        self.packed, self.links, self.places = packed, links, Places(packed.system, pose)
         self.known, self.used = {0}, set[int]()
-        self.taken: list[tuple[int, tuple[int, int, int, int], int, list[float]]] = []
+        self.taken: list[Made] = []
         self.singles = list(range(1, len(links)))
         self.pairs = list(self.singles)
 
@@ -150,25 +154,9 @@ class Plan:
             kinds = "".join(sorted(link.kind for link in links))
             by_kind = {link.kind: link for link in links}
             made = None
-            if kinds == "DR":
-                made = self.numbers.driven(body, by_kind["R"], by_kind["D"])
-            elif kinds == "W":
-                made = self.numbers.welded(body, by_kind["W"])
-            elif kinds == "RS":
-                pin, slot = by_kind["R"], by_kind["S"]
-                made = (
-                    self.numbers.rpr(body, pin, slot, None)
-                    if slot.first
-                    else self.numbers.rrp(body, pin, None, slot, None)
-                )
-            elif kinds == "PS" and by_kind["S"].first:
-                made = self.numbers.yoke(body, by_kind["P"], by_kind["S"])
-            elif kinds == "PS":
-                made = self.numbers.prp(body, by_kind["P"], None, by_kind["S"], None)
-            elif kinds == "LR":
-                made = self.numbers.rod(body, by_kind["R"], by_kind["L"])
-            elif kinds == "AP" and by_kind["A"].other == by_kind["P"].other:
-                made = self.numbers.slide(body, by_kind["P"], by_kind["A"])
+            for kind in KINDS:
+                if kinds in kind.one and kind.of_one and made is None:
+                    made = kind.of_one(self.places, body, by_kind)
             if made is not None:
                 self._take(made, (body,), links)
                 return True
@@ -193,24 +181,19 @@ class Plan:
                     continue
                 made = None
                 kinds = outer_a[0].kind + inner.kind + outer_b[0].kind
-                if kinds == "RRR":
-                    made = self.numbers.rrr(a, b, outer_a[0], inner, outer_b[0])
-                elif kinds == "RRP":
-                    made = self.numbers.rrp(a, outer_a[0], inner, outer_b[0], b)
-                elif kinds == "RPR":
-                    made = self.numbers.rpr(a, outer_a[0], inner, outer_b[0])
-                elif kinds == "PRP":
-                    made = self.numbers.prp(a, outer_a[0], inner, outer_b[0], b)
+                for kind in KINDS:
+                    if kinds in kind.two and kind.of_two and made is None:
+                        made = kind.of_two(self.places, a, b, outer_a[0], inner, outer_b[0])
                 if made is not None:
                     self._take(made, (a, b), [*outer_a, inner, *outer_b])
                     return True
         return False
 
-    def _take(self, made: tuple, bodies: tuple[int, ...], links: list[Link]) -> None:
+    def _take(self, made: Made, bodies: tuple[int, ...], links: list[Link]) -> None:
         self.used.update(link.joint for link in links)
         self.take(made, bodies)
 
-    def take(self, made: tuple, bodies: Sequence[int]) -> None:
+    def take(self, made: Made, bodies: Sequence[int]) -> None:
         """Add a group, whose bodies are then known."""
         self.taken.append(made)
         self.known.update(bodies)

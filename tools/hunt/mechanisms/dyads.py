@@ -9,8 +9,8 @@ import numpy as np
 
 from mbsd import Mechanism, constant_rate
 from mbsd.model.laws import Motion
-from tools.hunt.closed_forms import Bars, ClosedForm, Crank, Point, RodAndSlider, place
-from tools.hunt.laws import Drive, swinging, turning
+from tools.hunt.judging.closed_forms import Bars, ClosedForm, Crank, Point, RodAndSlider, place
+from tools.hunt.mechanisms.laws import Drive, swinging, turning
 from tools.hunt.subject import Subject, family
 
 ROOMY = 1e-3

@@ -10,7 +10,7 @@ import numpy as np
 from mbsd import Mechanism, harmonic
 from mbsd.model.body import Body
 from mbsd.results.solution import Solution
-from tools.hunt.laws import Drive, swinging, turning
+from tools.hunt.mechanisms.laws import Drive, swinging, turning
 from tools.hunt.subject import Subject, family
 
 Exact = Callable[[np.ndarray], dict[str, np.ndarray]]

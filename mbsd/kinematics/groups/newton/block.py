@@ -34,12 +34,12 @@ from mbsd.kinematics.groups.blocks import (
     UNKNOWN,
     UNKNOWNS,
 )
+from mbsd.kinematics.groups.carrying.rates import DOUBTED, MEETING, SOLVED
 from mbsd.kinematics.groups.newton.call import PYTHON, SIGNATURE
 from mbsd.kinematics.groups.newton.fused import fused
 from mbsd.kinematics.groups.newton.matrix import factor, held, solve
 from mbsd.kinematics.groups.newton.pinned import in_doubt, predicted, solve_pinned
 from mbsd.kinematics.groups.newton.rows import begin, bend_of, evaluate_row, fill_columns, move
-from mbsd.kinematics.groups.points import DOUBTED, MEETING, SOLVED
 from mbsd.kinematics.law_step import jumps
 from mbsd.kinematics.newton import MAX_ITERATIONS, ROUNDING, TOLERANCE
 

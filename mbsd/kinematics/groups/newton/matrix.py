@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from mbsd.kinematics.groups.blocks import BODIES, BODY, BODY_I, BODY_J, CARRIES
+from mbsd.kinematics.groups.carrying.rates import WOUND
 from mbsd.kinematics.groups.newton.fused import fused
-from mbsd.kinematics.groups.points import WOUND
 from mbsd.kinematics.newton import UNEXPLAINED
 
 SINGULAR = 1e-12

@@ -15,10 +15,10 @@ from mbsd.kinematics.groups.blocks import (
     SIZE,
     STRIDE,
 )
+from mbsd.kinematics.groups.carrying.rates import DOUBTED, MEETING, SOLVED, carried, hang
 from mbsd.kinematics.groups.newton.fused import fused
 from mbsd.kinematics.groups.newton.matrix import extent, held, turns_too_far
 from mbsd.kinematics.groups.newton.rows import bend_of, evaluate_row
-from mbsd.kinematics.groups.points import DOUBTED, MEETING, SOLVED, carried, hang
 from mbsd.kinematics.law_step import jumps
 from mbsd.kinematics.newton import CONTRACTS, MAX_ITERATIONS, ROUNDING, SUSPICIOUS, TOLERANCE, heads_for_zero
 from mbsd.kinematics.predictor import quintic_factors

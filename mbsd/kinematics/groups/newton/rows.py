@@ -28,9 +28,9 @@ from mbsd.kinematics.groups.blocks import (
     TURNED,
     UNKNOWN,
 )
+from mbsd.kinematics.groups.carrying.rates import carried, follow, hang
+from mbsd.kinematics.groups.kinds.slide import solve_slide
 from mbsd.kinematics.groups.newton.fused import fused
-from mbsd.kinematics.groups.points import carried, follow, hang
-from mbsd.kinematics.groups.slides import solve_slide
 
 
 @fused

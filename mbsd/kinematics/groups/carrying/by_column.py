@@ -1,12 +1,14 @@
 """Points carried by bodies, and bodies hung on points, for columns j = 0 .. C - 1 of B and for what comes after them.
 
 P' = r' + omega s_perp,   in the last column also - omega^2 s: the convective accelerations
+
+B: the rates of all bodies for each independent coordinate (mbsd/dynamics/embedding/arrays.py).
 """
 
 from __future__ import annotations
 
 from mbsd.compiling.jit import internal
-from mbsd.dynamics.embedding.arrays import COS, OMEGA, SIN, X, Y
+from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIN, X, Y
 
 
 @internal
@@ -22,7 +24,7 @@ def turned_y(body, b, x, y):
 
 
 @internal
-def carry(body, rate, columns, j, b, x, y, part):
+def carry_column(body, rate, columns, j, b, x, y, part):
     """Rate (part 0: x, 1: y) in column j of a point with arm (x, y) in world axes that body b carries."""
     omega = rate[b, 3 * j + 2]
     out = rate[b, 3 * j] - omega * y if part == 0 else rate[b, 3 * j + 1] + omega * x
@@ -33,7 +35,7 @@ def carry(body, rate, columns, j, b, x, y, part):
 
 
 @internal
-def hang(body, rate, columns, j, b, vx, vy, omega, x, y):
+def hang_column(body, rate, columns, j, b, vx, vy, omega, x, y):
     """Rate in column j of body b that turns with omega, whose point with arm (x, y) in world axes has (vx, vy)."""
     rate[b, 3 * j] = vx + omega * y
     rate[b, 3 * j + 1] = vy - omega * x
@@ -45,14 +47,14 @@ def hang(body, rate, columns, j, b, vx, vy, omega, x, y):
 
 
 @internal
-def turn(body, b, leader, c, s):
+def turn_as(body, b, leader, c, s):
     """Turn b as its leader, and by the angle of (c, s) more."""
     body[b, COS] = body[leader, COS] * c - body[leader, SIN] * s
     body[b, SIN] = body[leader, SIN] * c + body[leader, COS] * s
 
 
 @internal
-def place(body, b, x, y, lx, ly, part):
+def put(body, b, x, y, lx, ly, part):
     """Put b, whose turn is known, so that its point (lx, ly) is at (x, y); returns the arm in world axes."""
     ax = turned_x(body, b, lx, ly)
     ay = turned_y(body, b, lx, ly)

@@ -31,8 +31,8 @@ import numpy as np
 
 from mbsd import Mechanism
 from mbsd.results.solution import Solution
-from tools.hunt.described import BASE, NOWHERE, Pose
-from tools.hunt.law_error import LawError, law_error
+from tools.hunt.judging.law_error import LawError, law_error
+from tools.hunt.words.described import BASE, NOWHERE, Pose
 
 DRIVEN, DRIVEN_REDUNDANT = 1e-11, 1e-9
 SLACK = 1000.0

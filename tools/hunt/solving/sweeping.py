@@ -12,14 +12,14 @@ import numpy as np
 from mbsd import Mechanism
 from mbsd.base.errors import MechanismError
 from mbsd.results.solution import Solution
-from tools.hunt.agreement import SAME, Words, compare_driven, turned_drivers
-from tools.hunt.changed import there_and_back
-from tools.hunt.checks import driven_problems
-from tools.hunt.described import Pose, back, duplicate, on_a_base, seen_from, turnable
+from tools.hunt.judging.agreement import SAME, Words, compare_driven, turned_drivers
+from tools.hunt.judging.checks import driven_problems
+from tools.hunt.judging.refusals import cannot_be_saved, expected_refusal
 from tools.hunt.outcome import AGREED, REFUSED, UNCLEAR, WRONG, Outcome, attempt
-from tools.hunt.refusals import cannot_be_saved, expected_refusal
-from tools.hunt.reordered import exchanged, shuffled
 from tools.hunt.subject import Subject
+from tools.hunt.words.changed import there_and_back
+from tools.hunt.words.described import Pose, back, duplicate, on_a_base, seen_from, turnable
+from tools.hunt.words.reordered import exchanged, shuffled
 
 A_TURN = 360
 STEPS = (1, 2, 3, 5, 8, 12, 18, 36, 90, 1440)

@@ -23,7 +23,7 @@ from mbsd.model.laws.fitting.look import look_times
 from mbsd.model.laws.fitting.sampled import Sampled
 from mbsd.model.laws.function import Function
 from mbsd.results.solution import Solution
-from tools.hunt.raised import Raised
+from tools.hunt.words.raised import Raised
 
 SLOPE_OF_LAST = 64.0
 """T_8' at the ends."""

@@ -22,7 +22,7 @@ from mbsd.model.body import Body, Marker
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Start, StartVelocity
-from tools.hunt.raised import raised, raised_curve
+from tools.hunt.words.raised import raised, raised_curve
 
 Pose = tuple[float, float, float]
 """x, y (m) and angle (rad)."""

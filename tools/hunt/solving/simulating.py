@@ -13,15 +13,15 @@ from mbsd.arrays.start_state import started_at
 from mbsd.base.errors import SimulationError
 from mbsd.dynamics.integrators.kind import INTEGRATORS
 from mbsd.dynamics.simulate import integrator_named
-from tools.hunt.agreement import Words, turned_drivers
-from tools.hunt.changed import there_and_back
-from tools.hunt.checks import balanced, closed, finite
-from tools.hunt.described import back, duplicate, on_a_base, seen_from, turnable
-from tools.hunt.free_case import OUTPUTS, TOLERANCE, Free
+from tools.hunt.judging.agreement import Words, turned_drivers
+from tools.hunt.judging.checks import balanced, closed, finite
+from tools.hunt.judging.refusals import cannot_be_saved
 from tools.hunt.outcome import AGREED, REFUSED, UNCLEAR, WRONG, Outcome, attempt
-from tools.hunt.refusals import cannot_be_saved
-from tools.hunt.reordered import exchanged, shuffled
-from tools.hunt.sweeping import HEALTHY, random_frames, random_pose
+from tools.hunt.solving.free_case import OUTPUTS, TOLERANCE, Free
+from tools.hunt.solving.sweeping import HEALTHY, random_frames, random_pose
+from tools.hunt.words.changed import there_and_back
+from tools.hunt.words.described import back, duplicate, on_a_base, seen_from, turnable
+from tools.hunt.words.reordered import exchanged, shuffled
 
 STEPS = (1, 2, 3, 5, 12, 30, 360, 1440)
 FIXED_STEPS = 400

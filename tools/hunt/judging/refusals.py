@@ -7,7 +7,7 @@ from mbsd.base.errors import MechanismError
 from mbsd.model.force import FORCE_KINDS
 from mbsd.model.joint import KINDS
 from mbsd.model.laws.function import Function
-from tools.hunt.raised import Raised
+from tools.hunt.words.raised import Raised
 
 PROMISED = (
     "is not possible here",

@@ -10,13 +10,13 @@ import numpy as np
 from mbsd import Mechanism
 from mbsd.base.errors import MechanismError, SimulationError
 from mbsd.results.solution import Solution
-from tools.hunt.agreement import NUDGE, SAME, SLACK, Growth, Verdict, Words, compare_free
-from tools.hunt.checks import closed, finite
-from tools.hunt.described import duplicate
+from tools.hunt.judging.agreement import NUDGE, SAME, SLACK, Growth, Verdict, Words, compare_free
+from tools.hunt.judging.checks import closed, finite
+from tools.hunt.judging.refusals import expected_refusal
 from tools.hunt.outcome import AGREED, REFUSED, UNCLEAR, WRONG, Outcome, attempt
-from tools.hunt.refusals import expected_refusal
+from tools.hunt.solving.sweeping import HEALTHY
 from tools.hunt.subject import Subject
-from tools.hunt.sweeping import HEALTHY
+from tools.hunt.words.described import duplicate
 
 TOLERANCE = 1e-9
 OUTPUTS = 60

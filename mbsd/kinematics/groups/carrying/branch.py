@@ -9,9 +9,8 @@ clearly the evaluation is doubted, and the step is taken again with another leng
 from __future__ import annotations
 
 from mbsd.compiling.jit import internal
-from mbsd.dynamics.embedding.arrays import BASE, BEND, THETA, TURNS, VALUE
+from mbsd.kinematics.groups.carrying.columns import BASE, BEND, THETA, TURNS, VALUE
 
-SOLVED, DOUBTED = 0, 1
 FLOOR = 1e-6
 """Squared sine of the angle between a group's two links below which no tolerance is met by its closed form."""
 WIDE = 0.36

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from mbsd import Mechanism
-from tools.hunt.described import seen_from
-from tools.hunt.raised import raised
+from tools.hunt.words.described import seen_from
+from tools.hunt.words.raised import raised
 
 SYMMETRIC = {
     "revolute",

@@ -1,1 +1,0 @@
-"""Compiled: the groups of independent coordinates by their pins and slides."""

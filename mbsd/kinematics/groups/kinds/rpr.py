@@ -1,0 +1,227 @@
+"""RPR: A pinned to K1 at P, B pinned to K2 at Q, B slides on A; or point Q of K2 runs in a slot of A (B: -1).
+
+|Q - P|^2 = t^2 + offset^2; d = Q - P, e the axis of the slide:
+
+    omega d_perp + s' e = q' - p'
+    alpha d_perp + s'' e = q'' - p'' + omega^2 d - 2 omega s' e_perp
+    D = |Q - P|^2 - offset^2;   D' = 2 (Q - P) . (q' - p')
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from mbsd.compiling.jit import inlined, lazy
+from mbsd.kinematics.groups.carrying.branch import doubted, predicted
+from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turn_as, turned_x, turned_y
+from mbsd.kinematics.groups.carrying.columns import AVOID, COS, NEAR, OMEGA, SIGN, SIN, SINE, SPEED, X, Y
+from mbsd.kinematics.groups.carrying.places import point_along, point_of, put_on, root_of, turn_with
+from mbsd.kinematics.groups.carrying.rates import DOUBTED, MEETING, SOLVED, aim, carried, follow, hang, reach
+from mbsd.kinematics.groups.groups import FIRST, K1, K2, RPR, SECOND
+from mbsd.kinematics.groups.kind import Bodies, GroupKind, Made
+from mbsd.kinematics.groups.links import Link, Places, Vector, own_angle, turned
+
+P1_X, P1_Y, PA_X, PA_Y, E_X, E_Y, OFFSET, Q2_X, Q2_Y, ANGLE, QB_X, QB_Y, BRANCH = range(13)
+"""P on K1, P on A, e on A, offset of Q from it, Q on K2, angle of B against A, Q on B, sign of the root."""
+COS_B, SIN_B = ANGLE, BRANCH
+"""For columns of B: cosine and sine of that angle."""
+
+
+def in_own_slot(at: Places, a: int, links: dict[str, Link]) -> Made | None:
+    """A pinned body in whose slot a point of a known one runs."""
+    pin, slot = links["R"], links["S"]
+    if not slot.first:
+        return None
+    start = np.array(at.arm(slot.here)) - at.arm(pin.here)
+    return _made(
+        at, (a, -1, pin.other, slot.other), pin, at.axis(slot.here), start, at.arm(slot.there), 0.0, [0.0, 0.0]
+    )
+
+
+def on_each_other(at: Places, a: int, b: int, pin: Link, slide: Link, outer: Link) -> Made:
+    """Two pinned bodies of which one slides on the other."""
+    angle = -own_angle(slide)
+    axis = at.axis(slide.here) if slide.first else turned(at.axis(slide.there), angle)
+    q_on_b = at.arm(outer.here)
+    reach = turned(np.array(q_on_b) - at.arm(slide.there), angle)
+    start = np.array(at.arm(slide.here)) - at.arm(pin.here) + reach
+    return _made(at, (a, b, pin.other, outer.other), pin, axis, start, at.arm(outer.there), angle, q_on_b)
+
+
+def _made(
+    at: Places,
+    bodies: Bodies,
+    pin: Link,
+    axis: Vector | np.ndarray,
+    start: np.ndarray,
+    q_on_k2: list[float],
+    angle: float,
+    q_on_b: list[float],
+) -> Made:
+    a, _, _, k2 = bodies
+    offset = axis[0] * start[1] - axis[1] * start[0]
+    numbers = [float(x) for x in (*at.pin(pin), *axis, offset, *q_on_k2, angle, *q_on_b)]
+    reach = at.world(k2, q_on_k2) - at.world(a, numbers[PA_X:E_X])
+    branch = math.copysign(1.0, float(np.dot(reach, at.along(a, axis))))
+    return RPR, bodies, 0, [*numbers, branch]
+
+
+def _embedded(n: list[float]) -> list[float]:
+    return [*n[:ANGLE], math.cos(n[ANGLE]), *n[QB_X:BRANCH], math.sin(n[ANGLE])]
+
+
+KIND = GroupKind(
+    RPR,
+    "RPR",
+    _embedded,
+    one=("RS",),
+    of_one=in_own_slot,
+    two=("RPR",),
+    of_two=on_each_other,
+    branch=BRANCH,
+    angles=((1, ANGLE),),
+)
+
+
+@lazy(int)
+def solve_rpr(bodies, n, qk, vk, ak, last, tiny, turn, point):
+    """Positions and rates; last (3 nb,): the pose before; tiny (m^2): what counts as zero. See prp.solve_prp."""
+    p = point[0]
+    r = point[1]
+    body = bodies[FIRST]
+    other = bodies[SECOND]
+    k1 = bodies[K1]
+    k2 = bodies[K2]
+    at = 3 * body
+    carried(qk, vk, ak, turn, k1, n[P1_X], n[P1_Y], p)
+    carried(qk, vk, ak, turn, k2, n[Q2_X], n[Q2_Y], r)
+    dx = r[0] - p[0]
+    dy = r[1] - p[1]
+    square = dx * dx + dy * dy
+    left = square - n[OFFSET] * n[OFFSET]
+    point[3, 0] = left
+    state = reach(left, square)
+    if not left > tiny:
+        state = min(state, MEETING)
+    if state != SOLVED:
+        return state
+    root = n[BRANCH] * math.sqrt(left)
+    aim(turn, qk, last[at + 2], body, dx, dy, root * n[E_X] - n[OFFSET] * n[E_Y], root * n[E_Y] + n[OFFSET] * n[E_X])
+    ex = turn[body, 0] * n[E_X] - turn[body, 1] * n[E_Y]
+    ey = turn[body, 1] * n[E_X] + turn[body, 0] * n[E_Y]
+    fx = r[2] - p[2]
+    fy = r[3] - p[3]
+    inverse = 1.0 / root
+    omega = (ex * fy - ey * fx) * inverse
+    rate = dx * fx + dy * fy
+    point[3, 1] = 2.0 * rate
+    rate *= inverse
+    fx = r[4] - p[4] + omega * omega * dx + 2.0 * omega * rate * ey
+    fy = r[5] - p[5] + omega * omega * dy - 2.0 * omega * rate * ex
+    vk[at + 2] = omega
+    ak[at + 2] = (ex * fy - ey * fx) * inverse
+    hang(qk, vk, ak, turn, body, p, n[PA_X], n[PA_Y])
+    if other >= 0:
+        follow(qk, vk, ak, turn, other, body, n[ANGLE])
+        hang(qk, vk, ak, turn, other, r, n[QB_X], n[QB_Y])
+    return SOLVED
+
+
+@inlined
+def place_rpr(bodies, n, turn_b, place, p, r):
+    """Places alone; turn_b (2,): cosine and sine of the angle of B. See rrr.place_rrr."""
+    a = bodies[FIRST]
+    b = bodies[SECOND]
+    k1 = bodies[K1]
+    k2 = bodies[K2]
+    point_of(place, k1, n[P1_X], n[P1_Y], p)
+    point_of(place, k2, n[Q2_X], n[Q2_Y], r)
+    dx = r[0] - p[0]
+    dy = r[1] - p[1]
+    square = dx * dx + dy * dy
+    left = 1.0 - n[OFFSET] * n[OFFSET] / square
+    root = root_of(left)
+    if root < 0.0:
+        return root
+    way = n[BRANCH] * root * math.sqrt(square)
+    point_along(place, a, dx, dy, way * n[E_X] - n[OFFSET] * n[E_Y], way * n[E_Y] + n[OFFSET] * n[E_X])
+    put_on(place, a, p[0], p[1], n[PA_X], n[PA_Y])
+    if b >= 0:
+        turn_with(place, b, a, turn_b)
+        put_on(place, b, r[0], r[1], n[QB_X], n[QB_Y])
+    return root
+
+
+@lazy(int)
+def embed_rpr(bodies, n, body, rate, base, coordinate):
+    """Positions and columns of B. See prp.embed_prp."""
+    a = bodies[FIRST]
+    b = bodies[SECOND]
+    k1 = bodies[K1]
+    k2 = bodies[K2]
+    columns = coordinate.shape[0] - 1
+    px = turned_x(body, k1, n[P1_X], n[P1_Y])
+    py = turned_y(body, k1, n[P1_X], n[P1_Y])
+    qx = turned_x(body, k2, n[Q2_X], n[Q2_Y])
+    qy = turned_y(body, k2, n[Q2_X], n[Q2_Y])
+    cx = body[k1, X] + px
+    cy = body[k1, Y] + py
+    tx = body[k2, X] + qx
+    ty = body[k2, Y] + qy
+    dx = tx - cx
+    dy = ty - cy
+    square = dx * dx + dy * dy
+    left = square - n[OFFSET] * n[OFFSET]
+    n[SINE] = left / square if square > 0.0 else 0.0
+    if not n[SINE] > n[AVOID]:
+        return DOUBTED
+    root = math.sqrt(left)
+    if n[NEAR] > 0.0:
+        theta = predicted(base, coordinate, a)
+        c = math.cos(theta)
+        s = math.sin(theta)
+        side = (c * n[E_X] - s * n[E_Y]) * dx + (s * n[E_X] + c * n[E_Y]) * dy
+        if doubted(side, root):
+            return DOUBTED
+        n[SIGN] = 1.0 if side > 0.0 else -1.0
+    root *= n[SIGN]
+    # the axis and its normal in the group's frame: d = root e + offset e_perp
+    inverse = 1.0 / square
+    ex = (root * dx + n[OFFSET] * dy) * inverse
+    ey = (root * dy - n[OFFSET] * dx) * inverse
+    body[a, COS] = ex * n[E_X] + ey * n[E_Y]
+    body[a, SIN] = ey * n[E_X] - ex * n[E_Y]
+    ax = put(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
+    ay = put(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
+    bx = 0.0
+    by = 0.0
+    if b >= 0:
+        turn_as(body, b, a, n[COS_B], n[SIN_B])
+        bx = put(body, b, tx, ty, n[QB_X], n[QB_Y], 0)
+        by = put(body, b, tx, ty, n[QB_X], n[QB_Y], 1)
+    inverse = 1.0 / root
+    turning = 0.0
+    sliding = 0.0
+    for j in range(columns + 1):
+        cx = carry_column(body, rate, columns, j, k1, px, py, 0)
+        cy = carry_column(body, rate, columns, j, k1, px, py, 1)
+        tx = carry_column(body, rate, columns, j, k2, qx, qy, 0)
+        ty = carry_column(body, rate, columns, j, k2, qx, qy, 1)
+        fx = tx - cx
+        fy = ty - cy
+        if j == columns:
+            body[a, OMEGA] = turning
+            if b >= 0:
+                body[b, OMEGA] = turning
+            fx += turning * turning * dx + 2.0 * turning * sliding * ey
+            fy += turning * turning * dy - 2.0 * turning * sliding * ex
+        omega = (ex * fy - ey * fx) * inverse
+        if j < columns:
+            turning += omega * coordinate[j, SPEED]
+            sliding += (dx * fx + dy * fy) * inverse * coordinate[j, SPEED]
+        hang_column(body, rate, columns, j, a, cx, cy, omega, ax, ay)
+        if b >= 0:
+            hang_column(body, rate, columns, j, b, tx, ty, omega, bx, by)
+    return SOLVED

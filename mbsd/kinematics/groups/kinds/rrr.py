@@ -1,0 +1,248 @@
+"""RRR: A pinned to K1 at P, B pinned to K2 at Q, A pinned to B at C, where the circles about P and Q meet.
+
+u = C - P, w = C - Q:
+
+    omega_A u_perp - omega_B w_perp = q' - p'
+    alpha_A u_perp - alpha_B w_perp = q'' - p'' + omega_A^2 u - omega_B^2 w
+    D = 4 a^2 b^2 - m^2,  m = a^2 + b^2 - |Q - P|^2;   D' = 4 m (Q - P) . (q' - p')     a = |u|, b = |w|
+
+In columns of B  u x w = s |C - P| |C - Q|.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.compiling.jit import inlined, merged
+from mbsd.kinematics.groups.carrying.branch import doubted, predicted
+from mbsd.kinematics.groups.carrying.columns import AVOID, COS, NEAR, OMEGA, SIGN, SIN, SINE, SPEED, X, Y
+from mbsd.kinematics.groups.carrying.places import point_along, point_of, put_on, root_of
+from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED, aim, carried, hang, reach
+from mbsd.kinematics.groups.groups import FIRST, K1, K2, RRR, SECOND
+from mbsd.kinematics.groups.kind import GroupKind, Made, line
+from mbsd.kinematics.groups.links import Link, Places
+
+P1_X, P1_Y, PA_X, PA_Y, CA_X, CA_Y, Q2_X, Q2_Y, QB_X, QB_Y, CB_X, CB_Y, BRANCH = range(13)
+"""P on K1, P on A, C on A, Q on K2, Q on B, C on B, sign of the root."""
+UA_X, UA_Y, WB_X, WB_Y = CA_X, CA_Y, CB_X, CB_Y
+SQUARE, DIFFERENCE, PER_SQUARES = range(12, 15)
+"""For columns of B: u / a^2 on A, w / b^2 on B, a^2, a^2 - b^2, 1 / (a^2 b^2)."""
+
+
+def two_pinned(at: Places, a: int, b: int, outer_a: Link, inner: Link, outer_b: Link) -> Made:
+    """Two bodies pinned to known ones and to each other."""
+    numbers = [
+        *at.pin(outer_a),
+        *at.arm(inner.here),
+        *at.pin(outer_b),
+        *at.arm(inner.there),
+    ]
+    p, q = at.world(a, numbers[PA_X:CA_X]), at.world(b, numbers[QB_X:CB_X])
+    branch = at.side_of(p, q, at.world(a, numbers[CA_X:Q2_X]))
+    return RRR, (a, b, outer_a.other, outer_b.other), 0, [*numbers, branch]
+
+
+def _embedded(n: list[float]) -> list[float]:
+    on_a, first = line(n[CA_X] - n[PA_X], n[CA_Y] - n[PA_Y])
+    on_b, second = line(n[CB_X] - n[QB_X], n[CB_Y] - n[QB_Y])
+    return [*n[:CA_X], *on_a, *n[Q2_X:CB_X], *on_b, first, first - second, 1.0 / (first * second)]
+
+
+KIND = GroupKind(RRR, "RRR", _embedded, two=("RRR",), of_two=two_pinned, branch=BRANCH)
+
+
+@merged
+def solve_rrr(bodies, n, qk, vk, ak, last, turn, point):
+    """Positions and rates; last (3 nb,): the pose before. See prp.solve_prp."""
+    body = bodies[FIRST]
+    other = bodies[SECOND]
+    k1 = bodies[K1]
+    k2 = bodies[K2]
+    p = point[0]
+    r = point[1]
+    at = 3 * body
+    carried(qk, vk, ak, turn, k1, n[P1_X], n[P1_Y], p)
+    carried(qk, vk, ak, turn, k2, n[Q2_X], n[Q2_Y], r)
+    lx = n[CA_X] - n[PA_X]
+    ly = n[CA_Y] - n[PA_Y]
+    mx = n[CB_X] - n[QB_X]
+    my = n[CB_Y] - n[QB_Y]
+    first = lx * lx + ly * ly
+    second = mx * mx + my * my
+    dx = r[0] - p[0]
+    dy = r[1] - p[1]
+    square = dx * dx + dy * dy
+    middle = first + second - square
+    left = 4.0 * first * second - middle * middle
+    state = reach(left, 4.0 * first * second)
+    if state != SOLVED:
+        return state
+    inverse = 1.0 / square
+    along = 0.5 * (square + first - second) * inverse
+    height = n[BRANCH] * 0.5 * inverse * math.sqrt(left)
+    ux = along * dx - height * dy
+    uy = along * dy + height * dx
+    wx = ux - dx
+    wy = uy - dy
+    aim(turn, qk, last[at + 2], body, ux, uy, lx, ly)
+    aim(turn, qk, last[3 * other + 2], other, wx, wy, mx, my)
+    det = 1.0 / (uy * wx - ux * wy)
+    fx = r[2] - p[2]
+    fy = r[3] - p[3]
+    point[3, 0] = left
+    point[3, 1] = 4.0 * middle * (dx * fx + dy * fy)
+    omega = (fx * wx + fy * wy) * det
+    turning = (fx * ux + fy * uy) * det
+    fx = r[4] - p[4] + omega * omega * ux - turning * turning * wx
+    fy = r[5] - p[5] + omega * omega * uy - turning * turning * wy
+    vk[at + 2] = -omega
+    ak[at + 2] = -(fx * wx + fy * wy) * det
+    vk[3 * other + 2] = -turning
+    ak[3 * other + 2] = -(fx * ux + fy * uy) * det
+    hang(qk, vk, ak, turn, body, p, n[PA_X], n[PA_Y])
+    hang(qk, vk, ak, turn, other, r, n[QB_X], n[QB_Y])
+    return SOLVED
+
+
+@inlined
+def place_rrr(bodies, n, place, p, r):
+    """Places alone; returns the root, which must go on smoothly, or what places.root_of says. Scratch p, r (2,)."""
+    a = bodies[FIRST]
+    b = bodies[SECOND]
+    k1 = bodies[K1]
+    k2 = bodies[K2]
+    point_of(place, k1, n[P1_X], n[P1_Y], p)
+    point_of(place, k2, n[Q2_X], n[Q2_Y], r)
+    lx = n[CA_X] - n[PA_X]
+    ly = n[CA_Y] - n[PA_Y]
+    mx = n[CB_X] - n[QB_X]
+    my = n[CB_Y] - n[QB_Y]
+    second = mx * mx + my * my
+    first = lx * lx + ly * ly
+    dx = r[0] - p[0]
+    dy = r[1] - p[1]
+    square = dx * dx + dy * dy
+    inverse = 1.0 / square
+    along = 0.5 * (square + first - second) * inverse
+    left = first * inverse - along * along
+    root = root_of(left)
+    if root < 0.0:
+        return root
+    height = n[BRANCH] * root
+    ux = along * dx - height * dy
+    uy = along * dy + height * dx
+    point_along(place, a, ux, uy, lx, ly)
+    put_on(place, a, p[0], p[1], n[PA_X], n[PA_Y])
+    point_along(place, b, ux - dx, uy - dy, mx, my)
+    put_on(place, b, r[0], r[1], n[QB_X], n[QB_Y])
+    return root
+
+
+@merged
+def embed_rrr(bodies, n, body, rate, base, coordinate):
+    """Positions and columns of B. See prp.embed_prp."""
+    a = bodies[FIRST]
+    b = bodies[SECOND]
+    k1 = bodies[K1]
+    k2 = bodies[K2]
+    columns = coordinate.shape[0] - 1
+    c = body[k1, COS]
+    s = body[k1, SIN]
+    px = c * n[P1_X] - s * n[P1_Y]
+    py = s * n[P1_X] + c * n[P1_Y]
+    c = body[k2, COS]
+    s = body[k2, SIN]
+    qx = c * n[Q2_X] - s * n[Q2_Y]
+    qy = s * n[Q2_X] + c * n[Q2_Y]
+    cx = body[k1, X] + px
+    cy = body[k1, Y] + py
+    ex = body[k2, X] + qx
+    ey = body[k2, Y] + qy
+    dx = ex - cx
+    dy = ey - cy
+    square = dx * dx + dy * dy
+    half = 0.5 * (square + n[DIFFERENCE])
+    cross = n[SQUARE] * square - half * half
+    n[SINE] = cross * n[PER_SQUARES]
+    if not n[SINE] > n[AVOID]:
+        return DOUBTED
+    inverse = 1.0 / square
+    cross = math.sqrt(cross)
+    if n[NEAR] > 0.0:
+        theta = predicted(base, coordinate, a)
+        c = math.cos(theta)
+        s = math.sin(theta)
+        side = n[SQUARE] * ((s * n[UA_X] + c * n[UA_Y]) * dx - (c * n[UA_X] - s * n[UA_Y]) * dy)
+        if doubted(side, cross):
+            return DOUBTED
+        n[SIGN] = 1.0 if side > 0.0 else -1.0
+    cross *= n[SIGN]
+    det = 1.0 / cross
+    along = half * inverse
+    cross *= inverse
+    ux = along * dx - cross * dy
+    uy = along * dy + cross * dx
+    wx = ux - dx
+    wy = uy - dy
+    c = ux * n[UA_X] + uy * n[UA_Y]
+    s = uy * n[UA_X] - ux * n[UA_Y]
+    body[a, COS] = c
+    body[a, SIN] = s
+    ax = c * n[PA_X] - s * n[PA_Y]
+    ay = s * n[PA_X] + c * n[PA_Y]
+    body[a, X] = cx - ax
+    body[a, Y] = cy - ay
+    c = wx * n[WB_X] + wy * n[WB_Y]
+    s = wy * n[WB_X] - wx * n[WB_Y]
+    body[b, COS] = c
+    body[b, SIN] = s
+    bx = c * n[QB_X] - s * n[QB_Y]
+    by = s * n[QB_X] + c * n[QB_Y]
+    body[b, X] = ex - bx
+    body[b, Y] = ey - by
+    turning_a = 0.0
+    turning_b = 0.0
+    for j in range(columns):
+        at = 3 * j
+        omega = rate[k1, at + 2]
+        cx = rate[k1, at] - omega * py
+        cy = rate[k1, at + 1] + omega * px
+        omega = rate[k2, at + 2]
+        ex = rate[k2, at] - omega * qy
+        ey = rate[k2, at + 1] + omega * qx
+        fx = ex - cx
+        fy = ey - cy
+        omega = (fx * wx + fy * wy) * det
+        turning_a += omega * coordinate[j, SPEED]
+        rate[a, at] = cx + omega * ay
+        rate[a, at + 1] = cy - omega * ax
+        rate[a, at + 2] = omega
+        omega = (fx * ux + fy * uy) * det
+        turning_b += omega * coordinate[j, SPEED]
+        rate[b, at] = ex + omega * by
+        rate[b, at + 1] = ey - omega * bx
+        rate[b, at + 2] = omega
+    body[a, OMEGA] = turning_a
+    body[b, OMEGA] = turning_b
+    turning_a *= turning_a
+    turning_b *= turning_b
+    at = 3 * columns
+    omega = rate[k1, at + 2]
+    square = body[k1, OMEGA] * body[k1, OMEGA]
+    cx = rate[k1, at] - omega * py - square * px
+    cy = rate[k1, at + 1] + omega * px - square * py
+    omega = rate[k2, at + 2]
+    square = body[k2, OMEGA] * body[k2, OMEGA]
+    ex = rate[k2, at] - omega * qy - square * qx
+    ey = rate[k2, at + 1] + omega * qx - square * qy
+    fx = ex - cx + turning_a * ux - turning_b * wx
+    fy = ey - cy + turning_a * uy - turning_b * wy
+    omega = (fx * wx + fy * wy) * det
+    rate[a, at] = cx + omega * ay + turning_a * ax
+    rate[a, at + 1] = cy - omega * ax + turning_a * ay
+    rate[a, at + 2] = omega
+    omega = (fx * ux + fy * uy) * det
+    rate[b, at] = ex + omega * by + turning_b * bx
+    rate[b, at + 1] = ey - omega * bx + turning_b * by
+    rate[b, at + 2] = omega
+    return SOLVED

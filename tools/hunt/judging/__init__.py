@@ -1,0 +1,1 @@
+"""Whether solutions agree, and what any solution must fulfil by itself."""

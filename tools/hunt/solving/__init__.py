@@ -1,0 +1,1 @@
+"""The variations of a driven and of a free motion."""

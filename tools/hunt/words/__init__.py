@@ -1,0 +1,1 @@
+"""One mechanism in other words: what must not change its motion."""

@@ -52,7 +52,7 @@ def _made(at: Places, a: int, b: int, slide: Link, arm: list[float], k2: int, se
 
 def _embedded(n: list[float]) -> list[float]:
     a, b = n[ANGLE_A], n[ANGLE_B]
-    return [*n[:ANGLE_A], math.cos(a), *n[CA_X:ANGLE_B], math.cos(b), *n[CB_X:], math.sin(a), math.sin(b)]
+    return [*n[:ANGLE_A], math.cos(a), *n[CA_X:ANGLE_B], math.cos(b), *n[CB_X:SIN_A], math.sin(a), math.sin(b)]
 
 
 KIND = GroupKind(

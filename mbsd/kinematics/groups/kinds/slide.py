@@ -45,7 +45,7 @@ def driven_slide(at: Places, a: int, links: dict[str, Link]) -> Made | None:
 
 
 def _embedded(n: list[float]) -> list[float]:
-    return [*n[:ANGLE], math.cos(n[ANGLE]), *n[SA_X:], math.sin(n[ANGLE])]
+    return [*n[:ANGLE], math.cos(n[ANGLE]), *n[SA_X:SIN_A], math.sin(n[ANGLE])]
 
 
 KIND = GroupKind(SLIDE, "driven slide", _embedded, one=("AP",), of_one=driven_slide, angles=((0, ANGLE),))

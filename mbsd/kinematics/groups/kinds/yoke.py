@@ -43,7 +43,7 @@ def yoke(at: Places, a: int, links: dict[str, Link]) -> Made | None:
 
 
 def _embedded(n: list[float]) -> list[float]:
-    return [*n[:ANGLE], math.cos(n[ANGLE]), *n[SA_X:], math.sin(n[ANGLE])]
+    return [*n[:ANGLE], math.cos(n[ANGLE]), *n[SA_X:SIN_A], math.sin(n[ANGLE])]
 
 
 KIND = GroupKind(YOKE, "yoke", _embedded, one=("PS",), of_one=yoke, angles=((0, ANGLE),))

@@ -263,7 +263,7 @@ bench-start: install ## how long one waits for a first result and for calls as u
 bench-film: install ## what a film costs beside Cycles alone, a plain script, one core; NAME=four_bar N=60 frames
 	@$(PYTHON) -m benchmarks film --name "$${NAME:-four_bar}" --preset "$$PRESET" --frames "$${N:-60}"
 
-check-numbers: install ## raw bytes of 210 runs against those recorded, all or ONLY="gallery four_bar"
+check-numbers: install ## raw bytes of 290 runs against those recorded, all or ONLY="gallery four_bar"
 	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.numbers check "$$ONLY"
 

@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import argparse
+import functools
 import os
 import subprocess
 import sys
@@ -52,17 +53,15 @@ def measured(words: Sequence[str]) -> int:
 
 def overhead(name: str, preset: Preset, frames: int, folder: Path) -> Bar:
     """Wall time of the frames stage over the seconds inside Cycles."""
-    film = Film(name, preset, frames, folder)
-    wall, cycles = film.run(), film.timing().cycles
+    wall, cycles = _whole(name, preset, frames)
     settings = f"{preset.name}, {frames} frames, {duration(wall)}"
     return _at_most("frames stage, from start to exit", 1.03, wall / cycles, "Cycles' own seconds", settings)
 
 
 def plain(name: str, preset: Preset, frames: int, folder: Path) -> Bar:
     """A plain Blender script that renders every frame of three turns, against the frames stage."""
-    film = Film(name, preset, frames, folder)
-    own = film.run()
-    start, each = film.plain(min(OF_PLAIN, frames))
+    own, _ = _whole(name, preset, frames)
+    start, each = Film(name, preset, frames, folder).plain(min(OF_PLAIN, frames))
     script = start + TURNS * frames * each
     settings = f"{preset.name}, {TURNS} x {frames} frames, {each:.1f} s a frame against {own / frames:.1f} s a picture"
     return Bar("a plain Blender script", 4.0, script / own, "frames stage", settings, script >= 4.0 * own)
@@ -70,8 +69,8 @@ def plain(name: str, preset: Preset, frames: int, folder: Path) -> Bar:
 
 def resumed(name: str, preset: Preset, frames: int, folder: Path) -> Bar:
     """What is left after a SIGKILL at half of the pictures, against the whole."""
-    whole, cut = Film(name, preset, frames, folder / "whole"), Film(name, preset, frames, folder / "cut")
-    seconds = whole.run()
+    cut = Film(name, preset, frames, folder)
+    seconds, _ = _whole(name, preset, frames)
     cut.run_half()
     rest = cut.run()
     settings = f"{preset.name}, {frames} frames, {duration(seconds)}"
@@ -117,6 +116,14 @@ ROWS: dict[str, Callable[[str, Preset, int, Path], Bar]] = {
     "cores": cores,
     "noop": noop,
 }
+
+
+@functools.cache
+def _whole(name: str, preset: Preset, frames: int) -> tuple[float, float]:
+    """Seconds of a whole run, and those of them inside Cycles; made once for all rows."""
+    with tempfile.TemporaryDirectory(prefix="mbsd-bench-") as folder:
+        film = Film(name, preset, frames, Path(folder))
+        return film.run(), film.timing().cycles
 
 
 def _at_most(problem: str, wanted: float, reached: float, peer: str, settings: str) -> Bar:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from render.blender.job import Answer, Job
+from render.blender.patience import START, Patience
 from render.frames import served
 from render.frames.store import FrameStore
 from shared.cluster.address import connected
@@ -43,7 +44,7 @@ def dealt(client: Client, job: Job) -> Deal:
     common = content_hash(content)
     needed[common] = lambda: content
     orders = {picture.key: (picture.state, picture.key, picture.name) for picture in job.pictures}
-    return Deal(client, served.picture, common, needed, orders, FRAMES)
+    return Deal(client, served.picture, common, needed, orders, FRAMES, Patience().scaled(START))
 
 
 def _answers(client: Client, job: Job, store: FrameStore) -> Iterator[Answer]:

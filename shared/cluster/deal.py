@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from shared.cluster.address import tasks_of, workers_of
 from shared.cluster.hand import Group, Hand
 from shared.cluster.hands import Report, perform
-from shared.cluster.identity import PACKAGES, asker, differences, identity
+from shared.cluster.identity import PACKAGES, asker, differences, identity, together
 from shared.cluster.shares import stolen, unclaimed
 from shared.stage.console import duration, say, warn
 from shared.stage.errors import UserError
@@ -125,7 +125,7 @@ class Deal:
             asking = any(hand.groups for hand in self.hands.values())
             if asking or not self.hands or some or not self._refused.keys() | self._aside().keys() >= self.hands.keys():
                 return
-        reasons = "".join(f"; {name}: {why}" for name, why in sorted((self._refused | self._aside()).items()))
+        reasons = "".join(f"; {who}: {why}" for who, why in together(self._refused | self._aside()))
         raise UserError(
             f"no worker of the cluster can do this{reasons or ', for there is none'}; start workers "
             "with the same lock file and sources (make worker), or leave CLUSTER out"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import platform
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from importlib import metadata
 from pathlib import Path
 
@@ -13,6 +13,9 @@ from shared.stage.paths import ROOT
 
 PACKAGES = ("bpy", "distributed", "msgspec", "numpy", "pillow")
 """Those whose version decides what comes out of a picture, or how machines speak with each other."""
+
+SHOWN = 3
+"""Workers that are named beside the reason they have in common."""
 
 
 @functools.cache
@@ -50,3 +53,11 @@ def differences(theirs: Mapping[str, str], ours: Mapping[str, str]) -> str:
     """Where another machine differs from this one: ``numpy 2.4.0, here 2.5.5``; empty where it does not."""
     names = [name for name in ours if theirs.get(name) != ours[name]]
     return "; ".join(f"{name} {theirs.get(name, 'unknown')}, here {ours[name]}" for name in names)
+
+
+def together(reasons: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """Workers that have the same reason, the first three by name, and that reason."""
+    for reason in sorted(set(reasons.values())):
+        names = sorted(name for name, why in reasons.items() if why == reason)
+        more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
+        yield ", ".join(names[:SHOWN]) + more, reason

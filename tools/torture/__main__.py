@@ -2,7 +2,7 @@
 
 --n 100 --seed 1    a hundred rounds: a run of make with a random fault at a random moment (kills, a full disk, damaged
                     files, two runs at once), then the same command again, which has to end with the right films;
-                    the run is make run-all or make overnight
+                    the run is make run-all or make overnight; some with three workers of a cluster
 --only fetch        faults with this word in their names alone
 --keep              keep the project's folder after a round that went wrong, and end there
 
@@ -17,6 +17,7 @@ import json
 import os
 import random
 import shutil
+import signal
 import tempfile
 import time
 from collections import Counter
@@ -30,9 +31,10 @@ from shared.stage.files import write_bytes
 from shared.stage.paths import out_root
 from tests.studio.loopback_ssh import machine
 from tools.torture import fetching
-from tools.torture.faults import BACKGROUND, FAULTS, FETCH, FULL, Fault
+from tools.torture.faults import BACKGROUND, CLUSTER, DISK_OF_ONE, FAULTS, FETCH, FULL, Fault
 from tools.torture.project import Project
 from tools.torture.rounds import Outcome, play
+from tools.torture.workers import Workers
 
 ROUNDS, SEED = 20, 1
 COUNTS = ("wrong", "lost", "redone", "twice", "refused", "hangs", "orphans", "tracebacks")
@@ -55,7 +57,12 @@ def main() -> int:
     try:
         project.build()
         reference, length = _reference(project)
-        faults = [*FAULTS, *(FULL if project.mounted else []), *(BACKGROUND if shutil.which("tmux") else [])]
+        faults = [
+            *FAULTS,
+            *CLUSTER,
+            *([*FULL, *DISK_OF_ONE] if project.mounted else []),
+            *(BACKGROUND if shutil.which("tmux") else []),
+        ]
         if fetching.is_possible():
             place = closing.enter_context(tempfile.TemporaryDirectory(prefix="mbsd-ssh-"))
             other = closing.enter_context(machine(Path(place) / "machine"))
@@ -71,6 +78,10 @@ def main() -> int:
         if not faults:
             raise UserError(f"torture: no fault of this machine has {arguments.only!r} in its name")
         for number, fault in _rounds(faults, arguments.n, arguments.seed):
+            if fault.cluster and project.workers is None:
+                place = Path(closing.enter_context(tempfile.TemporaryDirectory(prefix="mbsd-workers-")))
+                project.workers = Workers(place)
+                closing.callback(project.workers.close)
             outcome = play(project, fault, random.Random(f"{arguments.seed} {number}"), reference, length)
             outcomes.append(outcome)
             say("torture", f"{number + 1}/{arguments.n}: {_words(outcome)}")
@@ -83,6 +94,7 @@ def main() -> int:
                 project.forget()
                 _reference(project)
     finally:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # a second Ctrl-C would leave mounts and processes
         closing.close()
         if kept:
             say("torture", f"kept: {project.folder}")

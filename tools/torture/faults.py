@@ -31,6 +31,15 @@ from tools.torture.hits import (
 )
 from tools.torture.project import COORDINATOR, Project
 from tools.torture.stage import MODULE
+from tools.torture.workers import (
+    Workers,
+    disk_of_one,
+    healed,
+    limit_one,
+    no_scheduler,
+    scheduler_again,
+    signal_to_one,
+)
 
 
 @dataclass(frozen=True)
@@ -47,6 +56,8 @@ class Fault:
     """A word in the arguments of the process during which it hits; anywhere in the run if empty."""
     target: str = ""
     """The target of make that it needs; any that makes films if empty."""
+    cluster: bool = False
+    """Whether the workers of a cluster make the pictures."""
     destroys: int = 0
     """Pictures that it may destroy, each of which is then rendered once more."""
     follow: Callable[[Project], int] | None = None
@@ -97,6 +108,28 @@ BACKGROUND = [Fault("SIGKILL to tmux", signal_to(TMUX, KILL), during=STAGE, targ
 """Only where there is tmux."""
 FETCH = [Fault("films fetched meanwhile, killed and fetched again", fetch_killed, follow=fetch_again)]
 """Only where there are rsync, ssh and sshd."""
+CLUSTER = [
+    *(
+        Fault(f"{what.name} to {whom}", signal_to_one(pick, what), undo=healed, during=FILM, cluster=True)
+        for whom, pick in (("a worker", Workers.workers), ("a worker's Blender", Workers.blenders))
+        for what in (KILL, STOP)
+    ),
+    Fault("no room for a worker's files", limit_one(Workers.workers, "files"), undo=healed, during=FILM, cluster=True),
+    *(
+        Fault(
+            f"no {what} for a worker's Blender",
+            limit_one(Workers.blenders, kind),
+            undo=healed,
+            during=FILM,
+            cluster=True,
+        )
+        for what, kind in (("room for the files", "files"), ("memory", "memory"))
+    ),
+    Fault("SIGKILL to the scheduler", no_scheduler, undo=scheduler_again, during=FILM, cluster=True),
+]
+"""Only where there are a scheduler and workers, on Linux."""
+DISK_OF_ONE = [Fault("a full disk of a worker", disk_of_one, undo=healed, during=FILM, cluster=True)]
+"""Only where one of the workers has a small disk of its own."""
 FULL = [
     *[Fault("a full disk", full_disk, undo=room_again)] * 2,
     *[Fault("a disk that gets full under Blender", full_disk, undo=room_again, during=BLENDER)] * 3,

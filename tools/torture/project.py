@@ -17,6 +17,7 @@ from shared.stage.paths import ROOT, Out
 from studio.night.files import record, runs
 from tools.torture.processes import Process, processes
 from tools.torture.stage import RENDERED
+from tools.torture.workers import Workers
 
 SHOTS = {
     "four_bar": Shot(turns=2, seconds_per_turn=0.2),
@@ -46,6 +47,10 @@ class Project:
 
     folder: Path
     mounted: bool = False
+    workers: Workers | None = None
+    """The cluster for rounds that have one."""
+    clustered: bool = False
+    """Whether it makes the pictures now."""
     runs: list[subprocess.Popen[bytes]] = field(default_factory=list)
 
     @property
@@ -120,6 +125,7 @@ class Project:
             "PYTHONPATH": str(ROOT),
             "PYTHONSAFEPATH": "1",
             "TMUX_TMPDIR": str(self.folder),
+            "CLUSTER": self.workers.address if self.workers and self.clustered else "",
         }
 
     def start(self, target: str = "run-all") -> subprocess.Popen[bytes]:

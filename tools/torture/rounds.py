@@ -85,6 +85,7 @@ def play(project: Project, fault: Fault, chance: random.Random, reference: list[
     target = fault.target or chance.choice(TARGETS)
     outcome = Outcome(fault=fault.name, target=target, state=state, moment=round(moment, 2))
     _prepare(project, state, chance)
+    project.clustered = fault.cluster
     project.hush()
     _faulted_run(project, fault, chance, outcome)
     if outcome.code == 0 and not fault.hits_film:
@@ -94,6 +95,7 @@ def play(project: Project, fault: Fault, chance: random.Random, reference: list[
     before = whole_pictures(project)
     outcome.damaged = len(project.pictures()) - len(before)
     outcome.refused = int(_run(project, outcome) != 0)
+    project.clustered = False
     after = whole_pictures(project)
     outcome.wrong += _wrong(project, reference)
     if fault.follow:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from render.blender.job import Answer, Job
 from render.frames import film, frames
+from render.frames.store import FrameStore
 from render.presets import Preset
 from shared.stage.console import run_cli, say
 from shared.stage.files import write_bytes
@@ -33,11 +34,11 @@ def main() -> None:
 
 
 def count_pictures(path: Path) -> None:
-    """Have the frames stage add a line to a file for each picture that Blender has rendered: its key."""
-    blender = frames.blender
+    """Have the frames stage add a line to a file for each picture of Blender, wherever it runs: its key."""
+    makers = frames._makers
 
     @contextmanager
-    def counting(job: Job, longest: float = 0.0) -> Iterator[Iterator[Answer]]:
+    def counting(job: Job, store: FrameStore, longest: float) -> Iterator[Iterator[Answer]]:
         def counted(answers: Iterator[Answer]) -> Iterator[Answer]:
             for answer in answers:
                 if answer.key:
@@ -46,10 +47,10 @@ def count_pictures(path: Path) -> None:
                     os.close(handle)
                 yield answer
 
-        with blender(job, longest) as answers:
+        with makers(job, store, longest) as answers:
             yield counted(answers)
 
-    frames.blender = counting
+    frames._makers = counting
 
 
 def inputs(name: str, folder: Path) -> None:

@@ -16,6 +16,7 @@ import pytest
 from shared.cluster import deal, hand
 from shared.cluster.contents import content_hash
 from shared.cluster.deal import Deal
+from shared.cluster.identity import together
 from shared.stage.errors import UserError
 from tests.shared.cluster import acting
 
@@ -120,7 +121,7 @@ def test_workers_with_other_sources_are_refused_by_name(client: distributed.Clie
     work = dealt(client, acting.doubled, {"k": 1})
     work.ours = work.ours | {"numpy": "0.1"}
     name = sorted(client.scheduler_info(n_workers=-1)["workers"])[0]
-    with pytest.raises(UserError, match=f"{name}: numpy .*, here 0.1") as refusal:
+    with pytest.raises(UserError, match=f"{name}, .*: numpy .*, here 0.1") as refusal:
         list(work.results())
     assert "make worker" in str(refusal.value)
 
@@ -146,3 +147,8 @@ def test_killed_workers_lose_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyP
         found = list(dealt(client, acting.deadly, orders).results())
     assert Counter(key for key, _, _ in found) == Counter(orders.keys())
     assert (tmp_path / "dies").exists()
+
+
+def test_workers_with_one_reason_are_told_together() -> None:
+    reasons = {f"w{n}": "numpy 1, here 2" for n in range(5)} | {"x": "Python 3.12, here 3.13"}
+    assert list(together(reasons)) == [("x", "Python 3.12, here 3.13"), ("w0, w1, w2 and 2 more", "numpy 1, here 2")]

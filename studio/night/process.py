@@ -82,10 +82,10 @@ class Process:
             with suppress(ProcessLookupError, PermissionError):
                 os.killpg(self._popen.pid, number)
 
-    def wait(self, seconds: float = GRACE) -> None:
-        """Wait for its end, by force after ``seconds``."""
+    def wait(self) -> None:
+        """Wait for its end, by force after :data:`GRACE`."""
         try:
-            self._popen.wait(seconds)
+            self._popen.wait(GRACE)
         except subprocess.TimeoutExpired:
             self.end(signal.SIGKILL)
             self._popen.wait()

@@ -35,13 +35,16 @@ class Night:
         file = self.folder / "ran.txt"
         return file.read_text().splitlines() if file.exists() else []
 
-    def start(self, only: str, *words: str, command: str = "run", **variables: str) -> subprocess.Popen[str]:
-        """Start one; what it says can be read from its pipes."""
+    def start(
+        self, only: str, *words: str, command: str = "run", hurried: bool = False, **variables: str
+    ) -> subprocess.Popen[str]:
+        """Start one, ``hurried`` with short waits; what it says can be read from its pipes."""
+        module = "tests.studio.night.hurried" if hurried else "studio.night"
         inherited = {key: value for key, value in os.environ.items() if key not in ("MBSD_MAKE", "TMUX")}
         variables |= {"MBSD_OUT": str(self.folder / "out")}
         more = [f"--python={self.folder}/python", *words]
         return subprocess.Popen(
-            [sys.executable, "-m", "studio.night", command, "--preset=draft", f"--only={only}", *more],
+            [sys.executable, "-m", module, command, "--preset=draft", f"--only={only}", *more],
             cwd=ROOT,
             env=inherited | variables,
             stdin=subprocess.DEVNULL,

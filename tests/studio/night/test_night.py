@@ -64,7 +64,7 @@ def test_steps_and_commands_are_those_of_run_in_the_makefile():
 
 def test_a_film_that_another_process_renders_is_waited_for(night: Night):
     night.tell("four_bar", "film", "once busy")
-    code, out, _ = finished(night.start("four_bar"))
+    code, out, _ = finished(night.start("four_bar", hurried=True))
     assert code == 0
     assert night.ran().count("four_bar film") == 2
     assert "four_bar: another process renders it; it waits for that" in out
@@ -83,7 +83,7 @@ def test_what_crashes_is_started_once_more(night: Night, how: str):
 
 def test_what_hangs_is_killed_and_started_once_more(night: Night):
     night.tell("four_bar", "plots", "once hang")
-    code, _, err = finished(night.start("four_bar", MBSD_PATIENCE="0.05"))
+    code, _, err = finished(night.start("four_bar", hurried=True, MBSD_PATIENCE="0.05"))
     assert code == 0, err
     assert night.ran().count("four_bar plots") == 2
     assert "plots gave no sign of life for" in err
@@ -152,3 +152,14 @@ def test_words_that_cannot_be_are_refused_in_a_sentence(night: Night):
         assert code == 1
         assert told in err
     assert night.say("status").startswith("No night was started here yet")
+
+
+def test_parts_that_a_cluster_makes_take_no_core_here(night: Night):
+    names = ("four_bar", "slider_crank", "pendulum")
+    for name in names:
+        night.tell(name, "parts", f"wait {night.folder}/go")
+    run = night.start(",".join(names), CLUSTER="tcp://127.0.0.1:1", PYTHON_CPU_COUNT="1")
+    until(lambda: night.ran().count("pendulum parts"))
+    assert night.ran() == [f"{name} parts" for name in names]
+    (night.folder / "go").touch()
+    assert finished(run)[0] == 0

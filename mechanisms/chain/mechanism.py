@@ -1,5 +1,5 @@
 """A chain that hangs on one pin is flung up: all its links start at the same rate, and soon each turns its own way.
-The variants have three, ten and a hundred links; the hundred are let go from a slant and swing like a rope.
+The variants have three, ten and a hundred links; the hundred are let go from nearly level and swing like a rope.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ DURATION = 4.0
 VARIANTS = {
     "three": {"links": 3},
     "ten": {"links": 10, "rate": 6.0},
-    "hundred": {"links": 100, "length": 0.03, "mass": 0.02, "rate": 0.0, "lean": 12.0, "damping": 0.002},
+    "hundred": {"links": 100, "length": 0.03, "mass": 0.02, "rate": 0.0, "lean": 75.0, "damping": 0.002},
 }
 
 

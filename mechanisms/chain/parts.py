@@ -5,10 +5,11 @@ from mechanisms.chain.mechanism import Params, build
 from shared.shapes.solid import Solid
 from shared.shapes.units import mm
 
-PIN = 0.2
-"""Diameter of a pin, in lengths of a link."""
+PIN, THICK = 0.2, 0.27
+"""Diameter of a pin, in lengths of a link; of many links, which from afar would be a thread otherwise."""
+MANY = 50
 
 
 def parts(p: Params) -> dict[str, list[Solid]]:
     """All by itself, but for the pins."""
-    return automatic(build(p), pin=PIN * mm(p.length)).solids()
+    return automatic(build(p), pin=(THICK if p.links > MANY else PIN) * mm(p.length)).solids()

@@ -70,4 +70,4 @@ def _meeting(layout: Layout, rule: tuple[int, int]) -> str:
 
 
 def _listed(names: Sequence[str]) -> str:
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+    return f"the pieces of {names[0]}" if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -115,3 +115,19 @@ def test_shuttles_that_meet_where_their_grooves_cross_are_refused() -> None:
     made = Automatic(m, m.sweep(6.0))
     with pytest.raises(UserError, match="no order of layers lets first and second pass each other"):
         _ = made.levels
+
+
+@pytest.mark.parametrize("scale", [0.1, 1.0, 30.0])
+@pytest.mark.parametrize(("aside", "rails"), [(0.0, 1), (0.4, 2)])
+def test_two_guides_along_one_line_get_one_rail(scale: float, aside: float, rails: int) -> None:
+    """A block that is guided twice; guides beside each other get a rail each."""
+    m, c, s = Mechanism("twice"), math.cos(0.2), math.sin(0.2)
+    block = m.body("block", mass=1.0, inertia=0.01)
+    x, y = scale * (0.1 * c - aside * s), scale * (0.1 * s + aside * c)
+    m.prismatic("guide", m.ground.at(0, 0, 0.2), block.origin)
+    m.prismatic("second", m.ground.at(x, y, 0.2), block.at(0.3 * scale, aside * scale))
+    m.start_near(block=(0, 0, math.degrees(0.2)))
+    m.start_moving(block=(0.5 * scale * c, 0.5 * scale * s, 0))
+    made = Automatic(m, m.simulate(0.4, steps=20))
+    made.plan()
+    assert sum(isinstance(feature, Slide) for feature in made.layout.features) == rails

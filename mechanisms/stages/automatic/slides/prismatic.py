@@ -17,13 +17,15 @@ if TYPE_CHECKING:
     from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.layout import Feature, Layout
 
+ON_LINE, ALONG = 1e-3, 1e-6
+"""Lines that are nearer (rmm) and more parallel (rad) are one."""
 FAR = 4.0
 """Stops farther beyond the travel than it is long, or than this (half lengths of a block), are not made."""
 
 
 @kind("prismatic")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """One for each joint, but one for those on ground that cross."""
+    """One for each joint, but one for those on ground that cross, and for those of two bodies along one line."""
     found: list[Slide] = []
     for joint in joints:
         rail_at, block_at = (*layout.place(joint.i), joint.i.angle), (*layout.place(joint.j), joint.j.angle)
@@ -34,5 +36,16 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
         ends = limits.reached((lower, upper), travel, FAR * HALF_LENGTH)
         given = [end for end in ends if end is not None]
         travel = min(travel[0], *given, travel[1]), max(travel[1], *given, travel[0])
-        found.append(Slide(joint.name, joint.i.body.name, joint.j.body.name, rail_at, block_at, travel, ends))
+        slide = Slide(joint.name, joint.i.body.name, joint.j.body.name, rail_at, block_at, travel, ends)
+        if given or not any(_repeats(slide, other) for other in found):
+            found.append(slide)
     return with_crossings(found, layout)
+
+
+def _repeats(slide: Slide, other: Slide) -> bool:
+    """Whether another slide of the same two bodies guides along the same line already."""
+    if (slide.rail, slide.block) != (other.rail, other.block):
+        return False
+    x, y, angle = other.rail_at
+    aside = (slide.rail_at[1] - y) * math.cos(angle) - (slide.rail_at[0] - x) * math.sin(angle)
+    return abs(aside) < ON_LINE and abs(math.sin(slide.rail_at[2] - angle)) < ALONG

@@ -1,4 +1,4 @@
-"""Forward dynamics in independent coordinates, where a mechanism falls apart into driven bodies and Assur groups.
+"""Forward dynamics in independent coordinates, where a mechanism falls apart into driven bodies, trains and groups.
 
     q = q(z, t),   q' = B z' + b,   q'' = B z'' + c
     (B^T M B) z'' = B^T (Q - M c)

@@ -27,7 +27,7 @@ class Embedding(NamedTuple):
     gravity: Any
     """(2,) m/s^2."""
     group: Any
-    """(g, 7) in the order of their solution."""
+    """(g, 8) in the order of their solution."""
     number: Any
     """(g, 20); mbsd/dynamics/embedding/numbers.py."""
     size: Any

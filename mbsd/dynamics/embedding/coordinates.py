@@ -1,8 +1,8 @@
 """Which joints serve as independent coordinates: angles of hinges, ways of slides between a known body and a new one.
 
-The program takes the mechanism apart from ground on; wherever no group can be added it takes the next hinge or slide as
-a coordinate, and goes back where that leads nowhere. Of the choices that come to an end it keeps the first under which
-no body moves much faster than its coordinate, or else the best.
+The program takes the mechanism apart from ground on; wherever no group and no wheel of a gear train can be added it
+takes the next hinge or slide as a coordinate, and goes back where that leads nowhere. Of the choices that come to an
+end it keeps the first under which no body moves much faster than its coordinate, or else the best.
 """
 
 from __future__ import annotations
@@ -16,8 +16,10 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.kinematics.groups.groups import SLIDE
 from mbsd.kinematics.groups.kinds.slide import ANGLE, G_X, S1_X, SA_X
+from mbsd.kinematics.groups.kinds.train import train
 from mbsd.kinematics.groups.links import Link
-from mbsd.kinematics.groups.plan import Plan, links_of
+from mbsd.kinematics.groups.plan import Plan, link_kind, links_of_joints
+from mbsd.kinematics.groups.trains import Trains
 
 MOST = 6
 """More coordinates than this are solved faster by multipliers."""
@@ -68,11 +70,14 @@ class Coordinate:
 
 def choices(packed: Packed, q: np.ndarray, count: int) -> Iterator[Plan]:
     """Complete plans with ``count`` coordinates at a closed pose q (3 nb,); law -k of a group is coordinate k."""
-    links = links_of(packed)
-    if links is None or not 0 < count <= MOST:
+    if not 0 < count <= MOST:
         return
-    left = [TRIALS]
-    yield from islice(_complete(Plan(packed, q.reshape(-1, 3), links), count, 0, left), CHOICES)
+    everything = range(len(packed.joints))
+    trains = _Trains(packed, q, [joint for joint in everything if link_kind(packed.joints[joint]) is None])
+    if not trains.possible:
+        return
+    plan, left = Plan(packed, q.reshape(-1, 3), links_of_joints(packed, everything)), [TRIALS]
+    yield from islice(_complete(plan, trains, count, 0, left), CHOICES)
 
 
 def coordinates_of(plan: Plan, count: int) -> list[Coordinate]:
@@ -85,8 +90,42 @@ def coordinates_of(plan: Plan, count: int) -> list[Coordinate]:
     return [one for one in out if one is not None]
 
 
-def _complete(plan: Plan, count: int, taken: int, left: list[int]) -> Iterator[Plan]:
+class _Trains:
+    """Gears, belts and locks, of which each gives one more angle as a sum of known ones."""
+
+    def __init__(self, packed: Packed, q: np.ndarray, joints: list[int]) -> None:
+        first = packed.first_row
+        self.row_of = {joint: first[joint] for joint in joints}
+        self.trains = Trains(packed, q) if joints else None
+        self.possible = self.trains is None or all(
+            first[joint + 1] == row + 1 and row in self.trains.rows for joint, row in self.row_of.items()
+        )
+
+    def add(self, plan: Plan) -> bool:
+        """Add a wheel on a known body, if there is one."""
+        for joint, row in self.row_of.items():
+            if joint in plan.used or self.trains is None:
+                continue
+            unknown = [body for body in self.trains.rows[row] if body not in plan.known]
+            if len(unknown) != 1:
+                continue
+            body = unknown[0]
+            holding = [link for link in plan.links[body] if link.other in plan.known]
+            if [link.kind for link in holding] != ["R"] or not self.trains.solve([row], [body], {}):
+                continue
+            found = self.trains.sums[body]
+            made = train(plan.places, body, holding[0], found.constant, found.shares)
+            if made is not None:
+                plan.used |= {joint, holding[0].joint}
+                plan.take(made, (body,))
+                return True
+        return False
+
+
+def _complete(plan: Plan, trains: _Trains, count: int, taken: int, left: list[int]) -> Iterator[Plan]:
     plan.grow()
+    while trains.add(plan):
+        plan.grow()
     if taken == count:
         if plan.complete:
             yield plan
@@ -107,7 +146,7 @@ def _complete(plan: Plan, count: int, taken: int, left: list[int]) -> Iterator[P
             else:
                 drive = Link(joint, "A", link.here, link.there, link.first, link.other, 0.0, -taken - 1)
             trial.hold(body, [drive])
-            yield from _complete(trial, count, taken + 1, left)
+            yield from _complete(trial, trains, count, taken + 1, left)
 
 
 def _turned(vector: np.ndarray, angle: float) -> np.ndarray:

@@ -10,26 +10,18 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import apart, inlined, internal, kernel, lazy, merged
+from mbsd.compiling.jit import apart, inlined, kernel, lazy, merged
 from mbsd.dynamics.embedding.arrays import LIMIT, SENSITIVITY
 from mbsd.dynamics.embedding.bridge import bridge
 from mbsd.dynamics.embedding.groups import solve_groups
 from mbsd.equations.laws import evaluate_laws
 from mbsd.equations.loads import apply_loads
-from mbsd.kinematics.groups.carrying.branch import WIDE, predicted
+from mbsd.kinematics.groups.carrying.branch import WIDE, angle_of
 from mbsd.kinematics.groups.carrying.columns import BASE, BEND, COS, NEAR, SIN, SINE, SPEED, THETA, TURNS, VALUE, X, Y
 from mbsd.kinematics.groups.carrying.rates import SOLVED
 
 FLOOR = 1e-14
 """Part of its diagonal that elimination must leave of M_z."""
-
-
-@internal
-def angle_of(body, base, coordinate, b):
-    """Angle of body b (rad), all its turns counted."""
-    guess = predicted(base, coordinate, b)
-    angle = math.atan2(body[b, SIN], body[b, COS])
-    return angle + 2.0 * math.pi * math.floor((guess - angle) / (2.0 * math.pi) + 0.5)
 
 
 @inlined

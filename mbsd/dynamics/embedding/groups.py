@@ -7,6 +7,7 @@ once more for the convective accelerations, whose right-hand sides have the term
 from __future__ import annotations
 
 from mbsd.compiling.jit import inlined
+from mbsd.kinematics.groups.blocks import TRAIN
 from mbsd.kinematics.groups.carrying.columns import INERTIA, MASS
 from mbsd.kinematics.groups.carrying.rates import SOLVED
 from mbsd.kinematics.groups.groups import DRIVEN, FIRST, KIND, PRP, ROD, RPR, RRP, RRR, SECOND, WELDED, YOKE
@@ -17,6 +18,7 @@ from mbsd.kinematics.groups.kinds.rpr import embed_rpr
 from mbsd.kinematics.groups.kinds.rrp import embed_rrp
 from mbsd.kinematics.groups.kinds.rrr import embed_rrr
 from mbsd.kinematics.groups.kinds.slide import embed_slide
+from mbsd.kinematics.groups.kinds.train import embed_train
 from mbsd.kinematics.groups.kinds.welded import embed_welded
 from mbsd.kinematics.groups.kinds.yoke import embed_yoke
 
@@ -51,6 +53,8 @@ def solve_groups(group, number, body, rate, base, coordinate, drive, gravity, su
             status = embed_prp(bodies, n, body, rate, coordinate)
         elif kind == ROD:
             status = embed_rod(bodies, n, body, rate, base, coordinate, drive)
+        elif kind == TRAIN:
+            status = embed_train(bodies, n, body, rate, base, coordinate)
         else:
             status = embed_slide(bodies, n, body, rate, coordinate, drive)
         if status != SOLVED:

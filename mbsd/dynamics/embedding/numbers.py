@@ -8,19 +8,22 @@ from __future__ import annotations
 
 import numpy as np
 
+from mbsd.kinematics.groups.blocks import TRAIN
 from mbsd.kinematics.groups.carrying.branch import FLOOR
 from mbsd.kinematics.groups.carrying.columns import AVOID, NEAR, NUMBERS, SIGN
-from mbsd.kinematics.groups.groups import COORDINATE, KIND, LAW, Groups
+from mbsd.kinematics.groups.groups import COORDINATE, KIND, LAW, THIRD, Groups
+from mbsd.kinematics.groups.kinds.train import BODY_3, embedded
 from mbsd.kinematics.groups.registry import BRANCH, KINDS
 
 
 def group_table(groups: Groups) -> np.ndarray:
-    """(g, 7) for Embedding.group: laws above zero are those of drivers, below zero coordinates (-1: the first)."""
-    table = np.zeros((len(groups.kind), 7), np.int64)
+    """(g, 8) for Embedding.group: laws above zero are those of drivers, below zero coordinates (-1: the first)."""
+    table = np.zeros((len(groups.kind), 8), np.int64)
     table[:, :LAW] = groups.body
     table[:, LAW] = np.maximum(groups.motion, 0)
     table[:, COORDINATE] = np.where(groups.motion < 0, -groups.motion - 1, -1)
     table[:, KIND] = groups.kind
+    table[:, THIRD] = np.where(groups.kind == TRAIN, groups.number[:, BODY_3], 0.0)
     return table
 
 
@@ -28,7 +31,8 @@ def group_numbers(groups: Groups) -> np.ndarray:
     """(g, 20) for Embedding.number."""
     out = np.zeros((len(groups.kind), NUMBERS))
     for row, kind, n in zip(out, groups.kind, groups.number, strict=True):
-        numbers = KINDS[kind].embedded([float(x) for x in n])
+        made = embedded if kind == TRAIN else KINDS[kind].embedded
+        numbers = made([float(x) for x in n])
         row[: len(numbers)] = numbers
         row[SIGN] = n[BRANCH[int(kind)]] if int(kind) in BRANCH else 1.0
         row[NEAR] = 0.0

@@ -67,7 +67,10 @@ class Embedded:
         return settings._replace(absolute=absolute, growing=growing, smallest=SMALLEST_STEP * settings.longest)
 
 
-NO_PLAN = "it does not fall apart into driven bodies and groups of one or two, or its start is near a singular pose"
+NO_PLAN = (
+    "it does not fall apart into driven bodies, gear trains and groups of one or two, "
+    "or its start is near a singular pose"
+)
 
 
 def can_embed(ready: PreparedDynamics) -> str | None:

@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 DRIVEN, WELDED, RRR, RRP, RPR, YOKE, PRP, ROD, SLIDE = range(9)
 """Kinds; blocks.py has two more."""
 NUMBERS = 14
-FIRST, SECOND, K1, K2, LAW, COORDINATE, KIND = range(7)
-"""Columns of Embedding.group: bodies A and B, known bodies, law of a driver, coordinate, kind; -1 or law 0 for none.
-The first four are those of Groups.body."""
+FIRST, SECOND, K1, K2, LAW, COORDINATE, KIND, THIRD = range(8)
+"""Columns of Embedding.group: bodies A and B, known bodies, law of a driver, coordinate, kind, and the third
+known body of a train; -1 or law 0 for none. The first four are those of Groups.body."""
 
 
 class Groups(NamedTuple):

@@ -8,8 +8,10 @@ clearly the evaluation is doubted, and the step is taken again with another leng
 
 from __future__ import annotations
 
+import math
+
 from mbsd.compiling.jit import internal
-from mbsd.kinematics.groups.carrying.columns import BASE, BEND, THETA, TURNS, VALUE
+from mbsd.kinematics.groups.carrying.columns import BASE, BEND, COS, SIN, THETA, TURNS, VALUE
 
 FLOOR = 1e-6
 """Squared sine of the angle between a group's two links below which no tolerance is met by its closed form."""
@@ -34,3 +36,11 @@ def predicted(base, coordinate, b):
 def doubted(side, reach):
     """Whether the predicted distance from where both poses meet is not near to the true one, ``reach`` >= 0."""
     return not abs(abs(side) - reach) <= MISSED * reach
+
+
+@internal
+def angle_of(body, base, coordinate, b):
+    """Angle of body b (rad), all its turns counted."""
+    guess = predicted(base, coordinate, b)
+    angle = math.atan2(body[b, SIN], body[b, COS])
+    return angle + 2.0 * math.pi * math.floor((guess - angle) / (2.0 * math.pi) + 0.5)

@@ -5,11 +5,35 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import lazy
-from mbsd.kinematics.groups.carrying.rates import carried, hang
-from mbsd.kinematics.groups.groups import FIRST, K1
+from mbsd.kinematics.groups.blocks import TRAIN
+from mbsd.kinematics.groups.carrying.branch import angle_of, predicted
+from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turned_x, turned_y
+from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIN, X, Y
+from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED, carried, hang
+from mbsd.kinematics.groups.groups import FIRST, K1, K2, THIRD
+from mbsd.kinematics.groups.kind import Made
+from mbsd.kinematics.groups.links import Link, Places
 
 P1_X, P1_Y, PA_X, PA_Y, CONSTANT, CARRIES_ON = range(6)
 """P on K1, P on A, constant of the sum (rad), 1 if other groups stand on A."""
+SHARE_2, SHARE_3, BODY_3 = range(5, 8)
+"""For columns of B, in which a sum has two angles: those of bodies K2 and THIRD. What they count, and that body."""
+UNSURE = 1.0
+"""Angle (rad) by which the prediction may miss: whole turns count here, for their share of one turns A."""
+
+
+def train(at: Places, body: int, pin: Link, constant: float, shares: dict[int, float]) -> Made | None:
+    """A group for columns of B; None where the angle is a sum of more than two."""
+    if len(shares) > 2:
+        return None
+    (second, share_2), (third, share_3) = [*shares.items(), (0, 0.0), (0, 0.0)][:2]
+    numbers = [*at.pin(pin), constant, share_2, share_3, float(third)]
+    return TRAIN, (body, -1, pin.other, second), 0, numbers
+
+
+def embedded(n: list[float]) -> list[float]:
+    """Its numbers for columns of B."""
+    return n[:BODY_3]
 
 
 @lazy(None)
@@ -33,3 +57,35 @@ def solve_train(bodies, n, train, body_of, share_of, qk, vk, ak, turn, point):
     turn[body, 1] = math.sin(angle)
     carried(qk, vk, ak, turn, bodies[K1], n[P1_X], n[P1_Y], p)
     hang(qk, vk, ak, turn, body, p, n[PA_X], n[PA_Y])
+
+
+@lazy(int)
+def embed_train(bodies, n, body, rate, base, coordinate):
+    """Positions and columns of B. See prp.embed_prp."""
+    a = bodies[FIRST]
+    k1 = bodies[K1]
+    k2 = bodies[K2]
+    k3 = bodies[THIRD]
+    columns = coordinate.shape[0] - 1
+    second = angle_of(body, base, coordinate, k2)
+    third = angle_of(body, base, coordinate, k3)
+    if not abs(second - predicted(base, coordinate, k2)) <= UNSURE:
+        return DOUBTED
+    if not abs(third - predicted(base, coordinate, k3)) <= UNSURE:
+        return DOUBTED
+    angle = n[CONSTANT] + n[SHARE_2] * second + n[SHARE_3] * third
+    body[a, COS] = math.cos(angle)
+    body[a, SIN] = math.sin(angle)
+    body[a, OMEGA] = n[SHARE_2] * body[k2, OMEGA] + n[SHARE_3] * body[k3, OMEGA]
+    px = turned_x(body, k1, n[P1_X], n[P1_Y])
+    py = turned_y(body, k1, n[P1_X], n[P1_Y])
+    cx = body[k1, X] + px
+    cy = body[k1, Y] + py
+    ax = put(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
+    ay = put(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
+    for j in range(columns + 1):
+        cx = carry_column(body, rate, columns, j, k1, px, py, 0)
+        cy = carry_column(body, rate, columns, j, k1, px, py, 1)
+        omega = n[SHARE_2] * rate[k2, 3 * j + 2] + n[SHARE_3] * rate[k3, 3 * j + 2]
+        hang_column(body, rate, columns, j, a, cx, cy, omega, ax, ay)
+    return SOLVED

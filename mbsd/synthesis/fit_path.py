@@ -77,6 +77,7 @@ def fit_path(
     times: Sequence[float] | np.ndarray | None = None,
     free_start: bool = False,
     closed: bool = False,
+    ordered: bool = False,
     build: Build | None = None,
     grashof: bool = False,
     least_transmission: float = 0.0,
@@ -96,9 +97,10 @@ def fit_path(
     ``point``: the traced point by name, or a marker; it may be left out where there is one.
 
     Without ``times`` a point counts by its distance from the path, wherever that is and in any order; ``closed`` says
-    that the points are a closed curve that is the whole path, so the path must not leave it either. ``times`` (N,) (s)
-    are those at which the points are to be reached (of a crank that turns evenly: its angle by its rate);
-    with ``free_start`` a time common to all may be added to them.
+    that the points are a closed curve that is the whole path, so the path must not leave it either. With ``ordered``
+    the points are reached one after the other, in the sense of the motion, on a path that returns from a start anywhere
+    and within one turn. ``times`` (N,) (s) are those at which the points are to be reached (of a crank that turns
+    evenly: its angle by its rate); with ``free_start`` a time common to all may be added to them.
 
     Conditions: the links close over the whole motion, so a crank that is driven round turns fully; ``grashof`` holds a
     four-bar of four pins to s + l <= p + q; ``least_transmission`` (rad) is what the transmission angle keeps at each
@@ -128,7 +130,10 @@ def fit_path(
     target = Target(
         target_points, _times(m, times, len(target_points)), switch(f"{m.name}: fit_path: closed", closed),
         _returns(m, fine), (float(fine[0]), float(fine[-1])),
+        switch(f"{m.name}: fit_path: ordered", ordered),
     )  # fmt: skip
+    if target.ordered and target.times is not None:
+        raise ModelError(f"{m.name}: fit_path: with times the order of the points is theirs; leave out ordered=True")
     shifts = switch(f"{m.name}: fit_path: free_start", free_start) and target.times is not None
     search = Search(designs, target, shifts, limit, generations, _told(progress))
     found = search.run(starts, whole_number(f"{m.name}: fit_path: seed", seed, 0))

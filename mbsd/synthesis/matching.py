@@ -13,35 +13,93 @@ STENCIL = np.arange(-3, 4)
 _POWERS = np.linalg.inv(STENCIL[:, None].astype(float) ** np.arange(7))
 """(7, 7) from samples to coefficients by rising powers."""
 NEWTON_STEPS = 12
+THERE = 1e-13
+"""Step of a sample number after which Newton's method ends."""
+CUTS = 24
+"""Places of a closed path that are tried as the one before the first of ordered points."""
 
 
 def nearest_on_chords(paths: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Squared distances (n, N) of points (N, 2) from paths (n, T, 2) of chords, and where: (n, N) as sample numbers."""
-    ends = np.diff(paths, axis=1)[:, None]  # (n, 1, T - 1, 2)
-    away = points[None, :, None] - paths[:, None, :-1]  # (n, N, T - 1, 2)
-    square = np.maximum((ends**2).sum(-1), 1e-300)
-    ahead = np.clip((away * ends).sum(-1) / square, 0.0, 1.0)
-    distance = ((away - ahead[..., None] * ends) ** 2).sum(-1)
+    distance, ahead = _from_chords(paths, points)
     best = distance.argmin(axis=2)
     take = best[..., None]
     return np.take_along_axis(distance, take, 2)[..., 0], best + np.take_along_axis(ahead, take, 2)[..., 0]
 
 
-def at(path: np.ndarray, where: np.ndarray, closed: bool, order: int = 0) -> np.ndarray:
-    """(N, 2) places of a path (T, 2), or derivatives per sample, at sample numbers ``where`` (N,), not whole."""
+def in_order(paths: np.ndarray, points: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) least sums of squared distances of points (N, 2), reached one after the other, and the cuts (n,).
+
+    Of paths (n, T, 2) of chords; of closed ones the first point may be anywhere, and all follow within one turn after
+    the sample ``cut``. The best place of each point given those before it is found by dynamic programming:
+    S_k(s) = d_k(s)^2 + min over r <= s of S_(k-1)(r).
+    """
+    return _in_order(_from_chords(paths, points)[0], closed)
+
+
+def _in_order(distance: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarray]:
+    count = distance.shape[2]
+    cuts = np.arange(0, count, max(1, count // CUTS)) if closed else np.zeros(1, int)
+    turned = (cuts[:, None] + np.arange(count)) % count
+    sums = distance[:, 0][:, turned]  # (n, cuts, T - 1)
+    for k in range(1, distance.shape[1]):
+        np.minimum.accumulate(sums, axis=-1, out=sums)
+        sums += distance[:, k][:, turned]
+    least = sums.min(axis=-1)
+    best = least.argmin(axis=1)
+    return np.take_along_axis(least, best[:, None], 1)[:, 0], cuts[best]
+
+
+def _from_chords(paths: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(n, N, T - 1) squared distances from each chord, and the part of it before the nearest place."""
+    ends = np.diff(paths, axis=1)[:, None]  # (n, 1, T - 1, 2)
+    away = points[None, :, None] - paths[:, None, :-1]  # (n, N, T - 1, 2)
+    square = np.maximum((ends**2).sum(-1), 1e-300)
+    ahead = np.clip((away * ends).sum(-1) / square, 0.0, 1.0)
+    return ((away - ahead[..., None] * ends) ** 2).sum(-1), ahead
+
+
+def at(path: np.ndarray, where: np.ndarray, closed: bool) -> np.ndarray:
+    """(N, 2) places of a path (T, 2) at sample numbers ``where`` (N,), not whole."""
     middle, coefficients = _pieces(path, where, closed)
-    return _value(coefficients, where - middle, order)
+    return np.einsum("np,npc->nc", (where - middle)[:, None] ** np.arange(7), coefficients)
 
 
 def feet(path: np.ndarray, points: np.ndarray, closed: bool) -> np.ndarray:
     """(N,) sample numbers at which a path (T, 2), closed or not, is nearest to points (N, 2)."""
-    where = nearest_on_chords(path[None], points)[1][0]
+    return _refined(path, points, nearest_on_chords(path[None], points)[1][0], closed)
+
+
+def feet_in_order(path: np.ndarray, points: np.ndarray, closed: bool) -> np.ndarray:
+    """(N,) sample numbers, rising, at which a path (T, 2) is nearest to points (N, 2) in their order.
+
+    Those of a closed path rise from a start anywhere to less than a turn later.
+    """
+    distance, ahead = _from_chords(path[None], points)
+    cut = int(_in_order(distance, closed)[1][0])
+    distance, ahead = (np.roll(part[0], -cut, axis=1) for part in (distance, ahead))
+    sums = [distance[0]]
+    for row in distance[1:]:
+        sums.append(np.minimum.accumulate(sums[-1]) + row)
+    chords, last = np.zeros(len(points), int), distance.shape[1]
+    for k in reversed(range(len(points))):
+        chords[k] = sums[k][:last].argmin()
+        last = chords[k] + 1
+    where = cut + chords + ahead[np.arange(len(points)), chords]
+    return np.maximum.accumulate(_refined(path, points, where, closed))
+
+
+def _refined(path: np.ndarray, points: np.ndarray, where: np.ndarray, closed: bool) -> np.ndarray:
+    """The nearest places (N,) beside those of the chords, on the polynomials."""
     middle, coefficients = _pieces(path, where, closed)
-    last = len(path) - 1.0
+    last, powers = len(path) - 1.0, np.arange(7)
+    rates = powers[1:, None] * coefficients[:, 1:]
+    bends = powers[1:-1, None] * rates[:, 1:]
+    whole = np.zeros((len(points), 7, 6))  # places, derivatives and second derivatives by rising powers
+    whole[..., :2], whole[:, :6, 2:4], whole[:, :5, 4:] = coefficients, rates, bends
     for _ in range(NEWTON_STEPS):
-        u = where - middle
-        gap = _value(coefficients, u, 0) - points
-        rate, bend = _value(coefficients, u, 1), _value(coefficients, u, 2)
+        found = np.matmul(((where - middle)[:, None] ** powers)[:, None], whole)[:, 0]
+        gap, rate, bend = found[:, :2] - points, found[:, 2:4], found[:, 4:]
         speed = (rate**2).sum(-1)
         slope = speed + (gap * bend).sum(-1)
         slope = np.where(slope > 0.1 * speed, slope, speed)
@@ -49,6 +107,8 @@ def feet(path: np.ndarray, points: np.ndarray, closed: bool) -> np.ndarray:
         where = np.clip(where - step, middle - 2.0, middle + 2.0)
         if not closed:
             where = np.clip(where, 0.0, last)
+        if np.abs(step).max() < THERE:
+            break
     return where
 
 
@@ -70,12 +130,3 @@ def _pieces(path: np.ndarray, where: np.ndarray, closed: bool) -> tuple[np.ndarr
         middle = np.clip(middle, 3, count - 3)
         rows = middle[:, None] + STENCIL
     return middle, np.einsum("ps,nsc->npc", _POWERS, path[rows])
-
-
-def _value(coefficients: np.ndarray, u: np.ndarray, order: int) -> np.ndarray:
-    powers = np.arange(7)
-    factor = np.ones(7)
-    for k in range(order):
-        factor = factor * np.maximum(powers - k, 0)
-    terms = factor * u[:, None] ** np.maximum(powers - order, 0)
-    return np.einsum("np,npc->nc", terms, coefficients)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.synthesis.matching import at, feet, nearest_on_chords, resampled
+from mbsd.synthesis.matching import at, feet, feet_in_order, in_order, nearest_on_chords, resampled
 
 BACKWARDS = 60
 """Places of the path that are compared with a closed curve."""
@@ -25,6 +25,8 @@ class Target:
     """Whether the path comes back to its start at the end of the motion."""
     span: tuple[float, float]
     """The motion's first and last time (s)."""
+    ordered: bool = False
+    """Whether the points are reached one after the other."""
 
     @property
     def extent(self) -> float:
@@ -40,7 +42,10 @@ class Target:
             rows = np.arange(len(paths))[:, None]
             at_times = (1 - ahead) * paths[rows, below] + ahead * paths[rows, below + 1]
             return ((at_times - self.points) ** 2).sum(-1).mean(-1)
-        out = nearest_on_chords(paths, self.points)[0].mean(-1)
+        if self.ordered:
+            out = in_order(paths, self.points, self.returns)[0] / len(self.points)
+        else:
+            out = nearest_on_chords(paths, self.points)[0].mean(-1)
         if self.closed:
             every = max(1, (paths.shape[1] - 1) // BACKWARDS)
             samples = paths[:, :-1:every]
@@ -66,7 +71,8 @@ class Target:
     def reached(self, path: np.ndarray, shift: float) -> np.ndarray:
         """(N, 2) the places of one path (T, 2) that stand for the points (m)."""
         if self.times is None:
-            return at(path, feet(path, self.points, self.returns), self.returns)
+            find = feet_in_order if self.ordered else feet
+            return at(path, find(path, self.points, self.returns), self.returns)
         where = self._samples(len(path), np.array([shift]))[0]
         return at(path, where, self.returns)
 

@@ -218,7 +218,7 @@ fetch: install ## bring the films of another machine home, what changed alone: H
 scheduler: install ## of a cluster: CLUSTER=tcp://127.0.0.1:8786 is its address; HOST=address for other machines
 	@$(PYTHON) -m shared.cluster scheduler --host="$$HOST"
 
-worker: install ## makes frames and parts for whoever gives the same CLUSTER=tcp://scheduler:8786; HOST=address of this machine
+worker: install ## frames and parts for whoever gives the same CLUSTER=tcp://scheduler:8786; HOST=its own address
 	@$(PYTHON) -m shared.cluster worker --host="$$HOST" -- "$$CLUSTER"
 
 certificates: install ## CLUSTER_TLS=folder: so that a cluster on several machines lets nobody else in

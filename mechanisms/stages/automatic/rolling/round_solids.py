@@ -45,8 +45,8 @@ def tyred_wheel(wheel: Round, plan: Plan, heights: Heights) -> None:
         scale = plan.layout.sizes.scale
         raise UserError(
             f"{plan.layout.m.name}: '{wheel.name}' lets the wheel of {wheel.body} be pressed "
-            f"{wheel.pressed * scale:.3g} mm into what it runs on, and with a radius of {wheel.made * scale:.3g} mm "
-            f"its tyre is {tyre * scale:.3g} mm thick at most; make the contact stiffer or the radius larger, "
+            f"{wheel.pressed * scale:.4g} mm into what it runs on, and with a radius of {wheel.made * scale:.4g} mm "
+            f"its tyre is {tyre * scale:.4g} mm thick at most; make the contact stiffer or the radius larger, "
             "or let the wheel start nearer to the surface"
         )
     rim = wheel.made - tyre - fit.seat

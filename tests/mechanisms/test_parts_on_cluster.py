@@ -119,6 +119,7 @@ def test_files_of_authors_travel_and_no_others(project: Project) -> None:
     put("mechanisms/stages/new.py", "")(project)
     put("mechanisms/automatic.py", "")(project)
     put("mechanisms/helper.py", "")(project)
+    (project.folder / "gone.step").symlink_to("nowhere")
     own = {f"mechanisms/arm/{name}" for name in ("mechanism.py", "parts.py", "data/width.txt")}
     assert set(collected("arm")) == own | {"mechanisms/helper.py", "mechanisms/other/mechanism.py"}
 

@@ -7,6 +7,7 @@ Python files, which it may import. The program itself does not travel: a worker 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 
 import msgspec
@@ -30,10 +31,15 @@ class Order(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def collected(name: str) -> dict[str, bytes]:
-    """The files of all authors, by name below the project, that go along for the mechanism or variant ``name``."""
-    owner = paths.owner_of(name)
-    found = sorted(_paths(owner))
-    return {path.relative_to(paths.ROOT).as_posix(): path.read_bytes() for path in found}
+    """The files of all authors, by name below the project, that go along for the mechanism or variant ``name``.
+
+    One that cannot be read, or goes meanwhile, stays here; whoever needs it is told from here.
+    """
+    found: dict[str, bytes] = {}
+    for path in sorted(_paths(paths.owner_of(name))):
+        with suppress(OSError):
+            found[path.relative_to(paths.ROOT).as_posix()] = path.read_bytes()
+    return found
 
 
 def by_content(files: Mapping[str, bytes]) -> dict[str, bytes]:

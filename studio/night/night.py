@@ -38,7 +38,7 @@ def run(asked: Options) -> int:
             finished = at_work.go()
         except UserError as error:
             log.fail(str(error))
-            at_work.books.close("failed")
+            at_work.books.close("failed", str(error))
             return 1
         except BaseException:
             at_work.books.close("stopped")

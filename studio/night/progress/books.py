@@ -110,9 +110,10 @@ class Books:
             self._due, self._written = False, now
             self._write()
 
-    def close(self, ended: Literal["done", "failed", "stopped"]) -> None:
-        """The run is over."""
+    def close(self, ended: Literal["done", "failed", "stopped"], why: str = "") -> None:
+        """The run is over; ``why`` is told in place of its forecast."""
         self._record.ended = ended
+        self._record.forecast = f"not begun: {why}" if why else self._record.forecast
         self._write()
 
     def forecast(self) -> Forecast:

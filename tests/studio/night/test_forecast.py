@@ -144,4 +144,5 @@ def test_a_disk_that_turns_out_too_small_when_the_forecast_stands_ends_the_night
     found = record.read(runs.Run(1))
     assert found is not None
     assert found.ended == "failed"
+    assert found.forecast.startswith("not begun: ")
     assert found.films["four_bar"].steps[FILM] == "waiting"

@@ -44,6 +44,7 @@ def test_parts_follow_the_skeleton(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     folder = tmp_path / "mechanisms"
     monkeypatch.setenv("MBSD_TEST_PARTS", str(folder))
     monkeypatch.setattr(background, "COMMAND", [sys.executable, "-m", "tests.studio.live.stage"])
+    monkeypatch.setattr(background, "NICE", 0)  # beside other tests it would wait
     environment = os.environ | {"NODE_PATH": str(node_modules())}
     edits = {
         "longer": [("parts.py", SLOW), ("mechanism.py", long(0.3))],

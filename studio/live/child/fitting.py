@@ -19,9 +19,9 @@ PERIOD = 0.1
 def fitted(author: Author, request: dict[str, Any], reply: Callable[..., None]) -> None:
     """Fit, and reply with progress and what was found. Raises UserError.
 
-    ``request``: point, path ([[x, y], ...] in m), closed, vary ({name: [low, high]}, or null for all lengths within
-    the ranges of their sliders), starts, generations, seed, grashof, least_transmission (rad); values are where it
-    begins.
+    ``request``: point, path ([[x, y], ...] in m), closed, ordered, vary ({name: [low, high]}, or null for all lengths
+    within the ranges of their sliders), starts, generations, seed, grashof, least_transmission (rad); values are where
+    it begins.
     """
     values = request.get("values") or {}
     p = author.changed(values)
@@ -42,7 +42,8 @@ def fitted(author: Author, request: dict[str, Any], reply: Callable[..., None]) 
     try:
         fit = fit_path(
             m, request["path"], {name: tuple(bounds) for name, bounds in vary.items()}, point=request.get("point"),
-            closed=bool(request.get("closed")), build=build, grashof=bool(request.get("grashof")),
+            closed=bool(request.get("closed")), ordered=bool(request.get("ordered")), build=build,
+            grashof=bool(request.get("grashof")),
             least_transmission=float(request.get("least_transmission") or 0.0), starts=int(request.get("starts") or 2),
             seed=int(request.get("seed") or 0), generations=int(request.get("generations") or 60), progress=progress,
         )  # fmt: skip

@@ -185,7 +185,7 @@ def test_numbers_are_written_back_and_nothing_else(live: Served, page: Page) -> 
 
 def test_a_drawn_path_is_fitted_with_progress(page: Page) -> None:
     path = [[0.02, 0.075], [0.05, 0.085], [0.075, 0.07]]
-    page.say(do="fit", point="P", path=path, starts=1, generations=40)
+    page.say(do="fit", point="P", path=path[::-1], starts=1, generations=40, ordered=True)
     assert page.hear("progress", wanted=lambda one: one["done"] > 0)["done"] <= 1
     fitted = page.hear("fitted")
     assert fitted["largest"] < 0.002

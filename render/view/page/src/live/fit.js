@@ -11,6 +11,7 @@ export class Fit {
     this.point = el("select", { "aria-label": "Point that follows the path" });
     this.draw = button("Draw path", () => (this.drawn.drawing ? this.drawn.clear() : this.drawn.begin(), this.ready()));
     this.closed = el("input", { type: "checkbox", onchange: () => { this.drawn.closed = this.closed.checked; } });
+    this.ordered = el("input", { type: "checkbox" });
     this.grashof = el("input", { type: "checkbox" });
     this.angle = el("input", { type: "number", class: "number", min: 0, max: 89, step: 5, value: 0, "aria-label": "Least transmission angle in degrees" });
     this.start = button("Fit", () => this.begin());
@@ -18,7 +19,7 @@ export class Fit {
     this.bar = el("progress", { max: 1, value: 0, "aria-label": "Progress of the fit" });
     this.words = el("p", { class: "words", role: "status" });
     this.element = el("details", { class: "fit" }, el("summary", {}, "Fit lengths to a path"),
-      el("div", { class: "line" }, el("label", {}, "Point ", this.point), this.draw, el("label", {}, this.closed, " closed")),
+      el("div", { class: "line" }, el("label", {}, "Point ", this.point), this.draw, el("label", {}, this.closed, " closed"), el("label", { title: "The point goes along the path as it was drawn" }, this.ordered, " in this sense")),
       el("div", { class: "line" }, el("label", {}, this.grashof, " Grashof"), el("label", {}, "transmission angle at least ", this.angle, " °")),
       el("div", { class: "line" }, this.start, this.cancel, this.bar), this.words);
     this.running(false);
@@ -45,7 +46,7 @@ export class Fit {
   begin() {
     this.running(true);
     this.say({
-      do: "fit", point: this.point.value, path: this.drawn.places(), closed: this.closed.checked,
+      do: "fit", point: this.point.value, path: this.drawn.places(), closed: this.closed.checked, ordered: this.ordered.checked,
       grashof: this.grashof.checked, least_transmission: (this.angle.valueAsNumber || 0) * Math.PI / 180,
     });
   }

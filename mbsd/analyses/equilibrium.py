@@ -123,7 +123,7 @@ def _result(m: Model, resting: Model, ready: Statics, q: np.ndarray, steps: int)
     if here.basis.shape[1] > max(mobility.dof - drivers, 0):
         raise SingularPoseError(
             f"{packed.name}: the pose that balances is singular (a toggle or change point): the links can go on in "
-            f"more ways than the {max(mobility.dof - drivers, 0)} of their mobility, and it cannot be told whether it "
+            f"more ways than the {max(mobility.dof - drivers, 0)} of their mobility, and it is unknown whether it "
             "is stable. Change a length a little, or start so that another equilibrium is nearer."
         )
     stiffness = ready.stiffness(q, here.lam, here.basis)

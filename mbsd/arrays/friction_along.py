@@ -28,8 +28,8 @@ def friction_along(
 
 def normals_along(packed: Packed, loads: Loads, q: np.ndarray, compact: np.ndarray, lam: np.ndarray) -> np.ndarray:
     """(T, f) normal forces of the joints with friction (N)."""
-    out = np.zeros((len(q), len(loads.rub)))
-    if len(loads.rub):
+    out = np.zeros((len(q), len(loads.friction)))
+    if len(loads.friction):
         tabulate_normals(packed.system, loads, q, np.ascontiguousarray(compact), lam, packed.ws, out)
     return out
 
@@ -37,7 +37,7 @@ def normals_along(packed: Packed, loads: Loads, q: np.ndarray, compact: np.ndarr
 def friction_under(packed: Packed, loads: Loads, q: np.ndarray, v: np.ndarray, normal: np.ndarray) -> np.ndarray:
     """(T, 3 nb) friction of joints under normal forces (T, f); zero for ground."""
     out = np.zeros_like(q)
-    if len(loads.rub):
+    if len(loads.friction):
         tabulate_friction(packed.system, loads, q, v, normal, packed.ws, out, np.zeros(len(q)))
         out[:, :3] = 0.0
     return out
@@ -58,9 +58,9 @@ def with_friction(
     t, q, v = motion
     friction = np.zeros_like(q)
     solved = solve(friction)
-    if not len(loads.rub):
+    if not len(loads.friction):
         return solved, friction
-    x = np.zeros((len(q), len(loads.rub)))
+    x = np.zeros((len(q), len(loads.friction)))
     last, weight = np.zeros_like(x), np.ones(len(x))
     for passes in range(MOST_PASSES):
         friction = friction_under(packed, loads, q, v, x)

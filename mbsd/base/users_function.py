@@ -1,4 +1,4 @@
-"""Functions and laws of the user, called so that whatever they do wrong is told with their name and the time."""
+"""Functions and laws of the user, called so that whatever they do wrong is reported with their name and the time."""
 
 from __future__ import annotations
 

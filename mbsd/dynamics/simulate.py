@@ -189,7 +189,7 @@ def _least_norm(ready: PreparedDynamics, compact: np.ndarray, lam: np.ndarray, h
     """
     if not ready.mobility.redundant_rows or ready.packed.coordinates > MANY_COORDINATES:
         return lam
-    if len(ready.dynamics.loads.rub):
+    if len(ready.dynamics.loads.friction):
         return lam  # friction came from these
     packed, out = ready.packed, lam.copy()
     joints = slice(0, packed.contact_rows)

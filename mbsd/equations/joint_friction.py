@@ -28,11 +28,11 @@ COEFFICIENT, STATIC, STRIBECK, VISCOUS, SLIP_SPEED, PRELOAD, SIZE, SENSE = range
 """Of its numbers; SIZE: radius of a pin, length of a guide; SENSE: see BY_RATE."""
 BY_RATE, NONE = 2.0, 0.0
 """Senses beside 1 and -1, the sign of a sliding that an event ends: friction by the rate alone; none (it sticks, or its
-joint is let go)."""
+joint is released)."""
 X, LAST, FOUND, CHANGE = range(4)
 """Of ``normal``: used now, last residual, what the multipliers give, change to be applied."""
 WEIGHT, FAILED = 0, 1
-"""Of ``rubbing``."""
+"""Of ``Loads.iteration``."""
 SETTLED, FAINT = 1e-12, 0.1
 """Part of the largest normal force that may be left; no less than this part of the largest weight counts as largest."""
 MOST_PASSES = 100
@@ -41,24 +41,24 @@ MOST_PASSES = 100
 @internal
 def normal_forces(loads, ws, jac, lam, out):
     """out (f,) normal forces (N) at the multipliers lam (m,) and compact J (m, 6), after place."""
-    for k in range(loads.rub.shape[0]):
-        i = loads.rub[k, MARKER_I]
-        j = loads.rub[k, MARKER_J]
-        side = 3 * loads.rub[k, SECOND]
+    for k in range(loads.friction.shape[0]):
+        i = loads.friction[k, MARKER_I]
+        j = loads.friction[k, MARKER_J]
+        side = 3 * loads.friction[k, SECOND]
         fx = 0.0
         fy = 0.0
         torque = 0.0
-        for r in range(loads.rub[k, FIRST], loads.rub[k, END]):
+        for r in range(loads.friction[k, FIRST], loads.friction[k, END]):
             fx += jac[r, side] * lam[r]
             fy += jac[r, side + 1] * lam[r]
             torque += jac[r, side + 2] * lam[r]
-        shape = loads.rub[k, SHAPE]
+        shape = loads.friction[k, SHAPE]
         if shape == PIN:
             out[k] = math.sqrt(fx * fx + fy * fy)
             continue
         across = ws.axis[i, 0] * fy - ws.axis[i, 1] * fx
         out[k] = abs(across)
-        length = loads.rub_number[k, SIZE]
+        length = loads.friction_number[k, SIZE]
         if shape == GUIDE and length > 0.0:
             own = j if side == 3 else i
             x = ws.position[j, 0] - ws.position[own, 0] + ws.arm[own, 0]
@@ -70,11 +70,11 @@ def normal_forces(loads, ws, jac, lam, out):
 @internal
 def rate_of(system, loads, v, ws, k):
     """Rate (rad/s or m/s) at which joint k with friction turns or slides, after place and move."""
-    i = loads.rub[k, MARKER_I]
-    j = loads.rub[k, MARKER_J]
+    i = loads.friction[k, MARKER_I]
+    j = loads.friction[k, MARKER_J]
     bi = 3 * system.marker_body[i]
     bj = 3 * system.marker_body[j]
-    if loads.rub[k, SHAPE] == PIN:
+    if loads.friction[k, SHAPE] == PIN:
         return v[bj + 2] - v[bi + 2]
     dx = ws.position[j, 0] - ws.position[i, 0]
     dy = ws.position[j, 1] - ws.position[i, 1]
@@ -87,12 +87,12 @@ def rate_of(system, loads, v, ws, k):
 
 @internal
 def friction_of(loads, k, rate, normal, whole):
-    """Friction (N m of a pin, else N) on body j of joint k; see rub."""
-    number = loads.rub_number[k]
+    """Friction (N m of a pin, else N) on body j of joint k; see apply_friction."""
+    number = loads.friction_number[k]
     sense = number[SENSE]
     if sense == NONE:
         return 0.0
-    lever = number[SIZE] if loads.rub[k, SHAPE] == PIN else 1.0
+    lever = number[SIZE] if loads.friction[k, SHAPE] == PIN else 1.0
     slip = lever * rate
     if sense == BY_RATE:
         sense = math.tanh(slip / number[SLIP_SPEED])
@@ -102,21 +102,21 @@ def friction_of(loads, k, rate, normal, whole):
 
 
 @lazy(float)
-def rub(system, loads, v, ws, normal, whole, load):
+def apply_friction(system, loads, v, ws, normal, whole, load):
     """Add the friction under normal forces (f,) to load (3 nb,), after place and move; returns its power (W).
 
     ``whole`` is 1, or 0 for a change of normal forces: then preload and viscous part are left out.
     """
     power = 0.0
-    for k in range(loads.rub.shape[0]):
+    for k in range(loads.friction.shape[0]):
         rate = rate_of(system, loads, v, ws, k)
         force = friction_of(loads, k, rate, normal[k], whole)
         power += force * rate
-        i = loads.rub[k, MARKER_I]
-        j = loads.rub[k, MARKER_J]
+        i = loads.friction[k, MARKER_I]
+        j = loads.friction[k, MARKER_J]
         bi = 3 * system.marker_body[i]
         bj = 3 * system.marker_body[j]
-        if loads.rub[k, SHAPE] == PIN:
+        if loads.friction[k, SHAPE] == PIN:
             load[bj + 2] += force
             load[bi + 2] -= force
             continue
@@ -136,21 +136,21 @@ def rub(system, loads, v, ws, normal, whole, load):
 @lazy(None)
 def note_friction(system, loads, v, ws, lam):
     """Set lam of the ways of sliding joints that may stick: J^T lam holds their friction, as it does in sticking."""
-    for k in range(loads.rub.shape[0]):
-        way = loads.rub[k, WAY]
-        if way >= 0 and loads.rub_number[k, SENSE] != NONE:
+    for k in range(loads.friction.shape[0]):
+        way = loads.friction[k, WAY]
+        if way >= 0 and loads.friction_number[k, SENSE] != NONE:
             lam[way] = -friction_of(loads, k, rate_of(system, loads, v, ws, k), loads.normal[X, k], 1.0)
 
 
 @lazy(float)
-def begin_rubbing(system, loads, v, ws, load):
+def begin_friction(system, loads, v, ws, load):
     """Add the friction under the normal forces of the last evaluation; returns its power (W)."""
     x = loads.normal[X]
     for k in range(x.shape[0]):
         if not math.isfinite(x[k]):
             x[k] = 0.0
-    loads.rubbing[WEIGHT] = 0.0
-    return rub(system, loads, v, ws, x, 1.0, load)
+    loads.iteration[WEIGHT] = 0.0
+    return apply_friction(system, loads, v, ws, x, 1.0, load)
 
 
 @lazy(bool)
@@ -173,7 +173,7 @@ def settle(dyn, ws, a, lam):
     product = 0.0
     square = 0.0
     for k in range(x.shape[0]):
-        if loads.rub_number[k, SENSE] == NONE:
+        if loads.friction_number[k, SENSE] == NONE:
             x[k] = found[k]
         gap = found[k] - x[k]
         if not math.isfinite(gap):
@@ -183,14 +183,14 @@ def settle(dyn, ws, a, lam):
         product += last[k] * (gap - last[k])
         square += (gap - last[k]) ** 2
     if worst <= SETTLED * largest:
-        loads.rubbing[FAILED] = 0.0
+        loads.iteration[FAILED] = 0.0
         return True
-    weight = loads.rubbing[WEIGHT]
+    weight = loads.iteration[WEIGHT]
     if weight == 0.0 or square == 0.0:
         weight = 1.0
     else:
         weight = min(max(-weight * product / square, -10.0), 10.0)
-    loads.rubbing[WEIGHT] = weight
+    loads.iteration[WEIGHT] = weight
     for k in range(x.shape[0]):
         gap = found[k] - x[k]
         last[k] = gap
@@ -214,7 +214,7 @@ def tabulate_friction(system, loads, q, v, normal, ws, out, power):
     for k in range(q.shape[0]):
         place(system, q[k], ws)
         move(system, v[k], ws)
-        power[k] += rub(system, loads, v[k], ws, normal[k], 1.0, out[k])
+        power[k] += apply_friction(system, loads, v[k], ws, normal[k], 1.0, out[k])
 
 
 @kernel

@@ -44,13 +44,13 @@ class Loads(NamedTuple):
     """(b, 2) centres of mass in the author's frames."""
     exchange: Any
     """(2, 6 k) inputs and outputs of a user's force on k bodies, or of an interaction."""
-    rub: Any
+    friction: Any
     """(f, 7) joints with friction; columns in joint_friction.py."""
-    rub_number: Any
+    friction_number: Any
     """(f, 8)"""
     normal: Any
     """(4, f) their normal forces now, and scratch of the iteration."""
-    rubbing: Any
+    iteration: Any
     """(2,) weight of the iteration's steps, and whether it failed."""
     total: int
     """Of all elements, interactions and forces of the user; friction is not among them."""

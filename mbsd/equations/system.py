@@ -1,4 +1,9 @@
-"""Arrays that the kernels work on: System (constant), Workspace (scratch). Made by model.py, changed by nobody else.
+"""Arrays that the kernels work on: System, the mechanism, and Workspace, scratch. Made by arrays/packing.py.
+
+System is constant but for what its constraints of relative pose remember. Closing the start writes ARM and ACTIVE of
+``special``, and the first four of each constraint's ``numbers`` (kinematics/pose/phases.py); points on curves that
+cross themselves write their last place (arrays/curve_branches.py), contacts that slide their PHASE
+(dynamics/rows/switches.py). These stand among the numbers because an equation reads them by one pointer. In a run, ``Held`` has them.
 
 Bodies are numbered 0 .. nb-1; body 0 is ground. A row of the Jacobian touches two bodies, so six numbers hold it.
 A constraint table has one row per constraint: marker i, marker j, first row in J, motion (0: none, constant 0).
@@ -12,7 +17,7 @@ import numpy as np
 
 
 class System(NamedTuple):
-    """A mechanism as constant arrays (SI). nb bodies, nm markers."""
+    """A mechanism as arrays (SI). nb bodies, nm markers."""
 
     mass: Any
     """(nb,) kg; ground 0."""
@@ -41,7 +46,7 @@ class System(NamedTuple):
     address: Any
     """(k,) of their equations."""
     numbers: Any
-    """All numbers of all of them; those that the start pose decides are set when it is closed."""
+    """All numbers of all of them; which of them change is said above."""
     driven: Any
     """(drivers, 2) row and motion of each driven constraint."""
     row_body: Any

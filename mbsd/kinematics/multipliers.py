@@ -54,11 +54,11 @@ def inverse_dynamics(
     inertia = np.stack([system.mass, system.mass, system.inertia], axis=1).ravel()
     weight = np.zeros((len(system.mass), 3))
     weight[:, :2] = system.mass[:, None] * system.gravity
-    loads, rubbing = weight.ravel() - inertia * a, None
+    loads, packed_loads = weight.ravel() - inertia * a, None
     if packed.forces:
         laws = compiled_laws(packed, float(times[0]), float(times[-1]))
-        rubbing = pack_loads(packed)
-        loads += loads_along(packed, rubbing, laws, times, q, v)
+        packed_loads = pack_loads(packed)
+        loads += loads_along(packed, packed_loads, laws, times, q, v)
     nu = np.zeros((count, rows))
     nu[:, packed.driver_rows :] = drives[:, 1:, 1]
     out = Efforts(np.zeros((count, rows)), np.zeros((count, len(packed.joints), 3)), np.zeros(4))
@@ -66,12 +66,12 @@ def inverse_dynamics(
         phi, compact, gamma = _tabulated(packed, drives[at], q[at], v[at])
         jac = packed.spread(compact)
         lam = out.lam[at]
-        if rubbing is None:
+        if packed_loads is None:
             lam[:] = _multipliers(ready, jac, loads[at])
         else:
             applied, motion = loads[at].copy(), (times[at], q[at], v[at])
             [found], friction = with_friction(
-                packed, rubbing, motion, compact, lambda f, j=jac, q=applied: (_multipliers(ready, j, q + f),)
+                packed, packed_loads, motion, compact, lambda f, j=jac, q=applied: (_multipliers(ready, j, q + f),)
             )
             lam[:] = found
             loads[at] += friction

@@ -50,8 +50,8 @@ def friction_view(
     k = [force.name for force in packed.forces if force.kind.of_reactions].index(name)
     rate, force = np.zeros((2, count))
     tabulate_rates(packed.system, loads, k, flat_q, flat_v, normal[:, k], packed.ws, rate, force)
-    way = int(loads.rub[k, WAY])
+    way = int(loads.friction[k, WAY])
     force = -lam[:, way] if way >= 0 else force
     if held is not None:
-        force = np.where(held[:, loads.rub[k, FIRST]], force, 0.0)
+        force = np.where(held[:, loads.friction[k, FIRST]], force, 0.0)
     return FrictionView(rate, normal[:, k], force)

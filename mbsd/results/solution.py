@@ -5,7 +5,7 @@ sol.body("coupler").theta          also x, y, vx, vy, omega, ax, ay, alpha
 sol.joint("B").reaction            (T, 2) force on the joint's second body; fx, fy, torque, x, y, magnitude
 sol.driver("motor").torque         also effort, force, value, rate, power
 sol.force("spring").force          (T, 2) on its second body; torque, length, rate, effort, power and more
-sol.friction("rub").force          of joints, with normal and rate; sol.contact("floor").normal and more
+sol.friction("bearing").force          of joints, with normal and rate; sol.contact("floor").normal and more
 sol.point("P").x                   of traced points
 sol.energy.kinetic, .potential
 """

@@ -147,7 +147,7 @@ class Content:
             if not self.strict:
                 return
             raise ModelError(
-                f"study: build or measure refers to {shown(value)}, whose content cannot be told ({error}); refer to "
+                f"study: build or measure refers to {shown(value)}, whose content is unknown ({error}); refer to "
                 "functions, numbers, texts and arrays, or give folder=None, so that nothing is kept"
             ) from error
 

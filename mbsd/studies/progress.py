@@ -16,7 +16,7 @@ Tell = Callable[[int, int], None]
 
 @contextmanager
 def progress(total: int, known: int, shown: bool) -> Iterator[Tell]:
-    """Yield what is told of each chunk; ``known`` of the ``total`` points were there before."""
+    """Yield what reports each chunk; ``known`` of the ``total`` points were there before."""
     if not shown or total == known:
         yield lambda done, failed: None
         return

@@ -18,7 +18,7 @@ from mbsd.studies.content import Content, own_sources
 from mbsd.studies.driver import Numbered, Workers, computed
 from mbsd.studies.local import Here, Processes
 from mbsd.studies.points import Point, points_of
-from mbsd.studies.progress import progress as told
+from mbsd.studies.progress import progress as reported
 from mbsd.studies.remote import Cluster, connected
 from mbsd.studies.store import Store
 from mbsd.studies.table import pandas_here, refuse_format, refuse_taken, save_table, table_of
@@ -80,7 +80,7 @@ def study(
         with (
             _client(client) as found,
             closing(_workers(build, measure, content, found, processes, len(todo))) as workers,
-            told(len(points), len(results), progress) as tell,
+            reported(len(points), len(results), progress) as tell,
         ):
             try:
                 for part in computed(workers, todo):

@@ -143,7 +143,7 @@ def fit_path(
 
 
 def _result(search: Search, trace: str, x: np.ndarray, ends: list[float]) -> PathFit:
-    """The fitted mechanism, swept once more by itself: what is told of it is its own motion."""
+    """The fitted mechanism, swept once more by itself: what is reported is its own motion."""
     designs, target = search.designs, search.target
     shift = float(x[-1]) if search.free_shift else 0.0
     own = x[: designs.varied.count]

@@ -85,7 +85,7 @@ def evaluate(packed: Packed, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> tup
     loads, laws = pack_loads(packed), compiled_laws(packed, 0.0, 1.0)
     force, power = np.zeros_like(q), np.zeros(len(t))
     tabulate_loads(packed.system, loads, laws, t, q, v, packed.ws, force, power)
-    if len(loads.rub):
+    if len(loads.friction):
         rows = len(packed.ws.phi)
         phi, gamma, compact = *np.zeros((2, len(t), rows)), np.zeros((len(t), rows, 6))
         tabulate(packed.system, packed.drives(t), q, v, packed.ws, phi, compact, gamma)

@@ -40,7 +40,12 @@ def _constants(met: EventRun) -> list[bytes]:
     dynamics, packed = met.dynamics, met.packed
     changed = {id(packed.system.numbers)}
     arrays = [*packed.system, dynamics.inertia, dynamics.inverse, dynamics.metric, dynamics.weight, *dynamics.laws]
-    arrays += [dynamics.loads.rub, dynamics.loads.rub_number[:, :-1], dynamics.loads.number, dynamics.loads.term]
+    arrays += [
+        dynamics.loads.friction,
+        dynamics.loads.friction_number[:, :-1],
+        dynamics.loads.number,
+        dynamics.loads.term,
+    ]
     return [np.asarray(one).tobytes() for one in arrays if id(one) not in changed]
 
 

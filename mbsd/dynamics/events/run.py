@@ -129,9 +129,9 @@ class EventRun:
             self._note_rows()
             if monitor.stops:
                 self._make_valid()
-                before_it, told = self._row(), len(self.happenings)
+                before_it, known = self._row(), len(self.happenings)
                 self._happen(monitor)
-                if len(self.happenings) > told:  # a gap that only rounding closes is no event
+                if len(self.happenings) > known:  # a gap that only rounding closes is no event
                     self.rows += [before_it] if self.ended else [before_it, self._row()]
             else:
                 self._turn_side(monitor)

@@ -91,7 +91,7 @@ class Integrator:
 
 def without_sliding(dynamics: Dynamics) -> str | None:
     """The refusal of methods that do not step along the derivative, which alone knows friction from reactions."""
-    if len(dynamics.loads.rub):
+    if len(dynamics.loads.friction):
         return "this method does not know the friction of joints; take 'dop853', or joints without friction"
     if len(dynamics.sliding.rows):
         return "this method does not know the friction of rigid contacts; take 'dop853', or contacts without friction"

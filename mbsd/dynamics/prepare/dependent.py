@@ -74,6 +74,6 @@ def refuse_opened(ready: PreparedDynamics, times: np.ndarray, phi: np.ndarray) -
         raise SingularPoseError(
             f"{packed.name}: by t = {times[k]:.6g} s joint '{packed.joint_of_row(row).name}', left out as redundant, "
             f"is open by {abs(phi[k, row]):.3g} (m or rad): the links passed a change point on another branch, "
-            "lengths do not agree there, or an event let go the joint that it repeats. Correct the lengths, end before "
-            "it, or leave out another joint."
+            "lengths do not agree there, or an event released the joint that it repeats. Correct the lengths, end "
+            "before it, or leave out another joint."
         )

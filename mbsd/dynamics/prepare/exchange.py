@@ -34,7 +34,7 @@ def exchange_rows(ready: PreparedDynamics, state: State) -> None:
     held = [int(row) for row in switches.bilateral()]
     rows = sorted([*held, *spare])
     jac = scaled_jacobian(packed, state.y[0])[rows]
-    better = WORN if len(ready.dynamics.loads.rub) else BETTER
+    better = WORN if len(ready.dynamics.loads.friction) else BETTER
     chosen = better_rows(jac, [rows.index(row) for row in held], better)
     if chosen is None:
         return

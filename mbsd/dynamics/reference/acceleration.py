@@ -22,7 +22,15 @@ from mbsd.compiling.jit import kernel, merged
 from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
 from mbsd.dynamics.reference.sliding import begin_sliding, slide
 from mbsd.equations.assembly import evaluate_gamma, evaluate_position
-from mbsd.equations.joint_friction import CHANGE, FAILED, MOST_PASSES, begin_rubbing, note_friction, rub, settle
+from mbsd.equations.joint_friction import (
+    CHANGE,
+    FAILED,
+    MOST_PASSES,
+    apply_friction,
+    begin_friction,
+    note_friction,
+    settle,
+)
 from mbsd.equations.laws import evaluate_laws
 from mbsd.equations.loads import apply_loads
 
@@ -57,10 +65,10 @@ def accelerate(dyn, scratch, t, state, a, lam):
         lam[r] = 0.0
     if dyn.loads.total > 0:
         power = apply_loads(dyn.loads, dyn.laws, t, q, v, ws.cos_sin, force)
-    rubbing = dyn.loads.rub.shape[0] > 0
+    with_friction = dyn.loads.friction.shape[0] > 0
     sliding = dyn.sliding.rows.shape[0] > 0
-    if rubbing:
-        power += begin_rubbing(system, dyn.loads, v, ws, force)
+    if with_friction:
+        power += begin_friction(system, dyn.loads, v, ws, force)
     alpha = dyn.baumgarte[0]
     beta = dyn.baumgarte[1]
     if alpha > 0.0:
@@ -92,17 +100,17 @@ def accelerate(dyn, scratch, t, state, a, lam):
                 if done + 1 == dyn.passes:
                     begin_sliding(dyn, scratch)
                 power += slide(dyn, scratch, v, a, lam)
-            if not rubbing:
+            if not with_friction:
                 break
             if settle(dyn, ws, a, lam):
                 break
             if done + 1 == dyn.passes + MOST_PASSES:
-                dyn.loads.rubbing[FAILED] = 1.0
+                dyn.loads.iteration[FAILED] = 1.0
                 for c in range(3, n3):
                     a[c] = math.nan
                 break
-            power += rub(system, dyn.loads, v, ws, dyn.loads.normal[CHANGE], 0.0, force)
-    if rubbing:
+            power += apply_friction(system, dyn.loads, v, ws, dyn.loads.normal[CHANGE], 0.0, force)
+    if with_friction:
         note_friction(system, dyn.loads, v, ws, lam)
     for k in range(system.driven.shape[0]):
         power -= lam[system.driven[k, 0]] * drive[system.driven[k, 1], 1]

@@ -29,7 +29,7 @@ class Schur(NamedTuple):
     """The sequence, as constant arrays; B blocks in the order of elimination, two arms each (first and second body)."""
 
     rows: Any
-    """(B, 2) int rows of J; -1 where a block is padded, or a row is let go."""
+    """(B, 2) int rows of J; -1 where a block is padded, or a row is released."""
     bodies: Any
     """(B, 2) first and second body."""
     product: Any

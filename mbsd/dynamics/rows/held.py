@@ -47,7 +47,7 @@ class Held:
     @classmethod
     def of(cls, schur: Schur, system: System, sliding: Sliding, loads: Loads) -> Held:
         """The record of arrays that kernels read."""
-        return cls(schur.rows, system.numbers, sliding.table[:, 0], loads.rub_number[:, SENSE])
+        return cls(schur.rows, system.numbers, sliding.table[:, 0], loads.friction_number[:, SENSE])
 
     def copy(self) -> Held:
         """As it is now."""

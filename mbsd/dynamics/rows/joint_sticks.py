@@ -52,7 +52,7 @@ class JointStick:
     way: int
     """The row of s in J."""
     at: int
-    """Its row in Loads.rub."""
+    """Its row in Loads.friction."""
     loads: Loads
 
     @property
@@ -67,12 +67,12 @@ class JointStick:
 
     @property
     def number(self) -> np.ndarray:
-        """Its row of Loads.rub_number."""
-        return self.loads.rub_number[self.at]
+        """Its row of Loads.friction_number."""
+        return self.loads.friction_number[self.at]
 
     def limit(self, normal: np.ndarray) -> np.ndarray:
         """Largest friction (N, N m) of the joint at rest under normal forces (..., f) of all joints (N)."""
-        lever = self.number[SIZE] if self.loads.rub[self.at, SHAPE] == PIN else 1.0
+        lever = self.number[SIZE] if self.loads.friction[self.at, SHAPE] == PIN else 1.0
         return self.number[STATIC] * lever * (normal[..., self.at] + self.number[PRELOAD])
 
     def set(self, state: str, sign: float) -> None:
@@ -84,14 +84,14 @@ class JointStick:
 def joint_sticks(packed: Packed, loads: Loads, held: Held) -> list[JointStick]:
     """Those of a packed mechanism with the rows of ``stuck_rows``; all slide at first."""
     name_of = {int(packed.first_row[k]): joint.name for k, joint in enumerate(packed.joints)}
-    rows = [(at, int(way)) for at, way in enumerate(loads.rub[:, WAY]) if way >= 0]
+    rows = [(at, int(way)) for at, way in enumerate(loads.friction[:, WAY]) if way >= 0]
     held.joints, held.joints_sliding = [SLIDES] * len(rows), [1.0] * len(rows)
     return [JointStick(held, place, name_of[way], way, at, loads) for place, (at, way) in enumerate(rows)]
 
 
 def release(held: Held, loads: Loads, sticks: Sequence[JointStick], first_row: int) -> None:
     """The joint whose rows begin at ``first_row`` holds no more, and has no friction."""
-    for at in np.flatnonzero(loads.rub[:, FIRST] == first_row):
+    for at in np.flatnonzero(loads.friction[:, FIRST] == first_row):
         held.senses[at] = NONE
         for stick in sticks:
             if stick.at == at:
@@ -103,10 +103,10 @@ def standing(loads: Loads, held: np.ndarray) -> Iterator[tuple[Loads, np.ndarray
 
     What multipliers hold, and friction of joints that an action released, is no part of it.
     """
-    if not len(loads.rub):
+    if not len(loads.friction):
         return
-    patterns, which = np.unique(held[:, loads.rub[:, FIRST]], axis=0, return_inverse=True)
+    patterns, which = np.unique(held[:, loads.friction[:, FIRST]], axis=0, return_inverse=True)
     for k, there in enumerate(patterns):
-        number = loads.rub_number.copy()
-        number[:, SENSE] = np.where((loads.rub[:, WAY] < 0) & there, BY_RATE, NONE)
-        yield loads._replace(rub_number=number), np.flatnonzero(which.ravel() == k)
+        number = loads.friction_number.copy()
+        number[:, SENSE] = np.where((loads.friction[:, WAY] < 0) & there, BY_RATE, NONE)
+        yield loads._replace(friction_number=number), np.flatnonzero(which.ravel() == k)

@@ -83,7 +83,7 @@ def can_embed(ready: PreparedDynamics) -> str | None:
         return "it has contacts or limits"
     if ready.mobility.redundant_rows or ready.mobility.singular:
         return "joints are redundant, or the start is singular"
-    if len(dynamics.loads.rub):
+    if len(dynamics.loads.friction):
         return "friction of joints depends on their reactions"
     if not 0 < count <= MOST:
         return f"it has {count} degrees of freedom beside its drivers; 1 to {MOST} are possible"

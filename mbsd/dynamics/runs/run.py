@@ -57,7 +57,7 @@ class Run(Running):
                 f"{where}: the equations of a step have no solution near the last one. Take a smaller step, "
                 "or look for a force or law that jumps."
             )
-        if self.ready.dynamics.loads.rubbing[FAILED]:
+        if self.ready.dynamics.loads.iteration[FAILED]:
             return SimulationError(
                 f"{where}: friction and reactions of the joints do not agree there; joints jam. Lower the friction, "
                 "guide sliders over a longer length, or raise slip_speed."

@@ -164,19 +164,19 @@ def _each(run: Running, times: np.ndarray, states: np.ndarray) -> Iterator[tuple
         alone = copy.copy(packed)
         alone.forces, alone.force_markers = [force], np.array([markers])
         lone = pack_loads(alone)
-        size = [len(part) for part in (lone.element, lone.interaction, lone.user, lone.rub)]
-        elements, interactions, users, rubs = (slice(a, a + n) for a, n in zip(at, size, strict=True))
+        size = [len(part) for part in (lone.element, lone.interaction, lone.user, lone.friction)]
+        elements, interactions, users, frictions = (slice(a, a + n) for a, n in zip(at, size, strict=True))
         at += size
         loads = own._replace(
             element=own.element[elements],
             place=own.place[elements],
             interaction=own.interaction[interactions],
             user=own.user[users],
-            rub=own.rub[rubs],
-            rub_number=own.rub_number[rubs],
+            friction=own.friction[frictions],
+            friction_number=own.friction_number[frictions],
             total=sum(size[:3]),
         )
         if size[3]:
-            yield force, friction_under(packed, loads, q, v, np.tile(own.normal[X, rubs], (len(q), 1)))
+            yield force, friction_under(packed, loads, q, v, np.tile(own.normal[X, frictions], (len(q), 1)))
         else:
             yield force, loads_along(packed, loads, run.ready.dynamics.laws, times, q, v)

@@ -74,16 +74,16 @@ def consistent_large(m: Model, packed: Packed, time: float, inverse: np.ndarray)
     refuse_impossible(packed, q)
     if take_phases(packed, q, drive):
         q = _close(m, packed, time, q, weights, light)
-    told = tell_coordinates(packed, q, [(c, nearest_turn(q, c, value)) for c, value in given])
+    deviations = tell_coordinates(packed, q, [(c, nearest_turn(q, c, value)) for c, value in given])
     rows, values, names = given_velocities(m, packed, q)
     v = _velocities(packed, time, q, inverse, rows, values)
     fastest = max(float(np.abs(values).max(initial=0.0)), float(np.abs(drive[:, 1]).max(initial=0.0)), 1e-300)
-    told_velocities = [
+    slips = [
         f"{name} is {value_now:.6g} {unit}, not {value:.6g}"
         for value_now, value, (name, unit) in zip(_along(rows, v), values, names, strict=True)
         if abs(value_now - value) > 1e-6 * fastest
     ]
-    return Initial(q, v, tuple(told), tuple(told_velocities))
+    return Initial(q, v, tuple(deviations), tuple(slips))
 
 
 def _along(rows: list[dict[int, float]], v: np.ndarray) -> list[float]:

@@ -1,4 +1,4 @@
-"""A kind of group, as its file in kinds/ describes it. Joints are told by letters: see LETTERS in plan.py."""
+"""A kind of group, as its file in kinds/ describes it. Joints are named by letters: see LETTERS in plan.py."""
 
 from __future__ import annotations
 

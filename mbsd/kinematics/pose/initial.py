@@ -54,9 +54,9 @@ def consistent(m: Model, packed: Packed, time: float, metric: np.ndarray) -> Ini
     drive = packed.drives(np.array([time]))[0]
 
     def found() -> tuple[Initial, np.ndarray]:
-        q, told = start_pose(m, packed, time, drive)
-        v, told_velocities = _velocities(m, packed, q, drive, metric)
-        return Initial(q, v, tuple(told), tuple(told_velocities)), packed.system.angle_offset.copy()
+        q, deviations = start_pose(m, packed, time, drive)
+        v, slips = _velocities(m, packed, q, drive, metric)
+        return Initial(q, v, tuple(deviations), tuple(slips)), packed.system.angle_offset.copy()
 
     numbers = packed.numbers()
     if numbers is None:
@@ -95,18 +95,18 @@ def start_pose(m: Model, packed: Packed, time: float, drive: np.ndarray) -> tupl
 def tell_coordinates(packed: Packed, q: np.ndarray, given: list[tuple[int, float]]) -> list[str]:
     """A sentence for each given (coordinate, value) that the pose q (3 nb,) does not hold."""
     size = np.concatenate([np.ones(3), packed.column_scale()])
-    told = []
+    deviations = []
     for c, target in given:
         gap = q[c] - target
         if abs(gap) / size[c] > TOLD:
             body, what = packed.body_names[c // 3], COORDINATES[c % 3]
             if c % 3 == 2:
-                told.append(
+                deviations.append(
                     f"the angle of '{body}' is {math.degrees(q[c]):.6g} degrees, not {math.degrees(target):.6g}"
                 )
             else:
-                told.append(f"the {what} of the centre of mass of '{body}' is {q[c]:.6g} m, not {target:.6g}")
-    return told
+                deviations.append(f"the {what} of the centre of mass of '{body}' is {q[c]:.6g} m, not {target:.6g}")
+    return deviations
 
 
 def given_coordinates(m: Model, packed: Packed) -> list[tuple[int, float]]:
@@ -172,12 +172,12 @@ def _velocities(
     root = np.sqrt(metric[3:])
     v[3:] = root * np.linalg.lstsq(everything * root, wanted, rcond=1e-13)[0]
     fastest = max(float(np.abs(values).max(initial=0.0)), float(np.abs(nu).max(initial=0.0)), 1e-300)
-    told = [
+    deviations = [
         f"{name} is {row @ v[3:]:.6g} {unit}, not {value:.6g}"
         for row, value, (name, unit) in zip(rows, values, names, strict=True)
         if abs(row @ v[3:] - value) > TOLD * fastest
     ]
-    return v, told
+    return v, deviations
 
 
 def given_velocities(

@@ -87,15 +87,17 @@ class Function(Motion):
         looks, sampled = look_times(first, last, self.shortest), Sampled(self._values)
         found = fit(sampled, first, last, given_cuts(self.breaks, first, last), looks, load)
         made, cuts, jumps = fit_pieces(found, load)
-        told, where = None, f"near t = {found.missed_at:.6g} s"
+        missed, where = None, f"near t = {found.missed_at:.6g} s"
         if found.overrun and not load:
             raise ModelError(
-                f"function: the law is not smooth: {sampled.count} values do not tell f'' {where}; {REMEDY}"
+                f"function: the law is not smooth: {sampled.count} values do not determine f'' {where}; {REMEDY}"
             )
         if load and found.missed > TOLD * found.size:
-            told = f"{sampled.count} values do not tell the law: {found.missed:.2g} of it is missed {where}; {REMEDY}"
+            missed = (
+                f"{sampled.count} values do not determine the law: {found.missed:.2g} of it is missed {where}; {REMEDY}"
+            )
         elif found.missed and not load:
-            told = f"f'' is uncertain by {found.missed:.2g} {where}, where a derivative grows without bound; {REMEDY}"
+            missed = f"f'' is uncertain by {found.missed:.2g} {where}, where a derivative grows without bound; {REMEDY}"
         return Fitted(
             self.f,
             repeats_after=self.repeats_after,
@@ -105,7 +107,7 @@ class Function(Motion):
             first=first,
             last=last,
             jumps=tuple(jumps),
-            missed=told,
+            missed=missed,
         )
 
 

@@ -6,7 +6,7 @@
 w is the work of loads and drivers (J), P their power; w steers no step. Methods of one step are projected onto the
 constraints after each step, as the solver's own. Multistep methods live on states of the past and cannot be moved:
 their rates are those of the projected state y_p, towards which y is drawn with the rate k (option ``pull``, 10/s if not
-given). y_p is what is told. A larger k asks for shorter steps, a smaller one leaves larger errors; between 3 and 30/s
+given). y_p is the output. A larger k asks for shorter steps, a smaller one leaves larger errors; between 3 and 30/s
 it hardly matters to mechanisms that swing about once a second.
 
 Relative tolerances hold for angles too, so theirs are looser after many turns.

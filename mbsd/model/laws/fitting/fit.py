@@ -87,8 +87,8 @@ def fit(
         return Fit(leaves, tree.cuts, tree.size, tree.scatter, tree.scatter_at)
     hidden = np.where(leaves.rough, BEND_OF_LAST * 4 * leaves.last / leaves.width**2, 0.0)
     worst = int(np.argmax(hidden / np.maximum(leaves.scale, 1e-300)))
-    told = hidden[worst] > UNSURE * leaves.scale[worst]
-    return Fit(leaves, tree.cuts, tree.size, float(hidden[worst]) if told else 0.0, float(leaves.begin[worst]))
+    significant = hidden[worst] > UNSURE * leaves.scale[worst]
+    return Fit(leaves, tree.cuts, tree.size, float(hidden[worst]) if significant else 0.0, float(leaves.begin[worst]))
 
 
 def _touches(cut: Cut, edges: Sequence[float]) -> bool:

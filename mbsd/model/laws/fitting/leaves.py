@@ -166,7 +166,7 @@ class Tree:
             if not self.load:
                 raise ModelError(
                     f"function: the law is not smooth: it scatters by {self.scatter:.2g} or has corners all along, and "
-                    "f'' cannot be told from that: give its derivatives df and ddf, or smooth it with recorded(...)"
+                    "f'' does not follow from that: give its derivatives df and ddf, or smooth it with recorded(...)"
                 )
         self.before = level
 

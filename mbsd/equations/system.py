@@ -1,9 +1,9 @@
 """Arrays that the kernels work on: System, the mechanism, and Workspace, scratch. Made by arrays/packing.py.
 
-System is constant but for what its constraints of relative pose remember. Closing the start writes ARM and ACTIVE of
-``special``, and the first four of each constraint's ``numbers`` (kinematics/pose/phases.py); points on curves that
-cross themselves write their last place (arrays/curve_branches.py), contacts that slide their PHASE
-(dynamics/rows/switches.py). These stand among the numbers because an equation reads them by one pointer. In a run, ``Held`` has them.
+System is constant but for what its constraints remember. Closing the start writes ARM and ACTIVE of ``special``, the
+first four of each constraint's ``numbers`` (kinematics/pose/phases.py) and turns of ``angle_offset`` (close.py).
+Points on curves that cross themselves write their last place into ``numbers`` (arrays/curve_branches.py), contacts that
+slide their PHASE (dynamics/rows/switches.py): an equation reads all its numbers by one pointer. ``Held`` holds it.
 
 Bodies are numbered 0 .. nb-1; body 0 is ground. A row of the Jacobian touches two bodies, so six numbers hold it.
 A constraint table has one row per constraint: marker i, marker j, first row in J, motion (0: none, constant 0).

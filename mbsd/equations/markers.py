@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import inlined
+from mbsd.equations.system import PLACE
 
 
 @inlined
@@ -23,8 +24,9 @@ def place(system, q, ws):
         theta = q[3 * b + 2]
         ws.cos_sin[b, 0] = math.cos(theta)
         ws.cos_sin[b, 1] = math.sin(theta)
-    for k in system.moving:
-        b = system.marker_body[k]
+    for one in system.moving:
+        k = one & PLACE
+        b = system.marker_body[k] & PLACE
         c = ws.cos_sin[b, 0]
         s = ws.cos_sin[b, 1]
         x = system.marker_arm[k, 0]
@@ -35,8 +37,9 @@ def place(system, q, ws):
         ws.arm[k, 1] = arm_y
         ws.position[k, 0] = q[3 * b] + arm_x
         ws.position[k, 1] = q[3 * b + 1] + arm_y
-    for k in system.directed:
-        b = system.marker_body[k]
+    for one in system.directed:
+        k = one & PLACE
+        b = system.marker_body[k] & PLACE
         c = ws.cos_sin[b, 0]
         s = ws.cos_sin[b, 1]
         x = system.marker_axis[k, 0]
@@ -48,8 +51,9 @@ def place(system, q, ws):
 @inlined
 def move(system, v, ws):
     """Fill velocity and convective acceleration of the markers from v (3 nb,), after place at the same pose."""
-    for k in system.moving:
-        b = 3 * system.marker_body[k]
+    for one in system.moving:
+        k = one & PLACE
+        b = 3 * (system.marker_body[k] & PLACE)
         omega = v[b + 2]
         ws.velocity[k, 0] = v[b] - omega * ws.arm[k, 1]
         ws.velocity[k, 1] = v[b + 1] + omega * ws.arm[k, 0]

@@ -23,6 +23,7 @@ import numpy as np
 from mbsd.compiling.jit import inlined
 
 INDEX = np.uint32
+"""Unsigned, so that compiled indexing need not look for negative numbers."""
 
 
 class Schur(NamedTuple):
@@ -96,7 +97,7 @@ def plan_schur(row_body: np.ndarray, blocks: np.ndarray) -> tuple[Schur, SchurFa
                 product.append((slot[i, j], 2 * i + side_i, 2 * j + side_j))
     sequence = Schur(
         rows=np.ascontiguousarray(blocks[order], np.int64),
-        bodies=np.ascontiguousarray(ordered, np.int64),
+        bodies=np.ascontiguousarray(ordered, INDEX),
         product=np.array(sorted(product), INDEX).reshape(-1, 3),
         lower=np.array(lower, INDEX).reshape(-1, 2),
         first_lower=np.array(first_lower, np.int64),

@@ -8,6 +8,7 @@ gamma = -(c_j - c_i)               c = -omega^2 s, the convective acceleration
 from __future__ import annotations
 
 from mbsd.compiling.jit import inlined
+from mbsd.equations.system import PLACE
 
 
 @inlined
@@ -17,9 +18,9 @@ def rows(system, ws):
     phi = ws.phi
     jac = ws.jac
     for k in range(table.shape[0]):
-        i = table[k, 0]
-        j = table[k, 1]
-        r = table[k, 2]
+        i = table[k, 0] & PLACE
+        j = table[k, 1] & PLACE
+        r = table[k, 2] & PLACE
         phi[r] = ws.position[j, 0] - ws.position[i, 0]
         phi[r + 1] = ws.position[j, 1] - ws.position[i, 1]
         jac[r, 0] = -1.0
@@ -37,8 +38,8 @@ def gamma_rows(system, ws, gamma):
     """Acceleration right-hand side (m/s^2)."""
     table = system.point
     for k in range(table.shape[0]):
-        i = table[k, 0]
-        j = table[k, 1]
-        r = table[k, 2]
+        i = table[k, 0] & PLACE
+        j = table[k, 1] & PLACE
+        r = table[k, 2] & PLACE
         gamma[r] = ws.convective[i, 0] - ws.convective[j, 0]
         gamma[r + 1] = ws.convective[i, 1] - ws.convective[j, 1]

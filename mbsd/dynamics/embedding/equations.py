@@ -228,28 +228,30 @@ def look(dyn, scratch, t, state):
     return power
 
 
-@apart
-def write(dyn, scratch, t, state, stage, out, k):
-    """Output k in reference coordinates from a state; stage (2, 3 + f) takes its derivative."""
-    body = scratch.body
-    rate = scratch.rate
-    coordinate = scratch.coordinate
-    power = derivative(dyn, scratch, t, state, stage, scratch.multipliers)
-    a = stage[1]
+@internal
+def put(body, rate, base, coordinate, a, poses, accelerations):
+    """Poses and velocities (2, 3 nb) and accelerations (3 nb,) of the pose evaluated last; a (3 + f,) has its z''."""
     last = coordinate.shape[0] - 1
     for b in range(1, body.shape[0]):
-        out.y[k, 0, 3 * b] = body[b, X]
-        out.y[k, 0, 3 * b + 1] = body[b, Y]
-        out.y[k, 0, 3 * b + 2] = angle_of(body, scratch.base, coordinate, b)
+        poses[0, 3 * b] = body[b, X]
+        poses[0, 3 * b + 1] = body[b, Y]
+        poses[0, 3 * b + 2] = angle_of(body, base, coordinate, b)
         for c in range(3):
             v = 0.0
             bend = rate[b, 3 * last + c]
             for j in range(last):
                 v += rate[b, 3 * j + c] * coordinate[j, SPEED]
-            for j in range(scratch.mass.shape[0]):
+            for j in range(a.shape[0] - 3):
                 bend += rate[b, 3 * j + c] * a[3 + j]
-            out.y[k, 1, 3 * b + c] = v
-            out.a[k, 3 * b + c] = bend
+            poses[1, 3 * b + c] = v
+            accelerations[3 * b + c] = bend
+
+
+@inlined
+def write(dyn, scratch, t, state, stage, out, k):
+    """Output k in reference coordinates from a state; stage (2, 3 + f) takes its derivative."""
+    power = derivative(dyn, scratch, t, state, stage, scratch.multipliers)
+    put(scratch.body, scratch.rate, scratch.base, scratch.coordinate, stage[1], out.y[k], out.a[k])
     return power
 
 

@@ -11,15 +11,26 @@ a little before and after it, H seconds apart:
 from __future__ import annotations
 
 from mbsd.compiling.jit import apart, inlined
-from mbsd.dynamics.embedding.equations import write
+from mbsd.dynamics.embedding.equations import accelerate, put, write
 from mbsd.dynamics.state import NEXT, TIME, WORK
 
 
-@apart
+@inlined
 def record(dyn, scratch, out, k, t, work):
     """Write output k from scratch.state at t (s); returns whether its pose is clear."""
     out.work[k] = work
     power = write(dyn, scratch, t, scratch.state, scratch.stages[0], out, k)
+    return power + work == power + work
+
+
+@inlined
+def record_all(dyn, scratch, out, k, t, work):
+    """``record`` with the evaluation in it: no arrays are handed over for each of many outputs."""
+    state = scratch.state
+    stage = scratch.stages[0]
+    out.work[k] = work
+    power = accelerate(dyn, scratch, t, state, stage[1], scratch.multipliers)
+    put(scratch.body, scratch.rate, scratch.base, scratch.coordinate, stage[1], out.y[k], out.a[k])
     return power + work == power + work
 
 

@@ -12,6 +12,7 @@ place: nothing is asked at run time, and no loop contains what the other one nee
     settle(dyn, scratch, t, state, fresh)         take a state as accepted, ``fresh`` if it was the last to be
                                                   evaluated; returns whether other coordinates should be looked for
     record(dyn, scratch, out, k, t, work)         write output k from scratch.state; returns whether its pose is clear
+    record_all(dyn, scratch, out, k, t, work)     the same for loops over many outputs, which contain the evaluation
     keep_row(dyn, scratch, out, k)                keep output k as the pose before an unclear one
     join_rows(dyn, scratch, out, k, apart)        put output k between the pose kept and its own
     record_here(dyn, scratch, state, out)         write the next output from the state itself, which stands at its time
@@ -70,6 +71,7 @@ REFERENCE: dict[str, Any] = {
     "project": projection.project,
     "settle": _go_on,
     "record": _record,
+    "record_all": _record,
     "keep_row": _keep_row,
     "join_rows": _join_rows,
     "record_here": _record_here,
@@ -80,6 +82,7 @@ INDEPENDENT: dict[str, Any] = {
     "project": _stay,
     "settle": equations.settle,
     "record": records.record,
+    "record_all": records.record_all,
     "keep_row": records.keep_row,
     "join_rows": records.join_rows,
     "record_here": records.record_here,
@@ -125,7 +128,7 @@ def _in_place(*_: Any) -> Any:
     raise TypeError("a loop is called for one formulation")
 
 
-accelerate = derivative = project = settle = record = keep_row = join_rows = record_here = _in_place
+accelerate = derivative = project = settle = record = record_all = keep_row = join_rows = record_here = _in_place
 
 
 @for_both(inlined)

@@ -34,7 +34,7 @@ from mbsd.dynamics.state import (
     fixed_step,
     record_here,
 )
-from mbsd.equations.assembly import evaluate_nu, residual_and_jacobian
+from mbsd.equations.assembly import evaluate_nu, position
 from mbsd.equations.laws import evaluate_laws
 from mbsd.equations.loads import apply_loads
 
@@ -63,7 +63,7 @@ def _factor(dyn, scratch, t, q):
     """Laws and factors of S at (t, q)."""
     if scratch.drive.shape[0] > 1:
         evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
-    residual_and_jacobian(dyn.system, q, scratch.drive, scratch.ws)
+    position(dyn.system, q, scratch.drive, scratch.ws)
     factor_schur(dyn.schur, dyn.inverse, scratch.ws.jac, scratch.factors, LIFT)
 
 
@@ -149,7 +149,7 @@ def rattle_step(dyn, scratch, t, h, y, power):
     for _ in range(PASSES):
         for c in range(3, n3):
             y[0, c] = start[c] + h * v[c]
-        residual_and_jacobian(system, y[0], scratch.drive, ws)
+        position(system, y[0], scratch.drive, ws)
         for k in range(schur.rows.shape[0]):
             for s in range(2):
                 r = schur.rows[k, s]

@@ -15,7 +15,9 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import apart, internal, kernel
+import numpy as np
+
+from mbsd.compiling.jit import apart, internal, kernel, lazy
 from mbsd.dynamics.integrators.dop853.tableau import E3, E5, A, B, C, D
 from mbsd.dynamics.integrators.formulation import (
     accelerate,
@@ -26,6 +28,7 @@ from mbsd.dynamics.integrators.formulation import (
     keep_row,
     project,
     record,
+    record_all,
     record_here,
     settle,
 )
@@ -55,6 +58,9 @@ SAFETY, BETA = 0.7, 0.04
 """Of the step-size control. Cautious: a rejected step costs eleven evaluations, more than longer steps save."""
 SMALL = -9.0
 """Logarithm of the least error that steers the next steps."""
+TERMS = (A[:12] != 0.0).sum(axis=1)
+TERM = np.argsort(A[:12] == 0.0, axis=1, kind="stable")
+"""How many stages each of the first twelve is made of, and which."""
 FEW = 9
 """Columns of a state below which it is summed entry by entry."""
 UNCLEAR_STEP = 0.7
@@ -123,13 +129,10 @@ def _interpolate(dense, dense_work, y, x, out):
     return work
 
 
-@for_both(apart)
-def _output(dyn, scratch, state, out, k, x, h):
-    """Write output k at the part x of the step; returns whether its pose, or poses beside it, are clear."""
+@for_both(lazy(bool))
+def _output_between(dyn, scratch, state, out, k, x, h, so_far):
+    """Write output k at the part x of the step from poses beside; returns whether two are clear."""
     t = state.clock[TIME]
-    so_far = state.clock[WORK] + _interpolate(scratch.dense, scratch.dense_work, state.y, x, scratch.state)
-    if record(dyn, scratch, out, k, t + x * h, so_far):
-        return True
     beside = BESIDE
     while beside < 1.0:
         _interpolate(scratch.dense, scratch.dense_work, state.y, x - beside, scratch.state)
@@ -142,6 +145,22 @@ def _output(dyn, scratch, state, out, k, x, h):
             return True
         beside *= 2.0
     return False
+
+
+@for_both(apart)
+def _outputs(dyn, scratch, state, out, h, reached):
+    """Write all outputs before the end of the step; returns whether their poses, or poses beside them, are clear."""
+    t = state.clock[TIME]
+    k = state.count[NEXT]
+    while k < out.t.shape[0] and out.t[k] < reached:
+        x = (out.t[k] - t) / h
+        so_far = state.clock[WORK] + _interpolate(scratch.dense, scratch.dense_work, state.y, x, scratch.state)
+        clear = record_all(dyn, scratch, out, k, t + x * h, so_far)
+        if not clear and not _output_between(dyn, scratch, state, out, k, x, h, so_far):
+            return False
+        k += 1
+        state.count[NEXT] = k
+    return True
 
 
 @for_both(kernel)
@@ -192,11 +211,31 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
                     for part in range(2):
                         for c in range(3, n3):
                             trial[part, c] = A[s, 0] * k[0, part, c]
-                        for j in range(1, s):
-                            factor = A[s, j]
-                            if factor != 0.0:
+                        e = 1
+                        while e < TERMS[s]:
+                            one = k[TERM[s, e], part]
+                            a = A[s, TERM[s, e]]
+                            if e + 3 < TERMS[s]:  # four in one pass, added in their order
+                                two = k[TERM[s, e + 1], part]
+                                three = k[TERM[s, e + 2], part]
+                                four = k[TERM[s, e + 3], part]
+                                b = A[s, TERM[s, e + 1]]
+                                d = A[s, TERM[s, e + 2]]
+                                f = A[s, TERM[s, e + 3]]
                                 for c in range(3, n3):
-                                    trial[part, c] += factor * k[j, part, c]
+                                    rise = trial[part, c] + a * one[c] + b * two[c]
+                                    trial[part, c] = rise + d * three[c] + f * four[c]
+                                e += 4
+                            elif e + 1 < TERMS[s]:
+                                two = k[TERM[s, e + 1], part]
+                                b = A[s, TERM[s, e + 1]]
+                                for c in range(3, n3):
+                                    trial[part, c] = trial[part, c] + a * one[c] + b * two[c]
+                                e += 2
+                            else:
+                                for c in range(3, n3):
+                                    trial[part, c] += a * one[c]
+                                e += 1
                         for c in range(3, n3):
                             trial[part, c] = y[part, c] + h * trial[part, c]
             else:
@@ -263,11 +302,9 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
             for part in range(2):  # record and the interpolant use trial: the end of the step waits in dense[7]
                 for c in range(3, n3):
                     scratch.dense[7, part, c] = y[part, c] + scratch.dense[0, part, c]
-            while following < out.t.shape[0] and out.t[following] < reached:
-                if not _output(dyn, scratch, state, out, following, (out.t[following] - t) / h, h):
-                    return UNCLEAR
-                following += 1
-                state.count[NEXT] = following
+            if not _outputs(dyn, scratch, state, out, h, reached):
+                return UNCLEAR
+            following = state.count[NEXT]
             for part in range(2):
                 for c in range(3, n3):
                     trial[part, c] = scratch.dense[7, part, c]

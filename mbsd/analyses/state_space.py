@@ -22,7 +22,7 @@ from mbsd.analyses.efforts import unit_direction
 from mbsd.analyses.modes import Mode, modes_of
 from mbsd.analyses.statics import DIFFERENCES, OFFSETS
 from mbsd.analyses.tangent import Independent, independent_coordinates, tangent
-from mbsd.arrays.joint_friction import SHARP
+from mbsd.arrays.loads import SHARP
 from mbsd.base.errors import MobilityError, ModelError, SingularPoseError
 from mbsd.base.names import no_such
 from mbsd.dynamics.prepare.prepare import prepare_dynamics

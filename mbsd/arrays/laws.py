@@ -42,4 +42,7 @@ def compiled_laws(packed: Packed, start: float, end: float) -> Laws:
                 ready = law.as_load(start, end) if isinstance(law, Motion) else law
                 laws.append(ready.compiled(start, end))
                 tell_missed(f"{packed.name}: force '{force.name}': {what}", ready)
-    return pack_laws(laws)
+    return pack_laws(laws) if laws else _NONE
+
+
+_NONE = pack_laws(())

@@ -7,17 +7,35 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.arrays.joint_friction import pack_friction
 from mbsd.arrays.user_forces import law_address, pack_user_forces
+from mbsd.base.kept import Kept
 from mbsd.equations.interactions.law import STATE, address_of
+from mbsd.equations.joint_friction import BY_RATE, GUIDE, PIN
 from mbsd.equations.loads import Loads
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
 
 
+SHAPES = {"pin": PIN, "guide": GUIDE, "slot": 2}
+"""What the kernels call the pairs of :attr:`mbsd.model.joint.JointKind.pair`."""
+SHARP = 1e-9
+"""Slip speed, in sizes/s, of joints that stick, where no simulation looks for the events."""
+
+
 def pack_loads(packed: Packed) -> Loads:
     """The loads of a packed mechanism; laws of forces are numbered after those of the drivers."""
+    if packed.forces:
+        return _loads(packed)
+    none = _KEPT.get((), lambda: _loads(packed))
+    return Loads(*[part.copy() if isinstance(part, np.ndarray) else part for part in none])
+
+
+_KEPT: Kept[Loads] = Kept()
+"""The loads of a mechanism without forces."""
+
+
+def _loads(packed: Packed) -> Loads:
     element, where, term, number = [], [], [], []
     system = packed.system
     law = len(packed.motions)
@@ -74,3 +92,21 @@ def pack_interactions(packed: Packed) -> tuple[np.ndarray, np.ndarray]:
             given.append(block)
             at += len(block)
     return np.array(rows, np.int64).reshape(-1, 5), np.concatenate(given) if given else np.zeros(0)
+
+
+def pack_friction(packed: Packed) -> tuple[np.ndarray, np.ndarray]:
+    """The table (f, 7) and the numbers (f, 8), for Loads."""
+    rows, numbers = [], []
+    names = [joint.name for joint in packed.joints]
+    sharp = SHARP * packed.size
+    for force, (i, j) in zip(packed.forces, packed.force_markers, strict=True):
+        if force.kind.of_reactions:
+            p, k = force.params, names.index(force.params["joint"])
+            shape = SHAPES[packed.joints[k].kind.pair or ""]
+            second = int(packed.system.marker_body[j] > 0)
+            way = packed.first_row[names.index(force.name)] if force.name in names else -1
+            rows.append((shape, i, j, packed.first_row[k], packed.first_row[k + 1], second, way))
+            slip_speed = sharp if p["sticks"] else p["slip_speed"]
+            own = (p["coefficient"], p["static"], p["stribeck"], p["viscous"], slip_speed, p["preload"])
+            numbers.append((*own, p["radius"] if shape == PIN else p["length"], BY_RATE))
+    return np.array(rows, np.int64).reshape(-1, 7), np.array(numbers, float).reshape(-1, 8)

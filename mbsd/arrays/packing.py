@@ -11,18 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.arrays.relative import Specials
+from mbsd.arrays.system_arrays import Parts, arrays_of
 from mbsd.base.users_function import law_of, tell_missed
-from mbsd.equations.system import System, Workspace, workspace
+from mbsd.equations.system import System, Workspace
 from mbsd.model.contact import ContactKind
 from mbsd.model.force import Force, Masses
 from mbsd.model.joint import ROWS, SPECIALS, Joint
 from mbsd.model.laws import Motion
 from mbsd.model.mechanism import Model
-
-MOST_KEPT = 60
-"""Coordinates of mechanisms whose start is kept for the next solution."""
-SMALLEST_SIZE = 1e-12
-"""Below this (m) all joints sit at the centres of mass, and 1 m serves as size."""
 
 
 @dataclass
@@ -52,6 +48,8 @@ class Packed:
     """Constraints of relative pose by name, and the user's functions among them."""
     size: float
     """Characteristic length (m): the largest distance between joints, or joint and centre of mass, of one body."""
+    constant: tuple[bytes, ...] | None
+    """What ``numbers`` has of all but the angle offsets."""
 
     @property
     def masses(self) -> Masses:
@@ -75,9 +73,7 @@ class Packed:
 
     def numbers(self) -> tuple[bytes, ...] | None:
         """The system by its numbers; None where it is large, or has relative poses: functions of the user, phases."""
-        if len(self.system.special) or self.coordinates > MOST_KEPT:
-            return None
-        return (*(part.tobytes() for part in self.system), self.com.tobytes(), np.float64(self.size).tobytes())
+        return None if self.constant is None else (*self.constant, self.system.angle_offset.tobytes())
 
     def contact_gaps(self) -> dict[str, int]:
         """Contacts by name, and the rows of their gaps; rows that hold joints at rest are none."""
@@ -146,7 +142,6 @@ def pack(m: Model, contacts: Sequence[Joint] = ()) -> Packed:
     """Build the arrays of a mechanism, with rows for ``contacts`` after all others."""
     bodies = list(m.bodies.values())
     number = {body.name: k for k, body in enumerate(bodies)}
-    com = np.array([body.com for body in bodies], float)
     joints = [*m.joints.values(), *m.drivers.values(), *contacts]
     motions: list[Motion] = []
     tables: dict[str, list[tuple[int, int, int, int]]] = {name: [] for name in ROWS if name not in SPECIALS}
@@ -155,10 +150,8 @@ def pack(m: Model, contacts: Sequence[Joint] = ()) -> Packed:
     lengths: list[float] = []
     extents: list[float] = []
     first_row = [0]
-    marker_of = []
     for k, joint in enumerate(joints):
         i, j = 2 * k, 2 * k + 1
-        marker_of.append((i, j))
         motion = 0
         if joint.motion is not None:
             motions.append(joint.motion)
@@ -177,68 +170,38 @@ def pack(m: Model, contacts: Sequence[Joint] = ()) -> Packed:
         extents += joint.kind.extents(joint.params)
         first_row.append(row)
     forces = list(m.forces.values())
-    force_markers = 2 * len(joints) + np.arange(2 * len(forces)).reshape(-1, 2)
     markers = [marker for part in (*joints, *forces) for marker in (part.i, part.j)]
-    local = np.array([(marker.x, marker.y) for marker in markers], float).reshape(-1, 2)
-    marker_body = np.array([number[marker.body.name] for marker in markers], np.int64)
-    angles = np.array([marker.angle for marker in markers], float)
-    as_table = {name: np.array(rows, np.int64).reshape(-1, 4) for name, rows in tables.items()}
-    marker_arm = local - com[marker_body] if len(markers) else np.zeros((0, 2))
-    size = _size(marker_arm, marker_body, lengths + extents)
-    special, addresses, numbers = specials.arrays(marker_body, size)
-    system = System(
-        mass=np.array([body.mass for body in bodies], float),
-        inertia=np.array([body.inertia for body in bodies], float),
-        gravity=np.array(m.gravity, float),
-        marker_body=marker_body,
-        marker_arm=marker_arm,
-        marker_axis=np.stack([np.cos(angles), np.sin(angles)], axis=1),
-        moving=np.flatnonzero(marker_body),
-        directed=_directed(
-            marker_body, as_table["slot"][:, 0], as_table["along"][:, 0], special[:, 0], force_markers[:, 0]
-        ),
-        special=special,
-        address=addresses,
-        numbers=numbers,
-        row_body=marker_body[np.repeat(np.array(marker_of, np.int64).reshape(-1, 2), np.diff(first_row), axis=0)],
-        driven=_driven(*as_table.values(), special),
-        angle_offset=np.array(offsets, float),
-        distance_length=np.array(lengths, float),
-        **as_table,
+    parts = Parts(
+        numbers=[
+            *m.gravity,
+            *(number for body in bodies for number in (body.mass, body.inertia, *body.com)),
+            *(number for marker in markers for number in (marker.x, marker.y, marker.angle)),
+            *offsets,
+            *lengths,
+            *extents,
+        ],
+        bodies=len(bodies),
+        marker_body=tuple([number[marker.body.name] for marker in markers]),
+        offsets=len(offsets),
+        lengths=len(lengths),
+        first_row=tuple(first_row),
+        tables=tuple([(name, tuple(rows)) for name, rows in tables.items()]),
     )
+    arrays = arrays_of(parts, specials, len(forces))
     return Packed(
         name=m.name,
         body_names=[body.name for body in bodies],
-        com=com,
-        system=system,
-        ws=workspace(system, first_row[-1]),
+        com=arrays.com,
+        system=arrays.system,
+        ws=arrays.ws,
         joints=joints,
-        first_row=np.array(first_row, np.int64),
-        markers=np.array(marker_of, np.int64).reshape(-1, 2),
+        first_row=arrays.first_row,
+        markers=arrays.markers,
         forces=forces,
-        force_markers=force_markers,
+        force_markers=arrays.force_markers,
         motions=motions,
         contacts=len(contacts),
         specials=specials,
-        size=size,
+        size=arrays.size,
+        constant=arrays.constant,
     )
-
-
-def _driven(*tables: np.ndarray) -> np.ndarray:
-    """(drivers, 2) row and motion of the driven rows."""
-    rows = np.concatenate([table[:, 2:4] for table in tables])
-    return rows[rows[:, 1] > 0]
-
-
-def _directed(marker_body: np.ndarray, *first_markers: np.ndarray) -> np.ndarray:
-    """Those of the first markers of slots, coordinates, relative poses and forces that are on moving bodies."""
-    first = np.concatenate(first_markers)
-    return np.unique(first[marker_body[first] > 0])
-
-
-def _size(marker_arm: np.ndarray, marker_body: np.ndarray, lengths: list[float]) -> float:
-    extents = [*lengths, *np.hypot(*marker_arm.T)]
-    for body in np.unique(marker_body):
-        extents.append(float(np.linalg.norm(np.ptp(marker_arm[marker_body == body], axis=0))))
-    largest = float(max(extents, default=0.0))
-    return largest if largest > SMALLEST_SIZE else 1.0

@@ -16,23 +16,39 @@ def wrenches(packed: Packed, compact: np.ndarray, q: np.ndarray, lam: np.ndarray
     compact (T, m, 6), q (T, 3 nb), lam (T, m); N and N m. Ground as second body takes the opposite of what the first
     body gets.
     """
-    system = packed.system
-    out = np.zeros((len(lam), len(packed.joints), 3))
-    cosines, sines = np.cos(q[:, 2::3]), np.sin(q[:, 2::3])
-    for joint, (i, j) in enumerate(packed.markers):
-        rows = slice(packed.first_row[joint], packed.first_row[joint + 1])
-        second = bool(system.marker_body[j])
-        body, sign = (system.marker_body[j], -1.0) if second else (system.marker_body[i], 1.0)
-        columns = slice(3, 6) if second else slice(0, 3)
-        push = sign * np.einsum("trc,tr->tc", compact[:, rows, columns], lam[:, rows])
-        carrier = system.marker_body[j]
-        x, y = system.marker_arm[j]
-        c, s = cosines[:, carrier], sines[:, carrier]
-        arm_x = q[:, 3 * carrier] + (c * x - s * y) - q[:, 3 * body]
-        arm_y = q[:, 3 * carrier + 1] + (s * x + c * y) - q[:, 3 * body + 1]
-        push[:, 2] -= arm_x * push[:, 1] - arm_y * push[:, 0]
-        out[:, joint] = push
-    return out
+    system, first_row = packed.system, packed.first_row
+    i, j = packed.markers.T
+    carrier, (x, y) = system.marker_body[j], system.marker_arm[j].T[..., None]
+    second, counts = carrier > 0, np.diff(first_row)
+    body = np.where(second, carrier, system.marker_body[i])
+    rows = _by_row(compact)
+    own = rows[:, 3:] if second.all() else np.where(np.repeat(second, counts)[:, None, None], rows[:, 3:], rows[:, :3])
+    parts = own * _by_time(lam)[:, None]
+    push = np.zeros((len(counts), 3, len(lam)))
+    for one, start, count in zip(push, first_row, counts, strict=False):
+        for row in range(start, start + count):
+            one += parts[row]
+    push *= np.where(second, -1.0, 1.0)[:, None, None]
+    pose = _by_row(q.reshape(len(q), -1, 3))
+    turn = np.zeros((2, len(pose), len(lam)))
+    turn[0, 0] = 1.0
+    np.cos(pose[1:, 2], out=turn[0, 1:])
+    np.sin(pose[1:, 2], out=turn[1, 1:])
+    c, s = turn[:, carrier]
+    arm_x = pose[carrier, 0] + (c * x - s * y) - pose[body, 0]
+    arm_y = pose[carrier, 1] + (s * x + c * y) - pose[body, 1]
+    push[:, 2] -= arm_x * push[:, 1] - arm_y * push[:, 0]
+    return np.ascontiguousarray(push.transpose(2, 0, 1))
+
+
+def _by_row(array: np.ndarray) -> np.ndarray:
+    """(a, b, T) of an array (T, a, b): all times of one number side by side, as numpy computes fastest."""
+    return np.ascontiguousarray(array.transpose(1, 2, 0))
+
+
+def _by_time(array: np.ndarray) -> np.ndarray:
+    """(a, T) of an array (T, a), or the other way round."""
+    return np.ascontiguousarray(array.T)
 
 
 def marker_places(packed: Packed, q: np.ndarray, marker: int) -> np.ndarray:
@@ -67,21 +83,28 @@ def _velocity(q: np.ndarray, v: np.ndarray, body: int, place: np.ndarray) -> np.
 
 
 def times_compact(packed: Packed, compact: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """(T, m) J x for compact J (T, m, 6) and x (T, 3 nb)."""
-    bodies = x.reshape(len(x), -1, 3)
+    """(T, m) J x for compact J (T, m, 6) and x (T, 3 nb), whose entries of ground are zero."""
+    rows, bodies = _by_row(compact), _by_row(x.reshape(len(x), -1, 3))
     first, second = packed.system.row_body.T
-    return (compact[..., :3] * bodies[:, first]).sum(axis=-1) + (compact[..., 3:] * bodies[:, second]).sum(axis=-1)
+    out = _products(rows[:, 3:], bodies[second])
+    return _by_time(_products(rows[:, :3], bodies[first]) + out if first.any() else out)
+
+
+def _products(rows: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """(m, T) of (m, 3, T) times (m, 3, T)."""
+    parts = rows * x
+    return parts[:, 0] + parts[:, 1] + parts[:, 2]
 
 
 def generalised(packed: Packed, compact: np.ndarray, lam: np.ndarray) -> np.ndarray:
     """(T, 3 nb) J^T lam for compact J (T, m, 6) and lam (T, m); ground's entries hold what ground takes."""
-    out = np.zeros((len(lam), len(packed.body_names), 3))
+    parts = _by_row(compact) * _by_time(lam)[:, None]
+    out = np.zeros((len(packed.body_names), 3, len(lam)))
     for side in (0, 1):
-        parts = compact[..., 3 * side : 3 * side + 3] * lam[..., None]
-        bodies = packed.system.row_body[:, side]
+        bodies, own = packed.system.row_body[:, side], parts[:, 3 * side : 3 * side + 3]
         if len(bodies) > MANY_ROWS:
-            np.add.at(out.swapaxes(0, 1), bodies, parts.swapaxes(0, 1))
+            np.add.at(out, bodies, own)
             continue
         for row, body in enumerate(bodies):
-            out[:, body] += parts[:, row]
-    return out.reshape(len(lam), -1)
+            out[body] += own[row]
+    return _by_time(out.reshape(-1, len(lam)))

@@ -5,7 +5,9 @@ Phi(q, t) = 0,   J v = nu,   J a = gamma
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import inlined, kernel
+import numpy as np
+
+from mbsd.compiling.jit import apart, inlined, kernel
 from mbsd.equations.constraints import along, angle, distance, point, slot
 from mbsd.equations.constraints import relative as special
 from mbsd.equations.markers import move, place
@@ -48,19 +50,28 @@ def evaluate_gamma(system, v, drive, ws, gamma):
         gamma[system.driven[k, 0]] += drive[system.driven[k, 1], 2]
 
 
-@kernel
-def residual_and_jacobian(system, q, drive, ws):
-    """evaluate_position as a function of its own, for callers outside the compiled loops."""
+@apart
+def position(system, q, drive, ws):
+    """evaluate_position for kernels that do not contain it."""
     evaluate_position(system, q, drive, ws)
 
 
 @kernel
 def tabulate(system, drives, q, v, ws, phi, jacobians, gamma):
-    """phi, gamma (T, m) and compact Jacobians (T, m, 6) along a motion q, v (T, 3 nb)."""
+    """phi, gamma (T, m) and compact Jacobians (T, m, 6) along a motion q, v (T, 3 nb); none of them if phi is empty."""
     for k in range(q.shape[0]):
-        residual_and_jacobian(system, q[k], drives[k], ws)
-        evaluate_gamma(system, v[k], drives[k], ws, gamma[k])
-        for r in range(ws.phi.shape[0]):
-            phi[k, r] = ws.phi[r]
-            for c in range(6):
-                jacobians[k, r, c] = ws.jac[r, c]
+        evaluate_position(system, q[k], drives[k], ws)
+        if phi.shape[0] > 0:
+            evaluate_gamma(system, v[k], drives[k], ws, gamma[k])
+            for r in range(ws.phi.shape[0]):
+                phi[k, r] = ws.phi[r]
+                for c in range(6):
+                    jacobians[k, r, c] = ws.jac[r, c]
+
+
+_NO_ROWS, _NO_JACOBIANS = np.zeros((0, 0)), np.zeros((0, 0, 0))
+
+
+def residual_and_jacobian(system, q, drive, ws):
+    """Fill ws.phi and ws.jac at q (3 nb,), from Python; the same machine code serves as for a whole motion."""
+    tabulate(system, drive[None], q[None], q[None], ws, _NO_ROWS, _NO_JACOBIANS, _NO_ROWS)

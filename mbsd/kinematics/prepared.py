@@ -285,7 +285,7 @@ def prepare(m: Model, start: float = 0.0, end: float = 1.0) -> Prepared:
 def refuse_bad_laws(packed: Packed, start: float, end: float) -> None:
     """Raise ModelError for a law that is not finite, or imposes a distance that is not positive."""
     drivers = packed.joints[len(packed.joints) - len(packed.motions) :]
-    times = np.linspace(start, end, 17)
+    times = np.linspace(start, end, 17) if drivers else np.zeros(0)
     for driver, law in zip(drivers, packed.motions, strict=True):
         with law_of(f"{packed.name}: driver '{driver.name}'"):
             values = number_array("what its law gives", law(times), finite=False)

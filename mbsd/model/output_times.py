@@ -59,7 +59,9 @@ def equal_times(m: Model, duration: float, steps: int) -> np.ndarray:
     if not SHORTEST <= duration <= LONGEST:
         raise ModelError(f"{m.name}: duration is {duration:g} s; it must be within {SHORTEST:g} .. {LONGEST:g} s")
     refuse_too_many(m, steps + 1)
-    return np.linspace(0.0, duration, steps + 1)
+    grid = np.arange(steps + 1) * (duration / steps)
+    grid[-1] = duration
+    return grid
 
 
 def refuse_too_many(m: Model, count: int) -> None:

@@ -8,11 +8,12 @@ from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import MobilityError, ModelError
+from mbsd.base.kept import Kept
 from mbsd.dynamics.prepare.dependent import refuse_singular_start
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import Dynamics, scratch_for
-from mbsd.dynamics.reference.schur import plan_schur
+from mbsd.dynamics.reference.schur import Schur, plan_schur
 from mbsd.dynamics.reference.sliding import sliding_for
 from mbsd.dynamics.rows.held import Held
 from mbsd.dynamics.rows.joint_sticks import joint_sticks, stuck_rows
@@ -31,6 +32,8 @@ REFINEMENTS = 4
 """Passes that solve the equations of motion where inertia was lifted."""
 BALANCED = 1e-8
 """Part of the largest load that may stay unbalanced at the start; more means a massless body that nothing holds."""
+MOST_BLOCKS = 200
+"""Up to so many pairs of rows their sequence is kept for the next simulation."""
 SLIGHT = 1e-6
 """Accelerations below this (sizes per s^2) are no load."""
 
@@ -62,7 +65,7 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     always = packed.contact_rows
     spare = set() if large else set(range(always)) - set(kept)
     planned = {*kept, *spare, *range(always, len(packed.ws.phi))}
-    schur, _ = plan_schur(packed.system.row_body, blocks_of(packed, planned))
+    schur = _sequence(packed.system.row_body, blocks_of(packed, planned))
     loads = pack_loads(packed)
     sliding = sliding_for(friction_rows(packed), len(inertia), len(packed.ws.phi))
     held = Held.of(schur, packed.system, sliding, loads)
@@ -76,7 +79,7 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
         inertia=inertia,
         inverse=_inverse(lifted),
         metric=_inverse(metric),
-        weight=inertia * np.tile([*packed.system.gravity, 0.0], len(packed.body_names)),
+        weight=(inertia.reshape(-1, 3) * [*packed.system.gravity, 0.0]).ravel(),
         passes=REFINEMENTS if light[3:].any() else 1,
         baumgarte=np.zeros(2),
         per_size=1.0 / np.concatenate([np.ones(3), packed.column_scale()]),
@@ -89,12 +92,24 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     return ready
 
 
+_SEQUENCES: Kept[Schur] = Kept()
+
+
+def _sequence(row_body: np.ndarray, blocks: np.ndarray) -> Schur:
+    """That of plan_schur, with rows of its own, as events change them."""
+    key = row_body.tobytes(), blocks.tobytes()
+    found = _SEQUENCES.get(key, lambda: plan_schur(row_body, blocks)[0]) if len(blocks) < MOST_BLOCKS else None
+    return plan_schur(row_body, blocks)[0] if found is None else found._replace(rows=found.rows.copy())
+
+
 def _inertias(packed: Packed) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(3 nb,) M; M lifted a little where it is zero; M with a usual inertia there."""
     system = packed.system
-    inertia = np.stack([system.mass, system.mass, system.inertia], axis=1).ravel()
+    inertia = system.mass.repeat(3)
+    inertia[2::3] = system.inertia
     mass = float(system.mass.max()) or 1.0
-    usual = np.tile([mass, mass, mass * packed.size**2], len(system.mass))
+    usual = np.full(len(inertia), mass)
+    usual[2::3] = mass * packed.size**2
     return inertia, np.where(inertia > 0, inertia, LIFT * usual), np.where(inertia > 0, inertia, usual)
 
 

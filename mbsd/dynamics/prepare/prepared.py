@@ -64,6 +64,11 @@ class PreparedDynamics:
         return self.stops.through(advancing, arrays, *rest)
 
     @cached_property
+    def _sizes(self) -> np.ndarray:
+        """(3 nb,) of a unit step of each coordinate."""
+        return np.concatenate([np.ones(3), self.packed.column_scale()])
+
+    @cached_property
     def following(self) -> Following:
         """The points on curves that cross themselves."""
         return Following(self.packed)
@@ -92,11 +97,12 @@ class PreparedDynamics:
         self, method: Integrator, tolerance: float, step: float, duration: float, options: Mapping[str, float]
     ) -> run_state.Settings:
         """Tolerances in the mechanism's own sizes. Raises ModelError for options that the method does not have."""
-        one = np.concatenate([np.ones(3), self.packed.column_scale()]) * tolerance
+        one = self._sizes * tolerance
         numbers = method.numbers(self.packed.name, options)
         shortest = [force.params.get("shortest") for force in self.packed.forces if "function" in force.params]
         longest = min([float(duration) / OUTPUTS_LONGEST, *(length for length in shortest if length)])
-        growing = np.stack([np.where(np.arange(len(one)) % 3 == 2, 0.0, tolerance), np.full(len(one), tolerance)])
+        growing = np.full((2, len(one)), tolerance)
+        growing[0, 2::3] = 0.0
         return run_state.Settings(
-            np.stack([one, one]), float(tolerance), growing, longest, SMALLEST_STEP * longest, float(step), numbers
+            np.array([one, one]), float(tolerance), growing, longest, SMALLEST_STEP * longest, float(step), numbers
         )

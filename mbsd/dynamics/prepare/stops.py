@@ -86,7 +86,7 @@ def stops_of(packed: Packed, loads: Loads, laws: Laws, start: float, end: float,
 
     Warns where the function of a user force changes too often to look at all of it.
     """
-    if not end > start:
+    if not end > start or not (packed.motions or packed.forces):
         return Stops(np.zeros(0), np.zeros(0))
     found: list[tuple[float, float]] = []
     given: list[Motion | Curve] = list(packed.motions)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -60,10 +61,11 @@ class Embedded:
 
     def settings(self, settings: Settings) -> Settings:
         """The same tolerances for the coordinates."""
-        size = np.concatenate([np.ones(3), 1.0 / self.arrays.size])
-        angle = np.concatenate([np.ones(3, bool), [one.slide is None for one in self.coordinates]])
-        absolute = np.stack([size, size]) * settings.relative
-        growing = np.stack([np.where(angle, 0.0, settings.relative), np.full(len(size), settings.relative)])
+        count = 3 + len(self.coordinates)
+        absolute, growing = np.full((2, 2, count), settings.relative)
+        absolute[:, 3:] = 1.0 / self.arrays.size * settings.relative
+        growing[0, :3] = 0.0
+        growing[0, 3:][[one.slide is None for one in self.coordinates]] = 0.0
         return settings._replace(absolute=absolute, growing=growing, smallest=SMALLEST_STEP * settings.longest)
 
 
@@ -97,8 +99,8 @@ def embedded_at_start(ready: PreparedDynamics) -> Embedded | None:
     return ready.independent
 
 
-_CHOICES: Kept[tuple[Plan, float] | None] = Kept()
-"""Choices at a start, by all numbers that they depend on, and how fast bodies move under them."""
+_CHOICES: Kept[Embedded | None] = Kept()
+"""Choices at a start, by all numbers that they depend on."""
 
 
 def _at_start(ready: PreparedDynamics) -> Embedded | None:
@@ -108,11 +110,12 @@ def _at_start(ready: PreparedDynamics) -> Embedded | None:
         return embed(ready, initial.q, initial.v, ready.start)
     parts = initial.q, initial.v, loads.element, loads.place, loads.term, loads.number, *ready.dynamics.laws
 
-    def chosen() -> tuple[Plan, float] | None:
-        return _best(ready, initial.q, initial.v, ready.start)
+    def chosen() -> Embedded | None:
+        return embed(ready, initial.q, initial.v, ready.start)
 
-    key = *numbers, *(part.tobytes() for part in parts), ready.start, ready.mobility.dof
-    return _embedded(ready, _CHOICES.get(key, chosen))
+    key = *numbers, *[part.tobytes() for part in parts], ready.start, ready.mobility.dof
+    made = _CHOICES.get(key, chosen)
+    return None if made is None else replace(made, arrays=made.arrays._replace(**_of_dynamics(ready)))
 
 
 def embed(ready: PreparedDynamics, q: np.ndarray, v: np.ndarray, time: float) -> Embedded | None:
@@ -151,10 +154,12 @@ def scratch_for(ready: PreparedDynamics, made: Embedded, stages: int, q: np.ndar
     body = np.zeros((bodies, INERTIA + 1))
     body[0, COS] = 1.0
     body[:, MASS], body[:, INERTIA] = ready.packed.system.mass, ready.packed.system.inertia
+    turns = np.zeros((bodies, 2))
+    turns[:, 0] = 1.0
     base = np.zeros((bodies, TURNS + columns))
     base[:, THETA] = q[2::3]
     return EmbeddingScratch(
-        cos_sin=np.repeat([[1.0, 0.0]], bodies, axis=0),
+        cos_sin=turns,
         body=body,
         rate=np.zeros((bodies, 3 * columns + 3)),
         base=base,
@@ -190,8 +195,8 @@ def begin_at(arrays: Embedding, scratch: EmbeddingScratch, state: np.ndarray, ti
 
 
 def _made(ready: PreparedDynamics, plan: Plan, count: int) -> Embedded:
-    packed, dynamics = ready.packed, ready.dynamics
-    groups, loads, size = plan.groups(), dynamics.loads, packed.size
+    packed, loads = ready.packed, ready.dynamics.loads
+    groups, size = plan.groups(), packed.size
     coordinates = coordinates_of(plan, count)
     reading = [
         kind == TURN and any(loads.term[k, 0] in (LINEAR, POWER, LAW_VALUE) for k in range(first, end))
@@ -200,19 +205,27 @@ def _made(ready: PreparedDynamics, plan: Plan, count: int) -> Embedded:
     functions = bool(len(loads.interaction) or len(loads.user))
     loaded = np.arange(1, len(packed.body_names)) if functions else np.unique(loads.element[:, 1:3])
     arrays = Embedding(
-        laws=dynamics.laws,
-        loads=loads,
-        inertia=dynamics.inertia,
-        weight=dynamics.weight,
-        gravity=packed.system.gravity,
+        **_of_dynamics(ready),
         group=group_table(groups),
         number=group_numbers(groups),
         size=np.array([1.0 if one.slide is None else size for one in coordinates]),
-        per_size=dynamics.per_size,
         loaded=loaded[loaded > 0],
         angles=functions or any(reading),
     )
     return Embedded(arrays, coordinates, len(packed.motions), math.inf)
+
+
+def _of_dynamics(ready: PreparedDynamics) -> dict[str, Any]:
+    """What an Embedding has in common with a Dynamics."""
+    dynamics = ready.dynamics
+    return {
+        "laws": dynamics.laws,
+        "loads": dynamics.loads,
+        "inertia": dynamics.inertia,
+        "weight": dynamics.weight,
+        "gravity": dynamics.system.gravity,
+        "per_size": dynamics.per_size,
+    }
 
 
 def _sensitivity(ready: PreparedDynamics, made: Embedded, q: np.ndarray, v: np.ndarray, time: float) -> float:

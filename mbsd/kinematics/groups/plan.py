@@ -13,6 +13,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from mbsd.arrays.packing import Packed
+from mbsd.base.kept import Kept
 from mbsd.kinematics.groups.blocks import BLOCK, BODIES, BODY, TRAIN, TREE_AT, Blocks
 from mbsd.kinematics.groups.groups import NUMBERS, Groups
 from mbsd.kinematics.groups.kind import Made
@@ -39,6 +40,20 @@ def plan_groups(packed: Packed, q0: np.ndarray, redundant_rows: int) -> Groups |
     """The groups of a mechanism at its closed pose q0 (3 nb,), or None where it has no such plan."""
     if redundant_rows:
         return None
+    numbers = packed.numbers()
+    if numbers is None:
+        return _planned(packed, q0)
+    kinds = [(*joint.kind.constraints, joint.kind.driven) for joint in packed.joints]
+    found = _GROUPS.get((*numbers, q0.tobytes(), *kinds), lambda: _planned(packed, q0))
+    return None if found is None else Groups(*[part.copy() for part in found])
+
+
+_GROUPS: Kept[Groups | None] = Kept()
+"""By all that they depend on."""
+
+
+def _planned(packed: Packed, q0: np.ndarray) -> Groups | None:
+    """The same, found anew."""
     links = links_of(packed)
     if links is None:
         return None

@@ -28,7 +28,7 @@ def pack_loads(packed: Packed) -> Loads:
     if packed.forces:
         return _loads(packed)
     none = _KEPT.get((), lambda: _loads(packed))
-    return Loads(*[part.copy() if isinstance(part, np.ndarray) else part for part in none])
+    return Loads(*[part.copy() if isinstance(part, np.ndarray) else part for part in none])  # pyright: ignore[reportArgumentType]
 
 
 _KEPT: Kept[Loads] = Kept()

@@ -173,7 +173,7 @@ def pack(m: Model, contacts: Sequence[Joint] = ()) -> Packed:
     markers = [marker for part in (*joints, *forces) for marker in (part.i, part.j)]
     parts = Parts(
         numbers=[
-            *m.gravity,
+            *(m.gravity or (0.0, 0.0)),
             *(number for body in bodies for number in (body.mass, body.inertia, *body.com)),
             *(number for marker in markers for number in (marker.x, marker.y, marker.angle)),
             *offsets,

@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-
 PLACE = 0x7FFF_FFFF
 """A place in an array, read from a table, & PLACE: then compiled indexing need not look for negative numbers."""
 

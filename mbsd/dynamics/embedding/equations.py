@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import apart, inlined, kernel, lazy, merged
+from mbsd.compiling.jit import apart, inlined, internal, kernel, lazy, merged
 from mbsd.dynamics.embedding.arrays import LIMIT, SENSITIVITY
 from mbsd.dynamics.embedding.bridge import bridge
 from mbsd.dynamics.embedding.groups import solve_groups

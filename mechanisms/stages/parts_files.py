@@ -16,6 +16,8 @@ TOLERANCE = 0.018
 """Largest distance of the mesh from the true surface (mm), where a solid does not say otherwise."""
 ANGLE = 0.3
 """Largest angle between neighbouring facets of a curved face (rad)."""
+SHARP = 1e-6
+"""Relative error of volume and inertia of solids with extruded splines."""
 VOLUME_GOAL = 4.5e-3
 """Relative difference to the solid's volume at which a mesh is fine enough."""
 
@@ -32,8 +34,8 @@ def stl_bytes(solid: Any, tolerance: float | None = None) -> bytes:
     The kernel gives the same triangles each time, but those of a face with many holes in another order, and
     normals that differ in their last bits. Raises UserError if the kernel cannot write its file.
     """
-    volume, tolerance = solid.Volume(), tolerance or TOLERANCE
-    solid = _ruled(solid)
+    volume, tolerance = volume_of(solid), tolerance or TOLERANCE
+    solid = ruled(solid)
     for finer in (1, 2, 4):
         triangles = _mesh(solid, tolerance / finer, ANGLE / finer)
         if abs(_volume(triangles["corners"].astype(float)) / volume - 1) < VOLUME_GOAL:
@@ -61,7 +63,7 @@ def _before(p: np.ndarray, q: np.ndarray) -> np.ndarray:
     return (px < qx) | ((px == qx) & ((py < qy) | ((py == qy) & (pz < qz))))
 
 
-def _ruled(solid: Any) -> Any:
+def ruled(solid: Any) -> Any:
     """The solid with its extruded curves as B-spline surfaces, which are the same surfaces.
 
     Of an extruded spline the kernel divides the height as finely as the curve and makes a hundred times the triangles,
@@ -72,6 +74,12 @@ def _ruled(solid: Any) -> Any:
     from OCP.ShapeCustom import ShapeCustom
 
     return type(solid)(ShapeCustom.ConvertToBSpline_s(solid.wrapped, True, False, False, False))
+
+
+def volume_of(solid: Any) -> float:
+    """The volume (mm^3) of a ``cadquery.Shape``; the kernel's own is percents off along large extruded splines."""
+    smooth = ruled(solid)
+    return solid.Volume() if smooth is solid else smooth.Volume(SHARP)
 
 
 def _mesh(solid: Any, tolerance: float, angle: float) -> np.ndarray:

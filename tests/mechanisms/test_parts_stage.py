@@ -16,9 +16,10 @@ import pytest
 
 from mechanisms.stages.loading.inputs import Inputs
 from mechanisms.stages.parts import stage as parts_stage
+from mechanisms.stages.parts.mass_properties import mass_of
 from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
 from mechanisms.stages.parts.traced_params import traced
-from mechanisms.stages.parts_files import TOLERANCE, read_mesh, stl_bytes
+from mechanisms.stages.parts_files import TOLERANCE, read_mesh, stl_bytes, volume_of
 from shared.contract import read_parts
 from shared.shapes import outline
 from shared.shapes.band import loop
@@ -172,6 +173,22 @@ def test_walls_along_a_spline_are_upright_and_as_fine_as_the_curve(scale: float)
     middles = np.hypot(*np.moveaxis(around.mean(axis=1)[:, :2], -1, 0))  # chords stray from the curve here
     off = np.abs(middles[:, None] - scale * np.array([35.0, 45.0, 60.0])).min(axis=1)
     assert off.max() < 1.5 * TOLERANCE
+
+
+@pytest.mark.parametrize("scale", [0.1, 1.0, 30.0])
+def test_masses_of_solids_with_splines_are_exact(scale: float) -> None:
+    """A disc whose rim is a spline through a circle, with a hole: the CAD kernel alone errs by percents along some."""
+    angles = np.linspace(0.0, 2 * math.pi, 241)
+    circle = scale * np.column_stack([np.cos(angles), np.sin(angles)])
+    solid = only_solid(
+        extruded(loop(circle, 40.0 * scale - scale), 8.0 * scale).cut(extruded(loop(circle, 9.0 * scale), 8.0 * scale)),
+        "disc",
+    )
+    volume, found = math.pi * (39.0**2 + 2 * 39.0 + 1 - 100.0) * 8.0 * scale**3, mass_of(solid, 1000.0)
+    assert volume_of(solid) == pytest.approx(volume, rel=1e-6)
+    assert found.mass == pytest.approx(1e-6 * volume, rel=1e-6)
+    assert found.inertia == pytest.approx(1e-12 * volume * (40.0**2 + 10.0**2) * scale**2 / 2, rel=1e-6)
+    assert found.com == pytest.approx((0.0, 0.0), abs=1e-9 * scale)
 
 
 def test_reads_of_parameters_are_seen_through_properties_and_asdict() -> None:

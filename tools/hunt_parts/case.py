@@ -107,7 +107,7 @@ def meshed(bodies: Bodies) -> list[MeshPiece]:
     """The pieces as the clearance stage sees them. Raises UserError for what is no sound solid."""
     from mechanisms.stages.clearance.pieces import MeshPiece
     from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
-    from mechanisms.stages.parts_files import read_mesh, read_triangles, stl_bytes
+    from mechanisms.stages.parts_files import read_mesh, read_triangles, stl_bytes, volume_of
 
     pieces = []
     for body, solids in bodies.items():
@@ -115,7 +115,7 @@ def meshed(bodies: Bodies) -> list[MeshPiece]:
             where = f"{body}: {solid.name}"
             shape = only_solid(solid.shape, where)
             stl = stl_bytes(shape, solid.tolerance)
-            check_mesh(read_mesh(stl), shape.Volume(), solid.through_holes, where)
+            check_mesh(read_mesh(stl), volume_of(shape), solid.through_holes, where)
             pieces.append(MeshPiece(body, solid.name, read_triangles(stl)))
     return pieces
 

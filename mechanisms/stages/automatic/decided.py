@@ -1,8 +1,9 @@
 """What is decided before anything is built: the size of the pins, the layers, springs, and bridges over pivots.
 
 Pins as thick as the links allow come first. Where these leave no order of layers, thinner ones are tried, down to half
-of that; then pivots are sunk into their links where something passes close above; then pivots hang from bridges; then a
-body is built up of two webs; then springs are left out, and that is reported.
+of that; then pivots are sunk into their links where something passes close above; then pivots hang from bridges; then
+slotted plates on ground reach out to posts farther away; then a body is built up of two webs; then springs are left
+out, and that is reported.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from mechanisms.stages.automatic.layout.order.layers import find_layers
 from mechanisms.stages.automatic.pins.bridges import Bridge, bridges_over, may_hang
 from mechanisms.stages.automatic.pins.webs import webbed
 from mechanisms.stages.automatic.refusal import in_the_way, refusal
+from mechanisms.stages.automatic.slides.slots import Slot
 from shared.stage.console import warn
 from shared.stage.errors import UserError
 
@@ -43,7 +45,7 @@ def decided(layout_of: LayoutOf, wishes: Sequence[Sizes], fixed: Mapping[str, in
         found = tried.found(sizes, Springs(above), flush, bridges)
         if found is not None:
             return tried.with_styluses(found) if not bridges else found
-    found = tried.with_webs(wishes)
+    found = tried.with_far_posts(wishes) or tried.with_webs(wishes)
     if found is not None:
         return found
     last = tried.layout(wishes[-1], Springs(False)).with_flush_pivots()
@@ -82,6 +84,17 @@ class _Tried:
             return None
         layout.features += bridges_over(layout, levels)
         return layout, levels
+
+    def with_far_posts(self, wishes: Sequence[Sizes]) -> Found | None:
+        """Where there are slotted plates on ground, with the thickest pins that leave an order."""
+        for bridges, sizes in product((False, True), wishes):
+            layout = self.layout(sizes, Springs())
+            if not any(isinstance(one, Slot) and one.slot == "ground" for one in layout.features):
+                return None
+            found = self.ordered(layout.with_far_posts(), bridges)
+            if found is not None:
+                return found
+        return None
 
     def with_webs(self, wishes: Sequence[Sizes]) -> Found | None:
         """With one body of two webs, the thickest and then the thinnest pins: the fewest bridges, then layers.

@@ -40,7 +40,7 @@ def _piece(name: str, body: str, solid: Any, files: dict[str, bytes]) -> Piece:
     from mechanisms.stages.loading.author_errors import is_of_kernel
     from mechanisms.stages.parts.mass_properties import mass_of
     from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
-    from mechanisms.stages.parts_files import read_mesh, step_bytes, stl_bytes
+    from mechanisms.stages.parts_files import read_mesh, step_bytes, stl_bytes, volume_of
 
     where = f"{name}: {body}: {solid.name}"
     if not callable(getattr(solid.shape, "solids", None)):
@@ -60,7 +60,7 @@ def _piece(name: str, body: str, solid: Any, files: dict[str, bytes]) -> Piece:
             "last fillet, chamfer or cut: make it smaller, or apply it earlier"
         ) from error
     mesh = read_mesh(stl)
-    check_mesh(mesh, shape.Volume(), solid.through_holes, where)
+    check_mesh(mesh, volume_of(shape), solid.through_holes, where)
     files[f"{solid.name}.stl"] = stl
     files[f"{solid.name}.step"] = step
     return Piece(

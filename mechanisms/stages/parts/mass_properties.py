@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from mechanisms.stages.parts_files import SHARP, ruled
 from shared.contract import Mass
 from shared.shapes.units import cubic_metres, inertia_metres, metres
 
@@ -17,8 +18,11 @@ def mass_of(solid: Any, density: float) -> Mass:
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps
 
-    found = GProp_GProps()
-    BRepGProp.VolumeProperties_s(solid.wrapped, found)
+    found, smooth = GProp_GProps(), ruled(solid)
+    if smooth is solid:
+        BRepGProp.VolumeProperties_s(solid.wrapped, found)
+    else:
+        BRepGProp.VolumeProperties_s(smooth.wrapped, found, SHARP)
     centre = found.CentreOfMass()
     volume = cubic_metres(found.Mass())
     return Mass(

@@ -8,7 +8,7 @@ import cadquery as cq
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, constant_rate
+from mbsd import Mechanism, constant_rate, harmonic
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.layout.items import spans_meet
 from mechanisms.stages.automatic.pins.welds import Weld
@@ -155,3 +155,21 @@ def test_slots_on_ground_that_cross_are_refused_with_their_names(scale: float, t
     m.start_near(bar=(corner * math.cos(turn), corner * math.sin(turn), math.degrees(turn) + 135.0))
     with pytest.raises(UserError, match=r"slotted plate of along meets the slotted plate of across.*prismatic"):
         _ = Automatic(m, m.sweep(steps=60)).levels
+
+
+@pytest.mark.parametrize("scale", [0.1, 30.0])
+def test_a_slotted_plate_reaches_beyond_the_slide_that_carries_its_pin(scale: float) -> None:
+    """A wheel that drops from a cart follows a wavy slot on ground; near posts stand where the cart passes."""
+    m = Mechanism("wave")
+    cart, wheel = m.body("cart"), m.body("wheel")
+    m.prismatic("rail", m.ground.at(0.0, scale), cart.origin)
+    m.drive_coordinate("push", m.ground.origin, cart.origin, harmonic(1.0 * scale, 2.0))
+    m.prismatic("drop", cart.at(0, 0, math.pi / 2), wheel.at(0, 0, math.pi / 2))
+    points = [(0.25 * k * scale, 0.06 * (-1) ** k * scale) for k in range(-6, 7)]
+    m.point_on_curve("curve", m.ground.origin, wheel.origin, points)
+    m.start_near(cart=(0, scale, 0), wheel=(0, 0.06 * scale, 0))
+    made = Automatic(m, m.sweep(times=np.linspace(0.0, math.pi, 121)))
+    made.plan()
+    assert made.layout.far_posts
+    assert made.levels["cart"] < made.levels["wheel"]
+    assert not meets(made)

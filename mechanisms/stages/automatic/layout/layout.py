@@ -96,6 +96,8 @@ class Layout:
     """Pairs of bodies whose round part is seen to press into a wall: these two pieces touch, and nothing else."""
     flush: bool = False
     """Whether pivots on ground may end flush with the one link that turns on them."""
+    far_posts: bool = False
+    """Whether slotted plates on ground reach farther to their posts."""
     webs: dict[str, str] = field(default_factory=dict)
     """Further plates of bodies, by name, each with its body."""
     rounds: dict[tuple[str, float, float], Feature] = field(default_factory=dict)
@@ -198,6 +200,10 @@ class Layout:
         found = replace(self, flush=True, features=list(self.features))
         found.__dict__["conflicts"] = self.conflicts
         return found
+
+    def with_far_posts(self) -> Layout:
+        """The same with posts of slotted plates out of the way of what carries their pins, and with flush pivots."""
+        return replace(self, flush=True, far_posts=True, features=list(self.features))
 
     def is_held(self, pin: object) -> bool:
         """Whether something stands on a pin."""

@@ -29,6 +29,8 @@ FAR = 6.0
 """Limits farther beyond the travel than it is long, or than this (diameters of a roller), end no slot."""
 POST = 10.0
 """Diameter of the posts of a plate on ground (rmm)."""
+FARTHER = 60.0
+"""How much farther they may stand (rmm), so that a slide that carries the pin does not pass there."""
 WALL = 7.0
 """Of the plate beside the slot (rmm)."""
 
@@ -63,7 +65,7 @@ class Slot:
         found = []
         for end, other in ((self.path[0], self.path[-1]), (self.path[-1], self.path[0])):
             way = (end - other) / max(float(np.hypot(*(end - other))), 1e-9)
-            x, y = end + (layout.sizes.roller / 2 + WALL + POST / 2) * way
+            x, y = end + (layout.sizes.roller / 2 + WALL + POST / 2 + FARTHER * layout.far_posts) * way
             found.append((float(x), float(y)))
         return found
 

@@ -2,7 +2,7 @@
 
 Pins as thick as the links allow come first. Where these leave no order of layers, thinner ones are tried, down to half
 of that; then pivots are sunk into their links where something passes close above; then pivots hang from bridges; then
-slotted plates on ground reach out to posts farther away; then a body is built up of two webs; then springs are left
+plates of curved slots reach out to posts farther away; then a body is built up of two webs; then springs are left
 out, and that is reported.
 """
 
@@ -18,7 +18,7 @@ from mechanisms.stages.automatic.layout.order.layers import find_layers
 from mechanisms.stages.automatic.pins.bridges import Bridge, bridges_over, may_hang
 from mechanisms.stages.automatic.pins.webs import webbed
 from mechanisms.stages.automatic.refusal import in_the_way, refusal
-from mechanisms.stages.automatic.slides.slots import Slot
+from mechanisms.stages.automatic.slides.curved_slots import CurvedSlot
 from shared.stage.console import warn
 from shared.stage.errors import UserError
 
@@ -86,10 +86,10 @@ class _Tried:
         return layout, levels
 
     def with_far_posts(self, wishes: Sequence[Sizes]) -> Found | None:
-        """Where there are slotted plates on ground, with the thickest pins that leave an order."""
+        """Where there are curved slots on ground, with the thickest pins that leave an order."""
         for bridges, sizes in product((False, True), wishes):
             layout = self.layout(sizes, Springs())
-            if not any(isinstance(one, Slot) and one.slot == "ground" for one in layout.features):
+            if not any(isinstance(one, CurvedSlot) and one.slot == "ground" for one in layout.features):
                 return None
             found = self.ordered(layout.with_far_posts(), bridges)
             if found is not None:

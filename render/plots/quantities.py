@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from render.crank import crank_of
-from render.plots.magnitudes import NOISE, centre_of_mass, force_scale, speed_scale, torque_scale, without_noise
+from render.magnitudes import NOISE, centre_of_mass, force_scale, speed_scale, torque_scale, without_noise
 from shared.contract import Motion
 from shared.stage.errors import UserError
 from shared.stage.suggestions import did_you_mean

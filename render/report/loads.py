@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from render.magnitudes import effort_floor
 from render.report.written import first_peak, moment, table, written
 from shared.contract import Motion
 from shared.contract.loads import ACTUATORS
@@ -46,7 +47,7 @@ def load_section(motion: Motion) -> list[str]:
         for name, driver in drivers.items():
             unit = "N" if driver.kind in SLIDES else "N m"
             effort, power = np.array(driver.effort), np.array(driver.power)
-            if np.abs(effort).max() <= NOTHING * most:  # weights or springs do its work
+            if np.abs(effort).max() <= effort_floor(motion, driver.kind in SLIDES):  # weights or springs do its work
                 effort, power = 0.0 * effort, 0.0 * power
             k = first_peak(np.abs(effort))
             rows.append([

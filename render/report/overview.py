@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from render.magnitudes import effort_floor
 from render.report.facts import STILL, fastest
 from render.report.loads import SLIDES
 from render.report.written import written
@@ -74,4 +75,5 @@ def _effort(motion: Motion) -> str:
         return ""
     name = max(found, key=lambda one: float(np.abs(found[one][0]).max()))
     effort, pushes = found[name]
-    return f"{written(float(np.abs(effort).max()), 'N' if pushes else 'N m')} ({name})"
+    most = float(np.abs(effort).max())
+    return f"{written(most if most > effort_floor(motion, pushes) else 0.0, 'N' if pushes else 'N m')} ({name})"

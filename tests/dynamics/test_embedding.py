@@ -285,14 +285,14 @@ def test_what_must_stay_in_reference_coordinates_says_why() -> None:
     m.friction("rub", "A", 0.1, radius=0.01)
     with pytest.raises(ModelError, match="reactions"):
         m.simulate(0.1, formulation="independent")
-    geared = Mechanism("geared")
-    one, two = geared.body("one", 1.0, inertia=0.1), geared.body("two", 1.0, inertia=0.1)
-    geared.revolute("O", geared.ground.at(0, 0), one.origin)
-    geared.revolute("P", geared.ground.at(0.3, 0), two.origin)
-    geared.gear_pair("mesh", one.origin, two.origin, 0.1, 0.2)
+    indexed = Mechanism("indexed")
+    crank, wheel = indexed.body("crank", 1.0, inertia=0.1), indexed.body("wheel", 1.0, inertia=0.1)
+    indexed.revolute("O", indexed.ground.at(0, 0), crank.origin)
+    indexed.revolute("P", indexed.ground.at(0.3, 0), wheel.origin)
+    indexed.geneva("mesh", crank.origin, wheel.origin, slots=4, radius=0.3 * math.sin(math.pi / 4))
     with pytest.raises(ModelError, match="fall apart"):
-        geared.simulate(0.1, formulation="independent")
-    assert not geared.simulate(0.1, steps=2).stats.independent
+        indexed.simulate(0.1, formulation="independent")
+    assert not indexed.simulate(0.1, steps=2).stats.independent
 
 
 def test_no_choice_at_a_flat_pose() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -11,7 +12,10 @@ from render.report import overview
 from render.report.facts import fastest
 from shared.contract import Provenance, read_motion
 from shared.contract.clearance import Clearance, PairClearance, write_clearance
+from tests.models.motions import four_bar_motion
 from tests.render import film_fixture
+
+MOTION = four_bar_motion()
 
 
 @pytest.fixture
@@ -58,3 +62,12 @@ def test_the_fastest_place_counts_centres_of_mass(out_root: Path) -> None:
     crank.com = (3.0, 4.0)
     name, speed = fastest(motion)
     assert (name, speed) == ("crank", pytest.approx(5.0 * float(np.abs(crank.omega).max())))
+
+
+def test_rounding_is_no_effort() -> None:
+    [(name, driver)] = MOTION.drivers.items()
+    noise = msgspec.structs.replace(driver, effort=[2e-18 * (-1) ** k for k in range(len(driver.effort))])
+    idle = msgspec.structs.replace(MOTION, drivers={name: noise})
+    assert overview._effort(idle) == f"0 N m ({name})"
+    small = msgspec.structs.replace(driver, effort=[1e-7 for _ in driver.effort])
+    assert overview._effort(msgspec.structs.replace(MOTION, drivers={name: small})) == f"100 nN m ({name})"

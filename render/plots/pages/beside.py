@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from render.plots.magnitudes import NOISE, energy_floor, force_scale, speed_scale, without_noise
+from render.magnitudes import NOISE, energy_floor, force_scale, speed_scale, without_noise
 from render.plots.style import QUIET, colour, house_style, page
 from shared.contract import Motion
 

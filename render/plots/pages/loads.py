@@ -7,8 +7,8 @@ import math
 import numpy as np
 from matplotlib.figure import Figure
 
+from render.magnitudes import NOISE, force_scale, power_floor, torque_scale, without_noise
 from render.plots.horizon import horizon
-from render.plots.magnitudes import NOISE, force_scale, power_floor, torque_scale, without_noise
 from render.plots.pages.rates import draw
 from render.plots.style import INK, colour, page, rows
 from shared.contract import Motion

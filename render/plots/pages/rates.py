@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from render.magnitudes import NOISE, speed_scale, without_noise
 from render.plots.horizon import Horizon, horizon
-from render.plots.magnitudes import NOISE, speed_scale, without_noise
 from render.plots.marks import mark
 from render.plots.style import FAINT, INK, LABELLED, PALETTE, QUIET, colour, label_ends, page, rows
 from render.report.written import first_peak, speed, written

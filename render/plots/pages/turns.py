@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
 from render.crank import Crank, crank_of
-from render.plots.magnitudes import NOISE, force_scale, speed_scale, without_noise
+from render.magnitudes import NOISE, force_scale, speed_scale, without_noise
 from render.plots.style import PALETTE, page, rows
 from shared.contract import Motion
 

@@ -72,6 +72,11 @@ def torque_scale(motion: Motion) -> float:
     return max([force_scale(motion) * size, *turning])
 
 
+def effort_floor(motion: Motion, pushes: bool) -> float:
+    """What is rounding in the effort of a driver or force: N where it ``pushes``, else N m."""
+    return NOISE * (force_scale(motion) if pushes else torque_scale(motion))
+
+
 def energy_floor(motion: Motion) -> float:
     """What is rounding in an energy (J)."""
     kinetic, potential = np.asarray(motion.energy.kinetic), np.asarray(motion.energy.potential)

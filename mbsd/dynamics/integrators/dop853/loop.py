@@ -15,8 +15,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from mbsd.compiling.jit import apart, internal, kernel, lazy
 from mbsd.dynamics.integrators.dop853.tableau import E3, E5, A, B, C, D
 from mbsd.dynamics.integrators.formulation import (
@@ -58,9 +56,6 @@ SAFETY, BETA = 0.7, 0.04
 """Of the step-size control. Cautious: a rejected step costs eleven evaluations, more than longer steps save."""
 SMALL = -9.0
 """Logarithm of the least error that steers the next steps."""
-TERMS = (A[:12] != 0.0).sum(axis=1)
-TERM = np.argsort(A[:12] == 0.0, axis=1, kind="stable")
-"""How many stages each of the first twelve is made of, and which."""
 FEW = 9
 """Columns of a state below which it is summed entry by entry."""
 UNCLEAR_STEP = 0.7
@@ -211,31 +206,11 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
                     for part in range(2):
                         for c in range(3, n3):
                             trial[part, c] = A[s, 0] * k[0, part, c]
-                        e = 1
-                        while e < TERMS[s]:
-                            one = k[TERM[s, e], part]
-                            a = A[s, TERM[s, e]]
-                            if e + 3 < TERMS[s]:  # four in one pass, added in their order
-                                two = k[TERM[s, e + 1], part]
-                                three = k[TERM[s, e + 2], part]
-                                four = k[TERM[s, e + 3], part]
-                                b = A[s, TERM[s, e + 1]]
-                                d = A[s, TERM[s, e + 2]]
-                                f = A[s, TERM[s, e + 3]]
+                        for j in range(1, s):
+                            factor = A[s, j]
+                            if factor != 0.0:
                                 for c in range(3, n3):
-                                    rise = trial[part, c] + a * one[c] + b * two[c]
-                                    trial[part, c] = rise + d * three[c] + f * four[c]
-                                e += 4
-                            elif e + 1 < TERMS[s]:
-                                two = k[TERM[s, e + 1], part]
-                                b = A[s, TERM[s, e + 1]]
-                                for c in range(3, n3):
-                                    trial[part, c] = trial[part, c] + a * one[c] + b * two[c]
-                                e += 2
-                            else:
-                                for c in range(3, n3):
-                                    trial[part, c] += a * one[c]
-                                e += 1
+                                    trial[part, c] += factor * k[j, part, c]
                         for c in range(3, n3):
                             trial[part, c] = y[part, c] + h * trial[part, c]
             else:

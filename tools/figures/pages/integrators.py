@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from tools.figures.look import BLUE, GOLD, GREEN, INK, MOVED, PURPLE, QUIET, plain
 
-MEASURED = Path(__file__).resolve().parent.parent.parent / "docs" / "integrators.json"
+MEASURED = Path(__file__).resolve().parents[3] / "docs" / "integrators.json"
 CLOSED = 1e-15
 """Less is rounding (m)."""
 COLOURS = {

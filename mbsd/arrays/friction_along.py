@@ -17,6 +17,12 @@ if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
     from mbsd.equations.loads import Loads
 
+REMEDY = (
+    "Lower the friction or the radius of the pins, guide sliders over a longer length, or keep links from lying nearly "
+    "in one line"
+)
+"""What helps where joints jam."""
+
 
 def friction_along(
     packed: Packed, loads: Loads, q: np.ndarray, v: np.ndarray, compact: np.ndarray, lam: np.ndarray
@@ -76,7 +82,20 @@ def with_friction(
         weight = np.where((square > 0) & (passes > 0), np.clip(step, -10.0, 10.0), 1.0)
         last = gap
         x = np.where(open_[:, None], np.maximum(x + weight[:, None] * gap, 0.0), x)
-    raise SimulationError(
-        f"{packed.name}: friction and reactions of the joints do not agree at t = {t[np.argmax(open_)]:.6g} s; "
-        "joints jam. Lower the friction, or guide sliders over a longer length."
-    )
+    worst = int(np.argmax(open_))
+    raise SimulationError(f"{packed.name}: at t = {t[worst]:.6g} s {jam(packed, x[worst])}. {REMEDY}.")
+
+
+def jam(packed: Packed, normal: np.ndarray) -> str:
+    """What an error says where friction and the reactions that it raises find no balance.
+
+    It names the joint with the largest of ``normal`` (f,), in N, the last that were tried; where none of them is
+    finite, all joints with friction.
+    """
+    joints = [force.params["joint"] for force in packed.forces if force.kind.of_reactions]
+    sizes = np.where(np.isfinite(normal), np.abs(normal), 0.0)
+    k = int(np.argmax(sizes))
+    largest = f"'{joints[k]}' with the largest normal force (above {sizes[k]:.2g} N)"
+    among = "among " + ", ".join(f"'{joint}'" for joint in joints)
+    words = largest if sizes[k] > 0.0 else among
+    return f"friction and reactions of the joints do not agree; joints jam, {words}"

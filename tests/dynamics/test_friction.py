@@ -250,7 +250,7 @@ def test_joints_that_jam_are_told() -> None:
     m.start_near(drawer=(0.0, -0.5, 0.0))
     m.start_moving(drawer=(1.0, 0.0, 0.0))
     m.force("pull", drawer.at(0, -0.2), 10.0)
-    with pytest.raises(SimulationError, match=r"drawer: .*joints jam\. Lower the friction"):
+    with pytest.raises(SimulationError, match=r"drawer: .*joints jam, among 'rail'. Lower the friction"):
         m.simulate(0.1)
 
 

@@ -6,12 +6,13 @@ from functools import cached_property
 
 import numpy as np
 
+from mbsd.arrays.friction_along import REMEDY, jam
 from mbsd.base.errors import SimulationError
 from mbsd.dynamics import state as run_state
 from mbsd.dynamics.prepare.exchange import LOOK, exchange_rows
 from mbsd.dynamics.runs.running import Running
 from mbsd.dynamics.runs.stuck import jump
-from mbsd.equations.joint_friction import FAILED
+from mbsd.equations.joint_friction import FAILED, X
 
 NO_LIMIT = 10**12
 JUMP_STEP = 1e-9
@@ -57,11 +58,9 @@ class Run(Running):
                 f"{where}: the equations of a step have no solution near the last one. Take a smaller step, "
                 "or look for a force or law that jumps."
             )
-        if self.ready.dynamics.loads.iteration[FAILED]:
-            return SimulationError(
-                f"{where}: friction and reactions of the joints do not agree there; joints jam. Lower the friction, "
-                "guide sliders over a longer length, or raise slip_speed."
-            )
+        loads = self.ready.dynamics.loads
+        if loads.iteration[FAILED]:
+            return SimulationError(f"{where}: {jam(packed, loads.normal[X])}. {REMEDY}, or raise slip_speed.")
         if method.fixed_step:
             return SimulationError(
                 f"{where}: numbers are no longer finite after a step of {self.settings.step:.3g} s. "

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mbsd.arrays.friction_along import friction_under, normals_along
+from mbsd.arrays.friction_along import REMEDY, friction_under, jam, normals_along
 from mbsd.base.errors import SimulationError
 from mbsd.dynamics.events.laws.complementarity import complementarity, gives_way
 from mbsd.dynamics.events.laws.compliance import Compliance
@@ -212,10 +212,7 @@ class _Moment:
             weight = float(np.clip(-weight * (last @ bend) / square, -10.0, 10.0)) if passes and square else 1.0
             last = gap
             x = np.maximum(x + weight * gap, 0.0)
-        raise SimulationError(
-            f"{packed.name}: at t = {at.time:.6g} s friction and reactions of the joints at rest do not agree; joints "
-            "jam. Lower the friction, or guide sliders over a longer length."
-        )
+        raise SimulationError(f"{packed.name}: at t = {at.time:.6g} s {jam(packed, x)}. {REMEDY}.")
 
     def _shared(self, forces: np.ndarray, limits: np.ndarray) -> np.ndarray:
         """T of joints that stay at rest, shared among them where that changes no motion."""

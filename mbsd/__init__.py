@@ -40,10 +40,11 @@ if TYPE_CHECKING:
     from mbsd.dynamics.events.moment import Moment
     from mbsd.kinematics.batch import Batch
     from mbsd.results.contacts import ContactView
-    from mbsd.results.forces import ForceView
+    from mbsd.results.force_view import ForceView
     from mbsd.results.friction import FrictionView
     from mbsd.results.mobility import Mobility
-    from mbsd.results.solution import DriverView, EnergyView, FrameView, JointView, Solution, Stats
+    from mbsd.results.solution import Solution
+    from mbsd.results.views import DriverView, EnergyView, FrameView, JointView, Stats
     from mbsd.studies.study import study
     from mbsd.synthesis.fit_path import PathFit, SynthesisError, fit_path
 
@@ -113,14 +114,14 @@ _LATER = {
     "Animation": "mbsd.drawing.animation.animate",
     "Batch": "mbsd.kinematics.batch",
     "ContactView": "mbsd.results.contacts",
-    "DriverView": "mbsd.results.solution",
-    "EnergyView": "mbsd.results.solution",
+    "DriverView": "mbsd.results.views",
+    "EnergyView": "mbsd.results.views",
     "Equilibrium": "mbsd.analyses.equilibrium",
     "Finding": "mbsd.analyses.suspicious_units",
-    "ForceView": "mbsd.results.forces",
-    "FrameView": "mbsd.results.solution",
+    "ForceView": "mbsd.results.force_view",
+    "FrameView": "mbsd.results.views",
     "FrictionView": "mbsd.results.friction",
-    "JointView": "mbsd.results.solution",
+    "JointView": "mbsd.results.views",
     "Linearisation": "mbsd.analyses.state_space",
     "Mobility": "mbsd.results.mobility",
     "Mode": "mbsd.analyses.modes",
@@ -128,7 +129,7 @@ _LATER = {
     "PathFit": "mbsd.synthesis.fit_path",
     "Picture": "mbsd.drawing.picture",
     "Solution": "mbsd.results.solution",
-    "Stats": "mbsd.results.solution",
+    "Stats": "mbsd.results.views",
     "Svg": "mbsd.drawing.picture",
     "SynthesisError": "mbsd.synthesis.fit_path",
     "fit_path": "mbsd.synthesis.fit_path",

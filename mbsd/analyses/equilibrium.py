@@ -26,8 +26,9 @@ from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.pose.mobility import joint_mobility
 from mbsd.kinematics.prepared import refuse_bad_laws
 from mbsd.model.mechanism import Model
-from mbsd.results.forces import ForceView
-from mbsd.results.solution import DriverView, EnergyView, FrameView, JointView, Solution, Stats
+from mbsd.results.force_view import ForceView
+from mbsd.results.solution import Solution
+from mbsd.results.views import DriverView, EnergyView, FrameView, JointView, Stats
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,8 @@ from mbsd.model.mechanism import Model
 if TYPE_CHECKING:
     from mbsd.model.force import Force
     from mbsd.model.joint import Joint
-    from mbsd.results.solution import FrameView, Solution
+    from mbsd.results.solution import Solution
+    from mbsd.results.views import FrameView
 
 
 @dataclass(frozen=True)

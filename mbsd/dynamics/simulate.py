@@ -32,7 +32,8 @@ from mbsd.kinematics.limits.joints import refuse_passed
 from mbsd.kinematics.multipliers import JACOBIAN_NUMBERS
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import equal_times, rising_times
-from mbsd.results.solution import Solution, Stats
+from mbsd.results.solution import Solution
+from mbsd.results.views import Stats
 
 LEAST_TOLERANCE = 1e-16
 MOST_STEPS = 1e12

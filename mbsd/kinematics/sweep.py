@@ -19,7 +19,8 @@ from mbsd.kinematics.prepared import March, Prepared, prepare
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import equal_times, rising_times
 from mbsd.results.returned import returned
-from mbsd.results.solution import Solution, Stats
+from mbsd.results.solution import Solution
+from mbsd.results.views import Stats
 
 
 def sweep(m: Model, duration: float | None, steps: int, times: Sequence[float] | np.ndarray | None) -> Solution:

@@ -12,7 +12,8 @@ import pytest
 
 from mbsd import Mechanism, constant_rate
 from mbsd.mechanism import Body, Marker
-from mbsd.results.solution import FrameView, Solution
+from mbsd.results.solution import Solution
+from mbsd.results.views import FrameView
 
 FOLDER = Path(__file__).parent / "reference"
 RATES = ("x", "y", "vx", "vy", "ax", "ay")

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from mbsd import Solution
-    from mbsd.results.forces import ForceView
+    from mbsd.results.force_view import ForceView
 
 FRAME = ("x", "y", "theta", "vx", "vy", "omega", "ax", "ay", "alpha")
 PLACED = ("x", "y", "fx", "fy", "torque")

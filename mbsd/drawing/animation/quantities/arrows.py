@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.model.body import Marker
-from mbsd.results.forces import Action
-from mbsd.results.solution import FrameView, Solution
+from mbsd.results.force_view import Action
+from mbsd.results.solution import Solution
+from mbsd.results.views import FrameView
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,108 @@
+"""What a solution gives of a frame, a joint, a driver and its energy, (T,) arrays in SI units; its residuals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.base.errors import ModelError
+
+
+@dataclass(frozen=True)
+class FrameView:
+    """Motion of a frame: (T,) arrays, m and rad by s."""
+
+    x: np.ndarray
+    y: np.ndarray
+    theta: np.ndarray
+    vx: np.ndarray
+    vy: np.ndarray
+    omega: np.ndarray
+    ax: np.ndarray
+    ay: np.ndarray
+    alpha: np.ndarray
+
+
+@dataclass(frozen=True)
+class JointView:
+    """A joint: place of its second marker (m) and what it does to its second body (N, N m), (T,) arrays."""
+
+    x: np.ndarray
+    y: np.ndarray
+    fx: np.ndarray
+    fy: np.ndarray
+    torque: np.ndarray
+
+    @property
+    def reaction(self) -> np.ndarray:
+        """(T, 2) force on the second body, world axes (N)."""
+        return np.stack([self.fx, self.fy], axis=-1)
+
+    @property
+    def magnitude(self) -> np.ndarray:
+        """(T,) of the force (N)."""
+        return np.hypot(self.fx, self.fy)
+
+
+@dataclass(frozen=True)
+class DriverView:
+    """A driver: imposed value and its rates (m or rad by s), effort (N or N m), power (W), (T,) arrays."""
+
+    name: str
+    angular: bool
+    value: np.ndarray
+    rate: np.ndarray
+    acceleration: np.ndarray
+    effort: np.ndarray
+
+    @property
+    def power(self) -> np.ndarray:
+        """(T,) effort times rate: what the driver puts into the mechanism."""
+        return self.effort * self.rate
+
+    @property
+    def torque(self) -> np.ndarray:
+        """(T,) the effort of an angle driver (N m)."""
+        if not self.angular:
+            raise ModelError(f"driver '{self.name}' imposes a length: it has a force, not a torque")
+        return self.effort
+
+    @property
+    def force(self) -> np.ndarray:
+        """(T,) the effort of a length driver (N)."""
+        if self.angular:
+            raise ModelError(f"driver '{self.name}' imposes an angle: it has a torque, not a force")
+        return self.effort
+
+
+@dataclass(frozen=True)
+class EnergyView:
+    """(T,) J."""
+
+    kinetic: np.ndarray
+    potential: np.ndarray
+
+    @property
+    def total(self) -> np.ndarray:
+        """(T,) J."""
+        return self.kinetic + self.potential
+
+
+@dataclass(frozen=True)
+class Stats:
+    """How well the motion fulfils its equations: largest residuals over all times and rows."""
+
+    position_residual: float
+    """|Phi| (m or rad)."""
+    velocity_residual: float
+    """|J v - nu| (m/s or rad/s)."""
+    acceleration_residual: float
+    """|J a - gamma| (m/s^2 or rad/s^2)."""
+    power_residual: float
+    """|d(T + V)/dt - power of the drivers| (W)."""
+    steps: int
+    inserted_steps: int
+    """Steps added between outputs to stay on the branch."""
+    independent: bool = False
+    """Whether a simulation was integrated in independent coordinates (mbsd/dynamics/embedding)."""

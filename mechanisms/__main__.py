@@ -53,7 +53,7 @@ def main() -> int | None:
         if not variants_in(mechanism_folder(owner) / "mechanism.py"):
             from mechanisms.stages.loading import loading
 
-            loading.load(owner, "mechanism")  # where it cannot be read, that is told
+            loading.load(owner, "mechanism")  # where it cannot be read, that is reported
         print(owner, *(f"{owner}-{variant}" for variant in compared(owner)), sep="\n")
         return None
     if arguments.command == "new":

@@ -5,7 +5,7 @@ wait    until that has ended, and again here where it failed: tests and measurem
 
 A stage that needs a kernel meanwhile compiles it by itself. Both write the same files, each renamed into place, so
 neither waits for the other nor spoils its work. Ctrl-C ends make and its stages, not this: the next command wants the
-kernels, too. What it says is in .venv/kernels.log; that it failed, or was killed, is told by the next ``begin``.
+kernels, too. What it says is in .venv/kernels.log; that it failed, or was killed, is reported by the next ``begin``.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The system libraries that Blender and the CAD kernel load, and the packages that bring them (Linux alone).
 
-Programs that a user may do without, and the tests may not, are told where ``--for-tests`` asks.
+Programs that a user may do without, and the tests may not, are reported where ``--for-tests`` asks.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Calls as users make them, over and over on a model made once: the whole call is timed, from names to results.
 
 A crank-rocker (that of ``benchmarks.four_bar``) at 360 steps of one turn, again, and after a change of the motor's
-speed; error: the worst angle of the rocker (rad). A rod of 1 m and 1 kg, let go from the horizontal, for 10 s with its
-motion at 1000 times or more; error: the largest drift of its energy (J).
+speed; error: the worst angle of the rocker (rad). A rod of 1 m and 1 kg, released from the horizontal, for 10 s with
+its motion at 1000 times or more; error: the largest drift of its energy (J).
 """
 
 from __future__ import annotations

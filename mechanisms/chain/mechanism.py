@@ -1,5 +1,5 @@
 """A chain that hangs on one pin is flung up: all its links start at the same rate, and soon each turns its own way.
-The variants have three, ten and a hundred links; the hundred are let go from nearly level and swing like a rope.
+The variants have three, ten and a hundred links; the hundred are released from nearly level and swing like a rope.
 """
 
 from dataclasses import dataclass

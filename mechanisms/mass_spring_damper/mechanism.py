@@ -1,4 +1,4 @@
-"""A block on a rail between a spring and a damper: let go 45 mm from rest, it swings to and fro and comes to rest.
+"""A block on a rail between a spring and a damper: released 45 mm from rest, it swings to and fro and comes to rest.
 The variants have no damper, or just so much that it no longer swings past, or a hand that shakes it in its own rhythm
 until the swing is five times as wide as the push.
 """

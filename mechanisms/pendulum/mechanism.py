@@ -1,4 +1,4 @@
-"""A pendulum let go 150 degrees from where it hangs: its weight alone moves it.
+"""A pendulum released 150 degrees from where it hangs: its weight alone moves it.
 It lingers at the top of its swing and rushes through the bottom, and takes nearly twice as long as a pendulum of
 small swings; the variants say how long those take.
 """

@@ -1,4 +1,4 @@
-"""A wheel let go on a slope rolls through two dales, over the hill between them, and comes back to where it was.
+"""A wheel released on a slope rolls through two dales, over the hill between them, and comes back to where it was.
 Nothing is lost as long as it rolls; on a terrain of planks (a variant) every corner takes a part of its speed, and
 dropped from above (another one) it bounces until it rolls.
 """
@@ -23,8 +23,8 @@ class Params:
     """Radius (m), mass (kg) and radius of gyration of the wheel (in its radius), friction, weight (m/s^2).
 
     ``terrain`` is rolling, polygonal or bouncing. The dales are ``dales`` (m) apart and ``hill`` deep (m); ``planks``
-    are their lengths and slopes (m, degrees). The wheel is let go where it touches the hills at ``start`` (m, from the
-    middle).
+    are their lengths and slopes (m, degrees). The wheel is released where it touches the hills at ``start`` (m, from
+    the middle).
     """
 
     terrain: str = "rolling"
@@ -74,7 +74,7 @@ def first_place(p: Params) -> tuple[float, float]:
 
 
 def build(p: Params) -> Mechanism:
-    """The wheel is free, and let go at rest on the left."""
+    """The wheel is free, and released at rest on the left."""
     m = Mechanism("terrain_wheel", gravity=(0.0, -p.gravity))
     wheel = m.body("wheel", mass=p.mass, inertia=p.mass * (p.gyration * p.radius) ** 2)
     if p.terrain == "polygonal":

@@ -28,7 +28,7 @@ def run(name: str, preset: Preset, show: str = "") -> None:
     from render.frames.store import FrameIndex, FrameStore
     from shared.stage import jsonfile
 
-    encode.ffmpeg()  # told now, not after the last frame
+    encode.ffmpeg()  # reported now, not after the last frame
     frames.run(name, preset, show)
     store = FrameStore(out.frames(preset.name))
     index = jsonfile.read(store.index, FrameIndex)

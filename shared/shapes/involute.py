@@ -1,6 +1,6 @@
 """Outlines of involute teeth (ISO 53: pressure angle 20 degrees): spur gears, ring gears, racks. Lengths in mm.
 
-A flank is the involute of the base circle, told by points on it; tips and roots are chords. ``play`` is taken from the
+A flank is the involute of the base circle, given by points on it; tips and roots are chords. ``play`` is taken from the
 thickness of the teeth along the pitch circle, so two wheels in mesh have the sum of theirs.
 
 Source: ISO 21771: with a tooth s thick at the pitch circle, half its angle at radius r is

@@ -37,7 +37,7 @@ def run(host: str, folder: str = "") -> list[str]:
     """
     source = source_of(host, folder)
     for word in ("rsync", shell_program()):
-        program(word)  # told before anything is made
+        program(word)  # reported before anything is made
     films, arriving = out_root() / "films", out_root() / ".fetch"
     refuse_links(films)
     films.mkdir(parents=True, exist_ok=True)

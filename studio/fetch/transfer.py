@@ -1,4 +1,4 @@
-"""One run of rsync: what it is told, what it says, and that it ends with us."""
+"""One run of rsync: its arguments, what it says, and that it ends with us."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Children of the server: processes with the author's code, forked from a warm one, each with a deadline.
 
 A child answers in frames that a thread reads; a child that loops is killed when its time is up, one that crashes is
-told by what ended it. The server waits for none of them.
+named by what ended it. The server waits for none of them.
 """
 
 from __future__ import annotations

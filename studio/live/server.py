@@ -122,7 +122,7 @@ class Live:
             sending.cancel()
 
     def _take(self, session: Session, text: str, box: Mailbox) -> None:
-        """Do what a page asks for; what cannot be is told to that page."""
+        """Do what a page asks for; what cannot be done is reported to that page."""
         try:
             wish = json.loads(text)
             if not isinstance(wish, dict):

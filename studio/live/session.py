@@ -76,7 +76,7 @@ class Session:
                 self._new = None
                 if self._good is not None:
                     self._good.kill()
-                self._good, self._wish = child, None  # what waited for the old child is in the history, or was let go
+                self._good, self._wish = child, None  # what waited for the old child is in the history, or was given up
                 shown = self.board.solved(header["numbers"])
                 self.board.motion(header, payload, self._opened)
                 self._solid_wanted = shown or self._parts_ready
@@ -94,7 +94,7 @@ class Session:
         """Where the sliders' numbers do not fit the new file, it is solved once more as it stands."""
         if not self.history.now:
             return False
-        self.board.line(f"the numbers of the sliders do not fit this file, so they were let go: {text}")
+        self.board.line(f"the numbers of the sliders do not fit this file, so they were dropped: {text}")
         self.history.put({})
         self.reload()
         return True
@@ -119,7 +119,7 @@ class Session:
         self._solve({"do": "drag", "values": self.history.now, **_how(wish), **place_of(wish)})
 
     def _undo(self, _: dict[str, Any]) -> None:
-        # A drag that was let go but is not solved yet is what there is to undo.
+        # A drag that has ended but is not solved yet is what there is to undo.
         values = self.history.now if self._drop_drag() else self.history.undo()
         self._solve({"do": "set", "values": values, "final": True})
         self.board.tell_values()
@@ -244,5 +244,5 @@ WISHES: dict[str, Callable[[Session, dict[str, Any]], None]] = {
 
 
 def _how(wish: dict[str, Any]) -> dict[str, bool]:
-    """Whether a slider or pointer was let go, and whether arrows are seen while it moves."""
+    """Whether a slider or pointer was released, and whether arrows are seen while it moves."""
     return {word: bool(wish.get(word)) for word in ("final", "arrows")}

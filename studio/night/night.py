@@ -23,7 +23,7 @@ STOPPED = 130
 def run(asked: Options) -> int:
     """Make everything that ``asked`` names; 0 if all of it is there, 1 if something failed, 130 if it was stopped.
 
-    Raises UserError where the folder of results cannot be used. A disk that is surely too small is told, and 1 given.
+    Raises UserError where the folder of results cannot be used. A disk that is surely too small is reported; 1.
     """
     started = time.monotonic()
     with taken() as night, Log(night.number) as log:

@@ -34,7 +34,7 @@ def limit(renders: bool, each: float | None, pictures: int) -> float:
 def is_tried_again(process: Process, tries: int) -> bool:
     """Whether a step that has failed is started once more: after a hang, a crash or a kill from outside.
 
-    An error that a stage told in a sentence would come again.
+    An error that a stage reported in a sentence would come again.
     """
     code = process.code() or 0
     return tries < TRIES and (process.hung or code < 0)

@@ -47,7 +47,7 @@ def run(name: str, preset: Preset, frames: str = "", show: str = "") -> int:
 def _compared(out: Out, preset: Preset, frames: str, show: str, scratch: Path) -> list[Finding]:
     store = FrameStore(out.frames(preset.name))
     index = pictures.index_of(store)
-    wanted = pictures.chosen(frames, len(index.frames), out.name) if index else []  # told before the work
+    wanted = pictures.chosen(frames, len(index.frames), out.name) if index else []  # reported before the work
     root = scratch / "out"
     solids = out.parts.is_file()
     for stage in (

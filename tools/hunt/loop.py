@@ -1,4 +1,4 @@
-"""The cases of a hunt as they come in: told, counted, and written now and then, so that nothing is in vain."""
+"""The cases of a hunt as they come in: shown, counted, and written now and then, so that nothing is in vain."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def follow(
     found: Iterable[CaseResult],
     add: Callable[[CaseResult], list[str]],
 ) -> None:
-    """Take in n results; ``add`` counts one and gives what is to be told of it. Ctrl-C ends it with the report."""
+    """Take in n results; ``add`` counts one and gives what is to be shown of it. Ctrl-C ends it with the report."""
     began = written = time.monotonic()
     name, stopped = program.rpartition(".")[2].replace("_", "-"), False
     try:

@@ -15,7 +15,7 @@ AMPLITUDE = math.radians(100)
 
 
 def pendulum() -> Mechanism:
-    """A rod hung at its end, let go 100 degrees from rest."""
+    """A rod hung at its end, released 100 degrees from rest."""
     m = Mechanism("pendulum", gravity=(0.0, -G))
     rod = m.bar("rod", 1.5, mass=1.0)
     m.revolute("A", m.ground.at(0, 0), rod.start)
@@ -30,7 +30,7 @@ def pendulum_angle(t: np.ndarray) -> np.ndarray:
 
 
 def four_bar(pin: bool = True) -> Mechanism:
-    """A crank-rocker let go from rest; it swings through 283 degrees of its crank."""
+    """A crank-rocker released from rest; it swings through 283 degrees of its crank."""
     m = Mechanism("four-bar", gravity=(0.0, -G))
     crank, coupler, rocker = m.bar("crank", 0.3, 1.0), m.bar("coupler", 0.9, 0.5), m.bar("rocker", 0.7, 2.0)
     m.revolute("A", m.ground.at(0, 0), crank.start)

@@ -10,7 +10,7 @@ import numpy as np
 from mechanisms.stages.clearance.pieces import MeshPiece
 
 SAME = 2e-4
-"""Corners of copies nearer than this (mm) are one; what that moves them is told."""
+"""Corners of copies nearer than this (mm) are one; what that moves them is reported."""
 MOST = 3.0
 """A union with more facets than this times those of the wheel is of no use: its teeth are not alike."""
 

@@ -126,7 +126,7 @@ def are_current(name: str) -> bool:
 
 def run_or_none(name: str) -> None:
     """The same for what needs no parts, motion and plots: where a mechanism without a parts.py has none, that is
-    told.
+    reported.
     """
     out = Out(name)
     try:

@@ -1,7 +1,7 @@
 """Finds pieces that can be cut from a sheet: their outline is the same from the bed up to the sheet's thickness.
 
 Eased edges, pockets, counterbores and engraving do not change the outline and are left out of it, and so is what stands
-above the sheet, such as a boss; both are told.
+above the sheet, such as a boss; both are reported.
 """
 
 from __future__ import annotations

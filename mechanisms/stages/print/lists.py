@@ -57,7 +57,7 @@ def markdown(title: str, bed: str, made: Sequence[Made], bought: Sequence[Bought
     lines += [
         "Sizes as it lies on the bed, masses in the material that is named. Plates are "
         f"{bed} mm. Where a DXF is named, the piece can be cut from a sheet of this thickness: eased edges, pockets, "
-        "counterbores and engraving are not in it, and what stands above the sheet is told.",
+        "counterbores and engraving are not in it, and what stands above the sheet is listed.",
         "",
         "| piece | count | material | x x y x z (mm) | mass (g) | plate | outline |",
         "|---|--:|---|---|--:|---|---|",

@@ -38,7 +38,7 @@ def main() -> int:
     more = (msgspec.json.decode(line, type=Picture) for line in lines) if job.waits else iter(())
     answer(doing="loads Blender")
     try:
-        import bpy  # noqa: F401  # first, so that a missing system library is told as such
+        import bpy  # noqa: F401  # first, so that a missing system library is reported as such
     except ImportError as error:
         answer(error=missing_library(str(error)))
         return 1

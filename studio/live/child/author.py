@@ -100,7 +100,7 @@ class Author:
         return self.parts if solids == set(m.bodies) - {"ground"} else None
 
     def _shot(self) -> Shot | None:
-        """What shot.py says; an error in it is told and leaves the motion as it is."""
+        """What shot.py says; an error in it is reported and leaves the motion as it is."""
         if not loading.has(self.name, "shot"):
             return None
         return said(lambda: self._checked(loading.load(self.name, "shot").shot))
@@ -127,7 +127,7 @@ class Author:
 
 
 def said(function: Callable[[], Any]) -> Any:
-    """What ``function`` returns; None where it raises a UserError, which is told."""
+    """What ``function`` returns; None where it raises a UserError, which is reported."""
     try:
         return function()
     except UserError as error:

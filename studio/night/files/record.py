@@ -1,4 +1,4 @@
-"""The record of a run: what every film is at, written whole after each change. It is told from, never decided by."""
+"""The record of a run: what every film is at, written whole after each change. Nothing is decided by it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a user asks of a night: which mechanisms, at which preset, and what is told of the cost."""
+"""What a user asks of a night: which mechanisms, at which preset, and what is stated of the cost."""
 
 from __future__ import annotations
 

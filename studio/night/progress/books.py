@@ -23,7 +23,7 @@ from studio.night.progress.frames import Frames
 GAP = 0.5
 """Seconds between two writings of the record, where only pictures were made."""
 REFINED, OFTEN, SELDOM = 60.0, 4.0, 1800.0
-"""Seconds until the forecast is told as it is by then; each time so many times later, until that seldom."""
+"""Seconds until the forecast is stated as it is by then; each time so many times later, until that seldom."""
 
 
 class Books:
@@ -44,7 +44,7 @@ class Books:
         self._due = True
         self._written = 0.0
         self._told: float | None = None
-        """When the forecast was told last (monotonic)."""
+        """When the forecast was stated last (monotonic)."""
         self._again = REFINED
         self._said: set[tuple[str, str]] = set()
 
@@ -111,7 +111,7 @@ class Books:
             self._write()
 
     def close(self, ended: Literal["done", "failed", "stopped"], why: str = "") -> None:
-        """The run is over; ``why`` is told in place of its forecast."""
+        """The run is over; ``why`` is stated in place of its forecast."""
         self._record.ended = ended
         self._record.forecast = f"not begun: {why}" if why else self._record.forecast
         self._write()

@@ -24,7 +24,7 @@ GRACE = 120.0
 
 
 def made_elsewhere(name: str) -> Made | None:
-    """The parts of ``name`` as a worker made them; None where the stage there refused, which is to be told from here.
+    """The parts of ``name`` as a worker made them; None where the stage there refused, which is reported from here.
 
     Raises UserError if no scheduler answers, no worker is fit, or several workers fail.
     """

@@ -19,6 +19,7 @@ from tools.hunt.judging.refusals import cannot_be_saved
 from tools.hunt.outcome import AGREED, REFUSED, UNCLEAR, WRONG, Outcome, attempt
 from tools.hunt.solving.free_case import OUTPUTS, TOLERANCE, Free
 from tools.hunt.solving.sweeping import HEALTHY, random_frames, random_pose
+from tools.hunt.solving.variations import Variations
 from tools.hunt.words.changed import there_and_back
 from tools.hunt.words.described import back, duplicate, on_a_base, seen_from, turnable
 from tools.hunt.words.reordered import exchanged, shuffled
@@ -27,18 +28,8 @@ STEPS = (1, 2, 3, 5, 12, 30, 360, 1440)
 FIXED_STEPS = 400
 """Of methods without an error estimate, over the duration; then twice as many."""
 
-Variation = Callable[[Free], Outcome]
-RUNS: dict[str, Variation] = {}
-
-
-def variation(name: str) -> Callable[[Variation], Variation]:
-    """Enter one."""
-
-    def enter(run: Variation) -> Variation:
-        RUNS[name] = run
-        return run
-
-    return enter
+RUNS: Variations[Free] = Variations()
+variation = RUNS.enter
 
 
 def _size(case: Free) -> float:
@@ -77,7 +68,7 @@ def _ends(case: Free) -> Outcome:
     return case.compared("ends exchanged", m, Words({}, turned_drivers(case.m, m)))
 
 
-def _outputs(count: int) -> Variation:
+def _outputs(count: int) -> Callable[[Free], Outcome]:
     def run(case: Free) -> Outcome:
         return case.compared(f"{count} outputs", case.m, times=np.linspace(0.0, case.subject.duration, count + 1))
 

@@ -16,6 +16,7 @@ from tools.hunt.judging.agreement import SAME, Words, compare_driven, turned_dri
 from tools.hunt.judging.checks import driven_problems
 from tools.hunt.judging.refusals import cannot_be_saved, expected_refusal
 from tools.hunt.outcome import AGREED, REFUSED, UNCLEAR, WRONG, Outcome, attempt
+from tools.hunt.solving.variations import Variations
 from tools.hunt.subject import Subject
 from tools.hunt.words.changed import there_and_back
 from tools.hunt.words.described import Pose, back, duplicate, on_a_base, seen_from, turnable
@@ -99,18 +100,8 @@ class Driven:
         return Outcome(name, WRONG, f"refused ({kind}), solved as built", str(error))
 
 
-Variation = Callable[[Driven], Outcome]
-SWEEPS: dict[str, Variation] = {}
-
-
-def variation(name: str) -> Callable[[Variation], Variation]:
-    """Enter one."""
-
-    def enter(run: Variation) -> Variation:
-        SWEEPS[name] = run
-        return run
-
-    return enter
+SWEEPS: Variations[Driven] = Variations()
+variation = SWEEPS.enter
 
 
 def random_pose(rng: np.random.Generator, size: float) -> Pose:
@@ -175,7 +166,7 @@ def _all(case: Driven) -> Outcome:
     return case.against_first("all at once", m, times, Words(frames))
 
 
-def _steps(per_turn: int) -> Variation:
+def _steps(per_turn: int) -> Callable[[Driven], Outcome]:
     def run(case: Driven) -> Outcome:
         name = f"{per_turn} outputs a turn"
         steps = max(1, round(per_turn * case.subject.turns))

@@ -9,14 +9,14 @@ import socket
 import sys
 from pathlib import Path
 
-from shared.cluster import address, authority
+from shared.cluster import address, authority, keeper
 from shared.stage.console import run_cli, say
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, out_root
 
 
 def main() -> None:
-    """Read the command line; scheduler and worker take the place of this process."""
+    """Read the command line. The scheduler takes the place of this process; a worker is kept by it (keeper.py)."""
     parser = argparse.ArgumentParser(prog="python -m shared.cluster", description="Scheduler, workers, certificates.")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     scheduler = commands.add_parser("scheduler", help="the one that knows all workers")
@@ -44,17 +44,15 @@ def main() -> None:
     os.chdir(ROOT)
     os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH", "")]))
     if arguments.command == "scheduler":
-        command = scheduler_command(host, arguments.port)
         scheme = "tls" if address.certificates() else "tcp"
         say("cluster", f"CLUSTER={scheme}://{host}:{arguments.port}")
-    else:
-        if not arguments.address:
-            raise UserError("say where the scheduler is: make worker CLUSTER=tcp://127.0.0.1:8786")
-        os.environ[address.VARIABLE] = arguments.address
-        address.address()
-        command = worker_command(arguments.address, host, arguments.name)
-    sys.stdout.flush()
-    os.execv(sys.executable, command)
+        sys.stdout.flush()
+        os.execv(sys.executable, scheduler_command(host, arguments.port))
+    if not arguments.address:
+        raise UserError("say where the scheduler is: make worker CLUSTER=tcp://127.0.0.1:8786")
+    os.environ[address.VARIABLE] = arguments.address
+    address.address()
+    sys.exit(keeper.keep(worker_command(arguments.address, host, arguments.name), arguments.address))
 
 
 def scheduler_command(host: str, port: int) -> list[str]:

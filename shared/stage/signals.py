@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import _thread
+import ctypes
 import signal
 import sys
 import threading
@@ -11,6 +12,8 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
+PR_SET_PDEATHSIG = 1
+"""Number of the request in Linux's <sys/prctl.h>."""
 AGAIN = 0.05
 """s until a signal comes again whose exception was lost."""
 
@@ -53,6 +56,12 @@ def terminable() -> Iterator[None]:
         sys.unraisablehook = hook
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def end_with_parent(number: signal.Signals) -> None:
+    """Have this process get a signal when the thread that started it ends, however that ends (Linux alone)."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, number)
 
 
 def _coming_again(

@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-import ctypes
 import os
 import re
 import shlex
 import shutil
 import signal
 import subprocess
-import sys
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from shared.stage.errors import UserError
-from shared.stage.signals import terminable
+from shared.stage.signals import end_with_parent, terminable
 
 SSH = "ssh -o ConnectTimeout=20 -o ServerAliveInterval=20 -o ServerAliveCountMax=6"
 """A machine that is gone is given up after two minutes. $RSYNC_RSH, if set, takes its place."""
-PR_SET_PDEATHSIG = 1
-"""Number of the request in Linux's <sys/prctl.h>."""
 FILE = re.compile(r"^file (\d+) (\d+) (.*)$")
 
 
@@ -49,12 +46,6 @@ def transfer(source: str, target: Path, beside: Path, lock: int, told: Callable[
     command += ["--out-format=file %b %l %n", f"--compare-dest={beside.resolve()}", f"--rsh={remote_shell()}"]
     command += ["--exclude=.*", "--include=*.mp4", "--exclude=*", "--", f"{source}/", f"{target.resolve()}/"]
     environment = {key: value for key, value in os.environ.items() if not key.startswith("RSYNC_")} | {"LC_ALL": "C"}
-    prctl = ctypes.CDLL(None).prctl if sys.platform == "linux" else None
-
-    def end_with_us() -> None:
-        if prctl is not None:
-            prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
-
     with terminable():
         process = subprocess.Popen(
             command,
@@ -65,7 +56,7 @@ def transfer(source: str, target: Path, beside: Path, lock: int, told: Callable[
             errors="replace",
             env=environment,
             pass_fds=[lock],
-            preexec_fn=end_with_us,
+            preexec_fn=partial(end_with_parent, signal.SIGTERM),
         )
         try:
             return _listened(process, told)

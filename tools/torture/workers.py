@@ -58,11 +58,11 @@ class Workers:
             self.mounted = False
 
     def restart(self) -> None:
-        """Have a scheduler again where the old one was, with new workers: those of the old one end with it."""
-        _kill_all(*self.nannies, self.scheduler)
+        """Have a scheduler again where the old one was; its workers come back by themselves."""
+        _kill_all(self.scheduler)
         self.scheduler = self._start("scheduler", "--port", str(self.port))
         self._wait_for_scheduler()
-        self._start_workers()
+        self._wait_for_workers()
 
     def heal(self) -> None:
         """Room on the disk, and no process that is stopped or has a limit: those get a successor by their nanny."""

@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-import ctypes
 import os
 import queue
-import signal
-import sys
 import threading
 from collections.abc import Iterator
-
-PR_SET_PDEATHSIG = 1
-"""Number of the request in Linux's <sys/prctl.h>."""
 
 
 def die_with_parent() -> Iterator[bytes]:
@@ -22,12 +16,6 @@ def die_with_parent() -> Iterator[bytes]:
     lines: queue.SimpleQueue[bytes] = queue.SimpleQueue()
     threading.Thread(target=_end_with_input, args=(lines,), daemon=True).start()
     return iter(lines.get, None)
-
-
-def die_with_its_thread() -> None:
-    """End at once when the thread of the parent that started us ends, which Linux tells."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
 def _end_with_input(lines: queue.SimpleQueue[bytes]) -> None:

@@ -8,6 +8,7 @@ It ends by itself when its standard input closes, so that it never outlives the 
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from itertools import chain
@@ -18,8 +19,9 @@ import msgspec
 
 from render.blender.job import Answer, Job, Picture
 from render.blender.worker.libraries import missing_library
-from render.blender.worker.parent import die_with_its_thread, die_with_parent
+from render.blender.worker.parent import die_with_parent
 from shared.stage.errors import UserError
+from shared.stage.signals import end_with_parent
 
 
 def main() -> int:
@@ -34,7 +36,7 @@ def main() -> int:
     lines = die_with_parent()
     job = msgspec.json.decode(Path(sys.argv[1]).read_bytes(), type=Job)
     if not job.waits:  # else it is kept from picture to picture by a process whose threads come and go
-        die_with_its_thread()
+        end_with_parent(signal.SIGKILL)
     more = (msgspec.json.decode(line, type=Picture) for line in lines) if job.waits else iter(())
     answer(doing="loads Blender")
     try:

@@ -7,10 +7,11 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
+import psutil
 import pytest
 
 from shared.cluster import authority
@@ -24,12 +25,12 @@ from tests.shared.cluster import acting
 
 
 @contextmanager
-def started(*words: str, log: Path) -> Iterator[None]:
+def started(*words: str, log: Path) -> Iterator[subprocess.Popen[bytes]]:
     """A scheduler or worker until the block ends."""
     with log.open("w") as said:
         process = subprocess.Popen([sys.executable, "-m", "shared.cluster", *words], cwd=ROOT, stdout=said, stderr=said)
         try:
-            yield
+            yield process
         finally:
             process.terminate()
             process.wait(timeout=20)
@@ -41,9 +42,24 @@ def free_port() -> int:
         return one.getsockname()[1]
 
 
+def wait_until(ready: Callable[[], bool], seconds: float = 60.0) -> None:
+    end = time.monotonic() + seconds
+    while not ready():
+        assert time.monotonic() < end
+        time.sleep(0.1)
+
+
+def answers_at(port: int) -> bool:
+    with suppress(OSError):
+        socket.create_connection(("127.0.0.1", port), 1).close()
+        return True
+    return False
+
+
 def test_a_cluster_with_certificates_does_work_and_lets_nobody_else_in(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Its worker outlives the scheduler, and ends when the process that keeps it is killed."""
     authority.make(tmp_path / "certificates")
     assert (tmp_path / "certificates" / "key.pem").stat().st_mode & 0o077 == 0
     with pytest.raises(UserError, match="there already"):
@@ -55,26 +71,27 @@ def test_a_cluster_with_certificates_does_work_and_lets_nobody_else_in(
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
     content = b"in common"
     name = content_hash(content)
-    with (
-        started("scheduler", "--port", str(port), log=tmp_path / "scheduler.log"),
-        started("worker", f"tls://127.0.0.1:{port}", log=tmp_path / "worker.log"),
-    ):
-        end = time.monotonic() + 60
-        while time.monotonic() < end:
-            try:
-                socket.create_connection(("127.0.0.1", port), 1).close()
-                break
-            except OSError:
-                time.sleep(0.2)
-        with connected() as client:
-            work = Deal(client, acting.doubled, name, {name: lambda: content}, {"a": 1, "b": 2}, ("shared/cluster",))
-            assert {key: value for key, value, _ in work.results()} == {"a": b"in common11", "b": b"in common22"}
-        monkeypatch.setattr("shared.cluster.address.TIMEOUT", 1.0)
-        other = tmp_path / "others"
-        authority.make(other)
-        monkeypatch.setenv("CLUSTER_TLS", str(other))
-        with pytest.raises(UserError, match="no scheduler answers"), connected():
-            pass
+    with started("worker", f"tls://127.0.0.1:{port}", log=tmp_path / "worker.log") as worker:
+        for life in ("first", "second"):
+            with started("scheduler", "--port", str(port), log=tmp_path / f"{life}.log"):
+                wait_until(lambda: answers_at(port))
+                with connected() as client:
+                    inputs = {name: lambda: content}
+                    work = Deal(client, acting.doubled, name, inputs, {"a": 1, "b": 2}, ("shared/cluster",))
+                    answers = {key: value for key, value, _ in work.results()}
+                    assert answers == {"a": b"in common11", "b": b"in common22"}
+                if life == "second":
+                    monkeypatch.setattr("shared.cluster.address.TIMEOUT", 1.0)
+                    other = tmp_path / "others"
+                    authority.make(other)
+                    monkeypatch.setenv("CLUSTER_TLS", str(other))
+                    with pytest.raises(UserError, match="no scheduler answers"), connected():
+                        pass
+                    below = psutil.Process(worker.pid).children(recursive=True)
+                    assert below
+                    worker.kill()
+                    assert psutil.wait_procs(below, timeout=20)[1] == []
+    assert "this worker waits until it is back" in (tmp_path / "worker.log").read_text()
 
 
 @pytest.mark.parametrize(

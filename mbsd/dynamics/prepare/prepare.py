@@ -13,7 +13,9 @@ from mbsd.dynamics.prepare.dependent import refuse_singular_start
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import Dynamics, scratch_for
-from mbsd.dynamics.reference.schur import Schur, plan_schur
+from mbsd.dynamics.reference.pins import with_pins
+from mbsd.dynamics.reference.schur import Schur
+from mbsd.dynamics.reference.sequence import plan_schur
 from mbsd.dynamics.reference.sliding import sliding_for
 from mbsd.dynamics.rows.held import Held
 from mbsd.dynamics.rows.joint_sticks import joint_sticks, stuck_rows
@@ -67,6 +69,8 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     planned = {*kept, *spare, *range(always, len(packed.ws.phi))}
     schur = _sequence(packed.system.row_body, blocks_of(packed, planned))
     loads = pack_loads(packed)
+    if not (spare or len(loads.friction) or light[3:].any() or m.events):
+        schur = with_pins(schur, packed.system)
     sliding = sliding_for(friction_rows(packed), len(inertia), len(packed.ws.phi))
     held = Held.of(schur, packed.system, sliding, loads)
     switches = Switches(packed, held, spare)

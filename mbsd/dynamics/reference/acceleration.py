@@ -19,6 +19,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import kernel, merged
+from mbsd.dynamics.reference.pins import factor_pins, solve_pins
 from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
 from mbsd.dynamics.reference.sliding import begin_sliding, slide
 from mbsd.equations.assembly import evaluate_gamma, evaluate_position
@@ -55,9 +56,15 @@ def accelerate(dyn, scratch, t, state, a, lam):
     power = 0.0
     if drive.shape[0] > 1:
         evaluate_laws(dyn.laws, drive.shape[0], t, drive)
-    evaluate_position(system, q, drive, ws)
-    evaluate_gamma(system, v, drive, ws, gamma)
-    scratch.report[0] = factor_schur(schur, dyn.inverse, ws.jac, factors, 0.0)
+    alpha = dyn.baumgarte[0]
+    beta = dyn.baumgarte[1]
+    pins = schur.pins.shape[0] > 0 and not alpha > 0.0
+    if pins:
+        scratch.report[0] = factor_pins(schur, factors, ws.cos_sin, system.marker_arm, q, v, dyn.inverse, 0.0)
+    else:
+        evaluate_position(system, q, drive, ws)
+        evaluate_gamma(system, v, drive, ws, gamma)
+        scratch.report[0] = factor_schur(schur, dyn.inverse, ws.jac, factors, 0.0)
     for c in range(n3):
         force[c] = dyn.weight[c]
         a[c] = 0.0
@@ -65,12 +72,13 @@ def accelerate(dyn, scratch, t, state, a, lam):
         lam[r] = 0.0
     if dyn.loads.total > 0:
         power = apply_loads(dyn.loads, dyn.laws, t, q, v, ws.cos_sin, force)
+    if pins:
+        solve_pins(schur, factors, dyn.inverse, force, a, lam)
+        return power
     with_friction = dyn.loads.friction.shape[0] > 0
     sliding = dyn.sliding.rows.shape[0] > 0
     if with_friction:
         power += begin_friction(system, dyn.loads, v, ws, force)
-    alpha = dyn.baumgarte[0]
-    beta = dyn.baumgarte[1]
     if alpha > 0.0:
         for k in range(schur.rows.shape[0]):
             for s in range(2):

@@ -8,6 +8,7 @@ Source: Eich 1993, SIAM J. Numer. Anal. 30 (projection after each step); Hairer,
 from __future__ import annotations
 
 from mbsd.compiling.jit import kernel
+from mbsd.dynamics.reference.pins import change_by_pins, factor_pins
 from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
 from mbsd.equations.assembly import evaluate_nu, evaluate_position
 from mbsd.equations.laws import evaluate_laws
@@ -35,19 +36,23 @@ def project(dyn, scratch, t, state, passes):
         evaluate_laws(dyn.laws, drive.shape[0], t, drive)
     evaluate_nu(system, drive, nu)
     for step in range(passes):
-        evaluate_position(system, state[0], drive, ws)
-        factor_schur(schur, dyn.metric, ws.jac, factors, LIFT)
-        for k in range(schur.rows.shape[0]):
-            for s in range(2):
-                r = schur.rows[k, s]
-                y[k, s, 0] = ws.phi[r] if r >= 0 else 0.0
-                y[k, s, 1] = times_jacobian(factors, schur, k, s, state[1]) - nu[r] if r >= 0 else 0.0
-        solve_schur(schur, factors, 2)
-        for c in range(n3):
-            change[0, c] = 0.0
-            change[1, c] = 0.0
-        subtract_forces(factors, schur, 0, change[0])
-        subtract_forces(factors, schur, 1, change[1])
+        if schur.pins.shape[0] > 0:
+            factor_pins(schur, factors, ws.cos_sin, system.marker_arm, state[0], state[1], dyn.metric, LIFT)
+            change_by_pins(schur, factors, state[0], state[1], change)
+        else:
+            evaluate_position(system, state[0], drive, ws)
+            factor_schur(schur, dyn.metric, ws.jac, factors, LIFT)
+            for k in range(schur.rows.shape[0]):
+                for s in range(2):
+                    r = schur.rows[k, s]
+                    y[k, s, 0] = ws.phi[r] if r >= 0 else 0.0
+                    y[k, s, 1] = times_jacobian(factors, schur, k, s, state[1]) - nu[r] if r >= 0 else 0.0
+            solve_schur(schur, factors, 2)
+            for c in range(n3):
+                change[0, c] = 0.0
+                change[1, c] = 0.0
+            subtract_forces(factors, schur, 0, change[0])
+            subtract_forces(factors, schur, 1, change[1])
         largest = 0.0
         for c in range(3, n3):
             moved = dyn.metric[c] * change[0, c]

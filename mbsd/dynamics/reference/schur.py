@@ -15,7 +15,6 @@ Source: Duff, Erisman, Reid, Direct Methods for Sparse Matrices, ch. 7 (minimum 
 
 from __future__ import annotations
 
-import heapq
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -43,6 +42,8 @@ class Schur(NamedTuple):
     """(u, 3) slot target -= L of slot times (S of slot) transposed; sorted by pivot."""
     first_update: Any
     """(B + 1,)"""
+    pins: Any
+    """(B, 2) markers, if all blocks are pins and there are many (pins.py); else (0, 2)."""
 
 
 class SchurFactors(NamedTuple):
@@ -60,53 +61,6 @@ class SchurFactors(NamedTuple):
     """(B, 2, 2) right-hand sides, then solutions: block, row, side."""
 
 
-def plan_schur(row_body: np.ndarray, blocks: np.ndarray) -> tuple[Schur, SchurFactors]:
-    """Find the sequence for blocks (B, 2) of rows of J (-1: padded); row_body (m, 2) gives the bodies of a row."""
-    count = len(blocks)
-    bodies = row_body[blocks[:, 0]] if count else np.zeros((0, 2), np.int64)
-    neighbours = _graph(bodies)
-    order, columns = _minimum_degree(neighbours)
-    position = np.empty(count, np.int64)
-    position[order] = np.arange(count)
-    slot: dict[tuple[int, int], int] = {(k, k): k for k in range(count)}
-    lower: list[tuple[int, int]] = []
-    first_lower = [0]
-    for k, later in enumerate(columns):
-        for i in sorted(int(position[b]) for b in later):
-            slot[i, k] = len(slot)
-            lower.append((slot[i, k], i))
-        first_lower.append(len(lower))
-    update: list[tuple[int, int, int]] = []
-    first_update = [0]
-    for k in range(count):
-        column = lower[first_lower[k] : first_lower[k + 1]]
-        for a, (slot_i, i) in enumerate(column):
-            for slot_j, j in column[: a + 1]:
-                update.append((slot[i, j], slot_i, slot_j))
-        first_update.append(len(update))
-    ordered = bodies[order]
-    touching: dict[int, list[tuple[int, int]]] = {}
-    for k, pair in enumerate(ordered):
-        for side, body in enumerate(pair):
-            if body:
-                touching.setdefault(int(body), []).append((k, side))
-    product = []
-    for arms in touching.values():
-        for a, (i, side_i) in enumerate(arms):
-            for j, side_j in arms[: a + 1]:
-                product.append((slot[i, j], 2 * i + side_i, 2 * j + side_j))
-    sequence = Schur(
-        rows=np.ascontiguousarray(blocks[order], np.int64),
-        bodies=np.ascontiguousarray(ordered, INDEX),
-        product=np.array(sorted(product), INDEX).reshape(-1, 3),
-        lower=np.array(lower, INDEX).reshape(-1, 2),
-        first_lower=np.array(first_lower, np.int64),
-        update=np.array(update, INDEX).reshape(-1, 3),
-        first_update=np.array(first_update, np.int64),
-    )
-    return sequence, schur_factors(sequence)
-
-
 def schur_factors(sequence: Schur) -> SchurFactors:
     """Scratch for one thread."""
     count = len(sequence.rows)
@@ -120,42 +74,44 @@ def schur_factors(sequence: Schur) -> SchurFactors:
     )
 
 
-def _graph(bodies: np.ndarray) -> list[set[int]]:
-    """Blocks that share a moving body."""
-    at_body: dict[int, list[int]] = {}
-    for block, pair in enumerate(bodies):
-        for body in pair:
-            if body:
-                at_body.setdefault(int(body), []).append(block)
-    neighbours: list[set[int]] = [set() for _ in bodies]
-    for blocks in at_body.values():
-        for block in blocks:
-            neighbours[block].update(blocks)
-    for block, around in enumerate(neighbours):
-        around.discard(block)
-    return neighbours
-
-
-def _minimum_degree(neighbours: list[set[int]]) -> tuple[np.ndarray, list[set[int]]]:
-    """Elimination order and, for each in it, the later blocks it touches; ties go to the lower number."""
-    graph = [set(around) for around in neighbours]
-    queue = [(len(around), block) for block, around in enumerate(graph)]
-    heapq.heapify(queue)
-    done = np.zeros(len(graph), bool)
-    order, columns = [], []
-    while queue:
-        degree, block = heapq.heappop(queue)
-        if done[block] or degree != len(graph[block]):
-            continue
-        done[block] = True
-        around = graph[block]
-        order.append(block)
-        columns.append(around)
-        for other in around:
-            graph[other] |= around
-            graph[other] -= {other, block}
-            heapq.heappush(queue, (len(graph[other]), other))
-    return np.array(order, np.int64), columns
+@inlined
+def eliminate(schur, fac):
+    """Factor S, which stands in fac.value and its diagonal in fac.low; returns as factor_schur."""
+    value = fac.value
+    low = fac.low
+    count = schur.rows.shape[0]
+    margin = 1.0
+    for k in range(count):
+        cross = 0.5 * (value[k, 1] + value[k, 2])
+        det = value[k, 0] * value[k, 3] - cross * cross
+        low[k, 1] = value[k, 0] / low[k, 0]
+        low[k, 2] = det / value[k, 0] / low[k, 3]
+        left = low[k, 1] * low[k, 2]
+        if not left >= margin:
+            margin = left
+        inverse_det = 1.0 / det
+        d0 = value[k, 3] * inverse_det
+        d1 = -cross * inverse_det
+        d3 = value[k, 0] * inverse_det
+        value[k, 0] = d0
+        value[k, 1] = d1
+        value[k, 2] = d1
+        value[k, 3] = d3
+        for e in range(schur.first_lower[k], schur.first_lower[k + 1]):
+            s = schur.lower[e, 0]
+            low[s, 0] = value[s, 0] * d0 + value[s, 1] * d1
+            low[s, 1] = value[s, 0] * d1 + value[s, 1] * d3
+            low[s, 2] = value[s, 2] * d0 + value[s, 3] * d1
+            low[s, 3] = value[s, 2] * d1 + value[s, 3] * d3
+        for e in range(schur.first_update[k], schur.first_update[k + 1]):
+            t = schur.update[e, 0]
+            i = schur.update[e, 1]
+            j = schur.update[e, 2]
+            value[t, 0] -= low[i, 0] * value[j, 0] + low[i, 1] * value[j, 1]
+            value[t, 1] -= low[i, 0] * value[j, 2] + low[i, 1] * value[j, 3]
+            value[t, 2] -= low[i, 2] * value[j, 0] + low[i, 3] * value[j, 1]
+            value[t, 3] -= low[i, 2] * value[j, 2] + low[i, 3] * value[j, 3]
+    return margin
 
 
 @inlined
@@ -199,38 +155,7 @@ def factor_schur(schur, inverse, jac, fac, lift):
         value[k, 3] += lift * value[k, 3]
         low[k, 0] = value[k, 0]
         low[k, 3] = value[k, 3]
-    margin = 1.0
-    for k in range(count):
-        cross = 0.5 * (value[k, 1] + value[k, 2])
-        det = value[k, 0] * value[k, 3] - cross * cross
-        low[k, 1] = value[k, 0] / low[k, 0]
-        low[k, 2] = det / value[k, 0] / low[k, 3]
-        left = low[k, 1] * low[k, 2]
-        if not left >= margin:
-            margin = left
-        inverse_det = 1.0 / det
-        d0 = value[k, 3] * inverse_det
-        d1 = -cross * inverse_det
-        d3 = value[k, 0] * inverse_det
-        value[k, 0] = d0
-        value[k, 1] = d1
-        value[k, 2] = d1
-        value[k, 3] = d3
-        for e in range(schur.first_lower[k], schur.first_lower[k + 1]):
-            s = schur.lower[e, 0]
-            low[s, 0] = value[s, 0] * d0 + value[s, 1] * d1
-            low[s, 1] = value[s, 0] * d1 + value[s, 1] * d3
-            low[s, 2] = value[s, 2] * d0 + value[s, 3] * d1
-            low[s, 3] = value[s, 2] * d1 + value[s, 3] * d3
-        for e in range(schur.first_update[k], schur.first_update[k + 1]):
-            t = schur.update[e, 0]
-            i = schur.update[e, 1]
-            j = schur.update[e, 2]
-            value[t, 0] -= low[i, 0] * value[j, 0] + low[i, 1] * value[j, 1]
-            value[t, 1] -= low[i, 0] * value[j, 2] + low[i, 1] * value[j, 3]
-            value[t, 2] -= low[i, 2] * value[j, 0] + low[i, 3] * value[j, 1]
-            value[t, 3] -= low[i, 2] * value[j, 2] + low[i, 3] * value[j, 3]
-    return margin
+    return eliminate(schur, fac)
 
 
 @inlined

@@ -26,7 +26,7 @@ from mbsd.arrays.start_state import copied
 from mbsd.base.errors import AssemblyError
 from mbsd.dynamics.reference.arrays import Dynamics, scratch_for
 from mbsd.dynamics.reference.projection import project
-from mbsd.dynamics.reference.schur import plan_schur
+from mbsd.dynamics.reference.sequence import plan_schur
 from mbsd.dynamics.reference.sliding import sliding_for
 from mbsd.dynamics.start.row_strength import factor_at
 from mbsd.kinematics.pose.close import CLOSED, LONGEST_STEP, rough_pose, unwind_angles

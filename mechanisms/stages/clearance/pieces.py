@@ -102,6 +102,14 @@ class MeshPiece:
         return solid
 
 
+def facing(lying: MeshPiece, other: MeshPiece, sign: float) -> tuple[np.ndarray, np.ndarray]:
+    """The horizontal facets of ``lying`` that look up (``sign`` 1) or down (-1), and the facets of ``other`` that look
+    the other way, upright ones left out: (n, 3, 3) each.
+    """
+    faces = lying.triangles[lying.level & (sign * lying.upward > 0)]
+    return faces, other.triangles[sign * other.upward < -UPRIGHT * other.size]
+
+
 def height_between(first: MeshPiece, second: MeshPiece) -> float:
     """The least height (mm) between a horizontal face of one piece and what faces it in the other, wherever they are.
 
@@ -111,8 +119,8 @@ def height_between(first: MeshPiece, second: MeshPiece) -> float:
     least = np.inf
     for a, b in ((first, second), (second, first)):
         for sign in (1.0, -1.0):
-            faces = np.unique(sign * a.triangles[a.level & (sign * a.upward > 0), 0, 2])
-            above = np.unique(sign * b.triangles[sign * b.upward < -UPRIGHT * b.size][:, :, 2])
+            lying, facets = facing(a, b, sign)
+            faces, above = np.unique(sign * lying[:, 0, 2]), np.unique(sign * facets[:, :, 2])
             at = np.searchsorted(above, faces - LEVEL)
             found = at < len(above)
             least = min(least, float((above[at[found]] - faces[found]).min(initial=np.inf)))

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from mechanisms.stages.clearance.pieces import height_between
+from mechanisms.stages.clearance.search.facing import never_over
 from mechanisms.stages.clearance.search.outline_search import least_by_outlines, proven_by_outlines
 from mechanisms.stages.clearance.search.search import RESOLUTION, Least, Search
 from mechanisms.stages.clearance.search.sweep import Sweep
@@ -33,6 +34,8 @@ def least_gap(sweep: Sweep, reach: float) -> Least:
     height = height_between(sweep.still, sweep.mover)
     if height >= found.gap - RESOLUTION:
         found = replace(found, proven=min(found.proven, height))
+    elif found.gap > 0 and never_over(sweep, found.gap):
+        pass  # the sides tell it
     elif not found.given_up:
         found = _search(sweep, sweep.still.tree, sweep.mover.tree, found.gap, found.time, found.poses)
     else:  # more facets would be given up, too

@@ -50,7 +50,18 @@ def _outline(piece: MeshPiece, low: float, high: float) -> Outline | None:
     corners, index = mesh
     p, q, r = (corners[index[:, k], :2] for k in range(3))
     way, side = q - p, r - p
-    up = index[way[:, 0] * side[:, 1] - way[:, 1] * side[:, 0] > 0.0]
+    return _edge(piece, corners, index[way[:, 0] * side[:, 1] - way[:, 1] * side[:, 0] > 0.0])
+
+
+def edge_of(facets: np.ndarray, piece: MeshPiece) -> Outline | None:
+    """Of the shadow of ``facets`` (n, 3, 3) of a piece that all look up or all look down; None if that is nothing."""
+    index = np.arange(3 * len(facets)).reshape(-1, 3)
+    (x, y), (u, v) = (facets[0, k, :2] - facets[0, 0, :2] for k in (1, 2))
+    return _edge(piece, facets.reshape(-1, 3), index if x * v > y * u else index[:, ::-1])
+
+
+def _edge(piece: MeshPiece, corners: np.ndarray, up: np.ndarray) -> Outline | None:
+    """The edge of the shadow of facets ``up`` (m, 3) whose numbers run counter-clockwise seen from above."""
     edges = np.concatenate([up[:, (0, 1)], up[:, (1, 2)], up[:, (2, 0)]])
     grid = np.round(corners[:, :2] / (ROUNDING * piece.radius))
     _, first, place = np.unique(grid, axis=0, return_index=True, return_inverse=True)

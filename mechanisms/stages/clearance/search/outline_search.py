@@ -95,9 +95,7 @@ def least_by_outlines(sweep: Sweep, gap: float, time: float, poses: int) -> Leas
         gap, time, poses = _measured(sweep, found, gap, time)
         if found.gap < gap - ALIKE:
             return None
-    return Least(
-        gap, time, min(max(found.proven - _slack(sweep), 0.0), beyond, gap), poses, found.error, found.given_up
-    )
+    return Least(gap, time, min(max(found.proven - slack(sweep), 0.0), beyond, gap), poses, found.error, found.given_up)
 
 
 def proven_by_outlines(sweep: Sweep, gap: float, time: float) -> float:
@@ -109,10 +107,11 @@ def proven_by_outlines(sweep: Sweep, gap: float, time: float) -> float:
     if both is None:
         return 0.0
     found = OutlineSearch(*both, sweep.path, sweep.still.centre).run(gap, time, 0)
-    return min(max(found.proven - _slack(sweep), 0.0), gap)
+    return min(max(found.proven - slack(sweep), 0.0), gap)
 
 
-def _slack(sweep: Sweep) -> float:
+def slack(sweep: Sweep) -> float:
+    """How far (mm) outlines may be off, since corners that are near are one."""
     return 4 * ROUNDING * (sweep.still.radius + sweep.mover.radius)
 
 
@@ -130,15 +129,19 @@ def _outlines(sweep: Sweep, beyond: float) -> tuple[Outline, Outline] | None:
     low = max(sweep.still.z_range[0], sweep.mover.z_range[0]) - beyond
     high = min(sweep.still.z_range[1], sweep.mover.z_range[1]) + beyond
     still, mover = (outline(piece, low, high) if low < high else None for piece in (sweep.still, sweep.mover))
-    if still is None or mover is None:
+    if still is None or mover is None or are_over(sweep, still, mover):
         return None
+    return still, mover
+
+
+def are_over(sweep: Sweep, still: Outline, mover: Outline) -> bool:
+    """Whether one of the two covers a corner of the other at the start."""
     moment = sweep.times[:1]
     pose = relative(sweep.path.mover.at(moment), sweep.path.still.at(moment))[0]
     c, s = np.cos(pose[2]), np.sin(pose[2])
     turn = np.array([[c, s], [-s, c]])
-    if covers(still, mover.edges[:, 0] @ turn + pose[:2]) or covers(mover, (still.edges[:, 0] - pose[:2]) @ turn.T):
-        return None
-    return still, mover
+    places = mover.edges[:, 0] @ turn + pose[:2], (still.edges[:, 0] - pose[:2]) @ turn.T
+    return covers(still, places[0]) or covers(mover, places[1])
 
 
 def _same(one: tuple[Outline, Outline], other: tuple[Outline, Outline]) -> bool:

@@ -19,8 +19,9 @@ Array = NDArray[np.float64]
 class FilmCamera:
     """The camera of a shot; ``filmed`` (n, 3) is what it holds, ``sharp`` (m, 3) what is in focus (m)."""
 
-    def __init__(self, shot: Camera, clock: Clock, filmed: Array, sharp: Array) -> None:
-        self.shot, self.clock, self.filmed, self.sharp = shot, clock, filmed, sharp
+    def __init__(self, shot: Camera, clock: Clock, filmed: Array, sharp: Array, above: float = 0.0) -> None:
+        """``above`` is the part of the picture's height that stays empty at its top beside the margin."""
+        self.shot, self.clock, self.filmed, self.sharp, self.above = shot, clock, filmed, sharp, above
 
     def pose(self, frame: int) -> CameraPose:
         """At a frame: it stands still, or swings about the middle once in each showing of the motion."""
@@ -61,7 +62,7 @@ class FilmCamera:
     def _stand(self) -> tuple[Array, Array, float]:
         """Camera position, the point it looks at, and their distance."""
         elevation, azimuth = math.radians(self.shot.elevation), math.radians(self.shot.azimuth)
-        position, distance = fit(self.filmed, azimuth, elevation, self.shot.lens, self.shot.margin)
+        position, distance = fit(self.filmed, azimuth, elevation, self.shot.lens, self.shot.margin, self.above)
         target = position + axes(azimuth, elevation)[2] * distance
         if self.shot.orbit:
             swing = azimuth + math.radians(self.shot.orbit) * np.linspace(-1, 1, 9)

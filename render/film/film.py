@@ -154,13 +154,23 @@ class Film:
         moments = [self.clock.moment(frame) for frame in frames]
         paths = [path for one in self.drawn for at in moments for path in one.paths(self.poses, at)]
         filmed = np.concatenate([self.space.all, *self._drawn, *map(np.asarray, paths)])
-        return FilmCamera(self.shot.camera, self.clock, filmed, self.space.moving)
+        said = writing.title(self.motion, self.shot), self.number(0.0), writing.rate(self.clock, self.shot)
+        camera = FilmCamera(self.shot.camera, self.clock, filmed, self.space.moving)
+        for above in writing.ABOVE if said[0] and not self.shot.camera.orbit else ():
+            if not writing.in_the_way(camera.pose(0), self._seen_moving, said):
+                break
+            camera = FilmCamera(self.shot.camera, self.clock, filmed, self.space.moving, above)
+        return camera
+
+    @cached_property
+    def _seen_moving(self) -> Array:
+        """Points (n, 3) of what moves, and around all arrows (m)."""
+        return np.concatenate([self.space.moving, *self._drawn])
 
     def _writing(self) -> Writing:
-        shown = np.concatenate([self.space.moving, *self._drawn])
         return Writing(
             legend=[*self.arrows.legend(self._camera.width), *self.arcs.legend()],
-            corner=writing.emptiest(self.camera(0), shown, self.space.standing),
+            corner=writing.emptiest(self.camera(0), self._seen_moving, self.space.standing),
             title=writing.title(self.motion, self.shot),
             rate=writing.rate(self.clock, self.shot),
         )

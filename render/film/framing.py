@@ -45,9 +45,12 @@ def half_width(lens: float) -> float:
     return SENSOR / (2 * lens)
 
 
-def fit(points: Array, azimuth: float, elevation: float, lens: float, margin: float) -> tuple[Array, float]:
+def fit(
+    points: Array, azimuth: float, elevation: float, lens: float, margin: float, above: float = 0.0
+) -> tuple[Array, float]:
     """The closest camera position (3,) that has all ``points`` (n, 3) in the frame, and its distance to their middle.
 
+    ``above`` is the part of the frame's height that stays empty at its top beside the margin.
     Each side of the frame is a plane through the camera: |u - cu| <= t (w - cw) for a point at (u, v, w) in camera
     axes. The tightest planes of two opposite sides fix cu, or cv, and bound cw; the smaller cw holds both.
     """
@@ -55,11 +58,12 @@ def fit(points: Array, azimuth: float, elevation: float, lens: float, margin: fl
     room = 1 - 2 * margin
     tu = half_width(lens) * room
     tv = half_width(lens) / ASPECT * room
-    cu, wu = _between(u, w, tu)
-    cv, wv = _between(v, w, tv)
+    upper = max(tv - 2 * above * half_width(lens) / ASPECT, tv / 4)
+    cu, wu = _between(u, w, tu, tu)
+    cv, wv = _between(v, w, tv, upper)
     size = float(np.linalg.norm(np.ptp(points, axis=0)))
     depth = min(wu, wv, float(w.min()) - NEAREST * size)
-    position = np.array([cu, cv, depth]) @ axes(azimuth, elevation)
+    position = np.array([cu, cv + (upper - tv) / 2 * depth, depth]) @ axes(azimuth, elevation)
     return position, float((w.min() + w.max()) / 2 - depth)
 
 
@@ -94,7 +98,9 @@ def project(camera: CameraPose, points: Array, width: int, height: int) -> Array
     return np.stack([width / 2 + scale * u / w, height / 2 - scale * v / w], axis=1)
 
 
-def _between(across: Array, depth: Array, tangent: float) -> tuple[float, float]:
-    """Where the camera must be across, and how far forward it may go, to hold both sides."""
-    low, high = float((across + tangent * depth).min()), float((across - tangent * depth).max())
-    return (low + high) / 2, (low - high) / (2 * tangent)
+def _between(across: Array, depth: Array, below: float, above: float) -> tuple[float, float]:
+    """Where the camera must be across, and how far forward it may go, to hold both sides, at these tangents; the former
+    for a camera at no depth.
+    """
+    low, high = float((across + below * depth).min()), float((across - above * depth).max())
+    return (low + high) / 2, (low - high) / (below + above)

@@ -101,6 +101,14 @@ class LegendRow(msgspec.Struct, kw_only=True, frozen=True):
     sweep: float = 0.0
 
 
+EDGE = 0.026
+"""Of what is written, from the picture's edges, as a part of its width."""
+SIZES = 1 / 16, 1 / 23, 1 / 27
+"""Heights of the letters of title, number and rate, as parts of the picture's height."""
+LINE = 1.4
+"""From one line to the next, in heights of letters."""
+
+
 class Writing(msgspec.Struct, kw_only=True, frozen=True):
     """What is written over the picture: a legend in a corner, a title at the upper left, the rate of time."""
 

@@ -1,10 +1,13 @@
-"""Arrows: a thin shaft and a cone on an empty that moves and turns them; their lengths are animated by scale."""
+"""Arrows: a thin shaft and a cone on an empty that moves and turns them, and a ball where it begins; their lengths are
+animated by scale.
+"""
 
 # pyright: reportAttributeAccessIssue=false
 # bpy fills itself in when it is imported, its stubs are empty.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,19 +17,24 @@ from render.blender.scene.nodes import Graph
 from render.film.scene import ArrowSpec, Colour
 
 SIDES = 32
+ROUND = [(-math.cos(math.pi * k / 12), max(math.sin(math.pi * k / 12), 1e-3)) for k in range(13)]
+"""Places and radii of a ball of radius 1."""
 STOUT = 2.2
 """Arrows shorter than so many cones shrink as a whole."""
+BALL = 1.9
+"""Radius of the ball, in radii of the shaft: of arrows on one line it shows where each begins."""
 GONE = 1e-7
 """Length (m) for Blender of an arrow that is not there: no matrix is singular."""
 
 
 @dataclass
 class Arrow:
-    """The empty that carries the two meshes."""
+    """The empty that carries the meshes."""
 
     root: Any
     shaft: Any
     head: Any
+    ball: Any
 
 
 def sizes(spec: ArrowSpec, length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -55,6 +63,7 @@ def channels(
         (arrow.shaft, "scale", [shaft, factor * spec.shaft, factor * spec.shaft]),
         (arrow.head, "location", [shaft, zero, zero]),
         (arrow.head, "scale", [factor * spec.point, factor * spec.head, factor * spec.head]),
+        (arrow.ball, "scale", [factor * BALL * spec.shaft] * 3),
     ]
 
 
@@ -67,8 +76,8 @@ def build(scene: Any, spec: ArrowSpec) -> Arrow:
     scene.collection.objects.link(root)
     made = paint(spec.name, spec.colour)
     things = []
-    for name, far in (("shaft", 1.0), ("head", 0.0)):
-        mesh = _turned(f"{name} {spec.name}", far)
+    for name, profile in (("shaft", [(0.0, 1.0), (1.0, 1.0)]), ("head", [(0.0, 1.0), (1.0, 1e-3)]), ("ball", ROUND)):
+        mesh = _turned(f"{name} {spec.name}", profile)
         mesh.materials.append(made)
         thing = bpy.data.objects.new(mesh.name, mesh)
         thing.parent = root
@@ -78,18 +87,23 @@ def build(scene: Any, spec: ArrowSpec) -> Arrow:
     return Arrow(root, *things)
 
 
-def _turned(name: str, far: float) -> Any:
-    """A body of revolution about x from 0 to 1, of radius 1 at its start and ``far`` at its end."""
+def _turned(name: str, profile: Sequence[tuple[float, float]]) -> Any:
+    """A body of revolution about x, closed at both ends, from places along x and the radii there."""
     import bpy
 
     turn = [math.tau * k / SIDES for k in range(SIDES)]
-    rings = [(x, r * math.cos(a), r * math.sin(a)) for x, r in ((0.0, 1.0), (1.0, max(far, 1e-3))) for a in turn]
-    faces: list[tuple[int, ...]] = [(k, (k + 1) % SIDES, SIDES + (k + 1) % SIDES, SIDES + k) for k in range(SIDES)]
+    rings = [(x, r * math.cos(a), r * math.sin(a)) for x, r in profile for a in turn]
+    last = SIDES * (len(profile) - 1)
+    faces: list[tuple[int, ...]] = [
+        (of + k, of + (k + 1) % SIDES, of + SIDES + (k + 1) % SIDES, of + SIDES + k)
+        for of in range(0, last, SIDES)
+        for k in range(SIDES)
+    ]
     faces.append(tuple(reversed(range(SIDES))))
-    faces.append(tuple(range(SIDES, 2 * SIDES)))
+    faces.append(tuple(range(last, last + SIDES)))
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(rings, [], faces)
-    mesh.polygons.foreach_set("use_smooth", [True] * SIDES + [False] * 2)
+    mesh.polygons.foreach_set("use_smooth", [True] * last + [False] * 2)
     return mesh
 
 

@@ -9,13 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from render.film.scene import LegendRow, Writing
+from render.film.scene import EDGE, LINE, SIZES, LegendRow, Writing
 
 FINE = 3
 """Letters and legend are drawn so many times larger."""
 INK, QUIET, CARD = (240, 243, 247, 255), (172, 181, 192, 255), (9, 12, 17, 132)
-EDGE = 0.026
-"""From the picture's edges, as a part of its width."""
 ARC = 0.6
 """Radius of an arc of the legend, in heights of its letters."""
 
@@ -54,13 +52,13 @@ def font_of(size: float, bold: bool = False) -> Any:
 def _title(draw: Any, page: tuple[int, int], edge: float, writing: Writing, number: str) -> None:
     """Name and number at the upper left; the rate of time under them, or alone at the upper left."""
     y, shadow = edge, page[1] / 520
-    lines = [(writing.title, page[1] / 16, INK), (number, page[1] / 23, INK), (writing.rate, page[1] / 27, QUIET)]
-    for words, size, ink in lines:
+    for words, part, ink in zip((writing.title, number, writing.rate), SIZES, (INK, INK, QUIET), strict=True):
         if words:
+            size = part * page[1]
             font = font_of(size, bold=words == writing.title)
             draw.text((edge + shadow, y + shadow), words, fill=(0, 0, 0, 150), font=font, anchor="la")
             draw.text((edge, y), words, fill=ink, font=font, anchor="la")
-            y += 1.4 * size
+            y += LINE * size
 
 
 def _legend(draw: Any, page: tuple[int, int], edge: float, writing: Writing) -> None:

@@ -21,6 +21,7 @@ COLOURS: dict[str, Colour] = {
     "velocities": (0.16, 0.86, 0.54),
     "accelerations": (0.72, 0.50, 1.0),
     "forces": (1.0, 0.56, 0.13),
+    "weights": (1.0, 0.90, 0.50),
     "reactions": (0.30, 0.66, 1.0),
 }
 """sRGB: those of the drawn animations, brighter, for a dark studio."""
@@ -40,7 +41,7 @@ class Arrows:
         return [
             ArrowSpec(
                 name=f"{vector.quantity} {vector.name}",
-                colour=COLOURS[vector.quantity],
+                colour=COLOURS[vector.row],
                 shaft=SHAFT * self.size,
                 head=HEAD * self.size,
                 point=POINT * self.size,
@@ -49,9 +50,9 @@ class Arrows:
         ]
 
     def legend(self, width: float) -> list[LegendRow]:
-        """A row for each quantity, in a picture that is ``width`` (m) wide where the machine is."""
+        """A row for each quantity, and for weights, in a picture that is ``width`` (m) wide where the machine is."""
         rows = []
-        for quantity, unit in dict.fromkeys((vector.quantity, vector.unit) for vector in self.vectors):
+        for quantity, unit in dict.fromkeys((vector.row, vector.unit) for vector in self.vectors):
             scale = self.scales[unit]
             length = FULL * self.size * scale.reference / scale.largest / width
             words = f"{quantity}, peaks cut" if scale.cut else quantity

@@ -39,6 +39,8 @@ class Vector(Acting):
 
     value: Array
     """(T, 2) in the unit of its quantity."""
+    weight: bool = False
+    """Whether it is the weight of a body, one of the forces."""
 
     @property
     def size(self) -> Array:
@@ -49,6 +51,11 @@ class Vector(Acting):
     def unit(self) -> str:
         """Of its value."""
         return UNITS[self.quantity]
+
+    @property
+    def row(self) -> str:
+        """What the legend calls it: weights have a row and a colour of their own."""
+        return "weights" if self.weight else self.quantity
 
 
 def vectors(motion: Motion, show: Sequence[Quantity]) -> list[Vector]:
@@ -91,7 +98,8 @@ def _forces(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
     for name, body in motion.bodies.items():
         if body.mass > 0 and gravity.any():
             place = _centre(body)[0]
-            yield Vector(quantity, f"weight of {name}", (name,), place, np.tile(body.mass * gravity, (len(place), 1)))
+            value = np.tile(body.mass * gravity, (len(place), 1))
+            yield Vector(quantity, f"weight of {name}", (name,), place, value, weight=True)
 
 
 def _pushes(motion: Motion, driver: DriverMotion) -> Iterator[tuple[str, Array, Array]]:

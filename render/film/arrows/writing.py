@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,16 +11,21 @@ from numpy.typing import NDArray
 from render.film.arrows.vectors import at_time
 from render.film.clock import Clock
 from render.film.framing import CameraPose, project
+from render.film.scene import EDGE, LINE, SIZES
 from render.presets import ASPECT
 from shared.contract import Motion
 from shared.contract.loads import ACTUATORS
 from shared.contract.shot import Shot
 
 Array = NDArray[np.float64]
-CORNERS = {"lower left": (0.0, 0.78), "lower right": (0.66, 0.78), "upper right": (0.66, 0.0)}
+CORNERS = {"lower left": (0.0, 0.76), "lower right": (0.62, 0.76), "upper right": (0.62, 0.0)}
 """Left and upper edge of where a legend may be, as parts of the picture; the first one that is emptiest is taken."""
-CORNER = 0.34, 0.22
+CORNER = 0.38, 0.24
 """Width and height of such a place."""
+LETTER = 0.6
+"""Width of a letter, in its height."""
+ABOVE = 0.04, 0.08, 0.12, 0.16, 0.2, 0.24
+"""Parts of the picture's height that are kept empty for the words at the upper left, the first that suffices."""
 
 
 def emptiest(camera: CameraPose, moving: Array, standing: Array) -> str:
@@ -32,6 +37,17 @@ def emptiest(camera: CameraPose, moving: Array, standing: Array) -> str:
         return int(((x >= left) & (x <= left + wide) & (y >= top) & (y <= top + high)).sum())
 
     return min(CORNERS, key=lambda corner: (held(corner, moving), held(corner, standing)))
+
+
+def in_the_way(camera: CameraPose, moving: Array, lines: Sequence[str]) -> bool:
+    """Whether some of ``moving`` (n, 3) is where these words are: title, number and rate at the upper left."""
+    said = [(words, size) for words, size in zip(lines, SIZES, strict=True) if words]
+    if not said:
+        return False
+    wide = EDGE + max(LETTER * size * len(words) for words, size in said) / ASPECT
+    high = EDGE * ASPECT + sum(LINE * size for _, size in said)
+    x, y = (project(camera, moving, 1600, round(1600 / ASPECT)) / (1600, 1600 / ASPECT)).T
+    return bool(((x <= wide) & (y <= high)).any())
 
 
 def title(motion: Motion, shot: Shot) -> str:

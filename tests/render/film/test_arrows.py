@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 from typing import get_args
 
@@ -11,19 +12,16 @@ import pytest
 from PIL import Image
 
 from render.blender.scene.arrows import sizes
-from render.blender.worker import overlay
-from render.film.arrows import writing
 from render.film.arrows.arrows import COLOURS, FULL, Arrows
 from render.film.arrows.scales import LONGEST, TINY, round_below, scales_of, with_unit
 from render.film.arrows.vectors import Vector, at_time, vectors
-from render.film.clock import Clock
-from render.film.framing import axes, half_width, project
+from render.film.framing import project
 from render.film.inputs import named, read_film
-from render.film.scene import ArrowSpec, LegendRow, Writing
+from render.film.scene import ArrowSpec
 from render.frames import still
 from render.presets import Preset
 from render.shown import WORDS, show_words
-from shared.contract.shot import Names, Quantity, Shot, Title, refuse_unknown, shown
+from shared.contract.shot import Quantity, Shot, Title, shown
 from shared.stage.errors import UserError
 from tests.models.motions import GRAVITY, MASSES, bouncing_ball, four_bar_motion
 from tests.render import film_fixture
@@ -173,72 +171,6 @@ def test_tips_of_arrows_stay_in_the_picture(out_root: Path):
         assert (pixels < (1280, 720)).all()
 
 
-def test_titles_and_numbers_that_live():
-    motion = four_bar_motion()
-    shot = Shot(title=Title(), seconds_per_turn=4.0)
-    assert writing.title(motion, shot) == "Four bar"
-    assert writing.rate(Clock(motion, shot), shot) == "4 times slower"
-    assert writing.rate(Clock(motion, Shot(seconds_per_turn=4.0)), Shot()) == ""
-    effort = motion.drivers["motor"].effort
-    said = writing.number(motion, shot)(motion.time[90])
-    assert said.startswith("motor  ")
-    assert float(said.split()[1].replace("−", "-")) == pytest.approx(effort[90], abs=5.1e-5)
-    point, at = motion.points["P"], motion.time[33]
-    speed = float(np.hypot(point.vx[33], point.vy[33]))
-    words = writing.number(motion, Shot(title=Title(number="P")))(at).split()
-    assert words[2] == "m/s"
-    assert words[4] == "km/h"
-    assert float(words[1]) == pytest.approx(speed, abs=1e-3)
-    assert float(words[3]) == pytest.approx(3.6 * speed, abs=1e-2)
-    assert writing.number(motion, Shot())(0.0) == ""
-    with pytest.raises(UserError, match="motor"):
-        refuse_unknown(Shot(title=Title(number="moto")), Names("four_bar", (), ("P",), {}, ("motor",)))
-
-
-def test_the_legend_keeps_clear_of_what_moves_and_then_of_what_stands(out_root: Path):
-    film = read_film(film_fixture.write(Shot(seconds_per_turn=0.4)))
-    camera, none = film.camera(0), np.zeros((0, 3))
-    wide = 2 * half_width(camera.lens)
-
-    def seen_at(x: float, y: float) -> np.ndarray:
-        """A point that is at these parts of the picture."""
-        sight = np.array([(x - 0.5) * wide, (0.5 - y) * wide * 9 / 16, 1.0])
-        return np.array([camera.position]) + sight @ axes(camera.azimuth, camera.elevation)
-
-    left, right = seen_at(0.1, 0.9), seen_at(0.9, 0.9)
-    assert project(camera, right, 100, 100 * 9 / 16)[0] == pytest.approx([90, 90 * 9 / 16])
-    assert writing.emptiest(camera, none, none) == "lower left"
-    assert writing.emptiest(camera, left, none) == "lower right"
-    assert writing.emptiest(camera, np.concatenate([left, right]), none) == "upper right"
-    assert writing.emptiest(camera, none, left) == "lower right"
-    assert writing.emptiest(camera, left, np.tile(right, (9, 1))) == "upper right"
-    assert len(film.space.standing) > 100
-
-
-def test_the_rate_of_a_simulation_that_is_not_in_real_time_is_always_told():
-    motion = bouncing_ball()
-    slow = Shot(rate=0.05)
-    assert writing.rate(Clock(motion, slow), slow) == "20 times slower"
-    assert writing.rate(Clock(motion, Shot(rate=1.0)), Shot(rate=1.0)) == ""
-
-
-def test_the_overlay_writes_its_legend_into_its_corner_alone(tmp_path: Path):
-    path = tmp_path / "p.png"
-    Image.new("RGB", (320, 180), (40, 40, 40)).save(path)
-    before = path.read_bytes()
-    overlay.lay(path, None, Writing(), "")
-    assert path.read_bytes() == before
-    row = LegendRow(number="5 N", words="forces", colour=COLOURS["forces"], length=0.1, point=0.03)
-    overlay.lay(path, None, Writing(legend=[row], corner="lower right"), "")
-    changed = np.abs(np.asarray(Image.open(path)).astype(int) - 40).sum(axis=2) > 6
-    rows, columns = np.nonzero(changed)
-    assert changed.any()
-    assert rows.min() > 120
-    assert columns.min() > 130
-    orange = np.abs(np.asarray(Image.open(path)) - 255 * np.array(COLOURS["forces"])).sum(axis=2) < 12
-    assert 27 <= np.ptp(np.nonzero(orange)[1]) <= 34  # a tenth of the picture
-
-
 def test_an_arrow_is_drawn_where_its_tip_is_and_over_what_is_in_front(out_root: Path):
     preset = Preset("stamp", 240, 135, 2)
     out = film_fixture.write(Shot(seconds_per_turn=0.4, trails=()))
@@ -258,3 +190,12 @@ def test_an_arrow_is_drawn_where_its_tip_is_and_over_what_is_in_front(out_root: 
         x, y = project(state.camera, inside[None], 240, 135)[0].astype(int)
         patch = with_arrows[y - 1 : y + 2, x - 1 : x + 2].reshape(-1, 3)
         assert (patch[:, 2] - patch[:, 0]).max() > 90  # blue
+
+
+def test_weights_have_a_row_and_a_colour_of_their_own_and_the_scale_of_the_forces():
+    made = Arrows(TIME, [steady(10.0), dataclasses.replace(steady(5.0), weight=True)], size=1.0)
+    assert [spec.colour for spec in made.specs()] == [COLOURS["forces"], COLOURS["weights"]]
+    forces, weights = made.legend(2.0)
+    assert (forces.words, weights.words) == ("forces", "weights")
+    assert (forces.number, forces.length) == (weights.number, weights.length)
+    assert {v.name for v in vectors(four_bar_motion(), ("forces",)) if v.weight} >= {"weight of coupler"}

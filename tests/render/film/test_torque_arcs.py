@@ -145,6 +145,7 @@ def test_a_short_peak_is_cut_and_no_arc_meets_its_own_tail():
 
 def test_arcs_about_one_point_lie_around_each_other_and_the_camera_holds_them():
     made = Arcs(TIME, [steady(1.0), steady(-2.0, "reactions"), steady(1.0, at=(1, 0))], size=2.0)
+    assert msgspec.json.encode(made.specs())  # plain numbers, which Blender's process is sent
     assert [spec.radius for spec in made.specs()] == pytest.approx([2 * RADIUS, 2 * (RADIUS + APART), 2 * RADIUS])
     for spec, rim in zip(made.specs(), made.rims([0.1] * 3), strict=True):
         assert np.ptp(rim, axis=0)[:2] == pytest.approx(2 * (spec.radius + spec.head))

@@ -9,6 +9,15 @@ WORDS = ("velocities", "accelerations", "forces", "reactions", "title")
 """In the order in which they stand in the names of files."""
 
 
+MEANT = {
+    "forces": ("weights", "springs", "dampers", "contacts", "loads", "torques", "frictions"),
+    "reactions": ("constraints", "joints", "contacts"),
+    "velocities": ("speeds",),
+    "title": ("titles", "names", "rates", "numbers"),
+}
+"""What else one may ask for, by the words that show it."""
+
+
 def show_words(text: str) -> str:
     """The words of SHOW in their order, each once, commas between them; raises UserError for one that is none."""
     asked = [word.strip() for word in text.split(",") if word.strip()]
@@ -16,6 +25,14 @@ def show_words(text: str) -> str:
         if word not in WORDS:
             raise UserError(
                 f"SHOW={text!r}: there is no word {word!r}; there is: {', '.join(WORDS)}; commas join several, and "
-                f"without SHOW a picture has what the shot says{did_you_mean(word, WORDS)}"
+                f"without SHOW a picture has what the shot says{_meant(word)}"
             )
     return ",".join(word for word in WORDS if word in asked)
+
+
+def _meant(word: str) -> str:
+    """The word that shows what is asked for, or one that is alike."""
+    found = [shows for shows, others in MEANT.items() if word.lower().removesuffix("s") + "s" in others]
+    if found:
+        return f"; these are among {' and '.join(found)}"
+    return did_you_mean(word, WORDS)

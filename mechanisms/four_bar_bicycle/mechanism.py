@@ -31,7 +31,7 @@ def build(p: Params) -> Mechanism:
     m.revolute("pedal", crank.end, shank.start)
     m.revolute("knee", shank.end, thigh.end)
     m.revolute("hip", hip, thigh.start)
-    m.drive_angle("cadence", crank, constant_rate(-2 * pi * p.cadence / 60, start=pi / 2))
+    m.drive_angle("rider", crank, constant_rate(-2 * pi * p.cadence / 60, start=pi / 2))
     m.trace("calf", shank.at(*p.calf))
     m.start_near(shank=90, thigh=-20)
     return m

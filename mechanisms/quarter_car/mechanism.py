@@ -61,7 +61,7 @@ def build(p: Params) -> Mechanism:
     m.angle_lock("level", m.ground.origin, body.origin)
     m.prismatic("guide", body.at(0, 0, pi / 2), carrier.at(0, 0.2, pi / 2))
     m.revolute("hub", carrier.origin, wheel.origin)
-    m.drive_coordinate("speed", m.ground.origin, body.origin, constant_rate(p.speed))
+    m.drive_coordinate("engine", m.ground.origin, body.origin, constant_rate(p.speed))
     spring, tyre = sag(p)
     m.spring("spring", body.at(0, 0), carrier.at(0, 0), p.stiffness, p.damping, free_length=p.hub + spring)
     m.tyre("tyre", m.ground.origin, wheel.origin, p.radius, p.tyre, p.tyre_damping, profile=road(p))

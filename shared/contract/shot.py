@@ -129,10 +129,17 @@ def read_shot(path: Path) -> Shot:
 
 def write_shot(path: Path, shot: Shot) -> None:
     """Check types, ranges and numbers, and write shot.json whole."""
+    jsonfile.write(path, refuse_unsound(shot, path))
+
+
+def refuse_unsound(shot: Shot, where: Path | str) -> Shot:
+    """The shot with the types of its fields; raises UserError naming ``where`` and the field whose type or range is
+    not that of a shot.
+    """
     if shot.rate is not None and shot.seconds_per_turn is not None:
-        raise UserError(f"{path}: rate and seconds_per_turn both say how fast the film goes; give one of them")
-    jsonfile.refuse_non_finite(shot, path)
-    jsonfile.write(path, jsonfile.decode(jsonfile.encode(shot), Shot, path))
+        raise UserError(f"{where}: rate and seconds_per_turn both say how fast the film goes; give one of them")
+    jsonfile.refuse_non_finite(shot, where)
+    return jsonfile.decode(jsonfile.encode(shot), Shot, where)
 
 
 def shown(shot: Shot, words: str) -> Shot:

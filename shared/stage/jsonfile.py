@@ -139,7 +139,16 @@ def _complaints(raw: Any, kind: Any, field: str) -> Iterator[str]:
     elif isinstance(raw, dict) and typing.get_origin(kind) is dict:
         for key, value in raw.items():
             yield from _complaints(value, typing.get_args(kind)[1], f"{field}.{key}")
-    yield _placed(message, field)
+    known = _literals(kind) if message.startswith("Invalid enum") else []
+    yield _placed(message, field) + (f"; known: {', '.join(known)}" if known else "")
+
+
+def _literals(kind: Any) -> list[str]:
+    """The words that a field may hold, or each entry of it."""
+    inner = typing.get_args(kind)
+    if typing.get_origin(kind) is typing.Literal:
+        return list(map(str, inner))
+    return [word for one in inner for word in _literals(one)]
 
 
 def _placed(message: str, field: str) -> str:

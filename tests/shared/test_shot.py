@@ -5,11 +5,24 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from mechanisms.four_bar.shot import shot as four_bar_shot
-from shared.contract import read_motion, read_parts
-from shared.contract.shot import Camera, Label, Names, Shot, Surface, Trail, read_shot, refuse_unknown, write_shot
+from mechanisms.stages.shot import stage as shot_stage
+from shared.contract import ForceMotion, read_motion, read_parts, write_motion
+from shared.contract.shot import (
+    Camera,
+    Label,
+    Names,
+    Shot,
+    Surface,
+    Title,
+    Trail,
+    read_shot,
+    refuse_unknown,
+    write_shot,
+)
 from shared.stage.errors import UserError
 from tests.render import film_fixture
 
@@ -36,7 +49,9 @@ def test_defaults_and_the_four_bar_survive_a_round_trip(tmp_path: Path):
         (Shot(camera=Camera(elevation=120.0)), "camera.elevation"),
         (Shot(camera=Camera(azimuth=float("nan"))), "camera.azimuth"),
         (Shot(trails=(Trail(point="P", tail=0.0),)), "tail"),
-        (Shot(look="candlelight"), "look"),  # type: ignore[arg-type]
+        (Shot(look="candlelight"), "look; known: studio, daylight"),  # type: ignore[arg-type]
+        (Shot(show=("force",)), r"show\[0\]; known: velocities, .*reactions"),  # type: ignore[arg-type]
+        (Shot(title="Four bar"), "Expected .*title"),  # type: ignore[arg-type]
     ],
 )
 def test_values_out_of_range_are_refused_by_field(tmp_path: Path, shot: Shot, field: str):
@@ -72,3 +87,20 @@ def test_names_the_mechanism_lacks_are_refused_with_those_it_has(out_root: Path,
         refuse_unknown(shot, Names.of(read_motion(out.motion), read_parts(out.parts)))
     for word in ["four_bar", *words]:
         assert word in str(refusal.value)
+
+
+def test_the_stage_knows_the_names_that_pictures_know(out_root: Path):
+    """It reads them from data.json without its numbers: those of drivers, and of forces that have an effort, too."""
+    out = film_fixture.write()
+    motion = read_motion(out.motion)
+    none = [0.0] * len(motion.time)
+    push = ForceMotion(
+        kind="torque", actions=[], several=False, measures=None, value=None, rate=None, effort=none,
+        normal=None, power=none, potential=none, shape=None,
+    )  # fmt: skip
+    told = {"push": push, "gas": msgspec.structs.replace(push, effort=None)}
+    write_motion(out.motion, msgspec.structs.replace(motion, forces=told))
+    names = Names.of(read_motion(out.motion), read_parts(out.parts))
+    assert names.efforts == ("motor", "push")
+    assert shot_stage._names(out) == names
+    refuse_unknown(Shot(title=Title(number="motor")), names)

@@ -9,7 +9,7 @@ import msgspec
 from mechanisms.stages.loading.inputs import Inputs, observed
 from mechanisms.stages.loading.loading import has, load, package_of
 from mechanisms.stages.loading.recording import recording
-from shared.contract.shot import Names, Shot, refuse_unknown, write_shot
+from shared.contract.shot import Names, Shot, refuse_unknown, refuse_unsound, write_shot
 from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash
@@ -41,9 +41,10 @@ def run(name: str) -> None:
         shot = load(out.name, "shot").shot
     loaded = loaded_inputs(mechanism_folder(out.name) / "shot.py", package_of(out.name), before)
     inputs = loaded.joined(recorder.inputs())
+    file = f"mechanisms/{owner_of(out.name)}/shot.py"
     if not isinstance(shot, Shot):
-        file = f"mechanisms/{owner_of(out.name)}/shot.py"
         raise UserError(f"{out.name}: {file}: 'shot' is a {type(shot).__name__}; write shot = Shot(...)")
+    refuse_unsound(shot, file)
     if names:
         refuse_unknown(shot, names)
     write_shot(out.shot, shot)
@@ -82,12 +83,18 @@ def _key(names: Names | None, inputs: Inputs) -> str:
     return key_of(sources_hash(*SOURCES), names and names.listed(), inputs.digest())
 
 
+class _Force(msgspec.Struct):
+    effort: msgspec.Raw = msgspec.Raw(b"null")
+
+
 class _Motion(msgspec.Struct):
     """The names in data.json, without its numbers."""
 
     mechanism: str
     joints: dict[str, msgspec.Raw]
     points: dict[str, msgspec.Raw]
+    drivers: dict[str, msgspec.Raw]
+    forces: dict[str, _Force] = {}
 
 
 class _Body(msgspec.Struct):
@@ -106,4 +113,5 @@ def _names(out: Out) -> Names | None:
     except (OSError, msgspec.DecodeError, UnicodeDecodeError):
         return None
     pieces = {body: tuple(solids.pieces) for body, solids in parts.bodies.items()}
-    return Names(motion.mechanism, tuple(motion.joints), tuple(motion.points), pieces)
+    forces = [name for name, force in motion.forces.items() if bytes(force.effort) != b"null"]
+    return Names(motion.mechanism, tuple(motion.joints), tuple(motion.points), pieces, (*motion.drivers, *forces))

@@ -139,6 +139,8 @@ def test_words_of_show_are_checked_ordered_and_replace_what_the_shot_says():
     assert show_words(" title,reactions , velocities") == "velocities,reactions,title"
     with pytest.raises(UserError, match="did you mean 'reactions'"):
         show_words("reaction")
+    with pytest.raises(UserError, match="these are among forces and reactions"):
+        show_words("contact")
     shot = Shot(show=("forces",), title=Title(text="Crank"))
     assert shown(shot, "") is shot
     assert shown(shot, "velocities") == msgspec.structs.replace(shot, show=("velocities",), title=None)

@@ -48,7 +48,7 @@ class PathFit:
     least_transmission: float
     """Least transmission angle over the motion; pi/2 where no pin has one."""
     history: np.ndarray
-    """Best root mean square distance after each generation, of all starts one after the other."""
+    """Best root mean square distance after each step of the search, of all starts one after the other."""
     starts: list[float]
     """Root mean square distance that each start ended with; infinite where none of its designs served."""
     evaluations: int
@@ -106,8 +106,9 @@ def fit_path(
     four-bar of four pins to s + l <= p + q; ``least_transmission`` (rad) is what the transmission angle keeps at each
     pin between two links that are not driven.
 
-    The search is differential evolution with ``generations`` of designs, all swept at once, and least squares on the
-    best; it is made anew ``starts`` times with seeds that follow from ``seed``. Equal arguments give equal results.
+    The search sweeps a low-discrepancy spread of designs and goes down from the best side by side by least squares;
+    where none comes near the points, differential evolution goes on with at most ``generations``. It is made anew
+    ``starts`` times with seeds that follow from ``seed``. Equal arguments give equal results.
     All designs are on the branch (assembly) of ``m``; mechanisms that are not made of driven bodies and dyads are swept
     one by one, a hundred times slower. ``progress`` is called with the part done (0 .. 1) and the best
     root mean square distance (m); what it raises ends the fit.

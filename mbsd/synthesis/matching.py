@@ -59,6 +59,21 @@ def _from_chords(paths: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.
     return ((away - ahead[..., None] * ends) ** 2).sum(-1), ahead
 
 
+def wrapped(where: np.ndarray, samples: int) -> tuple[np.ndarray, np.ndarray]:
+    """The samples below sample numbers ``where``, and the part of a chord after them; a path goes round at its end."""
+    chords = samples - 1
+    turned = np.where(where > chords, where - chords, where)
+    below = np.clip(np.floor(turned).astype(int), 0, chords - 1)
+    return below, turned - below
+
+
+def on_chords(paths: np.ndarray, where: np.ndarray) -> np.ndarray:
+    """(n, N, 2) places of paths (n, T, 2) of chords at sample numbers ``where`` (n, N)."""
+    below, ahead = wrapped(where, paths.shape[1])
+    rows, part = np.arange(len(paths))[:, None], ahead[..., None]
+    return (1 - part) * paths[rows, below] + part * paths[rows, below + 1]
+
+
 def at(path: np.ndarray, where: np.ndarray, closed: bool) -> np.ndarray:
     """(N, 2) places of a path (T, 2) at sample numbers ``where`` (N,), not whole."""
     middle, coefficients = _pieces(path, where, closed)
@@ -75,18 +90,24 @@ def feet_in_order(path: np.ndarray, points: np.ndarray, closed: bool) -> np.ndar
 
     Those of a closed path rise from a start anywhere to less than a turn later.
     """
-    distance, ahead = _from_chords(path[None], points)
-    cut = int(_in_order(distance, closed)[1][0])
-    distance, ahead = (np.roll(part[0], -cut, axis=1) for part in (distance, ahead))
-    sums = [distance[0]]
-    for row in distance[1:]:
-        sums.append(np.minimum.accumulate(sums[-1]) + row)
-    chords, last = np.zeros(len(points), int), distance.shape[1]
-    for k in reversed(range(len(points))):
-        chords[k] = sums[k][:last].argmin()
-        last = chords[k] + 1
-    where = cut + chords + ahead[np.arange(len(points)), chords]
+    where = chord_feet_in_order(path[None], points, closed)[0]
     return np.maximum.accumulate(_refined(path, points, where, closed))
+
+
+def chord_feet_in_order(paths: np.ndarray, points: np.ndarray, closed: bool) -> np.ndarray:
+    """(n, N) the same of paths (n, T, 2) of chords."""
+    distance, ahead = _from_chords(paths, points)
+    cut, count = _in_order(distance, closed)[1], distance.shape[2]
+    turned = ((cut[:, None] + np.arange(count)) % count)[:, None]
+    distance, ahead = (np.take_along_axis(part, turned, 2) for part in (distance, ahead))
+    sums = [distance[:, 0]]
+    for k in range(1, len(points)):
+        sums.append(np.minimum.accumulate(sums[-1], axis=-1) + distance[:, k])
+    chords, last = np.zeros((len(paths), len(points)), int), np.full(len(paths), count)
+    for k in reversed(range(len(points))):
+        chords[:, k] = np.where(np.arange(count) < last[:, None], sums[k], np.inf).argmin(axis=-1)
+        last = chords[:, k] + 1
+    return cut[:, None] + chords + np.take_along_axis(ahead, chords[..., None], 2)[..., 0]
 
 
 def _refined(path: np.ndarray, points: np.ndarray, where: np.ndarray, closed: bool) -> np.ndarray:

@@ -1,20 +1,27 @@
-"""The search for the best design: differential evolution over all designs within bounds, then least squares.
+"""The search for the best design: descents from a spread of designs, differential evolution on, then least squares.
 
-A design that does not close, or misses a condition, is worse than any that does; how much it misses leads the search
-back. Each start is an evolution of its own with its own seed, so equal seeds give equal results.
+Many designs of a low-discrepancy sequence (Sobol) are swept, and least squares goes down from the best of them side by
+side. Where none of these meets the target, they begin an evolution over all designs within the bounds. A design that
+does not close, or misses a condition, is worse than any that does; how much it misses leads the search back. Each start
+is a search of its own with its own seed, so equal seeds give equal results.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import partial
-from typing import Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from mbsd.synthesis.descents import descended
 from mbsd.synthesis.designs import Designs, Paths
+from mbsd.synthesis.residuals import Residuals
 from mbsd.synthesis.target import Target
+
+if TYPE_CHECKING:
+    from scipy.stats.qmc import QMCEngine
 
 OPEN = 1e4
 """Cost of a design that does not close, in squares of the target's extent."""
@@ -26,10 +33,19 @@ POLISHED = 3
 """Of the last generation, so many of the best are fitted by least squares."""
 APART = 0.02
 """Designs nearer to each other than this part of the bounds count as one."""
-MARGIN = 1e-4
-"""The fit keeps conditions by so much more than asked for (rad, or part of the lengths)."""
-STEP = 1e-6
-"""Of the differences that give the slopes, in parts of the bounds."""
+DRAWN, ONE_BY_ONE = 100, 12
+"""Designs of a round for each number that varies: swept at once in closed form, and others."""
+DESCENTS = 20
+"""A descent for so many of them."""
+ROUNDS = 8
+"""At most."""
+AGREED, ALIKE = 3, 1e-3
+"""So many that end at costs no farther apart than this part are enough, and so many that come near nothing."""
+STEPS, HALVED = 24, (5, 10)
+"""Steps of the descents, and those at which the better half goes on."""
+DESCENDING = 0.3
+"""Part of a start that the rounds take, as it is told."""
+FINE_STEPS = 100
 NEAR = 1e-5
 """Cost at which an evolution ends, for least squares goes on faster."""
 GOOD = 1e-9
@@ -70,12 +86,7 @@ class Search:
         worst_of = np.inf
         ends: list[float] = []
         for start in range(starts):
-            found = [self._fitted(x) for x in self._evolved(np.random.default_rng([seed, start]), start, starts)]
-            found = [one for one in found if np.isfinite(one[1])]
-            if not found:
-                ends.append(np.inf)
-                continue
-            x, error = min(found, key=lambda one: one[1])
+            x, error = self._started(np.random.default_rng([seed, start]), start, starts)
             ends.append(error)
             if error < worst_of:
                 best, worst_of = x, error
@@ -93,81 +104,109 @@ class Search:
         away = self.target.reached(paths.path[0], self._shifts(x[None])[0]) - self.target.points
         return float(np.sqrt((away**2).sum(-1).mean()))
 
-    def _evolved(self, random: np.random.Generator, start: int, starts: int) -> list[np.ndarray]:
-        """Designs of the last generation, the best first, apart from each other."""
+    @cached_property
+    def _residuals(self) -> Residuals:
+        low, high = self.bounds
+        return Residuals(self.designs, self.target, self.least_transmission, low, high - low)
+
+    def _started(self, random: np.random.Generator, start: int, starts: int) -> tuple[np.ndarray, float]:
+        """The best vector of a start, and its root mean square (m), infinite where no design serves."""
+        low, _ = self.bounds
+        sequence, count = self._sequence(random)
+        best, least = low, np.inf
+        found: list[np.ndarray] = []
+        costs: list[float] = []
+        rounds = ROUNDS if self._quick else 1
+        for number in range(rounds):
+            drawn = sequence.random(count)
+            ends, missed = self._descended(drawn, (start + DESCENDING * number / rounds) / starts)
+            found.append(ends)
+            costs.append(float(missed[0]))
+            if costs[-1] < NEAR:
+                x, error = self._best(ends)
+                costs[-1] = (error / self.target.extent) ** 2
+                if error < least:
+                    best, least = x, error
+                if least <= GOOD * self.target.extent:
+                    return best, least
+            far = number + 1 == AGREED and min(costs) >= NEAR
+            if far or sum(cost <= (1 + ALIKE) * min(costs) for cost in costs) == AGREED:
+                break
+        if not least < np.inf:
+            size = 1 << int(np.ceil(np.log2(MEMBERS * len(low))))
+            first = np.concatenate([*found, sequence.random(size)])[:size]
+            best, least = self._best(self._evolved(first, random, start, starts))
+        return best, least
+
+    def _best(self, u: np.ndarray) -> tuple[np.ndarray, float]:
+        """Of designs u (n, k), the best first, the best after least squares: a vector, and its root mean square (m)."""
+        low, high = self.bounds
+        fitted = [self._fitted(low + (high - low) * u[k]) for k in _apart(u, POLISHED)]
+        return min(fitted, key=lambda one: one[1])
+
+    def _descended(self, drawn: np.ndarray, done: float) -> tuple[np.ndarray, np.ndarray]:
+        """The ends of descents from the best of designs drawn (n, k), the best first, and their costs."""
+        low, high = self.bounds
+        costs = np.concatenate([self._cost(low + (high - low) * some) for some in np.array_split(drawn, 8)])
+        order = np.argsort(costs, kind="stable")
+        begun = drawn[order][_apart(drawn[order], max(2, len(drawn) // DESCENTS))]
+        self._seen(float(costs.min()), done)
+        return descended(
+            self._residuals, begun, fine=False, steps=STEPS, enough=NEAR / 100, halved=HALVED,
+            told=lambda cost: self._seen(cost, done),
+        )  # fmt: skip
+
+    @property
+    def _quick(self) -> bool:
+        """Whether a design costs little: all are swept at once, and no function of the author builds them."""
+        return self.designs.at_once and self.designs.build is None
+
+    def _sequence(self, random: np.random.Generator) -> tuple[QMCEngine, int]:
+        """Designs in parts of the bounds, and how many of them a round takes."""
+        from scipy.stats import qmc
+
+        numbers = len(self.bounds[0])
+        wanted = (DRAWN if self._quick else ONE_BY_ONE) * numbers
+        return qmc.Sobol(numbers, rng=random), 1 << int(np.ceil(np.log2(wanted)))
+
+    def _evolved(self, first: np.ndarray, random: np.random.Generator, start: int, starts: int) -> np.ndarray:
+        """The last generation after the ``first`` (n, k), the best first."""
         from scipy.optimize import differential_evolution
 
         low, high = self.bounds
-        generation = 0
+        generation, begun = 0, cast(Any, first)  # scipy's types know words alone
 
         def seen(intermediate_result: object) -> None:
             nonlocal generation
             generation += 1
             cost = float(getattr(intermediate_result, "fun", np.inf))
-            if cost < 1.0:
-                self.best = min(self.best, float(np.sqrt(cost)) * self.target.extent)
-            self.history.append(self.best)
-            self.progress((start + generation / (self.generations + 1)) / starts, self.best)
+            self._seen(cost, (start + generation / (self.generations + 1)) / starts)
             if cost < NEAR:
                 raise StopIteration
 
         result = differential_evolution(
-            lambda x: self._cost(low + (high - low) * x.T), [(0.0, 1.0)] * len(low), popsize=MEMBERS,
-            maxiter=self.generations, tol=1e-8, mutation=(0.4, 0.9), recombination=0.9, rng=random, polish=False,
-            init="sobol", vectorized=True, updating="deferred", callback=seen,
+            lambda x: self._cost(low + (high - low) * x.T), [(0.0, 1.0)] * len(low), maxiter=self.generations,
+            tol=1e-8, mutation=(0.4, 0.9), recombination=0.9, rng=random, polish=False, init=begun, vectorized=True,
+            updating="deferred", callback=seen,
         )  # fmt: skip
-        ordered = result.population[np.argsort(result.population_energies)]
-        chosen: list[np.ndarray] = []
-        for one in ordered:
-            if all(np.abs(one - other).max() > APART for other in chosen):
-                chosen.append(one)
-            if len(chosen) == POLISHED:
-                break
-        return [low + (high - low) * one for one in chosen]
+        return result.population[np.argsort(result.population_energies, kind="stable")]
+
+    def _seen(self, cost: float, done: float) -> None:
+        if cost < 1.0:
+            self.best = min(self.best, float(np.sqrt(cost)) * self.target.extent)
+        self.history.append(self.best)
+        self.progress(done, self.best)
 
     def _fitted(self, x: np.ndarray) -> tuple[np.ndarray, float]:
         """Least squares from one design: the better of both, and its root mean square (m)."""
-        from scipy.optimize import least_squares
-
-        low, high = self.bounds
         before = self.error(x)
         if not np.isfinite(before):
             return x, before
-        size = high - low
-        slopes: Any = partial(self._slopes, low=low, size=size)
-        inside = np.clip((x - low) / size, 1e-9, 1 - 1e-9)
-        found = least_squares(
-            lambda u: self._residuals(low + size * u[None])[0], inside, jac=slopes,
-            bounds=(0.0, 1.0), xtol=1e-14, ftol=1e-14, gtol=1e-14, max_nfev=100,
-        )  # fmt: skip
-        after = low + size * found.x
+        low, high = self.bounds
+        u = descended(self._residuals, (x - low)[None] / (high - low), fine=True, steps=FINE_STEPS)[0]
+        after = low + (high - low) * u[0]
         error = self.error(after)
         return (after, error) if error < before else (x, before)
-
-    def _slopes(self, u: np.ndarray, low: np.ndarray, size: np.ndarray) -> np.ndarray:
-        sign = np.where(u < 0.5, 1.0, -1.0)
-        steps = np.diag(STEP * sign)
-        rows = self._residuals(low + size * np.vstack([u + steps, u - steps]))
-        ahead, behind = rows[: len(u)], rows[len(u) :]
-        inside = ((u - STEP >= 0) & (u + STEP <= 1))[:, None] & (np.abs(ahead) < OPEN) & (np.abs(behind) < OPEN)
-        own = self._residuals(low + size * u[None])[0]
-        slope = np.where(inside, (ahead - behind) / 2, ahead - own) / (STEP * sign)[:, None]
-        return np.where(np.abs(ahead) < OPEN, slope, 0.0).T
-
-    def _residuals(self, x: np.ndarray) -> np.ndarray:
-        """(n, r) of designs x (n, k), in extents; those that do not close are far off."""
-        paths, shifts = self._paths(x, fine=True), self._shifts(x)
-        scale = self.target.extent
-        rows = []
-        for k in range(len(x)):
-            if not paths.closes[k]:
-                rows.append(None)
-                continue
-            short = max(0.0, self.least_transmission + MARGIN - paths.transmission[k]) if self.least_transmission else 0
-            excess = paths.excess[k] + MARGIN if paths.excess[k] > 0 else 0.0
-            rows.append(np.append(self.target.residuals(paths.path[k], shifts[k]) / scale, [10 * short, 10 * excess]))
-        width = self.target.count(len(self.designs.grids[True])) + 2
-        return np.array([np.full(width, 10 * OPEN) if row is None else row for row in rows])
 
     def _cost(self, x: np.ndarray) -> np.ndarray:
         """(n,) of designs x (n, k)."""
@@ -191,3 +230,14 @@ class Search:
 
     def _shifts(self, x: np.ndarray) -> np.ndarray:
         return x[:, -1] if self.free_shift else np.zeros(len(x))
+
+
+def _apart(designs: np.ndarray, most: int) -> list[int]:
+    """Numbers of the first designs (n, k) that are apart from each other."""
+    chosen: list[int] = []
+    for k, one in enumerate(designs):
+        if all(np.abs(one - designs[other]).max() > APART for other in chosen):
+            chosen.append(k)
+        if len(chosen) == most:
+            break
+    return chosen

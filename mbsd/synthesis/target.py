@@ -6,7 +6,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.synthesis.matching import at, feet, feet_in_order, in_order, nearest_on_chords, resampled
+from mbsd.synthesis.matching import (
+    at,
+    chord_feet_in_order,
+    feet,
+    feet_in_order,
+    in_order,
+    nearest_on_chords,
+    on_chords,
+    resampled,
+    wrapped,
+)  # fmt: skip
 
 BACKWARDS = 60
 """Places of the path that are compared with a closed curve."""
@@ -36,11 +46,7 @@ class Target:
     def squares(self, paths: np.ndarray, shifts: np.ndarray) -> np.ndarray:
         """(n,) mean squared distance (m^2) of paths (n, T, 2), times shifted by ``shifts`` (n,) (s)."""
         if self.times is not None:
-            where = self._samples(paths.shape[1], shifts)
-            below = np.clip(np.floor(where).astype(int), 0, paths.shape[1] - 2)
-            ahead = (where - below)[..., None]
-            rows = np.arange(len(paths))[:, None]
-            at_times = (1 - ahead) * paths[rows, below] + ahead * paths[rows, below + 1]
+            at_times = on_chords(paths, self._samples(paths.shape[1], shifts))
             return ((at_times - self.points) ** 2).sum(-1).mean(-1)
         if self.ordered:
             out = in_order(paths, self.points, self.returns)[0] / len(self.points)
@@ -53,20 +59,48 @@ class Target:
             out = out + back.reshape(samples.shape[:2]).mean(-1)
         return out
 
-    def residuals(self, path: np.ndarray, shift: float) -> np.ndarray:
-        """Differences (m) of the points from one path (T, 2), and where the curve is closed, of the path from it."""
-        away = (self.reached(path, shift) - self.points).ravel()
+    def where(self, paths: np.ndarray, shifts: np.ndarray, fine: bool) -> np.ndarray:
+        """(n, N) sample numbers of the places of paths (n, T, 2) that stand for the points: on chords, or exactly."""
+        if self.times is not None:
+            return self._samples(paths.shape[1], shifts)
+        if fine:
+            find = feet_in_order if self.ordered else feet
+            return np.array([find(path, self.points, self.returns) for path in paths]).reshape(len(paths), -1)
+        if self.ordered:
+            return chord_feet_in_order(paths, self.points, self.returns)
+        return nearest_on_chords(paths, self.points)[1]
+
+    def missed(self, paths: np.ndarray, where: np.ndarray, fine: bool) -> np.ndarray:
+        """(n, r, 2) differences (m) of the points from places ``where`` (n, N) of paths (n, T, 2).
+
+        Where the points are a closed curve, differences of the paths from it follow, weighed so that both count alike.
+        """
+        if fine:
+            places = np.array([at(path, one, self.returns) for path, one in zip(paths, where, strict=True)])
+            away = places.reshape(len(paths), -1, 2) - self.points
+        else:
+            away = on_chords(paths, where) - self.points
         if not (self.closed and self.times is None):
             return away
-        every = max(1, (len(path) - 1) // BACKWARDS)
-        samples = path[:-1:every]
-        square = nearest_on_chords(self._ring()[None], samples)[0][0]
-        return np.append(away, np.sqrt(square * len(self.points) / len(samples)))
+        samples = paths[:, : -1 : max(1, (paths.shape[1] - 1) // BACKWARDS)]
+        ring, flat = self._ring()[None], samples.reshape(-1, 2)
+        beside = flat - on_chords(ring, nearest_on_chords(ring, flat)[1])[0]
+        weight = np.sqrt(len(self.points) / samples.shape[1])
+        return np.concatenate([away, weight * beside.reshape(samples.shape)], axis=1)
 
-    def count(self, samples: int) -> int:
-        """Of the residuals of a path of so many samples."""
-        back = len(range(0, samples - 1, max(1, (samples - 1) // BACKWARDS)))
-        return 2 * len(self.points) + (back if self.closed and self.times is None else 0)
+    def directions(self, paths: np.ndarray, where: np.ndarray, fine: bool) -> np.ndarray:
+        """(n, N, 2) unit vectors along paths (n, T, 2) at places ``where`` (n, N)."""
+        if fine:
+            h = 1e-4
+            ends = [
+                np.array([at(path, one + step, self.returns) for path, one in zip(paths, where, strict=True)])
+                for step in (-h, h)
+            ]
+            line = (ends[1] - ends[0]).reshape(len(paths), -1, 2)
+        else:
+            rows, below = np.arange(len(paths))[:, None], wrapped(where, paths.shape[1])[0]
+            line = paths[rows, below + 1] - paths[rows, below]
+        return line / np.maximum(np.hypot(*np.moveaxis(line, -1, 0)), 1e-300)[..., None]
 
     def reached(self, path: np.ndarray, shift: float) -> np.ndarray:
         """(N, 2) the places of one path (T, 2) that stand for the points (m)."""

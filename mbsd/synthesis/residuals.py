@@ -1,0 +1,113 @@
+"""What a design misses, as residuals with their slopes, for many designs at once.
+
+A point's place on the path is held while the slopes are taken, and the part of a slope along the path is left out, for
+the place follows along the path anyway (variable projection after Kaufman, BIT 15, 1975): sweeping the changed
+designs is all that a slope costs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.synthesis.designs import Designs, Paths
+from mbsd.synthesis.target import Target
+
+MARGIN = 1e-4
+"""Conditions are kept by so much more than asked for (rad, or part of the lengths)."""
+STEP = 1e-6
+"""Of the differences that give the slopes, in parts of the bounds."""
+WEIGHT = 10.0
+"""Of what conditions are missed by (rad, or part of the lengths), against distances in extents."""
+SQUARE = 0.01
+"""Cosine of the angle between path and residual below which the place is where the path is nearest."""
+
+
+@dataclass
+class Missed:
+    """Of n designs, in extents of the target."""
+
+    rows: np.ndarray
+    """(n, r)"""
+    cost: np.ndarray
+    """(n,) mean squares; infinite where a design does not close."""
+    where: np.ndarray
+    """(n, N) sample numbers of the points' places."""
+    along: np.ndarray
+    """(n, N, 2) unit vectors along which a place moves freely; zero where it does not."""
+
+    def take(self, index: np.ndarray) -> Missed:
+        """Some of the designs."""
+        return Missed(self.rows[index], self.cost[index], self.where[index], self.along[index])
+
+    def put(self, index: np.ndarray, other: Missed) -> None:
+        """Replace some of the designs."""
+        self.rows[index], self.cost[index] = other.rows, other.cost
+        self.where[index], self.along[index] = other.where, other.along
+
+
+@dataclass(frozen=True)
+class Residuals:
+    """A target, the designs, and the conditions on them. Vectors u (n, k) are in parts of the bounds, 0 .. 1."""
+
+    designs: Designs
+    target: Target
+    least_transmission: float
+    """rad"""
+    low: np.ndarray
+    size: np.ndarray
+    """(k,) lowest numbers, and how far the bounds are apart; the shift (s) is last where it is free."""
+
+    def missed(self, u: np.ndarray, fine: bool) -> Missed:
+        """Of designs u (n, k), on chords of the coarse motion or exactly on the fine one."""
+        paths, shifts = self._paths(u, fine)
+        there = np.where(paths.closes[:, None, None], paths.path, 0.0)
+        where = self.target.where(there, shifts, fine)
+        rows = self._rows(paths, there, where, fine)
+        cost = np.where(paths.closes, (rows**2).sum(-1) / len(self.target.points), np.inf)
+        found = Missed(rows, cost, where, np.zeros((0, 0, 2)))
+        found.along = self._along(there, found, fine)
+        return found
+
+    def slopes(self, u: np.ndarray, missed: Missed, fine: bool) -> np.ndarray:
+        """(n, r, k) of the designs u (n, k) that missed so."""
+        n, k = u.shape
+        steps = np.where(u < 0.5, STEP, -STEP)
+        changed = (u[:, None] + steps[:, None] * np.eye(k)).reshape(n * k, k)
+        paths, shifts = self._paths(changed, fine)
+        closes = paths.closes & np.repeat(np.isfinite(missed.cost), k)
+        there = np.where(closes[:, None, None], paths.path, 0.0)
+        held = np.repeat(missed.where, k, axis=0)
+        where = held if self.target.times is None else self.target.where(there, shifts, fine)
+        rows = self._rows(paths, there, where, fine).reshape(n, k, -1)
+        slope = (rows - missed.rows[:, None]) / steps[..., None]
+        slope[~closes.reshape(n, k)] = 0.0
+        along = missed.along[:, None]
+        at_points = slope[..., : 2 * along.shape[2]].reshape(n, k, -1, 2)
+        held_back = (at_points * along).sum(-1, keepdims=True) * along
+        slope[..., : 2 * along.shape[2]] -= held_back.reshape(n, k, -1)
+        return slope.transpose(0, 2, 1)
+
+    def _paths(self, u: np.ndarray, fine: bool) -> tuple[Paths, np.ndarray]:
+        x = self.low + self.size * u
+        count = self.designs.varied.count
+        return self.designs(x[:, :count], fine), x[:, count:].sum(axis=1)
+
+    def _rows(self, paths: Paths, there: np.ndarray, where: np.ndarray, fine: bool) -> np.ndarray:
+        away = self.target.missed(there, where, fine).reshape(len(there), -1) / self.target.extent
+        short = np.zeros(len(there))
+        if self.least_transmission:
+            short = np.maximum(self.least_transmission + MARGIN - paths.transmission, 0.0)
+        excess = np.where(paths.excess > 0, paths.excess + MARGIN, 0.0)
+        return np.column_stack([away, WEIGHT * short, WEIGHT * excess])
+
+    def _along(self, there: np.ndarray, missed: Missed, fine: bool) -> np.ndarray:
+        """Directions of the paths where the points' places are free and nearest."""
+        points = len(self.target.points)
+        if self.target.times is not None:
+            return np.zeros((len(there), points, 2))
+        tangent = self.target.directions(there, missed.where, fine)
+        away = missed.rows[:, : 2 * points].reshape(len(there), points, 2)
+        near = np.abs((away * tangent).sum(-1)) <= SQUARE * np.hypot(*np.moveaxis(away, -1, 0))
+        return np.where(near[..., None], tangent, 0.0)

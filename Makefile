@@ -196,10 +196,8 @@ scene-%: install always ## save the scene: out/<name>/<name>.blend
 verify-%: install always ## solids, motion, some frames (FRAMES=0,30) and the film made again in scratch and compared
 	@$(PYTHON) -m studio.verify "$$MECHANISM" --preset "$$PRESET" --frames="$$FRAMES" $${SHOW:+--show="$$SHOW"}
 
-view-all: install ## view-<name> for every mechanism, and a picture of each page (Chromium): out/<name>/view.png
-	@for file in mechanisms/*/mechanism.py; do one=$${file%/mechanism.py}; one=$${one#mechanisms/}; \
-	"$(MAKE)" --no-print-directory "view-$$one" || echo "view-all: no page of $$one" >&2; done
-	@$(PICTURE) pages
+view-all: install ## all pages (ONLY=four_bar,pendulum) and a picture of each by Chromium: view.html, view.png
+	@$(PYTHON) -m studio.pages --only="$$ONLY"
 
 view-engines: install ## pages used in Firefox and Safari's engine: a small four-bar, or ONLY=four_bar,pendulum
 	@$(PYTHON) -m tools.engines --name="$$ONLY"

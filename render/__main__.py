@@ -55,17 +55,12 @@ def main() -> int | None:
     reel.add_argument(
         "--show", default="", help="the films that show this; those that show what shot.py says if not given"
     )
-    commands.add_parser("pages", help="a picture of every HTML page: out/<name>/view.png")
     commands.add_parser("overview", help="a table of the runs that its standard input tells of")
     arguments = parser.parse_args()
     if arguments.command == "overview":
         from render.report import overview
 
         return overview.run()
-    if arguments.command == "pages":
-        from render.view import pictures
-
-        return pictures.run()
     if arguments.command == "gallery":
         from render import gallery
 

@@ -16,21 +16,8 @@ LARGEST = 5_000_000
 
 def run(name: str) -> None:
     """Write out/<name>/view.html, if what it shows has changed. Raises UserError."""
-    from render.film.inputs import SHARED
-    from render.view.bundle import sources_key
-
-    out = Out(name)
-    if not out.folder.is_dir():
-        mechanism_folder(out.name)
-    for path, target in ((out.motion, "solve"), (out.skeleton, "solve")):
-        if not path.is_file():
-            raise UserError(f"{out.name}: {path} is missing; run make {target}-{out.name.replace('_', '-')} first")
-    there = [path for path in (out.parts, out.shot, out.clearance) if path.is_file()]
-    rooms = [ROOT / "render" / name for name in ("film", "glb", "report", "blender/scene/tubes.py")]
-    shared = contract_sources(*SHARED, "skeleton", "clearance")
-    ours = sources_hash(Path(__file__).parent, *rooms, *shared), sources_key(), versions("numpy")
-    key = key_of(out.motion, out.skeleton, *there, *(path.name for path in there), *ours)
-    stage = Stage(out, "view", key, [out.view])
+    stage = _stage(name)
+    out = stage.out
     if stage.is_fresh():
         say("view", f"{out.name}: nothing to do")
         return
@@ -49,3 +36,27 @@ def run(name: str) -> None:
     write_bytes(out.view, content)
     stage.done()
     say("view", f"{out.name}: {out.view}: {len(content) / 1e6:.1f} MB")
+
+
+def is_fresh(name: str) -> bool:
+    """Whether there is nothing to do. Raises UserError where files that it needs are missing."""
+    return _stage(name).is_fresh()
+
+
+def _stage(name: str) -> Stage:
+    from render.film.inputs import SHARED
+    from render.view.bundle import sources_key
+
+    out = Out(name)
+    if not out.folder.is_dir():
+        mechanism_folder(out.name)
+    for path, target in ((out.motion, "solve"), (out.skeleton, "solve")):
+        if not path.is_file():
+            raise UserError(f"{out.name}: {path} is missing; run make {target}-{out.name.replace('_', '-')} first")
+    there = [path for path in (out.parts, out.shot, out.clearance) if path.is_file()]
+    rooms = [ROOT / "render" / name for name in ("film", "glb", "report", "blender/scene/tubes.py")]
+    shared = contract_sources(*SHARED, "skeleton", "clearance")
+    here = Path(__file__).parent
+    ours = sources_hash(here, *rooms, *shared, leave_out=[here / "pictures.py"]), sources_key(), versions("numpy")
+    key = key_of(out.motion, out.skeleton, *there, *(path.name for path in there), *ours)
+    return Stage(out, "view", key, [out.view])

@@ -1,4 +1,4 @@
-"""`python -m render pages`: a picture of every page, by Chromium with WebGL in software: out/<name>/view.png."""
+"""A picture of a page, by Chromium with WebGL in software: out/<name>/view.png."""
 
 from __future__ import annotations
 
@@ -6,37 +6,19 @@ import json
 import os
 import shutil
 import subprocess
+import tempfile
+from pathlib import Path
 
-from render.view.bundle import PAGE, node, node_modules
-from shared.stage.console import say, warn
+from render.view.bundle import LOCKED, PAGE, node, node_modules
 from shared.stage.errors import UserError
-from shared.stage.paths import Out, mechanism_names
+from shared.stage.files import write_bytes
+from shared.stage.paths import Out
+from shared.stage.stages import Stage, key_of
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
-LOOKS = {"width": 1280, "height": 720, "part": 0.3, "wait": 800}
+LOOKS = {"width": 1280, "height": 720, "part": 0.3}
 MINUTES = 5
 """For one picture."""
-
-
-def run() -> int:
-    """Picture every page; 1 if one of them complained, else 0. Raises UserError without a page or a browser."""
-    pages = [out for out in map(Out, mechanism_names()) if out.view.is_file()]
-    if not pages:
-        raise UserError("there is no page yet; make view-<name> makes one")
-    browser = chromium()
-    if browser is None:
-        raise UserError(
-            "pictures of pages need Chromium (Debian: apt-get install chromium); the pages themselves do not"
-        )
-    complained = 0
-    for out in pages:
-        error = picture(out, browser)
-        if error:
-            complained += 1
-            warn("pages", f"{out.name}: {error}")
-        else:
-            say("pages", f"{out.name}: {out.view.with_suffix('.png')}")
-    return int(complained > 0)
 
 
 def chromium() -> str | None:
@@ -44,15 +26,43 @@ def chromium() -> str | None:
     return os.environ.get("CHROMIUM") or next(filter(None, map(shutil.which, BROWSERS)), None)
 
 
-def picture(out: Out, browser: str) -> str:
-    """Write view.png; what the page or the browser said, or nothing."""
-    image = out.view.with_suffix(".png")
-    command = [str(node()), str(PAGE / "browser" / "picture.cjs"), str(out.view), str(image), json.dumps(LOOKS)]
-    environment = os.environ | {"NODE_PATH": str(node_modules()), "CHROMIUM": browser}
+def version_of(browser: str) -> str:
+    """What the program says of its version. Raises UserError where it says nothing."""
     try:
-        done = subprocess.run(
-            command, env=environment, capture_output=True, text=True, timeout=60 * MINUTES, check=False
-        )
-    except subprocess.TimeoutExpired:
-        return f"no picture within {MINUTES} minutes"
-    return " ".join(done.stderr.split())[-400:] if done.returncode else ""
+        done = subprocess.run([browser, "--version"], capture_output=True, text=True, timeout=60, check=False)
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise UserError(f"{browser} does not start: {error}") from None
+    if done.returncode:
+        raise UserError(f"{browser} does not start: {' '.join(done.stderr.split())[-200:]}")
+    return done.stdout.strip()
+
+
+def stage_of(out: Out, version: str) -> Stage:
+    """The picture's stage: the page's bytes, the browser's version and the script that takes the picture decide."""
+    scripts = [PAGE / "browser" / name for name in ("picture.cjs", "browser.cjs")]
+    key = key_of(out.view, version, *scripts, *(PAGE / name for name in LOCKED), LOOKS)
+    return Stage(out, "view_picture", key, [picture_of(out)])
+
+
+def picture_of(out: Out) -> Path:
+    """The file."""
+    return out.view.with_suffix(".png")
+
+
+def take(out: Out, browser: str) -> None:
+    """Write view.png. Raises UserError with what the page or the browser complained of; then there is none."""
+    picture_of(out).unlink(missing_ok=True)
+    with tempfile.TemporaryDirectory(prefix="mbsd-page-") as folder:
+        image = Path(folder) / "view.png"
+        words = [str(node()), str(PAGE / "browser" / "picture.cjs"), str(out.view), str(image), json.dumps(LOOKS)]
+        environment = os.environ | {"NODE_PATH": str(node_modules()), "CHROMIUM": browser}
+        try:
+            done = subprocess.run(
+                words, env=environment, capture_output=True, text=True, timeout=60 * MINUTES, check=False
+            )
+        except subprocess.TimeoutExpired:
+            raise UserError(f"{out.name}: no picture of its page within {MINUTES} minutes") from None
+        if done.returncode or not image.is_file():
+            said = " ".join(done.stderr.split())[-400:] or "the browser wrote none"
+            raise UserError(f"{out.name}: no picture of its page: {said}")
+        write_bytes(picture_of(out), image.read_bytes())

@@ -17,7 +17,10 @@ const { launch, open } = require("./browser.cjs");
       if (view) app.store.set({ view });
     }, options);
     if (options.key) await page.keyboard.press(options.key);
-    await page.waitForTimeout(options.wait ?? 400);
+    // Springs and belts come a moment later; then one frame shows it all.
+    await page.waitForFunction(() => window.mbsd.app.stage.solid?.parts?.waits !== true, null, { timeout: 60000 });
+    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+    await page.waitForTimeout(options.wait ?? 0);
     await page.screenshot({ path: jobs[k + 1], fullPage: !!options.full, timeout: 180000 });
     if (errors.length) { console.error(`${jobs[k]}:`, errors.join("\n")); process.exitCode = 1; }
     await context.close();

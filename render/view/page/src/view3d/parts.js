@@ -34,6 +34,8 @@ export class Parts {
         this.rollers.push([axis, piece.turns.angle]);
       } else this.body(piece.body).add(mesh);
     }
+    /** Whether springs and belts are still to come. */
+    this.waits = !!solid.tubes;
     if (solid.tubes) this.load(solid.tubes, ready);
   }
 
@@ -57,6 +59,7 @@ export class Parts {
     this.mixer = new AnimationMixer(scene);
     for (const clip of animations) this.mixer.clipAction(clip).play();
     this.length = Math.max(0, ...animations.map((clip) => clip.duration));
+    this.waits = false;
     ready();
   }
 

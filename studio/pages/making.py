@@ -1,0 +1,114 @@
+"""Pages and their pictures one mechanism after the other: what is fresh is left, what fails is told at the end."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Sequence
+
+from render.view import pictures
+from shared.stage.console import progress, say, warn
+from shared.stage.errors import UserError
+from shared.stage.paths import ROOT, Out
+
+STEPS = (("mechanisms", "parts", "--or-none"), ("mechanisms", "solve"), ("mechanisms", "shot"), ("render", "view"))
+"""What make view-<name> runs."""
+SILENCE = 300.0
+"""Seconds that all mechanisms may take to be asked whether they have anything to do."""
+WIDTH = 120
+"""Of the table where no terminal has one (characters)."""
+
+
+def run(names: Sequence[str]) -> int:
+    """Make what is missing of pages and pictures; 1 if anything could not be made. A call goes on from the last one."""
+    browser = pictures.chromium()
+    version = pictures.version_of(browser) if browser else ""
+    current = _current(names)
+    todo = [name for name in names if name not in current or (browser and not _is_pictured(name, version))]
+    if len(todo) < len(names):
+        say("pages", f"{len(names) - len(todo)} of {len(names)} have nothing to do")
+    failed: dict[str, str] = {}
+    if todo:
+        with progress("pages", len(todo), "page") as shown:
+            for name in todo:
+                error = _made(name, name in current, browser, version)
+                if error:
+                    failed[name] = error
+                    warn("pages", f"{name}: {error}")
+                shown.advance(note=name)
+    if browser is None:
+        warn("pages", "there are no pictures: they need Chromium (Debian: apt-get install chromium); pages do not")
+    if failed:
+        _table(failed)
+    say(
+        "pages", f"{len(names) - len(failed)} of {len(names)} are there: {Out(names[0]).folder.parent}/<name>/view.html"
+    )
+    return int(bool(failed))
+
+
+def tell_fresh(names: Sequence[str]) -> int:
+    """Print the names whose page has nothing to do; mechanism.py of each is run for its parameters."""
+    from mechanisms.stages.parts import stage as parts
+    from mechanisms.stages.shot import stage as shot
+    from mechanisms.stages.solve import stage as solve
+    from render import view
+    from shared.stage.memory import remembered
+
+    with remembered():
+        for name in names:
+            try:
+                if parts.are_current(name) and solve.is_fresh(name) and shot.is_fresh(name) and view.is_fresh(name):
+                    print(name, flush=True)
+            except (UserError, OSError):
+                continue  # the stage tells why
+    return 0
+
+
+def _current(names: Sequence[str]) -> set[str]:
+    """Asked in a process of its own, for mechanism.py may do anything there."""
+    words = [sys.executable, "-m", "studio.pages", "--fresh", "--only", ",".join(names)]
+    try:
+        done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, timeout=SILENCE, check=False)
+    except subprocess.TimeoutExpired:
+        return set()
+    return set(done.stdout.split()) & set(names)
+
+
+def _is_pictured(name: str, version: str) -> bool:
+    out = Out(name)
+    return out.view.is_file() and pictures.stage_of(out, version).is_fresh()
+
+
+def _made(name: str, is_current: bool, browser: str | None, version: str) -> str:
+    """What went wrong, or nothing."""
+    if not is_current:
+        for module, step, *more in STEPS:
+            words = [sys.executable, "-m", module, step, name, *more]
+            done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)
+            if done.returncode:
+                said = (done.stderr.strip() or done.stdout.strip() or f"exit code {done.returncode}").splitlines()[-1]
+                return f"{step}: {said}"
+    if browser is None:
+        return ""
+    out = Out(name)
+    try:
+        stage = pictures.stage_of(out, version)
+        if not stage.is_fresh():
+            pictures.take(out, browser)
+            stage.done()
+    except UserError as error:
+        return f"picture: {error}"
+    return ""
+
+
+def _table(failed: dict[str, str]) -> None:
+    from rich.box import SIMPLE
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(box=SIMPLE, style="red")
+    table.add_column("mechanism", no_wrap=True)
+    table.add_column("what could not be made", overflow="fold")
+    for name, error in failed.items():
+        table.add_row(name, error)
+    Console(width=None if sys.stdout.isatty() else WIDTH).print(table)

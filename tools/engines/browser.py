@@ -12,6 +12,9 @@ KEYS = {"Home": "\ue011", "End": "\ue010", "ArrowRight": "\ue014", "Escape": "\u
 class Browser(Protocol):
     """A window with one page. Both standards that tell browsers what to do write actions alike."""
 
+    touches: bool
+    """Whether fingers that it is told of come to the page as fingers."""
+
     def open(self, page: Path, width: int, height: int) -> None:
         """Load a file into a page of that size (CSS pixels)."""
         ...
@@ -22,6 +25,10 @@ class Browser(Protocol):
 
     def act(self, actions: list[dict[str, Any]]) -> None:
         """Do what a hand does."""
+        ...
+
+    def saved(self) -> Path:
+        """The folder where it saves what a page lets one download."""
         ...
 
     def picture(self) -> bytes:
@@ -44,6 +51,17 @@ def drag(places: Sequence[tuple[float, float]]) -> list[dict[str, Any]]:
     down, up = {"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0}
     hand = {"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}}
     return [{**hand, "actions": [first, down, *others, up]}]
+
+
+def fingers(*ways: Sequence[tuple[float, float]]) -> list[dict[str, Any]]:
+    """Fingers that go down together, each along its places, as many of one as of another, and up together."""
+    hands = []
+    for number, places in enumerate(ways):
+        first, *others = [{"type": "pointerMove", "x": round(x), "y": round(y), "duration": 0} for x, y in places]
+        down, up = {"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0}
+        hand = {"type": "pointer", "id": f"finger {number}", "parameters": {"pointerType": "touch"}}
+        hands.append({**hand, "actions": [first, down, *others, up]})
+    return hands
 
 
 def press(key: str) -> list[dict[str, Any]]:

@@ -22,9 +22,20 @@ HELLO = "WebDriver BiDi listening on "
 class Firefox:
     """A Firefox with a profile of its own in ``folder``; ``webgl=False`` has none."""
 
+    touches = True
+
     def __init__(self, program: str, folder: Path, environment: dict[str, str], *, webgl: bool) -> None:
         folder.mkdir()
-        preferences = {"webgl.force-enabled": webgl, "webgl.disabled": not webgl, "ui.prefersReducedMotion": 1}
+        self.downloads = folder / "downloads"
+        self.downloads.mkdir()
+        preferences = {
+            "webgl.force-enabled": webgl,
+            "webgl.disabled": not webgl,
+            "ui.prefersReducedMotion": 1,
+            "browser.download.folderList": 2,
+            "browser.download.dir": str(self.downloads),
+            "dom.w3c_touch_events.enabled": 1,
+        }
         lines = [f"user_pref({json.dumps(name)}, {json.dumps(value)});\n" for name, value in preferences.items()]
         (folder / "user.js").write_text("".join(lines))
         command = [program, "--no-remote", "--profile", str(folder), "--remote-debugging-port", "0"]
@@ -77,6 +88,10 @@ class Firefox:
     def act(self, actions: list[dict[str, Any]]) -> None:
         """Do what a hand does."""
         self._call("input.performActions", context=self.tab, actions=actions)
+
+    def saved(self) -> Path:
+        """The folder where it saves what a page lets one download."""
+        return self.downloads
 
     def picture(self) -> bytes:
         """The page as PNG."""

@@ -15,6 +15,9 @@ from shared.stage.errors import UserError
 from shared.stage.paths import Out
 from tests.render.view.pins import dot, projected
 from tools.engines.browser import Browser, click, drag, press
+from tools.engines.places import APP, FRAME, STATE, box
+from tools.engines.table import tabled
+from tools.engines.touch import touched
 
 WIDTH, HEIGHT = 1000, 620
 PHONE = 520, 780
@@ -35,9 +38,6 @@ for (const kind of ["error", "warn"]) {
 }</script>
 """
 """Goes into a copy of the page before its own script."""
-APP = "window.mbsd.app"
-STATE = f"(({{time, playing, selected, view, shown}}) => ({{time, playing, selected, view, shown}}))({APP}.store.state)"
-FRAME = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))"
 
 
 def listening(page: Path, copy: Path) -> Path:
@@ -55,12 +55,14 @@ def use(browser: Browser, out: Out, page: Path, pictures: Path) -> Iterator[str]
         yield "the parts are not shown"
         return
     browser.ask(f"{APP}.store.set({{theme: 'dark', shown: {{}}, playing: false}})")
-    stage = _box(browser, ".scene")
+    stage = box(browser, ".scene")
     for view in ("3d", "2d"):
         for part in PARTS:
             yield from _pin(browser, out, motion, view, part, stage, pictures)
     yield from _driven(browser, motion)
     yield from _asked(browser, motion, stage)
+    yield from tabled(browser, motion)
+    yield from touched(browser, motion, stage)
     browser.ask(f"{APP}.store.set({{view: '3d', selected: null, theme: 'auto', shown: {{trails: true}}}})")
     browser.ask(FRAME)
     (pictures / "page.png").write_bytes(browser.picture())
@@ -140,7 +142,7 @@ def _driven(browser: Browser, motion: Motion) -> Iterator[str]:
     """Scrub bar and keys."""
     start, end = motion.time[0], motion.time[-1]
     browser.ask(f"{APP}.store.set({{view: '2d', selected: null, time: {start!r}}})")
-    bar = _box(browser, ".scrub")
+    bar = box(browser, ".scrub")
     browser.act(click(bar["left"] + bar["width"] / 2, bar["top"] + bar["height"] / 2))
     if abs(browser.ask(STATE)["time"] - (start + end) / 2) > 0.02 * (end - start):
         yield f"a click on the middle of the scrub bar goes to {browser.ask(STATE)['time']} s"
@@ -175,7 +177,7 @@ def _asked(browser: Browser, motion: Motion, stage: dict[str, float]) -> Iterato
     if (browser.ask(STATE)["selected"] or {}).get("kind") != "joint":
         yield f"a click on joint {joint} selects {browser.ask(STATE)['selected']}"
     browser.ask(FRAME)
-    over = _box(browser, ".u-over")
+    over = box(browser, ".u-over")
     line = over["top"] + 20
     browser.act(drag([(over["left"] + part * over["width"], line) for part in (0.2, 0.5, 0.75)]))
     moment = motion.time[0] + 0.75 * (motion.time[-1] - motion.time[0])
@@ -191,10 +193,3 @@ def _asked(browser: Browser, motion: Motion, stage: dict[str, float]) -> Iterato
     browser.act(press("Escape"))
     if browser.ask("!!document.querySelector('dialog[open]')"):
         yield "Escape does not close the help"
-
-
-def _box(browser: Browser, selector: str) -> dict[str, float]:
-    return browser.ask(
-        f"(({{left, top, width, height}}) => ({{left, top, width, height}}))"
-        f"(document.querySelector('{selector}').getBoundingClientRect())"
-    )

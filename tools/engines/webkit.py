@@ -23,8 +23,15 @@ BROWSERS = ("/usr/lib/*/webkit2gtk-4.1/MiniBrowser", "/usr/lib*/webkit2gtk-4.1/M
 class WebKit:
     """A MiniBrowser and its driver; ``webgl=False`` has none."""
 
+    touches = False
+
     def __init__(self, program: str, folder: Path, environment: dict[str, str], *, webgl: bool) -> None:
         folder.mkdir()
+        # It saves where the user's folder of downloads is; the user is one of its own.
+        self.downloads = folder / "downloads"
+        self.downloads.mkdir()
+        (folder / "user-dirs.dirs").write_text(f'XDG_DOWNLOAD_DIR="{self.downloads}"\n')
+        environment = environment | {"HOME": str(folder), "XDG_CONFIG_HOME": str(folder)}
         found = [path for pattern in BROWSERS for path in Path("/").glob(pattern[1:])]
         if not found:
             raise UserError(f"no MiniBrowser of WebKitGTK at {BROWSERS[0]}; Debian: apt-get install {PACKAGES}")
@@ -90,6 +97,10 @@ class WebKit:
     def act(self, actions: list[dict[str, Any]]) -> None:
         """Do what a hand does."""
         self._call("/actions", {"actions": actions})
+
+    def saved(self) -> Path:
+        """The folder where it saves what a page lets one download."""
+        return self.downloads
 
     def picture(self) -> bytes:
         """The page as PNG."""

@@ -110,6 +110,17 @@ def test_a_click_shows_a_joints_curves_and_a_drag_on_them_moves_the_machine(page
     assert table[:, 1] == pytest.approx(motion.joints["B"].fx, rel=1e-5, abs=1e-6)
 
 
+def test_the_view_is_turned_and_moved_by_keys(page: Any) -> None:
+    _, seen, _ = page
+    assert seen["panned"]["pan"] == [-40, 0]
+    before, turned = seen["before"], seen["turned"]
+    step = np.pi / 24
+    assert before["pan"] == [0, 0]
+    assert (turned["azimuth"] - before["azimuth"]) % (2 * np.pi) == pytest.approx(2 * step, abs=1e-6)
+    assert turned["polar"] == pytest.approx(before["polar"] - step, abs=1e-6)
+    assert turned["away"] == pytest.approx(before["away"], rel=1e-9)
+
+
 def test_words_of_what_is_shown_help_and_themes(page: Any) -> None:
     _, seen, _ = page
     assert seen["reactions"]["shown"]["reactions"]

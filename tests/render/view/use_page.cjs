@@ -66,6 +66,20 @@ const box = (page, name) => page.evaluate((one) => {
   seen.values = await page.evaluate(() => document.querySelector(".values").textContent);
   const [download] = await Promise.all([page.waitForEvent("download"), page.keyboard.press("s")]);
   await download.saveAs(path.join(folder, "curves.csv"));
+  const camera = () => page.evaluate(() => {
+    const { stage } = window.mbsd.app, { controls } = stage.solid;
+    return { azimuth: controls.getAzimuthalAngle(), polar: controls.getPolarAngle(), away: controls.getDistance(), pan: stage.plane.paper.pan };
+  });
+  await page.keyboard.press("l");
+  seen.panned = await camera();
+  await page.keyboard.press("0");
+  await page.keyboard.press("3");
+  await frame(page);
+  seen.before = await camera();
+  for (const key of ["l", "l", "i"]) await page.keyboard.press(key);
+  seen.turned = await camera();
+  await page.keyboard.press("0");
+  await page.keyboard.press("2");
   await page.keyboard.press("r");
   await frame(page);
   seen.reactions = { ...(await state(page)), legend: await page.evaluate(() => document.querySelector(".legend").textContent) };

@@ -1,11 +1,12 @@
 /**
  * A page in Debian's Chromium with WebGL in software, for tests and pictures. NODE_PATH is the folder of the locked
- * packages; CHROMIUM the browser's program.
+ * packages; CHROMIUM the browser's program; GPU=1 draws by the graphics card instead, in a window where there is a DISPLAY.
  */
 const { chromium } = require("playwright-core");
 
+const CARD = !!process.env.GPU;
 const FLAGS = [
-  "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
+  ...(CARD ? ["--ignore-gpu-blocklist", "--enable-gpu"] : ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]), "--disable-quic", "--no-first-run",
   "--disable-background-networking", "--disable-component-update", "--disable-sync",
 ];
 
@@ -14,7 +15,7 @@ const FLAGS = [
  * @returns the browser
  */
 exports.launch = (more = []) =>
-  chromium.launch({ executablePath: process.env.CHROMIUM || "/usr/bin/chromium", headless: true, chromiumSandbox: false, args: [...FLAGS, ...more] });
+  chromium.launch({ executablePath: process.env.CHROMIUM || "/usr/bin/chromium", headless: !(CARD && process.env.DISPLAY), chromiumSandbox: false, args: [...FLAGS, ...more] });
 
 /** A page with its errors: console errors, exceptions, and requests for anything but the file itself. */
 exports.open = async (browser, file, { width = 1280, height = 720, theme = "dark", scale = 1, reduced = true, touch = false } = {}) => {

@@ -1,6 +1,7 @@
 /**
- * How fast WebGL in software draws a page: node frames.cjs FILE [WIDTH HEIGHT SECONDS]. Prints frames, frames a second,
- * and the processor time of the browser for a frame, which another load of the machine does not change much (Linux).
+ * How fast WebGL draws a page, in software, or with GPU=1 by the graphics card: node frames.cjs FILE [WIDTH HEIGHT SECONDS].
+ * Prints what draws, draw calls and triangles of a frame, frames, frames a second, and the processor time of the browser
+ * for a frame, which another load of the machine does not change much (Linux).
  */
 const fs = require("node:fs");
 const { launch, open } = require("./browser.cjs");
@@ -38,6 +39,10 @@ function used() {
     setTimeout(() => done(count), 1000 * time);
   }), Number(seconds));
   const busy = used() - before;
-  console.log(JSON.stringify({ frames, "frames a second": frames / seconds, "processor seconds a frame": Number((busy / frames).toFixed(4)) }));
+  const by = await page.evaluate(() => {
+    const { solid } = window.mbsd.app.stage, gl = solid.renderer.getContext(), { calls, triangles } = solid.renderer.info.render;
+    return { renderer: gl.getParameter(gl.getExtension("WEBGL_debug_renderer_info")?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER), "draw calls": calls, triangles };
+  });
+  console.log(JSON.stringify({ ...by, frames, "frames a second": frames / seconds, "processor seconds a frame": Number((busy / frames).toFixed(4)) }));
   await browser.close();
 })();

@@ -10,6 +10,7 @@ const KEYS = [
   ["[ ]", "slower, faster"],
   ["3 2", "parts, skeleton"],
   ["+ − 0", "closer, farther, the whole machine"],
+  ["j l i m", "look from the left, the right, above, below; the skeleton moves"],
   ["Esc", "nothing selected"],
   ["d", "dark, light, as the system has it"],
   ["s", "save the curves as CSV"],

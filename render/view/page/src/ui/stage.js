@@ -50,6 +50,7 @@ export class Stage {
   }
 
   zoom(factor) { this.shown.zoom(factor); this.app.redraw(); }
+  turn(right, up) { this.shown.turn(right, up); this.app.redraw(); }
   home() { this.shown.home(); this.app.redraw(); }
 
   draw() {

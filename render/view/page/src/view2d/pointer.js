@@ -29,6 +29,8 @@ export function listen(element, on) {
       wandered = false;
       held = on.grab?.(...start) ?? false;
     } else if (down.size === 2) {
+      if (held) on.drop?.(...start, wandered); // two fingers pinch, and drag nothing
+      held = false;
       gap = spread();
       wandered = true;
     }

@@ -13,6 +13,8 @@ import { drawTrails } from "./trails.js";
 
 /** Radius of the dot in what is selected, in pixels. */
 const DOT = 5;
+/** Pixels of a step by the keyboard. */
+const PAN = 40;
 
 export class Skeleton {
   /**
@@ -65,6 +67,7 @@ export class Skeleton {
   }
 
   zoom(factor) { this.paper.zoomAt(this.size[0] / 2, this.size[1] / 2, factor); }
+  turn(right, up) { this.paper.pan = [this.paper.pan[0] - PAN * right, this.paper.pan[1] + PAN * up]; }
   home() { this.paper.reset(); }
 
   draw() {

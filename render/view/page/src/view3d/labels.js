@@ -3,6 +3,8 @@ import { Vector3 } from "three";
 import { el } from "../ui/dom.js";
 
 const place = new Vector3();
+/** Pixels from the middle of a gap's ring to the line that leads to its words. */
+const RING = 9;
 
 export class Labels {
   /** @param {HTMLElement} layer */
@@ -29,6 +31,7 @@ export class Labels {
       let top = y - 13;
       for (let k = 0; k < 6 && taken.some(([a, b, w]) => Math.abs(a - x) < (w + width) / 2 && Math.abs(b - top) < 19); k++) top -= 19;
       taken.push([x, top, width]);
+      one.style.setProperty("--rise", `${(y - top - RING).toFixed(1)}px`);
       one.style.transform = `translate(${x.toFixed(1)}px, ${top.toFixed(1)}px) translate(-50%, -100%)`;
     }
     for (const key of gone) {

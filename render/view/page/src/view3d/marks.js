@@ -1,7 +1,7 @@
 /** Flat signs that face the camera: the selected joint or point, centres of mass. Sizes in pixels. */
 import { CanvasTexture, Group, Sprite, SpriteMaterial, SRGBColorSpace } from "three";
 
-const PIXELS = { selected: 30, centre: 18, joint: 11, gap: 16 };
+const PIXELS = { selected: 30, centre: 18, joint: 11, gap: 20 };
 
 export class Marks {
   constructor() {
@@ -58,11 +58,13 @@ function sign(kind, colours) {
     disc(60, colours.paper);
     disc(44, colours.ink);
   } else if (kind === "gap") {
-    g.strokeStyle = colours.wrong;
-    g.lineWidth = 16;
-    g.beginPath();
-    g.arc(64, 64, 50, 0, 7);
-    g.stroke();
+    for (const [colour, width] of [[colours.paper, 34], [colours.wrong, 17]]) { // seen before parts of any colour
+      g.strokeStyle = colour;
+      g.lineWidth = width;
+      g.beginPath();
+      g.arc(64, 64, 46, 0, 7);
+      g.stroke();
+    }
   } else {
     disc(60, colours.ink);
     disc(52, colours.paper);

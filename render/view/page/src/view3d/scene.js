@@ -12,6 +12,8 @@ import { Trails } from "./trails.js";
 import { wantedLabels, wantedMarks } from "./wanted.js";
 
 const SENSOR = 36, ASPECT = 16 / 9, NEAR = 15, STILL = 5;
+/** Angle of a step by the keyboard (rad). */
+const TURN = Math.PI / 24;
 /** Pixels of the picture for one of the page while WebGL in software plays. */
 const COARSE = 0.5;
 
@@ -99,6 +101,15 @@ export class Solid {
 
   zoom(factor) {
     this.camera.position.sub(this.controls.target).divideScalar(factor).add(this.controls.target);
+    this.controls.update();
+  }
+
+  /** Look from elsewhere, by steps to the right and up. */
+  turn(right, up) {
+    const { target, maxPolarAngle } = this.controls, from = this.camera.position.clone().sub(target);
+    const polar = Math.min(Math.max(Math.acos(from.z / from.length()) - TURN * up, 0.02), maxPolarAngle);
+    const azimuth = Math.atan2(from.y, from.x) + TURN * right, flat = from.length() * Math.sin(polar);
+    this.camera.position.set(flat * Math.cos(azimuth), flat * Math.sin(azimuth), from.length() * Math.cos(polar)).add(target);
     this.controls.update();
   }
 

@@ -15,7 +15,9 @@ export function wantedLabels(app) {
   if (shown.clearance) {
     for (const { at, gap, time, bodies } of gaps(payload, motion)) {
       const act = time === null ? undefined : () => store.set({ playing: false, time });
-      out.push({ key: `gap ${bodies}`, text: `${millimetres(gap)} ${bodies.join(" – ")}`.replaceAll("_", " "), at, kind: "gap", act });
+      const now = time === null || Math.abs(time - motion.t) < NOW * (motion.end - motion.start);
+      const moment = now ? "" : `, at ${Number(time.toPrecision(3))} s`;
+      out.push({ key: `gap ${bodies}`, text: `${millimetres(gap)} ${bodies.join(" – ")}${moment}`.replaceAll("_", " "), at, kind: "gap", act });
     }
   }
   return out;
@@ -35,6 +37,8 @@ export function wantedMarks(app) {
 }
 
 const MOST = 6;
+/** Part of the motion: nearer to its moment than this a gap is where it is told. */
+const NOW = 2e-3;
 
 /** The least gap of each pair of bodies, where it is now. */
 function gaps(payload, motion) {

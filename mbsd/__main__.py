@@ -45,7 +45,11 @@ def _newton() -> None:
 
     from mbsd.kinematics.prepared import prepare
 
-    dataclasses.replace(prepare(_driven()), groups=None).march(np.linspace(0.0, 1.0, 4))
+    m = Mechanism("slide")
+    slider = m.body("slider")
+    m.prismatic("A", m.ground.at(0, 0), slider.origin)
+    m.drive_coordinate("feed", m.ground.at(0, 0), slider.origin, constant_rate(1.0))
+    dataclasses.replace(prepare(m), groups=None).march(np.linspace(0.0, 1.0, 4))
 
 
 def _parts() -> None:

@@ -14,16 +14,38 @@ from mbsd.equations.markers import move, place
 
 
 @inlined
-def evaluate_position(system, q, drive, ws):
-    """Fill ws.phi and ws.jac at q (3 nb,). ``drive`` is (motions, 3): f, f', f'' now; row 0 is zero."""
+def _begin_position(system, q, drive, ws):
+    """Without rows of slots, ways along them, and distances."""
     place(system, q, ws)
     point.rows(system, ws)
     angle.rows(system, q, drive, ws)
+    if system.special.shape[0] > 0:
+        special.rows(system, q, drive, ws)
+
+
+@inlined
+def _begin_gamma(system, v, drive, ws, gamma):
+    """Without rows of slots, ways along them, and distances, and without drivers."""
+    move(system, v, ws)
+    point.gamma_rows(system, ws, gamma)
+    angle.gamma_rows(system, gamma)
+    if system.special.shape[0] > 0:
+        special.gamma_rows(system, v, ws, gamma)
+
+
+@inlined
+def _add_drivers(system, drive, gamma):
+    for k in range(system.driven.shape[0]):
+        gamma[system.driven[k, 0]] += drive[system.driven[k, 1], 2]
+
+
+@inlined
+def evaluate_position(system, q, drive, ws):
+    """Fill ws.phi and ws.jac at q (3 nb,). ``drive`` is (motions, 3): f, f', f'' now; row 0 is zero."""
+    _begin_position(system, q, drive, ws)
     slot.rows(system, ws)
     along.rows(system, drive, ws)
     distance.rows(system, drive, ws)
-    if system.special.shape[0] > 0:
-        special.rows(system, q, drive, ws)
 
 
 @inlined
@@ -38,16 +60,11 @@ def evaluate_nu(system, drive, nu):
 @inlined
 def evaluate_gamma(system, v, drive, ws, gamma):
     """Fill gamma (m,) at velocities v (3 nb,), after evaluate_position at the same pose."""
-    move(system, v, ws)
-    point.gamma_rows(system, ws, gamma)
-    angle.gamma_rows(system, gamma)
+    _begin_gamma(system, v, drive, ws, gamma)
     slot.gamma_rows(system, v, ws, gamma)
     along.gamma_rows(system, v, ws, gamma)
     distance.gamma_rows(system, ws, gamma)
-    if system.special.shape[0] > 0:
-        special.gamma_rows(system, v, ws, gamma)
-    for k in range(system.driven.shape[0]):
-        gamma[system.driven[k, 0]] += drive[system.driven[k, 1], 2]
+    _add_drivers(system, drive, gamma)
 
 
 @apart
@@ -56,22 +73,47 @@ def position(system, q, drive, ws):
     evaluate_position(system, q, drive, ws)
 
 
+@inlined
+def _keep_rows(ws, k, phi, jacobians):
+    for r in range(ws.phi.shape[0]):
+        phi[k, r] = ws.phi[r]
+        for c in range(6):
+            jacobians[k, r, c] = ws.jac[r, c]
+
+
 @kernel
-def tabulate(system, drives, q, v, ws, phi, jacobians, gamma):
-    """phi, gamma (T, m) and compact Jacobians (T, m, 6) along a motion q, v (T, 3 nb); none of them if phi is empty."""
+def tabulate_all(system, drives, q, v, ws, phi, jacobians, gamma):
+    """``tabulate`` for all mechanisms."""
     for k in range(q.shape[0]):
         evaluate_position(system, q[k], drives[k], ws)
         if phi.shape[0] > 0:
             evaluate_gamma(system, v[k], drives[k], ws, gamma[k])
-            for r in range(ws.phi.shape[0]):
-                phi[k, r] = ws.phi[r]
-                for c in range(6):
-                    jacobians[k, r, c] = ws.jac[r, c]
+            _keep_rows(ws, k, phi, jacobians)
+
+
+@kernel
+def tabulate_some(system, drives, q, v, ws, phi, jacobians, gamma):
+    """``tabulate`` where no row is of a slot, a way along it, or a distance: compiled in half the time."""
+    for k in range(q.shape[0]):
+        _begin_position(system, q[k], drives[k], ws)
+        if phi.shape[0] > 0:
+            _begin_gamma(system, v[k], drives[k], ws, gamma[k])
+            _add_drivers(system, drives[k], gamma[k])
+            _keep_rows(ws, k, phi, jacobians)
+
+
+def tabulate(system, drives, q, v, ws, phi, jacobians, gamma):
+    """phi, gamma (T, m) and compact Jacobians (T, m, 6) along a motion q, v (T, 3 nb); none of them if phi is empty.
+
+    From Python.
+    """
+    more = len(system.slot) + len(system.along) + len(system.distance)
+    (tabulate_all if more else tabulate_some)(system, drives, q, v, ws, phi, jacobians, gamma)
 
 
 _NO_ROWS, _NO_JACOBIANS = np.zeros((0, 0)), np.zeros((0, 0, 0))
 
 
 def residual_and_jacobian(system, q, drive, ws):
-    """Fill ws.phi and ws.jac at q (3 nb,), from Python; the same machine code serves as for a whole motion."""
+    """Fill ws.phi and ws.jac at q (3 nb,), from Python; the machine code of ``tabulate`` serves."""
     tabulate(system, drive[None], q[None], q[None], ws, _NO_ROWS, _NO_JACOBIANS, _NO_ROWS)

@@ -10,7 +10,9 @@ import pytest
 import mbsd.model.drivers
 import mbsd.model.joints
 import mbsd.testing.joints
-from mbsd.equations.assembly import tabulate
+from mbsd import Mechanism, harmonic
+from mbsd.arrays.packing import pack
+from mbsd.equations.assembly import tabulate, tabulate_all, tabulate_some
 from mbsd.model.adding.joints import join
 from mbsd.model.body import Marker
 from mbsd.model.joint import KINDS, JointKind, register
@@ -51,6 +53,30 @@ def test_a_wrong_equation_is_found(table: str, says: str, monkeypatch: pytest.Mo
     monkeypatch.setattr(mbsd.testing.joints, "tabulate", wrong)
     with pytest.raises(AssertionError, match=says):
         check_joint(KINDS["revolute"])
+
+
+def test_without_slots_and_distances_the_rows_are_the_same() -> None:
+    m = Mechanism("gears")
+    one, other, plate = (m.body(name) for name in ("one", "other", "plate"))
+    m.revolute("A", m.ground.at(0, 0), one.origin)
+    m.revolute("B", m.ground.at(0.3, 0), other.origin)
+    m.gear_pair("teeth", one.origin, other.origin, 20, 40)
+    m.weld("plate", other.at(0.1, 0.2), plate.origin)
+    m.drive_angle("motor", one, harmonic(0.3, 1.7, 0.2, 0.9))
+    m.start_near(one=10, other=20, plate=(0.3, 0.1, 20))
+    packed, times = pack(m), np.linspace(0.0, 1.0, 5)
+    packed.settle_laws(0.0, 1.0)
+    q, v = np.random.default_rng(1).standard_normal((2, len(times), len(packed.system.mass) * 3))
+    found = []
+    for each in (tabulate_some, tabulate_all, tabulate):
+        phi, gamma = np.zeros((2, len(times), len(packed.ws.phi)))
+        jacobians = np.zeros((*phi.shape, 6))
+        each(packed.system, packed.drives(times), q, v, packed.ws, phi, jacobians, gamma)
+        found.append((phi, jacobians, gamma))
+    for some, general, chosen in zip(*found, strict=True):
+        assert (some == general).all()
+        assert (some == chosen).all()
+        assert some.any()
 
 
 def test_a_driver_whose_rate_is_wrong_is_found(monkeypatch: pytest.MonkeyPatch) -> None:

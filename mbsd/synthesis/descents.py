@@ -31,12 +31,12 @@ def descended(
     steps: int,
     enough: float = 0.0,
     halved: tuple[int, ...] = (),
-    told: Callable[[float], None] = lambda cost: None,
+    seen: Callable[[float], None] = lambda cost: None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Designs (n, k) in parts of the bounds, the best first, and their costs (n,), from designs u.
 
     At the steps ``halved`` the better half goes on alone. A descent ends at a cost of ``enough``; the first that does
-    ends them all. ``told`` is called with the best cost after each step.
+    ends them all. ``seen`` is called with the best cost after each step.
     """
     u = np.clip(u, 0.0, 1.0)
     missed = residuals.missed(u, fine)
@@ -61,7 +61,7 @@ def descended(
             u[ours] = tried[better]
             missed.put(ours, found.take(better))
             slopes[ours] = residuals.slopes(u[ours], missed.take(ours), fine)
-        told(float(missed.cost.min()))
+        seen(float(missed.cost.min()))
     order = np.argsort(missed.cost, kind="stable")
     return u[order], missed.cost[order]
 

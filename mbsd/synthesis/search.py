@@ -44,7 +44,7 @@ AGREED, ALIKE = 3, 1e-3
 STEPS, HALVED = 24, (5, 10)
 """Steps of the descents, and those at which the better half goes on."""
 DESCENDING = 0.3
-"""Part of a start that the rounds take, as it is told."""
+"""Part of a start that the rounds take, as progress reports it."""
 FINE_STEPS = 100
 NEAR = 1e-5
 """Cost at which an evolution ends, for least squares goes on faster."""
@@ -153,7 +153,7 @@ class Search:
         self._seen(float(costs.min()), done)
         return descended(
             self._residuals, begun, fine=False, steps=STEPS, enough=NEAR / 100, halved=HALVED,
-            told=lambda cost: self._seen(cost, done),
+            seen=lambda cost: self._seen(cost, done),
         )  # fmt: skip
 
     @property

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.film.clock import Clock
-from render.film.framing import CameraPose, axes, depth_of_field, fit, half_width, orbit
+from render.film.framing import CameraPose, axes, depth_of_field, fit, half_width, lifted, orbit
 from render.film.scene import Point
 from shared.contract.shot import Camera
 
@@ -40,7 +40,10 @@ class FilmCamera:
         elevation = math.radians(self.shot.elevation)
         position, target, distance = self._stand
         if self.shot.orbit:
-            position = target - axes(azimuth, elevation)[2] * distance
+            _, up, forward = axes(azimuth, elevation)
+            position = (
+                target - forward * distance + up * lifted(self.shot.lens, self.shot.margin, self.above) * distance
+            )
         depths = (self.sharp - position) @ axes(azimuth, elevation)[2]
         near, far = float(depths.min()), float(depths.max())
         focus, fstop = depth_of_field(near, far, self.shot.lens, self.shot.blur)
@@ -62,11 +65,12 @@ class FilmCamera:
     def _stand(self) -> tuple[Array, Array, float]:
         """Camera position, the point it looks at, and their distance."""
         elevation, azimuth = math.radians(self.shot.elevation), math.radians(self.shot.azimuth)
-        position, distance = fit(self.filmed, azimuth, elevation, self.shot.lens, self.shot.margin, self.above)
+        above = 0.0 if self.shot.orbit else self.above
+        position, distance = fit(self.filmed, azimuth, elevation, self.shot.lens, self.shot.margin, above)
         target = position + axes(azimuth, elevation)[2] * distance
         if self.shot.orbit:
             swing = azimuth + math.radians(self.shot.orbit) * np.linspace(-1, 1, 9)
-            distance = orbit(self.filmed, target, swing, elevation, self.shot.lens, self.shot.margin)
+            distance = orbit(self.filmed, target, swing, elevation, self.shot.lens, self.shot.margin, self.above)
         return position, target, distance
 
 

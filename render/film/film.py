@@ -82,7 +82,7 @@ class Film:
         return State(
             bodies={name: self.poses.body(name, at) for name in self.parts.bodies} | self.rollers.poses(at),
             trails=self.trails.paths(frame),
-            labels=[self.heights.label(label.at, at) for label in self.shot.labels],
+            labels=[self.heights.words(label, at) for label in self.shot.labels],
             camera=self.camera(frame),
             tubes=[path for one in self.drawn for path in one.paths(self.poses, at)],
             arrows=self.arrows.at(at.time, arrows),
@@ -154,13 +154,34 @@ class Film:
         moments = [self.clock.moment(frame) for frame in frames]
         paths = [path for one in self.drawn for at in moments for path in one.paths(self.poses, at)]
         filmed = np.concatenate([self.space.all, *self._drawn, *map(np.asarray, paths)])
-        said = writing.title(self.motion, self.shot), self.number(0.0), writing.rate(self.clock, self.shot)
         camera = FilmCamera(self.shot.camera, self.clock, filmed, self.space.moving)
-        for above in writing.ABOVE if said[0] and not self.shot.camera.orbit else ():
-            if not writing.in_the_way(camera.pose(0), self._seen_moving, said):
+        for above in writing.ABOVE:
+            if self._is_readable(camera):
                 break
             camera = FilmCamera(self.shot.camera, self.clock, filmed, self.space.moving, above)
         return camera
+
+    def _is_readable(self, camera: FilmCamera) -> bool:
+        """Whether nothing moves under the title, and some corner is free for a legend."""
+        title = writing.extent(self._said) if self._said[0] else (0.0, 0.0)
+        words = (0.0, 0.0, *title)
+        rows = [*self.arrows.legend(camera.width), *self.arcs.legend()]
+        places = writing.card(rows, title).values() if rows else ()
+        frames = range(0, self.clock.frames, max(1, self.clock.frames // 8)) if self.shot.camera.orbit else range(1)
+        poses = [camera.pose(frame) for frame in frames]
+        moving = self._seen_moving
+        if title[0] and any(writing.held(pose, moving, words) for pose in poses):
+            return False
+        return not places or any(not any(writing.held(pose, moving, place) for pose in poses) for place in places)
+
+    @cached_property
+    def _said(self) -> tuple[str, str, str]:
+        """Title, number and rate at the start."""
+        return (
+            writing.title(self.motion, self.shot),
+            self.number(0.0),
+            writing.rate(self.clock, self.shot),
+        )
 
     @cached_property
     def _seen_moving(self) -> Array:
@@ -168,9 +189,11 @@ class Film:
         return np.concatenate([self.space.moving, *self._drawn])
 
     def _writing(self) -> Writing:
+        legend = [*self.arrows.legend(self._camera.width), *self.arcs.legend()]
+        places = writing.card(legend, writing.extent(self._said))
         return Writing(
-            legend=[*self.arrows.legend(self._camera.width), *self.arcs.legend()],
-            corner=writing.emptiest(self.camera(0), self._seen_moving, self.space.standing),
+            legend=legend,
+            corner=writing.emptiest(self.camera(0), self._seen_moving, self.space.standing, places),
             title=writing.title(self.motion, self.shot),
             rate=writing.rate(self.clock, self.shot),
         )

@@ -58,7 +58,7 @@ def fit(
     room = 1 - 2 * margin
     tu = half_width(lens) * room
     tv = half_width(lens) / ASPECT * room
-    upper = max(tv - 2 * above * half_width(lens) / ASPECT, tv / 4)
+    upper = tv - 2 * lifted(lens, margin, above)
     cu, wu = _between(u, w, tu, tu)
     cv, wv = _between(v, w, tv, upper)
     size = float(np.linalg.norm(np.ptp(points, axis=0)))
@@ -67,15 +67,31 @@ def fit(
     return position, float((w.min() + w.max()) / 2 - depth)
 
 
-def orbit(points: Array, target: Array, azimuths: Array, elevation: float, lens: float, margin: float) -> float:
-    """The smallest distance to ``target`` from which a camera that turns about it keeps all points in the frame."""
+def orbit(
+    points: Array, target: Array, azimuths: Array, elevation: float, lens: float, margin: float, above: float = 0.0
+) -> float:
+    """The smallest distance to ``target`` from which a camera that turns about it keeps all points in the frame.
+
+    ``above`` is the part of the frame's height that stays empty at its top beside the margin; the camera is to stand
+    :func:`lifted` for it.
+    """
     room = 1 - 2 * margin
+    tu, tv = half_width(lens) * room, half_width(lens) / ASPECT * room
+    up = lifted(lens, margin, above)
     distance = 0.0
     for azimuth in azimuths:
         u, v, w = ((points - target) @ axes(azimuth, elevation).T).T
-        needed = np.maximum(np.abs(u) / (half_width(lens) * room), np.abs(v) * ASPECT / (half_width(lens) * room)) - w
+        needed = np.maximum(np.abs(u) / tu - w, (-v - tv * w) / (tv - up))
+        needed = np.maximum(needed, (v - (tv - 2 * up) * w) / (tv - up))
         distance = max(distance, float(needed.max()))
     return distance
+
+
+def lifted(lens: float, margin: float, above: float) -> float:
+    """How far a camera stands higher, across its sight and in distances to its target, for an empty part ``above``; a
+    quarter of what the margins leave is never taken.
+    """
+    return min(above, 0.375 * (1 - 2 * margin)) * half_width(lens) / ASPECT
 
 
 def depth_of_field(near: float, far: float, lens: float, blur: float) -> tuple[float, float]:

@@ -15,12 +15,14 @@ from render.film.swept import SweptSpace
 from render.film.tubes.spirals import Site
 from render.film.tubes.stretched import placed
 from shared.contract import Motion, Parts, Shape
-from shared.contract.shot import Trail
+from shared.contract.shot import Label, Trail
 
 OVER = 0.001
 """Of trails and arrows over the body that carries them (m)."""
 LABEL = 0.012
 """Of a label over its pin, as a part of the size of the swept motion."""
+LETTER = 0.6
+"""Width of a letter of a label, in its height."""
 LIES = 1.25
 """Of the middle of a spring over what is below it, in its radii."""
 
@@ -57,6 +59,8 @@ class Heights:
 
     def __init__(self, poses: Poses, parts: Parts, space: SweptSpace, clock: Clock) -> None:
         self.poses, self.parts, self.space, self.clock = poses, parts, space, clock
+        self._passed: dict[Label, float] = {}
+        """The highest piece that is ever under each label."""
 
     def arrow(self, bodies: Iterable[str], x: float, y: float) -> float:
         """On the highest piece where it begins at the start; else over all its bodies."""
@@ -107,7 +111,7 @@ class Heights:
         return max(over, default=0.0)
 
     def label(self, name: str, at: Moment) -> Point:
-        """Place of a label: just over the highest piece that its joint or point goes through."""
+        """Just over the highest piece that a joint or traced point goes through."""
         motion = self.poses.motion
         if name in motion.points:
             x, y = (float(value) for value in self.poses.point(name, np.array([at.time]))[0])
@@ -117,3 +121,12 @@ class Heights:
             bodies = motion.joints[name].bodies
         found = [top for body in bodies for top in self.space.tops_at(body, x, y, at)]
         return x, y, max(found, default=float(self.space.moving[:, 2].max())) + LABEL * self.space.size
+
+    def words(self, label: Label, at: Moment) -> Point:
+        """Place of a label of the shot: also over all that ever passes under its words, which nothing cuts through."""
+        if label not in self._passed:
+            path = self.poses.motion.points.get(label.at) or self.poses.motion.joints[label.at]
+            half = LETTER / 2 * len(label.text) * label.size * self.space.size
+            self._passed[label] = self._passing(np.column_stack([path.x, path.y]), half)
+        x, y, z = self.label(label.at, at)
+        return x, y, max(z, self._passed[label] + LABEL * self.space.size)

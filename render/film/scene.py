@@ -105,6 +105,8 @@ EDGE = 0.026
 """Of what is written, from the picture's edges, as a part of its width."""
 SIZES = 1 / 16, 1 / 23, 1 / 27
 """Heights of the letters of title, number and rate, as parts of the picture's height."""
+LEGEND = 1 / 25
+"""Height of the letters of the legend, as a part of the picture's height."""
 LINE = 1.4
 """From one line to the next, in heights of letters."""
 

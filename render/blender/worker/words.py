@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from render.film.scene import EDGE, LINE, SIZES, LegendRow, Writing
+from render.film.scene import EDGE, LEGEND, LINE, SIZES, LegendRow, Writing
 
 FINE = 3
 """Letters and legend are drawn so many times larger."""
 INK, QUIET, CARD = (240, 243, 247, 255), (172, 181, 192, 255), (9, 12, 17, 132)
+SHADOW = (0, 0, 0, 120)
 ARC = 0.6
 """Radius of an arc of the legend, in heights of its letters."""
 
@@ -56,14 +57,17 @@ def _title(draw: Any, page: tuple[int, int], edge: float, writing: Writing, numb
         if words:
             size = part * page[1]
             font = font_of(size, bold=words == writing.title)
-            draw.text((edge + shadow, y + shadow), words, fill=(0, 0, 0, 150), font=font, anchor="la")
+            draw.text(
+                (edge + shadow, y + shadow), words, fill=SHADOW, font=font, anchor="la",
+                stroke_width=size / 14, stroke_fill=SHADOW,
+            )  # fmt: skip
             draw.text((edge, y), words, fill=ink, font=font, anchor="la")
             y += LINE * size
 
 
 def _legend(draw: Any, page: tuple[int, int], edge: float, writing: Writing) -> None:
     """A card in its corner: arrow, number and word in each row."""
-    size = page[1] / 25
+    size = LEGEND * page[1]
     font = font_of(size)
     row, pad, gap = 1.5 * size, 0.7 * size, 0.8 * size
     arrows = max(2.6 * ARC * size if one.sweep else one.length * page[0] for one in writing.legend)

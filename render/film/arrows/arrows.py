@@ -55,7 +55,12 @@ class Arrows:
         for quantity, unit in dict.fromkeys((vector.row, vector.unit) for vector in self.vectors):
             scale = self.scales[unit]
             length = FULL * self.size * scale.reference / scale.largest / width
-            words = f"{quantity}, peaks cut" if scale.cut else quantity
+            cut = any(
+                float(vector.size.max()) > LONGEST * scale.largest * (1 + 1e-9)
+                for vector in self.vectors
+                if vector.row == quantity
+            )
+            words = f"{quantity}, peaks cut" if cut else quantity
             rows.append(
                 LegendRow(
                     number=with_unit(scale.reference, scale.unit),

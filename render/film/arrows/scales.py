@@ -14,6 +14,11 @@ Array = NDArray[np.float64]
 USUAL, PEAK, LONGEST = 97.0, 1.7, 1.35
 """Peaks up to PEAK times this percentile of the largest at each time set the scale themselves; higher ones are cut at
 so many full lengths."""
+MOSTLY, BLOW = 90.0, 4.0
+"""This percentile counts instead where it is so many times smaller: blows that return would leave nothing of the rest.
+"""
+NEVER = 0.02
+"""Of the largest: what is smaller than this at nearly all times is a motion at rest."""
 TINY = 0.025
 """Of the full length: shorter arrows are left out."""
 PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
@@ -51,10 +56,13 @@ def scales_of(things: Sequence[Sized], least: Mapping[str, float] | None = None)
     out = {}
     for unit, sizes in by_unit.items():
         peaks = np.max(sizes, axis=0)
-        top, usual = float(peaks.max()), float(np.percentile(peaks, USUAL))
+        top = float(peaks.max())
+        mostly, usual = (float(part) for part in np.percentile(peaks, (MOSTLY, USUAL)))
         if not math.isfinite(top) or top <= (least or {}).get(unit, 0.0):
             continue
-        usual = usual if usual > 0.02 * top else 0.5 * top  # a short pulse in a motion that is else at rest
+        if BLOW * mostly < usual and mostly > NEVER * top:
+            usual = mostly
+        usual = usual if usual > NEVER * top else 0.5 * top  # a short pulse in a motion that is else at rest
         largest = top if top <= PEAK * usual else usual
         out[unit] = Scale(unit, largest, round_below(0.9 * largest), top > LONGEST * largest * (1 + 1e-9))
     return out

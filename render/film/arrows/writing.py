@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,43 +11,62 @@ from numpy.typing import NDArray
 from render.film.arrows.vectors import at_time
 from render.film.clock import Clock
 from render.film.framing import CameraPose, project
-from render.film.scene import EDGE, LINE, SIZES
+from render.film.scene import EDGE, LEGEND, LINE, SIZES, LegendRow
 from render.presets import ASPECT
 from shared.contract import Motion
 from shared.contract.loads import ACTUATORS
 from shared.contract.shot import Shot
 
 Array = NDArray[np.float64]
-CORNERS = {"lower left": (0.0, 0.76), "lower right": (0.62, 0.76), "upper right": (0.62, 0.0)}
-"""Left and upper edge of where a legend may be, as parts of the picture; the first one that is emptiest is taken."""
-CORNER = 0.38, 0.24
-"""Width and height of such a place."""
+CARD = 0.38, 0.24
+"""Width and height of the place that a legend has at least, as parts of the picture."""
 LETTER = 0.6
 """Width of a letter, in its height."""
 ABOVE = 0.04, 0.08, 0.12, 0.16, 0.2, 0.24
-"""Parts of the picture's height that are kept empty for the words at the upper left, the first that suffices."""
+"""Parts of the picture's height that are kept empty for what is written, the first that suffices."""
 
 
-def emptiest(camera: CameraPose, moving: Array, standing: Array) -> str:
+def card(rows: Sequence[LegendRow], title: tuple[float, float]) -> dict[str, tuple[float, float, float, float]]:
+    """The corners in which a legend may be: left, upper, right and lower edge of its place, as parts of the picture.
+
+    Beside a ``title`` of that width and height there may be no room at the upper right.
+    """
+    size = LEGEND / ASPECT
+    letters = max((len(row.number) for row in rows), default=0) + max((len(row.words) for row in rows), default=0)
+    arrow = max((row.length for row in rows), default=0.0)
+    wide = max(CARD[0], EDGE + arrow + (3.0 + LETTER * letters) * size)
+    high = max(CARD[1], EDGE * ASPECT + (1.1 + 1.5 * len(rows)) * LEGEND)
+    places = {
+        "lower left": (0.0, 1 - high, wide, 1.0),
+        "lower right": (1 - wide, 1 - high, 1.0, 1.0),
+        "upper right": (1 - wide, 0.0, 1.0, high),
+    }
+    return {name: place for name, place in places.items() if name != "upper right" or title[0] + wide < 1.0}
+
+
+def held(camera: CameraPose, points: Array, place: tuple[float, float, float, float]) -> int:
+    """How many of ``points`` (n, 3) are in a place of the picture."""
+    left, upper, right, lower = place
+    x, y = (project(camera, points, 1600, round(1600 / ASPECT)) / (1600, 1600 / ASPECT)).T
+    return int(((x >= left) & (x <= right) & (y >= upper) & (y <= lower)).sum())
+
+
+def emptiest(
+    camera: CameraPose, moving: Array, standing: Array, places: Mapping[str, tuple[float, float, float, float]]
+) -> str:
     """The corner of the picture that holds the fewest points of what moves (n, 3), then of what stands (m, 3)."""
-
-    def held(corner: str, points: Array) -> int:
-        (left, top), (wide, high) = CORNERS[corner], CORNER
-        x, y = (project(camera, points, 1600, round(1600 / ASPECT)) / (1600, 1600 / ASPECT)).T
-        return int(((x >= left) & (x <= left + wide) & (y >= top) & (y <= top + high)).sum())
-
-    return min(CORNERS, key=lambda corner: (held(corner, moving), held(corner, standing)))
+    return min(
+        places, key=lambda corner: (held(camera, moving, places[corner]), held(camera, standing, places[corner]))
+    )
 
 
-def in_the_way(camera: CameraPose, moving: Array, lines: Sequence[str]) -> bool:
-    """Whether some of ``moving`` (n, 3) is where these words are: title, number and rate at the upper left."""
+def extent(lines: Sequence[str]) -> tuple[float, float]:
+    """How far the words at the upper left reach to the right and down: title, number and rate."""
     said = [(words, size) for words, size in zip(lines, SIZES, strict=True) if words]
     if not said:
-        return False
+        return 0.0, 0.0
     wide = EDGE + max(LETTER * size * len(words) for words, size in said) / ASPECT
-    high = EDGE * ASPECT + sum(LINE * size for _, size in said)
-    x, y = (project(camera, moving, 1600, round(1600 / ASPECT)) / (1600, 1600 / ASPECT)).T
-    return bool(((x <= wide) & (y <= high)).any())
+    return wide, EDGE * ASPECT + sum(LINE * size for _, size in said)
 
 
 def title(motion: Motion, shot: Shot) -> str:

@@ -94,6 +94,15 @@ def test_a_short_peak_is_cut_and_the_legend_says_so():
     assert row.length == pytest.approx(FULL * made.scales["N"].reference / made.scales["N"].largest / 2.0)
 
 
+def test_blows_that_return_leave_the_rest_to_be_seen():
+    """Of a hammer that strikes in 6 % of the time with ten times the force of its spring."""
+    blows = np.where(TIME * 100 % 17 < 1, 100.0, 10.0)
+    assert Arrows(TIME, [steady(blows)], size=1.0).scales["N"].largest == pytest.approx(10.0)
+    assert Arrows(TIME, [steady(blows)], size=1.0).legend(1.0)[0].words == "forces, peaks cut"
+    gentle = np.where(blows > 50.0, 30.0, 10.0)
+    assert Arrows(TIME, [steady(gentle)], size=1.0).scales["N"].largest == pytest.approx(30.0)
+
+
 def test_forces_and_reactions_share_one_scale_and_nothing_has_none():
     made = Arrows(TIME, [steady(3.0), steady(7.0, "reactions"), steady(2.0, "velocities")], size=1.0)
     assert set(made.scales) == {"N", "m/s"}

@@ -11,11 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from render.film.arrows import writing
 from render.film.film import Film
 from render.film.framing import NEAREST, SENSOR, CameraPose, axes, depth_of_field, fit, project
 from render.film.solids import prism, read_vertices, swept
 from shared.contract import read_motion, read_parts
-from shared.contract.shot import Camera, Shot
+from shared.contract.shot import Camera, Shot, Title
 from shared.stage.errors import UserError
 from tests.render import film_fixture
 
@@ -47,9 +48,15 @@ def test_what_is_right_up_and_near_lands_right_up():
     assert project(camera, np.array([[0.5, 0.0, 0.25]]), 160, 90)[0] == pytest.approx([120, 25])
 
 
+@pytest.mark.parametrize("above", [0.0, 0.2])
 @pytest.mark.parametrize("orbit", [0.0, 14.0])
-def test_every_body_stays_in_the_frame_over_the_whole_film(out_root: Path, orbit: float):
-    shot = Shot(camera=Camera(orbit=orbit, margin=0.08), seconds_per_turn=1.0)
+def test_every_body_stays_in_the_frame_over_the_whole_film(
+    out_root: Path, orbit: float, above: float, monkeypatch: pytest.MonkeyPatch
+):
+    """Under what stays empty ``above``, where something is written."""
+    monkeypatch.setattr(writing, "ABOVE", (above,))
+    monkeypatch.setattr(Film, "_is_readable", lambda *of: above == 0)
+    shot = Shot(camera=Camera(orbit=orbit, margin=0.08), seconds_per_turn=1.0, title=Title())
     out = film_fixture.write(shot)
     film = Film(read_motion(out.motion), read_parts(out.parts), shot, out.parts_folder)
     extremes = []
@@ -62,7 +69,8 @@ def test_every_body_stays_in_the_frame_over_the_whole_film(out_root: Path, orbit
     pixels = np.concatenate(extremes)
     assert pixels.min() >= 0.08 - 2e-3
     assert pixels.max() <= 0.92 + 2e-3
-    assert np.ptp(pixels, axis=0).max() > 0.70  # and not lost in it
+    assert pixels[:, 1].min() >= 0.08 + above - 2e-3
+    assert (np.ptp(pixels, axis=0) / (1, 1 - above)).max() > 0.65  # and not lost in it
 
 
 def test_depth_of_field_blurs_the_nearest_and_the_farthest_part_alike():

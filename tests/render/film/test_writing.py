@@ -55,12 +55,20 @@ def test_the_legend_keeps_clear_of_what_moves_and_then_of_what_stands(out_root: 
 
     left, right = seen_at(0.1, 0.9), seen_at(0.9, 0.9)
     assert project(camera, right, 100, 100 * 9 / 16)[0] == pytest.approx([90, 90 * 9 / 16])
-    assert writing.emptiest(camera, none, none) == "lower left"
-    assert writing.emptiest(camera, left, none) == "lower right"
-    assert writing.emptiest(camera, np.concatenate([left, right]), none) == "upper right"
-    assert writing.emptiest(camera, none, left) == "lower right"
-    assert writing.emptiest(camera, left, np.tile(right, (9, 1))) == "upper right"
+    places = writing.card(
+        [LegendRow(number="5 N", words="forces", colour=(0, 0, 0), length=0.1, point=0.0)], (0.0, 0.0)
+    )
+    assert writing.emptiest(camera, none, none, places) == "lower left"
+    assert writing.emptiest(camera, left, none, places) == "lower right"
+    assert writing.emptiest(camera, np.concatenate([left, right]), none, places) == "upper right"
+    assert writing.emptiest(camera, none, left, places) == "lower right"
+    assert writing.emptiest(camera, left, np.tile(right, (9, 1)), places) == "upper right"
     assert len(film.space.standing) > 100
+    rows = 4 * [LegendRow(number="100 mN m", words="torques of joints", colour=(0, 0, 0), length=0.2, point=0.0)]
+    large = writing.card(rows, (0.0, 0.0))
+    assert large["lower left"][2] > places["lower left"][2]
+    assert large["lower left"][1] < places["lower left"][1]
+    assert "upper right" not in writing.card(rows, (0.6, 0.1))  # a title is there
 
 
 def test_the_rate_of_a_simulation_that_is_not_in_real_time_is_always_told():
@@ -92,13 +100,14 @@ def test_a_title_makes_room_for_itself_and_nothing_moves_under_it(out_root: Path
         close = Camera(elevation=elevation, margin=0.01)
         out = film_fixture.write(Shot(seconds_per_turn=0.4, camera=close))
         film, plain = read_film(out, "velocities,title"), read_film(out, "velocities")
-        moving = film._seen_moving
-        said = film.scene.writing.title, film.number(0.0), film.scene.writing.rate
-        assert said[0] == "Four bar"
-        assert writing.in_the_way(plain.camera(0), moving, said) == in_the_way
-        assert not writing.in_the_way(film.camera(0), moving, said)
-        assert not writing.in_the_way(plain.camera(0), moving, ("", "", ""))
-        assert (film.camera(0) == plain.camera(0)) != in_the_way
+        moving, title = film._seen_moving, (0.0, 0.0, *writing.extent(film._said))
+        assert film.scene.writing.title == "Four bar"
+        assert (writing.held(plain.camera(0), moving, title) > 0) == in_the_way
+        assert writing.held(film.camera(0), moving, title) == 0
+        legend = writing.card(film.scene.writing.legend, title[2:])[film.scene.writing.corner]
+        assert writing.held(film.camera(0), moving, legend) == 0
+        if in_the_way:
+            assert film.camera(0) != plain.camera(0)
         pixels = project(film.camera(0), film.space.all, 1600, 900)
         assert (pixels > -1e-6).all()
         assert (pixels < (1600 + 1e-6, 900 + 1e-6)).all()

@@ -16,7 +16,7 @@ export class Labels {
   /** @param {{key: string, text: string, at: [number, number, number], kind: string, act?: () => void}[]} wanted
    *  @param {(v: Vector3) => [number, number]} pixel */
   show(wanted, pixel) {
-    const gone = new Set(this.known.keys()), taken = [];
+    const gone = new Set(this.known.keys()), taken = [], across = this.layer.clientWidth;
     for (const { key, text, at, kind, act } of wanted) {
       let one = this.known.get(key);
       if (!one) {
@@ -26,11 +26,14 @@ export class Labels {
       }
       gone.delete(key);
       if (one.textContent !== text) one.textContent = text;
-      const [x, y] = pixel(place.set(...at));
-      const width = 8 * text.length + 12;
+      const [there, y] = pixel(place.set(...at));
+      const width = 8 * text.length + 12, half = width / 2;
+      // Words of a place that is seen are not cut off by the edge.
+      const x = there < 0 || there > across || width > across ? there : Math.min(Math.max(there, half), across - half);
       let top = y - 13;
       for (let k = 0; k < 6 && taken.some(([a, b, w]) => Math.abs(a - x) < (w + width) / 2 && Math.abs(b - top) < 19); k++) top -= 19;
       taken.push([x, top, width]);
+      one.style.setProperty("--lean", `${(there - x).toFixed(1)}px`);
       one.style.setProperty("--rise", `${(y - top - RING).toFixed(1)}px`);
       one.style.transform = `translate(${x.toFixed(1)}px, ${top.toFixed(1)}px) translate(-50%, -100%)`;
     }

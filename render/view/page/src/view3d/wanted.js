@@ -13,11 +13,12 @@ export function wantedLabels(app) {
     if (place) add(selected.kind, selected.name, place, heightOf(app, selected));
   }
   if (shown.clearance) {
-    for (const { at, gap, time, bodies } of gaps(payload, motion)) {
+    for (const { at, gap, time, bodies, layers } of gaps(payload, motion)) {
       const act = time === null ? undefined : () => store.set({ playing: false, time });
       const now = time === null || Math.abs(time - motion.t) < NOW * (motion.end - motion.start);
       const moment = now ? "" : `, at ${Number(time.toPrecision(3))} s`;
-      out.push({ key: `gap ${bodies}`, text: `${millimetres(gap)} ${bodies.join(" – ")}${moment}`.replaceAll("_", " "), at, kind: "gap", act });
+      const between = layers < gap ? `, ${millimetres(layers)} between layers` : "";
+      out.push({ key: `gap ${bodies}`, text: `${millimetres(gap)} ${bodies.join(" – ")}${moment}${between}`.replaceAll("_", " "), at, kind: "gap", act });
     }
   }
   return out;
@@ -40,14 +41,17 @@ const MOST = 6;
 /** Part of the motion: nearer to its moment than this a gap is where it is told. */
 const NOW = 2e-3;
 
-/** The least gap of each pair of bodies, where it is now. */
+/** The least gap of each pair of bodies that has a place, where it is now; layers: a lesser one all over faces. */
 function gaps(payload, motion) {
-  const seen = new Map();
+  const seen = new Map(), layers = new Map();
   for (const pair of payload.clearance?.pairs ?? []) {
     const key = [...pair.bodies].sort().join(" ");
-    if (!pair.at || seen.has(key)) continue;
-    const [x, y, z] = pair.at;
-    seen.set(key, pair.on ? { ...pair, at: [...motion.place({ body: pair.on, x, y }), z] } : pair);
+    if (!pair.at) {
+      if (!seen.has(key) && !layers.has(key)) layers.set(key, pair.gap);
+    } else if (!seen.has(key)) {
+      const [x, y, z] = pair.at;
+      seen.set(key, { ...pair, at: pair.on ? [...motion.place({ body: pair.on, x, y }), z] : pair.at, layers: layers.get(key) ?? Infinity });
+    }
   }
   return [...seen.values()].slice(0, MOST);
 }

@@ -204,6 +204,7 @@ view-engines: install ## pages used in Firefox and Safari's engine: a small four
 
 gallery: install ## posters of all mechanisms (PRESET) and the page that shows them: docs/gallery/
 	@for file in mechanisms/*/mechanism.py; do one=$${file%/mechanism.py}; one=$${one#mechanisms/}; \
+	"$(MAKE)" --no-print-directory "clearance-$$one" || echo "gallery: no clearance of $$one" >&2; \
 	"$(MAKE)" --no-print-directory "poster-$$one" PRESET="$$PRESET" || echo "gallery: no poster of $$one" >&2; done
 	@$(PICTURE) gallery
 

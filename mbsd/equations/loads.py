@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from mbsd.base.codes import AXIS, CONSTANT, DAMPING, DRY, LAW_RATE, LAW_TIME, LINE, LINEAR, POWER, PUSH, TURN
 from mbsd.compiling.jit import inlined, kernel
-from mbsd.equations.interactions.apply import apply_interactions
+from mbsd.equations.interactions.call import apply_interactions
 from mbsd.equations.laws import law_at
 from mbsd.equations.markers import place
 from mbsd.equations.user_forces import apply_user_forces
@@ -31,11 +31,13 @@ class Loads(NamedTuple):
     law: Any
     """(3,) scratch of a law."""
     interaction: Any
-    """(n, 5) body i, body j, law of time, first number, address of the function."""
+    """(n, 6) body i, body j, law of time, first number, addresses of the function and of apply.py."""
     given: Any
     """Of each interaction: arm of i, axis of i, arm of j (body axes), angle of j less that of i, then its own."""
     state: Any
     """(24,) what the function of an interaction reads."""
+    switch: Any
+    """(1 + n, 9) sides of the interactions that switch, see interactions/switching.py."""
     user: Any
     """(u, 3) forces of the user: address, first of user_body, count."""
     user_body: Any
@@ -158,7 +160,18 @@ def apply_loads(loads, laws, t, q, v, cos_sin, load):
     )
     if loads.interaction.shape[0] > 0:
         power += apply_interactions(
-            loads.interaction, loads.given, loads.state, loads.exchange, laws, loads.law, t, q, v, cos_sin, load
+            loads.interaction,
+            loads.given,
+            loads.state,
+            loads.exchange,
+            loads.switch,
+            laws,
+            loads.law,
+            t,
+            q,
+            v,
+            cos_sin,
+            load,
         )
     if loads.user.shape[0] > 0:
         power += apply_user_forces(loads.user, loads.user_body, loads.user_com, loads.exchange, t, q, v, cos_sin, load)

@@ -3,41 +3,71 @@
 d  = p_j - p_i;   u unit axis of marker i, n = u_perp;   x = u . d,  y = n . d,  a = theta_j - theta_i + offset
 x' = u . d' + omega_i y,   y' = n . d' - omega_i x,   a' = omega_j - omega_i
 on body j: F at marker j and T; on body i: -F at the same point and -T;   power = F . (x', y') + T a'
+
+    double f(const long *interaction, long n, double *given, double *state, double *out, double *switches, double t,
+             const double *q, const double *v, const double *cos_sin, double *load)
+
+It stands at an address and takes arrays by their first numbers, because handing over arrays as such takes longer than
+all its work.
 """
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import lazy
-from mbsd.equations.interactions.law import FX, FY, LAW, LAW_RATE, OMEGA, TIME, TORQUE, VX, VY
-from mbsd.equations.laws import law_at
-from mbsd.equations.relative.equation import OWN, A, X, Y, evaluate
+import math
+
+from numba import types
+
+from mbsd.compiling.jit import at_address
+from mbsd.equations.interactions.law import (
+    FX,
+    FY,
+    LAW,
+    LAW_RATE,
+    OMEGA,
+    POWER,
+    SIDE,
+    SWITCH,
+    TIME,
+    TORQUE,
+    VX,
+    VY,
+)
+from mbsd.equations.interactions.switching import BEYOND, HELD, KEPT, LAW_HERE, LAW_RATE_HERE, NEAR, ROUGH, VALUE, WIDTH
+from mbsd.equations.relative.equation import OWN, POINTER, A, X, Y, evaluate_from
 
 GEOMETRY = 7
 """Numbers of an interaction before its own."""
+COLUMNS = 6
+"""Of Loads.interaction."""
+_WHOLE = types.CPointer(types.int64)
+SIGNATURE = types.float64(
+    _WHOLE, types.int64, POINTER, POINTER, POINTER, POINTER, types.float64, POINTER, POINTER, POINTER, POINTER
+)
 
 
-@lazy(float)
-def apply_interactions(interaction, given, state, exchange, laws, law, t, q, v, cos_sin, load):
-    """Add the generalised forces of all interactions to load (3 nb,); cos_sin (nb, 2) turns the bodies.
+@at_address(SIGNATURE)
+def apply(interaction, n, given, state, out, switches, t, q, v, cos_sin, load):
+    """Add the generalised forces of n interactions to load (3 nb,); cos_sin (nb, 2) turns the bodies.
 
-    The first four and ``law`` are those of Loads. Returns their power (W).
+    Tables are those of Loads. Returns their power (W).
     """
-    out = exchange[1]
     power = 0.0
-    for k in range(interaction.shape[0]):
-        first = interaction[k, 0]
-        second = interaction[k, 1]
-        at = interaction[k, 3]
+    for k in range(n):
+        row = COLUMNS * k
+        own = WIDTH * (k + 1)
+        first = interaction[row]
+        second = interaction[row + 1]
+        at = interaction[row + 3]
         i = 3 * first
         j = 3 * second
-        c = cos_sin[first, 0]
-        s = cos_sin[first, 1]
+        c = cos_sin[2 * first]
+        s = cos_sin[2 * first + 1]
         arm_ix = c * given[at] - s * given[at + 1]
         arm_iy = s * given[at] + c * given[at + 1]
         ux = c * given[at + 2] - s * given[at + 3]
         uy = s * given[at + 2] + c * given[at + 3]
-        c = cos_sin[second, 0]
-        s = cos_sin[second, 1]
+        c = cos_sin[2 * second]
+        s = cos_sin[2 * second + 1]
         arm_jx = c * given[at + 4] - s * given[at + 5]
         arm_jy = s * given[at + 4] + c * given[at + 5]
         dx = q[j] + arm_jx - q[i] - arm_ix
@@ -54,14 +84,19 @@ def apply_interactions(interaction, given, state, exchange, laws, law, t, q, v, 
         state[VY] = ux * vy - uy * vx - omega * x
         state[OMEGA] = v[j + 2] - omega
         state[TIME] = t
-        state[LAW] = 0.0
-        state[LAW_RATE] = 0.0
-        if interaction[k, 2] > 0:
-            law_at(laws, interaction[k, 2], t, law)
-            state[LAW] = law[0]
-            state[LAW_RATE] = law[1]
+        state[LAW] = switches[own + LAW_HERE]
+        state[LAW_RATE] = switches[own + LAW_RATE_HERE]
+        side = switches[own + KEPT] * switches[HELD]
+        state[SIDE] = side
+        out[SWITCH] = math.nan
+        out[POWER] = 0.0
         # functions count their own numbers from OWN
-        evaluate(interaction[k, 4], given[at + GEOMETRY - OWN :], state, out)
+        evaluate_from(interaction[row + 4], given, at + GEOMETRY - OWN, state, out)
+        value = out[SWITCH]
+        switches[own + VALUE] = value
+        switches[own + ROUGH] = out[POWER]
+        if -side * value > switches[NEAR]:
+            switches[BEYOND] = min(switches[BEYOND], t)
         power += out[FX] * state[VX] + out[FY] * state[VY] + out[TORQUE] * state[OMEGA]
         fx = out[FX] * ux - out[FY] * uy
         fy = out[FX] * uy + out[FY] * ux

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 
-from mbsd.equations.interactions.law import FX, FY, OMEGA, TORQUE, VX, VY, interaction
+from mbsd.equations.interactions.law import FX, FY, OMEGA, POWER, SIDE, SWITCH, TORQUE, VX, VY, interaction
 from mbsd.equations.interactions.surface import DISTANCE, TX, TY, after, stand
 
 RADIUS, STIFFNESS, EXPONENT, DAMPING, FRICTION, SLIP_SPEED = range(6)
+SWITCHES = True
 
 
 @interaction
@@ -19,14 +20,21 @@ def force(numbers, state, out):
     out[FY] = 0.0
     out[TORQUE] = 0.0
     depth = numbers[own + RADIUS] - state[DISTANCE]
-    if depth > 0.0:
+    power = numbers[own + EXPONENT]
+    out[SWITCH] = depth
+    out[POWER] = power if power != math.floor(power) else 0.0
+    if state[SIDE] > 0.0 or (state[SIDE] == 0.0 and depth > 0.0):
         tx = state[TX]
         ty = state[TY]
         rate = ty * state[VX] - tx * state[VY]
-        normal = numbers[own + STIFFNESS] * depth ** numbers[own + EXPONENT] * (1.0 + numbers[own + DAMPING] * rate)
-        normal = max(normal, 0.0)
-        slip = tx * state[VX] + ty * state[VY] + state[OMEGA] * state[DISTANCE]
-        along = -numbers[own + FRICTION] * math.tanh(slip / numbers[own + SLIP_SPEED]) * normal
+        normal = depth
+        if power != 1.0:
+            normal = math.copysign(abs(depth) ** power, depth)
+        normal = normal * numbers[own + STIFFNESS] * max(1.0 + numbers[own + DAMPING] * rate, 0.0)
+        along = 0.0
+        if numbers[own + FRICTION] > 0.0:
+            slip = tx * state[VX] + ty * state[VY] + state[OMEGA] * state[DISTANCE]
+            along = -numbers[own + FRICTION] * math.tanh(slip / numbers[own + SLIP_SPEED]) * normal
         out[FX] = along * tx - normal * ty
         out[FY] = along * ty + normal * tx
         out[TORQUE] = along * state[DISTANCE]

@@ -7,6 +7,7 @@
 feels the opposite at the same point of space, so power and reaction follow for all kinds at once.
 
 ``numbers`` begin at OWN, as those of constraints, and places 4 to 13 of the state are scratch of curve_pieces.py.
+Those whose force has a kink or a jump set SWITCHES and tell where, see switching.py.
 """
 
 from __future__ import annotations
@@ -18,15 +19,26 @@ from mbsd.equations.relative.equation import _PYTHON, OWN, A, X, Y, equation
 
 VX, VY, OMEGA, TIME, LAW, LAW_RATE = 14, 15, 16, 17, 18, 19
 """Of ``state`` beside X, Y, A: rates (m/s, m/s, rad/s), time (s), value and rate of the law of time, 0 without one."""
+SIDE = 23
+"""Of ``state``: 1 or -1 where the force is wanted as on that side of its switch, smoothly beyond it too; else 0."""
 STATE = 24
 """Numbers of a state."""
-FX, FY, TORQUE = 0, 1, 2
-"""Of ``out``."""
+FX, FY, TORQUE, SWITCH, POWER = 0, 1, 2, 3, 4
+"""Of ``out``. SWITCH: what changes its sign where the force has a kink or a jump (m), above 0 where it acts.
+POWER: by which power of that it grows, if that is no whole number."""
 
-__all__ = ["FX", "FY", "LAW", "LAW_RATE", "OMEGA", "OWN", "STATE", "TIME", "TORQUE", "VX", "VY", "A", "X", "Y"]
+__all__ = [
+    "FX", "FY", "LAW", "LAW_RATE", "OMEGA", "OWN", "POWER", "SIDE", "STATE", "SWITCH", "TIME", "TORQUE", "VX", "VY",
+    "A", "X", "Y",
+]  # fmt: skip
 
 interaction = equation
 """Decorator: a force at an address."""
+
+
+def switches(name: str) -> bool:
+    """Whether the force of this file has kinks or jumps that it tells."""
+    return getattr(importlib.import_module(f"mbsd.equations.interactions.{name}"), "SWITCHES", False)
 
 
 def address_of(name: str) -> int:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 
-from mbsd.equations.interactions.law import FX, FY, OMEGA, TORQUE, VX, VY, interaction
+from mbsd.equations.interactions.law import FX, FY, OMEGA, SIDE, SWITCH, TORQUE, VX, VY, interaction
 from mbsd.equations.interactions.surface import DISTANCE, TX, TY, after, stand
 
 RADIUS, STIFFNESS, DAMPING, GRIP, SLOPE, SHAPE, CURVATURE, STANDSTILL = range(8)
+SWITCHES = True
 
 
 @interaction
@@ -19,11 +20,12 @@ def force(numbers, state, out):
     out[FY] = 0.0
     out[TORQUE] = 0.0
     depth = numbers[own + RADIUS] - state[DISTANCE]
-    if depth > 0.0:
-        tx = state[TX]
-        ty = state[TY]
-        rate = ty * state[VX] - tx * state[VY]
-        normal = max(numbers[own + STIFFNESS] * depth + numbers[own + DAMPING] * rate, 0.0)
+    tx = state[TX]
+    ty = state[TY]
+    rate = ty * state[VX] - tx * state[VY]
+    normal = numbers[own + STIFFNESS] * depth + numbers[own + DAMPING] * rate
+    out[SWITCH] = min(depth, normal / numbers[own + STIFFNESS]) if numbers[own + STIFFNESS] > 0.0 else depth
+    if state[SIDE] > 0.0 or (state[SIDE] == 0.0 and depth > 0.0 and normal > 0.0):
         speed = tx * state[VX] + ty * state[VY]
         low = numbers[own + STANDSTILL]
         slip = -(speed + state[OMEGA] * state[DISTANCE]) / math.sqrt(speed * speed + low * low)

@@ -52,6 +52,12 @@ def address_of(constraint: str) -> int:
 
 if COMPILED:
 
+    def _call(context, builder, where, data):
+        pointer = cgutils.ir.DoubleType().as_pointer()
+        function = cgutils.ir.FunctionType(cgutils.ir.VoidType(), [pointer] * 3)
+        builder.call(builder.inttoptr(where, function.as_pointer()), data)
+        return context.get_dummy_value()
+
     @intrinsic
     def evaluate(typing, address, numbers, relative, out):  # pyright: ignore[reportUnusedParameter, reportRedeclaration]
         """Call the equation at ``address`` with three contiguous arrays."""
@@ -62,15 +68,26 @@ if COMPILED:
                 context.make_array(kind)(context, builder, array).data
                 for kind, array in zip(signature.args[1:], arrays, strict=True)
             ]
-            pointer = cgutils.ir.DoubleType().as_pointer()
-            function = cgutils.ir.FunctionType(cgutils.ir.VoidType(), [pointer] * 3)
-            builder.call(builder.inttoptr(where, function.as_pointer()), data)
-            return context.get_dummy_value()
+            return _call(context, builder, where, data)
 
         return types.void(types.int64, numbers, relative, out), code
+
+    @intrinsic
+    def evaluate_from(typing, address, numbers, first, relative, out):  # pyright: ignore[reportUnusedParameter, reportRedeclaration]
+        """The same with pointers, of the numbers from ``first`` on."""
+
+        def code(context, builder, signature, arguments):
+            where, numbers, first, *others = arguments
+            return _call(context, builder, where, [builder.gep(numbers, [first]), *others])
+
+        return types.void(types.int64, numbers, types.int64, relative, out), code
 
 else:
 
     def evaluate(address, numbers, relative, out):
         """Call the equation at ``address`` with three contiguous arrays."""
         _PYTHON[address](numbers, relative, out)
+
+    def evaluate_from(address, numbers, first, relative, out):
+        """The same, of the numbers from ``first`` on."""
+        _PYTHON[address](numbers[first:], relative, out)

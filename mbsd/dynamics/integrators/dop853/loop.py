@@ -15,21 +15,11 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import apart, internal, kernel, lazy
-from mbsd.dynamics.integrators.dop853.tableau import E3, E5, A, B, C, D
-from mbsd.dynamics.integrators.formulation import (
-    accelerate,
-    begin,
-    derivative,
-    for_both,
-    join_rows,
-    keep_row,
-    project,
-    record,
-    record_all,
-    record_here,
-    settle,
-)
+from mbsd.compiling.jit import kernel
+from mbsd.dynamics.integrators.dop853.crossing import LANDED, crossing, nearness
+from mbsd.dynamics.integrators.dop853.dense import interpolant, write_outputs
+from mbsd.dynamics.integrators.dop853.tableau import E3, E5, A, B, C
+from mbsd.dynamics.integrators.formulation import accelerate, begin, for_both, project, record_here, settle
 from mbsd.dynamics.integrators.kind import Integrator, register
 from mbsd.dynamics.integrators.step_size import allowed, first_step
 from mbsd.dynamics.state import (
@@ -43,14 +33,26 @@ from mbsd.dynamics.state import (
     POWER,
     REACHED,
     REJECTED,
+    STARTED,
     STEP,
     STEP_TOO_SMALL,
     TIME,
     UNCLEAR,
     WORK,
 )
+from mbsd.equations.interactions.switching import (
+    BEYOND,
+    CUTS,
+    HELD,
+    RATE,
+    SWITCHING,
+    accept,
+    begin_sides,
+    hold,
+    note_end,
+)
 
-STAGES = 16
+STAGES = 17
 EXPONENT = 0.125
 SAFETY, BETA = 0.7, 0.04
 """Of the step-size control. Cautious: a rejected step costs eleven evaluations, more than longer steps save."""
@@ -60,102 +62,10 @@ FEW = 9
 """Columns of a state below which it is summed entry by entry."""
 UNCLEAR_STEP = 0.7
 """How a step is shortened within which independent coordinates have no clear pose."""
-BESIDE = 1e-3
-"""Part of a step by which poses beside an unclear one are looked for, doubled until both are clear."""
 CONTRACTION = 0.1
 """The second projection must change the pose by less than this part of the first."""
 ROUNDING = 1e-9
 """Changes below this (sizes, rad) are rounding in an ill-conditioned pose, and accepted."""
-
-
-@for_both(apart)
-def _interpolant(dyn, scratch, state, h, work):
-    """Coefficients of the dense output of the step that ends in scratch.state and does ``work`` (J)."""
-    power = scratch.power
-    k = scratch.stages
-    dense = scratch.dense
-    n3 = state.y.shape[1]
-    t = state.clock[TIME]
-    for part in range(2):
-        for c in range(3, n3):
-            rise = scratch.state[part, c] - state.y[part, c]
-            dense[0, part, c] = rise
-            dense[1, part, c] = h * k[0, part, c] - rise
-            dense[2, part, c] = 2.0 * rise - h * (k[12, part, c] + k[0, part, c])
-    for s in range(13, 16):
-        for part in range(2):
-            for c in range(3, n3):
-                change = 0.0
-                for j in range(s):
-                    change += A[s, j] * k[j, part, c]
-                dense[7, part, c] = state.y[part, c] + h * change
-        power[s] = derivative(dyn, scratch, t + C[s] * h, dense[7], k[s], scratch.multipliers)
-    for row in range(4):
-        for part in range(2):
-            for c in range(3, n3):
-                change = 0.0
-                for j in range(16):
-                    change += D[row, j] * k[j, part, c]
-                dense[3 + row, part, c] = h * change
-        change = 0.0
-        for j in range(16):
-            change += D[row, j] * power[j]
-        scratch.dense_work[3 + row] = h * change
-    scratch.dense_work[0] = work
-    scratch.dense_work[1] = h * power[0] - work
-    scratch.dense_work[2] = 2.0 * work - h * (power[12] + power[0])
-
-
-@internal
-def _interpolate(dense, dense_work, y, x, out):
-    """out (2, n) at the part x of the step that began at y; returns the work so far (J).
-
-    Not inlined: numba 0.68 mixes up its copies where it is called more than once.
-    """
-    for part in range(2):
-        for c in range(3, y.shape[1]):
-            value = 0.0
-            for row in range(6, -1, -1):
-                value = (value + dense[row, part, c]) * (x if row % 2 == 0 else 1.0 - x)
-            out[part, c] = y[part, c] + value
-    work = 0.0
-    for row in range(6, -1, -1):
-        work = (work + dense_work[row]) * (x if row % 2 == 0 else 1.0 - x)
-    return work
-
-
-@for_both(lazy(bool))
-def _output_between(dyn, scratch, state, out, k, x, h, so_far):
-    """Write output k at the part x of the step from poses beside; returns whether two are clear."""
-    t = state.clock[TIME]
-    beside = BESIDE
-    while beside < 1.0:
-        _interpolate(scratch.dense, scratch.dense_work, state.y, x - beside, scratch.state)
-        before = record(dyn, scratch, out, k, t + (x - beside) * h, so_far)
-        keep_row(dyn, scratch, out, k)
-        _interpolate(scratch.dense, scratch.dense_work, state.y, x + beside, scratch.state)
-        after = record(dyn, scratch, out, k, t + (x + beside) * h, so_far)
-        if before and after:
-            join_rows(dyn, scratch, out, k, 2.0 * beside * h)
-            return True
-        beside *= 2.0
-    return False
-
-
-@for_both(apart)
-def _outputs(dyn, scratch, state, out, h, reached):
-    """Write all outputs before the end of the step; returns whether their poses, or poses beside them, are clear."""
-    t = state.clock[TIME]
-    k = state.count[NEXT]
-    while k < out.t.shape[0] and out.t[k] < reached:
-        x = (out.t[k] - t) / h
-        so_far = state.clock[WORK] + _interpolate(scratch.dense, scratch.dense_work, state.y, x, scratch.state)
-        clear = record_all(dyn, scratch, out, k, t + x * h, so_far)
-        if not clear and not _output_between(dyn, scratch, state, out, k, x, h, so_far):
-            return False
-        k += 1
-        state.count[NEXT] = k
-    return True
 
 
 @for_both(kernel)
@@ -166,6 +76,9 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
     trial = scratch.state
     n3 = y.shape[1]
     count = max(2 * (n3 - 3), 1)
+    switch = dyn.loads.switch
+    switching = switch[0, SWITCHING] > 0.0
+    begin_sides(switch, state.clock[TIME], state.count[STARTED] != 0)
     begin(dyn, scratch, state)
     if state.clock[STEP] == 0.0:
         state.clock[STEP] = first_step(dyn, scratch, state, settings, 0.125)
@@ -191,6 +104,9 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
         work = 0.0
         error = 0.0
         shorter = 1.0
+        landed = False
+        if switching:
+            hold(switch, nearness(switch, settings))
         for s in range(1, 13):
             if s < 12:
                 if n3 < FEW:  # sums stay in registers
@@ -248,6 +164,13 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
             if scratch.power[s] != scratch.power[s]:
                 shorter = UNCLEAR_STEP
                 break
+        if switching:
+            switch[0, HELD] = 0.0
+            if shorter == 1.0 and (switch[0, BEYOND] < math.inf or switch[0, CUTS] > 0.0):
+                shorter = crossing(dyn, scratch, state, settings, h, reached, work)
+                switch[0, HELD] = 0.0
+            landed = shorter > 1.0
+            note_end(switch)
         if shorter < 1.0:
             if h < settings.smallest:
                 return NOT_FINITE
@@ -265,7 +188,10 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
         fresh = True
         if following < out.t.shape[0] and out.t[following] < reached:
             fresh = False
-            _interpolant(dyn, scratch, state, h, work)
+            if switching:
+                switch[0, HELD] = 1.0
+            interpolant(dyn, scratch, state, h, work)
+            switch[0, HELD] = 0.0
             state.count[EVALUATIONS] += 3
             if scratch.dense_work[3] != scratch.dense_work[3]:
                 if h < settings.smallest:
@@ -277,12 +203,18 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
             for part in range(2):  # record and the interpolant use trial: the end of the step waits in dense[7]
                 for c in range(3, n3):
                     scratch.dense[7, part, c] = y[part, c] + scratch.dense[0, part, c]
-            if not _outputs(dyn, scratch, state, out, h, reached):
+            if not write_outputs(dyn, scratch, state, out, h, reached):
                 return UNCLEAR
             following = state.count[NEXT]
             for part in range(2):
                 for c in range(3, n3):
                     trial[part, c] = scratch.dense[7, part, c]
+        if switching:
+            accept(switch, reached)
+            if landed:
+                scratch.power[12] = scratch.power[LANDED]
+                for c in range(3, n3):
+                    state.dy[1, c] = k[LANDED, 1, c]
         for part in range(2):
             for c in range(3, n3):
                 y[part, c] = trial[part, c]
@@ -306,6 +238,9 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
             growth = min(growth, 1.0)
         if not last or growth < 1.0:
             state.clock[STEP] = min(h * growth, settings.longest)
+        if landed:
+            state.clock[STEP] = switch[0, RATE]
+            state.clock[ERROR] = 0.0
         rejected = False
         accepted += 1
         state.count[ACCEPTED] += 1

@@ -1,0 +1,227 @@
+"""Steps that end where forces have kinks or jumps: how far a step goes until the first of them, and the step after it.
+
+While a step is tried, each interaction stays on the side of its switch on which it began (switching.py), so that the
+step is smooth and its error estimate is that of a smooth motion. Where one went beyond, the place is found on the dense
+output, and the step is taken again up to there. An accepted step was never beyond by more than what rounding does, or
+where it ends by what does not matter: then its force was what its law says. A switch that cannot be met, because it is
+at the very start or moves while it is looked for, is passed with no interaction held, as methods without switches do.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.compiling.jit import inlined, lazy
+from mbsd.dynamics.integrators.dop853.dense import interpolant, interpolate
+from mbsd.dynamics.integrators.formulation import derivative, for_both
+from mbsd.dynamics.integrators.step_size import allowed
+from mbsd.dynamics.state import EVALUATIONS, TIME
+from mbsd.equations.interactions.switching import (
+    BEFORE,
+    BEYOND,
+    CUTS,
+    FREE,
+    HELD,
+    HERE,
+    KEPT,
+    LOOSE,
+    RATE,
+    ROUGH,
+    SIZE,
+    TIGHT,
+    VALUE,
+    farthest,
+)
+
+LANDED = 16
+"""Row of the stages for the derivative right after a switch."""
+WIDE = 1e-2
+"""Part of the tolerance by which a step may end beyond a switch, in sizes, where that does not matter."""
+SHORT = 1e-1
+"""Part of the tolerance by which it may end before, in sizes."""
+MATTERS = 1e-2
+"""Part of the tolerance by which a jump of the force until then may change velocities."""
+MOST_CUTS = 4
+UNCLEAR_STEP = 0.7
+WITHOUT = 0.5
+"""How a step is shortened in which no interaction is held."""
+MOST_LOOKS = 60
+ROUNDING = 1e-15
+"""Of the time: a switch is not found closer than this."""
+UNSEEN = 1e3
+"""Change of the velocity, in tolerances, in a first step that does not matter; its error is 1e-4 of it."""
+REACH = 6.0
+"""The step after a switch is this, times the eighth root of the tolerance, over the frequency felt along the motion."""
+
+
+@inlined
+def nearness(switch, settings):
+    """How far (m) beyond a switch the next step may go."""
+    if switch[0, CUTS] == 1.0:
+        return max(TIGHT, WIDE * settings.relative) * switch[0, SIZE]
+    return TIGHT * switch[0, SIZE]
+
+
+@for_both(inlined)
+def step_after(dyn, scratch, state, settings, t):
+    """Step (s) that suits the stiffness felt along the motion, from the trial state, whose derivative is in row LANDED.
+
+    Frequencies are those of accelerations that change with the way. Where a force begins with a power that is no whole
+    number, the error estimate does not tell the first step's error, and the step is so short that it does not matter.
+    """
+    switch = dyn.loads.switch
+    y = scratch.state
+    trial = scratch.dense[7]
+    gain = scratch.stages[LANDED]
+    changed = scratch.stages[15]
+    reach = REACH * settings.relative**0.125
+    h = settings.longest
+    wanted = h
+    bend = 0.0
+    for _ in range(4):
+        way = 0.0
+        bend = 0.0
+        for c in range(3, y.shape[1]):
+            trial[0, c] = y[0, c] + h * (y[1, c] + 0.5 * h * gain[1, c])
+            trial[1, c] = y[1, c] + h * gain[1, c]
+            way += ((trial[0, c] - y[0, c]) / settings.absolute[0, c]) ** 2
+        power = derivative(dyn, scratch, t + h, trial, changed, scratch.multipliers)
+        state.count[EVALUATIONS] += 1
+        for c in range(3, y.shape[1]):
+            bend += ((changed[1, c] - gain[1, c]) / settings.absolute[1, c]) ** 2
+        if power != power or not math.isfinite(bend):
+            bend = 0.0
+            h *= 0.1
+            wanted = h
+            continue
+        wanted = settings.longest
+        if bend > 0.0:
+            wanted = min(wanted, reach * (way / bend) ** 0.25)
+        if wanted > 0.5 * h:
+            break
+        h = max(wanted, 1e-4 * h)
+    wanted = min(wanted, 2.0 * h)
+    rough = 0.0
+    for row in range(1, switch.shape[0]):
+        if switch[row, LOOSE] == 2.0 and switch[row, VALUE] > 0.0:
+            rough = max(rough, switch[row, ROUGH])
+    if rough > 0.0 and bend > 0.0:
+        wanted = min(wanted, h * (UNSEEN / (math.sqrt(bend) * h)) ** (1.0 / (rough + 1.0)))
+    return min(wanted, settings.longest)
+
+
+@for_both(lazy(float))
+def crossing(dyn, scratch, state, settings, h, reached, work):
+    """What part of the step that was tried is to be taken again, below 1; 1: all is well; 2: it ends at a switch.
+
+    The state evaluated last is the step's end, before and, for 1 and 2, after.
+    """
+    switch = dyn.loads.switch
+    trial = scratch.state
+    k = scratch.stages
+    n3 = trial.shape[1]
+    t = state.clock[TIME]
+    if h < settings.smallest:
+        return 1.0
+    end = farthest(switch, VALUE)
+    first = switch[0, BEYOND]
+    cuts = switch[0, CUTS]
+    if cuts > 0.0 and first == math.inf:
+        if end < -max(TIGHT, SHORT * settings.relative) * switch[0, SIZE]:
+            return 1.0
+        switch[0, HELD] = 0.0
+        scratch.power[LANDED] = derivative(dyn, scratch, reached, trial, k[LANDED], scratch.multipliers)
+        state.count[EVALUATIONS] += 1
+        jump = 0.0
+        for c in range(3, n3):
+            jump = max(jump, abs(k[LANDED, 1, c] - k[12, 1, c]) / allowed(settings, state.y, trial, 1, c))
+        if end <= 0.0 or jump * end <= MATTERS * switch[0, RATE]:
+            tight = TIGHT * switch[0, SIZE]
+            for row in range(1, switch.shape[0]):
+                side = switch[row, KEPT]
+                value = switch[row, VALUE]
+                switch[row, BEFORE] = side
+                if side != 0.0 and -side * value >= min(end, 0.0):
+                    switch[row, LOOSE] = 2.0
+                switch[row, KEPT] = 0.0
+                if switch[row, LOOSE] < 2.0 and abs(value) > tight:
+                    switch[row, KEPT] = math.copysign(1.0, value)
+            switch[0, HELD] = 1.0
+            switch[0, RATE] = step_after(dyn, scratch, state, settings, reached)
+            switch[0, HELD] = 0.0
+            for row in range(1, switch.shape[0]):
+                switch[row, KEPT] = switch[row, BEFORE]
+            derivative(dyn, scratch, reached, trial, k[LANDED], scratch.multipliers)
+            state.count[EVALUATIONS] += 1
+            return 2.0
+        first = reached
+    if cuts >= MOST_CUTS:
+        switch[0, FREE] = 1.0
+        switch[0, CUTS] = 0.0
+        return WITHOUT
+    switch[0, CUTS] = cuts + 1.0
+    aim = 0.5 * nearness(switch, settings)
+    if end > 0.0:
+        aim = min(aim, 0.5 * end)
+    switch[0, HELD] = 1.0
+    interpolant(dyn, scratch, state, h, work)
+    state.count[EVALUATIONS] += 3
+    if scratch.dense_work[3] != scratch.dense_work[3]:
+        return UNCLEAR_STEP
+    # between a and b lies the switch, c is the place before; Chandrupatla 1997, Adv. Eng. Softw. 28, 145
+    a = 0.0
+    fa = farthest(switch, HERE) - aim
+    b = 1.0
+    fb = end - aim
+    looking = first < reached
+    part = (first - t) / h
+    if not looking:
+        part = fa / (fa - fb)
+    c = a
+    fc = fa
+    found = -1.0
+    for _ in range(MOST_LOOKS):
+        x = a + part * (b - a)
+        interpolate(scratch.dense, scratch.dense_work, state.y, x, trial)
+        power = derivative(dyn, scratch, t + x * h, trial, k[LANDED], scratch.multipliers)
+        state.count[EVALUATIONS] += 1
+        if power != power:
+            return UNCLEAR_STEP
+        f = farthest(switch, VALUE) - aim
+        if looking and not f > 0.0 and not fb > 0.0:  # a stage alone was beyond, not the motion
+            for row in range(2):
+                for column in range(3, n3):
+                    trial[row, column] = state.y[row, column] + scratch.dense[0, row, column]
+            derivative(dyn, scratch, reached, trial, k[LANDED], scratch.multipliers)
+            state.count[EVALUATIONS] += 1
+            switch[0, CUTS] = 0.0
+            return 1.0
+        looking = False
+        if (f > 0.0) == (fa > 0.0):
+            c = a
+            fc = fa
+        else:
+            c = b
+            fc = fb
+            b = a
+            fb = fa
+        a = x
+        fa = f
+        if abs(f) <= 0.9 * aim:
+            found = a
+            break
+        if abs(b - a) * h <= ROUNDING * abs(t):
+            found = a if fa > 0.0 else b
+            break
+        xi = (a - b) / (c - b)
+        phi = (fa - fb) / (fc - fb)
+        part = 0.5
+        if phi * phi < xi and (1.0 - phi) * (1.0 - phi) < 1.0 - xi:
+            part = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+        part = min(max(part, 1e-9), 1.0 - 1e-9)
+    switch[0, RATE] = abs((fa - fc) / ((a - c) * h))
+    if not 0.0 < found < 1.0 or found * h < max(settings.smallest, ROUNDING * abs(t)):
+        switch[0, FREE] = 1.0
+        switch[0, CUTS] = 0.0
+        return WITHOUT
+    return found

@@ -39,7 +39,8 @@ def _watch(make: int, parent: int) -> None:
 def is_ending(make: int) -> bool:
     """Whether make only waits for its commands after a fatal signal: it blocks that signal and handles it no more.
 
-    Linux alone tells; elsewhere this is False, and the stage goes on until make has ended.
+    Linux alone tells; elsewhere this is False, and the stage goes on until make has ended. A process that is about to
+    start another one blocks all signals for a moment (posix_spawn and vfork do), and is not ending.
     """
     try:
         lines = Path(f"/proc/{make}/status").read_text().splitlines()
@@ -49,6 +50,8 @@ def is_ending(make: int) -> bool:
     if fields["State"].startswith("Z"):
         return True
     blocked, handled, ignored = (int(fields[name], 16) for name in ("SigBlk", "SigCgt", "SigIgn"))
+    if blocked >> (signal.SIGSEGV - 1) & 1:
+        return False
     return any((blocked & ~handled & ~ignored) >> (number - 1) & 1 for number in FATAL)
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from shared.stage.lineage import is_ending
 from shared.stage.paths import ROOT
 
 STAGE = """
@@ -73,6 +74,18 @@ def test_whatever_ends_run_all_ends_its_stages(tmp_path: Path, victim: str, how:
         for pid, _, arguments in processes():
             if str(tmp_path) in arguments:
                 os.kill(pid, signal.SIGKILL)
+
+
+@LINUX
+@pytest.mark.parametrize(("blocked", "ending"), [("valid_signals()", False), ("{SIGQUIT}", True), ("{SIGTERM}", True)])
+def test_a_process_that_starts_another_is_not_ending(blocked: str, ending: bool) -> None:
+    """posix_spawn and vfork block all signals until the other one runs; make blocks the fatal one alone."""
+    code = f"from signal import *; pthread_sigmask(SIG_BLOCK, {blocked}); print(flush=True); input()"
+    with subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as one:
+        assert one.stdout is not None
+        one.stdout.readline()
+        assert is_ending(one.pid) == ending
+        one.kill()
 
 
 def processes() -> list[tuple[int, int, str]]:

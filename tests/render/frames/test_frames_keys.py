@@ -115,7 +115,7 @@ def test_an_edit_of_what_blender_runs_changes_every_key(
 
 
 def test_blenders_side_takes_nothing_from_outside_that_no_key_holds():
-    numbers, telling = {"SENSOR", "MILLIMETRE"}, {"picture_file", "errors", "files"}
+    numbers, telling = {"SENSOR", "MILLIMETRE"}, {"picture_file", "errors", "files", "signals"}
     inside = ("render.blender.job", "render.blender.scene", "render.blender.worker", "render.film.scene")
     places = [render_keys.BLENDER / name for name in render_keys.BLENDER_SOURCES]
     for file in [file for place in places for file in (place.rglob("*.py") if place.is_dir() else [place])]:

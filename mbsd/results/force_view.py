@@ -12,31 +12,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.base.errors import ModelError
+from mbsd.results.views import Wrench
 
 UNITS: Mapping[str, str] = {"length": "m", "angle": "rad", "coordinate": "m", "gap": "m"}
 """Of what a force may measure."""
 
 
 @dataclass(frozen=True)
-class Action:
-    """What a force does to one body, (T,) arrays: N along the world's axes, N m about the point (m)."""
+class Action(Wrench):
+    """What a force does to one body."""
 
     body: str
-    x: np.ndarray
-    y: np.ndarray
-    fx: np.ndarray
-    fy: np.ndarray
-    torque: np.ndarray
-
-    @property
-    def force(self) -> np.ndarray:
-        """(T, 2) N."""
-        return np.stack([self.fx, self.fy], axis=-1)
-
-    @property
-    def magnitude(self) -> np.ndarray:
-        """(T,) of the force (N), never negative."""
-        return np.hypot(self.fx, self.fy)
 
 
 @dataclass(frozen=True)
@@ -157,7 +143,7 @@ class ForceView:
 
     def _action(self, k: int) -> Action:
         point, wrench = self.points[..., k, :], self.wrenches[..., k, :]
-        return Action(self.bodies[k], point[..., 0], point[..., 1], wrench[..., 0], wrench[..., 1], wrench[..., 2])
+        return Action(point[..., 0], point[..., 1], wrench[..., 0], wrench[..., 1], wrench[..., 2], self.bodies[k])
 
     def _measured(self, what: str) -> np.ndarray:
         if self.measures != what or self.value is None:

@@ -25,8 +25,8 @@ class FrameView:
 
 
 @dataclass(frozen=True)
-class JointView:
-    """A joint: place of its second marker (m) and what it does to its second body (N, N m), (T,) arrays."""
+class Wrench:
+    """A force and a torque on a body, (T,) arrays: N along the world's axes, N m about the point (m)."""
 
     x: np.ndarray
     y: np.ndarray
@@ -35,14 +35,24 @@ class JointView:
     torque: np.ndarray
 
     @property
-    def reaction(self) -> np.ndarray:
-        """(T, 2) force on the second body, world axes (N)."""
+    def force(self) -> np.ndarray:
+        """(T, 2) world axes (N)."""
         return np.stack([self.fx, self.fy], axis=-1)
 
     @property
     def magnitude(self) -> np.ndarray:
-        """(T,) of the force (N)."""
+        """(T,) of the force (N), never negative."""
         return np.hypot(self.fx, self.fy)
+
+
+@dataclass(frozen=True)
+class JointView(Wrench):
+    """What a joint does to its second body, at its second marker."""
+
+    @property
+    def reaction(self) -> np.ndarray:
+        """(T, 2) force on the second body, world axes (N)."""
+        return self.force
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ class Order(msgspec.Struct, frozen=True, kw_only=True):
 def collected(name: str) -> dict[str, bytes]:
     """The files of all authors, by name below the project, that go along for the mechanism or variant ``name``.
 
-    One that cannot be read, or goes meanwhile, stays here; whoever needs it is reported from here.
+    One that cannot be read, or goes meanwhile, stays here; its want is reported from here.
     """
     found: dict[str, bytes] = {}
     for path in sorted(_paths(paths.owner_of(name))):

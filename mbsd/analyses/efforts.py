@@ -26,6 +26,7 @@ from mbsd.base.errors import MobilityError, ModelError
 from mbsd.base.names import names_in, no_such
 from mbsd.base.shown import shown
 from mbsd.kinematics.limits.closed_contacts import refuse_pushing
+from mbsd.kinematics.pose.phases import take_decided
 from mbsd.model.adding.forces import Amount, add_force, amount_given
 from mbsd.model.force import Force, ForceKind
 from mbsd.model.forces.actuator import ACTUATOR
@@ -125,7 +126,8 @@ def inverse_dynamics(m: Model, motion: Solution, actuators: Sequence[str]) -> Ac
     refuse_pushing(m, motion)
     others: dict[str, Amount | None] = {name: None for name in m.drivers if name not in actuators}
     bare = with_efforts(m, others | dict.fromkeys(actuators, 0.0))
-    packed = _as_in(motion, pack(bare))
+    packed = pack(bare)
+    take_decided(packed, motion.packed)
     q, v, a = (part.reshape(len(motion.t), -1) for part in (motion.q, motion.v, motion.a))
     q, v, a = np.ascontiguousarray(q), np.ascontiguousarray(v), np.ascontiguousarray(a)
     count, rows = len(q), len(packed.ws.phi)
@@ -183,12 +185,3 @@ def _solved(
         out[k] = scale * np.linalg.lstsq(matrix * columns[:, None] * scale, right[k] * columns, rcond=1e-9)[0]
         left[k] = right[k] - matrix @ out[k]
     return out[:, : len(rows)], out[:, len(rows) :], left
-
-
-def _as_in(motion: Solution, packed: Packed) -> Packed:
-    """What the closed start pose has decided about joints: whole turns, and how gears mesh."""
-    old, new = motion.packed.system, packed.system
-    for array in ("angle_offset", "numbers", "special"):
-        part = getattr(new, array)
-        part[:] = getattr(old, array)[: len(part)]
-    return packed

@@ -1,6 +1,7 @@
 """Points on curves that cross themselves: on which branch of its curve each one is.
 
-Such a row keeps the parameter of its foot where the motion was accepted last (mbsd/equations/relative/curve_pieces.py).
+Such a row keeps the parameter of its foot where the motion was accepted last (mbsd/equations/relative/curve_pieces.py),
+in LAST of its relative pose.
 Poses that are looked at afterwards tell their branch by themselves: at a crossing it is the one along which the point
 moves.
 """
@@ -8,13 +9,14 @@ moves.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from mbsd.equations.assembly import tabulate
 from mbsd.equations.constraints.relative import AT, MARKER_I, MARKER_J
-from mbsd.equations.relative.curve_pieces import CLOSED, CX, CY, DISTANCE, DX, DY, FARTHEST, LAST, SPAN, TABLE, foot
+from mbsd.equations.relative.curve_pieces import CLOSED, CX, CY, DISTANCE, DX, DY, FARTHEST, SPAN, TABLE, foot
+from mbsd.equations.system import LAST
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
@@ -26,54 +28,63 @@ LOOKS = 64
 """Parameters from which the branches near a point are looked for."""
 
 
+class CurveRow(NamedTuple):
+    """A row whose curve crosses itself."""
+
+    i: int
+    """Marker."""
+    j: int
+    numbers: np.ndarray
+    """Of its equation; a copy, as numba looks longer at the types of arrays that cannot be written into."""
+    own: np.ndarray
+    """(16,) its relative pose, scratch, and LAST."""
+
+
 class CurveBranches:
     """The rows of a packed mechanism whose curves cross themselves."""
 
     def __init__(self, packed: Packed) -> None:
         system, self.packed = packed.system, packed
-        self.rows: list[tuple[int, int, np.ndarray]] = []
-        """Markers i and j, and the numbers of the row."""
+        self.rows: list[CurveRow] = []
         for k, name in enumerate(packed.specials.names):
-            at = int(system.special[k, AT])
+            i, j, at = (int(system.special[k, column]) for column in (MARKER_I, MARKER_J, AT))
             if name in CURVES and system.numbers[at + FARTHEST] > 0.0:
-                self.rows.append(
-                    (int(system.special[k, MARKER_I]), int(system.special[k, MARKER_J]), system.numbers[at:])
-                )
-        self._scratch = np.zeros_like(packed.ws.relative)
+                self.rows.append(CurveRow(i, j, system.numbers[at:].copy(), packed.ws.relative[k]))
 
     def __bool__(self) -> bool:
         return bool(self.rows)
 
     def settle(self, q: np.ndarray, v: np.ndarray) -> None:
         """Take the branches along which the points move at q, v (3 nb,)."""
-        for i, j, numbers in self.rows:
-            numbers[LAST] = math.nan
-            x, y, vx, vy = self._relative(q, v, i, j)
-            best = foot(numbers, x, y, self._scratch)
-            least = self._across(numbers, x, y, vx, vy)
+        for row in self.rows:
+            numbers, own = row.numbers, row.own
+            own[LAST] = math.nan
+            x, y, vx, vy = self._relative(q, v, row.i, row.j)
+            best = foot(numbers, x, y, own)
+            least = self._across(row, x, y, vx, vy)
             for part in np.arange(1, LOOKS) / LOOKS:
-                numbers[LAST] = numbers[TABLE] + part * numbers[SPAN]
-                u = foot(numbers, x, y, self._scratch)
-                across = self._across(numbers, x, y, vx, vy)
+                own[LAST] = numbers[TABLE] + part * numbers[SPAN]
+                u = foot(numbers, x, y, own)
+                across = self._across(row, x, y, vx, vy)
                 if across < least:
                     best, least = u, across
-            numbers[LAST] = best
+            own[LAST] = best
 
-    def _across(self, numbers: np.ndarray, x: float, y: float, vx: float, vy: float) -> float:
+    def _across(self, row: CurveRow, x: float, y: float, vx: float, vy: float) -> float:
         """Speed across the curve at the foot in the scratch; infinite where the point is not on it."""
-        at = self._scratch
+        at = row.own
         speed = math.hypot(at[DX], at[DY])
         tx, ty = at[DX] / speed, at[DY] / speed
-        off = tx * (y - at[CY]) - ty * (x - at[CX]) - numbers[DISTANCE]
+        off = tx * (y - at[CY]) - ty * (x - at[CX]) - row.numbers[DISTANCE]
         return abs(tx * vy - ty * vx) if abs(off) < NEAR * self.packed.size else math.inf
 
     def moved(self, q: np.ndarray) -> tuple[list[float], float]:
         """Parameters of the feet at q (3 nb,), and the farthest that one of them goes, as part of how far it may."""
         feet, farthest = [], 0.0
-        for i, j, numbers in self.rows:
+        for i, j, numbers, own in self.rows:
             x, y, _, _ = self._relative(q, np.zeros_like(q), i, j)
-            feet.append(foot(numbers, x, y, self._scratch))
-            way = abs(feet[-1] - numbers[LAST])
+            feet.append(foot(numbers, x, y, own))
+            way = abs(feet[-1] - own[LAST])
             if numbers[CLOSED]:
                 way = min(way, abs(numbers[SPAN] - way))
             farthest = max(farthest, way / numbers[FARTHEST])
@@ -81,8 +92,8 @@ class CurveBranches:
 
     def accept(self, feet: list[float]) -> None:
         """Go on from these."""
-        for (_, _, numbers), u in zip(self.rows, feet, strict=True):
-            numbers[LAST] = u
+        for row, u in zip(self.rows, feet, strict=True):
+            row.own[LAST] = u
 
     def _relative(self, q: np.ndarray, v: np.ndarray, i: int, j: int) -> tuple[float, float, float, float]:
         """Place and velocity of marker j in the axes of marker i."""
@@ -118,9 +129,9 @@ def tabulate_along(
     if not following.rows:
         tabulate(packed.system, drives, q, v, packed.ws, phi, compact, gamma)
         return
-    kept = packed.system.numbers.copy()
+    kept = [float(row.own[LAST]) for row in following.rows]
     for k in range(len(q)):
         following.settle(q[k], v[k])
         row = slice(k, k + 1)
         tabulate(packed.system, drives[row], q[row], v[row], packed.ws, phi[row], compact[row], gamma[row])
-    packed.system.numbers[:] = kept
+    following.accept(kept)

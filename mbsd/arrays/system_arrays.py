@@ -9,7 +9,7 @@ import numpy as np
 
 from mbsd.arrays.relative import Specials
 from mbsd.base.kept import Kept
-from mbsd.equations.system import System, Workspace, workspace
+from mbsd.equations.system import System, Workspace, constant, workspace
 
 MOST_KEPT = 60
 """Coordinates of mechanisms whose arrays and start are kept for the next solution."""
@@ -49,14 +49,13 @@ _ARRAYS: Kept[Arrays] = Kept()
 
 
 def arrays_of(parts: Parts, specials: Specials, forces: int) -> Arrays:
-    """Arrays whose angle offsets and scratch are the caller's own; the others are shared, and written by nobody."""
+    """Arrays whose scratch is the caller's own; the others are shared."""
     numbers = np.array(parts.numbers, float)
     if specials.names or 3 * (parts.bodies - 1) > MOST_KEPT:
         return _made(parts, numbers, specials, forces)
     own = parts.bodies, parts.marker_body, parts.offsets, parts.lengths, parts.first_row, parts.tables, forces
     kept = _ARRAYS.get((numbers.tobytes(), *own), lambda: _made(parts, numbers, specials, forces))
-    system = kept.system._replace(angle_offset=kept.system.angle_offset.copy())
-    return kept._replace(system=system, ws=Workspace(*[part.copy() for part in kept.ws]))
+    return kept._replace(ws=Workspace(*[part.copy() for part in kept.ws]))
 
 
 def _made(parts: Parts, numbers: np.ndarray, specials: Specials, forces: int) -> Arrays:
@@ -94,12 +93,13 @@ def _made(parts: Parts, numbers: np.ndarray, specials: Specials, forces: int) ->
         distance_length=lengths.copy(),
         **as_table,
     )
-    constant = None
+    system = System(*map(constant, system))
+    own = None
     if not len(special) and 3 * (parts.bodies - 1) <= MOST_KEPT:
         fixed = [part.tobytes() for name, part in system._asdict().items() if name != "angle_offset"]
-        constant = (*fixed, com.tobytes(), np.float64(size).tobytes())
+        own = (*fixed, com.tobytes(), np.float64(size).tobytes())
     ws = workspace(system, parts.first_row[-1])
-    return Arrays(system, ws, com, first_row, markers, force_markers, size, constant)
+    return Arrays(system, ws, com, first_row, markers, force_markers, size, own)
 
 
 def _driven(*tables: np.ndarray) -> np.ndarray:

@@ -1,9 +1,9 @@
 """Arrays that the kernels work on: System, the mechanism, and Workspace, scratch. Made by arrays/packing.py.
 
-System is constant but for what its constraints remember. Closing the start writes ARM and ACTIVE of ``special``, the
-first four of each constraint's ``numbers`` (kinematics/pose/phases.py) and turns of ``angle_offset`` (close.py).
-Points on curves that cross themselves write their last place into ``numbers`` (arrays/curve_branches.py), contacts that
-slide their PHASE (dynamics/rows/switches.py): an equation reads all its numbers by one pointer. ``Held`` holds it.
+System is constant: its arrays cannot be written into. Closing the start makes another one, with its own ARM and ACTIVE
+of ``special``, first four of each constraint's ``numbers`` (kinematics/pose/phases.py) and turns of ``angle_offset``
+(close.py). What events change of a constraint of relative pose stands in the last columns of ``Workspace.relative``
+(ZERO, LAST), where its equation finds it beside its pose; the record ``Held`` of a run holds it.
 
 Bodies are numbered 0 .. nb-1; body 0 is ground. A row of the Jacobian touches two bodies, so six numbers hold it.
 A constraint table has one row per constraint: marker i, marker j, first row in J, motion (0: none, constant 0).
@@ -17,6 +17,9 @@ import numpy as np
 
 PLACE = 0x7FFF_FFFF
 """A place in an array, read from a table, & PLACE: then compiled indexing need not look for negative numbers."""
+ZERO, LAST = 14, 15
+"""Columns of ``Workspace.relative`` that no evaluation writes. ZERO: from where the sliding of a contact, or of a joint
+that sticks, is counted (m, rad). LAST: parameter last accepted on a curve that crosses itself (m); NaN: none yet."""
 
 
 class System(NamedTuple):
@@ -49,7 +52,7 @@ class System(NamedTuple):
     address: Any
     """(k,) of their equations."""
     numbers: Any
-    """All numbers of all of them; which of them change is said above."""
+    """All numbers of all of them."""
     driven: Any
     """(drivers, 2) row and motion of each driven constraint."""
     row_body: Any
@@ -59,9 +62,13 @@ class System(NamedTuple):
     distance_length: Any
     """(k,) m, for the rows of ``distance``."""
 
+    def changed(self, **arrays: np.ndarray) -> System:
+        """The same mechanism with other arrays."""
+        return self._replace(**{name: constant(array) for name, array in arrays.items()})
+
 
 class Workspace(NamedTuple):
-    """Scratch of one evaluation; every kernel call overwrites it."""
+    """Scratch of one evaluation; every kernel call overwrites it, but for what ``relative`` remembers."""
 
     cos_sin: Any
     """(nb, 2) of the body angles."""
@@ -76,7 +83,7 @@ class Workspace(NamedTuple):
     convective: Any
     """(nm, 2) convective acceleration -omega^2 arm, world."""
     relative: Any
-    """(16,) relative pose of one special constraint, then scratch of its equation."""
+    """(k, 16) relative pose of each special constraint, scratch of its equation, then ZERO and LAST."""
     equation: Any
     """(k, 10) value, gradient and second derivatives of the special constraints."""
     phi: Any
@@ -91,6 +98,12 @@ class Workspace(NamedTuple):
     """(2, 3 nb) its correction, and the velocities."""
 
 
+def constant(array: np.ndarray) -> np.ndarray:
+    """The same array, which cannot be written into any more."""
+    array.setflags(write=False)
+    return array
+
+
 def workspace(system: System, rows: int) -> Workspace:
     """Scratch for ``rows`` constraint rows. Entries of ``jac`` that no constraint writes stay zero for ever."""
     bodies = len(system.mass)
@@ -98,6 +111,8 @@ def workspace(system: System, rows: int) -> Workspace:
     cos_sin[:, 0] = 1.0
     on_ground = system.marker_body == 0
     at_rest = np.where(on_ground[:, None], system.marker_arm, 0.0)
+    relative = np.zeros((len(system.special), LAST + 1))
+    relative[:, LAST] = np.nan
     return Workspace(
         cos_sin=cos_sin,
         arm=at_rest.copy(),
@@ -105,7 +120,7 @@ def workspace(system: System, rows: int) -> Workspace:
         axis=np.where(on_ground[:, None], system.marker_axis, 0.0),
         velocity=np.zeros_like(at_rest),
         convective=np.zeros_like(at_rest),
-        relative=np.zeros(16),
+        relative=relative,
         equation=np.zeros((len(system.special), 10)),
         phi=np.zeros(rows),
         jac=np.zeros((rows, 6)),

@@ -155,7 +155,7 @@ def slopes(packed: Packed, q0: np.ndarray, groups: Groups, moved: Sequence[Moved
             shifted[number, axis] += 1.0
         if change.rod is not None:
             lengths[change.rod] += 1.0
-        system = packed.system._replace(marker_arm=shifted, distance_length=lengths)
+        system = packed.system.changed(marker_arm=shifted, distance_length=lengths)
         changed = plan_groups(replace(packed, system=system, constant=None), q0, 0)
         assert changed is not None
         slope = changed.number - groups.number

@@ -325,13 +325,13 @@ def _sampled(packed: Packed) -> np.ndarray:
     random = np.random.default_rng(2)
     none = np.zeros((len(packed.motions) + 1, 3))
     samples = []
-    special, rows = packed.system.special, packed.system.special[:, ROW]
+    special, rows = packed.system.special.copy(), packed.system.special[:, ROW]
     special[:, ACTIVE] = 0  # their entries may be constant here and there, as in the dwell of a Geneva: none counts
+    system = packed.system.changed(special=special)
     for _ in range(4):
         q = np.zeros(3 * len(packed.body_names))
         q[3:] = random.uniform(-2.0, 2.0, packed.coordinates) * packed.column_scale()
-        residual_and_jacobian(packed.system, q, none, packed.ws)
+        residual_and_jacobian(system, q, none, packed.ws)
         packed.ws.jac[rows] = random.uniform(1.0, 2.0, (len(rows), 6))
         samples.append(packed.jacobian())
-    special[:, ACTIVE] = 1
     return np.array(samples)

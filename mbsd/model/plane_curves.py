@@ -74,7 +74,7 @@ def curve_numbers(
     ends = np.vstack([tangent(np.zeros(len(h))), tangent(h)[-1:]])
     turning = np.unwrap(np.arctan2(ends[:, 1], ends[:, 0]))
     rows = np.column_stack([breaks[:-1], coefficients.reshape(len(h), 12), arc[:-1], turning[:-1]])
-    head = [distance, radius, float(closed), breaks[-1] - breaks[0], len(h), farthest, math.nan]
+    head = [distance, radius, float(closed), breaks[-1] - breaks[0], len(h), farthest]
     return np.concatenate([head, rows.ravel(), [arc[-1], turning[-1] - turning[0]]])
 
 

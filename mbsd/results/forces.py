@@ -176,7 +176,7 @@ def _loads(moved: Moved, k: int) -> tuple[np.ndarray, np.ndarray]:
     loads, laws = pack_loads(alone), compiled_laws(alone, *moved.span)
     load, power = np.zeros_like(moved.q), np.zeros(len(moved.t))
     none = np.zeros(0, np.int64)  # loads look at no markers
-    system = packed.system._replace(moving=none, directed=none)
+    system = packed.system.changed(moving=none, directed=none)
     tabulate_loads(system, loads, laws, moved.t, moved.q, moved.v, packed.ws, load, power)
     packed.specials.check()
     return load, power

@@ -38,7 +38,6 @@ def begun(times: np.ndarray) -> tuple[EventRun, list[bytes]]:
 def _constants(met: EventRun) -> list[bytes]:
     """Arrays of the mechanism that are no part of the record: they must not change."""
     dynamics, packed = met.dynamics, met.packed
-    changed = {id(packed.system.numbers)}
     arrays = [*packed.system, dynamics.inertia, dynamics.inverse, dynamics.metric, dynamics.weight, *dynamics.laws]
     arrays += [
         dynamics.loads.friction,
@@ -46,7 +45,7 @@ def _constants(met: EventRun) -> list[bytes]:
         dynamics.loads.number,
         dynamics.loads.term,
     ]
-    return [np.asarray(one).tobytes() for one in arrays if id(one) not in changed]
+    return [np.asarray(one).tobytes() for one in arrays]
 
 
 def test_a_copy_of_what_is_held_and_the_state_lead_to_the_same_end() -> None:

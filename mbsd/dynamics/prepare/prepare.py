@@ -72,7 +72,7 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     if not (spare or len(loads.friction) or light[3:].any() or m.events):
         schur = with_pins(schur, packed.system)
     sliding = sliding_for(friction_rows(packed), len(inertia), len(packed.ws.phi))
-    held = Held.of(schur, packed.system, sliding, loads)
+    held = Held.of(schur, packed.ws, sliding, loads)
     switches = Switches(packed, held, spare)
     dynamics = Dynamics(
         system=packed.system,

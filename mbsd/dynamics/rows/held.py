@@ -13,7 +13,7 @@ from mbsd.dynamics.reference.schur import Schur
 from mbsd.dynamics.reference.sliding import Sliding
 from mbsd.equations.joint_friction import SENSE
 from mbsd.equations.loads import Loads
-from mbsd.equations.system import System
+from mbsd.equations.system import ZERO, Workspace
 
 OPEN, SLIDES, STICKS, RELEASED = "open", "slides", "sticks", "released"
 """States of a contact, one without friction slides, and of a joint with friction."""
@@ -25,8 +25,8 @@ class Held:
 
     rows: np.ndarray
     """(blocks, 2) rows of J in the blocks of Schur.rows; -1: it is released, or there is none."""
-    numbers: np.ndarray
-    """(n,) System.numbers, of which events change from where sliding is counted (PHASE)."""
+    remembered: np.ndarray
+    """(k, 2) ZERO and LAST of Workspace.relative: from where sliding is counted, place on a crossing curve."""
     factors: np.ndarray
     """(c,) friction coefficient times direction of sliding of the contacts with friction; 0: it does not slide."""
     senses: np.ndarray
@@ -45,9 +45,9 @@ class Held:
     """Sign of the value of each event of the user."""
 
     @classmethod
-    def of(cls, schur: Schur, system: System, sliding: Sliding, loads: Loads) -> Held:
+    def of(cls, schur: Schur, ws: Workspace, sliding: Sliding, loads: Loads) -> Held:
         """The record of arrays that kernels read."""
-        return cls(schur.rows, system.numbers, sliding.table[:, 0], loads.friction_number[:, SENSE])
+        return cls(schur.rows, ws.relative[:, ZERO:], sliding.table[:, 0], loads.friction_number[:, SENSE])
 
     def copy(self) -> Held:
         """As it is now."""

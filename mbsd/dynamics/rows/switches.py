@@ -12,7 +12,7 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.dynamics.rows.held import OPEN, Held
-from mbsd.equations.constraints.relative import AT, ROW
+from mbsd.equations.constraints.relative import ROW
 from mbsd.kinematics.pose.mobility import independent_rows, scaled_jacobian
 from mbsd.model.contact import ContactKind
 from mbsd.model.joint import Joint
@@ -84,7 +84,7 @@ class Switches:
         self.place = {int(row): (k, s) for k, rows in enumerate(held.rows) for s, row in enumerate(rows) if row >= 0}
         self.contacts: list[RunContact] = []
         special = packed.system.special
-        self._number_of = {int(special[k, ROW]): int(special[k, AT]) for k in range(len(special))}
+        self._special_of = {int(special[k, ROW]): k for k in range(len(special))}
         first = len(packed.joints) - packed.contacts
         slow = SETTLE * float(np.sqrt(np.hypot(*packed.system.gravity) / packed.size or 1.0))
         friction = 0
@@ -145,9 +145,7 @@ class Switches:
 
     def move_zero(self, row: int, residual: float) -> None:
         """Count the way of a contact or of a joint that sticks from here, where its residual is ``residual``."""
-        from mbsd.equations.relative.equation import PHASE
-
-        self.packed.system.numbers[self._number_of[row] + PHASE] += residual
+        self.now.remembered[self._special_of[row], 0] += residual
 
     def held(self) -> np.ndarray:
         """(m,) which rows hold; joints' redundant rows do too."""

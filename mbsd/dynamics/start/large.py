@@ -32,7 +32,7 @@ from mbsd.dynamics.start.row_strength import factor_at
 from mbsd.kinematics.pose.close import CLOSED, LONGEST_STEP, rough_pose, unwind_angles
 from mbsd.kinematics.pose.initial import Initial, given_coordinates, given_velocities, nearest_turn, tell_coordinates
 from mbsd.kinematics.pose.open_loops import why_open
-from mbsd.kinematics.pose.phases import active_rows, let_phases_go, refuse_impossible, take_phases
+from mbsd.kinematics.pose.phases import active_rows, let_phases_go, refuse_impossible, take_decided, take_phases
 from mbsd.model.mechanism import Model
 from mbsd.results.mobility import Mobility
 
@@ -209,8 +209,7 @@ def mobility_large(m: Model, packed: Packed) -> Mobility:
     free = copied(m)
     free.drivers = {}
     joints = pack(free)
-    joints.system.special[:] = packed.system.special[: len(joints.system.special)]
-    joints.system.numbers[:] = packed.system.numbers[: len(joints.system.numbers)]
+    take_decided(joints, packed)
     found = independent_large(joints, 0.0, q)[1]
     random = np.random.default_rng(1)
     for k in range(12):

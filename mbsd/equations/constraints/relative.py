@@ -42,7 +42,7 @@ def rows(system, q, drive, ws):
         dy = ws.position[j, 1] - ws.position[i, 1]
         x = ux * dx + uy * dy
         y = ux * dy - uy * dx
-        relative = ws.relative
+        relative = ws.relative[k]
         relative[X] = x
         relative[Y] = y
         relative[A] = q[3 * system.marker_body[j] + 2] - turned + system.numbers[at]

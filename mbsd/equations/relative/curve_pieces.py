@@ -1,9 +1,8 @@
 """A plane curve as quintic pieces of a parameter, and the point of it that is nearest to a given one.
 
 Numbers, from ``OWN`` on: offset D (m), radius r (m), 1 if closed, span of the parameter, count of pieces, how far the
-foot may go at once (0: as far as it likes), its parameter last accepted; then of each piece, 15: begin u, six
-coefficients of x(u) and of y(u), lowest first, arc length and tangent angle at its begin. Beyond its ends an open curve
-goes on straight.
+foot may go at once (0: as far as it likes); then of each piece, 15: begin u, six coefficients of x(u) and of y(u),
+lowest first, arc length and tangent angle at its begin. Beyond its ends an open curve goes on straight.
 
 The foot of a point p: (p - c(u)) . c'(u) = 0, by Newton from the nearest of the nodes; where the curve is bent about
 the point the second derivative is left out (Gauss-Newton), which always leads downhill.
@@ -19,8 +18,9 @@ import math
 
 from mbsd.compiling.jit import internal, kernel
 from mbsd.equations.relative.equation import OWN, X, Y
+from mbsd.equations.system import LAST
 
-DISTANCE, RADIUS, CLOSED, SPAN, COUNT, FARTHEST, LAST, TABLE = range(OWN, OWN + 8)
+DISTANCE, RADIUS, CLOSED, SPAN, COUNT, FARTHEST, TABLE = range(OWN, OWN + 7)
 WIDTH = 15
 ARC, TANGENT = 13, 14
 """Of a piece."""
@@ -95,7 +95,7 @@ def find_foot(numbers, relative):
     x = relative[X]
     y = relative[Y]
     count = int(numbers[COUNT])
-    if numbers[FARTHEST] > 0.0 and numbers[LAST] == numbers[LAST]:
+    if numbers[FARTHEST] > 0.0 and relative[LAST] == relative[LAST]:
         _find_following_foot(numbers, relative, x, y, count)
         return
     stride = max(count // LOOKS, 1)
@@ -124,7 +124,7 @@ def find_foot(numbers, relative):
 def _find_following_foot(numbers, relative, x, y, count):
     closed = numbers[CLOSED] != 0.0
     span = numbers[SPAN]
-    last = numbers[LAST]
+    last = relative[LAST]
     best = last
     cost = _cost(numbers, relative, x, y, last, closed)
     best = relative[U]
@@ -159,7 +159,7 @@ def _cost(numbers, relative, x, y, u, closed):
     _go_to_foot(numbers, relative, x, y, u)
     speed = math.sqrt(relative[DX] * relative[DX] + relative[DY] * relative[DY])
     d = (relative[DX] * (y - relative[CY]) - relative[DY] * (x - relative[CX])) / speed
-    away = abs(relative[U] - numbers[LAST])
+    away = abs(relative[U] - relative[LAST])
     if closed:
         away = min(away, numbers[SPAN] - away)
     return abs(d - numbers[DISTANCE]) + AWAY * away
@@ -197,7 +197,7 @@ def _go_to_foot(numbers, relative, x, y, u):
 
 @kernel
 def foot(numbers, x, y, scratch):
-    """Parameter of the foot of (x, y), for callers outside the compiled loops."""
+    """Parameter of the foot of (x, y), for callers outside the compiled loops; scratch (16,) with LAST."""
     scratch[X] = x
     scratch[Y] = y
     find_foot(numbers, scratch)

@@ -39,6 +39,7 @@ from mbsd.equations.relative.curve_pieces import (
     place_on,
 )
 from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA, FYY, PHASE, A, F, X, Y, equation
+from mbsd.equations.system import ZERO
 
 NODES = (-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640)
 WEIGHTS = (0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665, 0.2369268850561891)
@@ -82,7 +83,7 @@ def residual(numbers, relative, out):
     near = numbers[TABLE + WIDTH * piece + TANGENT]
     beta += 2.0 * math.pi * math.floor((near - beta) / (2.0 * math.pi) + 0.5)
     r = numbers[RADIUS]
-    value = s - r * (beta - relative[A]) - numbers[PHASE]
+    value = s - r * (beta - relative[A]) - numbers[PHASE] - relative[ZERO]
     if numbers[CLOSED] != 0.0:
         last = TABLE + WIDTH * int(numbers[COUNT])  # a round: arc length and turning of the tangent
         period = abs(numbers[last] - r * numbers[last + 1])

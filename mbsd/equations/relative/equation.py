@@ -7,7 +7,9 @@ of marker j in the axes of marker i (m) and the angle ``a`` of marker j against 
 of an equation fills, by the indices below, F, its gradient and its second derivatives; special.py makes from them
 the rows of Phi, J and gamma.
 
-``numbers`` begins with the constants that the start pose decides, then come those of the joint, from ``OWN`` on.
+``numbers`` begins with the constants that the start pose decides, then come those of the joint, from ``OWN`` on. What
+events change stands in ``relative``: ZERO, which an equation whose sliding is counted takes off like PHASE, and LAST
+(mbsd/equations/system.py). Its places 4 to 13 are the equation's scratch.
 """
 
 from __future__ import annotations

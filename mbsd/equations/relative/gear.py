@@ -35,6 +35,7 @@ from mbsd.equations.relative.equation import (
     Y,
     equation,
 )
+from mbsd.equations.system import ZERO
 
 TWO_PI = 2.0 * math.pi
 
@@ -49,7 +50,7 @@ def residual(numbers, relative, out):
     both = numbers[OWN] + numbers[OWN + 1]
     if numbers[WRAPS] == 0.0:
         psi += TWO_PI * math.floor((relative[TURN] + numbers[DIRECTION] - psi) / TWO_PI + 0.5)
-    value = numbers[OWN + 1] * relative[A] - both * psi - numbers[PHASE]
+    value = numbers[OWN + 1] * relative[A] - both * psi - numbers[PHASE] - relative[ZERO]
     period = TWO_PI * abs(both)
     if numbers[WRAPS] != 0.0 and period > 0.0:
         value -= period * math.floor(value / period + 0.5)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 
 from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA, FYY, OWN, PHASE, F, X, Y, equation
+from mbsd.equations.system import ZERO
 
 
 @equation
@@ -21,7 +22,7 @@ def residual(numbers, relative, out):
     s = numbers[OWN]
     length = math.sqrt(x * x + y * y)
     cube = length * length * length
-    out[F] = s * (length - numbers[OWN + 1]) - numbers[PHASE]
+    out[F] = s * (length - numbers[OWN + 1]) - numbers[PHASE] - relative[ZERO]
     out[FX] = s * x / length if length > 0.0 else 0.0
     out[FY] = s * y / length if length > 0.0 else 0.0
     out[FA] = 0.0

@@ -13,6 +13,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mbsd.equations.system import constant
+
 BLOCK, TRAIN = 9, 10
 """Kinds after those of groups.py. TRAIN: a pinned body whose angle is a sum of known angles (kinds/train.py)."""
 PIN, SLIDE, WELD, FREE = range(4)
@@ -101,7 +103,7 @@ def with_scratch(
         near=np.array(near, np.int64),
         frame=np.array(frame, float).reshape(-1, 7),
         arms=np.array(arms, float).reshape(-1, 9),
-        numbers=numbers,
+        numbers=constant(numbers),
         train=np.array(train, np.int64).reshape(-1, 2),
         train_body=np.array(train_body, np.int64),
         share=np.array(share, float),

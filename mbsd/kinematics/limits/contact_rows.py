@@ -6,6 +6,7 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed, pack
 from mbsd.kinematics.limits.joints import coordinate, limits_of
+from mbsd.kinematics.pose.phases import take_decided
 from mbsd.model.contacts.stops import ANGLE_STOP, COORDINATE_STOP
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
@@ -35,8 +36,6 @@ def with_contacts(m: Model, packed: Packed, contacts: list[Joint]) -> Packed:
     """The same mechanism with rows for contacts after all others, and the phases that its start decided."""
     out = pack(m, contacts)
     out.motions = packed.motions
-    count, numbers = len(packed.system.special), len(packed.system.numbers)
-    out.system.special[:count] = packed.system.special
-    out.system.numbers[:numbers] = packed.system.numbers
+    take_decided(out, packed)
     out.specials.callbacks += packed.specials.callbacks  # some of these numbers are their addresses
     return out

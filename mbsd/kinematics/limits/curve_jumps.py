@@ -12,7 +12,8 @@ import numpy as np
 
 from mbsd.arrays.curve_branches import CurveBranches
 from mbsd.base.errors import BranchError
-from mbsd.equations.relative.curve_pieces import CLOSED, FARTHEST, LAST, SPAN
+from mbsd.equations.relative.curve_pieces import CLOSED, FARTHEST, SPAN
+from mbsd.equations.system import LAST
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
@@ -24,13 +25,13 @@ def refuse_jumps(packed: Packed, times: np.ndarray, q: np.ndarray) -> None:
     if not following.rows:
         return
     for k, pose in enumerate(q):
-        before = [float(numbers[LAST]) for _, _, numbers in following.rows]
+        before = [float(row.own[LAST]) for row in following.rows]
         following.accept([math.nan] * len(before))
         feet, _ = following.moved(pose)
         following.accept(before)
         if k:
-            for (i, j, numbers), u in zip(following.rows, feet, strict=True):
-                way = abs(u - numbers[LAST])
+            for (i, j, numbers, own), u in zip(following.rows, feet, strict=True):
+                way = abs(u - own[LAST])
                 way = min(way, abs(numbers[SPAN] - way)) if numbers[CLOSED] else way
                 if way > numbers[FARTHEST]:
                     name = next(

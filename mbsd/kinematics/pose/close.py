@@ -40,10 +40,11 @@ def assemble(m: Model, packed: Packed, time: float) -> np.ndarray:
 
     def closed() -> tuple[np.ndarray, np.ndarray]:
         q = _assembled(m, packed, drive, time)
-        return q.copy(), packed.system.angle_offset.copy()  # the turns of welds are taken to suit the pose
+        return q.copy(), packed.system.angle_offset  # the turns of welds are taken to suit the pose
 
     key = (*numbers, tuple(packed.body_names), repr(m.starts), drive[:, 0].tobytes())
-    q, packed.system.angle_offset[:] = _CLOSED.get(key, closed)
+    q, offsets = _CLOSED.get(key, closed)
+    packed.system = packed.system.changed(angle_offset=offsets)
     return q.copy()
 
 
@@ -203,7 +204,10 @@ def _marker_place(packed: Packed, q: np.ndarray, marker: int) -> np.ndarray:
 def unwind_angles(packed: Packed, q: np.ndarray) -> None:
     """Angles of welds and sliders hold up to whole turns: take the turn nearest to the rough pose."""
     system = packed.system
+    turns = np.zeros(len(system.angle))
     for k, (i, j, _row, motion) in enumerate(system.angle):
         if motion == 0:
             gap = q[3 * system.marker_body[j] + 2] - q[3 * system.marker_body[i] + 2] - system.angle_offset[k]
-            system.angle_offset[k] += 2 * math.pi * round(gap / (2 * math.pi))
+            turns[k] = round(gap / (2 * math.pi))
+    if turns.any():
+        packed.system = system.changed(angle_offset=system.angle_offset + 2 * math.pi * turns)

@@ -56,13 +56,14 @@ def consistent(m: Model, packed: Packed, time: float, metric: np.ndarray) -> Ini
     def found() -> tuple[Initial, np.ndarray]:
         q, deviations = start_pose(m, packed, time, drive)
         v, slips = _velocities(m, packed, q, drive, metric)
-        return Initial(q, v, tuple(deviations), tuple(slips)), packed.system.angle_offset.copy()
+        return Initial(q, v, tuple(deviations), tuple(slips)), packed.system.angle_offset
 
     numbers = packed.numbers()
     if numbers is None:
         return found()[0]
     given = repr(m.starts), repr(m.velocities), drive.tobytes(), metric.tobytes()
-    initial, packed.system.angle_offset[:] = _CONSISTENT.get((*numbers, tuple(packed.body_names), *given), found)
+    initial, offsets = _CONSISTENT.get((*numbers, tuple(packed.body_names), *given), found)
+    packed.system = packed.system.changed(angle_offset=offsets)
     return replace(initial, q=initial.q.copy(), v=initial.v.copy())
 
 

@@ -24,7 +24,10 @@ SAME_PLACE = 1e-6
 
 def let_phases_go(packed: Packed) -> None:
     """Leave the phased rows out, so that all others can be closed."""
-    packed.system.special[packed.specials.phased, ACTIVE] = 0
+    if packed.specials.phased:
+        special = packed.system.special.copy()
+        special[packed.specials.phased, ACTIVE] = 0
+        packed.system = packed.system.changed(special=special)
 
 
 def active_rows(packed: Packed) -> set[int]:
@@ -41,25 +44,41 @@ def take_phases(packed: Packed, q: np.ndarray, drive: np.ndarray) -> bool:
     from mbsd.equations.assembly import residual_and_jacobian
     from mbsd.equations.relative.equation import DIRECTION, PHASE, WRAPS
 
-    system, given = packed.system, False
-    for k in packed.specials.phased:
+    given, phased = False, packed.specials.phased
+    if not phased:
+        return given
+    special, numbers = packed.system.special.copy(), packed.system.numbers.copy()
+    system = packed.system.changed(special=special.view(), numbers=numbers.view())  # sees what is written here
+    for k in phased:
         i, j, at = (int(system.special[k, column]) for column in (MARKER_I, MARKER_J, AT))
         arm = _arm_of(packed, q, i, j)
         if arm is not None:
-            system.special[k, ARM] = arm
+            special[k, ARM] = arm
             line = _place(packed, q, j) - _place(packed, q, i)
-            system.numbers[at + DIRECTION] = math.atan2(line[1], line[0]) - q[3 * arm + 2]
+            numbers[at + DIRECTION] = math.atan2(line[1], line[0]) - q[3 * arm + 2]
             # relative to the arm; the equation works in the axes of marker i
-            system.numbers[at + DIRECTION] -= packed.specials.joints[k].i.angle
-            system.numbers[at + WRAPS] = 0.0
-        system.special[k, ACTIVE] = 1
-        system.numbers[at + PHASE] = 0.0
+            numbers[at + DIRECTION] -= packed.specials.joints[k].i.angle
+            numbers[at + WRAPS] = 0.0
+        special[k, ACTIVE] = 1
+        numbers[at + PHASE] = 0.0
         pose, phase = q, packed.specials.joints[k].params.get("phase")
         if phase is not None:
             given, pose = True, _turned_to(packed, q, (i, j), phase)
         residual_and_jacobian(system, pose, drive, packed.ws)
-        system.numbers[at + PHASE] = packed.ws.equation[k, 0]
+        numbers[at + PHASE] = packed.ws.equation[k, 0]
+    packed.system = system
     return given
+
+
+def take_decided(packed: Packed, closed: Packed) -> None:
+    """Take over phases and turns from a packing whose start is closed; either may have more joints after the common."""
+    arrays = {}
+    for name in ("special", "numbers", "angle_offset"):
+        array, decided = getattr(packed.system, name).copy(), getattr(closed.system, name)
+        common = min(len(array), len(decided))
+        array[:common] = decided[:common]
+        arrays[name] = array
+    packed.system = packed.system.changed(**arrays)
 
 
 def refuse_impossible(packed: Packed, q: np.ndarray) -> None:

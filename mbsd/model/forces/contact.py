@@ -36,7 +36,7 @@ def surface(force: Force) -> list[float]:
     """Numbers of the surface, as mbsd/equations/interactions/surface.py reads them."""
     profile = force.laws.get("profile")
     if not isinstance(profile, Curve):
-        return [0.0] * 9
+        return [0.0] * 8
     from mbsd.model.plane_curves import graph_numbers
 
     return graph_numbers(profile).tolist()

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 
 from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA, FYY, TURN, A, F, X, Y, evaluate
+from mbsd.equations.system import LAST, ZERO
 from mbsd.kinematics.groups.blocks import (
     ACROSS,
     ADDRESS,
@@ -150,6 +151,8 @@ def evaluate_row(row, n, q, turn, numbers, relative, out, jac):
         relative[Y] = y
         relative[A] = angle + numbers[row[AT]]
         relative[TURN] = q[3 * row[ARM] + 2] - q[3 * i + 2]
+        relative[ZERO] = 0.0
+        relative[LAST] = math.nan
         evaluate(row[ADDRESS], numbers[row[AT] :], relative, out)
     else:
         for c in range(FX, FAA + 1):

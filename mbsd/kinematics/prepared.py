@@ -176,7 +176,7 @@ class Prepared:
                 residual_and_jacobian(packed.system, q[index - 1], steps.drives[index - 1], packed.ws)
                 kept = best_rows(packed, sequence.rows)
                 if kept is not None:
-                    sequence, factors = plan(_sample_jacobians(packed), kept, packed.system.row_body)
+                    sequence, factors = plan(sample_jacobians(packed), kept, packed.system.row_body)
                     first = chosen = index - 1
                     arrays = *arrays[:4], np.zeros((len(steps.times), len(sequence.ends)))
                     continue
@@ -272,7 +272,7 @@ def prepare(m: Model, start: float = 0.0, end: float = 1.0) -> Prepared:
         raise
     mobility = joint_mobility(packed, q0)
     kept = choose_rows(packed, q0, start, mobility)
-    samples = _sample_jacobians(packed)
+    samples = sample_jacobians(packed)
     sequence, factors = plan(samples, kept, packed.system.row_body)
     groups, blocks = plan_groups(packed, q0, mobility.redundant_rows), no_blocks()
     if groups is None:
@@ -315,7 +315,7 @@ def refuse_bad_laws(packed: Packed, start: float, end: float) -> None:
             )
 
 
-def _sample_jacobians(packed: Packed) -> np.ndarray:
+def sample_jacobians(packed: Packed) -> np.ndarray:
     """(4, m, n) at unrelated poses, to see which entries are constant."""
     numbers = packed.numbers()
     return _sampled(packed) if numbers is None else _SAMPLES.get(numbers, lambda: _sampled(packed))

@@ -30,6 +30,12 @@ class Embedding(NamedTuple):
     """(g, 8) in the order of their solution."""
     number: Any
     """(g, 20); mbsd/dynamics/embedding/numbers.py."""
+    block: Any
+    """Integers of blocks; mbsd/dynamics/embedding/blocks/arrays.py."""
+    block_number: Any
+    """Their numbers."""
+    numbers: Any
+    """``System.numbers``, which their equations read."""
     size: Any
     """(f,) what one unit of a coordinate is against the mechanism's size: 1 for an angle."""
     per_size: Any
@@ -63,6 +69,8 @@ class EmbeddingScratch(NamedTuple):
     """(2,) with one coordinate: its inertia B^T M B, and B^T M (g - c)."""
     drive: Any
     """(drivers + 1, 3)"""
+    block_work: Any
+    """Scratch of blocks; mbsd/dynamics/embedding/blocks/arrays.py."""
     force: Any
     """(3 nb,) forces beside the weight, zero where there are none."""
     watch: Any

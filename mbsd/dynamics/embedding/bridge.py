@@ -42,8 +42,9 @@ KEPT = SIN + 1
 
 @internal
 def _joined(
-    laws, group, number, gravity, body, rate, base, coordinate, drive, sums, joined_body, joined_rate, t, way, fastest
-):
+    laws, group, number, block, block_number, numbers, work, gravity, body, rate, base, coordinate, drive, sums,
+    joined_body, joined_rate, t, way, fastest,
+):  # fmt: skip
     """Fill joined_body and joined_rate from poses beside; returns whether all are clear and agree."""
     columns = coordinate.shape[0] - 1
     for part in range(2):
@@ -59,7 +60,9 @@ def _joined(
                 coordinate[j, VALUE] += ahead * (coordinate[j, SPEED] if columns > 1 else 1.0)
             if drive.shape[0] > 1:
                 evaluate_laws(laws, drive.shape[0], t + ahead, drive)
-            status = solve_groups(group, number, body, rate, base, coordinate, drive, gravity, sums)
+            status = solve_groups(
+                group, number, block, block_number, numbers, work, body, rate, base, coordinate, drive, gravity, sums
+            )  # fmt: skip
             for j in range(columns):
                 coordinate[j, VALUE] -= ahead * (coordinate[j, SPEED] if columns > 1 else 1.0)
             if status != SOLVED:
@@ -83,7 +86,10 @@ def _joined(
 
 
 @lazy(int)
-def bridge(laws, group, number, gravity, body, rate, base, coordinate, drive, sums, joined_body, joined_rate, t):
+def bridge(
+    laws, group, number, block, block_number, numbers, work, gravity, body, rate, base, coordinate, drive, sums,
+    joined_body, joined_rate, t,
+):  # fmt: skip
     """Fill body, rate and sums near an unclear pose; returns SOLVED or DOUBTED.
 
     Arrays are those of Embedding and EmbeddingScratch; coordinates and drive are those of the pose, and stay.
@@ -103,6 +109,10 @@ def bridge(laws, group, number, gravity, body, rate, base, coordinate, drive, su
                 laws,
                 group,
                 number,
+                block,
+                block_number,
+                numbers,
+                work,
                 gravity,
                 body,
                 rate,
@@ -126,7 +136,9 @@ def bridge(laws, group, number, gravity, body, rate, base, coordinate, drive, su
         for e in range(number.shape[0]):
             usual = number[e, AVOID]
             number[e, AVOID] = FLOOR
-        status = solve_groups(group, number, body, rate, base, coordinate, drive, gravity, sums)
+        status = solve_groups(
+            group, number, block, block_number, numbers, work, body, rate, base, coordinate, drive, gravity, sums
+        )  # fmt: skip
         for e in range(number.shape[0]):
             number[e, AVOID] = usual
         return status

@@ -2,24 +2,28 @@
 
 The program takes the mechanism apart from ground on; wherever no group and no wheel of a gear train can be added it
 takes the next hinge or slide as a coordinate, and goes back where that leads nowhere. Of the choices that come to an
-end it keeps the first under which no body moves much faster than its coordinate, or else the best.
+end it keeps the first under which no body moves much faster than its coordinate, or else the best. Blocks, whose bodies
+Newton-Raphson places (block.py), are added only where closed forms alone come to no end.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 
 import numpy as np
 
 from mbsd.arrays.packing import Packed
+from mbsd.kinematics.groups.block_tables import Tables, fixed_bodies, hanging, tables_of
+from mbsd.kinematics.groups.blocks import BLOCK
 from mbsd.kinematics.groups.groups import SLIDE
 from mbsd.kinematics.groups.kinds.slide import ANGLE, G_X, S1_X, SA_X
 from mbsd.kinematics.groups.kinds.train import train
 from mbsd.kinematics.groups.links import Link
 from mbsd.kinematics.groups.plan import Plan, link_kind, links_of_joints
 from mbsd.kinematics.groups.trains import Trains
+from mbsd.kinematics.prepared import sample_jacobians
 
 MOST = 6
 """More coordinates than this are solved faster by multipliers."""
@@ -27,6 +31,8 @@ TRIALS = 200
 """Joints tried altogether."""
 CHOICES = 12
 """Plans compared."""
+CLOSED, LAST, EARLY = range(3)
+"""Where blocks are added: nowhere, after the last coordinate, or wherever bodies are fixed."""
 
 
 @dataclass(frozen=True)
@@ -68,16 +74,31 @@ class Coordinate:
         return _turned(self.slide[G_X:ANGLE], pose[self.other, 2]), reach
 
 
-def choices(packed: Packed, q: np.ndarray, count: int) -> Iterator[Plan]:
-    """Complete plans with ``count`` coordinates at a closed pose q (3 nb,); law -k of a group is coordinate k."""
+@dataclass(frozen=True)
+class Choice:
+    """Coordinates, and all bodies placed by them."""
+
+    plan: Plan
+    """Law -k of a group is coordinate k."""
+    blocks: tuple[Tables, ...] = ()
+
+
+def choices(packed: Packed, q: np.ndarray, count: int) -> Iterator[Choice]:
+    """Complete choices of ``count`` coordinates at a closed pose q (3 nb,), those with the fewest blocks alone."""
     if not 0 < count <= MOST:
         return
     everything = range(len(packed.joints))
     trains = _Trains(packed, q, [joint for joint in everything if link_kind(packed.joints[joint]) is None])
-    if not trains.possible:
-        return
-    plan, left = Plan(packed, q.reshape(-1, 3), links_of_joints(packed, everything)), [TRIALS]
-    yield from islice(_complete(plan, trains, count, 0, left), CHOICES)
+    for blocks in (CLOSED, LAST, EARLY):
+        if blocks == CLOSED and not trains.possible:
+            continue
+        start = Choice(Plan(packed, q.reshape(-1, 3), links_of_joints(packed, everything)))
+        found = _complete(start, trains, count, 0, [TRIALS], blocks)
+        first = next(found, None)
+        if first is not None:
+            yield first
+            yield from islice(found, CHOICES - 1)
+            return
 
 
 def coordinates_of(plan: Plan, count: int) -> list[Coordinate]:
@@ -106,7 +127,7 @@ class _Trains:
         for joint, row in self.row_of.items():
             if joint in plan.used or self.trains is None:
                 continue
-            unknown = [body for body in self.trains.rows[row] if body not in plan.known]
+            unknown = [body for body in self.trains.rows.get(row, ()) if body not in plan.known]
             if len(unknown) != 1:
                 continue
             body = unknown[0]
@@ -122,13 +143,21 @@ class _Trains:
         return False
 
 
-def _complete(plan: Plan, trains: _Trains, count: int, taken: int, left: list[int]) -> Iterator[Plan]:
-    plan.grow()
-    while trains.add(plan):
+def _complete(
+    choice: Choice, trains: _Trains, count: int, taken: int, left: list[int], blocks: int
+) -> Iterator[Choice]:
+    plan = choice.plan
+    while True:
         plan.grow()
+        if trains.add(plan):
+            continue
+        added = _with_block(choice) if blocks == EARLY or (blocks == LAST and taken == count) else None
+        if added is None:
+            break
+        choice = added
     if taken == count:
         if plan.complete:
-            yield plan
+            yield choice
         return
     for body in range(1, len(plan.links)):
         if body in plan.known:
@@ -146,7 +175,27 @@ def _complete(plan: Plan, trains: _Trains, count: int, taken: int, left: list[in
             else:
                 drive = Link(joint, "A", link.here, link.there, link.first, link.other, 0.0, -taken - 1)
             trial.hold(body, [drive])
-            yield from _complete(trial, trains, count, taken + 1, left)
+            yield from _complete(replace(choice, plan=trial), trains, count, taken + 1, left, blocks)
+
+
+def _with_block(choice: Choice) -> Choice | None:
+    """With the smallest block that the joints left fix, or None where they fix none."""
+    plan = choice.plan
+    packed, first = plan.packed, plan.packed.first_row
+    if len(plan.known) == len(plan.links):
+        return None
+    open_joints = [joint for joint in range(len(packed.joints)) if joint not in plan.used]
+    left = [row for joint in open_joints for row in range(first[joint], first[joint + 1])]
+    inner = [row for row in left if any(int(body) not in plan.known for body in packed.system.row_body[row])]
+    members = fixed_bodies(packed, plan.known, inner, (sample_jacobians(packed) != 0.0).any(axis=0))
+    block = None if members is None else hanging(plan, members, inner)
+    tables = None if block is None else tables_of(plan, block)
+    if block is None or tables is None:
+        return None
+    plan.used |= {joint for joint in open_joints if {*range(first[joint], first[joint + 1])} <= {*block.rows}}
+    bodies = [body for body, _, _ in block.tree]
+    plan.take((BLOCK, (bodies[0], -1, 0, 0), len(choice.blocks), []), bodies)
+    return replace(choice, blocks=(*choice.blocks, tables))
 
 
 def _turned(vector: np.ndarray, angle: float) -> np.ndarray:

@@ -3,7 +3,7 @@
     M_z = B^T M B,   M_z z'' = B^T (Q - M c)           by Cholesky's factors
     power of loads and drivers = v^T (M a - M g)       where drivers are; else that of the loads themselves
 
-Where a group has no clear pose the power is not a number, and the step is taken again with another length.
+Where a group or block has no clear pose the power is not a number, and the step is taken again with another length.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import math
 
 from mbsd.compiling.jit import apart, inlined, internal, kernel, lazy, merged
 from mbsd.dynamics.embedding.arrays import LIMIT, SENSITIVITY
+from mbsd.dynamics.embedding.blocks.arrays import KEPT_Q, KEPT_SIZE, Q
 from mbsd.dynamics.embedding.bridge import bridge
 from mbsd.dynamics.embedding.groups import solve_groups
 from mbsd.equations.laws import evaluate_laws
@@ -116,13 +117,29 @@ def accelerate(dyn, scratch, t, state, a, lam):
         evaluate_laws(dyn.laws, drive.shape[0], t, drive)
     power = 0.0
     status = solve_groups(
-        dyn.group, dyn.number, scratch.body, rate, scratch.base, coordinate, drive, dyn.gravity, scratch.sums
+        dyn.group,
+        dyn.number,
+        dyn.block,
+        dyn.block_number,
+        dyn.numbers,
+        scratch.block_work,
+        scratch.body,
+        rate,
+        scratch.base,
+        coordinate,
+        drive,
+        dyn.gravity,
+        scratch.sums,
     )
-    if status != SOLVED:
+    if status != SOLVED and dyn.block[KEPT_SIZE] == 0:
         status = bridge(
             dyn.laws,
             dyn.group,
             dyn.number,
+            dyn.block,
+            dyn.block_number,
+            dyn.numbers,
+            scratch.block_work,
             dyn.gravity,
             scratch.body,
             rate,
@@ -177,7 +194,7 @@ def derivative(dyn, scratch, t, state, out, lam):
 
 
 @apart
-def keep(body, rate, base, coordinate, number, size, per_size, watch, t):
+def keep(body, rate, base, coordinate, number, block, work, size, per_size, watch, t):
     """Predict from the pose evaluated last; watch[0] takes the largest rate of a body for one unit of a coordinate."""
     last = coordinate.shape[0] - 1
     largest = 0.0
@@ -195,6 +212,8 @@ def keep(body, rate, base, coordinate, number, size, per_size, watch, t):
     coordinate[last, BASE] = t
     for e in range(number.shape[0]):
         number[e, NEAR] = 1.0 if number[e, SINE] < WIDE else 0.0
+    for i in range(block[KEPT_SIZE]):
+        work[block[KEPT_Q] + i] = work[block[Q] + i]
     watch[SENSITIVITY] = largest
 
 
@@ -212,6 +231,8 @@ def settle(dyn, scratch, t, state, fresh):
         scratch.base,
         scratch.coordinate,
         dyn.number,
+        dyn.block,
+        scratch.block_work,
         dyn.size,
         dyn.per_size,
         scratch.watch,

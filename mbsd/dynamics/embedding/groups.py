@@ -7,10 +7,11 @@ once more for the convective accelerations, whose right-hand sides have the term
 from __future__ import annotations
 
 from mbsd.compiling.jit import inlined
-from mbsd.kinematics.groups.blocks import TRAIN
+from mbsd.dynamics.embedding.blocks.block import embed_block
+from mbsd.kinematics.groups.blocks import BLOCK, TRAIN
 from mbsd.kinematics.groups.carrying.columns import INERTIA, MASS
 from mbsd.kinematics.groups.carrying.rates import SOLVED
-from mbsd.kinematics.groups.groups import DRIVEN, FIRST, KIND, PRP, ROD, RPR, RRP, RRR, SECOND, WELDED, YOKE
+from mbsd.kinematics.groups.groups import DRIVEN, FIRST, KIND, LAW, PRP, ROD, RPR, RRP, RRR, SECOND, WELDED, YOKE
 from mbsd.kinematics.groups.kinds.driven import embed_driven
 from mbsd.kinematics.groups.kinds.prp import embed_prp
 from mbsd.kinematics.groups.kinds.rod import embed_rod
@@ -24,7 +25,9 @@ from mbsd.kinematics.groups.kinds.yoke import embed_yoke
 
 
 @inlined
-def solve_groups(group, number, body, rate, base, coordinate, drive, gravity, sums):
+def solve_groups(
+    group, number, block, block_number, numbers, work, body, rate, base, coordinate, drive, gravity, sums
+):  # fmt: skip
     """Fill ``body`` and ``rate`` from coordinate and drive; returns SOLVED, or DOUBTED where a group's pose is unclear.
 
     With a single coordinate its inertia and M (g - c) are summed on the way, while numbers are at hand.
@@ -55,13 +58,20 @@ def solve_groups(group, number, body, rate, base, coordinate, drive, gravity, su
             status = embed_rod(bodies, n, body, rate, base, coordinate, drive)
         elif kind == TRAIN:
             status = embed_train(bodies, n, body, rate, base, coordinate)
+        elif kind == BLOCK:
+            status = embed_block(
+                bodies[LAW], block, block_number, numbers, work, body, rate, base, coordinate, drive, gravity, sums
+            )  # fmt: skip
         else:
             status = embed_slide(bodies, n, body, rate, coordinate, drive)
         if status != SOLVED:
             return status
         a = bodies[FIRST]
         b = bodies[SECOND]
-        if single:
+        if single and kind == BLOCK:
+            total += sums[0]
+            push += sums[1]
+        elif single:
             mass = body[a, MASS]
             inertia = body[a, INERTIA]
             cx = rate[a, 0]

@@ -43,7 +43,7 @@ class ChoosingRun(Run):
         if self.formulation == REFERENCE:
             return None
         why, made = self._choice(state)
-        if made is not None:
+        if made is not None and (made.pays or self.formulation == INDEPENDENT):
             return EmbeddedRun(self, made, state)
         if self.formulation == INDEPENDENT:
             raise ModelError(f"{self.ready.packed.name}: formulation='independent' is not possible here: {why}")

@@ -11,15 +11,15 @@ import numpy as np
 from mbsd.base.codes import LAW_VALUE, LINEAR, POWER, TURN
 from mbsd.base.kept import Kept
 from mbsd.dynamics.embedding.arrays import LIMIT, SENSITIVITY, Embedding, EmbeddingScratch
+from mbsd.dynamics.embedding.blocks.arrays import KEPT_SIZE, block_arrays, block_work
 from mbsd.dynamics.embedding.bridge import KEPT
-from mbsd.dynamics.embedding.coordinates import MOST, Coordinate, choices, coordinates_of
+from mbsd.dynamics.embedding.coordinates import MOST, Choice, Coordinate, choices, coordinates_of
 from mbsd.dynamics.embedding.equations import look
 from mbsd.dynamics.embedding.numbers import group_numbers, group_table
 from mbsd.dynamics.prepare.prepared import UNKNOWN, PreparedDynamics
 from mbsd.dynamics.state import Settings
 from mbsd.kinematics.groups.carrying.branch import FLOOR
 from mbsd.kinematics.groups.carrying.columns import AVOID, BASE, COS, INERTIA, MASS, NEAR, SPEED, THETA, TURNS
-from mbsd.kinematics.groups.plan import Plan
 
 GOOD = 3.0
 """A choice under which no body moves faster than this for one unit of a coordinate is taken at once."""
@@ -32,6 +32,9 @@ ROUNDING = 5e-14
 passes the tolerance the closed form gives way to poses beside."""
 WIDEST = 0.1**2
 """Squared sine above which closed forms always stand."""
+CLOSED, UNKNOWN_COST, PAIRED, BODY_COST, BESIDE = 0.04, 0.3, 0.03, 0.2, 0.3
+"""Measured costs of one evaluation (us): of a closed group, of an unknown of a block and of each pair of them; of a body
+in reference coordinates and what comes beside."""
 DOUBLED = 2.0
 """Another choice is looked for when some body moves this much faster than when the coordinates were chosen."""
 
@@ -45,11 +48,14 @@ class Embedded:
     drivers: int
     sensitivity: float
     """The largest rate of a body for one unit of a coordinate, dimensionless, at the pose of the choice."""
+    pays: bool = True
+    """Whether an evaluation costs less than in reference coordinates, as closed forms alone always do."""
 
     def copied(self, tolerance: float = math.inf) -> Embedding:
         """Arrays of one run, which changes branches, at a relative tolerance."""
         number = self.arrays.number.copy()
-        number[:, AVOID] = min(max((ROUNDING / tolerance) ** (2.0 / 3.0), FLOOR), WIDEST)
+        if not self.arrays.block[KEPT_SIZE]:  # else there are no poses beside
+            number[:, AVOID] = min(max((ROUNDING / tolerance) ** (2.0 / 3.0), FLOOR), WIDEST)
         return self.arrays._replace(number=number)
 
     def state(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -70,7 +76,7 @@ class Embedded:
 
 
 NO_PLAN = (
-    "it does not fall apart into driven bodies, gear trains and groups of one or two, "
+    "it does not fall apart into driven bodies, gear trains, groups of one or two and blocks of a few, "
     "or its start is near a singular pose"
 )
 
@@ -123,19 +129,19 @@ def embed(ready: PreparedDynamics, q: np.ndarray, v: np.ndarray, time: float) ->
     return _embedded(ready, _best(ready, q, v, time))
 
 
-def _best(ready: PreparedDynamics, q: np.ndarray, v: np.ndarray, time: float) -> tuple[Plan, float] | None:
-    """The same as a plan, and how fast bodies move under it."""
+def _best(ready: PreparedDynamics, q: np.ndarray, v: np.ndarray, time: float) -> tuple[Choice, float] | None:
+    """The same as a choice, and how fast bodies move under it."""
     best = None
-    for plan in choices(ready.packed, q, _freedoms(ready)):
-        found = _sensitivity(ready, _made(ready, plan, _freedoms(ready)), q, v, time)
+    for choice in choices(ready.packed, q, _freedoms(ready)):
+        found = _sensitivity(ready, _made(ready, choice, _freedoms(ready)), q, v, time)
         if found < POOR and (best is None or found < best[1]):
-            best = plan, found
+            best = choice, found
         if best is not None and best[1] <= GOOD:
             break
     return best
 
 
-def _embedded(ready: PreparedDynamics, best: tuple[Plan, float] | None) -> Embedded | None:
+def _embedded(ready: PreparedDynamics, best: tuple[Choice, float] | None) -> Embedded | None:
     if best is None:
         return None
     made = _made(ready, best[0], _freedoms(ready))
@@ -169,6 +175,7 @@ def scratch_for(ready: PreparedDynamics, made: Embedded, stages: int, q: np.ndar
         mass=np.zeros((count, count)),
         sums=np.zeros(2),
         drive=np.zeros((made.drivers + 1, 3)),
+        block_work=block_work(made.arrays.block, q),
         force=np.zeros(3 * bodies),
         watch=np.full(2, np.inf),
         before=np.zeros((3, 3 * bodies)),
@@ -194,10 +201,12 @@ def begin_at(arrays: Embedding, scratch: EmbeddingScratch, state: np.ndarray, ti
     scratch.watch[LIMIT] = limit
 
 
-def _made(ready: PreparedDynamics, plan: Plan, count: int) -> Embedded:
+def _made(ready: PreparedDynamics, choice: Choice, count: int) -> Embedded:
     packed, loads = ready.packed, ready.dynamics.loads
-    groups, size = plan.groups(), packed.size
-    coordinates = coordinates_of(plan, count)
+    groups, size = choice.plan.groups(), packed.size
+    coordinates = coordinates_of(choice.plan, count)
+    columns = count + bool(packed.motions)
+    block, block_number = block_arrays(choice.blocks, len(packed.body_names), columns)
     reading = [
         kind == TURN and any(loads.term[k, 0] in (LINEAR, POWER, LAW_VALUE) for k in range(first, end))
         for kind, _, _, first, end in loads.element
@@ -208,11 +217,21 @@ def _made(ready: PreparedDynamics, plan: Plan, count: int) -> Embedded:
         **_of_dynamics(ready),
         group=group_table(groups),
         number=group_numbers(groups),
+        block=block,
+        block_number=block_number,
         size=np.array([1.0 if one.slide is None else size for one in coordinates]),
         loaded=loaded[loaded > 0],
         angles=functions or any(reading),
     )
-    return Embedded(arrays, coordinates, len(packed.motions), math.inf)
+    return Embedded(arrays, coordinates, len(packed.motions), math.inf, _pays(choice, len(packed.body_names) - 1))
+
+
+def _pays(choice: Choice, bodies: int) -> bool:
+    if not choice.blocks:
+        return True
+    unknowns = [len(block.equations) for block in choice.blocks]
+    cost = CLOSED * (len(choice.plan.taken) - len(unknowns)) + sum(UNKNOWN_COST * n + PAIRED * n * n for n in unknowns)
+    return cost < BESIDE + BODY_COST * bodies
 
 
 def _of_dynamics(ready: PreparedDynamics) -> dict[str, Any]:
@@ -223,6 +242,7 @@ def _of_dynamics(ready: PreparedDynamics) -> dict[str, Any]:
         "loads": dynamics.loads,
         "inertia": dynamics.inertia,
         "weight": dynamics.weight,
+        "numbers": dynamics.system.numbers,
         "gravity": dynamics.system.gravity,
         "per_size": dynamics.per_size,
     }

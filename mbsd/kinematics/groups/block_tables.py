@@ -1,12 +1,31 @@
-"""How the bodies of a block hang, and its equations as tables (mbsd/kinematics/groups/blocks.py)."""
+"""Which bodies are a block, how they hang, and its equations as tables (mbsd/kinematics/groups/blocks.py).
+
+Source: Duff, Erisman, Reid, Direct Methods for Sparse Matrices, ch. 6 (block triangular form).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from typing import NamedTuple
+
+import numpy as np
 
 from mbsd.arrays.packing import Packed
+from mbsd.base.kept import Kept
 from mbsd.equations.constraints.relative import ARM, AT, ROW
-from mbsd.kinematics.groups.blocks import ACROSS, ALONG, APART, FREE, PIN, SLIDE, SPECIAL, TURNED, WELD
+from mbsd.kinematics.groups.blocks import (
+    ACROSS,
+    ALONG,
+    APART,
+    FREE,
+    LARGEST,
+    PIN,
+    SLIDE,
+    SPECIAL,
+    TURNED,
+    UNKNOWNS,
+    WELD,
+)
 from mbsd.kinematics.groups.links import Link
 from mbsd.kinematics.groups.plan import Plan
 from mbsd.kinematics.steps import strides
@@ -14,6 +33,78 @@ from mbsd.kinematics.steps import strides
 HANGING = {"W": WELD, "R": PIN, "P": SLIDE}
 """Links that a body may hang by, the best first."""
 ONE_ROW = {"slot": ACROSS, "along": ALONG, "distance": APART}
+
+
+class Hanging(NamedTuple):
+    """The bodies of a block as they hang from known ones and each other."""
+
+    tree: list[tuple[int, int, Link | None]]
+    """Body, how it hangs and by what, in the order of placing."""
+    rows: list[int]
+    """Of J: all that hold these bodies."""
+    equations: list[int]
+    """Those by which no body hangs; as many as unknowns."""
+
+
+def fixed_bodies(packed: Packed, known: Collection[int], left: Sequence[int], pattern: np.ndarray) -> set[int] | None:
+    """The unknown bodies that the rows ``left`` fix first: of those that wait for none, the fewest; None for none.
+
+    ``pattern`` (m, n): the entries of J that are not zero. There may be fewer rows than coordinates.
+    """
+    if not len(left):
+        return None
+    arms = {int(entry[ROW]): int(entry[ARM]) for entry in packed.system.special}
+    unknown = tuple(body for body in range(1, len(packed.body_names)) if body not in known)
+    columns = np.concatenate([3 * body - 3 + np.arange(3) for body in unknown])
+    own = pattern[np.ix_(left, columns)]
+    key = own.tobytes(), unknown, tuple(arms.get(row, 0) for row in left)
+    found = _FIXED.get(key, lambda: _fixed(own, unknown, key[2]))
+    return None if found is None else set(found)
+
+
+_FIXED: Kept[tuple[int, ...] | None] = Kept()
+"""By all that they depend on."""
+
+
+def _fixed(own: np.ndarray, unknown: Sequence[int], arms: Sequence[int]) -> tuple[int, ...] | None:
+    """The same from the entries of those rows and bodies, and the arm of each row or 0."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
+
+    if own.shape[0] > own.shape[1]:
+        return None
+    column_of = maximum_bipartite_matching(csr_array(own), perm_type="column")
+    if (column_of < 0).any():
+        return None
+    loose = np.ones(own.shape[1], bool)
+    loose[column_of] = False
+    waits = np.zeros((len(unknown), len(unknown)), bool)
+    at = {body: k for k, body in enumerate(unknown)}
+    for r, arm in enumerate(arms):
+        fixed = column_of[r] // 3
+        waits[fixed, np.flatnonzero(own[r]) // 3] = True
+        if arm in at:
+            waits[fixed, at[arm]] = True
+    _, label = connected_components(csr_array(waits), directed=True, connection="strong")
+    free = [
+        np.flatnonzero(label == part)
+        for part in np.unique(label)
+        if not waits[np.ix_(label == part, label != part)].any() and not loose.reshape(-1, 3)[label == part].any()
+    ]
+    least = min(free, key=lambda members: (len(members), members[0]), default=None)
+    return None if least is None else tuple(unknown[k] for k in least)
+
+
+def hanging(plan: Plan, members: set[int], left: Sequence[int]) -> Hanging | None:
+    """The block of ``members`` with those of the rows ``left`` that hold it; None where it is too large."""
+    packed, inside = plan.packed, plan.known | members
+    rows = [row for row in left if all(int(body) in inside for body in packed.system.row_body[row])]
+    tree, joints = hanging_tree(plan, members)
+    unknowns = sum(UNKNOWNS[hangs] for _, hangs, _ in tree)
+    first = packed.first_row
+    held = {row for joint in joints for row in range(first[joint], first[joint + 1])}
+    equations = [row for row in rows if row not in held]
+    return Hanging(tree, rows, equations) if 0 < len(equations) == unknowns <= LARGEST else None
 
 
 def hanging_tree(plan: Plan, members: set[int]) -> tuple[list[tuple[int, int, Link | None]], set[int]]:
@@ -38,6 +129,32 @@ def hanging_tree(plan: Plan, members: set[int]) -> tuple[list[tuple[int, int, Li
         waiting.remove(body)
         placed.add(body)
     return tree, joints
+
+
+class Tables(NamedTuple):
+    """Lines of one block in the tables of blocks.py."""
+
+    tree: list[list[int]]
+    frame: list[list[float]]
+    equations: list[list[int]]
+    arms: list[list[float]]
+    near: list[int]
+
+
+def tables_of(plan: Plan, block: Hanging) -> Tables | None:
+    """As tables; None if an equation is half of a pin."""
+    members = {body: place for place, (body, _, _) in enumerate(block.tree)}
+    written = equations_of(plan.packed, block.equations, members)
+    if written is None:
+        return None
+    beside = {link.other for _, _, link in block.tree if link} | {b for row in written[0] for b in row[1:3]}
+    tree, frame, unknown = [], [], 0
+    for body, hangs, link in block.tree:
+        parent = link.other if link else 0
+        tree.append([body, members.get(parent, -1), parent, hangs, unknown])
+        frame.append([0.0] * 7 if link is None else plan.places.hanging(link))
+        unknown += UNKNOWNS[hangs]
+    return Tables(tree, frame, *written, sorted(beside - set(members) - {0}))
 
 
 def equations_of(

@@ -3,7 +3,7 @@
 Where no group can be added, the smallest set of bodies that the equations left fix together is taken as a block: the
 irreducible blocks of J tell which bodies depend on which. So a gear train, a cam or a triad costs Newton-Raphson in its
 own few unknowns, and what stands on it is closed again. Joints that repeat others are left out, and looked at
-afterwards. Source: Duff, Erisman, Reid, Direct Methods for Sparse Matrices, ch. 6 (block triangular form).
+afterwards.
 """
 
 from __future__ import annotations
@@ -14,19 +14,17 @@ from typing import NamedTuple
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.equations.constraints.relative import ARM, ROW
-from mbsd.kinematics.groups.block_tables import equations_of, hanging_tree
+from mbsd.kinematics.groups.block_tables import Tables, fixed_bodies, hanging, tables_of
 from mbsd.kinematics.groups.blocks import (
     BLOCK,
     BODIES,
+    BODY,
     CARRIES,
     EQUATIONS,
     HANGS,
-    LARGEST,
     PIN,
     TRAIN,
     TREE_AT,
-    UNKNOWNS,
     WELD,
     Blocks,
     with_scratch,
@@ -74,8 +72,6 @@ class _Parts:
             if self.rows.issuperset(range(packed.first_row[k], packed.first_row[k + 1]))
         ]
         self.plan = Plan(packed, q0.reshape(-1, 3), links_of_joints(packed, whole))
-        self.bodies_of = packed.system.row_body
-        self.arms = {int(entry[ROW]): int(entry[ARM]) for entry in packed.system.special}
         self.trains = Trains(packed, q0)
         self.train: list[list[int]] = []
         self.shares: list[tuple[int, float]] = []
@@ -90,26 +86,17 @@ class _Parts:
     def add_block(self) -> bool:
         """Add the smallest block whose neighbours are known; False if it is too large or cannot be written."""
         left = [row for row in sorted(self.rows) if row not in self._used()]
-        members = self._independent(left)
-        if members is None:
+        members = fixed_bodies(self.packed, self.plan.known, left, self.pattern)
+        block = None if members is None else hanging(self.plan, members, left)
+        if block is None:
             return False
-        inside = self.plan.known | members
-        own = [row for row in left if all(int(body) in inside for body in self.bodies_of[row])]
-        tree, joints = hanging_tree(self.plan, members)
-        unknowns = sum(UNKNOWNS[hangs] for _, hangs, _ in tree)
-        hanging = {
-            row for joint in joints for row in range(self.packed.first_row[joint], self.packed.first_row[joint + 1])
-        }
-        equations = [row for row in own if row not in hanging]
-        if not 0 < len(equations) == unknowns <= LARGEST:
-            return False
-        if self._add_train(tree, equations):
-            self._taken_rows = self._taken_rows | set(own)
+        if self._add_train(block.tree, block.equations):
+            self._taken_rows = self._taken_rows | set(block.rows)
             return True
-        written = equations_of(self.packed, equations, {body: place for place, (body, _, _) in enumerate(tree)})
+        written = tables_of(self.plan, block)
         if written is None:
             return False
-        self._take(tree, *written, own)
+        self._take(written, block.rows)
         return True
 
     def _add_train(self, tree: list[tuple[int, int, Link | None]], equations: list[int]) -> bool:
@@ -139,60 +126,18 @@ class _Parts:
         first = self.packed.first_row
         return {row for joint in self.plan.used for row in range(first[joint], first[joint + 1])} | self._taken_rows
 
-    def _independent(self, left: Sequence[int]) -> set[int] | None:
-        """The unknown bodies that the rows left fix first: of those that wait for none, the fewest."""
-        from scipy.sparse import csr_array
-        from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
-
-        unknown = [body for body in range(1, len(self.packed.body_names)) if body not in self.plan.known]
-        columns = np.concatenate([3 * body - 3 + np.arange(3) for body in unknown])
-        pattern = self.pattern[np.ix_(left, columns)]
-        if pattern.shape[0] != pattern.shape[1]:
-            return None
-        column_of = maximum_bipartite_matching(csr_array(pattern), perm_type="column")
-        if (column_of < 0).any():
-            return None
-        waits = np.zeros((len(unknown), len(unknown)), bool)
-        at = {body: k for k, body in enumerate(unknown)}
-        for r, row in enumerate(left):
-            fixed = column_of[r] // 3
-            waits[fixed, np.flatnonzero(pattern[r]) // 3] = True
-            if self.arms.get(row, 0) in at:
-                waits[fixed, at[self.arms[row]]] = True
-        _, label = connected_components(csr_array(waits), directed=True, connection="strong")
-        free = [
-            np.flatnonzero(label == part)
-            for part in np.unique(label)
-            if not waits[np.ix_(label == part, label != part)].any()
-        ]
-        least = min(free, key=lambda members: (len(members), members[0]))
-        return {unknown[k] for k in least}
-
-    def _take(
-        self,
-        tree: list[tuple[int, int, Link | None]],
-        equations: list[list[int]],
-        numbers: list[list[float]],
-        own: Sequence[int],
-    ) -> None:
-        members = {body: place for place, (body, _, _) in enumerate(tree)}
-        beside = {link.other for _, _, link in tree if link} | {b for row in equations for b in row[1:3]}
-        beside = sorted(beside - set(members) - {0})
+    def _take(self, block: Tables, rows: Sequence[int]) -> None:
         self.head.append(
-            [len(tree), len(equations), len(beside), 0, len(self.tree), len(self.equations), len(self.near),
-             len(self.packed.motions) + 1, len(self.packed.body_names)]
+            [len(block.tree), len(block.equations), len(block.near), 0, len(self.tree), len(self.equations),
+             len(self.near), len(self.packed.motions) + 1, len(self.packed.body_names)]
         )  # fmt: skip
-        unknown = 0
-        for body, hangs, link in tree:
-            parent = link.other if link else 0
-            self.tree.append([body, members.get(parent, -1), parent, hangs, unknown])
-            self.frame.append([0.0] * 7 if link is None else self.plan.places.hanging(link))
-            unknown += UNKNOWNS[hangs]
-        self.equations += equations
-        self.numbers += numbers
-        self.near += beside
-        self._taken_rows = self._taken_rows | set(own)
-        bodies = [body for body, _, _ in tree]
+        self.tree += block.tree
+        self.frame += block.frame
+        self.equations += block.equations
+        self.numbers += block.arms
+        self.near += block.near
+        self._taken_rows = self._taken_rows | set(rows)
+        bodies = [line[BODY] for line in block.tree]
         self.plan.take((BLOCK, (bodies[0], -1, 0, 0), len(self.head) - 1, []), bodies)
 
     def cost(self) -> float:

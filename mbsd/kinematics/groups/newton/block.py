@@ -18,7 +18,6 @@ from mbsd.kinematics.groups.blocks import (
     BODIES,
     BODY,
     EQUATIONS,
-    FREE,
     HANGS,
     LARGEST,
     LAWS,
@@ -26,27 +25,21 @@ from mbsd.kinematics.groups.blocks import (
     MOVING,
     NEAR,
     PIN,
-    PLACE_I,
-    PLACE_J,
     SIZE,
-    SLIDE,
     STRIDE,
-    UNKNOWN,
-    UNKNOWNS,
 )
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, MEETING, SOLVED
 from mbsd.kinematics.groups.newton.call import PYTHON, SIGNATURE
 from mbsd.kinematics.groups.newton.fused import fused
+from mbsd.kinematics.groups.newton.linearised import correction, linearise
 from mbsd.kinematics.groups.newton.matrix import factor, held, solve
 from mbsd.kinematics.groups.newton.pinned import in_doubt, predicted, solve_pinned
-from mbsd.kinematics.groups.newton.rows import begin, bend_of, evaluate_row, fill_columns, move
+from mbsd.kinematics.groups.newton.rows import begin, bend_of, move
 from mbsd.kinematics.law_step import jumps
 from mbsd.kinematics.newton import MAX_ITERATIONS, ROUNDING, TOLERANCE
 
 LONG = 1 << 40
 """For arrays whose length does not matter."""
-COLUMNS = LARGEST * LARGEST
-"""Where the columns of unknowns begin in the scratch, after the matrix."""
 
 
 @fused
@@ -60,43 +53,6 @@ def predict(tree, count, times, k, q, v, a, start):
     for e in range(count):
         for c in range(3 * tree[e, BODY], 3 * tree[e, BODY] + 3):
             q[k, c] = predicted(times, k, q, v, a, c)
-
-
-@fused
-def linearise(head, tree, rows, frame, arms, q, turn, numbers, jac, out, values, scratch):
-    """values (n,) of the equations, their rows jac (n, 6) with derivatives out (n, 10), and G in the scratch."""
-    count = head[BODIES]
-    n = head[EQUATIONS]
-    fill_columns(tree, frame, count, n, q, turn, scratch[COLUMNS:])
-    relative = scratch[COLUMNS + 3 * n * count :]
-    for r in range(n):
-        values[r] = evaluate_row(rows[r], arms[r], q, turn, numbers, relative, out[r], jac[r])
-        first = rows[r, PLACE_I]
-        second = rows[r, PLACE_J]
-        for j in range(n):
-            rate = 0.0
-            for c in range(3):
-                if first >= 0:
-                    rate += jac[r, c] * scratch[COLUMNS + 3 * (n * first + j) + c]
-                if second >= 0:
-                    rate += jac[r, 3 + c] * scratch[COLUMNS + 3 * (n * second + j) + c]
-            scratch[n * r + j] = rate
-
-
-@fused
-def correction(head, tree, du, per_metre):
-    """Largest of a change of the unknowns, in sizes and rad; NaN counts as infinite."""
-    largest = 0.0
-    for e in range(head[BODIES]):
-        c = tree[e, UNKNOWN]
-        hangs = tree[e, HANGS]
-        for i in range(UNKNOWNS[hangs]):
-            part = abs(du[c + i])
-            if hangs == SLIDE or (hangs == FREE and i < 2):
-                part *= per_metre
-            if not part <= largest:
-                largest = part if part == part else math.inf
-    return largest
 
 
 @fused

@@ -1,0 +1,155 @@
+"""One block in independent coordinates: a cam's follower, a Geneva's wheel, a triad.
+
+    predict   u = u_0 + sum B_j (z_j - z_0j) + c tau^2 / 2          from the pose evaluated last
+    correct   G du = -F,  G = J B_u                                 Newton-Raphson in the unknowns u of the block
+    columns   G B_j = f'_j - J v_j                                  v_j of the block with its unknowns held
+    then      G c = gamma + f'' - J a                               convective accelerations
+
+The pose is doubted where Newton-Raphson does not converge, the prediction from the last accepted pose misses by a large
+part of the way, or the determinant of G changes sign or shrinks fast since then: then the step is taken again with
+another length. Equations are those of mbsd/kinematics/groups/newton/.
+"""
+
+from __future__ import annotations
+
+from mbsd.compiling.jit import lazy
+from mbsd.compiling.views import table
+from mbsd.dynamics.embedding.blocks.arrays import (
+    ARMS,
+    ARMS_WIDTH,
+    BODIES,
+    DETERMINANT_AT,
+    EQUATIONS,
+    FIRST,
+    FRAME,
+    FRAME_WIDTH,
+    HEAD,
+    HEADS,
+    JAC,
+    KEPT_Q,
+    NEAR,
+    NEAR_AT,
+    OUT,
+    POINT,
+    ROWS,
+    ROWS_WIDTH,
+    SCRATCH,
+    SEEN_AT,
+    SOLUTION,
+    TREE,
+    TREE_WIDTH,
+    TURN_AT,
+    UNKNOWN_AT,
+    UNKNOWN_WORK,
+    A,
+    Q,
+    V,
+)
+from mbsd.dynamics.embedding.blocks.coupled import move_coupled, place_coupled
+from mbsd.dynamics.embedding.blocks.pinned import move_pinned, place_pinned
+from mbsd.kinematics.groups.blocks import BODY, HANGS, LARGEST, PIN, SIZE
+from mbsd.kinematics.groups.carrying.branch import angle_of, predicted
+from mbsd.kinematics.groups.carrying.columns import BASE, COS, INERTIA, MASS, OMEGA, SIN, VALUE, X, Y
+from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
+from mbsd.kinematics.groups.kinds.train import UNSURE
+from mbsd.kinematics.groups.newton.fused import fused
+from mbsd.kinematics.groups.newton.matrix import extent
+
+
+@fused
+def take_near(near, body, base, coordinate, q, last, turn, per_metre):
+    """Poses of the known bodies beside; returns how far they went since the last accepted pose, or -1 for doubt."""
+    step = 0.0
+    for b in near:
+        theta = angle_of(body, base, coordinate, b)
+        if not abs(theta - predicted(base, coordinate, b)) <= UNSURE:
+            return -1.0
+        q[3 * b] = body[b, X]
+        q[3 * b + 1] = body[b, Y]
+        q[3 * b + 2] = theta
+        turn[b, 0] = body[b, COS]
+        turn[b, 1] = body[b, SIN]
+        step = max(step, extent(q, last, b, per_metre))
+    return step
+
+
+@lazy(int)
+def embed_block(k, block, block_number, numbers, work, body, rate, base, coordinate, drive, gravity, sums):
+    """Positions and columns of B of block k; sums (2,) takes what its bodies add to those of EmbeddingScratch."""
+    nb = body.shape[0]
+    columns = coordinate.shape[0] - 1
+    width = columns + 2
+    head = block[block[HEADS] + HEAD * k : block[HEADS] + HEAD * (k + 1)]
+    count = head[BODIES]
+    n = head[EQUATIONS]
+    tree = table(block, head[TREE], count, TREE_WIDTH)
+    rows = table(block, head[ROWS], n, ROWS_WIDTH)
+    near = block[head[NEAR_AT] : head[NEAR_AT] + head[NEAR]]
+    frame = table(block_number, head[FRAME], count, FRAME_WIDTH)
+    arms = table(block_number, head[ARMS], n, ARMS_WIDTH)
+    q = work[block[Q] : block[Q] + 3 * nb]
+    last = work[block[KEPT_Q] : block[KEPT_Q] + 3 * nb]
+    v = work[block[V] : block[V] + 3 * nb]
+    a = work[block[A] : block[A] + 3 * nb]
+    turn = table(work, block[TURN_AT], nb, 2)
+    jac = table(work, block[JAC], LARGEST, 6)
+    out = table(work, block[OUT], LARGEST, 10)
+    scratch = work[block[SCRATCH] :]
+    here = table(work, block[UNKNOWN_AT] + width * head[FIRST], n, width)
+    kept = table(work, block[KEPT_Q] + block[UNKNOWN_AT] + width * head[FIRST], n, width)
+    seen = work[block[SEEN_AT] + (columns + 1) * k : block[SEEN_AT] + (columns + 1) * (k + 1)]
+    before = work[block[KEPT_Q] + block[DETERMINANT_AT] + k]
+    now = coordinate[columns, VALUE] + coordinate[columns, BASE]
+    step = take_near(near, body, base, coordinate, q, last, turn, 1.0 / arms[0, SIZE])
+    if step < 0.0:
+        return DOUBTED
+    if count == 1 and n == 1 and tree[0, HANGS] == PIN:
+        determinant = place_pinned(
+            tree[0], rows[0], frame[0], arms[0], q, last, turn, numbers, jac[0], out[0], scratch, here[0], kept[0],
+            seen, coordinate, drive, before, step, now,
+        )  # fmt: skip
+        if determinant != 0.0:
+            move_pinned(
+                tree[0], rows[0], frame[0], arms[0], q, v, a, turn, jac[0], out[0], determinant, here[0], rate,
+                coordinate, drive,
+            )  # fmt: skip
+    else:
+        unknown = table(work, block[UNKNOWN_WORK], 3, LARGEST)
+        solution = table(work, block[SOLUTION], 2, LARGEST)
+        point = table(work, block[POINT], 4, 8)
+        determinant = place_coupled(
+            head, tree, rows, frame, arms, q, last, v, a, turn, numbers, jac, out, scratch, unknown, solution, point,
+            here, kept, seen, coordinate, drive, before, step, now,
+        )  # fmt: skip
+        if determinant != 0.0:
+            move_coupled(
+                head, tree, rows, near, frame, arms, q, v, a, turn, jac, out, scratch, unknown, solution, point, here,
+                rate, coordinate, drive,
+            )  # fmt: skip
+    if determinant == 0.0:
+        return DOUBTED
+    work[block[DETERMINANT_AT] + k] = determinant
+    for j in range(columns):
+        seen[j] = coordinate[j, VALUE]
+    seen[columns] = now
+    total = 0.0
+    push = 0.0
+    last_column = 3 * columns
+    for e in range(count):
+        b = tree[e, BODY]
+        body[b, X] = q[3 * b]
+        body[b, Y] = q[3 * b + 1]
+        body[b, COS] = turn[b, 0]
+        body[b, SIN] = turn[b, 1]
+        body[b, OMEGA] = v[3 * b + 2]
+        mass = body[b, MASS]
+        inertia = body[b, INERTIA]
+        cx = rate[b, 0]
+        cy = rate[b, 1]
+        omega = rate[b, 2]
+        total += mass * (cx * cx + cy * cy) + inertia * omega * omega
+        push += mass * (cx * (gravity[0] - rate[b, last_column]) + cy * (gravity[1] - rate[b, last_column + 1]))
+        push -= inertia * omega * rate[b, last_column + 2]
+    sums[0] = total
+    sums[1] = push
+    return SOLVED

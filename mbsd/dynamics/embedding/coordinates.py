@@ -31,8 +31,6 @@ TRIALS = 200
 """Joints tried altogether."""
 CHOICES = 12
 """Plans compared."""
-CLOSED, LAST, EARLY = range(3)
-"""Where blocks are added: nowhere, after the last coordinate, or wherever bodies are fixed."""
 
 
 @dataclass(frozen=True)
@@ -84,13 +82,13 @@ class Choice:
 
 
 def choices(packed: Packed, q: np.ndarray, count: int) -> Iterator[Choice]:
-    """Complete choices of ``count`` coordinates at a closed pose q (3 nb,), those with the fewest blocks alone."""
+    """Complete choices of ``count`` coordinates at a closed pose q (3 nb,), without blocks if there are any."""
     if not 0 < count <= MOST:
         return
     everything = range(len(packed.joints))
     trains = _Trains(packed, q, [joint for joint in everything if link_kind(packed.joints[joint]) is None])
-    for blocks in (CLOSED, LAST, EARLY):
-        if blocks == CLOSED and not trains.possible:
+    for blocks in (False, True):
+        if not blocks and not trains.possible:
             continue
         start = Choice(Plan(packed, q.reshape(-1, 3), links_of_joints(packed, everything)))
         found = _complete(start, trains, count, 0, [TRIALS], blocks)
@@ -144,14 +142,14 @@ class _Trains:
 
 
 def _complete(
-    choice: Choice, trains: _Trains, count: int, taken: int, left: list[int], blocks: int
+    choice: Choice, trains: _Trains, count: int, taken: int, left: list[int], blocks: bool
 ) -> Iterator[Choice]:
     plan = choice.plan
     while True:
         plan.grow()
         if trains.add(plan):
             continue
-        added = _with_block(choice) if blocks == EARLY or (blocks == LAST and taken == count) else None
+        added = _with_block(choice) if blocks else None
         if added is None:
             break
         choice = added

@@ -33,8 +33,8 @@ passes the tolerance the closed form gives way to poses beside."""
 WIDEST = 0.1**2
 """Squared sine above which closed forms always stand."""
 CLOSED, UNKNOWN_COST, PAIRED, BODY_COST, BESIDE = 0.04, 0.3, 0.03, 0.2, 0.3
-"""Measured costs of one evaluation (us): of a closed group, of an unknown of a block and of each pair of them; of a body
-in reference coordinates and what comes beside."""
+"""Measured costs of one evaluation (us): of a closed group, of an unknown of a block and of each pair of unknowns; of a
+body in reference coordinates and what comes beside."""
 DOUBLED = 2.0
 """Another choice is looked for when some body moves this much faster than when the coordinates were chosen."""
 

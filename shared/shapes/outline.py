@@ -99,10 +99,12 @@ def hull(circles: Sequence[Circle], waist: float = math.inf) -> cq.Wire:
 
 
 def hull_holds(circles: Sequence[Circle], inner: Circle, tolerance: float = 1e-6) -> bool:
-    """Whether the straight-sided hull round ``circles`` holds another circle."""
+    """Whether the straight-sided hull round ``circles``, of which none holds another, holds another circle."""
     x, y, radius = inner
     if any(math.hypot(x - u, y - v) + radius <= r + tolerance for u, v, r in circles):
         return True
+    if len(circles) == 1:
+        return False
     for i in range(len(circles)):
         leave, _, arrive = _side(circles[i], circles[(i + 1) % len(circles)], math.inf)
         along = _unit(arrive - leave)

@@ -92,7 +92,7 @@ def _fixed(own: np.ndarray, unknown: Sequence[int], arms: Sequence[int]) -> tupl
         if not waits[np.ix_(label == part, label != part)].any() and not loose.reshape(-1, 3)[label == part].any()
     ]
     least = min(free, key=lambda members: (len(members), members[0]), default=None)
-    return None if least is None else tuple(unknown[k] for k in least)
+    return None if least is None else tuple(unknown[int(k)] for k in least)
 
 
 def hanging(plan: Plan, members: set[int], left: Sequence[int]) -> Hanging | None:

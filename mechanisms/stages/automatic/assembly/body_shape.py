@@ -39,12 +39,13 @@ def body_shape(eyes: list[PlacedEye], thickness: float) -> tuple[cq.Workplane, i
     """The plate from z = 0 up, in the body's frame, and its number of through holes."""
     points = np.array([[x, y] for x, y, _ in eyes])
     if len(eyes) == 1:
-        x, y, eye = eyes[0]
-        return plate_link([(x, y, eye), (x, y + 0.5 * eye.radius, Eye(eye.radius, 0.0))], thickness), int(eye.bore > 0)
+        return _round(eyes[0], [], thickness), int(eyes[0][2].bore > 0)
     bores = sum(eye.bore > 0 for _, _, eye in eyes)
     hull = convex_hull(points, 1e-4)
     corners = _outermost([int(np.argmin(np.linalg.norm(points - corner, axis=1))) for corner in hull], eyes)
     inner = [eye for k, eye in enumerate(eyes) if k not in corners]
+    if len(corners) == 1:
+        return _round(eyes[corners[0]], inner, thickness), bores
     if len(corners) == 2:
         return _bar([eyes[k] for k in corners], inner, thickness), bores
     shape, windows = _plate([eyes[k] for k in corners], inner, thickness)
@@ -52,13 +53,22 @@ def body_shape(eyes: list[PlacedEye], thickness: float) -> tuple[cq.Workplane, i
 
 
 def _outermost(corners: list[int], eyes: list[PlacedEye]) -> list[int]:
-    """Those corners whose eyes the hull round the others does not hold already, in their order."""
+    """Those corners whose eyes neither another eye nor the hull round the others holds already, in their order."""
     circles = {k: (eyes[k][0], eyes[k][1], eyes[k][2].radius) for k in corners}
     for k in corners:
+        if any(hull_holds([one], circles[k]) for other, one in circles.items() if other != k):
+            del circles[k]
+    for k in list(circles):  # a hull is one of circles of which none holds another
         others = [circle for other, circle in circles.items() if other != k]
         if len(others) > 1 and hull_holds(others, circles[k]):
             del circles[k]
     return list(circles)
+
+
+def _round(eye: PlacedEye, inner: list[PlacedEye], thickness: float) -> cq.Workplane:
+    """A plate that one eye fills."""
+    x, y, own = eye
+    return plate_link([eye, (x, y + 0.5 * own.radius, Eye(own.radius, 0.0))], thickness, inner=inner)
 
 
 def _bar(ends: list[PlacedEye], inner: list[PlacedEye], thickness: float) -> cq.Workplane:

@@ -30,6 +30,7 @@ class Packed:
     com: np.ndarray
     """(nb, 2) in the author's frames (m)."""
     system: System
+    """Closing the start puts another one in its place."""
     ws: Workspace
     joints: list[Joint]
     """Joints, then drivers, then contacts if they were packed."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from mbsd.arrays.relative import Specials
 from mbsd.base.kept import Kept
-from mbsd.equations.system import System, Workspace, constant, workspace
+from mbsd.equations.system import System, Workspace, constant_system, workspace
 
 MOST_KEPT = 60
 """Coordinates of mechanisms whose arrays and start are kept for the next solution."""
@@ -93,7 +93,7 @@ def _made(parts: Parts, numbers: np.ndarray, specials: Specials, forces: int) ->
         distance_length=lengths.copy(),
         **as_table,
     )
-    system = System(*map(constant, system))
+    system = constant_system(*system)
     own = None
     if not len(special) and 3 * (parts.bodies - 1) <= MOST_KEPT:
         fixed = [part.tobytes() for name, part in system._asdict().items() if name != "angle_offset"]

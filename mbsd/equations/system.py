@@ -66,6 +66,10 @@ class System(NamedTuple):
         """The same mechanism with other arrays."""
         return self._replace(**{name: constant(array) for name, array in arrays.items()})
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Deep copies, and what is unpickled, are constant too: kernels are compiled for such arrays."""
+        return constant_system, tuple(self)
+
 
 class Workspace(NamedTuple):
     """Scratch of one evaluation; every kernel call overwrites it, but for what ``relative`` remembers."""
@@ -102,6 +106,11 @@ def constant(array: np.ndarray) -> np.ndarray:
     """The same array, which cannot be written into any more."""
     array.setflags(write=False)
     return array
+
+
+def constant_system(*arrays: np.ndarray) -> System:
+    """The System of these arrays, in the order of its fields."""
+    return System(*map(constant, arrays))
 
 
 def workspace(system: System, rows: int) -> Workspace:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -78,7 +80,9 @@ def test_closing_the_start_makes_another_system(build, decided: set[str]) -> Non
 def test_nothing_can_write_into_a_system() -> None:
     sol = wheels().sweep(1.0, steps=4)
     systems = [pack(wheels()).system, pack(welded()).system, sol.packed.system]
-    systems.append(sol.packed.system.changed(mass=np.ones(4)))
+    systems += [sol.packed.system.changed(mass=np.ones(4)), copy.deepcopy(sol).packed.system]
+    systems.append(pickle.loads(pickle.dumps(sol.packed.system)))
+    assert bytes_of(systems[-1]) == bytes_of(sol.packed.system)
     for system in systems:
         assert not any(array.flags.writeable for array in system)
     with pytest.raises(ValueError, match="read-only"):

@@ -4,8 +4,8 @@
 
 Whatever depends only on how two bodies stand to each other is a function F(x, y, a) of the relative pose: place (x, y)
 of marker j in the axes of marker i (m) and the angle ``a`` of marker j against marker i (rad, never wrapped). The file
-of an equation fills, by the indices below, F, its gradient and its second derivatives; special.py makes from them
-the rows of Phi, J and gamma.
+of an equation fills, by the indices below, F, its gradient and its second derivatives; constraints/relative.py makes
+from them the rows of Phi, J and gamma.
 
 ``numbers`` begins with the constants that the start pose decides, then come those of the joint, from ``OWN`` on. What
 events change stands in ``relative``: ZERO, which an equation whose sliding is counted takes off like PHASE, and LAST

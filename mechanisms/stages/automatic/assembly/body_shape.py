@@ -90,7 +90,13 @@ def _bar(ends: list[PlacedEye], inner: list[PlacedEye], thickness: float) -> cq.
 
 def first_made(ways: Sequence[Callable[[], cq.Workplane]]) -> cq.Workplane:
     """The first shape that has room and that the CAD kernel can make; the last one must."""
-    for way in ways[:-1]:
+    made = first_sound(ways[:-1])
+    return ways[-1]() if made is None else made
+
+
+def first_sound(ways: Sequence[Callable[[], cq.Workplane]]) -> cq.Workplane | None:
+    """The first shape that has room and that the CAD kernel can make; None if there is none."""
+    for way in ways:
         try:
             shape = way()
             if shape.val().isValid():
@@ -98,7 +104,7 @@ def first_made(ways: Sequence[Callable[[], cq.Workplane]]) -> cq.Workplane:
         except Exception as error:
             if not isinstance(error, ValueError) and not is_of_kernel(error):
                 raise
-    return ways[-1]()
+    return None
 
 
 def _plate(corners: list[PlacedEye], inner: list[PlacedEye], thickness: float) -> tuple[cq.Workplane, int]:
@@ -112,10 +118,12 @@ def _plate(corners: list[PlacedEye], inner: list[PlacedEye], thickness: float) -
         return first_made([partial(plate_link, corners, thickness, inner=inner, edge=edge) for edge in EDGES]), 0
     waist = 2.0 * float(lengths.max())
     rims = _rims(corners, points, lengths, waist)
-    ways = [partial(plate_link, corners, thickness, waist=waist, rims=rims, edge=edge) for edge in EDGES]
-    if rims is None:  # sides that curve inwards may cross each other
-        ways += [partial(plate_link, corners, thickness, edge=edge) for edge in EDGES]
-    return first_made(ways), 0 if rims is None else 1
+    curved = [partial(plate_link, corners, thickness, waist=waist, rims=rims, edge=edge) for edge in EDGES]
+    straight = [partial(plate_link, corners, thickness, edge=edge) for edge in EDGES]
+    made = first_sound(curved)
+    if made is None:  # sides that curve inwards may cross each other
+        return first_made(straight), 0
+    return made, int(rims is not None)
 
 
 def _rims(corners: list[PlacedEye], points: np.ndarray, lengths: np.ndarray, waist: float) -> list[float] | None:

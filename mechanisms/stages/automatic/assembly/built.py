@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import cadquery as cq
 
 from mechanisms.stages.automatic.assembly.body_shape import PlacedEye, body_shape
+from mechanisms.stages.automatic.assembly.bores import refuse_meeting_bores
 from mechanisms.stages.automatic.assembly.frame import base
 from mechanisms.stages.automatic.assembly.marks import marked
 from mechanisms.stages.automatic.assembly.rod_shape import rod_shape
@@ -27,7 +28,11 @@ if TYPE_CHECKING:
 
 
 def built(plan: Plan, heights: Heights, engraved_too: bool = True) -> dict[str, list[Solid]]:
-    """All solids by body, in mm; ``engraved_too``: the base with its names, rule and dial."""
+    """All solids by body, in mm; ``engraved_too``: the base with its names, rule and dial.
+
+    Raises UserError where two bores of a body meet.
+    """
+    refuse_meeting_bores(plan)
     made: dict[str, list[Solid]] = {"ground": [*base(plan, engraved_too), *plan.solids.get("ground", [])]}
     for body in plan.layout.moving:
         shape, holes = _plate(plan, body, heights.thickness)

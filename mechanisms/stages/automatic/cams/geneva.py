@@ -57,10 +57,15 @@ class GenevaDrive:
         return [*found, Anchor(self.crank, *self.pin.pin_at, eye)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """The wheel, the pin through it, and the locking disc."""
+        """The wheel, the pin through it, the locking disc; and a rule: the crank, whose disc stands in the wheel's
+        layer, is in another one even where its arm never comes near the wheel.
+        """
         both, between = frozenset((self.crank, self.wheel)), Reach((self.crank, self.wheel))
         wheel, lock = disc(*self.wheel_at[:2], self.shape.rim), disc(*self.crank_at[:2], self.shape.lock)
         yield Item(f"the wheel of {self.name}", self.wheel, wheel, Reach((self.wheel,)), source=self)
+        apart = disc(*self.wheel_at[:2], self.shape.distance)
+        rule = f"the layer of the wheel of {self.name}"
+        yield Item(rule, self.wheel, apart, Reach((self.wheel,)), source=self, only=frozenset((self.crank,)))
         yield Item(f"the locking disc of {self.name}", self.crank, lock, between, both, self)
         pin = disc(*self.pin.pin_at, layout.sizes.hardware)
         yield Item(f"the pin of {self.name}", self.crank, pin, Reach((self.crank, self.wheel), 1, 1), both, self)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from mechanisms.stages.automatic.layout import limits
 from mechanisms.stages.automatic.layout.features import kind
 from mechanisms.stages.automatic.slides.crossings import with_crossings
-from mechanisms.stages.automatic.slides.slides import HALF_LENGTH, Slide
+from mechanisms.stages.automatic.slides.slides import HALF_LENGTH, RAIL, Slide
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
@@ -21,6 +22,8 @@ ON_LINE, ALONG = 1e-3, 1e-6
 """Lines that are nearer (rmm) and more parallel (rad) are one."""
 FAR = 4.0
 """Stops farther beyond the travel than it is long, or than this (half lengths of a block), are not made."""
+BESIDE = 0.5
+"""Between the end of a rail and the pin beyond it (rmm)."""
 
 
 @kind("prismatic")
@@ -37,6 +40,7 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
         given = [end for end in ends if end is not None]
         travel = min(travel[0], *given, travel[1]), max(travel[1], *given, travel[0])
         slide = Slide(joint.name, joint.i.body.name, joint.j.body.name, rail_at, block_at, travel, ends)
+        slide = replace(slide, shorter=_room_for_pins(slide, m, layout))
         if given or not any(_repeats(slide, other) for other in found):
             found.append(slide)
     return with_crossings(found, layout)
@@ -49,3 +53,27 @@ def _repeats(slide: Slide, other: Slide) -> bool:
     x, y, angle = other.rail_at
     aside = (slide.rail_at[1] - y) * math.cos(angle) - (slide.rail_at[0] - x) * math.sin(angle)
     return abs(aside) < ON_LINE and abs(math.sin(slide.rail_at[2] - angle)) < ALONG
+
+
+def _room_for_pins(slide: Slide, m: Mechanism, layout: Layout) -> tuple[float, float]:
+    """By how much the rail's ends are shortened beside pins of its own body: down to the end of the block at most."""
+    if slide.rail == "ground":
+        return 0.0, 0.0
+    c, s = math.cos(slide.rail_at[2]), math.sin(slide.rail_at[2])
+    near = RAIL / 2 + layout.sizes.hardware + BESIDE
+    first, last = slide.travel[0] - HALF_LENGTH, slide.travel[1] + HALF_LENGTH
+    before = behind = 0.0
+    for joint in m.joints.values():
+        for marker in (joint.i, joint.j):
+            if joint.kind.pair != "pin" or marker.body.name != slide.rail:
+                continue
+            x, y = layout.place(marker)
+            x, y = x - slide.rail_at[0], y - slide.rail_at[1]
+            along, aside = c * x + s * y, abs(c * y - s * x)
+            if aside < near:
+                reach = math.sqrt(near * near - aside * aside)
+                if along < slide.travel[0]:
+                    before = max(before, along + reach - first)
+                elif along > slide.travel[1]:
+                    behind = max(behind, last - (along - reach))
+    return min(before, RAIL / 2), min(behind, RAIL / 2)

@@ -53,10 +53,13 @@ class Slide:
     """Of the block's middle along the rail, from its marker; as far as its stops where it has any."""
     ends: limits.Limits = (None, None)
     """Where stops on the rail end that travel, before and behind."""
+    shorter: tuple[float, float] = (0.0, 0.0)
+    """By how much its round ends begin earlier, before and behind, where the rail's own body has a pin there."""
 
     def rail_ends(self) -> list[tuple[float, float]]:
         """Middles of the rail's round ends, in its body's frame: the block never leaves it."""
-        return [self.rail_place(self.travel[0] - HALF_LENGTH), self.rail_place(self.travel[1] + HALF_LENGTH)]
+        first, last = self.travel[0] - HALF_LENGTH, self.travel[1] + HALF_LENGTH
+        return [self.rail_place(first + self.shorter[0]), self.rail_place(last - self.shorter[1])]
 
     def rail_place(self, distance: float) -> tuple[float, float]:
         """On the rail, that far from its marker, in its body's frame."""

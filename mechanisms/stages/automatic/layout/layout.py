@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from mechanisms.stages.automatic.layout.extents import rods_of
-from mechanisms.stages.automatic.layout.items import PIVOT, Item, Reach, spans_meet
+from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Item, Reach, spans_meet
 from mechanisms.stages.automatic.layout.order.layers import Problem
 from mechanisms.stages.automatic.layout.planar import Rounded, around, core_gaps, least_gap, placed
 
@@ -245,6 +245,14 @@ class Layout:
         others = {j if i in mine else i for i, j in self.conflicts if (i in mine) != (j in mine)}
         looked = min(half_layer, half_layer + further), max(half_layer, half_layer + further)
         return any(spans_meet(self.items[k].reach.span(levels), looked) for k in others)
+
+    def room_below(self, x: float, y: float, levels: Levels) -> float:
+        """Distance (rmm) from a place on ground to what moves above the base, under the lowest layer."""
+        here, every = np.full((len(self.times), 1, 2), (x, y)), np.arange(len(self.times))
+        moving = (i for i in self.items if i.body != "ground" and not i.only and i.what != i.body)
+        low = (i for i in moving if spans_meet(i.reach.span(levels), (BASE, BASE)))
+        gaps = (core_gaps(here, placed(i.shape.core_at(every), self.poses[i.body])) - i.shape.radius for i in low)
+        return min((float(gap.min()) for gap in gaps), default=math.inf)
 
     def room_on_base(self, x: float, y: float) -> float:
         """Half of the distance (rmm) from a place on ground to the next place where something stands there."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +14,8 @@ if TYPE_CHECKING:
 
 COARSE = 7
 """Every so many poses are looked at first: most pairs that overlap do so in one of these."""
+FLAT = 1.0
+"""Corners of a hull that stand out less may be dropped (rmm)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +50,11 @@ def around(points: Sequence[tuple[float, float]], radius: float) -> Rounded:
 
 
 def convex_hull(points: np.ndarray, tolerance: float = 1e-9) -> np.ndarray:
-    """(m, 2): corners of the convex hull, counter-clockwise, none on a line between two others (monotone chain)."""
+    """(m, 2): corners of the convex hull, counter-clockwise, none on a line between two others (monotone chain).
+
+    ``tolerance``: corners are dropped that with others make triangles of this part of the hull's squared size, as far
+    as what is dropped lies within ``FLAT`` of the hull that stays.
+    """
     size = max(float(np.ptp(points, axis=0).max()), 1e-300)
     ordered = sorted({(round(float(x), 12), round(float(y), 12)) for x, y in points})
     if len(ordered) < 3:
@@ -55,12 +63,24 @@ def convex_hull(points: np.ndarray, tolerance: float = 1e-9) -> np.ndarray:
     def half(sequence: list[tuple[float, float]]) -> list[tuple[float, float]]:
         chain: list[tuple[float, float]] = []
         for point in sequence:
-            while len(chain) > 1 and _cross(chain[-2], chain[-1], point) <= tolerance * size * size:
+            while len(chain) > 1 and _cross(chain[-2], chain[-1], point) <= 1e-9 * size * size:
                 chain.pop()
             chain.append(point)
-        return chain[:-1]
+        return (_plainer(chain, tolerance * size * size) if tolerance > 1e-9 else chain)[:-1]
 
     return np.array(half(ordered) + half(ordered[::-1]))
+
+
+def _plainer(chain: list[tuple[float, float]], area: float) -> list[tuple[float, float]]:
+    """The convex chain without corners that hardly stand out; its ends stay."""
+    kept, dropped = [chain[0]], list[tuple[float, float]]()
+    for corner, after in pairwise(chain[1:]):
+        least = min(math.dist(kept[-1], after) * FLAT, area)
+        dropped.append(corner)
+        if any(_cross(kept[-1], one, after) > least for one in dropped):
+            kept.append(corner)
+            dropped = []
+    return [*kept, chain[-1]]
 
 
 def least_gap(

@@ -36,7 +36,7 @@ def bridge_solids(bridge: Bridge, plan: Plan, heights: Heights) -> None:
         shape = shape.cut(placed(bore(pivot.held, low, low + BEAM_HEIGHT, 0.4), x, y))
     plan.make("ground", f"bridge_{bridge.name}", shape, "aluminium_black", 2 + len(hung))
     for k, (x, y) in enumerate(bridge.ends, start=1):
-        standing(f"{bridge.name}_{k}", (x, y), low - seat, plan, label="", kind="post")
+        standing(f"{bridge.name}_{k}", (x, y), low - seat, plan, label="", kind="post", levels=heights.levels)
         dowel = pin(pivot.pin, DOWEL - seat, sizes.head)
         top = low + BEAM_HEIGHT + seat
         plan.make("ground", f"dowel_{bridge.name}_{k}", placed(dowel, x, y, top - DOWEL + seat), "steel", 0)

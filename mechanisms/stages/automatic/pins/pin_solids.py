@@ -13,6 +13,7 @@ from shared.shapes.solid import Solid, placed
 from shared.shapes.standards import screw_length, screw_name
 
 if TYPE_CHECKING:
+    from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.pins.pins import Pin
@@ -77,7 +78,7 @@ def ground_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> No
     height = heights.bottom(stack[0]) - pivot.flange_room - fit.axial - pivot.washer_room
     wheel = plan.layout.wheel_at(x, y)
     if wheel is None:
-        standing(name, (x, y), height, plan, dial=joint.driven)
+        standing(name, (x, y), height, plan, dial=joint.driven, levels=heights.levels)
     else:  # the wheel and its post carry it
         foot = heights.top(wheel.layer) + fit.seat
         post = column(height - foot, pivot.held, TOP, TOP)
@@ -139,8 +140,10 @@ def standing(
     label: str | None = None,
     dial: bool = False,
     kind: str = "pedestal",
+    levels: Levels | None = None,
 ) -> None:
-    """A pedestal on the base plate, with a flange and screws where there is room for them beside its neighbours.
+    """A pedestal on the base plate, with a flange and screws where there is room for them beside its neighbours and,
+    where ``levels`` are given, beside what moves under the lowest layer.
 
     ``label`` is what is engraved beside it, by default its name.
     """
@@ -148,6 +151,8 @@ def standing(
     pivot, seat = sizes.pivot, sizes.pivot.fit.seat
     x, y = at
     room = plan.layout.room_on_base(x, y)
+    if levels is not None:
+        room = min(room, plan.layout.room_below(x, y, levels))
     label = name if label is None else label
     if room < FLANGE / 2 + 0.5 or sizes.screw == 0:
         foot = min(FOOT, 2 * room - 1.0)

@@ -29,7 +29,7 @@ def flush_pivot(joint: Pin, plan: Plan, heights: Heights) -> None:
     u, v = joint.places[body]
     bottom = heights.bottom(body)
     height = bottom - pivot.flange_room - fit.axial - pivot.washer_room
-    standing(name, (x, y), height, plan, dial=joint.driven)
+    standing(name, (x, y), height, plan, dial=joint.driven, levels=heights.levels)
     depth = SUNK.height + fit.axial + UNDER
     floor = heights.thickness - depth
     plan.eye(body, u, v, Eye(sizes.eye, pivot.running))

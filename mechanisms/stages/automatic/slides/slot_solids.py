@@ -123,7 +123,7 @@ def slot_pin(
     end = high + fit.axial if depth is None else low + depth - 0.4
     if slot.pin == "ground":
         height = low - fit.axial - pivot.washer_room
-        standing(slot.name, (x, y), height, plan)
+        standing(slot.name, (x, y), height, plan, levels=heights.levels)
         plan.add("ground", pivot.washer_at(f"washer_{slot.name}", x, y, height + fit.seat))
         start = 0.5
         shape = pin(pivot.pin, end - start, head)

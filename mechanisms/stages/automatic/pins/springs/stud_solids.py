@@ -53,7 +53,9 @@ def stud_on_post(stud: Stud, plan: Plan, heights: Heights) -> None:
     """On a post on the base."""
     fit, lines = plan.layout.sizes.pivot.fit, _lines(stud, heights)
     top = max(lines[0] - BALL - 1.5, 2.0)
-    post = column(top - fit.seat, SHANK + fit.press, 2 * POST - 1.0, 2 * FOOT)
+    slim, above = POST - 0.5, top - heights.bottoms[0]
+    foot = min(FOOT, slim + 0.5 * top / above) if above > 0 else FOOT  # within POST from the lowest layer up
+    post = column(top - fit.seat, SHANK + fit.press, 2 * slim, 2 * foot)
     plan.make("ground", f"post_{stud.name}", placed(post, stud.x, stud.y, fit.seat), "aluminium", 1)
     plan.feet.append(Foot("", stud.x, stud.y, FOOT))
     _add(stud, "ground", ball_stud(SHANK, 0.5, lines[-1], lines, BALL, []), plan, heights)

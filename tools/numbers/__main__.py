@@ -37,12 +37,12 @@ def main() -> int:
 
 
 def _found(only: str) -> dict[str, str]:
-    from tools.numbers import gallery, groups, runs
+    from tools.numbers import blocks, gallery, groups, runs
     from tools.numbers.digest import attempt
     from tools.numbers.published import published
 
     found, started = {}, time.perf_counter()
-    for source in (runs, groups, gallery):
+    for source in (runs, groups, blocks, gallery):
         for name, run in source.runs():
             if only in name:
                 with warnings.catch_warnings(action="ignore"):

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import math
-
 from mbsd.dynamics.embedding.blocks.arrays import BODIES, EQUATIONS
 from mbsd.dynamics.embedding.blocks.prediction import expected, expected_since
 from mbsd.kinematics.groups.blocks import BODY, MOTION, SIZE
 from mbsd.kinematics.groups.carrying.columns import SPEED
 from mbsd.kinematics.groups.newton.fused import fused
-from mbsd.kinematics.groups.newton.linearised import correction, linearise
-from mbsd.kinematics.groups.newton.matrix import extent, factor, held, solve
+from mbsd.kinematics.groups.newton.iteration import correction, iterate
+from mbsd.kinematics.groups.newton.matrix import extent, held, solve
 from mbsd.kinematics.groups.newton.rows import begin, bend_of, move
-from mbsd.kinematics.newton import MAX_ITERATIONS, ROUNDING, SHRINKS, SUSPICIOUS, TOLERANCE
+from mbsd.kinematics.newton import ROUNDING, SHRINKS, SUSPICIOUS
 
 
 @fused
@@ -39,26 +37,10 @@ def place_coupled(
                 unknown[0, c] = expected(here[c], seen, coordinate, since)
             else:
                 unknown[0, c] = expected_since(kept[c], coordinate)
-        determinant = 0.0
-        change = math.inf
-        previous = math.inf
-        for iteration in range(MAX_ITERATIONS):
-            move(tree, frame, count, unknown, False, q, v, a, turn, point)
-            linearise(head, tree, rows, frame, arms, q, turn, numbers, jac, out, solution[0], scratch)
-            determinant = factor(scratch, solution[1], n)
-            if determinant == 0.0:
-                break
-            for r in range(n):
-                solution[0, r] = drive[rows[r, MOTION], 0] - solution[0, r]
-            solve(scratch, solution[1], n, solution[0])
-            for c in range(n):
-                unknown[0, c] += solution[0, c]
-            change = correction(head, tree, solution[0], per_metre)
-            if change <= TOLERANCE:
-                break
-            if iteration > 0 and not change < 0.5 * previous:
-                break
-            previous = change
+        determinant, change, _, _ = iterate(
+            False, head, tree, rows, frame, arms, drive, q, v, a, turn, numbers, jac, out, scratch, unknown, solution,
+            point,
+        )  # fmt: skip
         if determinant != 0.0 and change <= ROUNDING:
             move(tree, frame, count, unknown, False, q, v, a, turn, point)
             if before == 0.0:

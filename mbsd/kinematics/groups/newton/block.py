@@ -9,8 +9,6 @@ It is reached by its machine address, and compiled when a plan with blocks is fi
 
 from __future__ import annotations
 
-import math
-
 from numba import carray
 
 from mbsd.compiling.jit import COMPILED, at_address
@@ -31,12 +29,12 @@ from mbsd.kinematics.groups.blocks import (
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, MEETING, SOLVED
 from mbsd.kinematics.groups.newton.call import PYTHON, SIGNATURE
 from mbsd.kinematics.groups.newton.fused import fused
-from mbsd.kinematics.groups.newton.linearised import correction, linearise
-from mbsd.kinematics.groups.newton.matrix import factor, held, solve
+from mbsd.kinematics.groups.newton.iteration import iterate
+from mbsd.kinematics.groups.newton.matrix import held, solve
 from mbsd.kinematics.groups.newton.pinned import in_doubt, predicted, solve_pinned
 from mbsd.kinematics.groups.newton.rows import begin, bend_of, move
 from mbsd.kinematics.law_step import jumps
-from mbsd.kinematics.newton import MAX_ITERATIONS, ROUNDING, TOLERANCE
+from mbsd.kinematics.newton import ROUNDING
 
 LONG = 1 << 40
 """For arrays whose length does not matter."""
@@ -78,31 +76,11 @@ def solve_arrays(
     for c in range(n):
         unknown[1, c] = 0.0
         unknown[2, c] = 0.0
-    first = 0.0
-    second = 0.0
-    last = math.inf
-    change = math.inf
-    for iteration in range(MAX_ITERATIONS):
-        move(tree, frame, count, unknown, iteration == 0, qk, vk, ak, turn, point)
-        linearise(head, tree, rows, frame, arms, qk, turn, numbers, jac, out, du[0], scratch)
-        determinant[k, 0] = factor(scratch, du[1], n)
-        if determinant[k, 0] == 0.0:
-            return MEETING
-        for r in range(n):
-            du[0, r] = drive[rows[r, MOTION], 0] - du[0, r]
-        solve(scratch, du[1], n, du[0])
-        for c in range(n):
-            unknown[0, c] += du[0, c]
-        change = correction(head, tree, du[0], per_metre)
-        if iteration == 0:
-            first = change
-        elif iteration == 1:
-            second = change
-        if change <= TOLERANCE:
-            break
-        if iteration > 0 and not change < 0.5 * last:
-            break
-        last = change
+    determinant[k, 0], change, first, second = iterate(
+        True, head, tree, rows, frame, arms, drive, qk, vk, ak, turn, numbers, jac, out, scratch, unknown, du, point
+    )  # fmt: skip
+    if determinant[k, 0] == 0.0:
+        return MEETING
     if not change <= ROUNDING:
         return DOUBTED
     for r in range(n):

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
+import threading
 import time
 from collections.abc import Sequence
-from concurrent.futures import BrokenExecutor
+from concurrent.futures import BrokenExecutor, CancelledError
 from concurrent.futures import Future as Promise
 from importlib import metadata
 from pathlib import Path
@@ -67,6 +69,7 @@ class Cluster:
         self._fit: dict[str, bool] = {}
         self._refused: dict[str, str] = {}
         self._away: dict[Promise[Done], tuple[Any, list[Point], frozenset[str]]] = {}
+        self._changing = threading.Lock()
         self._looked = 0.0
         self._look()
 
@@ -94,7 +97,10 @@ class Cluster:
         living = self._living()
         for promise, (future, points, places) in list(self._away.items()):
             if not places & living:
-                del self._away[promise]
+                with self._changing:
+                    if not self._is_away(promise, future):
+                        continue
+                    del self._away[promise]
                 future.cancel()
                 self._send(promise, points)
 
@@ -116,14 +122,30 @@ class Cluster:
         future.add_done_callback(lambda done: self._settle(promise, done))
 
     def _settle(self, promise: Promise[Done], future: Any) -> None:
-        if promise not in self._away or self._away[promise][0] is not future or future.cancelled():
+        """Hand the result on. It may be lost with its worker while it comes: then the chunk is sent again, and this
+        one is cancelled.
+        """
+        if future.cancelled() or not self._is_away(promise, future):
             return
-        del self._away[promise]
+        found: Done | Exception
         try:
-            promise.set_result(future.result())
+            found = future.result()
+        except (CancelledError, asyncio.CancelledError):
+            return
         except Exception as error:
             killed = type(error).__name__ == "KilledWorker"
-            promise.set_exception(BrokenExecutor(str(error)) if killed else error)
+            found = BrokenExecutor(str(error)) if killed else error
+        with self._changing:
+            if not self._is_away(promise, future):
+                return
+            del self._away[promise]
+        if isinstance(found, Exception):
+            promise.set_exception(found)
+        else:
+            promise.set_result(found)
+
+    def _is_away(self, promise: Promise[Done], future: Any) -> bool:
+        return promise in self._away and self._away[promise][0] is future
 
     def _workers(self) -> dict[str, Any]:
         # The scheduler itself: what the client keeps is replaced now and then by a list without workers.

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
+from types import SimpleNamespace
 from typing import Any
 
 import dask.config
@@ -70,3 +73,47 @@ def test_workers_with_other_versions_are_refused_by_name(client: Any, monkeypatc
     with warnings.catch_warnings(), pytest.raises(ModelError, match=f"{name}: numpy .*, here 1.0; start workers"):
         warnings.simplefilter("ignore")
         mbsd.study(build, LENGTHS, fastest, client, **QUIET)
+
+
+class Lost:
+    """A chunk's future whose result goes with its worker while it comes: it is there only when cancelled."""
+
+    def __init__(self) -> None:
+        self.asked, self._given_up = threading.Event(), threading.Event()
+
+    def add_done_callback(self, done: Callable[[Any], None]) -> None:
+        threading.Thread(target=done, args=(self,), daemon=True).start()
+
+    def cancelled(self) -> bool:
+        return self._given_up.is_set()
+
+    def cancel(self) -> None:
+        self._given_up.set()
+
+    def result(self) -> Any:
+        self.asked.set()
+        assert self._given_up.wait(10.0)
+        raise CancelledError
+
+
+class Found(Lost):
+    """One whose result comes."""
+
+    def result(self) -> Any:
+        return "the result"
+
+
+def test_a_result_that_goes_with_its_worker_is_made_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It was done, and its worker was killed before it came: nobody waits for it for ever."""
+    futures, living = [Lost(), Found()], iter([["first"], ["second"], ["second"]])
+    client = SimpleNamespace(status="running", submit=lambda *_, **__: futures[handed.pop(0)])
+    handed, lost = [0, 1], futures[0]
+    monkeypatch.setattr(remote.Cluster, "_look", lambda _: None)
+    monkeypatch.setattr(remote.Cluster, "_living", lambda _: frozenset(next(living)))
+    monkeypatch.setattr(remote.Cluster, "_wait_for_workers", lambda self: self._living())
+    cluster = remote.Cluster(b"", client)
+    promise = cluster.submit([])
+    assert lost.asked.wait(10.0)
+    cluster.look_after()
+    assert promise.result(10.0) == "the result"
+    assert lost.cancelled()

@@ -12,7 +12,7 @@ import math
 
 from mbsd.compiling.jit import apart, inlined, internal, kernel, lazy, merged
 from mbsd.dynamics.embedding.arrays import LIMIT, SENSITIVITY
-from mbsd.dynamics.embedding.blocks.arrays import KEPT_Q, KEPT_SIZE, Q
+from mbsd.dynamics.embedding.blocks.places import KEPT_Q, KEPT_SIZE, Q
 from mbsd.dynamics.embedding.bridge import bridge
 from mbsd.dynamics.embedding.groups import solve_groups
 from mbsd.equations.laws import evaluate_laws

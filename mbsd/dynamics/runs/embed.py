@@ -11,7 +11,8 @@ import numpy as np
 from mbsd.base.codes import LAW_VALUE, LINEAR, POWER, TURN
 from mbsd.base.kept import Kept
 from mbsd.dynamics.embedding.arrays import LIMIT, SENSITIVITY, Embedding, EmbeddingScratch
-from mbsd.dynamics.embedding.blocks.arrays import KEPT_SIZE, block_arrays, block_work
+from mbsd.dynamics.embedding.blocks.arrays import block_arrays, block_work
+from mbsd.dynamics.embedding.blocks.places import KEPT_SIZE
 from mbsd.dynamics.embedding.bridge import KEPT
 from mbsd.dynamics.embedding.coordinates import MOST, Choice, Coordinate, choices, coordinates_of
 from mbsd.dynamics.embedding.equations import look

@@ -14,7 +14,9 @@ from __future__ import annotations
 
 from mbsd.compiling.jit import lazy
 from mbsd.compiling.views import table
-from mbsd.dynamics.embedding.blocks.arrays import (
+from mbsd.dynamics.embedding.blocks.coupled import move_coupled, place_coupled
+from mbsd.dynamics.embedding.blocks.pinned import move_pinned, place_pinned
+from mbsd.dynamics.embedding.blocks.places import (
     ARMS,
     ARMS_WIDTH,
     BODIES,
@@ -45,8 +47,6 @@ from mbsd.dynamics.embedding.blocks.arrays import (
     Q,
     V,
 )
-from mbsd.dynamics.embedding.blocks.coupled import move_coupled, place_coupled
-from mbsd.dynamics.embedding.blocks.pinned import move_pinned, place_pinned
 from mbsd.kinematics.groups.blocks import BODY, HANGS, LARGEST, PIN, SIZE
 from mbsd.kinematics.groups.carrying.branch import angle_of, predicted
 from mbsd.kinematics.groups.carrying.columns import BASE, COS, INERTIA, MASS, OMEGA, SIN, VALUE, X, Y

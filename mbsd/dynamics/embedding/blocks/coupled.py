@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mbsd.dynamics.embedding.blocks.arrays import BODIES, EQUATIONS
+from mbsd.dynamics.embedding.blocks.places import BODIES, EQUATIONS
 from mbsd.dynamics.embedding.blocks.prediction import expected, expected_since
 from mbsd.kinematics.groups.blocks import BODY, MOTION, SIZE
 from mbsd.kinematics.groups.carrying.columns import SPEED

@@ -95,3 +95,10 @@ class EmbeddingScratch(NamedTuple):
     """(7,)"""
     report: Any
     """(4,)"""
+    spare_0: Any
+    spare_1: Any
+    spare_2: Any
+    """(1,) each, never read. This tuple is handed over by value; without them its copies lie 4 KB from what the loops
+    write, loads wait for stores that are not theirs (4K aliasing), and a pendulum takes three times as long. Measure
+    again (``python -m benchmarks calls``) where this tuple or Embedding gets longer or shorter.
+    """

@@ -189,6 +189,9 @@ def scratch_for(ready: PreparedDynamics, made: Embedded, stages: int, q: np.ndar
         dense=np.zeros((8, 2, 3 + count)),
         dense_work=np.zeros(7),
         report=np.zeros(4),
+        spare_0=np.zeros(1),
+        spare_1=np.zeros(1),
+        spare_2=np.zeros(1),
     )
 
 

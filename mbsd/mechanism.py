@@ -317,8 +317,9 @@ class Mechanism(Model):
         raises ends the run.
         ``event_rows`` adds two rows at every event, right before and after it (contacts, stops: docs/events.md).
         ``formulation``: "reference" integrates all coordinates and projects them onto the joints; "independent" only
-        as many as there are degrees of freedom, where the mechanism falls apart into driven bodies, gear trains and
-        Assur groups: several times faster. "auto" takes the latter where it can (``solution.stats.independent``).
+        as many as there are degrees of freedom, where the mechanism falls apart into driven bodies, gear trains, Assur
+        groups and blocks of a few bodies: several times faster. "auto" takes the latter where it can and that pays
+        (``solution.stats.independent``).
         ``options`` are numbers of the method itself, such as ``rho`` of "generalized_alpha".
 
         Raises AssemblyError where the links do not close, SimulationError where the integration cannot go on.

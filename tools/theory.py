@@ -74,7 +74,11 @@ SECTIONS = (
     (
         "Independent coordinates",
         "What forward dynamics does where a mechanism falls apart into driven bodies and Assur groups.",
-        ("mbsd/dynamics/embedding",),
+        (
+            "mbsd/dynamics/embedding",
+            "mbsd/dynamics/embedding/blocks/block.py",
+            "mbsd/dynamics/embedding/blocks/pinned.py",
+        ),
     ),
     (
         "Integrators",

@@ -3,7 +3,7 @@
 The program takes the mechanism apart from ground on; wherever no group and no wheel of a gear train can be added it
 takes the next hinge or slide as a coordinate, and goes back where that leads nowhere. Of the choices that come to an
 end it keeps the first under which no body moves much faster than its coordinate, or else the best. Blocks, whose bodies
-Newton-Raphson places (block.py), are added only where closed forms alone come to no end.
+Newton-Raphson places (blocks/), are added only where closed forms alone come to no end.
 """
 
 from __future__ import annotations

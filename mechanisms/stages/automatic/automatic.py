@@ -28,6 +28,7 @@ from mechanisms.stages.automatic.layout.sizes import Sizes, of_pin, refuse_sizes
 from mechanisms.stages.automatic.pins.free.free_bodies import free_bodies
 from mechanisms.stages.automatic.pins.free.points import styluses, weights
 from mechanisms.stages.automatic.pins.rods import add_poses, places
+from mechanisms.stages.automatic.wheels.sharing import with_own_layers
 from mechanisms.stages.automatic.wished_names import refuse_material, refuse_unknown
 from shared.stage.errors import UserError
 
@@ -253,7 +254,7 @@ class Automatic:
         layout.features += styluses(layout, tall)
         layout.features += weights(layout, heavy=False)
         layout.features += self._joined
-        return layout
+        return with_own_layers(layout)
 
     def _plan_anew(self) -> None:
         """Forget what was found before a wish."""

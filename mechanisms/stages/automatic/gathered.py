@@ -14,6 +14,7 @@ from mechanisms.stages.automatic.layout.features import CONTACT_KINDS, DRIVER_KI
 from mechanisms.stages.automatic.layout.items import Anchor, Need
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.pins.stops import stops
+from mechanisms.stages.automatic.rolling.shared_roads import with_shared_roads
 from shared.shapes.link import Eye
 from shared.stage.errors import UserError
 
@@ -82,6 +83,7 @@ def gathered(layout: Layout) -> list[Feature]:
     layout.features = list(features)  # springs look for pins that hold them
     features += _of(FORCE_KINDS, m, m.forces.values(), layout)
     features += _of(CONTACT_KINDS, m, m.contacts.values(), layout)
+    features = with_shared_roads(features)
     features += _of(DRIVER_KINDS, m, m.drivers.values(), layout)
     features += stops(m, features, layout)
     return features + _loose_eyes(loose, features, layout)

@@ -218,7 +218,8 @@ def _summary(name: str, document: Parts, written: int) -> str:
     pieces = [piece for body in document.bodies.values() for piece in body.pieces.values()]
     moving = sum(body.mass.mass for key, body in document.bodies.items() if key != "ground")
     triangles = sum(piece.triangles for piece in pieces)
+    mass = f"{moving:.3f} kg" if moving >= 0.01 else f"{1000 * moving:.3g} g"
     return (
-        f"{name}: {len(pieces)} solids of {len(document.bodies)} bodies, {moving:.3f} kg moving, "
+        f"{name}: {len(pieces)} solids of {len(document.bodies)} bodies, {mass} moving, "
         f"{triangles} triangles, {written} files written"
     )

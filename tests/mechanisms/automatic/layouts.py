@@ -19,7 +19,9 @@ def meets(made: Automatic) -> list[str]:
     seen = [placed(item.shape.core_at(at), layout.poses[item.body][at]) for item in layout.items]
     for j, second in enumerate(layout.items):
         for i, first in enumerate(layout.items[:j]):
-            by_design = first.body == second.body or first.body in second.spares or second.body in first.spares
+            by_design = first.body == second.body
+            by_design = by_design or (first.spared and first.body in second.spares)
+            by_design = by_design or (second.spared and second.body in first.spares)
             by_design = by_design or first.what in second.meshes or second.what in first.meshes
             if by_design or first.only or second.only or not spans_meet(spans[i], spans[j]):
                 continue

@@ -7,13 +7,15 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from mbsd import Mechanism, MechanismError, constant_rate
 from mechanisms.stages.automatic.assembly.body_shape import body_shape
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.layout.features import KINDS
 from mechanisms.stages.automatic.layout.items import Item, Reach, spans_meet
-from mechanisms.stages.automatic.layout.planar import Rounded, around, convex_hull, core_gaps, disc, least_gap
+from mechanisms.stages.automatic.layout.planar import Rounded, around, convex_hull, core_gaps, disc, least_gap, placed
 from mechanisms.stages.automatic.layout.sizes import sizes, standard
 from mechanisms.stages.automatic.pins.bridges import Bridge
 from mechanisms.stages.automatic.pins.pins import Pin
@@ -45,6 +47,18 @@ def test_gaps_of_polygons_agree_with_many_points_on_their_sides() -> None:
             inside = [p for p in _samples(b) if len(a) > 2 and len(convex_hull(np.vstack([a, p]))) == len(a)]
             inside += [p for p in _samples(a) if len(b) > 2 and len(convex_hull(np.vstack([b, p]))) == len(b)]
             assert inside or sampled < 0.15
+
+
+@given(st.floats(0.5, 50.0), st.floats(0.5, 50.0), st.floats(0.5, 50.0), st.booleans())
+def test_bars_one_behind_the_other_on_a_line_do_not_meet(apart: float, first: float, second: float, away: bool) -> None:
+    """The world turned, rounding puts their ends on either side of the line."""
+    turns = np.linspace(-np.pi, np.pi, 300)
+    still = np.zeros_like(turns)
+    one, other = (np.column_stack([still, still, turns + turn]) for turn in (0.0, np.pi if away else 0.0))
+    ends = (-apart, -apart - second) if away else (2 * apart + first, 2 * apart + first + second)
+    a = placed(np.array([[apart, 0.0], [apart + first, 0.0]]), one)
+    b = placed(np.array([[-end if away else end, 0.0] for end in ends]), other)
+    assert np.allclose(core_gaps(a, b), 2 * apart if away else apart, rtol=1e-9)
 
 
 def test_the_least_gap_is_found_over_the_motion() -> None:

@@ -63,6 +63,11 @@ class Cam:
     clear: float
 
     @property
+    def fills(self) -> str:
+        """The body whose layer leaves no room for teeth."""
+        return self.cam
+
+    @property
     def pin(self) -> Slot:
         """The pin of the roller, as one that runs at the height of the cam."""
         return Slot(self.name, self.cam, self.follower, np.array([self.centre]), self.at[:2])

@@ -44,6 +44,11 @@ class GenevaDrive:
     shape: Geneva
 
     @property
+    def fills(self) -> str:
+        """The body whose layer leaves no room for teeth."""
+        return self.wheel
+
+    @property
     def pin(self) -> Slot:
         """The pin in a slot, as far as its hardware goes; the wheel has its slots already."""
         x, y, angle = self.crank_at

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from mechanisms.stages.automatic.layout.extents import rods_of
-from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Item, Reach, spans_meet
+from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Item, PinReach, Reach, spans_meet
 from mechanisms.stages.automatic.layout.order.layers import Problem
 from mechanisms.stages.automatic.layout.planar import Rounded, around, core_gaps, least_gap, placed
 
@@ -50,9 +50,19 @@ class Feature(Protocol):
         ...
 
 
-class Carrier(Protocol):
+class Layered(Protocol):
+    """What has a layer."""
+
+    @property
+    def layer(self) -> str:
+        """What decides its layer: its body, or itself."""
+        ...
+
+
+class Carrier(Layered, Protocol):
     """A wheel, as far as the outline of its body and its plate ask."""
 
+    body: str
     x: float
     y: float
     ring: bool
@@ -61,11 +71,6 @@ class Carrier(Protocol):
     @property
     def root(self) -> float:
         """Radius where its teeth begin (rmm)."""
-        ...
-
-    @property
-    def layer(self) -> str:
-        """What decides its layer: its body, or itself."""
         ...
 
 
@@ -81,8 +86,10 @@ class Layout:
     springs: Springs = field(default_factory=lambda: Springs())
     wheels: dict[str, list[Carrier]] = field(default_factory=dict)
     """By body; set before outlines are asked for."""
+    meshing: list[tuple[Layered, Layered]] = field(default_factory=list)
+    """Wheels, racks and pulleys that share a layer because they mesh or have one belt."""
     extra: list[str] = field(default_factory=list)
-    """Layers that are no body's: wheels on ground, further wheels of a body, racks."""
+    """Layers that are no body's and no wheel's: racks, slots, springs."""
     together: list[tuple[str, str]] = field(default_factory=list)
     """Pairs that share a layer."""
     features: list[Feature] = field(default_factory=list)
@@ -146,7 +153,8 @@ class Layout:
     @property
     def layered(self) -> list[str]:
         """All that gets a layer."""
-        return [*self.moving, *self.extra]
+        wheels = [wheel for here in self.wheels.values() for wheel in here]
+        return [*self.moving, *(wheel.layer for wheel in wheels if wheel.layer != wheel.body), *self.extra]
 
     @cached_property
     def rods(self) -> dict[str, Joint]:
@@ -183,7 +191,7 @@ class Layout:
         radii = np.array([radius for _, radius in circles])
         middles = [placed(c, self.poses[item.body])[:, 0] for (c, _), item in zip(circles, items, strict=True)]
         for j, second in enumerate(items):
-            may = [i for i, first in enumerate(items[:j]) if self._may_meet(first, second)]
+            may = [i for i, first in enumerate(items[:j]) if self.may_meet(first, second)]
             for i in may:
                 apart = float(((middles[i] - middles[j]) ** 2).sum(axis=1).min()) ** 0.5
                 if apart - radii[i] - radii[j] < self.sizes.room and self.gap(items[i], second)[0] < self.sizes.room:
@@ -193,7 +201,8 @@ class Layout:
     def problem(self, fixed: Mapping[str, int] | None = None, hanging: frozenset[str] = frozenset()) -> Problem:
         """What the search for layers is asked."""
         between = [feature.order for feature in self.features if getattr(feature, "order", None)]
-        return Problem(self.layered, self.items, self.conflicts, fixed or {}, self.together, hanging, between)
+        together = [*self.together, *((one.layer, mate.layer) for one, mate in self.meshing)]
+        return Problem(self.layered, self.items, self.conflicts, fixed or {}, together, hanging, between)
 
     def with_flush_pivots(self) -> Layout:
         """The same with other pivots, and as they meet the same in the plane, with all that was found of that."""
@@ -215,7 +224,8 @@ class Layout:
         gap, at = least_gap(first.shape, second.shape, poses, self.sizes.room)
         return gap, float(self.times[at])
 
-    def _may_meet(self, first: Item, second: Item) -> bool:
+    def may_meet(self, first: Item, second: Item) -> bool:
+        """Whether two items that meet in the plane need different heights: no pair by design."""
         if first.body == second.body == "ground":
             return bool(first.stands and second.stands) and first.stands != second.stands
         if first.body == second.body:
@@ -231,10 +241,12 @@ class Layout:
         )
 
     def _are_stepped(self, first: Item, second: Item) -> bool:
-        """Whether the first is a wheel on a tube, the second its body's plate or another wheel of it."""
+        """Whether the first is a wheel on a tube, the second its body's plate, another wheel of it, or a pin beside."""
         wheels = [wheel for wheel in self.wheels.get(first.body, []) if not wheel.ring]
         if not any(wheel is first.source and wheel.layer == first.what for wheel in wheels):
             return False
+        if isinstance(second.reach, PinReach):
+            return second.what not in first.meshes
         return second.what == second.body or any(w is second.source and w is not first.source for w in wheels)
 
     def is_covered(self, source: object, half_layer: int, levels: Levels, further: int = 0) -> bool:

@@ -12,6 +12,8 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+ON_A_LINE = 1e-9
+"""A place that is this near to a line, as a part of their sizes, is on it: no crossing."""
 COARSE = 7
 """Every so many poses are looked at first: most pairs that overlap do so in one of these."""
 FLAT = 1.0
@@ -143,9 +145,15 @@ def _cross_each_other(a: np.ndarray, b: np.ndarray) -> np.ndarray:
         return np.zeros(len(a), dtype=bool)
     (p, q), (r, s) = _edges(a), _edges(b)
     p, q, r, s = p[:, :, None], q[:, :, None], r[:, None], s[:, None]
-    one = _turn(q - p, r - p) * _turn(q - p, s - p) < 0
-    other = _turn(s - r, p - r) * _turn(s - r, q - r) < 0
-    return (one & other).any(axis=(1, 2))
+    return (_parts(p, q, r, s) & _parts(r, s, p, q)).any(axis=(1, 2))
+
+
+def _parts(p: np.ndarray, q: np.ndarray, r: np.ndarray, s: np.ndarray) -> np.ndarray:
+    """Whether the line through p and q has r and s on either side, and neither on it but for rounding."""
+    one, other = _turn(q - p, r - p), _turn(q - p, s - p)
+    reach = np.abs(r - p).sum(axis=-1) + np.abs(s - p).sum(axis=-1)
+    noise = ON_A_LINE * np.abs(q - p).sum(axis=-1) * reach
+    return (one * other < 0) & (np.minimum(np.abs(one), np.abs(other)) > noise)
 
 
 def _turn(u: np.ndarray, v: np.ndarray) -> np.ndarray:

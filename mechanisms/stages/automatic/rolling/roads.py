@@ -43,6 +43,12 @@ class Road:
     feet: np.ndarray
     """(2, 2) the other corners: behind the last place of the path, and behind the first."""
 
+    @property
+    def is_square(self) -> bool:
+        """Whether it ends square, and in no mitred corner with another wall."""
+        way = self.path[-1] - self.path[0]
+        return bool(np.abs((self.feet - self.path[[-1, 0]]) @ way).max() < 1e-9 * float(way @ way))
+
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """Nothing."""
         return []

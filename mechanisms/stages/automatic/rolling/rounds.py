@@ -49,6 +49,11 @@ class Round:
     """How far it is seen to be pressed in (rmm)."""
 
     @property
+    def fills(self) -> str:
+        """The body whose layer leaves no room for teeth."""
+        return self.body
+
+    @property
     def made(self) -> float:
         """The radius as it is made."""
         return self.radius - self.short

@@ -64,7 +64,7 @@ def _on_ground(wheel: Wheel, plan: Plan, heights: Heights) -> None:
         plan.make("ground", f"post_{wheel.name}", placed(post, wheel.x, wheel.y), "aluminium", 1)
         plan.feet.append(Foot("", wheel.x, wheel.y, wheel.root))
         holes += 1
-    for k, (x, y) in enumerate(wheel.posts() if wheel.ring else []):
+    for k, (x, y) in enumerate(wheel.posts(plan.layout) if wheel.ring else []):
         post = extruded(circle(0, 0, POST), z - 2 * seat, seat)
         plan.make("ground", f"post_{wheel.name}_{k + 1}", placed(post, x, y), "steel", 0)
         plan.feet.append(Foot("", x, y, 6.0))

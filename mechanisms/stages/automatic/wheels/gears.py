@@ -7,19 +7,18 @@ teeth. A wheel that several joints name is one.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mbsd.model.teeth import with_radii
 from mechanisms.stages.automatic.layout.extents import Extent, extent
-from mechanisms.stages.automatic.layout.features import FORCE_KINDS, kind
+from mechanisms.stages.automatic.layout.features import kind
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.wheels import racks, wheels
 from mechanisms.stages.automatic.wheels.belts import BELTS, belts
-from mechanisms.stages.automatic.wheels.pulleys import Pulley
 from mechanisms.stages.automatic.wheels.racks import Rack, add_way
+from mechanisms.stages.automatic.wheels.sharing import enter
 from mechanisms.stages.automatic.wheels.trains import Mesh, in_phase
 from mechanisms.stages.automatic.wheels.wheels import Wheel
 from shared.stage.errors import UserError
@@ -79,13 +78,11 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
         meshes.append(Mesh(first, second, joint))
     in_phase(m, [*found, *bars], meshes, layout)
     bands = belts(m, layout)
-    pairs: list[tuple[Wheel | Rack, Wheel]] = [belt.pulleys for belt in bands]
     pulleys = [pulley for belt in bands for pulley in belt.pulleys]
-    settle([*found, *pulleys], layout)
+    enter([*found, *pulleys], layout)
     for rack in bars:
         layout.extra.append(rack.layer)
-    pairs += [(mesh.first, mesh.second) for mesh in meshes]
-    layout.together += [(one.layer, mate.layer) for one, mate in pairs]
+    layout.meshing += [*(belt.pulleys for belt in bands), *((mesh.first, mesh.second) for mesh in meshes)]
     return [*found, *bars, *pulleys, *bands]
 
 
@@ -113,37 +110,6 @@ def wheel_at(found: list[Wheel], name: str, marker: Marker, radius: float, ring:
             return wheel
     found.append(Wheel(name, body, x, y, size, ring))
     return found[-1]
-
-
-def settle(found: Sequence[Wheel], layout: Layout) -> None:
-    """Enter the wheels; of each body the largest lies in its layer, unless a ring's bottom or, of pulleys, an arm does:
-    a belt would run through that.
-    """
-    by_body: dict[str, list[Wheel]] = {}
-    for wheel in found:
-        by_body.setdefault(wheel.body, []).append(wheel)
-    for body, here in by_body.items():
-        layout.wheels[body] = [*here]
-        outer = [wheel for wheel in here if not wheel.ring]
-        largest = max(outer, key=lambda wheel: wheel.radius, default=None)
-        for wheel in here:
-            wheel.shares = wheel is largest and len(outer) == len(here) and not _has_arm(wheel, layout)
-    layout.extra += [wheel.layer for wheel in found if wheel.body == "ground" or not wheel.shares]
-
-
-def _has_arm(wheel: Wheel, layout: Layout) -> bool:
-    """Whether a joint, a spring, a traced point or a bar's end is on a pulley's body beyond the pulley."""
-    if not isinstance(wheel, Pulley):
-        return False
-    m, body = layout.m, layout.m.bodies[wheel.body]
-    forces = [force for force in m.forces.values() if force.kind.name in FORCE_KINDS]
-    markers = [end for one in (*m.joints.values(), *forces) for end in (one.i, one.j)]
-    markers += m.traces.values()
-    places = [layout.place(marker) for marker in markers if marker.body.name == wheel.body] or [(wheel.x, wheel.y)]
-    if body.length is not None:
-        places += [(0.0, 0.0), (layout.sizes.of_metres(body.length), 0.0)]
-    reach = max(math.dist(place, (wheel.x, wheel.y)) for place in places)
-    return reach + layout.sizes.hardware > wheel.root
 
 
 def _rack(bars: list[Rack], name: str, marker: Marker, layout: Layout) -> Rack:

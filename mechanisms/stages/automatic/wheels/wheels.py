@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
-from mechanisms.stages.automatic.layout.planar import Rounded, disc
+from mechanisms.stages.automatic.layout.planar import Rounded, disc, least_gap
+from mechanisms.stages.automatic.pins.pins import SAME, Pin
 from shared.shapes.involute import DEDENDUM
 
 if TYPE_CHECKING:
@@ -29,6 +30,8 @@ RIM = 7.0
 """Of a ring gear outside its teeth (rmm)."""
 TUBE = (10.2, 13.2)
 """Inner and outer radius of what carries a wheel in a layer of its own: inside is room for a pin's hardware."""
+CROSSES = (45, 60, 30, 75, 15, 0)
+"""Angles (degrees) of the posts of a ring on ground that are tried, the most wanted first."""
 LEAST, LEAST_ON_TUBE = 15.2, 18.0
 """Least pitch radii (rmm): a pin and its flanges, or a tube, stay inside of the teeth."""
 
@@ -99,13 +102,16 @@ class Wheel:
         reach, spares = Reach((self.layer,)), frozenset[str]()
         meshes = frozenset(mate.what for mate in self.mates)
         if not self.ring:
-            yield Item(self.what, self.body, disc(self.x, self.y, self.tip), reach, spares, self, meshes)
+            on_tube = self.body != "ground" and not self.shares
+            meshes = meshes | self._pins(layout) if on_tube else meshes
+            teeth = disc(self.x, self.y, self.tip)
+            yield Item(self.what, self.body, teeth, reach, spares, self, meshes, spared=not on_tube)
             if self.body == "ground":
                 post = disc(self.x, self.y, self.root - 1.0)
                 yield Item(self.what, self.body, post, Reach((self.layer,), -1, -1, base=True), spares, self, meshes)
-            elif not self.shares:
+            elif on_tube:
                 tube, between = disc(self.x, self.y, TUBE[1]), Reach((self.body, self.layer), 1, -1)
-                yield Item(f"the tube of {self.what}", self.body, tube, between, source=self)
+                yield Item(f"the tube of {self.what}", self.body, tube, between, spares, self, meshes, spared=False)
             return
         if self.body != "ground":
             reach = Reach((self.body, self.layer))
@@ -117,16 +123,33 @@ class Wheel:
         for a, b in pairwise(places):
             yield Item(self.what, self.body, Rounded(np.array([a, b]), half), reach, spares, self, meshes)
         if self.body == "ground":
-            for x, y in self.posts():
+            for x, y in self.posts(layout):
                 reach = Reach((self.layer,), -1, -1, base=True)
                 yield Item(f"a post of {self.what}", self.body, disc(x, y, RIM), reach, spares, self, meshes)
 
-    def posts(self) -> list[tuple[float, float]]:
-        """Of a ring that is fixed to ground, under its rim."""
+    def _pins(self, layout: Layout) -> frozenset[str]:
+        """Names of the pins that its tube goes round."""
+        pins = (one for one in layout.features if isinstance(one, Pin) and self.body in one.places)
+        return frozenset(pin.what for pin in pins if math.dist(pin.places[self.body], (self.x, self.y)) < SAME)
+
+    def posts(self, layout: Layout) -> list[tuple[float, float]]:
+        """Of a ring that is fixed to ground, under its rim: a cross turned so that the fewest bodies come near it."""
+        return min((self._cross(degrees) for degrees in CROSSES), key=lambda cross: _near(cross, layout))
+
+    def _cross(self, degrees: float) -> list[tuple[float, float]]:
         at = self.outside - RIM / 2
-        angles = [math.radians(degrees) for degrees in (45, 135, 225, 315)]
+        angles = [math.radians(degrees + quarter) for quarter in (0, 90, 180, 270)]
         return [(self.x + at * math.cos(a), self.y + at * math.sin(a)) for a in angles]
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """None."""
         return []
+
+
+def _near(posts: list[tuple[float, float]], layout: Layout) -> int:
+    """How many pairs of a post and a body's plate meet in the plane at some time."""
+    plates = [(layout.outline(body), layout.poses[body]) for body in layout.moving if layout.anchors[body]]
+    still = layout.poses["ground"]
+    room = layout.sizes.room
+    gaps = (least_gap(disc(x, y, RIM), plate, (still, poses), room)[0] for x, y in posts for plate, poses in plates)
+    return sum(gap < room for gap in gaps)

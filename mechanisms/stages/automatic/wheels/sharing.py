@@ -1,0 +1,76 @@
+"""Which wheel of a body lies in its body's layer: the largest, unless what else is there is in the way.
+
+A cam, a wheel on a road or a Geneva wheel fills its body's layer: what touches it would meet the teeth. An arm does
+not, as long as it stays clear of the mates. All other wheels lie in layers of their own, on tubes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from mechanisms.stages.automatic.layout.features import FORCE_KINDS
+from mechanisms.stages.automatic.layout.items import Item, Reach
+from mechanisms.stages.automatic.wheels.pulleys import Belt, Pulley
+from mechanisms.stages.automatic.wheels.wheels import LEAST_ON_TUBE, Wheel
+
+if TYPE_CHECKING:
+    from mechanisms.stages.automatic.layout.layout import Layout
+
+
+def enter(found: Sequence[Wheel], layout: Layout) -> None:
+    """Enter the wheels by their bodies; of each the largest lies in its layer, unless a ring's bottom or, of pulleys,
+    an arm does: a belt would run through that.
+    """
+    by_body: dict[str, list[Wheel]] = {}
+    for wheel in found:
+        by_body.setdefault(wheel.body, []).append(wheel)
+    for body, here in by_body.items():
+        layout.wheels[body] = [*here]
+        largest = max(here, key=lambda wheel: wheel.radius)
+        for wheel in here:
+            alone = not any(other.ring for other in here)
+            wheel.shares = wheel is largest and alone and not _has_arm(wheel, layout)
+
+
+def with_own_layers(layout: Layout) -> Layout:
+    """The layout, all of whose features are known, with wheels on tubes where their body's layer has no room."""
+    wheels = [one for one in layout.features if isinstance(one, Wheel) and one.body != "ground" and one.shares]
+    wide = [wheel for wheel in wheels if wheel.radius >= LEAST_ON_TUBE]
+    filled = {getattr(feature, "fills", "") for feature in layout.features}
+    blocked = [wheel for wheel in wide if wheel.body in filled or _is_in_the_way(wheel, layout)]
+    for wheel in blocked:
+        wheel.shares = False
+    return replace(layout) if blocked else layout
+
+
+def _is_in_the_way(wheel: Wheel, layout: Layout) -> bool:
+    """Whether its mates, or its belt, meet what else its body has in its layer."""
+    mates: list[object] = [*wheel.mates]
+    mates += [one for one in layout.features if isinstance(one, Belt) and wheel in one.pulleys]
+    near = [item for item in layout.items if item.source in mates and item.body != wheel.body]
+    own = [item for item in layout.items if item.body == wheel.body and item.source is not wheel]
+    own = [item for item in own if _is_always_in(item, wheel.body)]
+    return any(layout.may_meet(a, b) and layout.gap(a, b)[0] < layout.sizes.room for a in own for b in near)
+
+
+def _is_always_in(item: Item, layer: str) -> bool:
+    reach = item.reach
+    return isinstance(reach, Reach) and layer in reach.bodies and reach.low <= 0 <= reach.high
+
+
+def _has_arm(wheel: Wheel, layout: Layout) -> bool:
+    """Whether a joint, a spring, a traced point or a bar's end is on a pulley's body beyond the pulley."""
+    if not isinstance(wheel, Pulley):
+        return False
+    m, body = layout.m, layout.m.bodies[wheel.body]
+    forces = [force for force in m.forces.values() if force.kind.name in FORCE_KINDS]
+    markers = [end for one in (*m.joints.values(), *forces) for end in (one.i, one.j)]
+    markers += m.traces.values()
+    places = [layout.place(marker) for marker in markers if marker.body.name == wheel.body] or [(wheel.x, wheel.y)]
+    if body.length is not None:
+        places += [(0.0, 0.0), (layout.sizes.of_metres(body.length), 0.0)]
+    reach = max(math.dist(place, (wheel.x, wheel.y)) for place in places)
+    return reach + layout.sizes.hardware > wheel.root

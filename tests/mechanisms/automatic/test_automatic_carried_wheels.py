@@ -7,6 +7,8 @@ from collections.abc import Callable
 from math import pi, sin
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from mbsd import Mechanism, constant_rate
 from mbsd.cams import Lift, roller_cam
@@ -15,6 +17,9 @@ from mechanisms.stages.automatic.wheels.wheels import Wheel
 from tests.mechanisms.automatic.layouts import meets
 
 APART = 0.08
+
+type Machine = Callable[[float, float], Mechanism]
+"""Of the angle by which its world is turned and the radius of its wheel."""
 
 
 def at(turn: float, x: float, y: float = 0.0) -> tuple[float, float]:
@@ -85,6 +90,45 @@ def toy_car(turn: float, radius: float) -> Mechanism:
     return m
 
 
+def press(turn: float, radius: float) -> Mechanism:
+    """A belt and a pinion drive a gear whose crank pin lies 70 mm from its axis: beyond its teeth or within."""
+    m = Mechanism("press")
+    motor, pinion, gear, rod, ram = m.body("motor"), m.body("pinion"), m.body("gear"), m.bar("rod", 0.2), m.body("ram")
+    m.revolute("M", m.ground.at(*at(turn, -radius - 0.025, 0.15)), motor.origin)
+    m.revolute("A", m.ground.at(*at(turn, -radius - 0.025)), pinion.origin)
+    m.revolute("B", m.ground.origin, gear.origin)
+    m.belt("belt", motor.origin, pinion.origin, 0.02, 0.04)
+    m.gear_pair("gears", pinion.origin, gear.origin, 0.025, radius)
+    m.revolute("C", gear.at(0.07, 0), rod.start)
+    m.revolute("D", rod.end, ram.origin)
+    m.prismatic("way", m.ground.at(0, 0, turn), ram.origin)
+    m.drive_angle("drive", motor, constant_rate(1.0))
+    degrees = math.degrees(turn)
+    m.start_near(gear=degrees, rod=degrees, ram=(*at(turn, 0.27), degrees))
+    return m
+
+
+def two_valves(turn: float, radius: float) -> Mechanism:
+    """A belt drives a cam between two valves that move along one line."""
+    m = Mechanism("two_valves")
+    motor, cam = m.body("motor"), m.body("cam")
+    m.revolute("O", m.ground.origin, cam.origin)
+    m.revolute("M", m.ground.at(*at(turn, -0.25)), motor.origin)
+    m.belt("belt", motor.origin, cam.origin, 0.02, radius)
+    lift = Lift.of((2 * pi / 3, 0.020, "cycloidal"), (2 * pi / 3, 0.0, "cycloidal"), (2 * pi / 3, 0.0))
+    profile = roller_cam(lift, base_radius=0.035, roller_radius=0.012)
+    for name, side in (("in", turn), ("out", turn + pi)):
+        valve = m.body(name)
+        m.prismatic(f"guide_{name}", m.ground.at(*at(side, 0, 0.12), side + pi / 2), valve.at(0, 0.06, pi / 2))
+        m.cam_roller(f"contact_{name}", cam.origin, valve.origin, profile)
+        m.start_near(**{name: (*at(side, 0, 0.047), math.degrees(side))})
+    m.drive_angle("drive", motor, constant_rate(1.0))
+    return m
+
+
+MACHINES: tuple[Machine, ...] = (camshaft, geneva, cardan, toy_car, press, two_valves)
+
+
 def made_of(m: Mechanism) -> tuple[Automatic, dict[str, Wheel]]:
     made = Automatic(m, m.sweep(2 * pi, steps=240))
     return made, {one.body: one for one in made.layout.features if isinstance(one, Wheel)}
@@ -103,7 +147,7 @@ def made_of(m: Mechanism) -> tuple[Automatic, dict[str, Wheel]]:
     ],
 )
 def test_what_fills_a_layer_leaves_wheels_to_tubes(
-    machine: Callable[[float, float], Mechanism], radius: float, on_tubes: set[str], turn: float
+    machine: Machine, radius: float, on_tubes: set[str], turn: float
 ) -> None:
     made, wheels = made_of(machine(turn, radius))
     moving = {body: wheel for body, wheel in wheels.items() if body != "ground"}
@@ -113,6 +157,15 @@ def test_what_fills_a_layer_leaves_wheels_to_tubes(
             assert made.decided[wheel.layer] == made.decided[mate.layer]  # type: ignore[attr-defined]
     for body in on_tubes:
         assert made.decided[wheels[body].layer] != made.decided[body]
+    assert not meets(made)
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.sampled_from(MACHINES), st.integers(6, 18), st.floats(-pi, pi))
+def test_machines_of_any_size_get_layers(machine: Machine, fives: int, turn: float) -> None:
+    """Radii of whole 5 mm, of which there are gears."""
+    m = machine(turn, 0.005 * fives)
+    made = Automatic(m, m.sweep(2 * pi, steps=180))
     assert not meets(made)
 
 

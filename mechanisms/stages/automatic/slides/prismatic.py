@@ -10,6 +10,7 @@ import numpy as np
 
 from mechanisms.stages.automatic.layout import limits
 from mechanisms.stages.automatic.layout.features import kind
+from mechanisms.stages.automatic.slides.common_rails import on_one_line, with_common_rails
 from mechanisms.stages.automatic.slides.crossings import with_crossings
 from mechanisms.stages.automatic.slides.slides import HALF_LENGTH, RAIL, Slide
 
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
     from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.layout import Feature, Layout
 
-ON_LINE, ALONG = 1e-3, 1e-6
-"""Lines that are nearer (rmm) and more parallel (rad) are one."""
 FAR = 4.0
 """Stops farther beyond the travel than it is long, or than this (half lengths of a block), are not made."""
 BESIDE = 0.5
@@ -28,7 +27,9 @@ BESIDE = 0.5
 
 @kind("prismatic")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """One for each joint, but one for those on ground that cross, and for those of two bodies along one line."""
+    """One for each joint, but one for those on ground that cross, and for those of two bodies along one line; several
+    blocks along one line have a common rail where they can.
+    """
     found: list[Slide] = []
     for joint in joints:
         rail_at, block_at = (*layout.place(joint.i), joint.i.angle), (*layout.place(joint.j), joint.j.angle)
@@ -43,16 +44,12 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
         slide = replace(slide, shorter=_room_for_pins(slide, m, layout))
         if given or not any(_repeats(slide, other) for other in found):
             found.append(slide)
-    return with_crossings(found, layout)
+    return with_crossings(with_common_rails(found, layout), layout)
 
 
 def _repeats(slide: Slide, other: Slide) -> bool:
     """Whether another slide of the same two bodies guides along the same line already."""
-    if (slide.rail, slide.block) != (other.rail, other.block):
-        return False
-    x, y, angle = other.rail_at
-    aside = (slide.rail_at[1] - y) * math.cos(angle) - (slide.rail_at[0] - x) * math.sin(angle)
-    return abs(aside) < ON_LINE and abs(math.sin(slide.rail_at[2] - angle)) < ALONG
+    return slide.block == other.block and on_one_line(slide, other)
 
 
 def _room_for_pins(slide: Slide, m: Mechanism, layout: Layout) -> tuple[float, float]:

@@ -39,13 +39,14 @@ def fixed_rail(slide: Slide, plan: Plan, heights: Heights) -> None:
     ends, top = slide.rail_ends(), heights.bottom(slide.block) - fit.axial
     low = heights.levels[slide.block] == 0
     bottom = fit.seat if low else top - BEAM
-    plan.make("ground", f"rail_{slide.name}", _bar(ends, RAIL / 2, bottom, top), "steel", 0)
-    _stops(slide, bottom, top, plan)
-    for k, (x, y) in enumerate(ends):
+    if not slide.host:
+        plan.make("ground", f"rail_{slide.name}", _bar(ends, RAIL / 2, bottom, top), "steel", 0)
+        _stops(slide, bottom, top, plan)
+    for k, ((x, y), foot) in enumerate([] if slide.host else zip(ends, slide.posts(), strict=True), start=1):
         plan.feet.append(Foot("", x, y, RAIL / 2 + 2.0))
         if not low:
-            post = _bar([(x, y), _towards(ends[k], ends[1 - k], 6.0)], RAIL / 2 - 1.0, fit.seat, bottom - fit.seat)
-            plan.make("ground", f"post_{slide.name}_{k + 1}", post, "aluminium", 0)
+            post = _bar(foot, RAIL / 2 - 1.0, fit.seat, bottom - fit.seat)
+            plan.make("ground", f"post_{slide.name}_{k}", post, "aluminium", 0)
     z = heights.bottom(slide.block) - fit.seat
     _gibs(slide, slide.block, slide.block_at, z - DEPTH, z, plan)
 
@@ -77,8 +78,9 @@ def moving_rail(slide: Slide, plan: Plan, heights: Heights) -> None:
         z0, z1 = heights.top(slide.block) + fit.axial, heights.bottom(slide.rail) - fit.seat
         face = heights.top(slide.block) + fit.seat
         gibs = face, face + DEPTH
-    plan.make(slide.rail, f"rail_{slide.name}", _bar(slide.rail_ends(), RAIL / 2, z0, z1), "steel", 0)
-    _stops(slide, z0, z1, plan)
+    if not slide.host:
+        plan.make(slide.rail, f"rail_{slide.name}", _bar(slide.rail_ends(), RAIL / 2, z0, z1), "steel", 0)
+        _stops(slide, z0, z1, plan)
     _gibs(slide, slide.block, slide.block_at, *gibs, plan)
 
 
@@ -114,8 +116,3 @@ def _bar(ends: list[tuple[float, float]], radius: float, z0: float, z1: float) -
     (x0, y0), (x1, y1) = ends
     shape = extruded(outline.hull([(x0, y0, radius), (x1, y1, radius)]), z1 - z0, z0)
     return eased(shape, min(0.6, 0.2 * (z1 - z0)), ">Z", chamfer=True)
-
-
-def _towards(a: tuple[float, float], b: tuple[float, float], distance: float) -> tuple[float, float]:
-    length = math.hypot(b[0] - a[0], b[1] - a[1])
-    return a[0] + (b[0] - a[0]) * distance / length, a[1] + (b[1] - a[1]) * distance / length

@@ -17,7 +17,7 @@ import numpy as np
 
 from mechanisms.stages.automatic.layout import limits
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
-from mechanisms.stages.automatic.layout.planar import Rounded, disc
+from mechanisms.stages.automatic.layout.planar import Rounded
 from mechanisms.stages.automatic.layout.sizes import CLEAR
 
 if TYPE_CHECKING:
@@ -34,6 +34,8 @@ HALF_LENGTH = 23.0
 """Of a block."""
 GIB = (28.0, 4.4)
 """Length and width of a gib."""
+POST = 6.0
+"""How far a rail's post reaches inwards from the middle of the rail's round end."""
 STOP = 8.0
 """Length of a stop beside the rail."""
 WALL = 3.0
@@ -54,12 +56,24 @@ class Slide:
     ends: limits.Limits = (None, None)
     """Where stops on the rail end that travel, before and behind."""
     shorter: tuple[float, float] = (0.0, 0.0)
-    """By how much its round ends begin earlier, before and behind, where the rail's own body has a pin there."""
+    """By how much its round ends begin earlier, before and behind: where the rail's own body has a pin there; below 0
+    where other blocks run on it, too, or where it lies above another rail.
+    """
+    guests: tuple[Slide, ...] = ()
+    """What else runs on its rail."""
+    host: str = ""
+    """The slide whose rail this one runs on; empty: its own."""
 
     def rail_ends(self) -> list[tuple[float, float]]:
         """Middles of the rail's round ends, in its body's frame: the block never leaves it."""
         first, last = self.travel[0] - HALF_LENGTH, self.travel[1] + HALF_LENGTH
         return [self.rail_place(first + self.shorter[0]), self.rail_place(last - self.shorter[1])]
+
+    def posts(self) -> list[list[tuple[float, float]]]:
+        """Middles of the round ends of both posts, which reach inwards from the rail's ends."""
+        a, b = np.array(self.rail_ends())
+        inwards = POST * (b - a) / np.hypot(*(b - a))
+        return [[(float(x), float(y)) for x, y in foot] for foot in ((a, a + inwards), (b, b - inwards))]
 
     def rail_place(self, distance: float) -> tuple[float, float]:
         """On the rail, that far from its marker, in its body's frame."""
@@ -97,15 +111,21 @@ class Slide:
         """Rail, its posts, and the gibs of the block."""
         rail = Rounded(np.array(self.rail_ends()), RAIL / 2 + 1.0)
         block = Rounded(np.array(self.block_ends(layout.sizes.eye)), layout.sizes.eye)
-        what, gibs = f"the rail of {self.name}", f"the block of {self.name}"
-        sliding = frozenset((self.block, gibs))  # nothing else of the block's body passes through the rail
+        what, gibs = f"the rail of {self.host or self.name}", f"the block of {self.name}"
+        on_it = (self, *self.guests)  # nothing else of these bodies passes through the rail
+        sliding = frozenset(name for one in on_it for name in (one.block, f"the block of {one.name}"))
+        if self.host:
+            reach = Reach((self.block,), -1, -1) if self.rail == "ground" else Reach((self.rail, self.block), 1, -1)
+            meshes = frozenset((what,) if self.rail == "ground" else (what, self.rail))
+            yield Item(gibs, self.block, block, reach, source=self, meshes=meshes)
+            return
         at_end = [Rounded(np.array(self.across(s)), STOP / 2 + 0.5) for _, s in self.stops(layout)]
         if self.rail == "ground":
             below = Reach((self.block,), -1, -1)
             posts = Reach((self.block,), -1, -1, base=True)
             yield Item(what, "ground", rail, below, source=self, meshes=sliding, stands=what)
-            for x, y in self.rail_ends():
-                post = disc(x, y, RAIL / 2 + 1.0)
+            for foot in self.posts():
+                post = Rounded(np.array(foot), RAIL / 2)
                 yield Item(what, "ground", post, posts, source=self, meshes=sliding, stands=what)
             for stop in at_end:
                 yield Item(what, "ground", stop, below, source=self, meshes=sliding, stands=what)

@@ -242,7 +242,7 @@ class Automatic:
             return [of_pin(self._pin, self._fit)]
         return sizes(*extents(self.m, self.solution, self._left_out), self._fit)
 
-    def _layout(self, size: Sizes, springs: Springs, tall: bool = False) -> Layout:
+    def _layout(self, size: Sizes, springs: Springs, tall: bool = False, tubes: bool = False) -> Layout:
         poses = poses_of(self.solution, size.of_metres(1.0))
         layout = Layout(self.m, size, poses, times_of(self.solution), springs)
         layout.apart = frozenset(self._left_out)
@@ -254,7 +254,7 @@ class Automatic:
         layout.features += styluses(layout, tall)
         layout.features += weights(layout, heavy=False)
         layout.features += self._joined
-        return with_own_layers(layout)
+        return with_own_layers(layout, tubes)
 
     def _plan_anew(self) -> None:
         """Forget what was found before a wish."""

@@ -2,8 +2,8 @@
 
 Pins as thick as the links allow come first. Where these leave no order of layers, thinner ones are tried, down to half
 of that; then pivots are sunk into their links where something passes close above; then pivots hang from bridges; then
-plates of curved slots reach out to posts farther away; then a body is built up of two webs; then springs are left
-out, and that is reported.
+wheels whose mates an arm would meet stand on tubes; then plates of curved slots reach out to posts farther away; then
+a body is built up of two webs; then springs are left out, and that is reported.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ DEVICES = ((False, False), (True, False), (True, True))
 MOST_WEBS = 60
 """So many ways to build a body of two webs are tried."""
 
-type LayoutOf = Callable[[Sizes, Springs, bool], Layout]
-"""The layout with pins of a size, with springs, and with tall styluses or flush ones."""
+type LayoutOf = Callable[[Sizes, Springs, bool, bool], Layout]
+"""The layout with pins of a size, with springs, with tall styluses or flush ones, and with tubes beside arms."""
 type Found = tuple[Layout, dict[str, int]]
 
 
@@ -41,11 +41,10 @@ def decided(layout_of: LayoutOf, wishes: Sequence[Sizes], fixed: Mapping[str, in
     are asked for. Raises UserError that names what cannot pass each other if there is no order with any of them.
     """
     tried = _Tried(layout_of, fixed)
-    for (flush, bridges), sizes, above in product(DEVICES, wishes, (True, False)):
-        found = tried.found(sizes, Springs(above), flush, bridges)
-        if found is not None:
-            return tried.with_styluses(found) if not bridges else found
-    found = tried.with_far_posts(wishes) or tried.with_webs(wishes)
+    found = tried.with_devices(wishes)
+    if found is None and any(tried.layout(sizes, Springs(), True).tubes for sizes in wishes):
+        found = tried.with_devices(wishes, True)
+    found = found or tried.with_far_posts(wishes) or tried.with_webs(wishes)
     if found is not None:
         return found
     last = tried.layout(wishes[-1], Springs(False)).with_flush_pivots()
@@ -61,18 +60,26 @@ def decided(layout_of: LayoutOf, wishes: Sequence[Sizes], fixed: Mapping[str, in
 class _Tried:
     layout_of: LayoutOf
     fixed: Mapping[str, int]
-    known: dict[tuple[float, Springs], Layout] = field(default_factory=dict)
+    known: dict[tuple[float, Springs, bool], Layout] = field(default_factory=dict)
 
-    def layout(self, sizes: Sizes, springs: Springs) -> Layout:
+    def layout(self, sizes: Sizes, springs: Springs, tubes: bool = False) -> Layout:
         """With flush styluses."""
-        key = sizes.scale, springs
+        key = sizes.scale, springs, tubes
         if key not in self.known:
-            self.known[key] = self.layout_of(sizes, springs, False)
+            self.known[key] = self.layout_of(sizes, springs, False, tubes)
         return self.known[key]
 
-    def found(self, sizes: Sizes, springs: Springs, flush: bool, bridges: bool) -> Found | None:
+    def with_devices(self, wishes: Sequence[Sizes], tubes: bool = False) -> Found | None:
+        """With the fewest devices, and then the thickest pins, that leave an order."""
+        for (flush, bridges), sizes, above in product(DEVICES, wishes, (True, False)):
+            found = self.found(sizes, Springs(above), flush, bridges, tubes)
+            if found is not None:
+                return self.with_styluses(found) if not bridges else found
+        return None
+
+    def found(self, sizes: Sizes, springs: Springs, flush: bool, bridges: bool, tubes: bool = False) -> Found | None:
         """None where there is no order of layers."""
-        layout = self.layout(sizes, springs)
+        layout = self.layout(sizes, springs, tubes)
         if not springs.above and not springs.left_out and not layout.springs.found:
             return None  # without springs it was tried before
         return self.ordered(layout.with_flush_pivots() if flush else layout, bridges)
@@ -134,7 +141,7 @@ class _Tried:
         layout, least = low
         if not layout.m.traces:
             return low
-        high = self.layout_of(layout.sizes, layout.springs, True)
+        high = self.layout_of(layout.sizes, layout.springs, True, layout.tubes)
         high = high.with_flush_pivots() if layout.flush else high
         levels = find_layers(high.problem(self.fixed))
         if levels is None or max(levels[b] for b in high.layered) > max(least[b] for b in layout.layered):

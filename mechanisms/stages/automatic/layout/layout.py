@@ -103,6 +103,8 @@ class Layout:
     """Pairs of bodies whose round part is seen to press into a wall: these two pieces touch, and nothing else."""
     flush: bool = False
     """Whether pivots on ground may end flush with the one link that turns on them."""
+    tubes: bool = False
+    """Whether there are wheels on tubes because arms would meet their mates."""
     far_posts: bool = False
     """Whether slotted plates on ground reach farther to their posts."""
     webs: dict[str, str] = field(default_factory=dict)

@@ -1,7 +1,7 @@
 """Which wheel of a body lies in its body's layer: the largest, unless what else is there is in the way.
 
-A cam, a wheel on a road or a Geneva wheel fills its body's layer: what touches it would meet the teeth. An arm does
-not, as long as it stays clear of the mates. All other wheels lie in layers of their own, on tubes.
+A cam, a wheel on a road or a Geneva wheel fills its body's layer: what touches it would meet the teeth. An arm does so
+only where it meets the mates; then thinner pins are tried first. All other wheels lie in layers of their own, on tubes.
 """
 
 from __future__ import annotations
@@ -35,18 +35,21 @@ def enter(found: Sequence[Wheel], layout: Layout) -> None:
             wheel.shares = wheel is largest and alone and not _has_arm(wheel, layout)
 
 
-def with_own_layers(layout: Layout) -> Layout:
-    """The layout, all of whose features are known, with wheels on tubes where their body's layer has no room."""
+def with_own_layers(layout: Layout, beside_arms: bool) -> Layout:
+    """The layout, all of whose features are known, with wheels on tubes where their body's layer has no room;
+    ``beside_arms``: also where an arm is in the way of their mates.
+    """
     wheels = [one for one in layout.features if isinstance(one, Wheel) and one.body != "ground" and one.shares]
     wide = [wheel for wheel in wheels if wheel.radius >= LEAST_ON_TUBE]
     filled = {getattr(feature, "fills", "") for feature in layout.features}
-    blocked = [wheel for wheel in wide if wheel.body in filled or _is_in_the_way(wheel, layout)]
-    for wheel in blocked:
+    beside = [wheel for wheel in wide if wheel.body not in filled and beside_arms and _meets_an_arm(wheel, layout)]
+    moved = [wheel for wheel in wide if wheel.body in filled or wheel in beside]
+    for wheel in moved:
         wheel.shares = False
-    return replace(layout) if blocked else layout
+    return replace(layout, tubes=bool(beside)) if moved else layout
 
 
-def _is_in_the_way(wheel: Wheel, layout: Layout) -> bool:
+def _meets_an_arm(wheel: Wheel, layout: Layout) -> bool:
     """Whether its mates, or its belt, meet what else its body has in its layer."""
     mates: list[object] = [*wheel.mates]
     mates += [one for one in layout.features if isinstance(one, Belt) and wheel in one.pulleys]

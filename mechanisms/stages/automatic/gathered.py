@@ -15,6 +15,7 @@ from mechanisms.stages.automatic.layout.items import Anchor, Need
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.pins.stops import stops
 from mechanisms.stages.automatic.rolling.shared_roads import with_shared_roads
+from mechanisms.stages.automatic.slides.common_pins import refuse_pins_of_both_kinds
 from shared.shapes.link import Eye
 from shared.stage.errors import UserError
 
@@ -86,6 +87,7 @@ def gathered(layout: Layout) -> list[Feature]:
     features = with_shared_roads(features)
     features += _of(DRIVER_KINDS, m, m.drivers.values(), layout)
     features += stops(m, features, layout)
+    refuse_pins_of_both_kinds(m, features)
     return features + _loose_eyes(loose, features, layout)
 
 

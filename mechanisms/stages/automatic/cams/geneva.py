@@ -15,6 +15,7 @@ from mechanisms.stages.automatic.layout.features import kind
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.planar import disc
+from mechanisms.stages.automatic.slides.common_pins import passed
 from mechanisms.stages.automatic.slides.slots import Slot
 from shared.shapes.geneva import Geneva
 
@@ -55,6 +56,11 @@ class GenevaDrive:
         at = x + self.shape.radius * math.cos(angle), y + self.shape.radius * math.sin(angle)
         return Slot(self.name, self.wheel, self.crank, np.array([self.wheel_at[:2]]), at)
 
+    @property
+    def runs_through(self) -> Slot:
+        """The wheel's slots."""
+        return self.pin
+
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """Eyes for the axes, and one that holds the pin."""
         eye = layout.sizes.eye
@@ -73,7 +79,8 @@ class GenevaDrive:
         yield Item(rule, self.wheel, apart, Reach((self.wheel,)), source=self, only=frozenset((self.crank,)))
         yield Item(f"the locking disc of {self.name}", self.crank, lock, between, both, self)
         pin = disc(*self.pin.pin_at, layout.sizes.hardware)
-        yield Item(f"the pin of {self.name}", self.crank, pin, Reach((self.crank, self.wheel), 1, 1), both, self)
+        reach, meshes = Reach((self.crank, self.wheel), 1, 1), passed(self.pin, layout)
+        yield Item(f"the pin of {self.name}", self.crank, pin, reach, both, self, meshes)
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """As a pin in a slot."""

@@ -48,6 +48,11 @@ class CurvedSlot(Slot):
 
     closed: bool
 
+    @property
+    def runs_through(self) -> Slot | None:
+        """None where it is a groove all round."""
+        return None if self.closed else self
+
     def posts(self, layout: Layout) -> list[tuple[float, float]]:
         """Of a plate on ground: beyond the two places that are farthest from each other."""
         hull = convex_hull(self.path)

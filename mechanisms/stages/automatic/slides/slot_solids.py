@@ -11,6 +11,7 @@ from mechanisms.stages.automatic.layout.features import build
 from mechanisms.stages.automatic.layout.plan import Foot
 from mechanisms.stages.automatic.layout.planar import convex_hull
 from mechanisms.stages.automatic.pins.pin_solids import standing
+from mechanisms.stages.automatic.slides.common_pins import common
 from mechanisms.stages.automatic.slides.slots import POST, Slot
 from shared.shapes import outline
 from shared.shapes.band import band, loop
@@ -103,46 +104,69 @@ def slot_pin(
 ) -> None:
     """A pin with a roller at the height of the slot, on the pin's body: from below its head is on top.
 
-    In a groove of a ``depth`` the pin ends.
+    In a groove of a ``depth`` the pin ends. Through slots at one place of the body have one pin.
     """
-    sizes = plan.layout.sizes
-    pivot, fit = sizes.pivot, sizes.pivot.fit
-    x, y = slot.pin_at
-    outer = roller_diameter or sizes.roller
-    low, high = heights.bottom(slot.layer), heights.top(slot.layer)
-    below = slot.pin == "ground" or heights.bottom(slot.pin) < low
+    through = [slot] if roller_diameter is not None or depth is not None else common(slot, plan.layout)
+    outer = roller_diameter or plan.layout.sizes.roller
+    large = outer > plan.layout.sizes.head.diameter + 2 * SEEN
+    _roller(slot, outer, large, depth, plan, heights)
+    if slot.name == through[-1].name:
+        _pin(through, large, depth, plan, heights)
+
+
+def _is_below(slot: Slot, heights: Heights) -> bool:
+    """Whether the pin comes from below."""
+    return slot.pin == "ground" or heights.bottom(slot.pin) < heights.bottom(slot.layer)
+
+
+def _roller(slot: Slot, outer: float, large: bool, depth: float | None, plan: Plan, heights: Heights) -> None:
+    pivot, (x, y) = plan.layout.sizes.pivot, slot.pin_at
     thick = (heights.thickness if depth is None else depth - 0.4) - 0.4
-    large = outer > sizes.head.diameter + 2 * SEEN
     reach, width = (outer / 2 - RIM, GROOVE) if large else (outer, SMALL_GROOVE)
-    roller = washer(pivot.pin + fit.running, outer, thick, chamfer=0.4)
+    roller = washer(pivot.pin + pivot.fit.running, outer, thick, chamfer=0.4)
     roller = grooved(roller, GROOVES, reach, width, GROOVE_DEPTH)
     roll = Roll(slot.name, x, y, outer / 2, GROOVES)
-    at = low + 0.2 if below else high - 0.2 - thick
+    below = _is_below(slot, heights)
+    at = heights.bottom(slot.layer) + 0.2 if below else heights.top(slot.layer) - 0.2 - thick
     plan.add(slot.pin, Solid(f"roller_{slot.name}", placed(roller, x, y, at), "bronze", 1, rolls=roll))
-    head = None if depth is not None else SMALL if below and not large else sizes.head
-    end = high + fit.axial if depth is None else low + depth - 0.4
-    if slot.pin == "ground":
-        height = low - fit.axial - pivot.washer_room
-        standing(slot.name, (x, y), height, plan, levels=heights.levels)
-        plan.add("ground", pivot.washer_at(f"washer_{slot.name}", x, y, height + fit.seat))
-        start = 0.5
-        shape = pin(pivot.pin, end - start, head)
-    elif below:
-        boss = max(low - fit.axial - pivot.washer_room - heights.top(slot.pin), 0.0)
-        boss = 0.0 if boss < 0.05 else boss
-        eye = Eye(sizes.eye - 0.5, pivot.held, above=boss, boss=min(9.5, sizes.hardware))
-        plan.eye(slot.pin, x, y, eye)
-        plan.add(slot.pin, pivot.washer_at(f"washer_{slot.name}", x, y, heights.top(slot.pin) + boss + fit.seat))
-        start = heights.bottom(slot.pin) + 0.3
-        shape = pin(pivot.pin, end - start, head)
+
+
+def _pin(through: list[Slot], large: bool, depth: float | None, plan: Plan, heights: Heights) -> None:
+    """From the lowest to the highest of the slots, or from its body, with a boss and a washer on each side of that."""
+    sizes = plan.layout.sizes
+    pivot, fit, first = sizes.pivot, sizes.pivot.fit, through[0]
+    body, (x, y) = first.pin, first.pin_at
+    above = [(heights.bottom(one.layer), heights.top(one.layer)) for one in through if _is_below(one, heights)]
+    under = [(heights.bottom(one.layer), heights.top(one.layer)) for one in through if not _is_below(one, heights)]
+    head = None if depth is not None else SMALL if above and not large else sizes.head
+    if above:
+        end = max(high for _, high in above) + fit.axial if depth is None else above[0][0] + depth - 0.4
     else:
-        boss = max(heights.bottom(slot.pin) - high - fit.axial - pivot.washer_room, 0.0)
-        boss = 0.0 if boss < 0.05 else boss
-        eye = Eye(sizes.eye - 0.5, pivot.held, below=boss, boss=min(9.5, sizes.hardware))
-        plan.eye(slot.pin, x, y, eye)
-        under = heights.bottom(slot.pin) - boss - pivot.washer_room
-        plan.add(slot.pin, pivot.washer_at(f"washer_{slot.name}", x, y, under))
-        start = low + 0.1 if depth is None else high - depth + 0.4
-        top = heights.top(slot.pin) + (fit.seat if depth is None else -0.3)
-        shape = pin(pivot.pin, top - start, head)
-    plan.make(slot.pin, f"pin_{slot.name}", placed(shape, x, y, start), "brass", 0)
+        end = heights.top(body) + (fit.seat if depth is None else -0.3)
+    if body == "ground":
+        height = min(low for low, _ in above) - fit.axial - pivot.washer_room
+        standing(first.name, (x, y), height, plan, levels=heights.levels)
+        plan.add("ground", pivot.washer_at(f"washer_{first.name}", x, y, height + fit.seat))
+        start = 0.5
+    else:
+        rise = _boss(min(low for low, _ in above) - heights.top(body), plan) if above else 0.0
+        drop = _boss(heights.bottom(body) - max(high for _, high in under), plan) if under else 0.0
+        eye = Eye(sizes.eye - 0.5, pivot.held, above=rise, below=drop, boss=min(9.5, sizes.hardware))
+        plan.eye(body, x, y, eye)
+        if above:
+            plan.add(body, pivot.washer_at(f"washer_{first.name}", x, y, heights.top(body) + rise + fit.seat))
+        if under:
+            at = heights.bottom(body) - drop - pivot.washer_room
+            plan.add(body, pivot.washer_at(f"washer_{first.name}", x, y, at))
+        start = heights.bottom(body) + 0.3
+        if under:
+            start = min(low for low, _ in under) + 0.1 if depth is None else under[0][1] - depth + 0.4
+    shape = pin(pivot.pin, end - start, head)
+    plan.make(body, f"pin_{first.name}", placed(shape, x, y, start), "brass", 0)
+
+
+def _boss(gap: float, plan: Plan) -> float:
+    """How high a boss is that leaves room for a washer and for the slot's plate to move."""
+    pivot = plan.layout.sizes.pivot
+    height = gap - pivot.fit.axial - pivot.washer_room
+    return 0.0 if height < 0.05 else height

@@ -18,6 +18,7 @@ from mechanisms.stages.automatic.layout.features import kind
 from mechanisms.stages.automatic.layout.items import BASE, Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.planar import around, disc
+from mechanisms.stages.automatic.slides.common_pins import passed
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
@@ -50,6 +51,11 @@ class Slot:
     def layer(self) -> str:
         """What decides the layer of the slot: its body, or its plate where that is ground."""
         return self.slot if self.slot != "ground" else f"slot {self.name}"
+
+    @property
+    def runs_through(self) -> Slot | None:
+        """The slot through which the pin goes; None where it ends in a groove."""
+        return self
 
     @property
     def layers(self) -> tuple[str, ...]:
@@ -86,7 +92,7 @@ class Slot:
         """The pin from its body, or the base, through the slot, and its head; a plate on ground, with its posts."""
         shape, what = disc(*self.pin_at, layout.sizes.hardware), f"the pin of {self.name}"
         plate = f"the slotted plate of {self.name}"
-        through = frozenset((self.slot, plate))
+        through = frozenset((self.slot, plate)) | passed(self, layout)
         reach = Reach(self.layers, 1, 1) if self.pin != "ground" else Reach(self.layers, high=1, base=True)
         stands = what if self.pin == "ground" else ""
         yield Item(what, self.pin, shape, reach, source=self, meshes=through, stands=stands)

@@ -1,0 +1,48 @@
+"""A pin that runs in several slots: one pin of its body, with a roller in each of them.
+
+A crank that moves two yokes, or indexes two Geneva wheels, has its slots on one side of it or on both.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from mechanisms.stages.automatic.pins.pins import Pin
+from shared.stage.errors import UserError
+
+if TYPE_CHECKING:
+    from mbsd import Mechanism
+    from mechanisms.stages.automatic.layout.layout import Feature, Layout
+    from mechanisms.stages.automatic.slides.slots import Slot
+
+SAME = 0.02
+"""Pins nearer than this are one (rmm)."""
+
+
+def common(slot: Slot, layout: Layout) -> list[Slot]:
+    """All through slots in which the pin of ``slot`` runs, this one among them."""
+    through: list[Slot] = [s for s in (getattr(one, "runs_through", None) for one in layout.features) if s is not None]
+    return [one for one in through if one.pin == slot.pin and math.dist(one.pin_at, slot.pin_at) < SAME]
+
+
+def passed(slot: Slot, layout: Layout) -> frozenset[str]:
+    """Names of the items that the pin passes through by design."""
+    names = [(one.slot, f"the slotted plate of {one.name}", f"the wheel of {one.name}") for one in common(slot, layout)]
+    return frozenset(name for here in names for name in here)
+
+
+def refuse_pins_of_both_kinds(m: Mechanism, features: Sequence[Feature]) -> None:
+    """Raise UserError where a pin that runs in a slot is at the place of a revolute joint's pin."""
+    pins = [one for one in features if isinstance(one, Pin)]
+    for slot in (getattr(one, "runs_through", None) for one in features):
+        if slot is None:
+            continue
+        for pin in pins:
+            place = pin.places.get(slot.pin)
+            if place is not None and math.dist(place, slot.pin_at) < SAME:
+                raise UserError(
+                    f"{m.name}: the pin of joint '{slot.name}' is where {slot.pin} has that of joint '{pin.name}'; "
+                    f"give it a place of its own on {slot.pin}, or write mechanisms/{m.name}/parts.py"
+                )

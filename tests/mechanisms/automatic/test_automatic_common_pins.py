@@ -86,7 +86,5 @@ def test_pin_of_a_slot_where_a_rod_has_its_pin_is_refused() -> None:
     m.revolute("B", rod.end, block.origin)
     m.prismatic("way", m.ground.at(0, 0, pi), block.at(0, 0, pi))
     m.start_near(rod=180, block=(-0.16, 0, 0))
-    with pytest.raises(
-        UserError, match="pin of joint 'slot_cosine' is where crank has that of joint 'A'"
-    ):
+    with pytest.raises(UserError, match="pin of joint 'slot_cosine' is where crank has that of joint 'A'"):
         _ = Automatic(m, m.sweep(1.0, steps=20)).layout

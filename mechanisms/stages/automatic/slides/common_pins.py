@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from mechanisms.stages.automatic.pins.pins import Pin
 from shared.stage.errors import UserError
@@ -15,19 +15,49 @@ from shared.stage.errors import UserError
 if TYPE_CHECKING:
     from mbsd import Mechanism
     from mechanisms.stages.automatic.layout.layout import Feature, Layout
-    from mechanisms.stages.automatic.slides.slots import Slot
 
 SAME = 0.02
 """Pins nearer than this are one (rmm)."""
 
 
-def common(slot: Slot, layout: Layout) -> list[Slot]:
+class InSlot(Protocol):
+    """A pin in a slot: a joint's name, the bodies of slot and pin, and the pin's place on its body (rmm)."""
+
+    @property
+    def name(self) -> str:
+        """Of the joint."""
+        ...
+
+    @property
+    def slot(self) -> str:
+        """The body that has the slot."""
+        ...
+
+    @property
+    def pin(self) -> str:
+        """The body that has the pin."""
+        ...
+
+    @property
+    def pin_at(self) -> tuple[float, float]:
+        """Where the pin is on its body (rmm)."""
+        ...
+
+    @property
+    def layer(self) -> str:
+        """What decides the layer of the slot."""
+        ...
+
+
+def common(slot: InSlot, layout: Layout) -> list[InSlot]:
     """All through slots in which the pin of ``slot`` runs, this one among them."""
-    through: list[Slot] = [s for s in (getattr(one, "runs_through", None) for one in layout.features) if s is not None]
+    through: list[InSlot] = [
+        s for s in (getattr(one, "runs_through", None) for one in layout.features) if s is not None
+    ]
     return [one for one in through if one.pin == slot.pin and math.dist(one.pin_at, slot.pin_at) < SAME]
 
 
-def passed(slot: Slot, layout: Layout) -> frozenset[str]:
+def passed(slot: InSlot, layout: Layout) -> frozenset[str]:
     """Names of the items that the pin passes through by design."""
     names = [(one.slot, f"the slotted plate of {one.name}", f"the wheel of {one.name}") for one in common(slot, layout)]
     return frozenset(name for here in names for name in here)

@@ -11,7 +11,7 @@ from mechanisms.stages.automatic.layout.features import build
 from mechanisms.stages.automatic.layout.plan import Foot
 from mechanisms.stages.automatic.layout.planar import convex_hull
 from mechanisms.stages.automatic.pins.pin_solids import standing
-from mechanisms.stages.automatic.slides.common_pins import common
+from mechanisms.stages.automatic.slides.common_pins import InSlot, common
 from mechanisms.stages.automatic.slides.slots import POST, Slot
 from shared.shapes import outline
 from shared.shapes.band import band, loop
@@ -106,7 +106,7 @@ def slot_pin(
 
     In a groove of a ``depth`` the pin ends. Through slots at one place of the body have one pin.
     """
-    through = [slot] if roller_diameter is not None or depth is not None else common(slot, plan.layout)
+    through: list[InSlot] = [slot] if roller_diameter is not None or depth is not None else common(slot, plan.layout)
     outer = roller_diameter or plan.layout.sizes.roller
     large = outer > plan.layout.sizes.head.diameter + 2 * SEEN
     _roller(slot, outer, large, depth, plan, heights)
@@ -114,7 +114,7 @@ def slot_pin(
         _pin(through, large, depth, plan, heights)
 
 
-def _is_below(slot: Slot, heights: Heights) -> bool:
+def _is_below(slot: InSlot, heights: Heights) -> bool:
     """Whether the pin comes from below."""
     return slot.pin == "ground" or heights.bottom(slot.pin) < heights.bottom(slot.layer)
 
@@ -131,7 +131,7 @@ def _roller(slot: Slot, outer: float, large: bool, depth: float | None, plan: Pl
     plan.add(slot.pin, Solid(f"roller_{slot.name}", placed(roller, x, y, at), "bronze", 1, rolls=roll))
 
 
-def _pin(through: list[Slot], large: bool, depth: float | None, plan: Plan, heights: Heights) -> None:
+def _pin(through: list[InSlot], large: bool, depth: float | None, plan: Plan, heights: Heights) -> None:
     """From the lowest to the highest of the slots, or from its body, with a boss and a washer on each side of that."""
     sizes = plan.layout.sizes
     pivot, fit, first = sizes.pivot, sizes.pivot.fit, through[0]

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from mbsd import Mechanism, constant_rate
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.wheels.wheels import TUBE, Wheel
+from tests.mechanisms.automatic.layouts import meets
 from tests.models.outlines import gap
 from tests.shared.shape_checks import checked
 
@@ -110,3 +111,28 @@ def test_two_stages_back_to_the_first_axis() -> None:
     made = Automatic(m, m.sweep(1.0, steps=20))
     assert made.decided["first"] != made.decided["last"]
     assert {solid.name for solid in made.solids()["middle"]} >= {"middle", "bushing_B_low"}
+
+
+@pytest.mark.parametrize("bend", [0.5, 0.9, 2.0, 2.4, -1.2])
+def test_pinion_whose_two_mates_overlap_is_two(bend: float) -> None:
+    """A pinion of 12 teeth between wheels of 60 and 48: they meet unless they are far round it from each other."""
+    module = 1e-3
+    m = Mechanism("long_pinion")
+    first, middle, last = m.body("first"), m.body("middle"), m.body("last")
+    m.revolute("A", m.ground.at(-36 * module, 0), first.origin)
+    m.revolute("B", m.ground.origin, middle.origin)
+    m.revolute("C", m.ground.at(-30 * module * math.cos(bend), 30 * module * math.sin(bend)), last.origin)
+    m.gear_pair("one", first.origin, middle.origin, teeth=(60, 12), module=module)
+    m.gear_pair("two", middle.origin, last.origin, teeth=(12, 48), module=module)
+    m.drive_angle("motor", first, constant_rate(1.0))
+    made = Automatic(m, m.sweep(1.0, steps=40))
+    pinions = [wheel for wheel in wheels(made) if wheel.body == "middle"]
+    overlap = math.hypot(36 - 30 * math.cos(bend), 30 * math.sin(bend)) < 57  # with their teeth
+    assert len(pinions) == (2 if overlap else 1)
+    assert (made.decided["first"] != made.decided["last"]) == overlap
+    assert not meets(made)
+    count = len(made.layout.times)
+    for wheel in pinions:
+        for mate in wheel.mates:
+            assert isinstance(mate, Wheel)
+            assert min(gap(made, wheel, mate, at) for at in range(0, count, count // 4)) > 0.06

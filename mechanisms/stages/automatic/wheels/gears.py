@@ -1,7 +1,7 @@
 """Gear pairs, racks, belts: the wheels, racks and pulleys of all such joints, in phase, on common layers.
 
 Wheels that mesh share a layer. A wheel that is given by radii gets a standard module if that gives whole numbers of
-teeth. A wheel that several joints name is one.
+teeth. A wheel that several joints name is one, unless its mates overlap: then it is an equal one in another layer.
 """
 
 from __future__ import annotations
@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 GEARS, RACKS = "gear_pair", "rack_and_pinion"
 SAME = 0.02
 """Wheels nearer than this (rmm) have one centre."""
+TIP = 0.12
+"""Height of teeth above the pitch circle where no module is given, at most, in radii of the smaller wheel."""
 CENTRES = 0.02
 """How far the distance of two centres may be from that of their radii, as a part of it: the teeth still mesh."""
 
@@ -72,6 +74,8 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
             ring = bool(joint.params["internal"])
             first = wheel_at(found, joint.name, joint.i, sized["radius_i"], ring, layout)
             second = wheel_at(found, joint.name, joint.j, sized["radius_j"], False, layout)
+            tip = layout.sizes.of_metres(joint.params.get("module") or TIP * min(sized["radius_i"], sized["radius_j"]))
+            first, second = _apart(found, first, second, tip, layout), _apart(found, second, first, tip, layout)
             _hold(m, joint, first, second, layout)
         first.mates.append(second)
         second.mates.append(first)
@@ -84,6 +88,27 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
         layout.extra.append(rack.layer)
     layout.meshing += [*(belt.pulleys for belt in bands), *((mesh.first, mesh.second) for mesh in meshes)]
     return [*found, *bars, *pulleys, *bands]
+
+
+def _apart(found: list[Wheel], wheel: Wheel, mate: Wheel, tip: float, layout: Layout) -> Wheel:
+    """The wheel, or an equal one in another layer where the mate would meet one that the wheel has already."""
+    if wheel.ring or mate.ring or wheel.radius < wheels.LEAST_ON_TUBE:
+        return wheel
+    for one in found:
+        same = math.hypot(one.x - wheel.x, one.y - wheel.y) < SAME and one.radius == wheel.radius
+        if one.body != wheel.body or one.ring or not same:
+            continue
+        others = [other for other in one.mates if isinstance(other, Wheel) and not other.ring and other is not mate]
+        if not any(_meet(mate, other, tip, layout) for other in others):
+            return one
+    found.append(Wheel(f"{wheel.name}_{mate.body}", wheel.body, wheel.x, wheel.y, wheel.radius))
+    return found[-1]
+
+
+def _meet(first: Wheel, second: Wheel, tip: float, layout: Layout) -> bool:
+    """Whether two wheels whose teeth are ``tip`` (rmm) high above their pitch circles meet in the plane."""
+    away = layout.seen(second.body, (second.x, second.y), first.body) - (first.x, first.y)
+    return bool(np.hypot(*away.T).min() < first.radius + second.radius + 2 * tip + layout.sizes.room)
 
 
 def _hold(m: Mechanism, joint: Joint, first: Wheel, second: Wheel, layout: Layout) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -63,17 +63,23 @@ def _numbers(out: Out) -> list[str]:
 
 
 def _effort(motion: Motion) -> str:
-    """The largest force or torque of a driver; of forces where nothing is driven."""
-    found = {name: (driver.effort, driver.kind in SLIDES) for name, driver in motion.drivers.items()}
-    if not found:
-        found = {
-            name: (force.effort, force.measures != "angle")
-            for name, force in motion.forces.items()
-            if force.effort is not None
-        }
+    """The largest force or torque of a driver; of forces where nothing is driven, or drivers push by nothing."""
+    drivers = {name: (driver.effort, driver.kind in SLIDES) for name, driver in motion.drivers.items()}
+    forces = {
+        name: (force.effort, force.measures != "angle")
+        for name, force in motion.forces.items()
+        if force.effort is not None
+    }
+    found = [_largest(efforts, motion) for efforts in (drivers, forces) if efforts]
     if not found:
         return ""
-    name = max(found, key=lambda one: float(np.abs(found[one][0]).max()))
-    effort, pushes = found[name]
+    name, most, pushes = next((one for one in found if one[1] > 0.0), found[0])
+    return f"{written(most, 'N' if pushes else 'N m')} ({name})"
+
+
+def _largest(efforts: Mapping[str, tuple[Sequence[float], bool]], motion: Motion) -> tuple[str, float, bool]:
+    """Whose it is, how much, 0 where that is rounding, and whether it is a force."""
+    name = max(efforts, key=lambda one: float(np.abs(efforts[one][0]).max()))
+    effort, pushes = efforts[name]
     most = float(np.abs(effort).max())
-    return f"{written(most if most > effort_floor(motion, pushes) else 0.0, 'N' if pushes else 'N m')} ({name})"
+    return name, most if most > effort_floor(motion, pushes) else 0.0, pushes

@@ -12,6 +12,7 @@ from render.report import overview
 from render.report.facts import fastest
 from shared.contract import Provenance, read_motion
 from shared.contract.clearance import Clearance, PairClearance, write_clearance
+from shared.contract.loads import ForceMotion
 from tests.models.motions import four_bar_motion
 from tests.render import film_fixture
 
@@ -71,3 +72,20 @@ def test_rounding_is_no_effort() -> None:
     assert overview._effort(idle) == f"0 N m ({name})"
     small = msgspec.structs.replace(driver, effort=[1e-7 for _ in driver.effort])
     assert overview._effort(msgspec.structs.replace(MOTION, drivers={name: small})) == f"100 nN m ({name})"
+
+
+def test_a_driver_that_pushes_by_nothing_leaves_the_place_to_a_motor() -> None:
+    """As in inverse dynamics, where the driver gives the motion and a motor's torque makes it."""
+    count = len(MOTION.time)
+    zeros = [0.0] * count
+    motor = ForceMotion(
+        kind="torque", actions=[], several=False, measures="angle", value=zeros, rate=zeros,
+        effort=[0.02, -0.5, *zeros[2:]], normal=None, power=zeros, potential=zeros, shape=None,
+    )  # fmt: skip
+    [(name, driver)] = MOTION.drivers.items()
+    idle = msgspec.structs.replace(driver, effort=zeros)
+    moved = msgspec.structs.replace(MOTION, drivers={name: idle}, forces={"turner": motor})
+    assert overview._effort(moved) == "500 mN m (turner)"
+    assert overview._effort(msgspec.structs.replace(MOTION, forces={"turner": motor})).endswith(f"({name})")
+    still = msgspec.structs.replace(motor, effort=zeros)
+    assert overview._effort(msgspec.structs.replace(moved, forces={"turner": still})) == f"0 N m ({name})"

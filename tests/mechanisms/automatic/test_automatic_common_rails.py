@@ -125,6 +125,18 @@ def test_carts_that_follow_each_other_share_a_rail_unless_a_stop_is_on_it() -> N
     assert not meets(stopped)
 
 
+@settings(max_examples=40, deadline=None)
+@given(st.floats(0.06, 0.6))
+def test_carts_that_never_meet_are_never_one_above_the_other(second: float) -> None:
+    m = carts(second, 0.0)
+    made = Automatic(m, m.sweep(1.0, steps=20))
+    assert made.levels["first"] == made.levels["second"]
+    one, other = slides(made)
+    if not other.host:
+        (_, b), (c, _) = (sorted(x for x, _ in slide.rail_ends()) for slide in (one, other))
+        assert b + RAIL < c
+
+
 @pytest.mark.parametrize("second", [0.3, 1.0])
 def test_carts_far_from_each_other_have_rails_of_their_own(second: float) -> None:
     m = carts(second, 0.0)

@@ -1,7 +1,7 @@
 """Blocks that slide along one line of a body: on one rail where they never meet, else on rails one above the other.
 
-Carts of a track run on one rail. Pistons of an engine whose cylinders stand one behind the other pass each other in the
-plane: of rails on ground along one line each next one is longer than those before, so that its posts stand beyond them.
+Carts of a track run on one rail. Where blocks pass each other in the plane, each next rail on ground is longer than
+those before, so that its posts stand beyond them.
 """
 
 from __future__ import annotations
@@ -85,13 +85,13 @@ def _laid(line: list[Slide], layout: Layout) -> list[Slide]:
             rail.append(slide)
     found: list[Slide] = []
     taken: list[tuple[float, float]] = []
-    apart = RAIL + POST + 2.0 + layout.sizes.room
+    beside = RAIL + 2.0 + layout.sizes.room
     for host, *guests in rails:
         low, high = _joined([_span(slide, line[0]) for slide in (host, *guests)])
         if host.rail == "ground":
-            for first, last in taken:
-                if low - apart < last and first < high + apart:
-                    low, high = min(low, first - apart), max(high, last + apart)
+            for first, last in taken * len(taken):  # a longer rail may come to another one
+                if low - beside < last and first < high + beside:
+                    low, high = min(low, first - beside - POST), max(high, last + beside + POST)
             taken.append((low, high))
         found.append(replace(_with_ends(host, line[0], low, high), guests=tuple(guests)))
         found += [replace(guest, host=host.name) for guest in guests]

@@ -139,3 +139,9 @@ def test_results_name_their_kind() -> None:
     result = case.run(SEED + 2, "slider-crank", solids=False)
     assert isinstance(result, CaseResult)
     assert (result.family, result.outcomes[-1].state) == ("slider-crank", BUILT)
+
+
+def test_post_of_a_spring_stands_beside_a_rail_on_ground() -> None:
+    """A chain on a slide: the post went through the rail."""
+    [outcome] = case.run(23_000_139).outcomes
+    assert outcome.state == BUILT, outcome.detail

@@ -160,7 +160,8 @@ class Stud:
         else:
             under = Reach((self.body,), base=True) if layout.springs.above else None
             reach, spares = Reach((self.body, *self.layers), 1, -1), frozenset[str]()
-        yield Item(self.what, self.body, disc(self.x, self.y, POST), reach, spares, self)
+        stands = "post" if self.pin is None and self.body == "ground" else ""
+        yield Item(self.what, self.body, disc(self.x, self.y, POST), reach, spares, self, stands=stands)
         if under is not None:
             yield Item(f"{self.what} from below", self.body, disc(self.x, self.y, EYE), under, spares, self, only=held)
 

@@ -6,11 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from mbsd import Mechanism, ModelError, SimulationError, constant_rate, harmonic, polynomial
+from mbsd import Mechanism, ModelError, constant_rate, harmonic, polynomial
 from mbsd.results.solution import Solution
 from tests.models.slider_cranks import slider_crank
 
@@ -290,22 +288,6 @@ def test_a_joint_that_is_let_go_has_no_friction_any_more(sticks: bool) -> None:
     assert sol.stats.power_residual < 1e-9
 
 
-@pytest.mark.parametrize("sticks", [True, False])
-def test_joints_that_carry_nothing_are_no_jam(sticks: bool) -> None:
-    """A cart in free flight: its axles carry no more than rounding."""
-    m = Mechanism("flight")
-    cart = m.body("cart", 2.0, inertia=0.05)
-    for k, x in enumerate((-0.3, 0.3)):
-        wheel = m.body(f"wheel {k}", 0.3, inertia=0.0015)
-        m.revolute(f"axle {k}", cart.at(x, -0.1), wheel.origin)
-        m.friction(f"rub {k}", f"axle {k}", 0.3, radius=0.02, sticks=sticks)
-    m.start_near(cart=(0, 1, 0))
-    m.start_moving(cart=(1.0, 2.0, 0.0), **{"wheel 0": 30.0, "wheel 1": -10.0})
-    sol = m.simulate(1.0, steps=20, tolerance=1e-9)
-    np.testing.assert_allclose(sol.body("wheel 0").omega, 30.0, rtol=1e-12)
-    np.testing.assert_allclose(sol.body("cart").y, 1 + 2 * sol.t - G * sol.t**2 / 2, atol=1e-9)
-
-
 def test_an_impact_frees_a_joint_at_rest() -> None:
     """A ball falls on a lever that its pin holds: the pin is no part of the impact, and slides after it."""
     m = Mechanism("lever")
@@ -355,56 +337,3 @@ def test_other_methods_find_the_same_rest(method: str) -> None:
     slowing = G * (math.sin(angle) + mu * math.cos(angle))
     assert told(sol) == [("rub", "sticks")]
     np.testing.assert_allclose(way(sol, angle)[-1], -(speed**2) / 2 / slowing, rtol=1e-6)
-
-
-def four_bar_that_sticks(lengths: tuple[float, float, float], speed: float, mu: float, angle: float) -> Mechanism:
-    """Bars of so many metres and kilograms, 1.2 m of ground."""
-    m = Mechanism("four-bar")
-    crank, coupler, rocker = (m.bar(n, x, x) for n, x in zip(("crank", "coupler", "rocker"), lengths, strict=True))
-    m.revolute("A", m.ground.origin, crank.start)
-    m.revolute("B", crank.end, coupler.start)
-    m.revolute("C", coupler.end, rocker.end)
-    m.revolute("D", m.ground.at(1.2, 0), rocker.start)
-    for pin in "ABCD":
-        m.friction(f"rub {pin}", pin, mu, static=1.3 * mu, radius=0.05, sticks=True)
-    m.start_near(crank=angle, coupler=10.0, rocker=angle)
-    m.start_moving(crank=speed)
-    return m
-
-
-def from_change_point(lengths: tuple[float, float, float]) -> float:
-    """How far the lengths are from letting all bars lie in one line (m)."""
-    a, b, c = lengths
-    return min(abs(a + b - c - 1.2), abs(a - b + c - 1.2), abs(a - b - c + 1.2))
-
-
-@settings(max_examples=15, deadline=None)
-@given(
-    lengths=st.tuples(st.floats(0.8, 1.5), st.floats(0.8, 1.5), st.floats(0.8, 1.5)),
-    speed=st.floats(0.5, 5.0),
-    mu=st.floats(0.05, 0.6),
-    angle=st.floats(50.0, 80.0),
-)
-def test_a_four_bar_loses_energy_only_and_no_friction_passes_its_limit(lengths, speed, mu, angle) -> None:
-    assume(from_change_point(lengths) > 0.02)
-    m = four_bar_that_sticks(lengths, speed, mu, angle)
-    sol = m.simulate(1.0, steps=100, tolerance=1e-8)
-    total = sol.energy.total
-    assert (np.diff(total) <= 1e-6 * max(1.0, np.abs(total).max())).all()
-    for pin in "ABCD":
-        view = sol.friction(f"rub {pin}")
-        slip = 0.05 * np.abs(view.rate)
-        limit = (mu + 0.3 * mu * np.exp(-((slip / 0.01) ** 2))) * 0.05 * view.normal
-        assert (np.abs(view.force) <= limit * (1 + 1e-6) + 1e-9).all()
-        assert (view.power <= 1e-9).all()
-
-
-def test_links_nearly_in_one_line_jam_and_the_joint_is_named() -> None:
-    """0.4 mm from a change point the lever arms are below the friction circles: no acceleration is finite there.
-
-    Friction that slides with slip_speed 1e-3 m/s slows down without bound at the same place.
-    """
-    lengths = (0.9995897538149691, 0.8, 1.4)
-    with pytest.raises(SimulationError, match=r"four-bar: at t = 0\.7588.* s .*joints jam, 'A' .*one line"):
-        four_bar_that_sticks(lengths, 2.0, 0.5, 69.0).simulate(1.0, steps=100, tolerance=1e-8)
-    four_bar_that_sticks(lengths, 2.0, 0.01, 69.0).simulate(1.0, steps=100, tolerance=1e-8)

@@ -18,6 +18,7 @@ HOST ?=
 FOLDER ?=
 ONLY ?=
 WATTS ?=
+STRICT ?=
 ANYWAY ?=
 SEED ?= 1
 CLUSTER ?=
@@ -42,13 +43,14 @@ override HOST := $(value HOST)
 override FOLDER := $(value FOLDER)
 override ONLY := $(value ONLY)
 override SEED := $(value SEED)
+override STRICT := $(filter-out 0,$(value STRICT))
 override WATTS := $(value WATTS)
 override ANYWAY := $(value ANYWAY)
 override CLUSTER := $(value CLUSTER)
 override CLUSTER_TLS := $(value CLUSTER_TLS)
 override MECHANISM = $(subst -,_,$*)
 export PRESET SHEET_PRESET FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N HOST FOLDER ONLY WATTS SEED
-export CLUSTER CLUSTER_TLS ANYWAY
+export CLUSTER CLUSTER_TLS ANYWAY STRICT
 
 PRESETS := draft preview production final
 ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
@@ -72,7 +74,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install check list run-all all overnight status stop view-all view-engines gallery showreel fetch new test lint format bench bench-start bench-film hunt hunt-parts torture check-numbers record-numbers schema docs integrators wheel lock clean clean-all always
+.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new test lint format bench bench-start bench-film hunt hunt-parts torture check-numbers record-numbers schema docs study-engines integrators wheel lock clean clean-all always
 
 # A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
 define upto_motion
@@ -99,7 +101,7 @@ help: ## this list
 	@sed -n 's/^\([a-z][a-z-]*\)-%:[^#]*## /\1-<name>|/p; s/^\([a-z][a-z-]*\):[^#]*## /\1|/p' Makefile \
 	| awk -F'|' '{ printf "  %-18s %s\n", $$1, $$2 }'
 
-run-%: install always ## everything of one mechanism: parts, motion, clearance, report, plots, GLB, poster, film
+run-%: libraries always ## everything of one mechanism: parts, motion, clearance, report, plots, GLB, poster, film
 	$(upto_motion)
 	@$(STAGE) clearance "$$MECHANISM"
 	@$(STAGE) shot "$$MECHANISM"
@@ -109,12 +111,12 @@ run-%: install always ## everything of one mechanism: parts, motion, clearance, 
 	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 	@$(PICTURE) film "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 
-run-all: install ## run-<name> for every mechanism or ONLY=four_bar,slider_crank; goes on after a failure
+run-all: libraries ## run-<name> for every mechanism or ONLY=four_bar,slider_crank; goes on after a failure
 	@$(NIGHT) run $(OF_NIGHT)
 
 all: run-all ## the same
 
-overnight: install ## the same in the background, also after the logout; WATTS=85 tells the energy it takes
+overnight: libraries ## the same in the background, also after the logout; WATTS=85 tells the energy it takes
 	@$(NIGHT) start $(OF_NIGHT)
 
 status: ## what every film is at: frames, seconds a frame, time left, last error
@@ -123,10 +125,10 @@ status: ## what every film is at: frames, seconds a frame, time left, last error
 stop: ## end make overnight or make all after the frame in flight; the same command goes on from there
 	@$(NIGHT) stop
 
-parts-%: install always ## the solids: out/<name>/parts/ (STL, STEP, parts.json)
+parts-%: libraries always ## the solids: out/<name>/parts/ (STL, STEP, parts.json)
 	@$(STAGE) parts "$$MECHANISM"
 
-print-%: install always ## plates to print (3MF, STL), outlines to cut (DXF), lists; BED=220x220 GAP=5 in mm
+print-%: libraries always ## plates to print (3MF, STL), outlines to cut (DXF), lists; BED=220x220 GAP=5 in mm
 	@$(STAGE) parts "$$MECHANISM"
 	@$(STAGE) print "$$MECHANISM" --bed="$$BED" --gap="$$GAP"
 
@@ -136,7 +138,7 @@ solve-%: install always ## the motion: out/<name>/data.json
 animate-%: install always ## the moving skeleton, VIEW=forces,reactions,velocities,...: animation.mp4, .gif
 	@$(STAGE) animate "$$MECHANISM" --view="$$VIEW"
 
-clearance-%: install always ## proof that no two parts touch over the whole motion: clearance.json
+clearance-%: libraries always ## proof that no two parts touch over the whole motion: clearance.json
 	$(upto_motion)
 	@$(STAGE) clearance "$$MECHANISM"
 
@@ -153,7 +155,7 @@ compare-%: install always ## the motions of all its variants on the same pages: 
 	$(STAGE) parts "$$one" --or-none && $(STAGE) solve "$$one" || exit; done
 	@$(PICTURE) compare "$$MECHANISM" $(SPECTRA_IF_ANY)
 
-glb-%: install always ## the parts with their motion in one file for any glTF viewer: out/<name>/<name>.glb
+glb-%: libraries always ## the parts with their motion in one file for any glTF viewer: out/<name>/<name>.glb
 	$(upto_shot)
 	@$(PICTURE) glb "$$MECHANISM"
 
@@ -165,35 +167,35 @@ view-%: install always ## one HTML page with the machine, its forces and its plo
 live-%: install always ## a page that follows the editor: sliders, dragging, fits to a path; prints its address
 	@$(PYTHON) -m studio.live "$$MECHANISM"
 
-poster-%: install always ## one picture at its best: out/<name>/poster.png
+poster-%: libraries always ## one picture at its best: out/<name>/poster.png
 	$(upto_shot)
 	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 
-contact-%: install always ## a sheet of twelve frames, drafts if no PRESET is given: out/<name>/contact.png
+contact-%: libraries always ## a sheet of twelve frames, drafts if no PRESET is given: out/<name>/contact.png
 	$(upto_shot)
 	@$(PICTURE) contact "$$MECHANISM" --preset "$$SHEET_PRESET" $${SHOW:+--show="$$SHOW"}
 
-still-%: install always ## one frame of the film, FRAME=15 (from 0): out/<name>/stills/
+still-%: libraries always ## one frame of the film, FRAME=15 (from 0): out/<name>/stills/
 	$(upto_shot)
 	@$(PICTURE) still "$$MECHANISM" --frame="$$FRAME" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 
-frames-%: install always ## the frames of the film: out/<name>/frames/<preset>/
+frames-%: libraries always ## the frames of the film: out/<name>/frames/<preset>/
 	$(upto_shot)
 	@$(PICTURE) frames "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 
-film-%: install always ## the film: out/films/<name>-<preset>.mp4
+film-%: libraries always ## the film: out/films/<name>-<preset>.mp4
 	$(upto_shot)
 	@$(PICTURE) film "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 
-scene-ui-%: install always ## open the scene in an installed Blender
+scene-ui-%: libraries always ## open the scene in an installed Blender
 	$(upto_shot)
 	@$(PICTURE) scene-ui "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 
-scene-%: install always ## save the scene: out/<name>/<name>.blend
+scene-%: libraries always ## save the scene: out/<name>/<name>.blend
 	$(upto_shot)
 	@$(PICTURE) scene "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
 
-verify-%: install always ## solids, motion, some frames (FRAMES=0,30) and the film made again in scratch and compared
+verify-%: libraries always ## solids, motion, some frames (FRAMES=0,30) and the film made again in scratch and compared
 	@$(PYTHON) -m studio.verify "$$MECHANISM" --preset "$$PRESET" --frames="$$FRAMES" $${SHOW:+--show="$$SHOW"}
 
 view-all: install ## all pages (ONLY=four_bar,pendulum) and a picture of each by Chromium: view.html, view.png
@@ -202,7 +204,7 @@ view-all: install ## all pages (ONLY=four_bar,pendulum) and a picture of each by
 view-engines: install ## pages used in Firefox and Safari's engine: a small four-bar, or ONLY=four_bar,pendulum
 	@$(PYTHON) -m tools.engines --name="$$ONLY"
 
-gallery: install ## posters of all mechanisms (PRESET) and the page that shows them: docs/gallery/
+gallery: libraries ## posters of all mechanisms (PRESET) and the page that shows them: docs/gallery/
 	@for file in mechanisms/*/mechanism.py; do one=$${file%/mechanism.py}; one=$${one#mechanisms/}; \
 	"$(MAKE)" --no-print-directory "clearance-$$one" || echo "gallery: no clearance of $$one" >&2; \
 	"$(MAKE)" --no-print-directory "poster-$$one" PRESET="$$PRESET" || echo "gallery: no poster of $$one" >&2; done
@@ -236,7 +238,11 @@ check: install ## versions, system libraries, render device, disk space
 install: ## uv, Python 3.13, every package at its locked version; kernels compile in the background
 	@sh tools/install.sh
 
-test: install ## the tests; PYTEST="-k name" picks some
+libraries: install ## whether the system has what parts and pictures load; their targets ask before they begin
+	@test ! -d .venv || test -f .venv/libraries-found || { echo "error: parts and pictures need these libraries; nothing was made" >&2; exit 1; }
+
+test: install ## the tests; PYTEST="-k name" picks some; STRICT=1: none is skipped for want of a program
+	@$(PYTHON) -m shared.system --for-tests || test -z "$$STRICT$$CI"
 	$(ALL_KERNELS)
 	@$(PYTHON) -m pytest $(PYTEST)
 
@@ -290,6 +296,10 @@ docs: install ## write docs/theory.md and the map of rooms from docstrings, and 
 	@$(PYTHON) tools/theory.py
 	@$(PYTHON) tools/rooms.py
 	@$(PYTHON) -m tools.figures
+
+study-engines: install ## which bank angle suits which V engine: out/engines/ and the tables of docs/engines.md
+	$(ALL_KERNELS)
+	@$(PYTHON) -m tools.engine_layouts
 
 integrators: install ## measure the integrators again, for docs/integrators.md: order, cost, 10 000 periods (5 minutes)
 	$(ALL_KERNELS)

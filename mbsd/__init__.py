@@ -2,8 +2,8 @@
 
     from mbsd import Mechanism, constant_rate
 
-Kernels are compiled and scipy is loaded only when something is solved; this import stays light. The classes that
-methods return are here, too, and are loaded when they are asked for.
+Kernels are compiled and scipy is loaded only when something is solved. This import alone loads nothing: each name is
+loaded when it is asked for, the classes that methods return among them.
 """
 
 from __future__ import annotations
@@ -24,10 +24,6 @@ from mbsd.base.errors import (
     SimulationError,
     SingularPoseError,
 )
-from mbsd.mechanism import STANDARD_GRAVITY, Body, Force, Joint, Marker, Mechanism
-from mbsd.model.event import Event, Happening, angle_reaches, distance_reaches, speed_reaches
-from mbsd.model.laws import Motion, constant_rate, cycloidal, function, harmonic, polynomial, recorded, table
-from mbsd.model.laws.curve import Curve, curve
 
 if TYPE_CHECKING:
     from mbsd.analyses.efforts import ActuatedMotion
@@ -35,13 +31,25 @@ if TYPE_CHECKING:
     from mbsd.analyses.modes import Mode
     from mbsd.analyses.state_space import Linearisation
     from mbsd.analyses.suspicious_units import Finding
+    from mbsd.balancing.balance import Balance, balance
+    from mbsd.balancing.flywheel import flywheel
+    from mbsd.balancing.means import BalanceShaft, Counterweight
     from mbsd.drawing.animation.animate import Animation
     from mbsd.drawing.picture import Picture, Svg
     from mbsd.dynamics.events.moment import Moment
     from mbsd.kinematics.batch import Batch
+    from mbsd.mechanism import STANDARD_GRAVITY, Body, Force, Joint, Marker, Mechanism
+    from mbsd.model.cylinders.cycle import GasCycle
+    from mbsd.model.cylinders.four_stroke import four_stroke
+    from mbsd.model.cylinders.pressure_table import pressure_table
+    from mbsd.model.cylinders.two_stroke import two_stroke
+    from mbsd.model.event import Event, Happening, angle_reaches, distance_reaches, speed_reaches
+    from mbsd.model.laws import Motion, constant_rate, cycloidal, function, harmonic, polynomial, recorded, table
+    from mbsd.model.laws.curve import Curve, curve
     from mbsd.results.contacts import ContactView
     from mbsd.results.force_view import ForceView
     from mbsd.results.friction import FrictionView
+    from mbsd.results.gas import GasView
     from mbsd.results.mobility import Mobility
     from mbsd.results.solution import Solution
     from mbsd.results.views import DriverView, EnergyView, FrameView, JointView, Stats
@@ -55,10 +63,13 @@ __all__ = [
     "ActuatedMotion",
     "Animation",
     "AssemblyError",
+    "Balance",
+    "BalanceShaft",
     "Batch",
     "Body",
     "BranchError",
     "ContactView",
+    "Counterweight",
     "Curve",
     "DriverView",
     "EnergyView",
@@ -70,6 +81,8 @@ __all__ = [
     "ForceView",
     "FrameView",
     "FrictionView",
+    "GasCycle",
+    "GasView",
     "Happening",
     "InitialConditionWarning",
     "Joint",
@@ -95,50 +108,87 @@ __all__ = [
     "Svg",
     "SynthesisError",
     "angle_reaches",
+    "balance",
     "constant_rate",
     "curve",
     "cycloidal",
     "distance_reaches",
     "fit_path",
+    "flywheel",
+    "four_stroke",
     "function",
     "harmonic",
     "polynomial",
+    "pressure_table",
     "recorded",
     "speed_reaches",
     "study",
     "table",
+    "two_stroke",
 ]
 
 _LATER = {
+    "STANDARD_GRAVITY": "mbsd.mechanism",
     "ActuatedMotion": "mbsd.analyses.efforts",
+    "Balance": "mbsd.balancing.balance",
+    "BalanceShaft": "mbsd.balancing.means",
     "Animation": "mbsd.drawing.animation.animate",
     "Batch": "mbsd.kinematics.batch",
+    "Body": "mbsd.mechanism",
+    "Counterweight": "mbsd.balancing.means",
     "ContactView": "mbsd.results.contacts",
+    "Curve": "mbsd.model.laws.curve",
     "DriverView": "mbsd.results.views",
     "EnergyView": "mbsd.results.views",
     "Equilibrium": "mbsd.analyses.equilibrium",
+    "Event": "mbsd.model.event",
     "Finding": "mbsd.analyses.suspicious_units",
+    "Force": "mbsd.mechanism",
     "ForceView": "mbsd.results.force_view",
     "FrameView": "mbsd.results.views",
     "FrictionView": "mbsd.results.friction",
+    "GasCycle": "mbsd.model.cylinders.cycle",
+    "GasView": "mbsd.results.gas",
+    "Happening": "mbsd.model.event",
+    "Joint": "mbsd.mechanism",
     "JointView": "mbsd.results.views",
     "Linearisation": "mbsd.analyses.state_space",
+    "Marker": "mbsd.mechanism",
+    "Mechanism": "mbsd.mechanism",
     "Mobility": "mbsd.results.mobility",
     "Mode": "mbsd.analyses.modes",
     "Moment": "mbsd.dynamics.events.moment",
+    "Motion": "mbsd.model.laws",
     "PathFit": "mbsd.synthesis.fit_path",
     "Picture": "mbsd.drawing.picture",
     "Solution": "mbsd.results.solution",
     "Stats": "mbsd.results.views",
     "Svg": "mbsd.drawing.picture",
     "SynthesisError": "mbsd.synthesis.fit_path",
+    "balance": "mbsd.balancing.balance",
+    "angle_reaches": "mbsd.model.event",
+    "constant_rate": "mbsd.model.laws",
+    "curve": "mbsd.model.laws.curve",
+    "cycloidal": "mbsd.model.laws",
+    "distance_reaches": "mbsd.model.event",
+    "flywheel": "mbsd.balancing.flywheel",
     "fit_path": "mbsd.synthesis.fit_path",
+    "four_stroke": "mbsd.model.cylinders.four_stroke",
+    "function": "mbsd.model.laws",
+    "harmonic": "mbsd.model.laws",
+    "polynomial": "mbsd.model.laws",
+    "pressure_table": "mbsd.model.cylinders.pressure_table",
+    "recorded": "mbsd.model.laws",
+    "speed_reaches": "mbsd.model.event",
     "study": "mbsd.studies.study",
+    "table": "mbsd.model.laws",
+    "two_stroke": "mbsd.model.cylinders.two_stroke",
 }
-"""What methods return, and what loads more than this import should, and where it is."""
+"""Where each name is; it is loaded when it is asked for, so that the stages can look at what changed without numpy."""
 
 
 def __getattr__(name: str) -> Any:
     if name not in _LATER:
         raise AttributeError(f"module 'mbsd' has no attribute '{name}'")
-    return getattr(importlib.import_module(_LATER[name]), name)
+    found = globals()[name] = getattr(importlib.import_module(_LATER[name]), name)
+    return found

@@ -42,6 +42,8 @@ from mbsd.model.forces.drag import drag
 from mbsd.model.forces.force import force
 from mbsd.model.forces.friction import friction
 from mbsd.model.forces.gas import gas
+from mbsd.model.forces.gas_cycle import gas_cycle
+from mbsd.model.forces.gas_strut import gas_strut
 from mbsd.model.forces.gravitation import gravitation
 from mbsd.model.forces.rotating_frame import rotating_frame
 from mbsd.model.forces.spring import spring
@@ -68,6 +70,7 @@ from mbsd.model.joints.revolute import revolute
 from mbsd.model.joints.rolling_disc import rolling_disc
 from mbsd.model.joints.rolling_on_curve import rolling_on_curve
 from mbsd.model.joints.weld import weld
+from mbsd.model.laws.function import checked_pulses
 from mbsd.model.mechanism import STANDARD_GRAVITY, Model, Start, StartVelocity, new_name, number_given, own_body
 
 if TYPE_CHECKING:
@@ -131,6 +134,8 @@ class Mechanism(Model):
     motor = motor
     gravitation = gravitation
     gas = gas
+    gas_cycle = gas_cycle
+    gas_strut = gas_strut
     contact = contact
     tyre = tyre
     drag = drag
@@ -197,11 +202,14 @@ class Mechanism(Model):
         direction: int = 0,
         terminal: bool = False,
         action: Callable[[Any], object] | None = None,
+        shortest: float | None = None,
     ) -> Event:
         """Monitor a scalar: ``value(t, moment)`` passes zero, rising (direction 1), falling (-1) or either (0).
 
         ``moment`` shows the motion now (mbsd/dynamics/events/moment.py). ``terminal`` ends the simulation there;
-        ``action`` is called with the moment and may change velocities and release joints.
+        ``action`` is called with the moment and may change velocities and release joints. A scalar that is smooth is
+        found below zero however short a time it is there. One that has pulses is not seen between them: ``shortest``
+        (s) is how long the shortest thing in it lasts, and it is looked at twice as often.
         """
         new_name(self, name, "event", self.events)
         for what, function in (("value", value), ("action", action)):
@@ -209,7 +217,14 @@ class Mechanism(Model):
                 raise ModelError(f"{self.name}: event '{name}': {what} is {shown(function)}; it must be a function")
         if direction not in (-1, 0, 1):
             raise ModelError(f"{self.name}: event '{name}': direction is {shown(direction)}; it must be 1, -1 or 0")
-        event = self.events[name] = Event(name, value, direction, bool(terminal), action)
+        event = self.events[name] = Event(
+            name,
+            value,
+            direction,
+            bool(terminal),
+            action,
+            checked_pulses(f"{self.name}: event '{name}'", (), shortest)[1],
+        )
         return event
 
     def marker_in_world(self, body: Body, x: float, y: float, angle: float) -> Marker:
@@ -226,8 +241,10 @@ class Mechanism(Model):
             m.change("motor", law=constant_rate(20.0))
 
         ``values`` are the arguments of the method that added it, but for its markers and bodies; of a body its mass
-        (kg), com (m) and inertia (kg m^2). Nothing is compiled anew. Raises ModelError, and changes nothing, for what
-        that method refuses.
+        (kg), com (m) and inertia (kg m^2), of a bar its length (m), too, with which all that is at its end moves. The
+        model is then the one that would have been built with these numbers: what was not given but follows from
+        others, such as the inertia of a bar or static friction, follows the new ones, and None takes a number back.
+        Nothing is compiled anew. Raises ModelError, and changes nothing, for what that method refuses.
         """
         from mbsd.model.change import change
 
@@ -248,18 +265,24 @@ class Mechanism(Model):
         return mobility(self)
 
     def sweep(
-        self, duration: float | None = None, steps: int = 360, times: Sequence[float] | np.ndarray | None = None
+        self,
+        duration: float | None = None,
+        steps: int = 360,
+        times: Sequence[float] | np.ndarray | None = None,
+        event_rows: bool = False,
     ) -> Solution[Mechanism]:
         """Solve the driven motion: positions, velocities, accelerations, reactions, driver efforts, energy.
 
         ``steps`` equal steps over ``duration`` seconds, both ends included; by default over one :meth:`period`, and
-        where there is none over that of the laws, with a ModelWarning. ``times`` (s), rising, replaces both.
+        where there is none over that of the laws, with a ModelWarning; with gas over whole cycles of it. ``times`` (s),
+        rising, replaces both. ``event_rows`` adds two rows where a law or gas makes forces jump, right before and
+        after it, which share its time.
         """
         from mbsd.analyses.suspicious_units import tell
         from mbsd.kinematics.sweep import sweep
 
         tell(self)
-        return sweep(self, duration, steps, times)
+        return sweep(self, duration, steps, times, event_rows)
 
     def period(self) -> float | None:
         """The time (s) after which every body is back but for whole turns, with its velocity and acceleration.
@@ -315,7 +338,8 @@ class Mechanism(Model):
         ``tolerance`` (relative to the mechanism's size, to 1 rad, and to speeds); those with a fixed step take ``step``
         (s), by default the time between outputs. ``progress`` is called with the part done (0 .. 1); what it
         raises ends the run.
-        ``event_rows`` adds two rows at every event, right before and after it (contacts, stops: docs/events.md).
+        ``event_rows`` adds two rows at every event and where a force jumps at a known time, right before and after
+        it (docs/events.md).
         ``formulation``: "reference" integrates all coordinates and projects them onto the joints; "independent" only
         as many as there are degrees of freedom, where the mechanism falls apart into driven bodies, gear trains, Assur
         groups and blocks of a few bodies: several times faster. "auto" takes the latter where it can and that pays

@@ -1,15 +1,19 @@
-"""What every test file may use."""
+"""What every test file may use, and how the tests are run (tests/running/)."""
 
 from __future__ import annotations
 
 import os
 import signal
-from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 from hypothesis import settings
+
+from tests.running.needs import Needs
+from tests.running.order import Order, Recording
+from tests.running.shown import Failures
+from tests.running.warm import Warm
 
 settings.register_profile("local", deadline=None)
 settings.register_profile("ci", deadline=None, derandomize=True, print_blob=True)
@@ -22,34 +26,21 @@ if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
-FOLDERS = "test_mechanisms.py"
-"""Its tests share what is made of one folder of mechanisms/, which takes long."""
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """A word of make test PYTEST="..."."""
+    parser.addoption("--record-seconds", action="store_true", help="write how long each group of tests takes")
 
 
-def group_of(nodeid: str) -> str:
-    """Tests of one group run in one process, as they share what a fixture made: those of a folder, else of a file."""
-    file, _, test = nodeid.partition("::")
-    if file.endswith(FOLDERS) and "[" in test:
-        return f"{file}[{test.rpartition('[')[2]}"
-    return file
-
-
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """The long groups first: folders, then files by their number of tests."""
-    counts = Counter(item.path for item in items)
-    items.sort(key=lambda item: (item.path.name != FOLDERS, 0 if item.path.name == FOLDERS else -counts[item.path]))
-
-
-@pytest.hookimpl(optionalhook=True)
-def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """Spread groups over the processes, in the order of collection."""
-    from xdist.scheduler import LoadScopeScheduling
-
-    class Groups(LoadScopeScheduling):
-        def _split_scope(self, nodeid: str) -> str:
-            return group_of(nodeid)
-
-    return Groups(config, log) if config.getvalue("dist") == "loadscope" else None
+def pytest_configure(config: pytest.Config) -> None:
+    """Register what orders, skips and shows. Raises pytest.UsageError where a program is missing and none may be."""
+    plugins = config.pluginmanager
+    plugins.register(Needs())
+    plugins.register(Order())
+    if hasattr(config, "workerinput"):  # a process of xdist, whose results the first process shows
+        return
+    plugins.register(Failures(config))
+    if config.getoption("--record-seconds"):
+        plugins.register(Recording())
 
 
 @pytest.fixture
@@ -58,3 +49,11 @@ def out_root(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     folder = tmp_path / "out"
     monkeypatch.setenv("MBSD_OUT", str(folder))
     return folder
+
+
+@pytest.fixture(scope="session")
+def warm() -> Iterator[Warm]:
+    """What runs commands of the project in processes that need not load the libraries."""
+    process = Warm()
+    yield process
+    process.close()

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from shared.stage.console import run_cli, say, warn
 from shared.stage.paths import ROOT, out_root
-from tools import system_libraries
+from shared.system.missing import missing_libraries, missing_programs, sentence
 
 SHOWN = ("numpy", "scipy", "numba", "cadquery", "trimesh", "manifold3d", "bpy", "matplotlib", "imageio-ffmpeg")
 """Packages whose versions are printed; all of the lock are compared."""
@@ -22,7 +22,9 @@ def main() -> int:
     """Print the findings, a line each; 1 if something stands in the way of a run, else 0."""
     say("python", f"{platform.python_version()} on {platform.system()} {platform.machine()}")
     say("packages", ", ".join(f"{name} {metadata.version(name)}" for name in SHOWN))
-    faults = [*_wrong_packages(), *_missing_libraries(), *_full_disk()]
+    faults = [*_wrong_packages(), *_missing_libraries()]
+    _tell_programs()
+    faults += _full_disk()
     for fault in faults:
         warn("check", fault)
     return 1 if faults else 0
@@ -47,11 +49,17 @@ def _wrong_packages() -> list[str]:
 
 
 def _missing_libraries() -> list[str]:
-    names = system_libraries.missing()
+    names = missing_libraries()
     if not names:
         say("system libraries", "all found")
         return []
-    return [system_libraries.cure(names)]
+    return [sentence(names)]
+
+
+def _tell_programs() -> None:
+    """Say which programs are missing; none of them stands in the way of a run."""
+    names = missing_programs()
+    say("programs", sentence(programs=names) + "; some commands and tests want them" if names else "all found")
 
 
 def _full_disk() -> list[str]:

@@ -11,6 +11,7 @@ from contextlib import contextmanager
 
 from shared.stage.console import run_cli, say
 from shared.stage.errors import UserError
+from shared.system.missing import missing_libraries, sentence
 
 
 def main() -> None:
@@ -26,7 +27,9 @@ def _device() -> str:
     try:
         import bpy
     except ImportError as error:
-        raise UserError(f"Blender cannot be loaded: {error}; make install names missing system libraries") from error
+        lacking = missing_libraries()
+        remedy = sentence(lacking) if lacking else "rm -r .venv and make install bring it anew"
+        raise UserError(f"Blender cannot be loaded: {error}; {remedy}") from error
     from render.blender.worker.device import choose
 
     return f"{choose(bpy.context.scene)}, Blender {bpy.app.version_string}"

@@ -22,19 +22,30 @@ choose_python() {
     echo 3.13
 }
 
+name_missing_libraries() {
+    # In the first second, by any Python there is, before gigabytes are fetched; asked again below.
+    for any in $python python3 /usr/bin/python3; do
+        if "$any" -c 'import sys; sys.exit(sys.version_info < (3, 8))' >/dev/null 2>&1; then
+            "$any" -m shared.system || true
+            return
+        fi
+    done
+}
+
 make_environment() {
+    name_missing_libraries
     uv=$(sh tools/find_uv.sh)
     if ! finds_python $python; then
         chosen=$(choose_python)
         echo "install: making .venv with Python $chosen"
         rm -rf .venv
-        "$uv" venv --quiet --python "$chosen" .venv || {
+        "$uv" venv --quiet --relocatable --python "$chosen" .venv || {
             echo "error: Python 3.13 was neither found nor fetched; install it (Debian: pyenv install 3.13," \
                 "Mac: brew install python@3.13) and run make again" >&2
             exit 1
         }
     fi
-    rm -f .venv/requirements.lock .venv/requirements-bench.lock .venv/solver-installed .venv/kernels-compiled
+    rm -f .venv/requirements.lock .venv/requirements-bench.lock .venv/kernels-compiled
     echo "install: packages of requirements.lock (3 GB when all are new)"
     "$uv" pip sync --quiet --python $python --compile-bytecode --require-hashes requirements.lock || {
         echo "error: the packages of requirements.lock could not be installed; uv says why above." \
@@ -48,14 +59,32 @@ if ! { [ -x $python ] && cmp -s requirements.lock .venv/requirements.lock; }; th
     make_environment
 fi
 
-# The solver itself, from this folder: `.venv/bin/python my_script.py` works from anywhere.
-if [ ! -f .venv/solver-installed ]; then
+# An environment may be copied or moved with its clone. Those made before it could be name their Python by its place.
+if [ -f .venv/pyvenv.cfg ] && ! grep -q '^relocatable = true' .venv/pyvenv.cfg; then
     uv=$(sh tools/find_uv.sh)
-    "$uv" pip install --quiet --python $python --no-deps --no-build-isolation --editable . || {
-        echo "error: mbsd could not be installed into .venv; uv says why above. The same command tries again" >&2
-        exit 1
-    }
-    touch .venv/solver-installed
+    for file in .venv/pyvenv.cfg .venv/bin/*activate*; do
+        if [ -f "$file" ]; then # uv writes into these files, which a copy of hard links shares
+            cp -p "$file" "$file.own"
+            mv "$file.own" "$file"
+        fi
+    done
+    "$uv" venv --quiet --relocatable --allow-existing --python $python .venv
+    $python tools/movable.py
+fi
+
+# The solver and the rooms beside it, for scripts in any folder: `.venv/bin/python my_script.py`. The path is seen from
+# the packages, so a copy of the clone imports its own sources.
+for packages in .venv/lib/python3*/site-packages; do
+    if [ -d "$packages" ] && [ ! -f "$packages/mbsd.pth" ]; then
+        rm -rf "$packages"/__editable__*mbsd* "$packages"/mbsd-*.dist-info
+        echo ../../../.. >"$packages/mbsd.pth"
+    fi
+done
+
+# Who commits with checks gets them from this clone, too.
+hook=.git/hooks/pre-commit
+if grep -qs '^INSTALL_PYTHON=' $hook && ! grep -qF "$(pwd -P)/.venv/bin/python" $hook; then
+    $python -m pre_commit install >/dev/null
 fi
 
 if [ ! -f .venv/kernels-compiled ]; then
@@ -64,7 +93,7 @@ fi
 
 # Asked again until nothing is missing; the solver runs without these libraries, parts and pictures do not.
 if [ ! -f .venv/libraries-found ]; then
-    if $python -m tools.system_libraries; then
+    if $python -m shared.system; then
         touch .venv/libraries-found
     fi
 fi

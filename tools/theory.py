@@ -12,6 +12,7 @@ PAGE = ROOT / "docs" / "theory.md"
 FORCES = (
     "mbsd/model/force.py",
     "mbsd/model/forces",
+    "mbsd/model/cylinders",
     "mbsd/equations/interactions/apply.py",
     "mbsd/equations/joint_friction.py",
     "mbsd/model/laws/curve.py",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import socket
 import subprocess
 import sys
@@ -10,6 +11,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -21,9 +23,11 @@ from shared.cluster.__main__ import scheduler_command, worker_command
 from shared.cluster.address import connected, workers_of
 from shared.cluster.contents import content_hash
 from shared.cluster.deal import Deal
+from shared.cluster.hands import Work
 from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
+from shared.stage.signals import end_with_parent
 
 COUNTS = ((64, 100), (64, 1000), (64, 10_000), (8, 10_000), (1, 1000))
 """Workers and tasks."""
@@ -95,6 +99,7 @@ def _taken(workers: int, task: Callable[..., Any]) -> float:
 def _deal(where: str, workers: int, task: Callable[..., Any], orders: dict[str, Any]) -> float:
     content = b"the scene"
     name = content_hash(content)
+    kind = Work(task, lambda _, result: result, len(work.PICTURE))
     with connected(where) as client:
         end = time.monotonic() + 300
         while len(workers_of(client) or ()) < workers:
@@ -102,7 +107,7 @@ def _deal(where: str, workers: int, task: Callable[..., Any], orders: dict[str, 
                 raise UserError(f"bench: {workers} workers did not start within five minutes")
             time.sleep(0.1)
         started = time.perf_counter()
-        done = list(Deal(client, task, name, {name: lambda: content}, orders, ("shared/cluster",)).results())
+        done = list(Deal(client, kind, name, {name: lambda: content}, orders, ("shared/cluster",)).results())
         seconds = time.perf_counter() - started
     if len(done) != len(orders):
         raise UserError(f"bench: {len(done)} of {len(orders)} tasks came back")
@@ -123,7 +128,10 @@ def _cluster(workers: list[list[str]]) -> Iterator[tuple[str, int]]:
     with (Path(os.environ["MBSD_OUT"]) / "log").open("wb") as log:
         try:
             for command in commands:
-                started.append(subprocess.Popen(command, cwd=ROOT, env=environment, stdout=log, stderr=log))
+                ends = partial(end_with_parent, signal.SIGTERM)
+                started.append(
+                    subprocess.Popen(command, cwd=ROOT, env=environment, stdout=log, stderr=log, preexec_fn=ends)
+                )
                 _wait_for(port)
             yield where, started[0].pid
         finally:

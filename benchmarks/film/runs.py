@@ -98,7 +98,8 @@ class Film:
         command = [sys.executable, "-m", "benchmarks.film.plain", str(paper), str(folder)]
         done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
         refuse(done.returncode, done.stderr)
-        found = json.loads(done.stdout.strip().splitlines()[-1])
+        # Blender's own lines are flushed by C at the exit, after Python's unless that is unbuffered.
+        found = json.loads(next(line for line in done.stdout.splitlines() if line.startswith("{")))
         return found["start"], sum(found["each"]) / len(found["each"])
 
 

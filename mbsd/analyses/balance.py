@@ -29,6 +29,10 @@ NOISE = 1e-14
 """Of the stiffness: what a displacement by rounding changes in the loads."""
 ACCEPTED = 1e-9
 """What counts as balanced where rounding allows no further step."""
+AWAY, TURNED = 20.0, 25.0
+"""Sizes, and rad, from its start beyond which a mechanism runs away."""
+GROWN = 1e3
+"""Times the loads at the start: beyond it they grow without bound."""
 FLAT = 1e-8
 """Part of the largest stiffness below which a direction is neutral."""
 
@@ -80,7 +84,8 @@ def _moved(ready: Statics, q: np.ndarray, step: np.ndarray) -> np.ndarray | None
 
 def descend(ready: Statics, q: np.ndarray) -> tuple[np.ndarray, int]:
     """Downhill from q (3 nb,): the stable pose and the steps taken. Raises EquilibriumError."""
-    here = look(ready, q)
+    start = here = look(ready, q)
+    began = q
     for count in range(MOST_STEPS):
         stiffness = ready.stiffness(q, here.lam, here.basis)
         value, direction = np.linalg.eigh(0.5 * (stiffness + stiffness.T))
@@ -102,7 +107,7 @@ def descend(ready: Statics, q: np.ndarray) -> tuple[np.ndarray, int]:
                 return q, count
             break
         q, here = found
-    raise _none(ready, here)
+    raise _none(ready, here, start, q, began)
 
 
 def _downhill(ready: Statics, q: np.ndarray, here: Balance, step: np.ndarray) -> tuple[np.ndarray, Balance] | None:
@@ -133,7 +138,8 @@ def _leave(ready: Statics, q: np.ndarray, basis: np.ndarray, step: np.ndarray) -
 
 def newton(ready: Statics, q: np.ndarray) -> tuple[np.ndarray, int]:
     """The nearest pose that balances, stable or not, and the steps taken. Raises EquilibriumError."""
-    here = look(ready, q)
+    start = here = look(ready, q)
+    began = q
     for count in range(MOST_STEPS):
         stiffness = ready.stiffness(q, here.lam, here.basis)
         if here.balanced(BALANCED, stiffness):
@@ -153,18 +159,51 @@ def newton(ready: Statics, q: np.ndarray) -> tuple[np.ndarray, int]:
                 return q, count
             break
         q, here = found
-    raise _none(ready, here)
+    raise _none(ready, here, start, q, began)
 
 
 def _norm(here: Balance) -> float:
     return float(np.linalg.norm(here.slope))
 
 
-def _none(ready: Statics, here: Balance) -> EquilibriumError:
-    body = _worst(ready, here.basis @ here.slope / ready.packed.column_scale())
-    left = np.abs(here.slope).max() / ready.packed.size
-    return EquilibriumError(
-        f"{ready.packed.name}: no equilibrium was found: '{body}' is still driven by {left:.3g} N (or N m over the "
-        f"size of {ready.packed.size:.3g} m) where the search has come to. If nothing holds the mechanism, add a "
-        "spring, a stop, a driver or a joint; if something does, start nearer to the equilibrium with start_near."
+class NoneFound(EquilibriumError):
+    """Where a search ended without an equilibrium: ``pose`` (3 nb,), and its text up to the remedy."""
+
+    def __init__(self, said: str, remedy: str, pose: np.ndarray) -> None:
+        super().__init__(f"{said} {remedy}")
+        self.said, self.pose = said, pose
+
+
+def _none(ready: Statics, here: Balance, start: Balance, q: np.ndarray, began: np.ndarray) -> NoneFound:
+    packed = ready.packed
+    body = _worst(ready, here.basis @ here.slope / packed.column_scale())
+    left = np.abs(here.slope).max() / packed.size
+    gone = np.abs(q - began).reshape(-1, 3)[1:]
+    far, turned = np.hypot(gone[:, 0], gone[:, 1]), gone[:, 2]
+    remedy = (
+        "If nothing holds the mechanism, add a spring, a stop, a driver or a joint; if something does, start nearer to "
+        "the equilibrium with start_near."
+    )
+    if here.largest > GROWN * start.largest:
+        remedy = (
+            f"Its loads have grown from {start.largest / packed.size:.3g} N to {here.largest / packed.size:.3g} N on "
+            "the way: a pull that grows without bound as bodies come near each other has no equilibrium there. Keep "
+            "them apart by a joint or spring, or start nearer to one with start_near."
+        )
+    elif far.max() > AWAY * packed.size:
+        remedy = (
+            f"It runs away: the loads have drawn '{packed.body_names[1 + int(np.argmax(far))]}' {far.max():.3g} m from "
+            "its start, and on and on. Hold it by a spring, a stop, a driver or a joint."
+        )
+    elif turned.max() > TURNED:
+        remedy = (
+            f"Its loads drive '{packed.body_names[1 + int(np.argmax(turned))]}' round and round, "
+            f"{turned.max() / (2 * np.pi):.3g} turns so far: they have no potential with a least value. Take the "
+            "torque off, or hold it by a spring or a joint."
+        )
+    return NoneFound(
+        f"{packed.name}: no equilibrium was found: '{body}' is still driven by {left:.3g} N (or N m over the "
+        f"size of {packed.size:.3g} m) where the search has come to.",
+        remedy,
+        q,
     )

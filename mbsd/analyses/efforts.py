@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mbsd.arrays.approaches import approached_along
 from mbsd.arrays.curve_branches import tabulate_along
 from mbsd.arrays.friction_along import with_friction
 from mbsd.arrays.laws import compiled_laws
@@ -137,16 +138,19 @@ def inverse_dynamics(m: Model, motion: Solution, actuators: Sequence[str]) -> Ac
     weight[:, :2] = system.mass[:, None] * system.gravity
     laws = compiled_laws(packed, float(motion.t[0]), float(motion.t[-1]))
     loads = pack_loads(packed)
-    applied = loads_along(packed, loads, laws, motion.t, q, v)
+    approached, times = motion.approached, motion.t if motion.law_times is None else motion.law_times
+    if approached is None:
+        approached = approached_along(packed, loads, laws, times, q, v)
+    applied = loads_along(packed, loads, laws, times, q, v, approached)
     right = (weight.ravel() + applied - inertia * a)[:, 3:]
-    push = np.stack([_directions(packed, bare.forces[name], q, motion.t)[:, 3:] for name in actuators], axis=1)
+    push = np.stack([_directions(packed, bare.forces[name], q, times)[:, 3:] for name in actuators], axis=1)
     phi, gamma, compact = np.zeros((count, rows)), np.zeros((count, rows)), np.zeros((count, rows, 6))
-    tabulate_along(packed, packed.drives(motion.t), q, v, phi, compact, gamma)
+    tabulate_along(packed, packed.drives(times), q, v, phi, compact, gamma)
     jacobian = packed.spread(compact)
     (lam, effort, left), friction = with_friction(
         packed,
         loads,
-        (motion.t, q, v),
+        (times, q, v),
         compact,
         lambda friction: _solved(packed, jacobian, push, right + friction[:, 3:]),
     )

@@ -13,9 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.analyses.balance import FLAT, descend, look, newton
+from mbsd.analyses.balance import FLAT, NoneFound, descend, look, newton
 from mbsd.analyses.statics import Statics, statics
 from mbsd.analyses.tangent import Independent, independent_coordinates
+from mbsd.arrays.driver_laws import refuse_bad_laws
 from mbsd.arrays.packing import pack
 from mbsd.arrays.reactions import wrenches
 from mbsd.arrays.start_state import held, started_at
@@ -24,7 +25,6 @@ from mbsd.equations.assembly import tabulate
 from mbsd.kinematics.limits.closed_contacts import refuse_resting
 from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.pose.mobility import joint_mobility
-from mbsd.kinematics.prepared import refuse_bad_laws
 from mbsd.model.mechanism import Model
 from mbsd.results.force_view import ForceView
 from mbsd.results.solution import Solution
@@ -111,7 +111,11 @@ def equilibrium(m: Model, time: float, nearest: bool) -> Equilibrium:
     refuse_bad_laws(packed, time, time)
     ready = statics(packed, time)
     start = assemble(resting, packed, time)
-    q, steps = (newton if nearest else descend)(ready, start)
+    try:
+        q, steps = (newton if nearest else descend)(ready, start)
+    except NoneFound as error:
+        refuse_resting(resting, packed, start, error.pose, f"{error.said} It went")
+        raise
     refuse_resting(resting, packed, start, q)
     return _result(m, resting, ready, q, steps)
 

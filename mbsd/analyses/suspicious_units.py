@@ -1,4 +1,4 @@
-"""Numbers that are allowed but look as if a unit was mixed up, each reported with its remedy.
+"""What is allowed but looks as if it was not meant, with its remedy: a mixed-up unit, a start that says two things.
 
 Only what is off by more than machines ever are counts: sizes a hundredfold apart, masses 1e5 apart, an inertia whose
 radius of gyration is 20 sizes, marker angles of whole degrees beyond a turn. Silence proves nothing.
@@ -58,6 +58,8 @@ def check(m: Model) -> list[Finding]:
         *_law_angles(m),
         *_start_angles(m),
         *_world_places(m),
+        *_assemblies(m),
+        *_planes(m),
     ]
 
 
@@ -262,6 +264,35 @@ def _world_places(m: Model) -> Iterator[Finding]:
             marker.body.name,
             f"the marker of at_world({x:g}, {y:g}, {angle:g}) is {there} at the start",
             "Call at_world after start_near and after the joints and drivers that place the body",
+        )
+
+
+def _assemblies(m: Model) -> Iterator[Finding]:
+    """A start that may be meant otherwise."""
+    from mbsd.kinematics.pose.twins import twin
+
+    found = twin(m)
+    if found is not None:
+        name = found.body
+        taken, other = (f"{math.degrees(angle):.4g}" for angle in (found.taken, found.other))
+        yield Finding(
+            name,
+            f"the links close in two ways that are as near to where they were put: with {name} at {taken} degrees, "
+            f"which is taken, and at {other} degrees",
+            f"Say which is meant: start_near({name}={taken}) or start_near({name}={other})",
+        )
+
+
+def _planes(m: Model) -> Iterator[Finding]:
+    if all(body.z is None for body in m.bodies.values()):
+        return
+    from mbsd.analyses.planes import apart
+
+    for name, kind, i, j in apart(m):
+        yield Finding(
+            name,
+            f"its sides lie in the planes z = {i:g} m and z = {j:g} m, and a {kind.replace('_', ' ')} acts in one",
+            "Give both bodies the same z, or one of its markers a z of its own: body.at(x, y, z=...)",
         )
 
 

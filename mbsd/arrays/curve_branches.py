@@ -1,4 +1,4 @@
-"""Points on curves that cross themselves: on which branch of its curve each one is.
+"""Points on curves that cross themselves or their continuations: on which branch of its curve each one is.
 
 Such a row keeps the parameter of its foot where the motion was accepted last (mbsd/equations/relative/curve_pieces.py),
 in LAST of its relative pose.
@@ -15,7 +15,22 @@ import numpy as np
 
 from mbsd.equations.assembly import tabulate
 from mbsd.equations.constraints.relative import AT, MARKER_I, MARKER_J
-from mbsd.equations.relative.curve_pieces import CLOSED, CX, CY, DISTANCE, DX, DY, FARTHEST, SPAN, TABLE, foot
+from mbsd.equations.relative.curve_pieces import (
+    CLOSED,
+    COUNT,
+    CX,
+    CY,
+    DISTANCE,
+    DX,
+    DY,
+    END_DY,
+    END_X,
+    FARTHEST,
+    SPAN,
+    TABLE,
+    WIDTH,
+    foot,
+)
 from mbsd.equations.system import LAST
 
 if TYPE_CHECKING:
@@ -24,8 +39,6 @@ if TYPE_CHECKING:
 CURVES = ("curve", "curve_rolling")
 NEAR = 1e-5
 """Of the size: a branch nearer than this may be the one a point is on."""
-LOOKS = 64
-"""Parameters from which the branches near a point are looked for."""
 
 
 class CurveRow(NamedTuple):
@@ -62,13 +75,35 @@ class CurveBranches:
             x, y, vx, vy = self._relative(q, v, row.i, row.j)
             best = foot(numbers, x, y, own)
             least = self._across(row, x, y, vx, vy)
-            for part in np.arange(1, LOOKS) / LOOKS:
-                own[LAST] = numbers[TABLE] + part * numbers[SPAN]
+            for begun in self._begun(numbers, x, y):
+                own[LAST] = begun
                 u = foot(numbers, x, y, own)
                 across = self._across(row, x, y, vx, vy)
                 if across < least:
                     best, least = u, across
             own[LAST] = best
+
+    @staticmethod
+    def _begun(numbers: np.ndarray, x: float, y: float) -> list[float]:
+        """Parameters from which the branches near (x, y) are looked for, those of the continuations among them."""
+        end = TABLE + WIDTH * int(numbers[COUNT])
+        nodes = numbers[TABLE:end].reshape(-1, WIDTH)
+        square = (nodes[:, 1] - x) ** 2 + (nodes[:, 7] - y) ** 2
+        around = np.pad(square, 1, "wrap") if numbers[CLOSED] else np.pad(square, 1, constant_values=math.inf)
+        out = nodes[(square <= around[:-2]) & (square <= around[2:]), 0].tolist()
+        if not numbers[CLOSED]:
+            begins, ends = (
+                numbers[[TABLE + 1, TABLE + 7, TABLE + 2, TABLE + 8]],
+                numbers[end + END_X : end + END_DY + 1],
+            )
+            for u, (cx, cy, dx, dy), sign in (
+                (numbers[TABLE], begins, -1.0),
+                (numbers[TABLE] + numbers[SPAN], ends, 1.0),
+            ):
+                beyond = ((x - cx) * dx + (y - cy) * dy) / (dx * dx + dy * dy)
+                if sign * beyond > 0.0:
+                    out.append(float(u + beyond))
+        return out
 
     def _across(self, row: CurveRow, x: float, y: float, vx: float, vy: float) -> float:
         """Speed across the curve at the foot in the scratch; infinite where the point is not on it."""

@@ -11,7 +11,7 @@ from mbsd.arrays.user_forces import law_address, pack_user_forces
 from mbsd.base.kept import Kept
 from mbsd.equations.interactions import call
 from mbsd.equations.interactions.law import STATE, address_of, switches
-from mbsd.equations.interactions.switching import SIZE, SWITCHING, WIDTH
+from mbsd.equations.interactions.switching import APPROACHED, REMEMBERS, SIZE, SWITCHING, WIDTH
 from mbsd.equations.joint_friction import BY_RATE, GUIDE, PIN
 from mbsd.equations.loads import Loads
 
@@ -53,7 +53,7 @@ def _loads(packed: Packed) -> Loads:
             for one in part.terms:
                 term.append((one.kind, numbered[one.law] if one.law else 0))
                 number.append((one.a, one.b, one.c))
-    interaction, given, switching = pack_interactions(packed)
+    interaction, given, switching, remembers = pack_interactions(packed)
     user, user_body, user_com = pack_user_forces(packed)
     friction, friction_number = pack_friction(packed)
     return Loads(
@@ -65,7 +65,7 @@ def _loads(packed: Packed) -> Loads:
         interaction,
         given,
         np.zeros(STATE),
-        _switch(packed.size, len(interaction), switching),
+        _switch(packed.size, len(interaction), switching, remembers),
         user,
         user_body,
         user_com,
@@ -78,9 +78,9 @@ def _loads(packed: Packed) -> Loads:
     )
 
 
-def pack_interactions(packed: Packed) -> tuple[np.ndarray, np.ndarray, bool]:
-    """The table (n, 6) and all numbers, for Loads; and whether any has kinks or jumps that it tells."""
-    switching = False
+def pack_interactions(packed: Packed) -> tuple[np.ndarray, np.ndarray, bool, bool]:
+    """The table (n, 7) and all numbers, for Loads; whether any has kinks or jumps that it tells, and remembers them."""
+    switching = remembers = False
     number = {name: b for b, name in enumerate(packed.body_names)}
     rows, given, at, law = [], [], 0, len(packed.motions)
     for force in packed.forces:
@@ -92,17 +92,21 @@ def pack_interactions(packed: Packed) -> tuple[np.ndarray, np.ndarray, bool]:
             axis = math.cos(one.i.angle), math.sin(one.i.angle)
             called = (float(law_address(packed, force)),) if one.calls_law else ()
             block = np.array([*arms[0], *axis, *arms[1], one.j.angle - one.i.angle, *called, *one.numbers], float)
-            rows.append((i, j, numbered[one.law] if one.law else 0, at, address_of(one.function), call.address()))
+            law_of, crank = numbered[one.law] if one.law else 0, number[one.crank] if one.crank else 0
+            rows.append((i, j, law_of, at, address_of(one.function), call.address(), crank))
             given.append(block)
             at += len(block)
             switching = switching or switches(one.function)
-    return np.array(rows, np.int64).reshape(-1, 6), np.concatenate(given) if given else np.zeros(0), switching
+            remembers = remembers or one.remembers
+    table = np.array(rows, np.int64).reshape(-1, 7)
+    return table, np.concatenate(given) if given else np.zeros(0), switching, remembers
 
 
-def _switch(size: float, count: int, switching: bool) -> np.ndarray:
+def _switch(size: float, count: int, switching: bool, remembers: bool) -> np.ndarray:
     """(1 + count, WIDTH) for Loads."""
     table = np.zeros((1 + count, WIDTH))
-    table[0, SWITCHING], table[0, SIZE] = switching, size
+    table[0, SWITCHING], table[0, SIZE], table[0, REMEMBERS] = switching, size, remembers
+    table[1:, APPROACHED] = np.nan
     return table
 
 

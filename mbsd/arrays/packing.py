@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -52,10 +53,15 @@ class Packed:
     constant: tuple[bytes, ...] | None
     """What ``numbers`` has of all but the angle offsets."""
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Unpickled or copied: equations and functions of the user are called by the addresses of this process."""
+        self.__dict__.update(state)
+        self.system = self.specials.connected(self.system, self.size)
+
     @property
     def masses(self) -> Masses:
         """Of the bodies, ground included."""
-        return Masses(self.body_names, self.com, self.system.mass, self.system.inertia)
+        return Masses(self.body_names, self.com, self.system.mass, self.system.inertia, self.joints, self.name)
 
     @property
     def coordinates(self) -> int:

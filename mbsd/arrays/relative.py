@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +13,11 @@ from mbsd.model.joint import SPECIALS, Joint
 
 if TYPE_CHECKING:
     from mbsd.compiling.callback import Callback
+    from mbsd.equations.system import System
+
+
+FIRST_OWN = 4
+"""Numbers of a special constraint that every equation has, before its own."""
 
 
 @dataclass
@@ -66,10 +72,29 @@ class Specials:
             self.callbacks.append(
                 derivatives(joint.params["function"], f"{self.mechanism}: joint '{joint.name}'", size)
             )
-            return [float(self.callbacks[-1].address)]
+            return [float(self.callbacks[-1].address), size]
         nth = sum(1 for other in self.places if other[:2] == place[:2] and other[2] < place[2])
         assert joint.kind.numbers is not None
         return [float(number) for number in joint.kind.numbers(joint.params)[nth]]
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without the functions' addresses, which are of this process; see :meth:`connected`."""
+        return self.__dict__ | {"callbacks": []}
+
+    def connected(self, system: System, size: float) -> System:
+        """A system that came from elsewhere, with the addresses of this process."""
+        if not self.names:
+            return system
+        from mbsd.equations.constraints.relative import AT
+        from mbsd.equations.relative.equation import address_of
+
+        numbers = system.numbers.copy()
+        for joint, place, row in zip(self.joints, self.places, system.special, strict=True):
+            if "function" in joint.params:
+                own = self._own_numbers(joint, place, size)
+                numbers[row[AT] + FIRST_OWN : row[AT] + FIRST_OWN + len(own)] = own
+        address = np.array([address_of(SPECIALS[name].equation) for name in self.names], np.int64)
+        return system.changed(numbers=numbers, address=address)
 
     def callback(self, what: str, make: Callable[[str], Callback]) -> Callback:
         """The function of the user that errors call ``what``: made once, and kept."""
@@ -82,4 +107,10 @@ class Specials:
     def check(self) -> None:
         """Raise what a user's function raised since the last check."""
         for callback in self.callbacks:
+            callback.check()
+
+    def check_trials(self, before: float = math.inf) -> None:
+        """The same, but for overflows and the like before a time (s) up to which the motion was accepted."""
+        for callback in self.callbacks:
+            callback.forget(before)
             callback.check()

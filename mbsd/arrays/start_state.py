@@ -25,12 +25,18 @@ def copied(m: AnyModel) -> AnyModel:
 
 
 def held(m: AnyModel, time: float) -> AnyModel:
-    """The same mechanism with its drivers holding still where their laws are at ``time`` (s)."""
+    """The same mechanism with its drivers holding still where their laws are at ``time`` (s).
+
+    Raises ModelError for a law whose derivatives are not its own, as a motion does; what it does later does not matter.
+    """
     out = copied(m)
     for name, driver in m.drivers.items():
         assert driver.motion is not None
         with law_of(f"{m.name}: driver '{name}'"):
-            value = float(driver.motion.over(time, time)(np.array([time]))[0, 0])
+            law = driver.motion.over(time, time)
+            value = float(law(np.array([time]))[0, 0])
+            if law.given_derivatives:
+                law.refuse_wrong_derivatives(time)
         out.drivers[name] = type(driver)(driver.kind, name, driver.i, driver.j, driver.params, polynomial(value))
     return out
 

@@ -19,6 +19,7 @@ from numba.core.dispatcher import Dispatcher
 
 from mbsd.base.arguments import LARGEST
 from mbsd.base.errors import ModelError
+from mbsd.base.kept import Kept
 from mbsd.base.shown import shown
 from mbsd.compiling.callback import Callback, WrongValue
 
@@ -31,16 +32,24 @@ TRIALS = ((0.31, -0.42, 0.53), (-0.27, 0.66, -1.1), (0.81, 0.13, 2.2))
 
 
 def derivatives(function: Callable, what: str, size: float) -> Callback:
-    """A callback of the relative pose that gives F, its gradient and second derivatives, ten numbers.
+    """A callback that gives F, its gradient and second derivatives, ten numbers, of the relative pose.
 
-    ``size`` (m) is a usual length. Raises ModelError if it is no function, or if numba cannot compile it.
+    In place of the time it gets a usual length, ``size`` (m). Raises ModelError if it is no function, or if numba
+    cannot compile it.
     """
     if not callable(function):
         raise ModelError(f"{what}: {shown(function)} is no function; give one of x, y and the angle")
-    compiled = isinstance(function, Dispatcher)
-    function = function if compiled else _of_numbers(function)
-    by_complex = _takes_complex(function, size)
-    return Callback(_ten(function, by_complex, numba.njit if compiled else _as_it_is, size), (1, 1, 1), 10, what)
+    if isinstance(function, Dispatcher):
+        by_complex = _BY_COMPLEX.get((function, size), lambda: _takes_complex(function, size))
+        ten = _COMPILED.get((function, by_complex), lambda: _ten(function, by_complex, numba.njit))
+    else:
+        checked = _of_numbers(function)
+        ten = _ten(checked, _takes_complex(checked, size), _as_it_is)
+    return Callback(ten, (1, 1, 1), 10, what, timed=False)
+
+
+_BY_COMPLEX: Kept[bool] = Kept()
+_COMPILED: Kept[Callable] = Kept()
 
 
 def _of_numbers(function: Callable) -> Callable:
@@ -68,8 +77,8 @@ def _takes_complex(function: Callable, size: float) -> bool:
     for trial in TRIALS:
         try:
             at = trial[0] * size, trial[1] * size, trial[2]
-            plain = _gradient_by_differences(function, _as_it_is, size)(*at)
-            stepped = _gradient_by_complex(function, _as_it_is, size)(*at)
+            plain = _gradient_by_differences(function, _as_it_is)(size, *at)
+            stepped = _gradient_by_complex(function, _as_it_is)(size, *at)
             both = np.array([plain, stepped], float)
         except Exception:
             continue
@@ -81,10 +90,10 @@ def _takes_complex(function: Callable, size: float) -> bool:
     return agreed > 0
 
 
-def _gradient_by_complex(f: Any, compile_: Callable, size: float) -> Any:
+def _gradient_by_complex(f: Any, compile_: Callable) -> Any:
     h = COMPLEX_STEP
 
-    def gradient(x, y, a):
+    def gradient(size, x, y, a):
         return (
             f(complex(x, h), complex(y), complex(a)).imag / h,
             f(complex(x), complex(y, h), complex(a)).imag / h,
@@ -94,10 +103,11 @@ def _gradient_by_complex(f: Any, compile_: Callable, size: float) -> Any:
     return compile_(gradient)
 
 
-def _gradient_by_differences(f: Any, compile_: Callable, size: float) -> Any:
-    h, d = STEP, STEP * size
+def _gradient_by_differences(f: Any, compile_: Callable) -> Any:
+    h = STEP
 
-    def gradient(x, y, a):
+    def gradient(size, x, y, a):
+        d = STEP * size
         return (
             (
                 45.0 * (f(x + d, y, a) - f(x - d, y, a))
@@ -122,12 +132,12 @@ def _gradient_by_differences(f: Any, compile_: Callable, size: float) -> Any:
     return compile_(gradient)
 
 
-def _ten(function: Any, by_complex: bool, compile_: Callable, size: float) -> Callable:
-    gradient = (_gradient_by_complex if by_complex else _gradient_by_differences)(function, compile_, size)
+def _ten(function: Any, by_complex: bool, compile_: Callable) -> Callable:
+    gradient = (_gradient_by_complex if by_complex else _gradient_by_differences)(function, compile_)
     weights = (0.75, -0.15, 1.0 / 60.0)
 
-    def ten(t, x, y, a):
-        here = gradient(x, y, a)
+    def ten(size, x, y, a):
+        here = gradient(size, x, y, a)
         second = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
         for k in range(3):
             for axis in range(3):
@@ -137,8 +147,8 @@ def _ten(function: Any, by_complex: bool, compile_: Callable, size: float) -> Ca
                 dx = step if axis == 0 else 0.0
                 dy = step if axis == 1 else 0.0
                 da = step if axis == 2 else 0.0
-                after = gradient(x + dx, y + dy, a + da)
-                before = gradient(x - dx, y - dy, a - da)
+                after = gradient(size, x + dx, y + dy, a + da)
+                before = gradient(size, x - dx, y - dy, a - da)
                 for other in range(3):
                     second[3 * axis + other] += weight * (after[other] - before[other])
         return (

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numba
 import numpy as np
 from numba.core.dispatcher import Dispatcher
 
+from mbsd.base.kept import Kept
 from mbsd.compiling.callback import Callback
 
 if TYPE_CHECKING:
@@ -40,11 +42,16 @@ def _callback(packed: Packed, force: Force) -> Callback:
 def law_address(packed: Packed, force: Force) -> int:
     """Where the law of a spring is, a function of its value and rate; see mbsd/model/forces/spring_law.py."""
     law = force.params["law"]
+    return packed.specials.callback(
+        f"{packed.name}: force '{force.name}'", lambda what: Callback(_timed(law), (1, 1), 1, what)
+    ).address
 
+
+_TIMED: Kept[Dispatcher] = Kept()
+
+
+def _timed(law: Callable) -> Callable:
     def timed(t, value, rate):
         return law(value, rate)
 
-    return packed.specials.callback(
-        f"{packed.name}: force '{force.name}'",
-        lambda what: Callback(numba.njit(timed) if isinstance(law, Dispatcher) else timed, (1, 1), 1, what),
-    ).address
+    return _TIMED.get(law, lambda: numba.njit(timed)) if isinstance(law, Dispatcher) else timed

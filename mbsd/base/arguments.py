@@ -41,6 +41,22 @@ def finite_number(what: str, value: object) -> float:
     return float(value)
 
 
+def positive_number(what: str, value: object, unit: str = "") -> float:
+    """``value`` as a float above 0, in a ``unit`` that the message names; raises ModelError."""
+    number = finite_number(what, value)
+    if number <= 0.0:
+        raise ModelError(f"{what} is {number:g}{unit and ' ' + unit}; it must be positive")
+    return number
+
+
+def not_negative_number(what: str, value: object, unit: str = "") -> float:
+    """``value`` as a float of 0 or more, in a ``unit`` that the message names; raises ModelError."""
+    number = finite_number(what, value)
+    if number < 0.0:
+        raise ModelError(f"{what} is {number:g}{unit and ' ' + unit}; it cannot be negative")
+    return number
+
+
 def number_pair(what: str, value: object) -> tuple[float, float]:
     """``value`` as two floats; raises ModelError if it is anything else."""
     first, second = several_numbers(what, value, 2, "it must be two numbers (x, y)")
@@ -138,7 +154,9 @@ CHECKS: dict[str, Callable[[str, Any], object]] = {
     "bool": switch,
     "str": text,
 }
-"""By annotation; they return what the function is given."""
+"""By annotation; they return what the function is given. Bodies and markers enter theirs (mbsd/model/body.py)."""
+ORDERED = {"Body", "Marker"}
+"""What is easily given at the wrong place: errors of these tell the order of the arguments."""
 
 
 def annotation_of(parameter: inspect.Parameter) -> str:
@@ -173,7 +191,7 @@ def checked(function: F) -> F:
     signature = inspect.signature(function)
     parameters = list(signature.parameters.values())
     method = bool(parameters) and parameters[0].name in ("self", "m")
-    checks = {p.name: check for p in parameters if (check := _check_of(annotation_of(p))) is not None}
+    checks = {p.name: check for p in parameters if (check := _check_of(annotation_of(p), signature)) is not None}
     places = [p.name for p in parameters if p.kind is p.POSITIONAL_OR_KEYWORD]
     rest = next((p for p in parameters if p.kind is p.VAR_POSITIONAL), None)
     named = next((p for p in parameters if p.kind is p.VAR_KEYWORD), None)
@@ -192,7 +210,7 @@ def checked(function: F) -> F:
         for k, value in enumerate(given):
             check = checks.get(places[k]) if k < len(places) else checks.get(rest.name) if rest is not None else None
             if check is not None:
-                name = places[k] if k < len(places) else f"argument {k + 1}"
+                name = places[k] if k < len(places) else f"argument {k + 1 - method}"
                 positional[k] = check(f"{what}: {name}", value)
         for name, value in keywords.items():
             check = checks.get(name) if name in own else checks.get(named.name) if named is not None else None
@@ -209,7 +227,12 @@ def checked(function: F) -> F:
     def _refuse_misnamed(where: str, given: tuple[Any, ...], keywords: dict[str, Any]) -> None:
         if len(given) > len(places) and rest is None:
             most = len(places) - method
-            raise ModelError(f"{where} takes {most} arguments at most, got {len(given) - method}")
+            if not most and named is not None:
+                raise ModelError(f"{where} takes values by names alone: {function.__name__}({_word(given[1])}=...)")
+            raise ModelError(
+                f"{where} takes {most} arguments at most, got {len(given) - method}; "
+                f"{in_order(function.__name__, signature)}"
+            )
         if named is None:
             for name in keywords:
                 if name not in own:
@@ -221,21 +244,46 @@ def checked(function: F) -> F:
                 raise ModelError(f"{where}: {name} is given twice")
         for name in needed:
             if name not in keywords and name not in places[: len(given)]:
-                raise ModelError(f"{where}: {name} is missing")
+                raise ModelError(f"{where}: {name} is missing; {in_order(function.__name__, signature)}")
 
     own_names = [p.name for p in parameters if p.name in own]
     inner.arguments_checked = True  # pyright: ignore[reportAttributeAccessIssue]
     return inner  # pyright: ignore[reportReturnType]
 
 
-def _check_of(annotation: str) -> Callable[[str, Any], object] | None:
+def _check_of(annotation: str, signature: inspect.Signature) -> Callable[[str, Any], object] | None:
     words = [word.strip() for word in annotation.split("|")]
     check = CHECKS.get(words[0])
     if check is None or any(word != "None" for word in words[1:]):
         return None
+    if words[0] in ORDERED:
+        check = _telling_order(check, signature)
     if len(words) == 1:
         return check
     return lambda what, value: None if value is None else check(what, value)
+
+
+def _telling_order(check: Callable[[str, Any], object], signature: inspect.Signature) -> Callable[[str, Any], object]:
+    def inner(what: str, value: Any) -> object:
+        try:
+            return check(what, value)
+        except ModelError as error:
+            raise ModelError(f"{error}; {in_order('', signature)}") from None
+
+    return inner
+
+
+def in_order(name: str, signature: inspect.Signature) -> str:
+    """The arguments of a method or function of the mechanism, as they are written."""
+    parameters = [p for p in signature.parameters.values() if p.name not in ("self", "m")]
+    words = [f"*{p.name}" if p.kind is p.VAR_POSITIONAL else p.name for p in parameters]
+    return f"the arguments are {name}({', '.join(words)})"
+
+
+def _word(given: object) -> str:
+    """What a value given without a name says about the name that is missing."""
+    name = getattr(given, "name", given)
+    return name if isinstance(name, str) and name.isidentifier() else "name"
 
 
 def checked_methods(cls: C) -> C:

@@ -41,7 +41,7 @@ def law_of(what: str) -> Iterator[None]:
     try:
         yield
     except ModelError as error:
-        raise ModelError(f"{what}: {error}") from error.__cause__ or error
+        raise type(error)(f"{what}: {error}") from error.__cause__ or error
     except MechanismError:
         raise
     except Exception as error:

@@ -8,12 +8,19 @@ function costs a few microseconds a call. ``numba.cfunc`` objects of the signatu
 
 A C function cannot raise. What a user's function raises, and numbers that are not finite, come out as NaN and are
 remembered; whoever ran the kernel calls :meth:`Callback.check`, which raises ModelError with the time and the inputs.
+
+Integrators with an error estimate try states far off and refuse them: there a function may overflow or leave its domain
+(ArithmeticError, ValueError, not finite), which :meth:`Callback.forget` drops once a shorter step has been accepted. So
+the failure kept is the last one at inputs that are finite themselves, and the first one of any other kind.
+
+A function compiled with numba gets its frame once in each thread, for all mechanisms that use it one after another.
 """
 
 from __future__ import annotations
 
 import ctypes
 import math
+import threading
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import Any
@@ -27,6 +34,7 @@ from numba.core.dispatcher import Dispatcher
 from numba.extending import intrinsic
 
 from mbsd.base.errors import ModelError
+from mbsd.base.kept import Kept
 from mbsd.base.shown import shown
 from mbsd.base.users_function import described
 from mbsd.compiling import interrupts
@@ -34,6 +42,8 @@ from mbsd.compiling import interrupts
 SIGNATURE = types.void(types.float64, types.CPointer(types.float64), types.CPointer(types.float64))
 PROTOTYPE = ctypes.CFUNCTYPE(None, ctypes.c_double, ctypes.c_ssize_t, ctypes.c_ssize_t)
 """The same for ctypes, with the addresses as whole numbers."""
+OF_NUMBERS = ArithmeticError, ValueError
+"""What functions raise where they overflow or leave their domain."""
 
 
 class WrongValue(Exception):
@@ -57,27 +67,39 @@ def as_numbers(values: Any, count: int) -> np.ndarray:
 class Callback:
     """A user function at an address. Keep it alive as long as kernels may call it."""
 
-    def __init__(self, function: Callable, parts: Sequence[int], outputs: int, what: str) -> None:
+    def __init__(self, function: Callable, parts: Sequence[int], outputs: int, what: str, timed: bool = True) -> None:
         """``function(t, part, ...)`` with parts of the given lengths, giving ``outputs`` numbers.
 
-        ``what`` names the function in errors: mechanism and joint or force. Raises ModelError if it is no function, or
-        if numba cannot compile it.
+        ``what`` names the function in errors: mechanism and joint or force. ``timed``: the time it gets is that of the
+        motion. Raises ModelError if it is no function, or if numba cannot compile it.
         """
-        self.function, self.parts, self.outputs, self.what = function, tuple(parts), outputs, what
+        self.function, self.parts, self.outputs, self.what, self.timed = function, tuple(parts), outputs, what, timed
         self._failure = np.zeros(2 + sum(parts))
+        """1 where it failed, time (s), inputs."""
         self._error: BaseException | None = None
         self._views: dict[tuple[int, int], np.ndarray] = {}
         if isinstance(function, CFunc):
             self._held: Any = function
             self.address: int = function.address
         elif isinstance(function, Dispatcher):
-            self._held = self._compile()
+            key = function, self.parts, outputs, threading.get_ident()
+            self._held, self._failure = _FRAMES.get(key, lambda: (self._compile(), self._failure))
+            self._failure[0] = 0.0
             self.address = self._held.address
         elif callable(function):
             self._held = PROTOTYPE(self._run)
             self.address = ctypes.cast(self._held, ctypes.c_void_p).value or 0
         else:
             raise ModelError(f"{what}: {shown(function)} is no function; give one of the time and the state")
+
+    def forget(self, before: float = math.inf) -> None:
+        """Drop an overflow or the like that happened before a time (s) up to which states were accepted since."""
+        if self._serious is None and (before == math.inf or (self.timed and self._failure[1] < before)):
+            self._failure[0], self._error = 0.0, None
+
+    @property
+    def _serious(self) -> BaseException | None:
+        return None if isinstance(self._error, OF_NUMBERS) else self._error
 
     def check(self) -> None:
         """Raise what the function raised since the last check, as a ModelError; interrupts as they are."""
@@ -88,7 +110,8 @@ class Callback:
         t, inputs = float(self._failure[1]), self._failure[2:].copy()
         if error is not None and not isinstance(error, Exception):
             raise error
-        at = f"{self.what}: at t = {t:.6g} s with {np.array2string(inputs, precision=6)} the user's function"
+        when = f"at t = {t:.6g} s with" if self.timed else "at"
+        at = f"{self.what}: {when} {np.array2string(inputs, precision=6)} the user's function"
         if error is None:
             try:
                 values = self._values(t, inputs)
@@ -110,6 +133,7 @@ class Callback:
 
     def _run(self, t: float, inputs: int, outputs: int) -> None:
         copied, out = self._view(inputs, len(self._failure) - 2).copy(), self._view(outputs, self.outputs)
+        failed: BaseException | None = None
         try:
             out[:] = self._values(t, copied)
             if interrupts.taken():
@@ -117,9 +141,10 @@ class Callback:
             if all(map(math.isfinite, out)):
                 return
         except BaseException as error:  # kept for check(): nothing can be raised through a C function
-            self._error = self._error or error
+            failed = error
         out[:] = math.nan
-        if not self._failure[0]:
+        if not self._failure[0] or (self._serious is None and np.isfinite(copied).all()):
+            self._error = failed
             self._failure[0], self._failure[1], self._failure[2:] = 1.0, t, copied
 
     interrupts.CALLED.update((_run.__code__,))
@@ -157,7 +182,12 @@ class Callback:
                 record = numba.carray(_pointer(failure), (count + 2,))  # pyright: ignore[reportCallIssue]
                 for k in range(outputs):
                     out[k] = math.nan
-                if record[0] == 0.0:
+                later = record[0] == 0.0
+                if not later:  # what follows from inputs that are not finite is no cause
+                    later = True
+                    for k in range(count):
+                        later = later and math.isfinite(given[k])
+                if later:
                     record[0] = 1.0
                     record[1] = t
                     for k in range(count):
@@ -171,6 +201,10 @@ class Callback:
                 f"{self.what}: numba cannot compile the function for t and parts of {list(self.parts)} numbers "
                 f"giving {outputs}: {' '.join(first)[:400]}"
             ) from error
+
+
+_FRAMES: Kept[tuple[CFunc, np.ndarray]] = Kept()
+"""Frames of compiled functions with the records of their failures."""
 
 
 def _spread(function: Any, parts: tuple[int, ...]) -> Any:

@@ -16,10 +16,11 @@ import importlib
 import os
 import re
 import shutil
+import stat
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from typing import Any
@@ -49,11 +50,10 @@ _IMPORT = re.compile(r"^(?:from\s+([\w.]+)\s+import\s+(\([^)]*\)|[^\n]*)|import\
 
 @lru_cache(maxsize=1)
 def cache_root() -> Path:
-    """The first folder that is writable: numba's NUMBA_CACHE_DIR if it is set, beside the package, the user's cache."""
-    given = os.environ.get("NUMBA_CACHE_DIR")
-    user_cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    parents = [_PACKAGE / "__pycache__", user_cache / "mbsd", Path(tempfile.gettempdir()) / "mbsd"]
-    for parent in [Path(given), *parents] if given else parents:
+    """The first folder that is writable: numba's NUMBA_CACHE_DIR if it is set, beside the package, the user's cache, a
+    temporary one of the user's own.
+    """
+    for parent in _parents():
         folder = parent / "kernels"
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -62,6 +62,34 @@ def cache_root() -> Path:
         except OSError:
             continue
     raise OSError("no folder is writable for compiled code; set XDG_CACHE_HOME to one that is")
+
+
+def _parents() -> Iterator[Path]:
+    """Folders that may be writable, the best first."""
+    given, user_cache = os.environ.get("NUMBA_CACHE_DIR"), os.environ.get("XDG_CACHE_HOME")
+    if given:
+        yield Path(given)
+    yield _PACKAGE / "__pycache__"
+    if not user_cache:
+        with suppress(RuntimeError):  # a user whom the system knows by number alone, as in a container, has no home
+            user_cache = Path.home() / ".cache"
+    if user_cache:
+        yield Path(user_cache) / "mbsd"
+    if (own := _own_temporary()) is not None:
+        yield own
+
+
+def _own_temporary() -> Path | None:
+    """A temporary folder into which nobody else writes: what is in it is run. None where others have made it."""
+    user = os.getuid() if hasattr(os, "getuid") else None  # Windows has a temporary folder for each user
+    try:
+        folder = Path(tempfile.gettempdir()) / ("mbsd" if user is None else f"mbsd-{user}")
+        folder.mkdir(mode=0o700, exist_ok=True)
+        status = folder.lstat()
+    except OSError:
+        return None
+    alone = stat.S_ISDIR(status.st_mode) and not status.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+    return folder if user is None or (status.st_uid == user and alone) else None
 
 
 @cache

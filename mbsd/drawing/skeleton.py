@@ -71,7 +71,7 @@ def measure(m: Model, pose: Pose) -> tuple[np.ndarray, np.ndarray, float]:
     """Lowest and highest x, y (m) of all that is drawn, and the unit of the symbols (m)."""
     points = {name: _points(m, pose, name) for name in m.bodies}
     wide = [reach(joint, pose) for joint in m.joints.values()]
-    loads = [force_reach(force, pose) for force in m.forces.values()]
+    loads = [force_reach(force, pose, list(m.joints.values())) for force in m.forces.values()]
     loads += [contact_reach(joint, pose) for joint in m.contacts.values()]
     everything = np.concatenate([*points.values(), *pose.paths.values(), *wide, *loads])
     if not len(everything):
@@ -109,7 +109,7 @@ def draw_on(
         side = free_side(_leaving(m, pose, points, joint.j, unit)) if sides is None else sides[joint.name]
         draw_joint(canvas, Place(joint, pose, colours, side))
     for force in m.forces.values():
-        draw_force(canvas, force, pose)
+        draw_force(canvas, force, pose, list(m.joints.values()))
     draw_contacts(canvas, list(m.contacts.values()), pose, colours)
     for name, marker in m.traces.items():
         canvas.circle(pose.place(marker), 0.3, fill=colours.get(marker.body.name, INK), order=9, width=0.8)

@@ -43,7 +43,9 @@ def recording_of(met: EventRun, event_rows: bool = False) -> Recording:
         order = np.argsort(both[0], kind="stable")
         out = Output(*(part[order] for part in both))
         held = np.concatenate([held, np.stack([row[-1] for row in rows])])[order]
-    return Recording(out, held, int(met.state.count[ACCEPTED]), met.happenings, met.snapshots)
+    return Recording(
+        out, held, int(met.state.count[ACCEPTED]), met.happenings, met.snapshots, met.ready.approaches.copy()
+    )
 
 
 def resumed(
@@ -69,6 +71,8 @@ def resumed(
         state.y[...] = snapshot.y if k < 0 else recording.out.y[k]
         met = EventRun(ready, run, state, out, events)
         met.resume(snapshot, snapshot.work if k < 0 else float(recording.out.work[k]))
+        if recording.approaches is not None:
+            recording.approaches.recall(float(state.clock[TIME]))
         try:
             met.to(float(times[last - 1]))
             pieces.append(recording_of(met))
@@ -87,7 +91,8 @@ def resumed(
         steps += pieces[-1].steps
         first = last
     out = Output(*(np.concatenate(parts) for parts in zip(*(piece.out for piece in pieces), strict=True)))
-    return Recording(out, np.concatenate([piece.held for piece in pieces]), steps)
+    held = np.concatenate([piece.held for piece in pieces])
+    return Recording(out, held, steps, approaches=recording.approaches)
 
 
 def _followed(
@@ -99,12 +104,13 @@ def _followed(
     progress: Progress,
 ) -> Recording:
     state, out = ready.begun(times)
+    ready.approaches.forget()
     met = EventRun(ready, run, state, out, events)
     if not events and not ready.switches.contacts and not ready.sticks:
         met.snapshots.append(met.snapshot())
         independent = run.to_end(state, out, progress)
         steps, held = int(state.count[ACCEPTED]), met.held | ready.switches.held()
-        return Recording(out, held, steps, [], met.snapshots, independent)
+        return Recording(out, held, steps, [], met.snapshots, ready.approaches.copy(), independent)
     met.begin()
     met.to(float(times[-1]), progress)
     return recording_of(met, event_rows)

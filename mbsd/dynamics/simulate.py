@@ -5,10 +5,12 @@ from __future__ import annotations
 import importlib
 import pkgutil
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
 import mbsd.dynamics.integrators
+from mbsd.arrays.chambers import check_pistons
 from mbsd.arrays.curve_branches import tabulate_along
 from mbsd.arrays.friction_along import friction_along
 from mbsd.arrays.loads_along import loads_along
@@ -17,8 +19,10 @@ from mbsd.base.errors import InitialConditionWarning, ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
 from mbsd.base.warn import warn
+from mbsd.dynamics.between import Between
 from mbsd.dynamics.follow import follow, resumed
 from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
+from mbsd.dynamics.phase_rows import with_phase_changes
 from mbsd.dynamics.prepare.dependent import refuse_opened
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
@@ -83,13 +87,21 @@ def simulate(
         raise ModelError(
             f"{m.name}: formulation='independent' does not know events, contacts, limits and joints that stick"
         )
-    recording = follow(ready, run, grid, events, event_rows, progress)
+    check_pistons(ready.packed, grid[:1], ready.initial.q[None], tell=False)
+    asked = ready.stops.jumps.among(grid) if event_rows and ready.stops.jumps else None
+    recording = follow(ready, run, grid if asked is None else asked.solved, events, event_rows, progress)
 
-    def between(times: np.ndarray) -> Solution:
+    def at(times: np.ndarray) -> Solution:
         return solution(m, ready, resumed(ready, run, recording, times, events))
 
-    refuse_passed(ready.packed, recording.out.t, np.ascontiguousarray(recording.out.y[:, 0]))
-    return solution(m, ready, recording, between)
+    poses = np.ascontiguousarray(recording.out.y[:, 0])
+    refuse_passed(ready.packed, recording.out.t, poses)
+    check_pistons(ready.packed, recording.out.t, poses)
+    if event_rows:
+        recording, asked = with_phase_changes(ready, run, recording, events, grid, asked)
+    anew = partial(simulate, m, None, 1, grid, method, tolerance, step, None, options, event_rows, formulation)
+    found = solution(m, ready, recording, Between(at, anew, recording.out.y[-1, 0]))
+    return found if asked is None else asked.rows(found)
 
 
 def integrator_named(model: str, method: str) -> Integrator:
@@ -121,6 +133,7 @@ def solution(
     count, rows = len(out.t), len(packed.ws.phi)
     drives = packed.drives(out.t)
     q, v = np.ascontiguousarray(out.y[:, 0]), np.ascontiguousarray(out.y[:, 1])
+    approached = None if recording.approaches is None else recording.approaches.at(out.t)
     lam, wrench, residuals = np.zeros((count, rows)), np.zeros((count, len(packed.joints), 3)), np.zeros(4)
     chunk = max(1, JACOBIAN_NUMBERS // max(1, 6 * rows))
     for start in range(0, count, chunk):
@@ -131,13 +144,18 @@ def solution(
         held = recording.held[at]
         if recording.independent:
             motion = out.t[at], q[at], v[at]
-            out.lam[at], out.margin[at] = multipliers_along(packed, ready.dynamics, motion, compact, gamma)
+            out.lam[at], out.margin[at] = multipliers_along(
+                packed, ready.dynamics, motion, compact, gamma, None if approached is None else approached[at]
+            )
         refuse_opened(ready, out.t[at], phi * held)
         lam[at] = _least_norm(ready, compact, out.lam[at], held)
         wrench[at] = wrenches(packed, compact, q[at], lam[at])
         nu = np.zeros_like(phi)
         nu[:, packed.driver_rows : packed.contact_rows] = drives[at, 1:, 1]
-        loads = loads_along(packed, ready.dynamics.loads, ready.dynamics.laws, out.t[at], q[at], v[at])
+        loads = loads_along(
+            packed, ready.dynamics.loads, ready.dynamics.laws, out.t[at], q[at], v[at],
+            None if approached is None else approached[at],
+        )  # fmt: skip
         loads += _friction(ready, q[at], v[at], compact, out.lam[at], held)
         loads += ready.dynamics.weight - ready.dynamics.inertia * out.a[at] - generalised(packed, compact, lam[at])
         loads[:, :3] = 0.0
@@ -169,6 +187,7 @@ def solution(
         events=tuple(recording.happenings),
         held=recording.held,
         span=(ready.start, ready.end),
+        approached=approached,
         between=between,
     )
 

@@ -31,13 +31,13 @@ class Loads(NamedTuple):
     law: Any
     """(3,) scratch of a law."""
     interaction: Any
-    """(n, 6) body i, body j, law of time, first number, addresses of the function and of apply.py."""
+    """(n, 7) body i, body j, law of time, first number, addresses of the function and of apply.py, crank."""
     given: Any
     """Of each interaction: arm of i, axis of i, arm of j (body axes), angle of j less that of i, then its own."""
     state: Any
-    """(24,) what the function of an interaction reads."""
+    """(27,) what the function of an interaction reads."""
     switch: Any
-    """(1 + n, 9) sides of the interactions that switch, see interactions/switching.py."""
+    """(1 + n, 12) sides of the interactions that switch, see interactions/switching.py."""
     user: Any
     """(u, 3) forces of the user: address, first of user_body, count."""
     user_body: Any

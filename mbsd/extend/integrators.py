@@ -1,6 +1,7 @@
 """What an integrator of one's own works with; docs/extending.md shows one. Importing this loads the compiler.
 
 derivative, project     rates of a state, and a state closed onto the constraints
+close_step              the same at the end of a step of fixed length, and whether it closes
 begin, fixed_step       the start of ``advance``, and the next step of a method with fixed ones
 record, record_here     outputs between steps, and at the end of a step
 kernel, apart, internal, inlined    how its functions are compiled
@@ -13,7 +14,7 @@ from mbsd.dynamics.integrators.others.outside import advance_with
 from mbsd.dynamics.integrators.step_size import allowed, first_step
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.full_matrix import factor_full, solve_full
-from mbsd.dynamics.reference.projection import project
+from mbsd.dynamics.reference.projection import close_step, project
 from mbsd.dynamics.reference.tangents import differentiate, too_large
 from mbsd.dynamics.state import (
     ACCEPTED,
@@ -63,6 +64,7 @@ __all__ = [
     "allowed",
     "apart",
     "begin",
+    "close_step",
     "derivative",
     "differentiate",
     "factor_full",

@@ -12,8 +12,9 @@ from mbsd.base.arguments import number_array, whole_number
 from mbsd.base.errors import ModelError
 from mbsd.base.names import names_in, no_such
 from mbsd.base.shown import shown
-from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Moved, at_end, in_closed_form
+from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Moved, in_closed_form
 from mbsd.kinematics.prepared import prepare
+from mbsd.model.body import at_end
 from mbsd.model.mechanism import Model
 
 MOST_THREADS = 1024

@@ -26,7 +26,6 @@ from mbsd.kinematics.groups.plan import plan_groups
 from mbsd.kinematics.groups.registry import BRANCH, KINDS
 from mbsd.kinematics.prepared import Prepared
 from mbsd.kinematics.steps import divisions
-from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import refuse_beyond_memory
 
@@ -164,11 +163,6 @@ def slopes(packed: Packed, q0: np.ndarray, groups: Groups, moved: Sequence[Moved
                 slope[e, BRANCH[int(kind)]] = 0.0
         out.append(slope)
     return out
-
-
-def at_end(marker: Marker, length: float) -> bool:
-    """Whether a marker is at the end of its bar, whose length this is."""
-    return marker.x == length and marker.y == 0.0
 
 
 def _turns(groups: Groups, drives: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

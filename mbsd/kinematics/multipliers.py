@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mbsd.arrays.approaches import approached_along
 from mbsd.arrays.friction_along import with_friction
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
@@ -43,6 +44,8 @@ class Efforts:
     """(T, joints, 3) fx, fy, torque on the second body at its marker."""
     residuals: np.ndarray
     """(4,) largest |Phi|, |J v - nu|, |J a - gamma| and |d(T + V)/dt - power of the drivers|."""
+    approached: np.ndarray | None = None
+    """(T, n) how fast the contact of each interaction approached when it began (m/s); None where none asks."""
 
 
 def inverse_dynamics(
@@ -54,14 +57,15 @@ def inverse_dynamics(
     inertia = np.stack([system.mass, system.mass, system.inertia], axis=1).ravel()
     weight = np.zeros((len(system.mass), 3))
     weight[:, :2] = system.mass[:, None] * system.gravity
-    loads, packed_loads = weight.ravel() - inertia * a, None
+    loads, packed_loads, approached = weight.ravel() - inertia * a, None, None
     if packed.forces:
         laws = compiled_laws(packed, float(times[0]), float(times[-1]))
         packed_loads = pack_loads(packed)
-        loads += loads_along(packed, packed_loads, laws, times, q, v)
+        approached = approached_along(packed, packed_loads, laws, times, q, v)
+        loads += loads_along(packed, packed_loads, laws, times, q, v, approached)
     nu = np.zeros((count, rows))
     nu[:, packed.driver_rows :] = drives[:, 1:, 1]
-    out = Efforts(np.zeros((count, rows)), np.zeros((count, len(packed.joints), 3)), np.zeros(4))
+    out = Efforts(np.zeros((count, rows)), np.zeros((count, len(packed.joints), 3)), np.zeros(4), approached)
     for at in _chunks(packed, count):
         phi, compact, gamma = _tabulated(packed, drives[at], q[at], v[at])
         jac = packed.spread(compact)

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mbsd.arrays.driver_laws import refuse_bad_laws
 from mbsd.arrays.packing import Packed, pack
-from mbsd.base.arguments import number_array
 from mbsd.base.errors import AssemblyError, BranchError, ModelError, SingularPoseError
 from mbsd.base.kept import Kept
-from mbsd.base.shown import shown
-from mbsd.base.users_function import law_of
 from mbsd.equations.assembly import residual_and_jacobian, tabulate
 from mbsd.equations.constraints.relative import ACTIVE, ROW
 from mbsd.kinematics import newton as kinematics
@@ -33,8 +31,6 @@ ZERO_LENGTH = 1e-12
 """Square of a length in sizes below which it counts as zero."""
 RUNAWAY = 30.0
 """Turning this many times faster than usual is the mark of a toggle; at a change point rates stay as they are."""
-LARGEST_ANGLE = 1e12
-"""Of a driver (rad): beyond it neighbouring numbers are more than 1e-4 rad apart."""
 _SAMPLES: Kept[np.ndarray] = Kept()
 REDUNDANT_GAP = 1e-7
 """Largest gap, in sizes, by which redundant joints may disagree."""
@@ -280,39 +276,6 @@ def prepare(m: Model, start: float = 0.0, end: float = 1.0) -> Prepared:
         if parts is not None:
             return Prepared(packed, q0, start, sequence, factors, mobility, *parts)
     return Prepared(packed, q0, start, sequence, factors, mobility, groups, blocks)
-
-
-def refuse_bad_laws(packed: Packed, start: float, end: float) -> None:
-    """Raise ModelError for a law that is not finite, or imposes a distance that is not positive."""
-    drivers = packed.joints[len(packed.joints) - len(packed.motions) :]
-    times = np.linspace(start, end, 17) if drivers else np.zeros(0)
-    for driver, law in zip(drivers, packed.motions, strict=True):
-        with law_of(f"{packed.name}: driver '{driver.name}'"):
-            values = number_array("what its law gives", law(times), finite=False)
-        shape = np.shape(values)
-        if shape != (len(times), 3):
-            raise ModelError(
-                f"{packed.name}: driver '{driver.name}': its law gives {shown(values)} of shape {shape} for "
-                f"{len(times)} times; it must give ({len(times)}, 3): f, f', f'' at each time"
-            )
-        good = np.isfinite(values).all(axis=1)
-        if not good.all():
-            bad = int(np.argmin(good))
-            raise ModelError(
-                f"{packed.name}: driver '{driver.name}': its law gives {values[bad][~np.isfinite(values[bad])][0]} at "
-                f"t = {times[bad]:.6g} s; it must be finite"
-            )
-        farthest = float(np.abs(values[:, 0]).max())
-        if driver.kind.angular and farthest > LARGEST_ANGLE:
-            raise ModelError(
-                f"{packed.name}: driver '{driver.name}' turns to {farthest:.4g} rad by t = {end:.6g} s, where numbers "
-                "no longer tell one angle from the next; end the motion earlier, or let the law repeat"
-            )
-        if driver.kind.constraints == ("distance",) and values[:, 0].min() <= 0:
-            raise ModelError(
-                f"{packed.name}: driver '{driver.name}' imposes a distance of {values[:, 0].min():.4g} m; "
-                "it must stay positive"
-            )
 
 
 def sample_jacobians(packed: Packed) -> np.ndarray:

@@ -21,6 +21,8 @@ SHORTEST = 1e-7
 """A step divided to this part of its length that is still refused is not cured by dividing it."""
 MOST = 20_000_000
 """Numbers of a motion, steps times coordinates, beyond which a sweep is refused."""
+MOST_DIVISIONS = 20_000
+"""Steps of a sweep that may be doubted one by one; as many as outputs may be, where these are more."""
 ASTRAY = 0.01
 """Part of a stride by which a law may be off the cubic through both ends of a step."""
 AT_ONCE = 64
@@ -78,6 +80,7 @@ class Steps:
         self.wanted = np.ones(len(self.times), bool)
         self.out_of_reach: float | None = None
         """Time (s) at which a group was found that cannot close."""
+        self._divisions_left = max(MOST_DIVISIONS, len(self.times))
         self._shortest = np.full(len(self.times), SHORTEST)
         self._shortest[1:] *= np.diff(self.times)
         knots = [law.knots(float(times[0]), float(times[-1])) for law in packed.motions]
@@ -91,13 +94,33 @@ class Steps:
         return int(len(self.wanted) - np.count_nonzero(self.wanted))
 
     def divide(self, index: int, part: float = 0.5) -> bool:
-        """Put a time into the step that ends at ``index``, at the given part of it; False if it is too short."""
+        """Put a time into the step that ends at ``index``, at the given part of it; False if it is too short.
+
+        Raises ModelError where so many were divided that no end is in sight.
+        """
         start, end = self.times[index - 1], self.times[index]
         middle = start + part * (end - start)
         if not (end - start > self._shortest[index] and start < middle < end):
             return False
+        if not self._divisions_left:
+            raise ModelError(self._without_end(index))
+        self._divisions_left -= 1
         self._put(np.array([index]), np.array([middle]))
         return True
+
+    def _without_end(self, index: int) -> str:
+        """Why a sweep is given up whose steps are divided over and over; the one in hand ends at ``index``."""
+        packed, start, end = self.packed, self.times[index - 1], self.times[index]
+        way = np.abs(np.diff(self.drives[index - 1 : index + 1, 1:, 0], axis=0))[0] / self.stride[1:]
+        k = int(np.argmax(way))
+        (value, _, _), (after, rate, _) = self.drives[index - 1 : index + 1, k + 1]
+        return (
+            f"{packed.name}: the sweep from t = {self.times[0]:.6g} s to {self.times[-1]:.6g} s was given up at t = "
+            f"{start:.9g} s: {self.inserted} steps were put between the {np.count_nonzero(self.wanted)} asked for, and "
+            f"the one from there to {end:.9g} s is doubted, too, in which driver '{packed.driver_names[k]}' goes from "
+            f"{value:.6g} to {after:.6g} at a rate of {rate:.6g}. Its law shakes, or the motion passes one nearly "
+            "singular pose after another: sweep a shorter time, smooth the law, or change a length."
+        )
 
     def follow_laws(self) -> bool:
         """Divide all steps in which a law goes further than its stride; returns whether there were any."""

@@ -7,7 +7,10 @@ from functools import partial
 
 import numpy as np
 
+from mbsd.arrays.chambers import check_pistons, phase_changes, whole_cycles
 from mbsd.arrays.curve_branches import CurveBranches
+from mbsd.arrays.law_jumps import jump_times, reach_beside
+from mbsd.arrays.laws import compiled_laws
 from mbsd.base.errors import ModelError, ModelWarning
 from mbsd.base.warn import warn
 from mbsd.kinematics.limits.closed_contacts import refuse_passed_contacts
@@ -18,12 +21,19 @@ from mbsd.kinematics.period import MOST_TURNS, common_period, repetition
 from mbsd.kinematics.prepared import March, Prepared, prepare
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import equal_times, rising_times
+from mbsd.results.jump_rows import Asked, jumps_of
 from mbsd.results.returned import returned
 from mbsd.results.solution import Solution
 from mbsd.results.views import Stats
 
 
-def sweep(m: Model, duration: float | None, steps: int, times: Sequence[float] | np.ndarray | None) -> Solution:
+def sweep(
+    m: Model,
+    duration: float | None,
+    steps: int,
+    times: Sequence[float] | np.ndarray | None,
+    event_rows: bool = False,
+) -> Solution:
     """See :meth:`mbsd.mechanism.Mechanism.sweep`."""
     grid = sweep_times(m, duration, steps, times)
     ready = prepare(m, float(grid[0]), float(grid[-1]))
@@ -34,6 +44,15 @@ def sweep(m: Model, duration: float | None, steps: int, times: Sequence[float] |
             grid = equal_times(m, whole, steps)
             ready = prepare(m, 0.0, whole)
             march = ready.march(grid)
+        cycles = whole_cycles(ready.packed, march.q[0], march.q[-1])
+        if cycles > 1:
+            grid = equal_times(m, cycles * float(grid[-1]), steps)
+            ready = prepare(m, 0.0, float(grid[-1]))
+            march = ready.march(grid)
+    asked = _beside_jumps(ready, grid, march) if event_rows else None
+    if asked is not None:
+        grid = asked.solved
+        march = ready.march(grid)
     q, v, a, packed = march.q, march.v, march.a, ready.packed
     drives = packed.drives(grid)
     if m.contacts or limits_of(packed):
@@ -42,9 +61,10 @@ def sweep(m: Model, duration: float | None, steps: int, times: Sequence[float] |
         refuse_passed_contacts(m, packed, inner, poses)
     if CurveBranches(packed).rows:
         refuse_jumps(packed, *march.closely())
+    check_pistons(packed, grid, q)
     loads = inverse_dynamics(ready, grid, drives, q, v, a)
     shape = (len(grid), -1, 3)
-    return Solution(
+    found = Solution(
         mechanism=m,
         packed=packed,
         t=grid,
@@ -53,12 +73,32 @@ def sweep(m: Model, duration: float | None, steps: int, times: Sequence[float] |
         a=a.reshape(shape),
         wrench=loads.wrench,
         lam=loads.lam,
+        approached=loads.approached,
         drives=drives,
         margin=partial(singularity_margin, packed, ready.sequence.rows, drives, q),
         stats=Stats(*(float(r) for r in loads.residuals), steps=len(grid), inserted_steps=march.steps.inserted),
         mobility=ready.mobility,
         route=ready.route if march.closed else "Newton-Raphson",
     )
+    return found if asked is None else asked.rows(found)
+
+
+def _beside_jumps(ready: Prepared, grid: np.ndarray, march: March) -> Asked | None:
+    """The times (s) of ``grid`` and those beside what jumps; None where nothing does."""
+    packed, start, end = ready.packed, float(grid[0]), float(grid[-1])
+    if not end > start:
+        return None
+
+    def motion(times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        every = np.union1d(grid, times)
+        found, rows = ready.march(every), np.searchsorted(every, times)
+        return found.q[rows], found.v[rows]
+
+    jumps, beside = jump_times(packed, compiled_laws(packed, start, end), start, end), reach_beside(start, end)
+    rows = [(t - beside, t + beside, names) for t, names in jumps.items()]
+    changes = phase_changes(packed, grid, (march.q, march.v, march.a), motion)
+    rows += [(min(a, b - beside), max(b, a + beside), (name,)) for a, b, name in changes]
+    return jumps_of(rows).among(grid) if rows else None
 
 
 def sweep_times(m: Model, duration: float | None, steps: int, times: Sequence[float] | np.ndarray | None) -> np.ndarray:

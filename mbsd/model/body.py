@@ -1,13 +1,18 @@
-"""Bodies and the markers fixed to them. SI units; angles in radians."""
+"""Bodies and the markers fixed to them. SI units; angles in radians.
+
+The motion is planar. A place ``z`` along the normal of the plane, towards the viewer (m), moves nothing; it decides the
+couples Mx and My that the frame feels, and the layers of the parts.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
-from mbsd.base.arguments import finite_number, number_pair
+from mbsd.base.arguments import CHECKS, finite_number, number_pair
 from mbsd.base.errors import ModelError
+from mbsd.base.shown import shown
 
 __all__ = ["Body", "Marker", "finite_number", "number_pair"]
 
@@ -35,6 +40,28 @@ class Marker:
     x: float
     y: float
     angle: float = 0.0
+    z: float | None = None
+    """Place along the normal of the plane (m); None: that of its body."""
+
+    @property
+    def plane(self) -> float | None:
+        """Where it lies along the normal of the plane (m): its own place, else its body's; None if neither is given."""
+        return self.body.z if self.z is None else self.z
+
+    def __repr__(self) -> str:
+        turned = f", {self.angle:g} rad" if self.angle else ""
+        along = f", z {self.z:g}" if self.z is not None else ""
+        return f"<Marker ({self.x:g}, {self.y:g}){turned}{along} on {self.body.name}>"
+
+
+def rod_inertia(mass: float, length: float) -> float:
+    """Of a uniform slender rod about its middle (kg m^2)."""
+    return mass * length**2 / 12
+
+
+def at_end(marker: Marker, length: float) -> bool:
+    """Whether a marker is at the end of its bar, whose length (m) this is."""
+    return marker.x == length and marker.y == 0.0
 
 
 @dataclass(eq=False)
@@ -42,7 +69,7 @@ class Body:
     """A rigid body with the frame its author chose. Ground is body 0 and never moves.
 
     mass (kg), com (m, body frame), inertia about the centre of mass (kg m^2). They may be set at any time: the next
-    solution has them. ``owner`` is the mechanism's name, for errors.
+    solution has them; so may ``z`` and ``products``. ``owner`` is the mechanism's name, for errors.
     """
 
     name: str
@@ -54,15 +81,32 @@ class Body:
     """Of a bar (m); None for other bodies."""
     mass_given: bool = False
     """Whether its mass was given when it was added; one of 0 makes it massless on purpose."""
+    derived: frozenset[str] = frozenset()
+    """Of a bar: which of ``com`` and ``inertia`` follow from its length and mass, as of a uniform slender rod. They
+    follow every mass that is set; setting them ends that."""
+    z: float | None = None
+    """Place of its centre of mass along the normal of the plane (m); None: not given, and 0 where it counts."""
+    products: tuple[float, float] = (0.0, 0.0)
+    """Products of inertia, integrals of x z dm and y z dm about the centre of mass in the body frame (kg m^2). They are
+    those of a body that reaches along the normal, such as a crankshaft; 0 of one that is alike on both sides of z."""
 
     def __setattr__(self, name: str, value: object) -> None:
         super().__setattr__(name, self._checked(name, value))
+        derived = self.__dict__.get("derived", ())
+        if name in derived:
+            self.__dict__["derived"] = frozenset(derived) - {name}
+        elif name == "mass" and "inertia" in derived and self.length is not None:
+            self.__dict__["inertia"] = rod_inertia(self.mass, self.length)
 
     def _checked(self, name: str, value: object) -> object:
         """What may be set. Raises ModelError for what no body has."""
         what = f"{self.owner}: {name} of body '{self.name}'" if name in ("mass", "inertia", "com") else name
         if name == "com":
             return number_pair(f"{what} (m)", value)
+        if name == "products":
+            return number_pair(f"{self.owner}: products of inertia of body '{self.name}' (kg m^2)", value)
+        if name == "z" and value is not None:
+            return finite_number(f"{self.owner}: z of body '{self.name}' (m)", value)
         if name in ("mass", "inertia"):
             number, unit = finite_number(what, value), "kg" if name == "mass" else "kg m^2"
             if number < 0:
@@ -74,25 +118,39 @@ class Body:
             raise ModelError(f"{self.owner}: {name} of body '{self.name}' is fixed; add another body")
         return value
 
-    def at(self, x: float, y: float, angle: float = 0.0) -> Marker:
-        """The marker at (x, y) in this body's frame (m), its x axis turned by ``angle`` (rad)."""
-        what = f"{self.owner}: {self.name}.at"
-        place = (("x", x), ("y", y), ("angle", angle))
-        return Marker(self, *(finite_number(f"{what}: {name}", value) for name, value in place))
+    def at(self, x: float, y: float, angle: float = 0.0, z: float | None = None) -> Marker:
+        """The marker at (x, y) in this body's frame (m), its x axis turned by ``angle`` (rad).
 
-    def at_world(self, x: float, y: float, angle: float = 0.0) -> Marker:
+        ``z``: where it lies along the normal of the plane (m), if not in the body's own place.
+        """
+        return Marker(self, *self._place("at", x, y, angle), z=self._along("at", z))
+
+    def at_world(self, x: float, y: float, angle: float = 0.0, z: float | None = None) -> Marker:
         """The marker that is at (x, y) in the world at the start (m), its x axis turned by ``angle`` there (rad).
 
         The start is that of the model as it is now, at time 0: links closed, what start_near gives held; on ground it
-        is ``at``. From then on the marker is fixed to the body, whatever is changed. Raises ModelError where joints,
-        drivers and start_near do not tell where the body is, AssemblyError where the links do not close.
+        is ``at``. From then on the marker is fixed to the body, whatever is changed. ``z`` is that of ``at``. Raises
+        ModelError where joints, drivers and start_near do not tell where the body is, AssemblyError where the links do
+        not close.
         """
-        what = f"{self.owner}: {self.name}.at_world"
-        place = (("x", x), ("y", y), ("angle", angle))
-        numbers = [finite_number(f"{what}: {name}", value) for name, value in place]
+        numbers, along = self._place("at_world", x, y, angle), self._along("at_world", z)
         if self.mechanism is None:
+            what = f"{self.owner}: {self.name}.at_world"
             raise ModelError(f"{what}: '{self.name}' belongs to no mechanism; use m.body(...)")
-        return self.mechanism.marker_in_world(self, *numbers)
+        marker = self.mechanism.marker_in_world(self, *numbers)
+        return marker if along is None else replace(marker, z=along)
+
+    def _place(self, method: str, *numbers: float) -> list[float]:
+        what = f"{self.owner}: {self.name}.{method}"
+        return [finite_number(f"{what}: {key}", value) for key, value in zip(("x", "y", "angle"), numbers, strict=True)]
+
+    def _along(self, method: str, z: float | None) -> float | None:
+        return None if z is None else finite_number(f"{self.owner}: {self.name}.{method}: z", z)
+
+    def take(self, other: Body) -> None:
+        """Have the mass properties and the length of another body, given and derived ones, from now on."""
+        for key in ("mass", "com", "inertia", "length", "mass_given", "derived", "z", "products"):
+            self.__dict__[key] = getattr(other, key)
 
     def belong(self, mechanism: Owner) -> None:
         """Let this be a body of ``mechanism``."""
@@ -126,3 +184,39 @@ class Body:
 
     def __repr__(self) -> str:
         return f"<Body {self.name}: {self.mass:g} kg>"
+
+
+def marker_given(what: str, value: object) -> Marker:
+    """``value``, which must be a marker. Raises ModelError."""
+    if isinstance(value, Marker):
+        return value
+    if not isinstance(value, Body):
+        raise ModelError(
+            f"{what} is {shown(value)}; it must be a marker, a place on a body: write body.at(x, y), bar.start or "
+            "bar.end"
+        )
+    places = f"{value.name}.at(x, y)"
+    if value.length is not None:
+        places += f", {value.name}.start or {value.name}.end"
+    raise ModelError(f"{what} is the body '{value.name}'; it must be a marker, a place on it: write {places}")
+
+
+def body_given(what: str, value: object) -> Body:
+    """``value``, which must be a body. Raises ModelError."""
+    if isinstance(value, Body):
+        return value
+    if isinstance(value, Marker):
+        raise ModelError(
+            f"{what} is a marker on '{value.body.name}'; it must be a body: write {value.body.name}, without at(...), "
+            "start or end"
+        )
+    if isinstance(value, str):
+        raise ModelError(
+            f"{what} is the text {shown(value)}; it must be a body: what m.body(...) or m.bar(...) returned"
+        )
+    raise ModelError(
+        f"{what} is {shown(value)}; it must be a body: m.ground, or what m.body(...) or m.bar(...) returned"
+    )
+
+
+CHECKS.update({"Marker": marker_given, "Body": body_given})

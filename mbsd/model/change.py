@@ -1,43 +1,51 @@
 """Numbers and laws of a mechanism changed where it stands, so that it is solved again without being built again.
 
-A joint, driver, force or contact is made anew by the method of its kind's name, from its own markers, numbers and laws
-and the new ones, so what the method refuses stays refused. Its place among the others stays too, and compiled code is
-used as it is.
+A joint, driver, force or contact is made anew by the method of its kind's name, from its own markers, what the user
+gave of numbers and laws, and the new ones; so what the method refuses stays refused, and what it derives from them is
+derived anew. Its place among the others stays too, and compiled code is used as it is. A body is made anew likewise,
+and the one that is there takes its numbers, as markers hold it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import Any
 
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
-from mbsd.model.body import Marker
+from mbsd.model.body import Body, Marker, at_end
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
-from mbsd.model.mechanism import connections
+from mbsd.model.mechanism import Model, connections
 from mbsd.model.roles import Role, arguments
 
-if TYPE_CHECKING:
-    from mbsd.model.mechanism import Model
-
-BODY = ("mass", "com", "inertia")
+BODY = ("mass", "com", "inertia", "z", "products")
+BAR = ("length", *BODY)
 
 
-def with_markers(add: Callable[..., Any], markers: list[Marker], named: Mapping[str, Any]) -> dict[str, Any]:
-    """Arguments of the function that adds a joint, driver, force or contact: those ``named``, its markers and bodies.
+def with_markers(
+    add: Callable[..., Any], markers: list[Marker], named: Mapping[str, Any], bodies: Mapping[str, Body]
+) -> tuple[list[Any], dict[str, Any]]:
+    """Arguments of the function that adds a joint, driver, force or contact: in order and by name.
 
-    Parameters that must be markers or bodies take the last of ``markers`` (i and j) in order, a body that may be given
-    (``against``, ``frame``) takes what is left.
+    They are those ``named``, its markers and bodies. Parameters that must be markers or bodies take the last of
+    ``markers`` (i and j) in order, a body that may be given (``against``, ``frame``) takes what is left. Where any
+    number of ``bodies`` may be given, their names are among those ``named``.
     """
     out = dict(named)
-    slots = [one for one in arguments(add) if one.name not in named]
-    needed = [one for one in slots if one.role in (Role.MARKER, Role.BODY)]
+    known = arguments(add)
+    slots = [one for one in known if one.name not in named]
+    needed = [one for one in slots if one.role in (Role.MARKER, Role.BODY) and not one.several]
     given = [one for one in slots if one.role is Role.OPTIONAL_BODY]
     left = markers[: len(markers) - len(needed)]
     for slot, marker in [*zip(needed, markers[len(left) :], strict=False), *zip(given, left, strict=False)]:
         out[slot.name] = marker if slot.role is Role.MARKER else marker.body
-    return out
+    for k, one in enumerate(known):
+        if one.several:
+            several = [bodies[name] for name in out.pop(one.name)]
+            return [*(out.pop(before.name) for before in known[:k]), *several], out
+    return [], out
 
 
 def law_name(add: Callable[..., Any]) -> str:
@@ -54,32 +62,34 @@ def change(m: Model, name: str, values: Mapping[str, Any]) -> None:
     if not isinstance(name, str) or name not in m.bodies or name == "ground":
         known = [*(key for table in connections(m) for key in table), *(body for body in m.bodies if body != "ground")]
         raise ModelError(f"{m.name}: {no_such('body, joint, driver, force or contact', name, known)}")
-    body = m.bodies[name]
-    _refuse_others(m, f"body '{name}'", values, BODY)
-    m.set_mass(name, **({key: getattr(body, key) for key in BODY} | dict(values)))
-    return None
+    return _change_body(m, m.bodies[name], values)
+
+
+def given(entry: Joint | Force) -> dict[str, Any]:
+    """Arguments of the method that added it, but for its markers and bodies: what the user gave, laws included."""
+    named = entry.given
+    if isinstance(entry, Force):
+        return {**named, **entry.laws}
+    if entry.motion is not None and entry.kind.add is not None:
+        named[law_name(entry.kind.add)] = entry.motion
+    return named
 
 
 def _change(m: Model, table: dict[str, Any], name: str, values: Mapping[str, Any]) -> None:
     old: Joint | Force = table[name]
     add = old.kind.add
     assert add is not None
+    also = old.kind.also if isinstance(old, Force) else {}
+    values = {also.get(key, key): value for key, value in values.items()}
     own = [one.name for one in arguments(add) if one.role not in (Role.MARKER, Role.BODY, Role.OPTIONAL_BODY)]
-    if any(one.several for one in arguments(add)):
-        own = []
-    what = f"{old.kind.name} '{name}'"
-    _refuse_others(m, what, values, own)
+    _refuse_others(m, f"{old.kind.name} '{name}'", values, own)
     if not values:
         return
-    named = dict(old.params)
-    if isinstance(old, Force):
-        named |= old.laws
-    elif old.motion is not None:
-        named[law_name(add)] = old.motion
     before = dict(table)
     del table[name]
     try:
-        add(m, name, **with_markers(add, [old.i, old.j], named | dict(values)))
+        in_order, named = with_markers(add, [old.i, old.j], given(old) | values, m.bodies)
+        add(m, name, *in_order, **named)
     except BaseException:
         table.clear()
         table.update(before)
@@ -87,6 +97,39 @@ def _change(m: Model, table: dict[str, Any], name: str, values: Mapping[str, Any
     new = table[name]
     table.clear()
     table.update({key: new if key == name else value for key, value in before.items()})
+
+
+def given_body(body: Body) -> dict[str, Any]:
+    """Arguments of the method that added it: what the user gave."""
+    mass = body.mass if body.mass_given or body.mass > 0 else None
+    out = {"mass": mass} | {key: getattr(body, key) for key in ("com", "inertia") if key not in body.derived}
+    out |= {"z": body.z, "products": body.products}
+    return out if body.length is None else {"length": body.length} | out
+
+
+def _change_body(m: Model, body: Body, values: Mapping[str, Any]) -> None:
+    bar = body.length is not None
+    _refuse_others(m, f"body '{body.name}'", values, BAR if bar else BODY)
+    apart = Model(m.name)
+    new = (apart.bar if bar else apart.body)(body.name, **(given_body(body) | dict(values)))
+    if body.length is not None and new.length is not None and new.length != body.length:
+        _move_ends(m, body, body.length, new.length)
+    body.take(new)
+
+
+def _move_ends(m: Model, bar: Body, old: float, new: float) -> None:
+    """Let everything at the end of a bar of the ``old`` length follow it to the ``new`` one (m)."""
+
+    def moved(marker: Marker) -> Marker:
+        return replace(marker, x=new) if marker.body is bar and at_end(marker, old) else marker
+
+    for table in connections(m):
+        for name, entry in table.items():
+            assert isinstance(entry, Joint | Force)
+            params = {key: moved(one) if isinstance(one, Marker) else one for key, one in entry.params.items()}
+            table[name] = replace(entry, i=moved(entry.i), j=moved(entry.j), params=params)  # pyright: ignore[reportIndexIssue]
+    for name, marker in m.traces.items():
+        m.traces[name] = moved(marker)
 
 
 def _refuse_others(m: Model, what: str, values: Mapping[str, Any], known: tuple[str, ...] | list[str]) -> None:

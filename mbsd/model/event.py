@@ -9,12 +9,13 @@ from typing import Any
 
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
+from mbsd.base.pickled import WithFunctions
 from mbsd.base.shown import shown
 from mbsd.model.body import Body, Marker
 
 
 @dataclass(frozen=True, eq=False)
-class Event:
+class Event(WithFunctions):
     """A scalar function of time and motion that a simulation monitors; see :meth:`mbsd.mechanism.Mechanism.event`."""
 
     name: str
@@ -23,18 +24,20 @@ class Event:
     """1: where it rises through zero; -1: where it falls; 0: both."""
     terminal: bool = False
     action: Callable[[Any], object] | None = None
+    shortest: float | None = None
+    """How long the shortest thing in the function lasts (s)."""
 
 
 @dataclass(frozen=True)
 class Happening:
-    """One event of a simulation."""
+    """One event of a simulation; of a sweep, a law that makes forces jump."""
 
     time: float
     """s"""
     name: str
-    """Of the event, contact, stop or clutch."""
+    """Of the event, contact, stop, clutch, force or driver."""
     what: str
-    """event, end, impact, closes, opens, sticks, slides."""
+    """event, end, impact, closes, opens, sticks, slides; jumps, of a force or driver whose law does."""
     impulse: float = 0.0
     """Of an impact, normal (N s; N m s of stops of angles)."""
     energy: float = 0.0

@@ -26,8 +26,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
-from mbsd.base.arguments import checked
 from mbsd.base.codes import TURN
+from mbsd.base.derived import adding
+from mbsd.base.pickled import ByName, WithFunctions
 from mbsd.model.body import Marker
 from mbsd.model.laws import Motion
 from mbsd.model.laws.curve import Curve
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
     import numpy as np
 
     from mbsd.model.body import Marker
+    from mbsd.model.chamber import Chamber
+    from mbsd.model.joint import Joint
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -65,6 +68,8 @@ class Interaction:
     """A function in mbsd/equations/interactions between two markers, its numbers, and the law of time it reads.
 
     Where it ``calls_law``, the address of the force's own ``law``, a function of the user, comes before the numbers.
+    One that ``remembers`` asks for the speed at which its contact began; one with a ``crank`` reads the angle of the
+    body of this name against body i.
     """
 
     function: str
@@ -73,10 +78,12 @@ class Interaction:
     numbers: Sequence[float]
     law: str | None = None
     calls_law: bool = False
+    remembers: bool = False
+    crank: str | None = None
 
 
 class Masses(NamedTuple):
-    """Bodies and their masses, ground first."""
+    """Bodies and their masses, ground first, and what joins them."""
 
     names: Sequence[str]
     com: np.ndarray
@@ -85,6 +92,9 @@ class Masses(NamedTuple):
     """(nb,) kg."""
     inertia: np.ndarray
     """(nb,) about the centres of mass (kg m^2)."""
+    joints: Sequence[Joint] = ()
+    model: str = ""
+    """The mechanism's name, for errors."""
 
 
 def _no_elements(force: Force) -> tuple[Element, ...]:
@@ -96,7 +106,7 @@ def _no_interactions(force: Force, masses: Masses) -> Sequence[Interaction]:
 
 
 @dataclass(frozen=True)
-class ForceKind:
+class ForceKind(ByName):
     """A kind of force."""
 
     name: str
@@ -115,6 +125,10 @@ class ForceKind:
     mbsd/equations/interactions/surface.py reads them."""
     depth_potential: Callable[[Force, np.ndarray], np.ndarray] | None = None
     """(T,) potential energy (J) of such a contact at depths (T,) of the disc in the surface (m)."""
+    along: Callable[[Force], Element] | None = None
+    """The one element along which its interaction acts, without terms, if it acts along one."""
+    chamber: Callable[[Force, Masses], Chamber] | None = None
+    """The gas behind a piston that its effort comes from, if it does."""
     outside: bool = False
     """Whether it is a load from outside, to which nothing in the mechanism feels the opposite."""
     of_reactions: bool = False
@@ -125,12 +139,14 @@ class ForceKind:
     """Its sign in drawings, if not that of its first element: see mbsd/drawing/symbols/loads.py."""
     saved: bool = True
     """Whether a file can hold its params; a Python function cannot be saved."""
+    also: Mapping[str, str] = field(default_factory=dict)
+    """Arguments of other methods that add one, by the names they have in ``add``: change() takes them as well."""
     add: Callable[..., Any] | None = field(default=None, init=False, compare=False)
     """The function ``add(m, name, ...)`` that adds one of this kind, with its arguments checked; see :meth:`adds`."""
 
     def adds(self, function: F) -> F:
         """Decorator of that function: it is what change(), a saved file and the schema go by."""
-        made = checked(function)
+        made = adding(function)
         object.__setattr__(self, "add", made)
         return made
 
@@ -154,7 +170,7 @@ def register(kind: ForceKind) -> ForceKind:
 
 
 @dataclass(frozen=True, eq=False)
-class Force:
+class Force(WithFunctions):
     """A force between marker i (first body, or ground) and marker j (second body)."""
 
     kind: ForceKind
@@ -165,6 +181,16 @@ class Force:
     """Numbers of this force by the names of its method's arguments, plain data (SI)."""
     laws: Mapping[str, Motion | Curve] = field(default_factory=dict)
     """Laws of time and characteristic curves by the names of its method's arguments."""
+    derived: frozenset[str] = frozenset()
+    """Params that nobody gave, found from the others; see mbsd/base/derived.py."""
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """The params that are not derived."""
+        return {key: value for key, value in self.params.items() if key not in self.derived}
+
+    def __repr__(self) -> str:
+        return f"<{self.kind.name} '{self.name}' between {self.i.body.name} and {self.j.body.name}>"
 
     @property
     def bodies(self) -> tuple[str, str]:

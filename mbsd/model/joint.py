@@ -9,7 +9,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from mbsd.base.arguments import checked
+from mbsd.base.derived import adding
+from mbsd.base.pickled import ByName, WithFunctions
 from mbsd.model.body import Marker
 from mbsd.model.laws import Motion
 from mbsd.model.teeth import with_radii
@@ -55,7 +56,7 @@ _PAIRS = {frozenset({"point"}): "pin", frozenset({"slot", "angle"}): "guide", fr
 
 
 @dataclass(frozen=True)
-class JointKind:
+class JointKind(ByName):
     """A kind of joint, or of driver where ``driven``."""
 
     name: str
@@ -74,6 +75,10 @@ class JointKind:
     touching: str = ""
     """Where its force acts if that is beside marker j: on a "line" along the x axis of marker i, a "curve" of body i,
     between "discs" about both markers, or at a "place" that follows from its torque."""
+    symmetry: Callable[[Mapping[str, Any]], int] | None = None
+    """From params: the order n of the rotational symmetry of body j about marker j, where its equations do not tell
+    n-th parts of a turn apart, as of a wheel that is indexed by its slots.
+    """
     sign: str = ""
     """The kind whose sign it has in drawings; its own if empty. See mbsd/drawing/symbols."""
     saved: bool = True
@@ -83,7 +88,7 @@ class JointKind:
 
     def adds(self, function: F) -> F:
         """Decorator of that function: it is what change(), a saved file and the schema go by."""
-        made = checked(function)
+        made = adding(function)
         object.__setattr__(self, "add", made)
         return made
 
@@ -154,7 +159,7 @@ def register(kind: JointKind) -> JointKind:
 
 
 @dataclass(frozen=True, eq=False)
-class Joint:
+class Joint(WithFunctions):
     """A joint or driver between marker i (first body) and marker j (second body)."""
 
     kind: JointKind
@@ -164,6 +169,16 @@ class Joint:
     params: Mapping[str, Any] = field(default_factory=dict)
     """Numbers of this joint by the names of its method's arguments, plain data (SI)."""
     motion: Motion | None = None
+    derived: frozenset[str] = frozenset()
+    """Params that nobody gave, found from the others; see mbsd/base/derived.py."""
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """The params that are not derived."""
+        return {key: value for key, value in self.params.items() if key not in self.derived}
+
+    def __repr__(self) -> str:
+        return f"<{self.kind.name} '{self.name}' between {self.i.body.name} and {self.j.body.name}>"
 
     @property
     def bodies(self) -> tuple[str, str]:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from mbsd.base.arguments import finite_number, number_pair
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
-from mbsd.model.body import Body, Marker
+from mbsd.model.body import Body, Marker, rod_inertia
 from mbsd.model.event import Event
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
@@ -75,15 +76,26 @@ class Model:
         return self.bodies["ground"]
 
     def body(
-        self, name: str, mass: float | None = None, com: Sequence[float] = (0.0, 0.0), inertia: float = 0.0
+        self,
+        name: str,
+        mass: float | None = None,
+        com: Sequence[float] = (0.0, 0.0),
+        inertia: float = 0.0,
+        *,
+        z: float | None = None,
+        products: Sequence[float] = (0.0, 0.0),
     ) -> Body:
         """Add a body. Without a mass it has none here; in a mechanism's folder it then gets that of its parts.
 
-        Raises ModelError on a name already used or an impossible mass.
+        ``z``: place of its centre of mass along the normal of the plane, towards the viewer (m). It moves nothing; the
+        couples of ``sol.shaking()`` and the layers of the parts follow it. ``products``: integrals of x z dm and y z dm
+        about the centre of mass, in the body frame (kg m^2), of a body that reaches along the normal. Raises ModelError
+        on a name already used or an impossible mass.
         """
         new_name(self, name, "body", self.bodies)
         known = 0.0 if mass is None else mass
-        body = self.bodies[name] = Body(name, self.name, known, com, inertia)  # pyright: ignore[reportArgumentType]
+        checked: Any = com, products  # a body turns any two numbers into a pair
+        body = self.bodies[name] = Body(name, self.name, known, checked[0], inertia, z=z, products=checked[1])
         body.mass_given = mass is not None
         body.belong(self)
         return body
@@ -95,24 +107,43 @@ class Model:
         mass: float | None = None,
         com: Sequence[float] | None = None,
         inertia: float | None = None,
+        *,
+        z: float | None = None,
+        products: Sequence[float] = (0.0, 0.0),
     ) -> Body:
         """Add a bar from ``start`` (0, 0) to ``end`` (length, 0).
 
-        With a mass and nothing else it is a uniform slender rod: com at the middle, inertia m l^2 / 12.
+        With a mass and nothing else it is a uniform slender rod: com at the middle, inertia m l^2 / 12, also after its
+        mass or length changes. ``z`` and ``products`` are those of :meth:`body`.
         """
         length = length_given(self, f"bar '{name}' has length", length)
+        derived = frozenset(key for key, value in (("com", com), ("inertia", inertia)) if value is None)
         com = (length / 2, 0.0) if com is None else com
         mass = None if mass is None else number_given(self, f"mass of body '{name}'", mass)
-        inertia = (mass or 0.0) * length**2 / 12 if inertia is None else inertia
-        body = self.body(name, mass, com, inertia)
-        body.length = length
+        inertia = rod_inertia(mass or 0.0, length) if inertia is None else inertia
+        body = self.body(name, mass, com, inertia, z=z, products=products)
+        body.length, body.derived = length, derived
         return body
 
-    def set_mass(self, name: str, mass: float, com: Sequence[float], inertia: float) -> None:
-        """Set mass (kg), centre of mass (m, body frame) and inertia about it (kg m^2), as from CAD."""
+    def set_mass(
+        self,
+        name: str,
+        mass: float,
+        com: Sequence[float],
+        inertia: float,
+        z: float | None = None,
+        products: Sequence[float] | None = None,
+    ) -> None:
+        """Set mass (kg), centre of mass (m, body frame) and inertia about it (kg m^2), as from CAD.
+
+        ``z`` (m) and ``products`` (kg m^2) are those of :meth:`body`; what is None stays as it is.
+        """
         body = self.known_body(name)
-        wanted = Body(name, self.name, mass, com, inertia)  # pyright: ignore[reportArgumentType]
+        checked: Any = com, body.products if products is None else products
+        along = body.z if z is None else z
+        wanted = Body(name, self.name, mass, checked[0], inertia, z=along, products=checked[1])
         body.mass, body.com, body.inertia = wanted.mass, wanted.com, wanted.inertia
+        body.z, body.products = wanted.z, wanted.products
 
     def known_body(self, name: str) -> Body:
         """The body of this name; raises ModelError with the known names."""

@@ -13,12 +13,29 @@ import numpy as np
 
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
+from mbsd.base.kept import Kept
 from mbsd.model.laws.curve import Curve
 
 FINE, MOST_CHORDS = 4, 4000
 """Chords of a piece, and in all, with which crossings are looked for."""
 PART_OF_LOOP = 1 / 8
 """Of the shortest loop: how far a point may go in one step."""
+BLOCK = 64
+"""Chords that are compared with all others at once."""
+PARALLEL = 1e-6
+"""Sine of the angle below which straight continuations do not meet."""
+SAME = 1e-9
+"""Of the longest step between points: those closer than this are the same."""
+TRIED, MOST_TRIED = 8, 512
+"""Places of a piece, and pieces, from which it is tried whether the nearest node leads to the foot."""
+CLOSER = 0.7
+"""What squared distances of nodes elsewhere count, since between the places tried they may be nearer still."""
+ROUNDABOUT = 2.0
+"""Ways along the curve longer than this part of the chord lead round more than half a circle, to another part."""
+SHARP = 1.0
+"""Turning of a piece (rad) that has room for two feet of one point."""
+LOOKS = 48
+"""Nodes that find_foot looks at first, as mbsd/equations/relative/curve_pieces.py says."""
 LEAST_PIECES, LEAST_PARTS = 128, 4
 """Pieces in all, and for each piece of the spline: the nearest node leads to the foot, arc lengths are exact."""
 
@@ -55,7 +72,7 @@ def curve_numbers(
     radius: float,
     farthest: float = 0.0,
 ) -> np.ndarray:
-    """The own numbers of a curve constraint; a closed curve ends with arc length and turning of a round.
+    """The own numbers of a curve constraint (mbsd/equations/relative/curve_pieces.py).
 
     ``farthest``: how far the foot may go at once on a curve that crosses itself (m).
     """
@@ -75,45 +92,162 @@ def curve_numbers(
     turning = np.unwrap(np.arctan2(ends[:, 1], ends[:, 0]))
     rows = np.column_stack([breaks[:-1], coefficients.reshape(len(h), 12), arc[:-1], turning[:-1]])
     head = [distance, radius, float(closed), breaks[-1] - breaks[0], len(h), farthest]
-    return np.concatenate([head, rows.ravel(), [arc[-1], turning[-1] - turning[0]]])
+    end = (coefficients[-1] * h[-1] ** np.arange(6)).sum(axis=1)
+    doubtful = np.abs(np.diff(turning)).max() > SHARP or _passes_itself(breaks, coefficients, closed, distance)
+    reach = float(np.diff(arc).max()) / 2 if doubtful else 0.0
+    return np.concatenate([head, rows.ravel(), [arc[-1], turning[-1] - turning[0], *end, *ends[-1], reach]])
 
 
-def disc_numbers(params: Mapping[str, Any]) -> list[np.ndarray]:
-    """Those of the constraints `curve` and `curve_rolling` of a disc on a curve: ``points``, ``closed``, ``radius``."""
+def _passes_itself(breaks: np.ndarray, coefficients: np.ndarray, closed: bool, distance: float) -> bool:
+    """Whether another part of a curve is so close by that the nearest node of a point may not lead to its foot.
+
+    Looked for as the kernel does (find_foot), from places at ``distance`` (m, left) of the curve.
+    """
+    key = breaks.tobytes(), coefficients.tobytes(), closed, distance
+    return _PASSES.get(key, lambda: _wrong_nodes(breaks, coefficients, closed, distance))
+
+
+_PASSES: Kept[bool] = Kept()
+
+
+def _wrong_nodes(breaks: np.ndarray, coefficients: np.ndarray, closed: bool, distance: float) -> bool:
+    count = len(coefficients)
+    h, powers = np.diff(breaks), np.arange(6)
+    shares = (np.arange(TRIED) + 0.5) / TRIED
+    piece = np.unique(np.linspace(0, count - 1, min(count, MOST_TRIED)).astype(int))
+    s = h[piece, None] * shares
+    place = np.einsum("pdk,psk->psd", coefficients[piece], s[..., None] ** powers)
+    slope = np.einsum("pdk,psk->psd", coefficients[piece, :, 1:] * powers[1:], s[..., None] ** powers[:-1])
+    across = np.stack([-slope[..., 1], slope[..., 0]], axis=-1) / np.hypot(slope[..., 0], slope[..., 1])[..., None]
+    on, place = place.reshape(-1, 1, 2), (place + distance * across).reshape(-1, 1, 2)
+    nodes = np.vstack([coefficients[:, :, 0], (coefficients[-1] * h[-1] ** powers).sum(axis=1)])
+    chord = np.hypot(*np.diff(nodes, axis=0).T)
+    way = np.append(0.0, np.cumsum(chord))
+    gone = (way[piece, None] + chord[piece, None] * shares).reshape(-1, 1)
+    last = count - closed
+    stride = max(count // LOOKS, 1)
+    row = np.arange(len(place))
+
+    def elsewhere(node: np.ndarray) -> np.ndarray:
+        """Whether nodes (n, k) belong to another part than the places: the way there is far longer than the chord."""
+        along = np.abs(way[node] - gone)
+        along = np.minimum(along, way[-1] - along) if closed else along
+        return along > ROUNDABOUT * np.hypot(*np.moveaxis(nodes[node] - on, -1, 0))
+
+    def squares(node: np.ndarray) -> np.ndarray:
+        """(n, k) squared distances of places and nodes, infinite where there is none; less for those elsewhere."""
+        inside = (node >= 0) & (node <= last)
+        node = np.where(inside, node, 0)
+        square = ((nodes[node] - place) ** 2).sum(axis=2)
+        return np.where(inside, np.where(elsewhere(node), CLOSER * square, square), np.inf)
+
+    coarse = np.arange(0, count, stride)[None].repeat(len(place), axis=0)
+    best = coarse[row, squares(coarse).argmin(axis=1)][:, None]
+    looked = best + np.arange(1 - stride, stride)
+    looked[looked >= count] = -1
+    if not closed:
+        looked = np.hstack([looked, np.full_like(best, count)])
+    best = looked[row, squares(looked).argmin(axis=1)][:, None]
+    return bool(elsewhere(best).any())
+
+
+def disc_numbers(params: Mapping[str, Any], follows: bool) -> list[np.ndarray]:
+    """Those of the constraints `curve` and `curve_rolling` of a disc on a curve: ``points``, ``closed``, ``radius``.
+
+    ``follows``: it never leaves its branch of a curve that crosses itself; a contact is with the nearest branch.
+    """
     closed, radius = params["closed"], params["radius"]
     pieces = curve_pieces(np.array(params["points"], float), closed)
-    numbers = curve_numbers(*pieces, closed, radius, radius, farthest_step(*pieces, closed, radius))
+    farthest = farthest_step(*pieces, closed, radius) if follows else 0.0
+    numbers = curve_numbers(*pieces, closed, radius, radius, farthest)
     return [numbers, numbers]
 
 
-def crossings(breaks: np.ndarray, coefficients: np.ndarray, closed: bool, distance: float) -> np.ndarray:
-    """(c, 2) pairs of parameters at which the curve parallel at ``distance`` (m, left) crosses itself, roughly."""
+def crossings(
+    breaks: np.ndarray, coefficients: np.ndarray, closed: bool, distance: float, continued: bool = False
+) -> np.ndarray:
+    """(c, 2) pairs of parameters at which the curve parallel at ``distance`` (m, left) crosses itself, roughly.
+
+    ``continued``: an open curve with its straight continuations, which have parameters beyond its own. They cross it
+    after the crossings of the curve alone in this list, and each other at its end.
+    """
+    u, place, slope = _chords(breaks, coefficients, closed, distance)
+    a, b = (place, np.roll(place, -1, axis=0)) if closed else (place[:-1], place[1:])
+    n = len(a)
+    found = []
+    for start in range(0, n - 2, BLOCK):
+        k, others = np.arange(start, min(start + BLOCK, n - 2)), np.arange(start + 2, n)
+        p, q, r, s = a[k, None], b[k, None], a[others], b[others]
+        one, two, three, four = _side(p, q, r), _side(p, q, s), _side(r, s, p), _side(r, s, q)
+        hit = (one * two <= 0) & (three * four <= 0) & ((one != 0) | (two != 0))
+        hit &= others >= k[:, None] + 2
+        if closed:
+            hit &= (k[:, None] > 0) | (others < n - 1)
+        which, other = np.nonzero(hit)
+        found.append(np.stack([u[k[which]], u[others[other]]], axis=1))
+    if continued and not closed:
+        found += _continued_crossings(u, place, slope)
+    return np.concatenate([np.zeros((0, 2)), *found])
+
+
+def _chords(
+    breaks: np.ndarray, coefficients: np.ndarray, closed: bool, distance: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Parameters (n,), places and slopes (n, 2) of the ends of chords; an open curve's last end is the last one."""
     fine = max(1, min(FINE, MOST_CHORDS // len(coefficients)))
     s = (np.diff(breaks)[:, None] * np.arange(fine) / fine)[..., None]
     u = (breaks[:-1, None] + s[..., 0]).ravel()
     powers = np.arange(6)
     place = np.einsum("pdk,psk->psd", coefficients, s**powers).reshape(-1, 2)
     slope = np.einsum("pdk,psk->psd", coefficients[:, :, 1:] * powers[1:], s ** powers[:-1]).reshape(-1, 2)
-    place = place + distance * np.stack([-slope[:, 1], slope[:, 0]], axis=1) / np.hypot(*slope.T)[:, None]
-    a, b = (place, np.roll(place, -1, axis=0)) if closed else (place[:-1], place[1:])
-    u, n = u[: len(a)], len(a)
+    if not closed:
+        h = breaks[-1] - breaks[-2]
+        u = np.append(u, breaks[-1])
+        place = np.vstack([place, coefficients[-1] @ h**powers])
+        slope = np.vstack([slope, (coefficients[-1, :, 1:] * powers[1:]) @ h ** powers[:-1]])
+    return u, place + distance * np.stack([-slope[:, 1], slope[:, 0]], axis=1) / np.hypot(*slope.T)[:, None], slope
+
+
+def _side(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> np.ndarray:
+    return (q[..., 0] - p[..., 0]) * (r[..., 1] - p[..., 1]) - (q[..., 1] - p[..., 1]) * (r[..., 0] - p[..., 0])
+
+
+def _continued_crossings(u: np.ndarray, place: np.ndarray, slope: np.ndarray) -> list[np.ndarray]:
+    """Where the straight lines beyond both ends cross the chords between ``place`` (n, 2), and each other."""
     out: list[np.ndarray] = []
-
-    def side(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> np.ndarray:
-        return (q[..., 0] - p[..., 0]) * (r[..., 1] - p[..., 1]) - (q[..., 1] - p[..., 1]) * (r[..., 0] - p[..., 0])
-
-    for k in range(n - 2):
-        others = np.arange(k + 2, n - (closed and k == 0))
-        one, two = side(a[k], b[k], a[others]), side(a[k], b[k], b[others])
-        three, four = side(a[others], b[others], a[k]), side(a[others], b[others], b[k])
-        for hit in others[(one * two <= 0) & (three * four <= 0) & ((one != 0) | (two != 0))]:
-            out.append(np.array([u[k], u[hit]]))
-    return np.array(out).reshape(-1, 2)
+    for end, way, own in ((0, -slope[0], 0), (-1, slope[-1], len(u) - 2)):
+        to = place - place[end]
+        off, ahead = way[0] * to[:, 1] - way[1] * to[:, 0], to @ way / (way @ way)
+        for k in np.flatnonzero((off[:-1] * off[1:] <= 0) & (off[:-1] != off[1:])):
+            part = off[k] / (off[k] - off[k + 1])
+            beyond = ahead[k] + part * (ahead[k + 1] - ahead[k])
+            if k != own and beyond > 0.0:
+                out.append(np.array([[u[k], u[end] + (beyond if end else -beyond)]]))
+    begins, ends = -slope[0], slope[-1]
+    turned = begins[0] * ends[1] - begins[1] * ends[0]
+    if abs(turned) > PARALLEL * np.hypot(*begins) * np.hypot(*ends):
+        gap = place[-1] - place[0]
+        first = (gap[0] * ends[1] - gap[1] * ends[0]) / turned
+        last = (gap[0] * begins[1] - gap[1] * begins[0]) / turned
+        if first > 0.0 and last > 0.0:
+            out.append(np.array([[u[0] - first, u[-1] + last]]))
+    return out
 
 
 def farthest_step(breaks: np.ndarray, coefficients: np.ndarray, closed: bool, distance: float) -> float:
-    """How far the foot may go at once (m): a part of the shortest loop of a curve that crosses itself, else 0."""
-    found = crossings(breaks, coefficients, closed, distance)
+    """How far the foot may go at once (m): a part of the shortest loop of a curve that crosses itself, else 0.
+
+    The straight continuations of an open curve count as parts of it.
+    """
+    key = breaks.tobytes(), coefficients.tobytes(), closed, distance
+    return _FARTHEST.get(key, lambda: _farthest_step(breaks, coefficients, closed, distance))
+
+
+_FARTHEST: Kept[float] = Kept()
+
+
+def _farthest_step(breaks: np.ndarray, coefficients: np.ndarray, closed: bool, distance: float) -> float:
+    found = crossings(breaks, coefficients, closed, distance, continued=True)
     if not len(found):
         return 0.0
     around = np.abs(found[:, 1] - found[:, 0])
@@ -150,10 +284,17 @@ def checked_points(what: str, points: object, closed: bool) -> list[list[float]]
         raise ModelError(
             f"{what}: points of shape {array.shape} must be {'six' if closed else 'two'} or more rows of x, y (m)"
         )
-    if closed and np.array_equal(array[0], array[-1]):
+    returns = bool(np.hypot(*(array[0] - array[-1])) <= SAME * np.hypot(*np.diff(array, axis=0).T).max())
+    if returns and len(array) > 2 and not closed:
+        raise ModelError(
+            f"{what}: the last of {len(array)} points repeats the first, ({array[0, 0]:.6g}, {array[0, 1]:.6g}) m, but "
+            "closed is not True: there the curve would not go round but on straight. Give closed=True, or leave the "
+            "last point out if the curve is to be open"
+        )
+    if returns and closed:
         array = array[:-1]
     steps = np.hypot(*np.diff(np.vstack([array, array[:1]]) if closed else array, axis=0).T)
-    if not steps.min() > 1e-9 * steps.max():
+    if not steps.min() > SAME * steps.max():
         raise ModelError(f"{what}: points {int(np.argmin(steps))} and the next are the same; remove one")
     if not math.isfinite(float(steps.sum())):
         raise ModelError(f"{what}: the points are too far apart")
@@ -161,15 +302,19 @@ def checked_points(what: str, points: object, closed: bool) -> list[list[float]]
 
 
 def refuse_crossing(what: str, points: list[list[float]], closed: bool) -> None:
-    """Raise ModelError for a curve that crosses itself: it has no side on which matter could be."""
+    """Raise ModelError for a curve that crosses itself or its continuation: no side of it is free."""
     pieces = curve_pieces(np.array(points), closed)
-    found = crossings(*pieces, closed, 0.0)
+    found = crossings(*pieces, closed, 0.0, continued=True)
+    inside = (found >= pieces[0][0]) & (found <= pieces[0][-1])
+    found, both = found[inside[:, 0]], inside[inside[:, 0], 1]  # continuations that cross make a roof or a valley
     if len(found):
         k = min(int(np.searchsorted(pieces[0], found[0, 0], "right")) - 1, len(pieces[1]) - 1)
         x, y = pieces[1][k, :, 0]
+        crossed = "itself" if both[0] else "the straight line on which it goes on beyond its end"
         raise ModelError(
-            f"{what}: the curve crosses itself near ({x:.4g}, {y:.4g}) m, where it has no side that is free; cut it "
-            "into curves that do not, or take rolling_on_curve or point_on_curve, which follow it through"
+            f"{what}: the curve crosses {crossed} near ({x:.4g}, {y:.4g}) m, where it has no side that is free; "
+            + ("cut it into curves that do not" if both[0] else "turn its end another way by some points more")
+            + ", or take rolling_on_curve or point_on_curve, which follow it through"
         )
 
 

@@ -17,6 +17,8 @@ FEWEST = 3
 """Teeth of a wheel."""
 PLAY = 1e-3
 """Part of the module by which a distance may be off."""
+ROUNDED = 1e-3
+"""Part of the smaller gear's radius by which a distance may be off where radii are given: people round them."""
 
 
 def with_radii(params: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -32,12 +34,24 @@ def with_radii(params: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def gear_problem(params: Mapping[str, Any], x: float, y: float) -> str | None:
-    """Why two gears with their centres (x, y) apart (m) cannot mesh, if they are given by teeth."""
+    """Why two gears with their centres (x, y) apart (m) cannot mesh."""
+    distance, internal = math.hypot(x, y), params["internal"]
+    sign, between = (-1, "-") if internal else (1, "+")
     if params.get("teeth") is None:
-        return None
+        first, second = params["radius_i"], params["radius_j"]
+        wanted = first + sign * second
+        if abs(distance - wanted) <= ROUNDED * second:
+            return None
+        share = distance / (first + sign * second)
+        return (
+            f"its centres are {distance:.6g} m apart, but radii of {first:g} m and {second:g} m "
+            f"{'of a ring and the gear in it ' if internal else ''}touch at {first:g} {between} {second:g} = "
+            f"{wanted:.6g} m. Move a centre, or give radii with this {'difference' if internal else 'sum'}: the same "
+            f"ratio has radius_i={first * share:.6g}, radius_j={second * share:.6g}"
+            + ("" if internal else _ring(distance, first, second))
+        )
     (first, second), module = params["teeth"], params["module"]
-    sign, between = (-1, "-") if params["internal"] else (1, "+")
-    distance, wanted = math.hypot(x, y), module * (first + sign * second) / 2
+    wanted = module * (first + sign * second) / 2
     if abs(distance - wanted) <= PLAY * module:
         return None
     return (
@@ -47,16 +61,50 @@ def gear_problem(params: Mapping[str, Any], x: float, y: float) -> str | None:
     )
 
 
-def rack_problem(params: Mapping[str, Any], x: float, y: float) -> str | None:
-    """Why a pinion with its centre at (x, y) in the axes of its rack (m) cannot mesh, if it is given by teeth."""
-    if params.get("teeth") is None:
+def _ring(distance: float, first: float, second: float) -> str:
+    """A remedy where the centres are the difference of the radii apart."""
+    if abs(distance - abs(first - second)) > ROUNDED * min(first, second):
+        return ""
+    order = "" if first > second else ", with the ring first"
+    return f"; if one gear is a ring around the other, say internal=True{order}"
+
+
+def belt_problem(params: Mapping[str, Any], x: float, y: float) -> str | None:
+    """Why a belt cannot go round two pulleys with their centres (x, y) apart (m)."""
+    sized, distance = with_radii(params), math.hypot(x, y)
+    first, second = sized["radius_i"], sized["radius_j"]
+    least = first + second if params["crossed"] else abs(first - second)
+    if distance > least:
         return None
+    why = "cross only between pulleys that are apart" if params["crossed"] else "lie on pulleys of which neither"
+    return (
+        f"its centres are {distance:.6g} m apart, but strands {why}{'' if params['crossed'] else ' is in the other'}: "
+        f"with radii of {first:g} m and {second:g} m they need more than {least:.6g} m. Move a centre or give smaller "
+        "radii"
+    )
+
+
+def rack_problem(params: Mapping[str, Any], x: float, y: float) -> str | None:
+    """Why a pinion with its centre at (x, y) in the axes of its rack (m) cannot mesh."""
+    radius = with_radii(params)["radius"]
+    side = (
+        " It is on the other side of the rack: turn the rack's marker by pi, rack.at(x, y, angle + pi), so that its y "
+        "axis points to the pinion."
+        if y < 0
+        else ""
+    )
+    if params.get("teeth") is None:
+        if abs(y - radius) <= ROUNDED * radius:
+            return None
+        return (
+            f"the pinion's centre is {y:.6g} m above the rack's x axis, its pitch line, and must be its radius of "
+            f"{radius:g} m above it.{side} Move the rack's marker or the pinion, or change radius"
+        )
     teeth, module = params["teeth"], params["module"]
-    wanted = module * teeth / 2
-    if abs(y - wanted) <= PLAY * module:
+    if abs(y - radius) <= PLAY * module:
         return None
     return (
         f"the pinion's centre is {y:.6g} m above the rack's x axis, its pitch line, but a module of {module:g} m and "
-        f"{teeth} teeth want {module:g} * {teeth} / 2 = {wanted:.6g} m. Move the rack's marker or the pinion, or "
+        f"{teeth} teeth want {module:g} * {teeth} / 2 = {radius:.6g} m.{side} Move the rack's marker or the pinion, or "
         "change module or teeth; a pinion with profile shift is given by the radius at which it rolls, radius="
     )

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.arrays.approaches import stretches
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.reactions import marker_axes, marker_places, relative_velocity
@@ -20,7 +21,9 @@ from mbsd.model.force import Element
 from mbsd.results.energy import potential_of
 from mbsd.results.force_view import ForceView
 from mbsd.results.friction import friction_view
+from mbsd.results.gas import gas_view
 from mbsd.results.measured import measured
+from mbsd.results.moved import Moved
 from mbsd.results.surface import foot_of
 
 if TYPE_CHECKING:
@@ -29,23 +32,6 @@ if TYPE_CHECKING:
     from mbsd.model.force import Force
 
 MEASURES = {LINE: "length", TURN: "angle", AXIS: "coordinate"}
-
-
-@dataclass(frozen=True)
-class Moved:
-    """What a view is made from: a motion of T times, and what was found together with it."""
-
-    packed: Packed
-    t: np.ndarray
-    q: np.ndarray
-    """(T, 3 nb)"""
-    v: np.ndarray
-    lam: np.ndarray
-    """(T, m)"""
-    held: np.ndarray | None
-    """(T, m) rows that held; None: all."""
-    span: tuple[float, float]
-    """Times (s) over which the run prepared its laws."""
 
 
 def force_view(moved: Moved, name: str, effort: np.ndarray | None = None) -> ForceView:
@@ -57,7 +43,7 @@ def force_view(moved: Moved, name: str, effort: np.ndarray | None = None) -> For
     if force.kind.of_reactions:
         effort = friction_view(packed, name, moved.q, moved.v, moved.lam, moved.held).force
     if effort is None:
-        load, power = _loads(moved, k)
+        load, power = loads_of(moved, k)
         places = _places(moved, force, *markers)
         wrenches = np.stack([_wrench(load, moved.q, b, point) for b, point in places], axis=1)
         effort = None if way is None else way.effort(wrenches[:, -1])
@@ -66,7 +52,8 @@ def force_view(moved: Moved, name: str, effort: np.ndarray | None = None) -> For
         assert way.rate is not None
         places, power = _places(moved, force, *markers), effort * way.rate
         wrenches = np.stack([sign * way.wrench(effort) for sign in (-1.0, 1.0)][-len(places) :], axis=1)
-    return ForceView(
+    chamber = force.kind.chamber
+    view = ForceView(
         name=name,
         kind=force.kind.name,
         bodies=tuple(packed.body_names[b] for b, _point in places),
@@ -80,6 +67,9 @@ def force_view(moved: Moved, name: str, effort: np.ndarray | None = None) -> For
         effort=effort,
         several=force.kind.outside and len(places) > 1,
     )
+    if chamber is None:
+        return view
+    return gas_view(moved, view, chamber(force, packed.masses), lambda at: loads_of(at, k)[1])
 
 
 @dataclass(frozen=True)
@@ -132,6 +122,8 @@ def _way(moved: Moved, force: Force, i: int, j: int) -> _Way | None:
 
 def _elements(packed: Packed, force: Force) -> tuple[Element, ...]:
     """Those of a force; a friction has that along which its joint moves."""
+    if force.kind.along is not None:
+        return (force.kind.along(force),)
     if not force.kind.of_reactions:
         return force.kind.elements(force)
     [joint] = [joint for joint in packed.joints if joint.name == force.params["joint"]]
@@ -169,7 +161,7 @@ def _place(packed: Packed, q: np.ndarray, b: int, place: tuple[float, float]) ->
     return q[:, 3 * b : 3 * b + 2] + np.stack([c * x - s * y, s * x + c * y], axis=1)
 
 
-def _loads(moved: Moved, k: int) -> tuple[np.ndarray, np.ndarray]:
+def loads_of(moved: Moved, k: int) -> tuple[np.ndarray, np.ndarray]:
     """(T, 3 nb) generalised forces of force number k alone, those on ground too, and its power (T,)."""
     packed = moved.packed
     alone = replace(packed, forces=[packed.forces[k]], force_markers=packed.force_markers[k : k + 1], motions=[])
@@ -177,7 +169,13 @@ def _loads(moved: Moved, k: int) -> tuple[np.ndarray, np.ndarray]:
     load, power = np.zeros_like(moved.q), np.zeros(len(moved.t))
     none = np.zeros(0, np.int64)  # loads look at no markers
     system = packed.system.changed(moving=none, directed=none)
-    tabulate_loads(system, loads, laws, moved.t, moved.q, moved.v, packed.ws, load, power)
+    approached = None
+    if moved.approached is not None:
+        before = sum(len(force.kind.interactions(force, packed.masses)) for force in packed.forces[:k])
+        approached = moved.approached[:, before : before + len(loads.interaction)]
+    for at in stretches(loads, approached, len(moved.t)):
+        motion = moved.t[at], moved.q[at], moved.v[at]
+        tabulate_loads(system, loads, laws, *motion, packed.ws, load[at], power[at])
     packed.specials.check()
     return load, power
 

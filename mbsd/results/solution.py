@@ -5,9 +5,12 @@ sol.body("coupler").theta          also x, y, vx, vy, omega, ax, ay, alpha
 sol.joint("B").reaction            (T, 2) force on the joint's second body; fx, fy, torque, x, y, magnitude
 sol.driver("motor").torque         also effort, force, value, rate, power
 sol.force("spring").force          (T, 2) on its second body; torque, length, rate, effort, power and more
+sol.force("gas_1").pressure        of gas, with volume, indicated_work of each cycle, mean_effective_pressure
 sol.friction("bearing").force          of joints, with normal and rate; sol.contact("floor").normal and more
 sol.point("P").x                   of traced points
 sol.energy.kinetic, .potential
+sol.centre_of_mass()               of all bodies; sol.shaking() force, moment, couples of inertia on the frame
+sol.orders(sol.shaking().force)    harmonics against the crank
 """
 
 from __future__ import annotations
@@ -22,7 +25,7 @@ from typing import TYPE_CHECKING, Generic
 import numpy as np
 
 from mbsd.arrays.start_state import AnyModel
-from mbsd.base.arguments import number_array
+from mbsd.base.arguments import finite_number, number_array, number_pair
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
@@ -31,9 +34,13 @@ from mbsd.results.columns import columns
 from mbsd.results.contacts import ContactView, contact_view
 from mbsd.results.energy import potential_of
 from mbsd.results.force_view import ForceView
-from mbsd.results.forces import Moved, force_view
+from mbsd.results.forces import force_view
 from mbsd.results.friction import FrictionView, friction_view
+from mbsd.results.moved import Moved
 from mbsd.results.returned import returned
+from mbsd.results.vibration.crank import crank_of
+from mbsd.results.vibration.orders import Orders, orders
+from mbsd.results.vibration.shaking import Planes, PointView, Shaking, centre_of_mass, planes_of, shaking
 from mbsd.results.views import DriverView, EnergyView, FrameView, JointView, Stats
 
 if TYPE_CHECKING:
@@ -80,10 +87,24 @@ class Solution(Generic[AnyModel]):
     """(T, m) which rows of J held, of a simulation; None: all."""
     span: tuple[float, float] | None = None
     """Times (s) over which a simulation prepared the laws of its forces; None: those of ``t``."""
+    law_times: np.ndarray | None = field(default=None, repr=False)
+    """(T,) times (s) at which laws are evaluated: ``t``, but for rows beside a jump of a force; None: ``t``."""
+    approached: np.ndarray | None = field(default=None, repr=False)
+    """(T, n) how fast each contact by penalty approached when it began (m/s), where one asks for it; NaN: not yet."""
     efforts: Mapping[str, np.ndarray] = field(default_factory=dict, repr=False)
     """(T,) of forces that act by these instead of by their own laws (inverse dynamics)."""
     between: Callable[[np.ndarray], Solution] | None = field(default=None, repr=False)
     """Of a simulation: the motion at other times; see :meth:`at`."""
+    traces: Mapping[str, Marker] | None = field(default=None, repr=False)
+    """Traced points as they were when this was solved."""
+    planes: Planes | None = field(default=None, repr=False)
+    """Places of the bodies along the normal of the plane, as they were then."""
+
+    def __post_init__(self) -> None:
+        if self.traces is None:
+            object.__setattr__(self, "traces", dict(self.mechanism.traces))
+        if self.planes is None:
+            object.__setattr__(self, "planes", planes_of(self.mechanism.bodies.values()))
 
     @cached_property
     def singularity_margin(self) -> np.ndarray:
@@ -126,9 +147,12 @@ class Solution(Generic[AnyModel]):
         without give is ``contact(name)``, a joint ``joint(name)``. Raises ModelError where a user's function fails.
         """
         self._index(name, [force.name for force in self.packed.forces], "force")
-        flat_q, flat_v = (np.ascontiguousarray(part.reshape(len(self.t), -1)) for part in (self.q, self.v))
+        flat_q, flat_v, flat_a = (
+            np.ascontiguousarray(part.reshape(len(self.t), -1)) for part in (self.q, self.v, self.a)
+        )
         span = self.span or (float(self.t[0]), float(self.t[-1]))
-        moved = Moved(self.packed, self.t, flat_q, flat_v, self.lam, self.held, span)
+        times = self.t if self.law_times is None else self.law_times
+        moved = Moved(self.packed, times, flat_q, flat_v, self.lam, self.held, span, flat_a, self.approached)
         return force_view(moved, name, self.efforts.get(name))
 
     @property
@@ -142,9 +166,9 @@ class Solution(Generic[AnyModel]):
 
     def point(self, name: str) -> FrameView:
         """Motion of a traced point (and of its marker's direction)."""
-        names = list(self.mechanism.traces)
-        self._index(name, names, "traced point")
-        marker = self.mechanism.traces[name]
+        traces = {**self.mechanism.traces, **(self.traces or {})}
+        self._index(name, list(traces), "traced point")
+        marker = traces[name]
         return self._frame(self.packed.body_names.index(marker.body.name), (marker.x, marker.y), marker.angle)
 
     def place(self, marker: Marker) -> FrameView:
@@ -154,8 +178,9 @@ class Solution(Generic[AnyModel]):
 
     def joint(self, name: str) -> JointView:
         """Place and reaction of a joint."""
-        k = self._index(name, list(self.mechanism.joints), "joint")
-        marker = self.mechanism.joints[name].j
+        joints = self.packed.joints[: len(self.packed.joints) - self.packed.contacts - len(self.packed.motions)]
+        k = self._index(name, [joint.name for joint in joints], "joint")
+        marker = joints[k].j  # as solved, whatever was changed since
         place = self._frame(self.packed.body_names.index(marker.body.name), (marker.x, marker.y))
         fx, fy, torque = self.wrench[:, k].T
         return JointView(place.x, place.y, fx, fy, torque)
@@ -177,6 +202,37 @@ class Solution(Generic[AnyModel]):
         for force in self.packed.forces:
             potential = potential + potential_of(self.packed, force, self.q.reshape(len(self.t), -1))
         return EnergyView(kinetic, potential)
+
+    def centre_of_mass(self) -> PointView:
+        """Motion of the centre of mass of all moving bodies. Raises ModelError where none has mass."""
+        return centre_of_mass(self.packed, self.q, self.v, self.a)
+
+    def shaking(self, about: tuple[float, float] = (0.0, 0.0), z: float = 0.0) -> Shaking:
+        """Force (N), moment and couples (N m, about a place on ground, m) of the inertia of all bodies on the frame.
+
+        The moment is about the axis through ``about``, normal to the plane; the couples mx and my, of bodies in
+        different places z, about axes through ``z``. Weight, springs, gas and other forces are not in it. Raises
+        ModelError for what is no place.
+        """
+        what = f"{self.mechanism.name}: shaking"
+        place = *number_pair(f"{what}: about", about), finite_number(f"{what}: z", z)
+        assert self.planes is not None
+        return shaking(self.packed, self.planes, self.q, self.v, self.a, place)
+
+    def orders(self, quantity: np.ndarray, crank: str | None = None, turns: int | None = None) -> Orders:
+        """Harmonics of a (T,) or (T, 2) result, such as ``sol.shaking().force``, against the angle of ``crank``.
+
+        ``crank``: a body that turns one way; by default the one that a driver turns, else the first on a pin of ground
+        that makes a whole turn. ``turns``: whole turns of a cycle; by default as many as it takes to repeat. Raises
+        ModelError where there is no crank, for less than a cycle and for a quantity of another shape.
+        """
+        name = crank_of(self) if crank is None else crank
+        angle = self.body(name).theta
+        values = number_array(f"{self.mechanism.name}: orders: the quantity", quantity)
+        try:
+            return orders(name, angle, values, turns)
+        except ModelError as error:
+            raise ModelError(f"{self.mechanism.name}: {error}") from None
 
     @cached_property
     def audit(self) -> np.ndarray | None:

@@ -1,14 +1,15 @@
 """A mechanism as a document of plain data (SI, radians), and back.
 
     {"schema": "mbsd.model", "schema_version": 1, "name": ..., "gravity": [gx, gy],
-     "bodies": {"crank": {"mass", "com", "inertia", "length"}},
-     "joints": {"A": {"kind", "i": {"body", "x", "y", "angle"}, "j": ..., "params"}},
+     "bodies": {"crank": {"mass", "com", "inertia", "length", "z", "products"}},
+     "joints": {"A": {"kind", "i": {"body", "x", "y", "angle", "z"}, "j": ..., "params"}},
      "contacts": the same, "drivers": the same with "law", "forces": the same with "laws", "traces": {"P": marker},
      "starts": {"crank": {"angle", "place"}}, "velocities": {"crank": {"omega", "place"}}}
 
 Kinds and laws are those of the registries: a joint or force is rebuilt by its kind's ``add``, from its
-markers, its params and its laws, so a new kind needs no word here. What does not come back equal is refused when it
-is saved.
+markers, its params and its laws, so a new kind needs no word here. What nobody gave and the program derived is left
+out, such as static friction that is that of sliding; com and inertia of a bar that is a uniform rod are null. What does
+not come back equal is refused when it is saved.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
 from mbsd.model.body import Body, Marker
-from mbsd.model.change import law_name, with_markers
+from mbsd.model.change import given_body, law_name, with_markers
 from mbsd.model.contact import CONTACT_KINDS
 from mbsd.model.force import FORCE_KINDS, Force, ForceKind
 from mbsd.model.joint import KINDS, Joint, JointKind
@@ -90,14 +91,20 @@ def _write(m: Model) -> dict[str, Any]:
 
 
 def _body(body: Body) -> dict[str, Any]:
-    mass = body.mass if body.mass_given or body.mass > 0 else None
-    return {"mass": mass, "com": list(body.com), "inertia": body.inertia, "length": body.length}
+    own = given_body(body)
+    com = list(own["com"]) if "com" in own else None
+    out = {"mass": own["mass"], "com": com, "inertia": own.get("inertia"), "length": body.length}
+    if body.z is not None:
+        out["z"] = body.z
+    if any(body.products):
+        out["products"] = list(body.products)
+    return out
 
 
 def _joint(m: Model, joint: Joint, part: str = "joint") -> dict[str, Any]:
     what = f"{m.name}: {'driver' if joint.kind.driven else part} '{joint.name}'"
     out = {"kind": joint.kind.name, "i": plain(joint.i, what), "j": plain(joint.j, what)}
-    out["params"] = {key: plain(value, f"{what}: {key}") for key, value in joint.params.items()}
+    out["params"] = {key: plain(value, f"{what}: {key}") for key, value in joint.given.items()}
     if joint.motion is not None:
         out["law"] = plain(joint.motion, f"{what}: its law")
     return out
@@ -106,7 +113,7 @@ def _joint(m: Model, joint: Joint, part: str = "joint") -> dict[str, Any]:
 def _force(m: Model, force: Force) -> dict[str, Any]:
     what = f"{m.name}: force '{force.name}'"
     out = {"kind": force.kind.name, "i": plain(force.i, what), "j": plain(force.j, what)}
-    out["params"] = {key: plain(value, f"{what}: {key}") for key, value in force.params.items()}
+    out["params"] = {key: plain(value, f"{what}: {key}") for key, value in force.given.items()}
     return out | {"laws": {key: plain(law, f"{what}: {key}") for key, law in force.laws.items()}}
 
 
@@ -128,19 +135,26 @@ def _refuse_other_version(top: Entry) -> None:
 
 
 def _read_body(m: Model, name: str, entry: Entry) -> None:
+    bar = entry.get("length") is not None
     mass = entry.number_or_none("mass")
-    inertia, com = entry.number("inertia"), entry.numbers("com", 2)
-    entry.refuse_others("mass", "com", "inertia", "length")
-    if entry.get("length") is None:
-        entry.within(lambda: m.body(name, mass, com, inertia))
+    inertia = None if bar and entry.is_null("inertia") else entry.number("inertia")
+    com = None if bar and entry.is_null("com") else entry.numbers("com", 2)
+    z = None if entry.get("z") is None else entry.number("z")
+    products = (0.0, 0.0) if entry.get("products") is None else entry.numbers("products", 2)
+    entry.refuse_others("mass", "com", "inertia", "length", "z", "products")
+    if bar:
+        entry.within(lambda: m.bar(name, entry.number("length"), mass, com, inertia, z=z, products=products))
     else:
-        entry.within(lambda: m.bar(name, entry.number("length"), mass, com, inertia))
+        assert com is not None
+        assert inertia is not None
+        entry.within(lambda: m.body(name, mass, com, inertia, z=z, products=products))
 
 
 def _read_marker(m: Model, entry: Entry) -> Marker:
     body = entry.within(lambda: m.known_body(entry.text("body")))
-    entry.refuse_others("body", "x", "y", "angle")
-    return body.at(entry.number("x"), entry.number("y"), entry.number("angle"))
+    entry.refuse_others("body", "x", "y", "angle", "z")
+    z = None if entry.get("z") is None else entry.number("z")
+    return body.at(entry.number("x"), entry.number("y"), entry.number("angle"), z)
 
 
 def _read_state(m: Model, name: str, entry: Entry, turn: str) -> tuple[float, tuple[float, float] | None]:
@@ -196,7 +210,7 @@ def _value(m: Model, value: Any, entry: Entry) -> Any:
         return law_from(value, entry.where)
     if isinstance(value, dict) and set(value) == {"body"}:
         return entry.within(lambda: m.known_body(value["body"]))
-    if isinstance(value, dict) and set(value) == {"body", "x", "y", "angle"}:
+    if isinstance(value, dict) and {"body", "x", "y", "angle"} <= set(value):
         return _read_marker(m, Entry(value, f"{entry.where}.params"))
     return value
 
@@ -204,4 +218,5 @@ def _value(m: Model, value: Any, entry: Entry) -> Any:
 def _add(m: Model, add: Callable[..., Any], name: str, entry: Entry, named: dict[str, Any]) -> None:
     """Call the function that adds a joint, driver, force or contact."""
     markers = [_read_marker(m, entry.entry(key)) for key in ("i", "j")]
-    called(add, entry.where, [m, name], with_markers(add, markers, named))
+    in_order, named = entry.within(lambda: with_markers(add, markers, named, m.bodies))
+    called(add, entry.where, [m, name, *in_order], named)

@@ -35,6 +35,10 @@ class Entry:
         value = self._needed(key)
         return None if value is None else _number(value, f"{self.where}.{key}")
 
+    def is_null(self, key: str) -> bool:
+        """Whether a field that must be there is null."""
+        return self._needed(key) is None
+
     def numbers(self, key: str, count: int) -> tuple[Any, ...]:
         """A list of ``count`` finite numbers."""
         values = self._needed(key)

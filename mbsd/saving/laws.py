@@ -23,7 +23,9 @@ from mbsd.base.shown import shown
 from mbsd.base.users_function import described
 from mbsd.model.body import Body, Marker
 
-LAW_PLACES = ("mbsd.model.laws",)
+CYCLES = "mbsd.model.cylinders"
+"""Cycles of gas, which are kept as laws are."""
+LAW_PLACES = ("mbsd.model.laws", CYCLES)
 """Folders and files of laws."""
 
 
@@ -46,7 +48,7 @@ def _small(law: type) -> str:
 
 
 def loadable_laws() -> dict[str, Callable[..., Any]]:
-    """The laws that are numbers alone, and no Python function."""
+    """The laws and cycles that are numbers alone, and no Python function."""
     return {
         name: factory
         for name, factory in factories().items()
@@ -61,7 +63,8 @@ def plain(value: Any, where: str) -> Any:
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
     if isinstance(value, Marker):
-        return {"body": value.body.name, "x": value.x, "y": value.y, "angle": value.angle}
+        place = {"body": value.body.name, "x": value.x, "y": value.y, "angle": value.angle}
+        return place if value.z is None else place | {"z": value.z}
     if isinstance(value, Body):
         return {"body": value.name}
     if isinstance(value, Mapping):

@@ -5,19 +5,26 @@ Kinds and laws are read off the registries and the signatures of their methods.
 
 from __future__ import annotations
 
+import importlib
 import json
+import pkgutil
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import mbsd.model.contacts
+import mbsd.model.drivers
+import mbsd.model.forces
+import mbsd.model.joints
 from mbsd.base.files import write_whole
 from mbsd.model.contact import CONTACT_KINDS
+from mbsd.model.cylinders.cycle import GasCycle
 from mbsd.model.force import FORCE_KINDS
 from mbsd.model.joint import KINDS
 from mbsd.model.roles import Role, arguments
 from mbsd.saving.document import SCHEMA, SCHEMA_VERSION
-from mbsd.saving.laws import loadable_laws
+from mbsd.saving.laws import CYCLES, loadable_laws
 
 NUMBER: dict[str, Any] = {"type": "number"}
 PAIR: dict[str, Any] = {"type": "array", "items": NUMBER, "minItems": 2, "maxItems": 2}
@@ -29,25 +36,36 @@ TYPES: dict[Any, dict[str, Any]] = {
     Sequence[int]: {"type": "array", "items": {"type": "integer"}},
     Sequence[float]: {"type": "array", "items": NUMBER},
     type(None): {"type": "null"},
+    GasCycle: {"$ref": "#/$defs/cycle"},
 }
 """Arguments of other types are whatever they are."""
 
 
 def schema() -> dict[str, Any]:
     """The JSON Schema of a saved model."""
-    marker = _object({"body": {"type": "string"}, "x": NUMBER, "y": NUMBER, "angle": NUMBER})
-    body = _object(
+    _register_all()
+    along = {"z": ({"type": ["number", "null"]}, False)}
+    marker = _object({"body": {"type": "string"}, "x": NUMBER, "y": NUMBER, "angle": NUMBER}, along)
+    body = _object(  # com and inertia of a bar that is a uniform rod are null
         {
             "mass": {"type": ["number", "null"], "minimum": 0},
-            "com": PAIR,
-            "inertia": {"type": "number", "minimum": 0},
+            "com": {"anyOf": [PAIR, {"type": "null"}]},
+            "inertia": {"type": ["number", "null"], "minimum": 0},
             "length": {"type": ["number", "null"], "exclusiveMinimum": 0},
-        }
+        },
+        along | {"products": ({"anyOf": [PAIR, {"type": "null"}]}, False)},
     )
     start, velocity = (
         _object({key: NUMBER, "place": {"anyOf": [PAIR, {"type": "null"}]}}) for key in ("angle", "omega")
     )
-    laws = [_object({"law": {"const": name}}, _parameters(f)) for name, f in loadable_laws().items()]
+    laws, cycles = (
+        [
+            _object({"law": {"const": name}}, _parameters(f))
+            for name, f in loadable_laws().items()
+            if f.__module__.startswith(CYCLES) == cycles
+        ]
+        for cycles in (False, True)
+    )
     top = {
         "schema": {"const": SCHEMA},
         "schema_version": {"const": SCHEMA_VERSION},
@@ -63,6 +81,7 @@ def schema() -> dict[str, Any]:
         "velocities": _table("velocity"),
     }
     definitions = {"marker": marker, "body": body, "start": start, "velocity": velocity, "law": {"oneOf": laws}}
+    definitions["cycle"] = {"oneOf": cycles}
     definitions["joint"] = {
         "oneOf": [_kind(name) for name, kind in sorted(KINDS.items()) if kind.saved and not kind.driven]
     }
@@ -113,6 +132,13 @@ def _force(name: str) -> dict[str, Any]:
     amounts = {key: (NUMBER, False) for key in laws if key in params}
     fixed = {"kind": {"const": name}, "i": reference, "j": reference}
     return _object(fixed | {"params": _object({}, params | amounts), "laws": _object({}, laws)})
+
+
+def _register_all() -> None:
+    """Import the file of every kind, which registers it."""
+    for package in (mbsd.model.joints, mbsd.model.drivers, mbsd.model.forces, mbsd.model.contacts):
+        for module in pkgutil.iter_modules(package.__path__):
+            importlib.import_module(f"{package.__name__}.{module.name}")
 
 
 def _parameters(function: Callable[..., Any]) -> dict[str, tuple[dict[str, Any], bool]]:

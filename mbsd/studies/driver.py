@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Future, wait
 from typing import Protocol
 
+from mbsd.dependencies.inputs import Inputs
 from mbsd.studies.points import Point
 from mbsd.studies.work import Done, Result
 
@@ -19,6 +20,8 @@ WAIT = 0.5
 ENDED = "its process was ended, by the system if the memory ran out, else by what build or measure called"
 
 Numbered = list[tuple[int, Point]]
+Part = tuple[list[tuple[int, Result]], Inputs]
+"""Results with the numbers of their points, and what they may depend on."""
 
 
 class Workers(Protocol):
@@ -49,7 +52,7 @@ class Workers(Protocol):
         ...
 
 
-def computed(workers: Workers, todo: Numbered) -> Iterator[list[tuple[int, Result]]]:
+def computed(workers: Workers, todo: Numbered) -> Iterator[Part]:
     """The results of all points with their numbers, chunk by chunk as they come."""
     left, away = deque(todo), dict[Future[Done], Numbered]()
     ended: queue.SimpleQueue[Future[Done]] = queue.SimpleQueue()
@@ -64,10 +67,10 @@ def computed(workers: Workers, todo: Numbered) -> Iterator[list[tuple[int, Resul
             future = workers.submit([point for _, point in part])
             away[future] = part
             future.add_done_callback(ended.put)
+        workers.look_after()
         try:
             future = ended.get(timeout=WAIT)
         except queue.Empty:
-            workers.look_after()
             continue
         if future not in away:
             continue
@@ -85,7 +88,11 @@ def computed(workers: Workers, todo: Numbered) -> Iterator[list[tuple[int, Resul
         # The first one loads and compiles, which says nothing of the others.
         each = math.inf if first else pace if math.isinf(each) else 0.7 * each + 0.3 * pace
         first = False
-        yield [(number, result) for (number, _), result in zip(part, done.results, strict=True)]
+        yield _numbered(part, done)
+
+
+def _numbered(part: Numbered, done: Done) -> Part:
+    return [(number, result) for (number, _), result in zip(part, done.results, strict=True)], done.inputs
 
 
 def _size(each: float, left: int, workers: Workers) -> int:
@@ -96,19 +103,19 @@ def _size(each: float, left: int, workers: Workers) -> int:
     return max(1, min(fair, MOST, left, int(workers.target / max(each, 1e-9))))
 
 
-def _one_by_one(workers: Workers, part: Numbered) -> Iterator[list[tuple[int, Result]]]:
+def _one_by_one(workers: Workers, part: Numbered) -> Iterator[Part]:
     """A chunk that may have ended a process: halved until the point that does so stands alone."""
     try:
         done = _awaited(workers, workers.submit([point for _, point in part]))
     except BrokenExecutor:
         workers.mend()
         if len(part) == 1:
-            yield [(part[0][0], Result(None, ENDED, passing=True))]
+            yield [(part[0][0], Result(None, ENDED, passing=True))], Inputs()
             return
         for half in (part[: len(part) // 2], part[len(part) // 2 :]):
             yield from _one_by_one(workers, half)
         return
-    yield [(number, result) for (number, _), result in zip(part, done.results, strict=True)]
+    yield _numbered(part, done)
 
 
 def _awaited(workers: Workers, future: Future[Done]) -> Done:

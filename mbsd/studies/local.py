@@ -11,9 +11,10 @@ from concurrent.futures import BrokenExecutor, Future
 from typing import Any
 
 from mbsd.base.errors import ModelError
+from mbsd.dependencies.recorder import Recorder
 from mbsd.studies import work
 from mbsd.studies.points import Point
-from mbsd.studies.work import Done
+from mbsd.studies.work import Done, Order
 
 SINGLE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
 """Each process works on one core."""
@@ -27,13 +28,15 @@ class Here:
     target = 0.5
     """Seconds of one chunk."""
 
-    def __init__(self, build: Callable[..., Any], measure: Callable[[Any], Any]) -> None:
-        self.build, self.measure = build, measure
+    def __init__(
+        self, build: Callable[..., Any], measure: Callable[[Any], Any], recorder: Recorder | None = None
+    ) -> None:
+        self.build, self.measure, self.recorder = build, measure, recorder
 
     def submit(self, points: Sequence[Point]) -> Future[Done]:
         """Do a chunk now."""
         future: Future[Done] = Future()
-        future.set_result(work.chunk_of(self.build, self.measure, points))
+        future.set_result(work.chunk_of(self.build, self.measure, self.recorder, points))
         return future
 
     def look_after(self) -> None:
@@ -53,8 +56,8 @@ class Processes:
     wave = 2
     """Chunks under way for each process, so that none waits for the next."""
 
-    def __init__(self, functions: bytes, count: int) -> None:
-        self.functions = functions
+    def __init__(self, order: Order, count: int) -> None:
+        self.order = order
         self.slots = count
         self._executor: Any = None
 
@@ -63,7 +66,7 @@ class Processes:
         if self._executor is None:
             self._executor = self._start()
         try:
-            return self._executor.submit(work.chunk, self.functions, points)
+            return self._executor.submit(work.chunk, self.order, points)
         except BrokenExecutor as error:
             future: Future[Done] = Future()
             future.set_exception(error)
@@ -87,4 +90,4 @@ class Processes:
             from loky import ProcessPoolExecutor
         except ImportError as error:
             raise ModelError("study needs loky: install mbsd[study]") from error
-        return ProcessPoolExecutor(self.slots, initializer=work.begin, initargs=(self.functions,), env=SINGLE)
+        return ProcessPoolExecutor(self.slots, initializer=work.begin, initargs=(self.order,), env=SINGLE)

@@ -1,37 +1,45 @@
-"""Chunks of a study on a Dask cluster. A worker with other versions is refused by its name."""
+"""Chunks of a study on a Dask cluster, each bound to one worker; what a worker that goes or errs had goes to others."""
 
 from __future__ import annotations
 
-import asyncio
+import logging
 import os
+import queue
 import threading
 import time
-from collections.abc import Sequence
-from concurrent.futures import BrokenExecutor, CancelledError
+import uuid
+from collections import Counter
+from collections.abc import Collection, Iterator, Sequence
+from concurrent.futures import BrokenExecutor
 from concurrent.futures import Future as Promise
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
 from importlib import metadata
 from pathlib import Path
 from typing import Any
 
 from mbsd.base.errors import ModelError
-from mbsd.base.warn import warn
-from mbsd.studies import work
-from mbsd.studies.content import own_sources
+from mbsd.studies.cluster.answers import WrongAnswer, answer_of, most_bytes, printable, read
+from mbsd.studies.cluster.members import TIMEOUT, Members
+from mbsd.studies.identity.content import own_sources
 from mbsd.studies.points import Point
-from mbsd.studies.work import Done
+from mbsd.studies.work import Done, Order
 
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite", "cloudpickle")
 """Those whose version decides what comes out, beside mbsd's own sources and Python."""
-PATIENCE = 60.0
-"""Seconds to wait where no worker is there that fits."""
-TIMEOUT = 10.0
-"""Seconds in which a scheduler must answer."""
+FETCH = 60.0
+"""Seconds that a finished chunk may be on its way."""
+SILENT, TIMES = 60.0, 20.0
+"""Seconds that a chunk may take before an idle worker does it as well, and times the longest that points have taken."""
+DEATHS = 4
+"""Workers that end with a chunk before it counts as what ends them."""
 TLS = "CLUSTER_TLS"
 """Environment variable with the folder of certificates: ca.pem, cert.pem, key.pem."""
 
 
-def connected(address: str) -> Any:
-    """A client of the scheduler at this address. Raises ModelError if none answers."""
+@contextmanager
+def connected(address: str) -> Iterator[Any]:
+    """A client of the scheduler at this address, closed afterwards. Raises ModelError if none answers."""
     try:
         from distributed import Client, Security
     except ImportError as error:
@@ -42,11 +50,18 @@ def connected(address: str) -> Any:
         tls_ca_file=pem["ca"], tls_client_cert=pem["cert"], tls_client_key=pem["key"], require_encryption=True
     ) if pem else None  # fmt: skip
     try:
-        return Client(address, security=security, timeout=TIMEOUT, set_as_default=False)
+        client = Client(address, security=security, timeout=TIMEOUT, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:
         raise ModelError(
             f"study: no scheduler answers at {address} ({error}); start one (docs/cluster.md) or leave client out"
         ) from error
+    try:
+        yield client
+    finally:
+        if client.status != "running":  # what Dask logs of that is said already
+            logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
+        with suppress(Exception):
+            client.close(timeout=2)
 
 
 def versions() -> dict[str, str]:
@@ -57,135 +72,157 @@ def versions() -> dict[str, str]:
     return found | {package: metadata.version(package) for package in PACKAGES}
 
 
+@dataclass(eq=False)
+class _Chunk:
+    """Points that are under way."""
+
+    name: str
+    points: list[Point]
+    promise: Promise[Done] = field(default_factory=Promise)
+    futures: dict[str, Any] = field(default_factory=dict)
+    """By the workers that have it."""
+    sent: float = 0.0
+    copies: int = 0
+    deaths: int = 0
+    """Workers that went while they had it."""
+
+
 class Cluster:
     """Workers of a Dask cluster that take chunks."""
 
     target = 2.0
     wave = 2
 
-    def __init__(self, functions: bytes, client: Any) -> None:
-        self.functions, self.client = functions, client
-        self.ours = versions()
-        self._fit: dict[str, bool] = {}
-        self._refused: dict[str, str] = {}
-        self._away: dict[Promise[Done], tuple[Any, list[Point], frozenset[str]]] = {}
+    def __init__(self, order: Order, client: Any) -> None:
+        self.order, self.client = order, client
+        self.members = Members(client, versions())
+        self._chunks: dict[str, _Chunk] = {}
         self._changing = threading.Lock()
-        self._looked = 0.0
-        self._look()
+        self._replies: queue.SimpleQueue[tuple[_Chunk, str, Any, str]] = queue.SimpleQueue()
+        """Answers that were wrong and why; those that were lost without a reason."""
+        self._proven: set[str] = set()
+        """Workers that have given right answers."""
+        self._longest = 0.0
+        """Seconds of the slowest point so far."""
+        self.members.awaited()
 
     @property
     def slots(self) -> int:
         """Threads of all workers that fit."""
-        workers = self._workers()
-        return max(1, sum(workers[name]["nthreads"] for name in self._living()))
+        return max(1, sum(self.members.fit.values()))
 
     def submit(self, points: Sequence[Point]) -> Promise[Done]:
         """Hand out a chunk. The promise raises BrokenExecutor if it ended several workers."""
-        promise: Promise[Done] = Promise()
-        self._send(promise, list(points))
-        return promise
+        chunk = _Chunk(uuid.uuid4().hex, list(points))
+        self._chunks[chunk.name] = chunk
+        self._send(chunk)
+        return chunk.promise
 
     def look_after(self) -> None:
-        """Look for workers that came, and send chunks again whose workers have all gone; once a second."""
-        if time.monotonic() - self._looked < 1.0:
-            return
-        self._look()
-        if self.client.status in ("closed", "closing"):
-            raise ModelError(
-                "study: the scheduler has gone; what is computed is kept, the same call goes on from there"
-            )
-        living = self._living()
-        for promise, (future, points, places) in list(self._away.items()):
-            if not places & living:
-                with self._changing:
-                    if not self._is_away(promise, future):
-                        continue
-                    del self._away[promise]
-                future.cancel()
-                self._send(promise, points)
+        """Look for workers that came, leave those out that erred, and send again what workers that went had.
+
+        Raises ModelError where the scheduler has gone or no worker is left.
+        """
+        while not self._replies.empty():
+            chunk, worker, future, reason = self._replies.get()
+            if chunk.futures.get(worker) is future:
+                del chunk.futures[worker]
+            if reason:
+                self.members.leave_out(worker, reason)
+        self.members.look()
+        for chunk in list(self._chunks.values()):
+            self._look_after_chunk(chunk)
 
     def mend(self) -> None:
-        """The scheduler has forgotten what broke."""
+        """Take back what is under way, as one of these points may end workers again."""
+        self.close()
 
     def close(self) -> None:
         """Take back what is under way."""
-        for future, _, _ in self._away.values():
-            future.cancel()
-        self._away.clear()
+        for chunk in list(self._chunks.values()):
+            for future in list(chunk.futures.values()):
+                _cancel(future)
+        self._chunks.clear()
 
-    def _send(self, promise: Promise[Done], points: list[Point]) -> None:
-        places = self._wait_for_workers()
-        future = self.client.submit(
-            work.chunk, self.functions, points, workers=sorted(places), allow_other_workers=False, pure=False
-        )
-        self._away[promise] = (future, points, places)
-        future.add_done_callback(lambda done: self._settle(promise, done))
-
-    def _settle(self, promise: Promise[Done], future: Any) -> None:
-        """Hand the result on. It may be lost with its worker while it comes: then the chunk is sent again, and this
-        one is cancelled.
-        """
-        if future.cancelled() or not self._is_away(promise, future):
+    def _look_after_chunk(self, chunk: _Chunk) -> None:
+        for worker in chunk.futures.keys() - self.members.fit.keys():
+            _cancel(chunk.futures.pop(worker))
+            chunk.deaths += worker not in self.members.out
+        if not chunk.futures:
+            if chunk.deaths >= DEATHS:
+                self._settle(chunk, BrokenExecutor(f"{chunk.deaths} workers ended"))
+            else:
+                self._send(chunk)
             return
-        found: Done | Exception
+        longest = max(SILENT, TIMES * self._longest * len(chunk.points)) * 2**chunk.copies
+        idle = self.members.fit.keys() - set(self._load())
+        if idle and time.monotonic() - chunk.sent > longest:
+            chunk.copies += 1
+            self._send(chunk, but=self.members.fit.keys() - idle)
+
+    def _send(self, chunk: _Chunk, but: Collection[str] = ()) -> None:
+        """To the worker that has least to do; of a chunk with which one has ended, to one that has answered before."""
+        workers = self.members.awaited(but)
+        if chunk.deaths:
+            workers = {name: threads for name, threads in workers.items() if name in self._proven} or workers
+        load = self._load()
+        worker = min(workers, key=lambda name: (load[name] / workers[name], name))
         try:
-            found = future.result()
-        except (CancelledError, asyncio.CancelledError):
-            return
+            future = self.client.submit(
+                answer_of, self.order, chunk.points, chunk.name,
+                workers=[worker], allow_other_workers=False, pure=False,
+            )  # fmt: skip
         except Exception as error:
-            killed = type(error).__name__ == "KilledWorker"
-            found = BrokenExecutor(str(error)) if killed else error
-        with self._changing:
-            if not self._is_away(promise, future):
-                return
-            del self._away[promise]
-        if isinstance(found, Exception):
-            promise.set_exception(found)
-        else:
-            promise.set_result(found)
+            if self.client.status != "running":
+                raise self.members.gone() from error
+            raise
+        chunk.futures[worker], chunk.sent = future, time.monotonic()
+        future.add_done_callback(
+            lambda done: threading.Thread(target=self._fetch, args=(chunk, worker, done), daemon=True).start()
+        )
 
-    def _is_away(self, promise: Promise[Done], future: Any) -> bool:
-        return promise in self._away and self._away[promise][0] is future
+    def _load(self) -> Counter[str]:
+        """Chunks that each worker has."""
+        return Counter(worker for chunk in list(self._chunks.values()) for worker in list(chunk.futures))
 
-    def _workers(self) -> dict[str, Any]:
-        # The scheduler itself: what the client keeps is replaced now and then by a list without workers.
-        return self.client.sync(self.client.scheduler.identity, n_workers=-1)["workers"]
-
-    def _living(self) -> frozenset[str]:
-        return frozenset(name for name in self._workers() if self._fit.get(name))
-
-    def _look(self) -> None:
-        """Ask workers that are new what they compute with."""
-        self._looked = time.monotonic()
-        new = [name for name in self._workers() if name not in self._fit]
-        if not new:
+    def _fetch(self, chunk: _Chunk, worker: str, future: Any) -> None:
+        """Get an answer and look at it. It may be lost with its worker while it comes: then the chunk is sent again,
+        and this one is cancelled.
+        """
+        if future.cancelled() or chunk.futures.get(worker) is not future:
             return
+        try:
+            size = self.client.nbytes(keys=[future.key], summary=False).get(future.key) or 0
+            if size > most_bytes(len(chunk.points)):
+                raise WrongAnswer(f"its answer for {len(chunk.points)} points has {size / 1e6:.1f} MB")
+            done = read(future.result(timeout=FETCH), chunk.points, chunk.name)
+        except BaseException as error:  # cancelled ones are of this kind
+            if type(error).__name__ == "KilledWorker":
+                self._settle(chunk, BrokenExecutor(str(error)))
+                return
+            lost = future.cancelled() or self.client.status != "running"
+            said = str(error) if isinstance(error, WrongAnswer) else f"{type(error).__name__}: {error}"
+            self._replies.put((chunk, worker, future, "" if lost else printable(said)))
+            return
+        if chunk.futures.get(worker) is future:
+            self._proven.add(worker)
+            self._longest = max(self._longest, done.seconds / max(len(chunk.points), 1))
+            self._settle(chunk, done)
 
-        def asked() -> dict[str, str]:  # of no module, so it travels as it is
-            from mbsd.studies.remote import versions
+    def _settle(self, chunk: _Chunk, found: Done | BrokenExecutor) -> None:
+        """Hand the first answer on."""
+        with self._changing:
+            if self._chunks.pop(chunk.name, None) is None:
+                return
+        for future in list(chunk.futures.values()):
+            if not future.done():
+                _cancel(future)
+        if isinstance(found, BrokenExecutor):
+            chunk.promise.set_exception(found)
+        else:
+            chunk.promise.set_result(found)
 
-            return versions()
 
-        for name, theirs in self.client.run(asked, workers=new, on_error="return").items():
-            differ = (
-                [f"{what} {theirs.get(what)}, here {own}" for what, own in self.ours.items() if theirs.get(what) != own]
-                if isinstance(theirs, dict)
-                else [f"{type(theirs).__name__}: {theirs}"]
-            )
-            self._fit[name] = not differ
-            if differ:
-                self._refused[name] = "; ".join(differ)
-                warn(f"study: worker {name} is refused: {self._refused[name]}", UserWarning)
-
-    def _wait_for_workers(self) -> frozenset[str]:
-        end = time.monotonic() + PATIENCE
-        while not (living := self._living()):
-            if time.monotonic() > end or self._refused:
-                reasons = "".join(f"; {name}: {why}" for name, why in sorted(self._refused.items()))
-                raise ModelError(
-                    f"study: no worker of {self.client.scheduler.address} can compute it{reasons}; start workers with "
-                    "the same lock file (docs/cluster.md)"
-                )
-            time.sleep(0.5)
-            self._look()
-        return living
+def _cancel(future: Any) -> None:
+    with suppress(Exception):  # the scheduler has gone, and the future with it
+        future.cancel()

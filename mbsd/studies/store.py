@@ -1,4 +1,8 @@
-"""Results that are kept: files of many points each, every one whole, named by a hash of its bytes."""
+"""Results that are kept: files of many points each, every one whole, named by a hash of its bytes.
+
+The first line of a file says what its results depend on beside the content of build and measure: modules, files,
+folders, variables and packages, each in the state that it had. Only where all of them are in this state are they used.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +15,7 @@ from pathlib import Path
 
 from mbsd.base.errors import ModelError
 from mbsd.base.files import write_whole
+from mbsd.dependencies.inputs import Inputs, Places
 from mbsd.studies.work import Result
 
 EVERY = 5.0
@@ -20,10 +25,16 @@ MOST_FILES = 32
 
 
 class Store:
-    """Results of one build and measure by the key of their point; raises ModelError if the folder cannot be used."""
+    """Results of one build and measure by the key of their point; raises ModelError if the folder cannot be used.
 
-    def __init__(self, folder: str | os.PathLike[str], study: str) -> None:
+    ``inputs`` are those that are known before anything is computed.
+    """
+
+    def __init__(self, folder: str | os.PathLike[str], study: str, places: Places, inputs: Inputs) -> None:
         self.folder = Path(folder) / study[:32]
+        self.inputs = inputs
+        self._places = places
+        self._states: dict[tuple[str, str], str] = {}
         self.known: dict[str, Result] = {}
         self._fresh: dict[str, Result] = {}
         self._written = time.monotonic()
@@ -33,10 +44,15 @@ class Store:
             raise ModelError(f"study: cannot use the folder {folder} ({error}); give another or folder=None") from error
         files = self._read()
         if len(files) > MOST_FILES:
+            self._last = ""
             self._write(self.known)
             for file in files:
                 if file.name != self._last:
                     file.unlink(missing_ok=True)
+
+    def depend(self, inputs: Inputs) -> None:
+        """From now on results depend on these inputs, too."""
+        self.inputs = self.inputs.merged(inputs)
 
     def keep(self, key: str, result: Result) -> None:
         """Keep a result, in a file now and then."""
@@ -53,15 +69,16 @@ class Store:
     def _write(self, results: dict[str, Result]) -> None:
         if not results:
             return
-        lines = [
-            json.dumps([key, result.values, result.reason], separators=(",", ":")) for key, result in results.items()
-        ]
+        lines = [_line(self.inputs.states())]
+        lines += [_line([key, result.values, result.reason]) for key, result in results.items()]
         content = "\n".join(lines).encode()
         self._last = f"{hashlib.sha256(content).hexdigest()[:32]}.jsonl"
         write_whole(self.folder / self._last, content)
 
     def _read(self) -> list[Path]:
-        """Read all files; one that is damaged goes, and its points are computed again."""
+        """Read all files; one that is damaged goes, and its points are computed again. Those of other inputs stay, in
+        case these come back, but for those that are too many.
+        """
         read = []
         for file in sorted(self.folder.glob("*.jsonl")):
             if file.name.startswith("."):
@@ -71,8 +88,30 @@ class Store:
                 if file.stem != hashlib.sha256(content).hexdigest()[:32]:
                     file.unlink(missing_ok=True)
                     continue
-                for line in content.splitlines():
+                first, *lines = content.splitlines()
+                read.append(file)
+                inputs = Inputs(**json.loads(first))
+                if not self._are_as_now(inputs):
+                    continue
+                self.inputs = self.inputs.joined(inputs)
+                for line in lines:
                     key, values, reason = json.loads(line)
                     self.known[key] = Result(values, reason)
-                read.append(file)
         return read
+
+    def _are_as_now(self, inputs: Inputs) -> bool:
+        return all(
+            self._state(kind, name) == state
+            for kind, states in inputs.states().items()
+            for name, state in states.items()
+        )
+
+    def _state(self, kind: str, name: str) -> str:
+        """What an input holds now; each is looked at once."""
+        if (kind, name) not in self._states:
+            self._states[kind, name] = self._places.state(kind, name)
+        return self._states[kind, name]
+
+
+def _line(value: object) -> str:
+    return json.dumps(value, separators=(",", ":"))

@@ -4,25 +4,30 @@ from __future__ import annotations
 
 import hashlib
 import os
+import sys
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import closing, nullcontext
 from typing import TYPE_CHECKING, Any
+from uuid import uuid4
 
 from mbsd.base.arguments import checked
 from mbsd.base.cores import cores
 from mbsd.base.errors import ModelError, ModelWarning
 from mbsd.base.shown import shown
 from mbsd.base.warn import warn
+from mbsd.dependencies.recorder import Recorder
 from mbsd.mechanism import Mechanism
-from mbsd.studies.content import Content, own_sources
 from mbsd.studies.driver import Numbered, Workers, computed
+from mbsd.studies.identity.content import Content, own_sources
+from mbsd.studies.identity.depends import StudyPlaces, loaded_inputs, root_of
 from mbsd.studies.local import Here, Processes
 from mbsd.studies.points import Point, points_of
 from mbsd.studies.progress import progress as reported
 from mbsd.studies.remote import Cluster, connected
+from mbsd.studies.sent import bytes_of
 from mbsd.studies.store import Store
 from mbsd.studies.table import pandas_here, refuse_format, refuse_taken, save_table, table_of
-from mbsd.studies.work import Result
+from mbsd.studies.work import Order, Result
 
 if TYPE_CHECKING:
     import pandas
@@ -67,9 +72,9 @@ def study(
     if save is not None:
         refuse_format(save)
     points = points_of(grid)
-    content = Content(strict=folder is not None).add(build).add(measure)
-    key = hashlib.sha256(f"{own_sources()} {content.hexdigest()}".encode()).hexdigest()
-    store = None if folder is None else Store(folder, key)
+    places = StudyPlaces(root_of(build))
+    content = Content(folder is not None, places.root).add(build).add(measure)
+    store = None if folder is None else _store(folder, content, places)
     keys = [_key_of(point) for point in points] if store else []
     results: dict[int, Result] = (
         {} if store is None else {n: store.known[k] for n, k in enumerate(keys) if k in store.known}
@@ -79,11 +84,13 @@ def study(
         names = {name for point in points for name in point}
         with (
             _client(client) as found,
-            closing(_workers(build, measure, content, found, processes, len(todo))) as workers,
+            closing(_workers(build, measure, content, store and places, found, processes, len(todo))) as workers,
             reported(len(points), len(results), progress) as tell,
         ):
             try:
-                for part in computed(workers, todo):
+                for part, inputs in computed(workers, todo):
+                    if store is not None:
+                        store.depend(inputs)
                     for number, result in part:
                         results[number] = result
                         for name in result.values or ():
@@ -112,22 +119,10 @@ def _key_of(point: Point) -> str:
     return Content().add(dict(sorted(point.items()))).hexdigest()[:32]
 
 
-def _bytes_of(build: Any, measure: Any, content: Content) -> bytes:
-    """Build and measure as bytes that need no file of the user where they are read."""
-    try:
-        import cloudpickle
-    except ImportError as error:
-        raise ModelError("study needs cloudpickle: install mbsd[study]") from error
-    modules = [module for name, module in content.modules.items() if name != "__main__"]
-    for module in modules:
-        cloudpickle.register_pickle_by_value(module)
-    try:
-        return cloudpickle.dumps((build, measure))
-    except Exception as error:
-        raise ModelError(f"study: build or measure cannot be sent to another process: {error}") from error
-    finally:
-        for module in modules:
-            cloudpickle.unregister_pickle_by_value(module)
+def _store(folder: str | os.PathLike[str], content: Content, places: StudyPlaces) -> Store:
+    """What is kept of this build and measure, as their inputs are now."""
+    key = hashlib.sha256(f"{own_sources()} {sys.version_info[:3]} {content.hexdigest()}".encode()).hexdigest()
+    return Store(folder, key, places, loaded_inputs(content, places))
 
 
 def _client(client: Any) -> Any:
@@ -139,12 +134,23 @@ def _client(client: Any) -> Any:
     return connected(client)
 
 
-def _workers(build: Any, measure: Any, content: Content, client: Any, processes: int | None, todo: int) -> Workers:
-    if client is not None:
-        return Cluster(_bytes_of(build, measure, content), client)
+def _workers(
+    build: Any,
+    measure: Any,
+    content: Content,
+    places: StudyPlaces | None,
+    client: Any,
+    processes: int | None,
+    todo: int,
+) -> Workers:
+    """Who computes ``todo`` points; ``places`` name what build and measure read, if that is recorded."""
     count = cores() if processes is None else processes
-    if count < 1:
+    if client is None and count < 1:
         raise ModelError(f"study: processes is {count}; it must be 1 at least")
-    if min(count, todo) == 1:
-        return Here(build, measure)
-    return Processes(_bytes_of(build, measure, content), min(count, todo))
+    if client is None and min(count, todo) == 1:
+        for cache in content.caches if places else ():
+            cache.cache_clear()  # what is remembered would not be read, and not be recorded
+        return Here(build, measure, None if places is None else Recorder(places))
+    root = None if places is None else str(places.root)
+    order = Order(bytes_of(build, measure, content.modules), root, uuid4().hex)
+    return Processes(order, min(count, todo)) if client is None else Cluster(order, client)

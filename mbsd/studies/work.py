@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 import hashlib
+import importlib
+import sys
 import time
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
 from mbsd.base.users_function import described
+from mbsd.dependencies.inputs import Inputs
+from mbsd.dependencies.installed import is_installed
+from mbsd.dependencies.recorder import Recorder
+from mbsd.dependencies.recording import recording
+from mbsd.studies.identity.depends import StudyPlaces, is_of_mbsd, recorded_inputs
 from mbsd.studies.points import Point
 
 PASSING = (OSError, MemoryError)
@@ -27,47 +36,91 @@ class Result(NamedTuple):
 
 
 class Done(NamedTuple):
-    """A chunk's results in order, and the seconds it took."""
+    """A chunk's results in order, the seconds it took, and all that its process has read for this study so far."""
 
     results: list[Result]
     seconds: float
+    inputs: Inputs
 
 
-_functions: dict[str, tuple[Callable[..., Any], Callable[[Any], Any]]] = {}
-"""Build and measure of this process, by the hash of their bytes."""
+class Order(NamedTuple):
+    """What a process gets of a study."""
+
+    functions: bytes
+    """Build and measure."""
+    root: str | None
+    """The folder relative to which files are named that they read; None where nothing is kept."""
+    call: str
+    """Another text for each call of ``study``, between which modules of the user may have changed."""
+
+    def recorder(self) -> Recorder | None:
+        """Of what build and measure read, if that matters."""
+        return None if self.root is None else Recorder(StudyPlaces(Path(self.root)))
 
 
-def begin(functions: bytes) -> None:
+class Work(NamedTuple):
+    """Build and measure, ready to be called."""
+
+    build: Callable[..., Any]
+    measure: Callable[[Any], Any]
+    recorder: Recorder | None
+
+
+_work: dict[str, Work] = {}
+"""Of this process, by a hash of the order."""
+_before: set[str] = set()
+"""Modules that were loaded before the first study."""
+
+
+def begin(order: Order) -> None:
     """Load build and measure, and what solving needs, once in a process."""
     import mbsd.dynamics.simulate
     import mbsd.kinematics.sweep  # noqa: F401
 
-    loaded(functions)
+    loaded(order)
 
 
-def loaded(functions: bytes) -> tuple[Callable[..., Any], Callable[[Any], Any]]:
+def loaded(order: Order) -> Work:
     """Build and measure from their bytes. Raises what their modules raise where they are not installed."""
-    key = hashlib.sha256(functions).hexdigest()
-    if key not in _functions:
+    key = f"{hashlib.sha256(order.functions).hexdigest()} {order.call}"
+    if key not in _work:
         import cloudpickle
 
-        _functions.clear()
-        _functions[key] = cloudpickle.loads(functions)
-    return _functions[key]
+        _forget_modules()
+        _work.clear()
+        recorder = order.recorder()
+        with recording(recorder) if recorder else nullcontext():
+            build, measure = cloudpickle.loads(order.functions)
+        _work[key] = Work(build, measure, recorder)
+    return _work[key]
 
 
-def chunk(functions: bytes, points: Sequence[Point]) -> Done:
+def _forget_modules() -> None:
+    """Modules of the user that an earlier study has loaded are loaded anew: their files may have changed."""
+    if not _before:
+        _before.update(sys.modules)
+    importlib.invalidate_caches()
+    for name, module in list(sys.modules.items()):
+        file = getattr(module, "__file__", None)
+        if name not in _before and isinstance(file, str) and not is_installed(file) and not is_of_mbsd(file):
+            del sys.modules[name]
+
+
+def chunk(order: Order, points: Sequence[Point]) -> Done:
     """Build and measure every point, with functions from their bytes."""
-    return chunk_of(*loaded(functions), points)
+    return chunk_of(*loaded(order), points)
 
 
-def chunk_of(build: Callable[..., Any], measure: Callable[[Any], Any], points: Sequence[Point]) -> Done:
+def chunk_of(
+    build: Callable[..., Any], measure: Callable[[Any], Any], recorder: Recorder | None, points: Sequence[Point]
+) -> Done:
     """Build and measure every point. Warnings of the single points are not shown."""
     started = time.perf_counter()
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), recording(recorder) if recorder else nullcontext():
         warnings.simplefilter("ignore")
         results = [result_of(build, measure, point) for point in points]
-    return Done(results, time.perf_counter() - started)
+    inputs = recorded_inputs(recorder) if recorder else Inputs()
+    return Done(results, time.perf_counter() - started, inputs)
 
 
 def result_of(build: Callable[..., Any], measure: Callable[[Any], Any], point: Point) -> Result:

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
-from mbsd.kinematics.design_sweeps import at_end
-from mbsd.model.body import Body, Marker
+from mbsd.model.body import Body, Marker, rod_inertia
+from mbsd.model.change import change
 from mbsd.model.mechanism import Model, new_name, own_body
 
 ROD_ALIKE = 1e-9
@@ -27,8 +27,7 @@ def changed(m: Model, values: Mapping[str, object]) -> Model:
         if isinstance(value, tuple):
             _place(out, name, value)
         elif name in out.joints and out.joints[name].kind.constraints == ("distance",):
-            joint = out.joints[name]
-            object.__setattr__(joint, "params", {**joint.params, "length": value})
+            change(out, name, {"length": value})
         else:
             _lengthen(out, out.known_body(name), float(value))  # pyright: ignore[reportArgumentType]
     return out
@@ -50,22 +49,14 @@ def _place(m: Model, name: str, place: tuple[float, ...]) -> None:
 def _lengthen(m: Model, body: Body, length: float) -> None:
     old = body.length
     assert old is not None
-
-    def moved(marker: Marker) -> Marker:
-        return replace(marker, x=length) if marker.body is body and at_end(marker, old) else marker
-
-    for table in (m.joints, m.drivers, m.contacts, m.forces):
-        for one in table.values():
-            for side in ("i", "j"):
-                object.__setattr__(one, side, moved(getattr(one, side)))
-    for name, marker in m.traces.items():
-        m.traces[name] = moved(marker)
-    rod = body.mass * old**2 / 12
-    body.__dict__["length"] = length
+    own: dict[str, object] = {"length": length}
     if body.com == (old / 2, 0.0):
-        body.com = (length / 2, 0.0)
-        if body.mass > 0 and abs(body.inertia - rod) <= ROD_ALIKE * rod:
-            body.inertia = body.mass * length**2 / 12
+        rod = rod_inertia(body.mass, old)
+        if "com" not in body.derived:
+            own["com"] = length / 2, 0.0
+        if "inertia" not in body.derived and body.mass > 0 and abs(body.inertia - rod) <= ROD_ALIKE * rod:
+            own["inertia"] = rod_inertia(body.mass, length)
+    change(m, body.name, own)
 
 
 def traced_copy(m: Model, name: str, marker: Marker) -> Model:

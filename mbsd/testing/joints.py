@@ -5,6 +5,7 @@ J = dPhi/dq,   J v - nu = dPhi/dt,   J a - gamma = d(J v - nu)/dt
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 import numpy as np
@@ -35,16 +36,20 @@ def check_joint(kind: JointKind, seeds: Iterable[int] = SEEDS) -> None:
         for to_ground in (False, True):
             m = example(kind, seed, to_ground)
             _check_equations(kind, _packed(m), seed)
+            _check_symmetry(kind, m, seed, to_ground)
             check_kept(m)
 
 
-def example(kind: JointKind, seed: int = 0, to_ground: bool = False) -> Mechanism:
-    """A mechanism with the example of a kind alone, between random markers of bodies of random centres of mass."""
+def example(kind: JointKind, seed: int = 0, to_ground: bool = False, turn: float = 0.0) -> Mechanism:
+    """A mechanism with the example of a kind alone, between random markers of bodies of random centres of mass.
+
+    The second marker is turned by ``turn`` (rad).
+    """
     random = np.random.default_rng(seed)
     m = Mechanism("example")
     first = m.ground if to_ground else m.body("first", 1.0, list(random.normal(size=2)), 1.0)
     second = m.body("second", 1.0, list(random.normal(size=2)), 1.0)
-    kind.example(m, first.at(*random.normal(size=3)), second.at(*random.normal(size=3)))
+    kind.example(m, first.at(*random.normal(size=3)), second.at(*(random.normal(size=3) + np.array([0.0, 0.0, turn]))))
     made: list[Joint] = [*m.joints.values(), *m.drivers.values(), *m.contacts.values()]
     if len(made) != 1 or made[0].kind is not kind:
         raise AssertionError(f"{kind.name}: its example must add one '{kind.name}' and nothing else")
@@ -83,6 +88,21 @@ def _check_equations(kind: JointKind, packed: Packed, seed: int) -> None:
     compare(
         f"{what}: J a - gamma against d(J v - nu)/dt", jac[1] @ a[1, 3:] - gamma[1], bend,
         BEND * max(1, np.abs(bend).max()), row,
+    )  # fmt: skip
+
+
+def _check_symmetry(kind: JointKind, m: Mechanism, seed: int, to_ground: bool) -> None:
+    """Where body j has a rotational symmetry, Phi is the same after its turns."""
+    if kind.symmetry is None:
+        return
+    [made] = [*m.joints.values(), *m.drivers.values(), *m.contacts.values()]
+    order, t = kind.symmetry(made.params), np.linspace(0.0, 1.0, 20)
+    plain, turned = (_packed(model) for model in (m, example(kind, seed, to_ground, math.tau / order)))
+    q, v, _ = _path(plain.coordinates, seed, t)
+    before, after = (_terms(packed, t, q, v)[0] for packed in (plain, turned))
+    compare(
+        f"{kind.name}, seed {seed}: Phi after a turn of body j by 1/{order}", after, before, SLOPE,
+        lambda k, r: f"row {r} ({_constraint(kind, r)}), t = {t[k]:.3g} s",
     )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from mbsd.base.errors import ModelError
 from mbsd.mechanism import Mechanism
-from mbsd.model.change import law_name
+from mbsd.model.change import given
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
 from mbsd.saving.document import build, document
@@ -24,7 +24,7 @@ def check_kept(m: Mechanism) -> None:
                 raise AssertionError(f"{kind.name}: decorate the function that adds one with @{kind.name.upper()}.adds")
             if not kind.saved:
                 continue
-            for key, value in _values(old).items():
+            for key, value in given(old).items():
                 _change(m, name, kind.name, key, value)
             _compare(kind.name, "change()", old, getattr(m, table)[name])
             try:
@@ -32,15 +32,6 @@ def check_kept(m: Mechanism) -> None:
             except ModelError as error:
                 raise AssertionError(f"{kind.name}: the example cannot be saved: {error}") from error
             _compare(kind.name, "a saved file", old, getattr(loaded, table)[name])
-
-
-def _values(one: Joint | Force) -> dict[str, Any]:
-    values = dict(one.params)
-    if isinstance(one, Force):
-        return values | dict(one.laws)
-    if one.motion is not None and one.kind.add is not None:
-        values[law_name(one.kind.add)] = one.motion
-    return values
 
 
 def _change(m: Mechanism, name: str, kind: str, key: str, value: Any) -> None:

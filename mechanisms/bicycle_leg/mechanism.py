@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from math import cos, pi, radians, sin
 
 from mbsd import Mechanism, constant_rate
+from mbsd.machines.body.segments import FOOT_AND_LEG, WINTER
 
 SPECTRA = ("bicycle",)
 VARIANTS = {"no_muscles": {"strength": 0.0}}
@@ -42,10 +43,12 @@ def build(p: Params) -> Mechanism:
     """The rider faces right and pedals clockwise; the foot is stiff on the shank."""
     m = Mechanism("bicycle_leg", gravity=(0.0, -9.81))
     crank = m.bar("crank", p.crank, mass=p.crank_mass)
-    # D. A. Winter, Biomechanics and Motor Control of Human Movement (1990): masses, centres, radii of gyration.
-    thigh_mass, shank_mass = 0.100 * p.rider, 0.061 * p.rider
-    thigh = m.bar("thigh", p.thigh, thigh_mass, (0.433 * p.thigh, 0), thigh_mass * (0.323 * p.thigh) ** 2)
-    shank = m.bar("shank", p.shank, shank_mass, (0.394 * p.shank, 0), shank_mass * (0.416 * p.shank) ** 2)
+    femur, leg = WINTER.thigh[0], FOOT_AND_LEG
+    thigh_mass, shank_mass = femur.mass * p.rider, leg.mass * p.rider
+    thigh = m.bar("thigh", p.thigh, thigh_mass, (femur.com * p.thigh, 0), thigh_mass * (femur.gyration * p.thigh) ** 2)
+    shank = m.bar(
+        "shank", p.shank, shank_mass, (leg.from_distal * p.shank, 0), shank_mass * (leg.gyration * p.shank) ** 2
+    )
     hip = m.ground.at(-p.hip * cos(radians(p.slope)), p.hip * sin(radians(p.slope)))
     m.revolute("bracket", m.ground.at(0, 0), crank.start)
     m.revolute("pedal", crank.end, shank.start)

@@ -41,7 +41,7 @@ def stl_bytes(solid: Any, tolerance: float | None = None) -> bytes:
         triangles = _mesh(solid, tolerance / finer, ANGLE / finer)
         if abs(_volume(triangles["corners"].astype(float)) / volume - 1) < VOLUME_GOAL:
             break
-    corners = triangles["corners"] + np.float32(0)  # -0 becomes 0
+    corners = _with_three_corners(triangles["corners"] + np.float32(0))  # -0 becomes 0
     lowest = np.where(_before(corners[:, 1], corners[:, 0]), 1, 0)
     lowest = np.where(_before(corners[:, 2], corners[np.arange(len(corners)), lowest]), 2, lowest)
     turn = (lowest[:, None] + np.arange(3)) % 3  # same winding, lowest corner first
@@ -56,6 +56,15 @@ def binary_stl(corners: np.ndarray) -> bytes:
     triangles["corners"] = corners
     triangles["normal"] = _normals(corners.astype(float))
     return b"mbsd".ljust(80) + len(triangles).to_bytes(4, "little") + triangles.tobytes()
+
+
+def _with_three_corners(corners: np.ndarray) -> np.ndarray:
+    """Those of the triangles (n, 3, 3) that have three corners.
+
+    Of an edge shorter than float32 can tell the file has one end; a triangle on it would be an open edge.
+    """
+    equal = (corners == np.roll(corners, -1, axis=1)).all(axis=2)
+    return corners[~equal.any(axis=1)]
 
 
 def _before(p: np.ndarray, q: np.ndarray) -> np.ndarray:

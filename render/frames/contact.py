@@ -41,7 +41,7 @@ def run(name: str, preset: Preset, show: str = "") -> None:
 
     film = read_film(out, show)
     chosen = frames_of(film)
-    pictures, store = frames.Pictures(film, preset), FrameStore(out.frames(preset.name))
+    pictures, store = frames.Pictures(film, preset), FrameStore(out.frames(preset.name), (preset.width, preset.height))
     with store.locked():
         frames.render(pictures, store, sorted(set(chosen)), "for the contact sheet", frames.Tally())
         found = [frames.picture_of(pictures, store, frame) for frame in chosen]

@@ -30,7 +30,7 @@ def run(name: str, preset: Preset, show: str = "") -> None:
 
     encode.ffmpeg()  # reported now, not after the last frame
     frames.run(name, preset, show)
-    store = FrameStore(out.frames(preset.name))
+    store = FrameStore(out.frames(preset.name), (preset.width, preset.height))
     index = jsonfile.read(store.index, FrameIndex)
     encode.encode(_pictures(out.name, store, index.frames), len(index.frames), preset, index.fps, film)
     stage.done()

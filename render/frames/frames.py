@@ -36,7 +36,7 @@ def run(name: str, preset: Preset, show: str = "") -> None:
     """The stage: every frame of the film in the store, and frames.json."""
     started = time.perf_counter()
     out = Out(name)
-    store = FrameStore(out.frames(preset.name))
+    store = FrameStore(out.frames(preset.name), (preset.width, preset.height))
     stage = Stage(out, f"frames-{preset.name}", stage_key(out, preset, show), [store.index])
     if stage.is_fresh():
         say("frames", f"{out.name}: {preset}: nothing to do")

@@ -12,17 +12,27 @@ import msgspec
 
 from render.blender.job import Answer, Job
 from render.blender.patience import START, Patience
+from render.blender.picture_file import name_of
+from render.blender.received_picture import fault_of, most_bytes
 from render.frames import served
 from render.frames.store import FrameStore
 from shared.cluster.address import connected
+from shared.cluster.answers.wrong_answer import WrongAnswer, printable
 from shared.cluster.contents import content_hash
 from shared.cluster.deal import Deal
+from shared.cluster.hands import Work
 from shared.cluster.preload import FRAMES
 from shared.stage.console import say
 from shared.stage.signals import terminable
 
 if TYPE_CHECKING:
     from distributed import Client
+
+
+AROUND = 10_000
+"""Bytes of an answer beside its picture."""
+SLOWEST = 1e7
+"""Seconds that a picture may take."""
 
 
 @contextmanager
@@ -44,7 +54,31 @@ def dealt(client: Client, job: Job) -> Deal:
     common = content_hash(content)
     needed[common] = lambda: content
     orders = {picture.key: (picture.state, picture.key, picture.name) for picture in job.pictures}
-    return Deal(client, served.picture, common, needed, orders, FRAMES, Patience().scaled(START))
+    work = Work(served.picture, reader(job), most_bytes(job.width, job.height) + AROUND)
+    return Deal(client, work, common, needed, orders, FRAMES, Patience().scaled(START))
+
+
+def reader(job: Job) -> Callable[[str, bytes], served.Made]:
+    """Reads what a worker sends of a picture of this job: it has the name that its key and its bytes give, is a whole
+    picture of the size that was ordered, and its text can be printed. Raises WrongAnswer for anything else.
+    """
+    names = {picture.key: picture.name for picture in job.pictures}
+
+    def read(key: str, content: bytes) -> served.Made:
+        try:
+            made = msgspec.msgpack.decode(content, type=served.Made)
+        except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+            raise WrongAnswer(f"{names[key]} cannot be read ({printable(str(error))})") from error
+        if made.name != name_of(key, made.content):
+            raise WrongAnswer(f"{names[key]} is called '{printable(made.name, 80)}', which is not its name")
+        wrong = fault_of(made.content, job.width, job.height)
+        if wrong:
+            raise WrongAnswer(f"{names[key]} {wrong}")
+        if not 0.0 <= made.cycles <= SLOWEST:
+            raise WrongAnswer(f"{names[key]} took {made.cycles} s")
+        return msgspec.structs.replace(made, device=printable(made.device, 80))
+
+    return read
 
 
 def _answers(client: Client, job: Job, store: FrameStore) -> Iterator[Answer]:

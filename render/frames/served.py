@@ -7,7 +7,6 @@ import threading
 import time
 from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
 
 import msgspec
 
@@ -18,7 +17,7 @@ IDLE = 60.0
 """Seconds without an order after which Blender is ended."""
 
 
-class Made(NamedTuple):
+class Made(msgspec.Struct, forbid_unknown_fields=True):
     """A picture: the name of its file, its bytes, Blender's own seconds, the device."""
 
     name: str
@@ -65,8 +64,11 @@ _workers: dict[str, _Kept] = {}
 """By address: several workers may be one process."""
 
 
-def picture(files: Mapping[str, Path], common: str, order: tuple[int, str, str]) -> Made:
-    """One frame: number of its state, key, and what messages call it. Raises UserError if Blender cannot make it."""
+def picture(files: Mapping[str, Path], common: str, order: tuple[int, str, str]) -> bytes:
+    """One frame: number of its state, key, and what messages call it; :class:`Made` as MessagePack.
+
+    Raises UserError if Blender cannot make it.
+    """
     from distributed import get_worker
 
     kept = _workers.setdefault(get_worker().address, _Kept())
@@ -80,7 +82,7 @@ def picture(files: Mapping[str, Path], common: str, order: tuple[int, str, str])
     timer = threading.Timer(IDLE + 1.0, kept.stop_if_idle)
     timer.daemon = True
     timer.start()
-    return made
+    return msgspec.msgpack.encode(made)
 
 
 @atexit.register

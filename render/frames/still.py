@@ -61,7 +61,7 @@ def _make(out: Out, preset: Preset, frame: int | None, target: Path, stage: Stag
         )
     frame %= clock.frames
     pictures = frames.Pictures(film, preset)
-    store = FrameStore(out.frames(preset.name))
+    store = FrameStore(out.frames(preset.name), (preset.width, preset.height))
     tally = frames.Tally()
     with store.locked():
         frames.render(pictures, store, [frame], f"frame {frame}", tally)

@@ -16,6 +16,7 @@ from typing import Annotated, Literal
 import msgspec
 
 from render.blender.picture_file import is_as_named
+from render.blender.received_picture import fault_of_chunks
 from shared.stage import jsonfile, locks
 from shared.stage.console import say
 from shared.stage.errors import Busy, UserError
@@ -62,10 +63,13 @@ class Timing(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
 
 
 class FrameStore:
-    """The pictures of one preset."""
+    """The pictures of one preset; where ``size`` (width, height in pixels) is given, PNGs of that size alone count.
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
+    A name tells that nothing has changed a picture since it was made, not that what made it was right.
+    """
+
+    def __init__(self, folder: Path, size: tuple[int, int] | None = None) -> None:
+        self.folder, self.size = folder, size
         self.index = folder / "frames.json"
         self.timing = folder / "timing.json"
 
@@ -73,7 +77,7 @@ class FrameStore:
         """The picture with this key, if it is there and has the bytes that its name tells; a damaged one is removed."""
         for path in sorted(self.folder.glob(f"{key}-*.png")):
             try:
-                if is_as_named(path, path.read_bytes()):
+                if self._is_picture(path, path.read_bytes()):
                     return path
             except FileNotFoundError:
                 continue
@@ -88,14 +92,14 @@ class FrameStore:
         path = self.folder / name
         with suppress(OSError):
             content = path.read_bytes()
-            if is_as_named(path, content):
+            if self._is_picture(path, content):
                 return content
         return None
 
     def put(self, name: str, content: bytes) -> None:
         """Keep a picture that was made elsewhere. Raises UserError if these are not its bytes, or the disk is full."""
         path = self.folder / name
-        if not is_as_named(path, content):
+        if not self._is_picture(path, content):
             raise UserError(f"{path.name} came damaged from where it was rendered; run the same command again")
         write_bytes(path, content)
 
@@ -150,6 +154,9 @@ class FrameStore:
             return jsonfile.read(self.timing, Timing)
         except UserError:
             return None
+
+    def _is_picture(self, path: Path, content: bytes) -> bool:
+        return is_as_named(path, content) and (self.size is None or fault_of_chunks(content, *self.size) is None)
 
     def _sweep(self) -> None:
         for path in self.folder.glob(".*.part.png"):

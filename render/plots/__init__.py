@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from render import FRAME_SOURCES
 from render.plots.asked import spectra_asked
 from shared.contract import Motion, read_motion
 from shared.contract.skeleton import read_skeleton
@@ -15,7 +16,7 @@ from shared.stage.stages import Stage, contract_sources, key_of, versions
 
 READ = [
     *contract_sources("skeleton"),
-    ROOT / "render" / "crank.py",
+    *FRAME_SOURCES,
     *(ROOT / "render" / "report" / f"{name}.py" for name in ("transmission", "written")),
 ]
 
@@ -81,6 +82,8 @@ def plots_of(motion: Motion) -> list[str]:
         names += ["reactions", "hodographs"]
     if motion.forces or motion.contacts:
         names.append("forces")
+    if any(force.gas is not None for force in motion.forces.values()):
+        names.append("gas")
     if motion.analysis == "simulation":
         from render.crank import crank_of
 

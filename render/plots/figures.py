@@ -5,6 +5,7 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from render.plots.pages.energy import energy
+from render.plots.pages.gas import gas
 from render.plots.pages.loads import forces, hodographs, reactions
 from render.plots.pages.path import path
 from render.plots.pages.rates import bodies, point, slider
@@ -26,6 +27,7 @@ WHOLE = {
     "reactions": reactions,
     "hodographs": hodographs,
     "forces": forces,
+    "gas": gas,
     "energy": energy,
     "turns": turns,
 }

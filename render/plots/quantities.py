@@ -1,8 +1,4 @@
-"""Quantities of a motion by the names that SPECTRA gives them: what the machine does to its frame, and parts of it.
-
-shaking force       F = -sum m a        of all bodies, a of their centres of mass: what inertia does to the frame
-shaking moment      M = -sum [(r - r0) x m a + I alpha]       r0: the axis of the crank, else the origin
-"""
+"""Quantities of a motion by the names that SPECTRA gives them: what the machine does to its frame, and parts of it."""
 
 from __future__ import annotations
 
@@ -11,13 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from render.crank import crank_of
-from render.magnitudes import NOISE, centre_of_mass, force_scale, speed_scale, torque_scale, without_noise
+from render.magnitudes import NOISE, force_scale, speed_scale, torque_scale, without_noise
+from render.shaking import couple_floor, force_floor, moment_floor, shaking
 from shared.contract import Motion
 from shared.stage.errors import UserError
 from shared.stage.suggestions import did_you_mean
 
 SHAKING = ("shaking force", "shaking moment")
+COUPLE = "shaking couple"
 TURNING, PUSHING = ("torque", "N m"), ("force", "N")
 """Symbol and unit."""
 
@@ -61,14 +58,15 @@ def refuse_unknown_in_all(motions: Sequence[Motion], names: Sequence[str]) -> No
 
 def known_names(motion: Motion) -> list[str]:
     """All names of quantities."""
+    whole = [*SHAKING, *([COUPLE] if motion.couple else [])]
     own = [motion.joints, motion.drivers, motion.forces, motion.points, motion.bodies]
-    return list(dict.fromkeys([*SHAKING, *(name for group in own for name in group)]))
+    return list(dict.fromkeys([*whole, *(name for group in own for name in group)]))
 
 
 def quantity(motion: Motion, name: str) -> Quantity:
     """By a name of :func:`known_names`."""
-    if name in SHAKING:
-        return shaking(motion)[SHAKING.index(name)]
+    if name in SHAKING or (name == COUPLE and motion.couple):
+        return _shaking_quantity(motion, name)
     weak = {"N": NOISE * force_scale(motion), "N m": NOISE * torque_scale(motion)}
     if joint := motion.joints.get(name):
         says = f"reaction of {joint.bodies[0]} on {joint.bodies[1]}, world axes"
@@ -98,23 +96,20 @@ def _moving(motion: Motion, name: str) -> Quantity:
     return Quantity(name, says, "acceleration", "m/s²", _xy(moving.ax, moving.ay), NOISE * quick)
 
 
-def shaking(motion: Motion) -> tuple[Quantity, Quantity]:
-    """Force and moment that inertia puts on the frame."""
-    crank = crank_of(motion)
-    x0, y0 = crank.at if crank else (0.0, 0.0)
-    fx, fy, moment = (np.zeros(len(motion.time)) for _ in range(3))
-    for body in motion.bodies.values():
-        at = centre_of_mass(body)
-        fx, fy = fx - body.mass * at.ax, fy - body.mass * at.ay
-        moment -= body.mass * ((at.x - x0) * at.ay - (at.y - y0) * at.ax)
-        moment -= body.inertia * np.asarray(body.alpha)
-    about = f"the axis of the {crank.body}" if crank else "the origin"
-    force, turning = "force of inertia on the frame, \N{MINUS SIGN}Σ m a", "moment of inertia forces on the frame about"
-    weak, slack = NOISE * force_scale(motion), NOISE * torque_scale(motion)
-    return (
-        Quantity("shaking force", force, *PUSHING, _xy(fx, fy), weak),
-        Quantity("shaking moment", f"{turning} {about}", "moment", "N m", {"moment": moment}, slack),
-    )
+def _shaking_quantity(motion: Motion, name: str) -> Quantity:
+    """What inertia puts on the frame."""
+    found = shaking(motion)
+    if name == "shaking force":
+        says = "force of inertia on the frame, \N{MINUS SIGN}Σ m a"
+        return Quantity(name, says, *PUSHING, _xy(found.fx, found.fy), force_floor(motion))
+    if name == "shaking moment":
+        says = f"moment of inertia forces on the frame about {found.about}"
+        return Quantity(name, says, "moment", "N m", {"moment": found.moment}, moment_floor(motion))
+    assert motion.couple is not None
+    assert found.mx is not None
+    assert found.my is not None
+    says = f"couple of inertia forces about axes along x and y, at z = {1000 * motion.couple.about:.4g} mm"
+    return Quantity(name, says, "couple", "N m", _xy(found.mx, found.my), couple_floor(motion))
 
 
 def _xy(x: Sequence[float] | np.ndarray, y: Sequence[float] | np.ndarray) -> dict[str, np.ndarray]:

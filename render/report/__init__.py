@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
+from render import FRAME_SOURCES
 from render.report import sections
 from render.report.loads import load_section
 from render.report.transmission_words import transmission_section
@@ -15,7 +16,7 @@ from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import ROOT, Out, mechanism_folder
 from shared.stage.stages import Stage, contract_sources, key_of, versions
 
-READ = [*contract_sources("clearance"), ROOT / "render" / "crank.py"]
+READ = [*contract_sources("clearance"), *FRAME_SOURCES]
 
 
 def run(name: str) -> None:
@@ -55,6 +56,7 @@ def report(motion: Motion, parts: Parts | None, clearance: Clearance | None, sai
     for head, body in (
         ("Speeds", sections.speed_section(motion)),
         ("Loads", load_section(motion)),
+        ("Shaking of the frame", sections.frame_section(motion)),
         ("Energy", sections.energy_section(motion)),
         ("Transmission", transmission_section(motion)),
         ("Masses", sections.mass_section(motion, parts)),

@@ -1,4 +1,4 @@
-"""Loads in a report: reactions, drivers, forces, contacts."""
+"""Loads in a report: reactions, drivers, forces, gas, contacts."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from render.magnitudes import effort_floor
+from render.report.gas import gas_section
 from render.report.written import first_peak, moment, table, written
 from shared.contract import Motion
 from shared.contract.loads import ACTUATORS
@@ -20,7 +21,7 @@ SLIDES = ("coordinate", "distance")
 
 
 def load_section(motion: Motion) -> list[str]:
-    """Reactions, drivers, forces, contacts."""
+    """Reactions, drivers, forces, gas, contacts."""
     time = np.array(motion.time)
     lines: list[str] = []
     forces = {name: np.hypot(joint.fx, joint.fy) for name, joint in motion.joints.items()}
@@ -66,12 +67,12 @@ def load_section(motion: Motion) -> list[str]:
             power = np.array(force.power)
             rows.append([
                 f"{name} ({force.kind.replace('_', ' ')})", written(float(size.max()), "N") if size.any() else "",
-                written(float(twist.max()), "N m") if twist.any() else "", moment(time[k]),
+                written(float(twist.max()), "N m") if twist.max() > NOTHING * size.max() else "", moment(time[k]),
                 *_powers(power), _work(power, time),
             ])  # fmt: skip
         head = ["force", "peak force", "peak torque", "at", "gives at most", "takes at most", "work"]
         lines += [*table(head, rows), ""]
-    return lines + _contacts(motion, time)
+    return lines + gas_section(motion) + _contacts(motion, time)
 
 
 def _contacts(motion: Motion, time: np.ndarray) -> list[str]:

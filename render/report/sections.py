@@ -6,6 +6,7 @@ import numpy as np
 
 from render.crank import crank_of, driven_bodies
 from render.report.written import counted, first_peak, listed, moment, speed, table, turning, written
+from render.shaking import shaking
 from shared.contract import Motion, Parts
 from shared.contract.clearance import Clearance
 
@@ -84,6 +85,20 @@ def _last_turn(motion: Motion) -> list[str]:
         f"In its last turn the {crank.body} has {turning(mean)} on average, at least {written(least, 'rad/s')} and at "
         f"most {written(most, 'rad/s')}: its speed fluctuates by {100 * (most - least) / mean:.2g} % of the mean.",
     ]
+
+
+def frame_section(motion: Motion) -> list[str]:
+    """What inertia does to the frame, of machines with bodies in different places along the normal of the plane."""
+    found = shaking(motion)
+    if found.mx is None or found.my is None:
+        return []
+    rows = [
+        ["force", *(written(float(np.abs(values).max()), "N") for values in (found.fx, found.fy)), ""],
+        ["couple", *(written(float(np.abs(values).max()), "N m") for values in (found.mx, found.my)), ""],
+        ["moment", "", "", written(float(np.abs(found.moment).max()), "N m")],
+    ]
+    lines = [f"Largest force of inertia, couples about x and y, and moment about {found.about}.", ""]
+    return lines + table(["", "x", "y", "z"], rows)
 
 
 def energy_section(motion: Motion) -> list[str]:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
-PLAIN = ("m/s²", "rad/s", "rad/s²", "°", "%")
+PLAIN = ("m/s²", "rad/s", "rad/s²", "cm³", "°", "%")
 """Units without prefixes."""
 
 

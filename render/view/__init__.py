@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from render import FRAME_SOURCES
 from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash, write_bytes
@@ -57,6 +58,10 @@ def _stage(name: str) -> Stage:
     rooms = [ROOT / "render" / name for name in ("film", "glb", "report", "blender/scene/tubes.py")]
     shared = contract_sources(*SHARED, "skeleton", "clearance")
     here = Path(__file__).parent
-    ours = sources_hash(here, *rooms, *shared, leave_out=[here / "pictures.py"]), sources_key(), versions("numpy")
+    ours = (
+        sources_hash(here, *rooms, *FRAME_SOURCES, *shared, leave_out=[here / "pictures.py"]),
+        sources_key(),
+        versions("numpy"),
+    )
     key = key_of(out.motion, out.skeleton, *there, *(path.name for path in there), *ours)
     return Stage(out, "view", key, [out.view])

@@ -14,6 +14,7 @@ SI units and radians; names are those of data.json. Arrays are float32 unless sa
     points[name]            body; x y vx vy ax ay (T,)
     forces[name]            kind; value, rate, effort (T,) or null; power potential (T,); unit, effort_unit
     contacts[name]          kind, bodies; x y fx fy torque gap normal friction (T,)
+    couple                  null, or mx my (T,) of bodies in different places along the normal of the plane
     energy                  kinetic potential (T,), work audit (T,) or null
     margin                  (T,) smallest over largest singular value of the scaled Jacobian
     marks                   [{time, words, kind: "event" or "dead point"}]
@@ -37,6 +38,7 @@ import numpy as np
 from render.film.clock import Clock
 from render.film.tubes.trails import trails_of
 from render.report.moments import marks
+from render.shaking import shaking
 from render.view.loads import arcs_of, arrows_of
 from shared.contract import JointMotion, Motion
 from shared.contract.shot import Shot
@@ -81,6 +83,7 @@ def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bo
             | _series(one, "x", "y", "fx", "fy", "torque", "gap", "normal", "friction")
             for name, one in motion.contacts.items()
         },
+        "couple": couple_of(motion),
         "energy": _series(motion.energy, "kinetic", "potential", "work", "audit"),
         "margin": floats(motion.diagnostics.singularity_margin),
         "marks": [
@@ -139,6 +142,12 @@ def floats(values: Any) -> np.ndarray:
 def _series(thing: Any, *names: str) -> dict[str, Any]:
     series: dict[str, Sequence[float] | None] = {name: getattr(thing, name) for name in names}
     return {name: None if values is None else floats(values) for name, values in series.items()}
+
+
+def couple_of(motion: Motion) -> dict[str, Any] | None:
+    """What inertia does to the frame about axes in the plane, rounding as zero."""
+    found = shaking(motion)
+    return None if found.mx is None else _series(found, "mx", "my")
 
 
 def _body(body: Any, index: int) -> dict[str, Any]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import subprocess
 import tempfile
 from pathlib import Path
@@ -14,8 +13,8 @@ from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from shared.stage.paths import Out
 from shared.stage.stages import Stage, key_of
+from shared.system import missing
 
-BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 LOOKS = {"width": 1280, "height": 720, "part": 0.3}
 MINUTES = 5
 """For one picture."""
@@ -23,7 +22,7 @@ MINUTES = 5
 
 def chromium() -> str | None:
     """The browser's program: $CHROMIUM, or the first one in PATH."""
-    return os.environ.get("CHROMIUM") or next(filter(None, map(shutil.which, BROWSERS)), None)
+    return missing.program("chromium")
 
 
 def version_of(browser: str) -> str:

@@ -14,6 +14,9 @@ from shared.stage.console import run_cli, say
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, out_root
 
+WITHOUT_HTTP = ("--no-dashboard", "--dashboard-address", "127.0.0.1:0", "--preload", "shared.cluster.preload")
+"""Dask starts its HTTP server always, by default on all interfaces: it begins on loopback, and the preload ends it."""
+
 
 def main() -> None:
     """Read the command line. The scheduler takes the place of this process; a worker is kept by it (keeper.py)."""
@@ -52,11 +55,13 @@ def main() -> None:
         raise UserError("say where the scheduler is: make worker CLUSTER=tcp://127.0.0.1:8786")
     os.environ[address.VARIABLE] = arguments.address
     address.address()
-    sys.exit(keeper.keep(worker_command(arguments.address, host, arguments.name), arguments.address))
+    folder = out_root() / ".cluster" / "dask"
+    folder.mkdir(parents=True, exist_ok=True)
+    sys.exit(keeper.keep(worker_command(arguments.address, host, arguments.name, folder), arguments.address))
 
 
 def scheduler_command(host: str, port: int) -> list[str]:
-    """Dask's scheduler; its page of measurements is off, as it has no password."""
+    """Dask's scheduler. Of its HTTP server, which has no password, nothing is left (preload.py)."""
     scheme = "tls" if address.certificates() else "tcp"
     program = [
         sys.executable,
@@ -67,18 +72,16 @@ def scheduler_command(host: str, port: int) -> list[str]:
         "--port",
         str(port),
     ]
-    return [*program, "--no-dashboard", *_tls()]
+    return [*program, *WITHOUT_HTTP, *_tls()]
 
 
-def worker_command(scheduler: str, host: str, name: str) -> list[str]:
-    """Dask's worker, which a nanny starts again when it ends."""
-    folder = out_root() / ".cluster" / "dask"
-    folder.mkdir(parents=True, exist_ok=True)
+def worker_command(scheduler: str, host: str, name: str, folder: Path) -> list[str]:
+    """Dask's worker, which a nanny starts again when it ends; ``folder`` is for its own files."""
     scheme = "tls" if address.certificates() else "tcp"
     program = [sys.executable, "-m", "distributed.cli.dask_worker", scheduler, "--host", f"{scheme}://{host}"]
-    options = ["--nworkers", "1", "--nthreads", "1", "--memory-limit", "0", "--no-dashboard"]
-    kept = ["--local-directory", str(folder), "--preload", "shared.cluster.preload"]
-    return [*program, *options, *kept, "--name", name or f"{socket.gethostname()}-{os.getpid()}", *_tls()]
+    options = ["--nworkers", "1", "--nthreads", "1", "--memory-limit", "0", "--local-directory", str(folder)]
+    called = ["--name", name or f"{socket.gethostname()}-{os.getpid()}"]
+    return [*program, *options, *WITHOUT_HTTP, *called, *_tls()]
 
 
 def refuse_open(host: str, plain: bool) -> None:

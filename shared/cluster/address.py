@@ -89,17 +89,31 @@ def workers_of(client: Client) -> dict[str, Any] | None:
     """
     scheduler: Any = client.scheduler
     try:
-        found: Any = client.sync(scheduler.identity, n_workers=-1)
+        found: Any = client.sync(scheduler.identity, n_workers=-1, callback_timeout=TIMEOUT)
     except OSError:
         return None
-    return found["workers"]
+    return {name: worker for name, worker in found["workers"].items() if _is_fit_to_print(name)}
 
 
 def tasks_of(client: Client) -> dict[str, int]:
     """Tasks that each worker has, of all clients, by address; none where the scheduler does not answer."""
     scheduler: Any = client.scheduler
     try:
-        found: Any = client.sync(scheduler.processing, workers=None)
+        found: Any = client.sync(scheduler.processing, workers=None, callback_timeout=TIMEOUT)
     except OSError:
         return {}
     return {worker: len(tasks) for worker, tasks in found.items()}
+
+
+def size_of(client: Client, key: str) -> int:
+    """Bytes of a result, as its worker told the scheduler; 0 where there is none or the scheduler does not answer."""
+    try:
+        found: Any = client.nbytes(keys=[key], summary=False)
+    except (OSError, KeyError, RuntimeError):
+        return 0
+    return int(found.get(key, 0) or 0)
+
+
+def _is_fit_to_print(name: str) -> bool:
+    """A worker chooses its address itself, and messages name it."""
+    return len(name) < 200 and name.isascii() and name.isprintable() and " " not in name

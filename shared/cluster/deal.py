@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import math
 import queue
+import threading
 import time
 import zlib
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-from shared.cluster.address import tasks_of, workers_of
+from shared.cluster.address import size_of, tasks_of, workers_of
+from shared.cluster.answers.report import AROUND, read_identity, read_report, refuse_large
+from shared.cluster.answers.wrong_answer import WrongAnswer, printable
 from shared.cluster.hand import Group, Hand
-from shared.cluster.hands import Report, perform
+from shared.cluster.hands import Work, perform
 from shared.cluster.identity import PACKAGES, asker, differences, identity, together
 from shared.cluster.shares import stolen, unclaimed
 from shared.stage.console import duration, say, warn
@@ -27,27 +29,30 @@ TICK = 0.2
 """Seconds between two looks at the workers while nothing comes."""
 SURVEY = 1.0
 """Seconds between two looks at who is there."""
+SOON = 2.0
+"""Seconds without a worker after which it is said what is waited for."""
 WAIT = 60.0
 """Seconds without a worker after which it is given up."""
 FETCH = 60.0
 """Seconds that a finished result may be on its way."""
 ATTEMPTS = 3
-"""On workers, after which an order itself is at fault."""
+"""On workers, after which an order itself may be at fault."""
 
 
 class Deal:
     """One kind of work for all workers of a cluster.
 
-    ``work(files, common, order)`` is a function of the project, ``common`` the name of the content that all orders
-    share, ``needed`` all contents by name as functions that give their bytes, ``orders`` what is to be done by key.
-    Workers whose sources of ``rooms`` differ are refused by name. ``patience`` (s) is a silence that is never too long;
-    for ``grace`` (s) no worker whose pace is unknown is helped by others that have nothing to do.
+    ``work`` says what a worker does and what its answer has to be, ``common`` is the name of the content that all
+    orders share, ``needed`` all contents by name as functions that give their bytes, ``orders`` what is to be done by
+    key. Workers whose sources of ``rooms`` differ are refused by name; one whose answer is not what was ordered gets
+    nothing more. ``patience`` (s) is a silence that is never too long; for ``grace`` (s) no worker whose pace is
+    unknown is helped by others that have nothing to do.
     """
 
     def __init__(
         self,
         client: Client,
-        work: Callable[..., Any],
+        work: Work,
         common: str,
         needed: Mapping[str, Callable[[], bytes]],
         orders: Mapping[str, Any],
@@ -67,14 +72,16 @@ class Deal:
         self._left = set(orders)
         self._attempts: Counter[str] = Counter()
         self._failed_on: dict[str, set[str]] = {}
-        self._events: queue.SimpleQueue[tuple[Hand, Group, Any]] = queue.SimpleQueue()
+        self._events: queue.SimpleQueue[tuple[Hand, Group | None, Any]] = queue.SimpleQueue()
         self._surveyed = -math.inf
-        self._without = time.monotonic()
-        self._refused: dict[str, str] = {}
+        self._answered = self._without = time.monotonic()
+        self._lost_one = False
+        """Whether a worker that was fit has gone; whoever keeps it may start it again."""
+        self._told = ""
+        """What was said of the waiting."""
 
     def results(self) -> Iterator[tuple[str, Any, str]]:
         """Key, result and worker of every order as they come, each once; raises UserError with the reason."""
-        self._fetchers = ThreadPoolExecutor(4)
         try:
             while self._left:
                 self._survey()
@@ -83,9 +90,11 @@ class Deal:
                     hand, group, answer = self._events.get(timeout=TICK)
                 except queue.Empty:
                     continue
-                yield from self._settle(hand, group, answer)
+                if group is None:
+                    self._judge(hand, answer)
+                else:
+                    yield from self._settle(hand, group, answer)
         finally:
-            self._fetchers.shutdown(wait=False, cancel_futures=True)
             for hand in self.hands.values():
                 self._take_back(hand)
 
@@ -98,12 +107,15 @@ class Deal:
             raise UserError("the scheduler has gone; nothing was lost, the same command goes on")
         there, busy = workers_of(self.client), tasks_of(self.client)
         if there is None:
+            self._wait_for_scheduler()
             return
+        self._answered = time.monotonic()
         for name in there.keys() - self.hands.keys():
             self.hands[name] = Hand(name, self.patience, self.grace)
-            self._submit(self.hands[name], Group([]), asker(self.rooms, self.packages))
+            _beside(self._ask, self.hands[name])
         for hand in [self.hands.pop(name) for name in self.hands.keys() - there.keys()]:
             if hand.fit:
+                self._lost_one = True
                 say("cluster", f"worker {hand.name} has gone; what it had to do goes to others")
             self._take_back(hand)
         for hand in self.hands.values():
@@ -115,24 +127,39 @@ class Deal:
                 self._requeue([key for group in hand.groups for key in group.keys])
         self._refuse_none()
 
-    def _refuse_none(self) -> None:
-        """Raise UserError where no worker has been fit for long."""
-        if any(hand.fit and not hand.aside and not hand.stalled for hand in self.hands.values()):
-            self._without = time.monotonic()
-            return
-        some = any(hand.stalled for hand in self.hands.values())
-        if time.monotonic() - self._without < (max(WAIT, 6 * self.patience) if some else WAIT):
-            asking = any(hand.groups for hand in self.hands.values())
-            if asking or not self.hands or some or not self._refused.keys() | self._aside().keys() >= self.hands.keys():
-                return
-        reasons = "".join(f"; {who}: {why}" for who, why in together(self._refused | self._aside()))
-        raise UserError(
-            f"no worker of the cluster can do this{reasons or ', for there is none'}; start workers "
-            "with the same lock file and sources (make worker), or leave CLUSTER out"
-        )
+    def _wait_for_scheduler(self) -> None:
+        silent = time.monotonic() - self._answered
+        if silent > WAIT:
+            raise UserError(f"the scheduler has been silent for {duration(silent)}; nothing was lost, start it again "
+                            "(make scheduler), and then the same command")  # fmt: skip
+        self._tell(f"the scheduler does not answer; it is given {WAIT:.0f} s")
 
-    def _aside(self) -> dict[str, str]:
-        return {hand.name: hand.aside for hand in self.hands.values() if hand.aside}
+    def _refuse_none(self) -> None:
+        """Raise UserError where no worker has been fit for long, and say soon what is waited for."""
+        if any(hand.fit and not hand.stalled for hand in self.hands.values()):
+            self._without, self._told = time.monotonic(), ""
+            return
+        stalled = any(hand.stalled for hand in self.hands.values())
+        asked = [hand.name for hand in self.hands.values() if not hand.fit and not hand.aside]
+        none_left = bool(self.hands) and not stalled and not asked and not self._lost_one
+        longest = max(WAIT, 6 * self.patience) if stalled else WAIT
+        without = time.monotonic() - self._without
+        reasons = {hand.name: hand.aside for hand in self.hands.values() if hand.aside}
+        reasons |= dict.fromkeys(asked, "it does not answer")
+        shown = "".join(f"; {who}: {why}" for who, why in together(reasons))
+        if none_left or without >= longest:
+            raise UserError(
+                f"no worker of the cluster can do this{shown or ', for there is none'}; start workers "
+                "with the same lock file and sources (make worker), or leave CLUSTER out"
+            )
+        if without >= SOON:
+            what = "all workers are silent" if stalled else "there is no worker that can do this"
+            self._tell(f"{what}{shown}; one is given {duration(longest)} to come (make worker)")
+
+    def _tell(self, text: str) -> None:
+        if text != self._told:
+            self._told = text
+            warn("cluster", text)
 
     def _hand_out(self) -> None:
         ready = [hand for hand in self.hands.values() if hand.is_ready()]
@@ -153,21 +180,27 @@ class Deal:
         sent = {name: self.needed[name]() for name in hand.lacks}
         hand.lacks = []
         orders = [(key, self.orders[key]) for key in keys]
-        self._submit(hand, Group(keys), perform, self.work, self.common, list(self.needed), orders, sent)
-
-    def _submit(self, hand: Hand, group: Group, function: Callable[..., Any], *arguments: Any) -> None:
+        group = Group(keys, frozenset(sent))
         group.future = self.client.submit(
-            function, *arguments, workers=[hand.name], allow_other_workers=False, pure=False, retries=0
-        )
+            perform, self.work.do, self.common, list(self.needed), orders, sent,
+            workers=[hand.name], allow_other_workers=False, pure=False, retries=0,
+        )  # fmt: skip
         hand.take(group)
-        group.future.add_done_callback(lambda _: self._fetch_later(hand, group))
+        group.future.add_done_callback(lambda _: _beside(self._fetch, hand, group))
 
-    def _fetch_later(self, hand: Hand, group: Group) -> None:
-        with suppress(RuntimeError):  # all is done, and this one was not needed
-            self._fetchers.submit(self._fetch, hand, group)
+    def _ask(self, hand: Hand) -> None:
+        """Have a worker say what it works with, even while it does something for others."""
+        try:
+            ask = asker(self.rooms, self.packages)
+            answers: Any = self.client.run(ask, workers=[hand.name], on_error="return")
+            answer = answers.get(hand.name)
+        except Exception as error:
+            answer = error
+        self._events.put((hand, None, answer))
 
     def _fetch(self, hand: Hand, group: Group) -> None:
         try:
+            refuse_large(size_of(self.client, group.future.key), len(group.keys) * self.work.most + AROUND)
             answer = group.future.result(timeout=FETCH)
         except BaseException as error:  # cancelled ones are of this kind
             answer = error
@@ -178,47 +211,69 @@ class Deal:
             return  # the worker was given up
         hand.drop(group)
         group.future.release()
-        if not group.keys:
-            self._judge(hand, answer)
-            return
-        if not isinstance(answer, Report):
-            self._blame(hand, f"{type(answer).__name__}: {answer}")
+        try:
+            if isinstance(answer, WrongAnswer):
+                raise answer
+            if isinstance(answer, BaseException):
+                self._blame(hand, f"{type(answer).__name__}: {answer}")
+                self._requeue(group.keys)
+                return
+            report = read_report(answer, group.keys, self.needed, self.work.most)
+            results = [(key, self.work.read(key, content)) for key, content in report.done if key in self._left]
+        except WrongAnswer as wrong:
+            self._leave_out(hand, str(wrong))
             self._requeue(group.keys)
             return
-        hand.count(len(answer.done), answer.seconds)
-        hand.lacks = answer.lacking
-        for key, result in answer.done:
-            if key in self._left:
-                self._left.discard(key)
-                yield key, result, hand.name
-            else:
-                self.late += 1
-        if answer.failed:
-            self._judge_failure(hand, *answer.failed)
+        hand.count(len(report.done), report.seconds)
+        hand.lacks = report.lacking
+        self.late += len(report.done) - len(results)
+        for key, result in results:
+            self._left.discard(key)
+            yield key, result, hand.name
+        if group.sent.intersection(report.lacking):
+            self._blame(hand, "it does not keep the inputs that it was sent")
+        if report.failed:
+            self._judge_failure(hand, *report.failed)
         self._requeue(group.keys)
         self._release_needless()
 
     def _judge(self, hand: Hand, answer: Any) -> None:
         """Whether a worker is as we are."""
-        differ = differences(answer, self.ours) if isinstance(answer, dict) else f"{type(answer).__name__}: {answer}"
+        if self.hands.get(hand.name) is not hand:
+            return  # it has gone meanwhile
+        try:
+            if isinstance(answer, BaseException):
+                raise WrongAnswer(printable(f"{type(answer).__name__}: {answer}"))
+            differ = differences(read_identity(answer), self.ours)
+        except WrongAnswer as wrong:
+            differ = str(wrong)
+        hand.fit = not differ
         if differ:
-            self._refused[hand.name] = hand.aside = differ
+            hand.leave_out(differ)
             warn("cluster", f"worker {hand.name} is refused: {differ}")
-            return
-        hand.fit = True
 
     def _judge_failure(self, hand: Hand, key: str, reason: str) -> None:
+        """An order is at fault where it failed on several workers that do others well, or on all that there are."""
         self._attempts[key] += 1
-        self._failed_on.setdefault(key, set()).add(hand.name)
-        if self._attempts[key] >= ATTEMPTS:
-            raise UserError(f"{reason} (on {', '.join(sorted(self._failed_on[key]))}); what is finished is kept")
+        tried = self._failed_on.setdefault(key, set())
+        tried.add(hand.name)
         self._blame(hand, reason)
+        proven = [name for name in tried if name in self.hands and self.hands[name].made]
+        others = [one.name for one in self.hands.values() if one.fit and not one.stalled and one.name not in tried]
+        if len(proven) >= ATTEMPTS or (self._attempts[key] >= ATTEMPTS and not others):
+            raise UserError(f"{printable(reason)} (on {', '.join(sorted(tried))}); what is finished is kept")
 
     def _blame(self, hand: Hand, reason: str) -> None:
-        aside = hand.fail(reason)
-        warn("cluster", f"worker {hand.name}: {reason}" + ("; it is left out" if aside else ""))
+        aside = hand.fail(printable(reason))
+        warn("cluster", f"worker {hand.name}: {printable(reason)}" + ("; it is left out" if aside else ""))
         if aside:
             self._take_back(hand)
+
+    def _leave_out(self, hand: Hand, reason: str) -> None:
+        """A worker that sends something else than what was ordered may do so again, so it gets nothing more."""
+        hand.leave_out(f"it sent a wrong answer: {reason}")
+        warn("cluster", f"worker {hand.name} sent a wrong answer: {reason}; it is left out, others do its work")
+        self._take_back(hand)
 
     def _take_back(self, hand: Hand) -> None:
         """Give what a worker had to others."""
@@ -242,3 +297,9 @@ class Deal:
                 if group.keys and not self._left.intersection(group.keys):
                     hand.groups.remove(group)
                     group.future.release()
+
+
+def _beside(function: Callable[..., None], *arguments: Any) -> None:
+    """In a thread of its own that holds up neither the answers of other workers nor the end of the program."""
+    with suppress(RuntimeError):  # the program ends
+        threading.Thread(target=function, args=arguments, daemon=True).start()

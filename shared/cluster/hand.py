@@ -26,6 +26,8 @@ class Group:
     """Orders that a worker has got together."""
 
     keys: list[str]
+    sent: frozenset[str] = frozenset()
+    """Contents that went along."""
     future: Any = None
 
 
@@ -90,12 +92,16 @@ class Hand:
             self.made += done
             self.failures = 0
 
+    def leave_out(self, reason: str) -> None:
+        """It gets nothing more."""
+        self.fit, self.aside = False, reason
+
     def fail(self, reason: str) -> bool:
         """It failed; True where it is left out from now on."""
         self.failures += 1
         self.resting = time.monotonic() + REST * 2 ** (self.failures - 1)
         if self.failures >= FAILURES:
-            self.aside = reason
+            self.leave_out(reason)
         return bool(self.aside)
 
     def is_overdue(self) -> bool:

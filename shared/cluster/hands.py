@@ -9,23 +9,25 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from shared.cluster.answers.report import Report, encoded
+from shared.cluster.answers.wrong_answer import printable
 from shared.cluster.contents import Contents
 from shared.stage.errors import UserError
 
-Work = Callable[[Mapping[str, Path], str, Any], bytes]
-"""Does one order: the files of all needed contents by name, the name of what all orders have in common, the order."""
+LONGEST_REASON = 2000
+"""Characters of a reason."""
 
 
-class Report(NamedTuple):
-    """What a worker made of a group of orders."""
+class Work(NamedTuple):
+    """One kind of work, as a worker does it and as its answer is read by who ordered it."""
 
-    lacking: list[str] = []
-    """Contents that it needs first; then nothing was done."""
-    done: list[tuple[str, Any]] = []
-    """Key and result of each order that went well."""
-    failed: tuple[str, str] | None = None
-    """Key and reason of the one that did not, after which the group was given back."""
-    seconds: float = 0.0
+    do: Callable[[Mapping[str, Path], str, Any], bytes]
+    """Does one order: the files of all needed contents by name, the name of what all orders have in common, the order.
+    """
+    read: Callable[[str, bytes], Any]
+    """The result of the order with this key from the bytes that came. Raises WrongAnswer if they are not one."""
+    most: int
+    """Bytes of the largest result that there can be."""
 
 
 _contents: dict[int, Contents] = {}
@@ -34,17 +36,20 @@ _one_at_a_time: dict[str, threading.Lock] = {}
 
 
 def perform(
-    work: Callable[..., Any],
+    do: Callable[[Mapping[str, Path], str, Any], bytes],
     common: str,
     needed: Sequence[str],
     orders: Sequence[tuple[str, Any]],
     sent: Mapping[str, bytes],
-) -> Report:
-    """Do the orders (key, what to do) with ``work``; ``sent`` are contents that this worker asked for."""
+) -> bytes:
+    """Do the orders (key, what to do) by ``do``; ``sent`` are contents that this worker asked for.
+
+    Returns a :class:`Report` as bytes.
+    """
     from distributed import get_worker
 
     kept = _contents.setdefault(os.getpid(), Contents())
-    done: list[tuple[str, Any]] = []
+    done: list[tuple[str, bytes]] = []
     key = orders[0][0]
     with _one_at_a_time.setdefault(get_worker().address, threading.Lock()):
         started = time.perf_counter()
@@ -52,11 +57,12 @@ def perform(
             kept.put(sent, needed)
             lacking = kept.lacking(needed)
             if lacking:
-                return Report(lacking=lacking)
+                return encoded(Report(lacking=lacking))
             files = {name: kept.folder / name for name in needed}
             for key, order in orders:
-                done.append((key, work(files, common, order)))
+                done.append((key, do(files, common, order)))
         except Exception as error:  # whatever it is, others may do better
             said = str(error) if isinstance(error, UserError) else f"{type(error).__name__}: {error}"
-            return Report(done=done, failed=(key, said), seconds=time.perf_counter() - started)
-    return Report(done=done, seconds=time.perf_counter() - started)
+            failed = key, printable(said, LONGEST_REASON)
+            return encoded(Report(done=done, failed=failed, seconds=time.perf_counter() - started))
+    return encoded(Report(done=done, seconds=time.perf_counter() - started))

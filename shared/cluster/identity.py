@@ -38,13 +38,18 @@ def sources_of(room: str, root: Path = ROOT) -> str:
     return sources_hash(root / room)[:12]
 
 
-def asker(rooms: tuple[str, ...], packages: tuple[str, ...]) -> Callable[[], dict[str, str]]:
-    """A function that a worker with other sources understands as well, as it travels itself and not by its name."""
+def asker(rooms: tuple[str, ...], packages: tuple[str, ...]) -> Callable[[], bytes]:
+    """A function that a worker with other sources understands as well, as it travels itself and not by its name.
 
-    def asked() -> dict[str, str]:
+    It gives the identity as MessagePack.
+    """
+
+    def asked() -> bytes:
+        import msgspec
+
         from shared.cluster.identity import identity
 
-        return identity(rooms, packages)
+        return msgspec.msgpack.encode(identity(rooms, packages))
 
     return asked
 

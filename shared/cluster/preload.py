@@ -1,6 +1,8 @@
-"""What a worker loads when it starts: it remembers the sources that it was started with, whatever becomes of them."""
+"""What scheduler and workers load when they start: no HTTP server, and workers remember the sources of their start."""
 
 from __future__ import annotations
+
+from typing import Any
 
 from shared.cluster.identity import PACKAGES, identity
 
@@ -18,7 +20,12 @@ OF_PARTS = (
 """Packages that decide it, and how machines speak with each other."""
 
 
-def dask_setup(_: object) -> None:
-    """Called by Dask with the worker."""
-    identity(FRAMES, PACKAGES)
-    identity(PARTS, OF_PARTS)
+def dask_setup(server: Any) -> None:
+    """Called by Dask with the scheduler or the worker, which then listens on its own address alone.
+
+    Dask's HTTP server shows logs to whoever asks and passes requests on to other machines, so it is closed.
+    """
+    server.http_server.stop()
+    if hasattr(server, "nthreads"):  # a worker, which may be asked after its sources have changed
+        identity(FRAMES, PACKAGES)
+        identity(PARTS, OF_PARTS)

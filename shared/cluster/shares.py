@@ -23,8 +23,9 @@ def unclaimed(
     left: Collection[str],
     failed_on: Mapping[str, Collection[str]],
 ) -> list[str]:
-    """Orders taken from ``pending``, those that failed on this worker only if there is no other."""
-    able = sum(one.fit and not one.aside for one in hands)
+    """Orders taken from ``pending``, those that failed on this worker only if there is no other that answers."""
+    answering = {one.name for one in hands if one.fit and not one.aside and not one.stalled}
+    able = len(answering)
     size = hand.size(math.ceil(len(pending) / (2 * max(able, 1))))
     keys: list[str] = []
     passed: list[str] = []
@@ -32,15 +33,19 @@ def unclaimed(
         key = pending.popleft()
         if key not in left:
             continue
-        tried = failed_on.get(key, ())
-        (passed if hand.name in tried and len(tried) < able else keys).append(key)
+        tried = set(failed_on.get(key, ()))
+        (passed if hand.name in tried and answering - tried else keys).append(key)
     pending.extendleft(reversed(passed))
     return keys
 
 
 def stolen(hand: Hand, hands: Collection[Hand], left: Collection[str]) -> list[str]:
-    """The last orders of the worker that will be the last to end, if this one would do them sooner."""
-    copies = Counter(key for one in hands for group in one.groups for key in group.keys)
+    """The last orders of the worker that will be the last to end, if this one would do them sooner.
+
+    For a worker that has answered before, copies with those that never have do not count: these may never answer.
+    """
+    counted = [one for one in hands if one.made or not hand.made]
+    copies = Counter(key for one in counted for group in one.groups for key in group.keys)
     best: list[tuple[float, str]] = []
     for other in hands:
         if other is hand:

@@ -10,10 +10,11 @@ from pathlib import Path
 
 from shared.contract import consistency
 from shared.contract.base import UNITS, Provenance
-from shared.contract.loads import Action, ContactMotion, ForceMotion, Shape, State
+from shared.contract.loads import Action, ContactMotion, ForceMotion, GasMotion, Shape, State
 from shared.contract.motion import (
     CONVENTIONS_OF,
     BodyMotion,
+    Couple,
     Diagnostics,
     DriverMotion,
     Energy,
@@ -34,12 +35,14 @@ __all__ = [
     "BodyMotion",
     "BodyParts",
     "ContactMotion",
+    "Couple",
     "Diagnostics",
     "DriverMotion",
     "End",
     "Energy",
     "EventMark",
     "ForceMotion",
+    "GasMotion",
     "Held",
     "JointMotion",
     "Mass",

@@ -12,9 +12,10 @@ from shared.contract.consistency import refuse_other_words
 from shared.stage import jsonfile
 
 CLEARANCE_UNITS = {"length": UNITS["length"], "time": UNITS["time"]}
-Proof = Literal["layers", "turn", "motion"]
+Proof = Literal["layers", "turn", "slide", "motion"]
 """``layers``: the pieces lie at different heights, whatever moves. ``turn``: holds at every angle of the joint between
-the two bodies. ``motion``: holds over the motion in data.json."""
+the two bodies. ``slide``: holds at every place along the line of that joint. ``motion``: holds over the motion in
+data.json."""
 
 
 class PairClearance(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):

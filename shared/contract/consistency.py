@@ -22,7 +22,7 @@ SPAN_TOLERANCE = 1e-9
 """Largest difference between the period and the time spanned, relative."""
 RETURN_TOLERANCE = 1e-5
 """Largest difference between the poses at both ends of a period (m or rad, relative above 1)."""
-_NO_SERIES = {"redundant", "events", "start_changes", "shape"}
+_NO_SERIES = {"redundant", "events", "start_changes", "shape", "indicated_work"}
 """Fields with lists that are not of time."""
 _UNFIT = re.compile(r"[/\\\x00-\x1f\x7f]")
 """What the name of a body, joint, driver or point cannot hold, because files are named after it."""
@@ -112,6 +112,8 @@ def _bodies_of_loads(motion: Motion) -> list[tuple[str, str]]:
     ]
     for name, force in motion.forces.items():
         used += [(f"forces.{name}.actions[{k}].body", action.body) for k, action in enumerate(force.actions)]
+        if force.gas is not None and force.gas.crank is not None:
+            used.append((f"forces.{name}.gas.crank", force.gas.crank))
     for field in ("joints", "drivers", "forces", "contacts"):
         for name, one in getattr(motion, field).items():
             if one.shape is not None:

@@ -52,6 +52,27 @@ class Action(Strict, kw_only=True):
     torque: Series
 
 
+class GasMotion(Strict, kw_only=True):
+    """The gas that makes a force on a piston, over time, and what each cycle of its crank gives."""
+
+    pressure: Series
+    """Absolute (Pa)."""
+    volume: Series
+    """m^3"""
+    outside: NonNegative
+    """Pressure on the piston's other side (Pa)."""
+    crank: str | None = None
+    """The body by whose angle the pressure repeats; null of gas without a cycle."""
+    crank_angle: Series | None = None
+    """How far it has turned, in its own direction, since a top dead centre at which the cylinder fires (rad)."""
+    cycle_angle: Positive | None = None
+    """After which the pressure repeats (rad)."""
+    displaced: Positive | None = None
+    """Volume between the dead centres (m^3)."""
+    indicated_work: list[float] | None = None
+    """Of each whole cycle (J)."""
+
+
 class ForceMotion(Strict, kw_only=True):
     """One force over time: spring, damper, motor, load, contact by penalty, friction, a function of the user."""
 
@@ -76,6 +97,8 @@ class ForceMotion(Strict, kw_only=True):
     """Potential energy it holds (J); 0 of a force without."""
     shape: Shape | None
     """Null of a force between no two markers."""
+    gas: GasMotion | None = None
+    """Null of what is no gas behind a piston."""
 
 
 class ContactMotion(Strict, kw_only=True):

@@ -104,13 +104,26 @@ class Energy(Strict, kw_only=True):
     integrator's error and what impacts take; null of a sweep."""
 
 
+class Couple(Strict, kw_only=True):
+    """What the inertia of bodies in different places along the normal of the plane does to the frame (N m)."""
+
+    about: float
+    """Place along that normal (m), halfway between the outermost bodies."""
+    reach: NonNegative
+    """How far these are apart (m)."""
+    mx: Series
+    """About the x axis."""
+    my: Series
+    """About the y axis."""
+
+
 class EventMark(Strict, kw_only=True):
-    """Something that happened at one moment of a simulation: an impact, a contact that opens, an event of the user."""
+    """Something that happened at one moment: an impact, a contact that opens, an event of the user, a force's jump."""
 
     time: float
     name: str
     what: str
-    """event, end, impact, closes, opens, sticks, slides."""
+    """event, end, impact, closes, opens, sticks, slides; jumps, of a force or driver whose law does."""
     energy: float
     """Kinetic energy after less before (J), of all that happens at this time; given with the first event."""
     impulse: float = 0.0
@@ -156,6 +169,8 @@ class Motion(Strict, kw_only=True):
     forces: dict[str, ForceMotion] = {}
     contacts: dict[str, ContactMotion] = {}
     energy: Energy
+    couple: Couple | None = None
+    """Null where the model gives no body a place along the normal of the plane."""
     events: list[EventMark] = []
     """In the order of their times."""
     start_changes: list[str] = []

@@ -11,13 +11,20 @@ from shared.contract.base import UNITS, Count, NonNegative, Positive, Provenance
 PARTS_UNITS = UNITS | {"stl, step": "mm"}
 
 
-class Mass(Strict, kw_only=True):
-    """Mass properties: kg, centre of mass (m, body frame), inertia about it (kg m^2), volume (m^3)."""
+class Mass(Strict, kw_only=True, omit_defaults=True):
+    """Mass properties: kg, centre of mass (m, body frame), inertia about it (kg m^2), volume (m^3).
+
+    ``z`` and ``products`` are there where z of the solids is that of the model.
+    """
 
     mass: NonNegative
     com: tuple[float, float]
     inertia: NonNegative
     volume: NonNegative
+    z: float | None = None
+    """Of the centre of mass, along the normal of the plane (m)."""
+    products: tuple[float, float] | None = None
+    """Integrals of x z dm and y z dm about the centre of mass, in the body's frame (kg m^2)."""
 
 
 class Held(Strict, kw_only=True):

@@ -21,6 +21,7 @@ class Bodies(dict[str, list[Solid]]):
         made.pieces_may_touch("tyre", "road")
         made.leave_out("string")
         made.join_places("rod", ("cam", 10.0, 0.0), ("follower", 0.0, -5.0))  # made["rod"] is between them
+        made.along = True  # heights of the solids are places z of mechanism.py: masses have them, too
         return made
 
     ``made | {...}`` keeps what was said.
@@ -28,6 +29,8 @@ class Bodies(dict[str, list[Solid]]):
 
     def __init__(self, *args: Mapping[str, list[Solid]], **bodies: list[Solid]) -> None:
         super().__init__(*args, **bodies)
+        self.along = False
+        """Whether heights of the solids are the places z of the model, so that what masses have along z counts."""
         self._touching: set[tuple[str, str]] = set()
         self._pieces_touching: set[tuple[str, str]] = set()
         self._left_out: set[str] = set()
@@ -90,6 +93,7 @@ class Bodies(dict[str, list[Solid]]):
                 joined._pieces_touching |= one.pieces_touching
                 joined._left_out |= one.left_out
                 joined._rods |= one.rods
+                joined.along |= one.along
         return joined
 
     def __ror__(self, other: Mapping[str, list[Solid]]) -> Bodies:  # pyright: ignore[reportIncompatibleMethodOverride]

@@ -8,15 +8,21 @@ import time
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import IO, NoReturn, Protocol
 
 from shared.stage.errors import UserError
 from shared.stage.files import OF_THE_DISK, refusal
 from shared.stage.lineage import end_with_make
+from shared.stage.paths import out_root
 from shared.stage.signals import Stopped, terminable
+from shared.system.home import without_home
+from shared.system.missing import missing_libraries, sentence
 
 SHORTEST, LONGEST = 5.0, 60.0
 """Seconds between two lines of progress in a log; the gap grows with the time that has passed."""
+HOME = ".home"
+"""Folder of the results that stands in for a home folder that takes no files."""
 RED, YELLOW, CYAN = "31", "33", "36"
 
 
@@ -84,12 +90,14 @@ def run_cli(main: Callable[[], int | None]) -> NoReturn:
     """Run ``main`` and exit: 0 or its return value, 1 on a UserError (one sentence), 75 if another process has the
     files, 128 + number on a signal.
 
-    A disk that is full or read-only, and a folder or file that is not what it should be, are a sentence as well.
+    A disk that is full or read-only, a folder or file that is not what it should be, and a library of the system that
+    is missing are a sentence as well.
     With ``MBSD_TRACEBACK=1`` in the environment a UserError also prints its traceback, and that of its cause.
     """
     try:
         with terminable():
             end_with_make()
+            without_home(Path(os.path.abspath(out_root())) / HOME)
             code = main() or 0
             sys.stdout.flush()
     except UserError as error:
@@ -103,6 +111,11 @@ def run_cli(main: Callable[[], int | None]) -> NoReturn:
         code = stop.code if isinstance(stop, Stopped) else 130
     except MemoryError:
         fail("the memory ran out; close other programs or take a smaller PRESET. The same command goes on from here")
+        code = 1
+    except ImportError as error:
+        if not (libraries := missing_libraries()):
+            raise
+        fail(f"{sentence(libraries)} ({error})")
         code = 1
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

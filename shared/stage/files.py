@@ -8,7 +8,7 @@ import hashlib
 import os
 import shutil
 import tempfile
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -25,8 +25,10 @@ OF_THE_DISK = (*FULL, *FORBIDDEN, *IN_THE_WAY, errno.EIO, errno.ENODEV, errno.ES
 
 
 @contextmanager
-def whole_file(path: Path) -> Iterator[Path]:
+def whole_file(path: Path, put: Callable[[Path, Path], object] = os.replace) -> Iterator[Path]:
     """Yield a temporary path with the target's suffix; on success it replaces ``path``, else it is removed.
+
+    ``put`` brings the temporary file to its place; what it leaves under the temporary name is removed.
 
     A kill or a full disk therefore never leaves a part of a file under the final name.
     Raises UserError naming the file when the disk is full, the folder cannot be written, or a folder of results is a
@@ -43,7 +45,7 @@ def whole_file(path: Path) -> Iterator[Path]:
         yield temporary
         with temporary.open("rb") as written:
             os.fsync(written.fileno())
-        os.replace(temporary, path)
+        put(temporary, path)
     except OSError as error:
         raise UserError(refusal(path, error)) from error
     finally:

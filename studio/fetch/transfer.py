@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 import shlex
-import shutil
 import signal
 import subprocess
 from collections.abc import Callable
@@ -16,6 +15,7 @@ from pathlib import Path
 
 from shared.stage.errors import UserError
 from shared.stage.signals import end_with_parent, terminable
+from shared.system import missing
 
 SSH = "ssh -o ConnectTimeout=20 -o ServerAliveInterval=20 -o ServerAliveCountMax=6"
 """A machine that is gone is given up after two minutes. $RSYNC_RSH, if set, takes its place."""
@@ -98,10 +98,8 @@ def shell_program() -> str:
 
 def program(name: str) -> str:
     """The program's path; raises UserError with the command that installs it."""
-    found = shutil.which(name)
+    found = missing.program(name)
     if found is None:
-        package = {"ssh": "openssh-client"}.get(name, name)
-        raise UserError(
-            f"fetch: {name} is not installed here; sudo apt-get install -y {package} (Linux), brew install {name} (Mac)"
-        )
+        command = missing.remedy([name])
+        raise UserError(f"fetch: {name} is not installed here" + (f"; {command}" if command else ""))
     return found

@@ -60,7 +60,7 @@ async def _serve(name: str, listener: socket.socket, arguments: argparse.Namespa
         asyncio.get_running_loop().call_later(1.0, webbrowser.open, live.address)
     config = uvicorn.Config(
         live.app, log_level="warning", access_log=False, lifespan="on", ws_max_size=LARGEST, server_header=False,
-        proxy_headers=False, timeout_graceful_shutdown=GRACE,
+        proxy_headers=False, timeout_graceful_shutdown=GRACE, ws_per_message_deflate=False,
     )  # fmt: skip
     await uvicorn.Server(config).serve(sockets=[listener])
 

@@ -5,7 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from studio.live.children import Child, Nursery
+from msgspec import to_builtins
+
+from studio.live.processes.children import Child
+from studio.live.processes.nursery import Nursery
+from studio.live.wishes import Fit as Wanted
 
 Tell = Callable[[dict[str, Any]], None]
 
@@ -17,18 +21,22 @@ class Fit:
         self._name, self._nursery, self._tell, self._found = name, nursery, tell, found
         self._child: Child | None = None
 
-    def begin(self, wish: dict[str, Any], values: dict[str, float]) -> None:
+    @property
+    def running(self) -> bool:
+        """Whether one is under way."""
+        return self._child is not None
+
+    def begin(self, wish: Wanted, values: dict[str, float]) -> None:
         """Fit from these numbers; it may take as long as it does."""
         self.end()
         self._child = self._nursery.child(self._name, self._heard, limit=0)
-        self._child.ask(0, {**wish, "do": "fit", "values": values})
+        self._child.ask(0, {**to_builtins(wish), "values": values})
         self._tell({"kind": "progress", "done": 0.0, "error": None})
 
     def cancel(self) -> None:
-        """End it, and say so."""
-        if self._child is not None:
-            self.end()
-            self._tell({"kind": "fitted", "cancelled": True})
+        """End it, and say that none runs, also to a page that waits for one that has ended already."""
+        self.end()
+        self._tell({"kind": "fitted", "cancelled": True})
 
     def end(self) -> None:
         """End it, if there is one."""

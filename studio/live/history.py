@@ -49,7 +49,10 @@ class History:
         """Forget numbers that are no longer there, in all states."""
         self._states = [{name: value for name, value in one.items() if name in names} for one in self._states]
 
-    def written(self, names: set[str]) -> None:
-        """The file now holds these: no state changes them any more, so that they are as the file has them."""
-        now = {name: value for name, value in self.now.items() if name not in names}
+    def written(self, values: dict[str, float]) -> None:
+        """The file now holds these: no state changes them any more, so that they are as the file has them.
+
+        A number that was set to another value meanwhile stays.
+        """
+        now = {name: value for name, value in self.now.items() if name not in values or values[name] != value}
         self._states, self._now = [now], 0

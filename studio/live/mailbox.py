@@ -4,26 +4,32 @@ from __future__ import annotations
 
 import asyncio
 from collections import deque
+from collections.abc import Callable
 
-MOST = 256
-"""Messages that wait at most; the oldest are dropped."""
+MOST, LARGEST = 256, 1 << 28
+"""Messages that wait at most, and their bytes; a page that is slower than that gets the state anew."""
 
 
 class Mailbox:
-    """Messages from the server's loop to one page."""
+    """Messages from the server's loop to one page; ``anew`` gives those that make up for all that were dropped."""
 
-    def __init__(self) -> None:
+    def __init__(self, anew: Callable[[], list[bytes]]) -> None:
+        self._anew = anew
         self._waiting: deque[tuple[bytes, bool]] = deque()
+        self._bytes = 0
         self._some = asyncio.Event()
 
     def put(self, frame: bytes, replaces: bool = False) -> None:
         """Add a frame; one that ``replaces`` takes the place of an older one that did."""
         if replaces:
-            kept = [one for one in self._waiting if not one[1]]
-            self._waiting = deque(kept)
-        self._waiting.append((frame, replaces))
-        while len(self._waiting) > MOST:
-            self._waiting.popleft()
+            self._bytes -= sum(len(one) for one, replaced in self._waiting if replaced)
+            self._waiting = deque(one for one in self._waiting if not one[1])
+        self._add(frame, replaces)
+        if len(self._waiting) > MOST or self._bytes > LARGEST:
+            self._waiting.clear()
+            self._bytes = 0
+            for one in self._anew():
+                self._add(one, False)
         self._some.set()
 
     async def get(self) -> bytes:
@@ -31,7 +37,13 @@ class Mailbox:
         while not self._waiting:
             self._some.clear()
             await self._some.wait()
-        return self._waiting.popleft()[0]
+        frame, _ = self._waiting.popleft()
+        self._bytes -= len(frame)
+        return frame
+
+    def _add(self, frame: bytes, replaces: bool) -> None:
+        self._waiting.append((frame, replaces))
+        self._bytes += len(frame)
 
     def __len__(self) -> int:
         return len(self._waiting)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import secrets
+import traceback
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager, suppress
 
@@ -15,14 +15,18 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from shared.stage.errors import UserError
-from studio.live.children import Nursery
 from studio.live.frames import framed
 from studio.live.gate import Gate
 from studio.live.mailbox import Mailbox
+from studio.live.processes.nursery import Nursery
+from studio.live.processes.warm_process import Failed
 from studio.live.session import Session
+from studio.live.wishes import wish_of
 
 LARGEST = 1 << 20
 """Bytes of a message from a page."""
+AGAIN = 1.0
+"""Seconds until files are followed again after an error."""
 WORDS = 32
 """Bytes of the token."""
 
@@ -38,9 +42,9 @@ class Pages:
         for box in self._boxes:
             box.put(frame, replaces)
 
-    def open(self) -> Mailbox:
-        """The messages of a page that has just opened."""
-        box = Mailbox()
+    def open(self, greeting: Callable[[], list[bytes]]) -> Mailbox:
+        """The messages of a page that has just opened; ``greeting`` has all that there is."""
+        box = Mailbox(greeting)
         self._boxes.add(box)
         return box
 
@@ -80,6 +84,7 @@ class Live:
     @asynccontextmanager
     async def _lifespan(self, _: Starlette) -> AsyncIterator[None]:
         self.session = Session(self._name, self.nursery, self.pages.push, self._parts)
+        self.nursery.say = self.session.board.line
         watching = asyncio.create_task(self._watch(self.session))
         try:
             yield
@@ -88,14 +93,25 @@ class Live:
             watching.cancel()
             with suppress(asyncio.CancelledError):
                 await watching
-            self.session.end()
+            await self.session.end()
+            await self.nursery.end()
 
     async def _watch(self, session: Session) -> None:
-        """Begin once the warm process is, and follow the files from then on; a page may open meanwhile."""
-        await asyncio.get_running_loop().run_in_executor(None, self.nursery.warm)
+        """Begin once the warm process is, and follow the files from then on; a page may open meanwhile.
+
+        An error of ours is told, and does not end it.
+        """
+        with suppress(Failed):  # the child says it
+            await self.nursery.warm()
         session.reload()
-        async for files in session.watch.changes(lambda: self._ended):
-            session.changed(files)
+        while not self._ended:
+            try:
+                async for files in session.watch.changes(lambda: self._ended):
+                    session.changed(files)
+            except Exception as error:
+                traceback.print_exc()
+                session.board.fail(f"the live page could not follow the files for a moment: {error}; save again")
+                await asyncio.sleep(AGAIN)
 
     async def _show(self, _: Request) -> Response:
         assert self.session is not None, "the server answers once it has begun"
@@ -108,30 +124,31 @@ class Live:
             await socket.close(1013)
             return
         await socket.accept()
-        box = self.pages.open()
+        box = self.pages.open(session.greeting)
         for frame in session.greeting():
             box.put(frame)
         sending = asyncio.create_task(_send_all(socket, box))
         try:
             while True:
-                self._take(session, await socket.receive_text(), box)
-        except (WebSocketDisconnect, KeyError, RuntimeError):
+                message = await socket.receive()
+                if message["type"] == "websocket.disconnect":
+                    break
+                self._take(session, message.get("text") or message.get("bytes") or b"", box)
+        except (WebSocketDisconnect, RuntimeError):
             pass
         finally:
             self.pages.close(box)
             sending.cancel()
 
-    def _take(self, session: Session, text: str, box: Mailbox) -> None:
-        """Do what a page asks for; what cannot be done is reported to that page."""
+    def _take(self, session: Session, text: str | bytes, box: Mailbox) -> None:
+        """Do what a page asks for; what cannot be done is reported to that page, and an error of ours as well."""
         try:
-            wish = json.loads(text)
-            if not isinstance(wish, dict):
-                raise UserError("a page asks by a JSON object")
-            session.ask(wish)
+            session.ask(wish_of(text))
         except UserError as error:
             box.put(framed({"kind": "refused", "text": str(error)}))
-        except (ValueError, RecursionError) as error:
-            box.put(framed({"kind": "refused", "text": f"the page's message is no JSON: {error}"}))
+        except Exception as error:
+            traceback.print_exc()
+            box.put(framed({"kind": "refused", "text": f"the live page has failed at this: {error}"}))
 
 
 async def _send_all(socket: WebSocket, box: Mailbox) -> None:

@@ -7,19 +7,23 @@ serves on, so a broken edit takes nothing away. Of many wishes of a slider the n
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+import time
 from pathlib import Path
 from typing import Any
 
+from msgspec import to_builtins
+
 from shared.stage.errors import UserError
 from shared.stage.paths import mechanism_folder
-from studio.live.background import Stages
+from studio.live import wishes
 from studio.live.board import Board, Push
-from studio.live.children import Child, Nursery
 from studio.live.fits import Fit
+from studio.live.processes.children import Child
+from studio.live.processes.nursery import Nursery
+from studio.live.processes.stages import Stages
 from studio.live.watching import Watch
-from studio.live.wishes import finite, place_of
-from studio.live.write_back import write_back
+from studio.live.wishes import Drag, Set, Wish, Write
+from studio.live.writing.writer import Writer, Written
 
 
 class Session:
@@ -38,7 +42,10 @@ class Session:
         self._parts_ready = self._solid_wanted = False
         self._opened: dict[str, float] = {}
         """Numbers with which the files are being solved."""
-        self.stages = Stages(name, self.board.line, self._parts_made)
+        self._began = 0.0
+        """When the process was begun that solves them (s since the epoch)."""
+        self.stages = Stages(name, nursery.mark, self.board.line, self._parts_made)
+        self.writer = Writer(name, nursery)
         self.fit = Fit(name, nursery, self.board.tell, self._fitted)
 
     # -- files ----------------------------------------------------------------------------------------------------
@@ -52,19 +59,21 @@ class Session:
 
     def reload(self, parts_ready: bool = False) -> None:
         """Load and solve the files as they are now; with parts that have just been made for them."""
-        self.fit.end()
+        if self.fit.running:
+            self.fit.cancel()
         self.stages.end()
         self._parts_ready = parts_ready
         if self._new is not None:
             self._new.kill()
         self.board.begin(parts_ready)
+        self._began = time.time()
         self._new, self._opened = self._nursery.child(self.name, self._heard_new), self.history.now
         self._new.ask(next(self._count), {"do": "open", "values": self._opened})
 
     def _heard_new(self, child: Child, header: dict[str, Any], payload: bytes) -> None:
         match header.get("kind"):
             case "files":
-                self.watch.follow(Path(file) for file in header["files"])
+                self.watch.follow((Path(file) for file in header["files"]), self._began)
             case "line":
                 self.board.line(header["text"])
             case "error" if child is self._new:
@@ -101,24 +110,35 @@ class Session:
 
     # -- wishes of the page -----------------------------------------------------------------------------------------
 
-    def ask(self, wish: dict[str, Any]) -> None:
-        """A wish of a page, one of WISHES. Raises UserError for what cannot be."""
-        do = wish.get("do")
-        if do not in WISHES:
-            raise UserError(f"the page asks for {do!r}; there is: {', '.join(WISHES)}")
-        WISHES[do](self, wish)
+    def ask(self, wish: Wish) -> None:
+        """A wish of a page. Raises UserError for what cannot be."""
+        match wish:
+            case Set():
+                self._set(wish)
+            case Drag():
+                self._solve({**to_builtins(wish), "values": self.history.now})
+            case Write():
+                self._write(wish)
+            case wishes.Fit():
+                wishes.known(wish.vary or (), self.board.numbers)
+                self.fit.begin(wish, self.history.now)
+            case wishes.Undo():
+                self._undo()
+            case wishes.Redo():
+                self._solve({"do": "set", "values": self.history.redo(), "final": True})
+                self.board.tell_values()
+            case wishes.Cancel():
+                self.fit.cancel()
 
-    def _set(self, wish: dict[str, Any]) -> None:
-        values = self.history.now | finite(wish.get("values"))
-        if wish.get("final"):
+    def _set(self, wish: Set) -> None:
+        wishes.known(wish.values, self.board.numbers)
+        values = self.history.now | wish.values
+        if wish.final:
             self.history.put(values)
             self.board.tell_values()
-        self._solve({"do": "set", "values": values, **_how(wish)})
+        self._solve({**to_builtins(wish), "values": values})
 
-    def _drag(self, wish: dict[str, Any]) -> None:
-        self._solve({"do": "drag", "values": self.history.now, **_how(wish), **place_of(wish)})
-
-    def _undo(self, _: dict[str, Any]) -> None:
+    def _undo(self) -> None:
         # A drag that has ended but is not solved yet is what there is to undo.
         values = self.history.now if self._drop_drag() else self.history.undo()
         self._solve({"do": "set", "values": values, "final": True})
@@ -132,29 +152,27 @@ class Session:
             one["final"] = False
         return bool(drags)
 
-    def _redo(self, _: dict[str, Any]) -> None:
-        self._solve({"do": "set", "values": self.history.redo(), "final": True})
-        self.board.tell_values()
-
-    def _write(self, wish: dict[str, Any]) -> None:
+    def _write(self, wish: Write) -> None:
         if self.board.error is not None:
             raise UserError("mechanism.py has an error, so nothing is written into it; cure it first")
-        names = wish.get("names") or list(self.history.now)
-        whole = {number["name"] for number in self.board.numbers if number["whole"]}
+        wishes.known(wish.names or (), self.board.numbers)
         now = self.history.now
-        values = {name: round(now[name]) if name in whole else now[name] for name in names if name in now}
+        values = {name: now[name] for name in (now if wish.names is None else wish.names) if name in now}
         if not values:
             raise UserError("no number differs from the file, so there is nothing to write")
-        path = write_back(self.name, values)
-        self.history.written(set(values))
-        self.board.tell_values()
-        self.board.line(f"{', '.join(values)} written into mechanisms/{path.parent.name}/{path.name}")
+        whole = {number["name"] for number in self.board.numbers if number["whole"]}
 
-    def _fit(self, wish: dict[str, Any]) -> None:
-        self.fit.begin(wish, self.history.now)
+        def done(written: Written) -> None:
+            self.history.written(values)
+            self.board.tell_values()
+            self.board.line(written.text)
 
-    def _cancel(self, _: dict[str, Any]) -> None:
-        self.fit.cancel()
+        self.writer.begin(
+            {name: round(value) if name in whole else value for name, value in values.items()},
+            self.board.numbers,
+            done,
+            lambda text: self.board.tell({"kind": "refused", "text": text}),
+        )
 
     def _fitted(self, values: dict[str, float]) -> None:
         self.history.put(values)
@@ -213,13 +231,14 @@ class Session:
         """What a page gets that has just opened."""
         return self.board.greeting(name=self.name, solving=self._new is not None, making=self.stages.running)
 
-    def end(self) -> None:
+    async def end(self) -> None:
         """End all that runs for it."""
-        self.stages.end()
         self.fit.end()
+        self.writer.end()
         for child in (self._good, self._new):
             if child is not None:
                 child.kill()
+        await self.stages.ended()
 
     def _make_parts(self) -> None:
         if self._wants_parts:
@@ -230,19 +249,3 @@ class Session:
         self.board.tell({"kind": "parts", "state": "ready" if good else "failed"})
         if good and self._new is None:
             self.reload(parts_ready=True)
-
-
-WISHES: dict[str, Callable[[Session, dict[str, Any]], None]] = {
-    "set": Session._set,
-    "drag": Session._drag,
-    "undo": Session._undo,
-    "redo": Session._redo,
-    "write": Session._write,
-    "fit": Session._fit,
-    "cancel": Session._cancel,
-}
-
-
-def _how(wish: dict[str, Any]) -> dict[str, bool]:
-    """Whether a slider or pointer was released, and whether arrows are seen while it moves."""
-    return {word: bool(wish.get(word)) for word in ("final", "arrows")}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import hashlib
+import math
 import os
 from collections.abc import AsyncIterator, Callable, Iterable
 from pathlib import Path
@@ -15,6 +16,8 @@ DEBOUNCE, STEP = 120, 15
 LOOK_AGAIN = 1000
 """Milliseconds without a word from the system, after which contents are compared all the same: some file systems tell
 of no change, and one can fall between two watches."""
+COARSE = 0.05
+"""Seconds by which the clock of a file system may be late."""
 LARGEST = 1 << 26
 """Bytes of a file whose content is compared; of larger ones size and time."""
 
@@ -27,20 +30,25 @@ class Watch:
         self._files: set[Path] = set()
         self._states: dict[Path, str] = {}
         self._again = asyncio.Event()
+        self._changed(self._all())
 
-    def follow(self, files: Iterable[Path]) -> None:
-        """From now on look at these files, too; Python files of the folder are always looked at."""
+    def follow(self, files: Iterable[Path], since: float = math.inf) -> None:
+        """From now on look at these files, too; Python files of the folder are always looked at.
+
+        They were read at ``since`` (s since the epoch) or later; one that was written after that counts as changed, for
+        what was read may be what it was before.
+        """
         new = {Path(os.path.abspath(file)) for file in files} - self._files
         if not new:
             return
         self._files |= new
         for file in new:
-            self._states.setdefault(file, state(file))
+            if file not in self._states and _written(file) < since - COARSE:
+                self._states[file] = state(file)
         self._again.set()
 
     async def changes(self, ended: Callable[[], bool]) -> AsyncIterator[set[Path]]:
         """Sets of files whose content has changed, until ``ended``."""
-        self._changed(self._all())
         while not ended():
             self._again.clear()
             stop = asyncio.Event()
@@ -74,7 +82,7 @@ class Watch:
 
     def _all(self) -> set[Path]:
         try:
-            own = {self.folder / name for name in os.listdir(self.folder) if name.endswith(".py")}
+            own = {self.folder / name for name in os.listdir(self.folder) if name.endswith(".py") and name[0] != "."}
         except OSError:
             own = set()
         return own | self._files | {file for file in self._states if file.parent == self.folder}
@@ -100,3 +108,11 @@ def state(file: Path) -> str:
         return hashlib.sha256(file.read_bytes()).hexdigest()
     except OSError:
         return "missing"
+
+
+def _written(file: Path) -> float:
+    """When a file was written last (s since the epoch); long ago if it is not there."""
+    try:
+        return file.stat().st_mtime
+    except OSError:
+        return -math.inf

@@ -10,6 +10,7 @@ from render.view import pictures
 from shared.stage.console import progress, say, warn
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, Out
+from shared.system import missing
 
 STEPS = (("mechanisms", "parts", "--or-none"), ("mechanisms", "solve"), ("mechanisms", "shot"), ("render", "view"))
 """What make view-<name> runs."""
@@ -37,7 +38,7 @@ def run(names: Sequence[str]) -> int:
                     warn("pages", f"{name}: {error}")
                 shown.advance(note=name)
     if browser is None:
-        warn("pages", "there are no pictures: they need Chromium (Debian: apt-get install chromium); pages do not")
+        warn("pages", f"there are no pictures: they need Chromium ({missing.remedy(['chromium'])}); pages do not")
     if failed:
         _table(failed)
     say(

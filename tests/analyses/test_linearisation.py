@@ -286,12 +286,12 @@ def test_motions_without_mass_are_refused() -> None:
     m = Mechanism("light")
     rod = m.bar("rod", 1.0)
     m.revolute("A", m.ground.origin, rod.start)
-    with pytest.raises(MobilityError, match=r"light: nothing that has a mass moves with rod\.theta; give bodies mass"):
+    with pytest.raises(MobilityError, match="light: 'rod' has neither mass nor inertia, and can move in 1 way"):
         m.linearise("start")
     second = m.bar("second", 1.0)
     m.revolute("B", rod.end, second.start)
     bob = m.body("bob", 1.0)
     m.revolute("C", second.end, bob.origin)
     m.start_near(rod=-90, second=-90)
-    with pytest.raises(MobilityError, match=r"light: .* give bodies mass and inertia"):
+    with pytest.raises(MobilityError, match="light: 'rod' and 'second' have neither mass nor inertia"):
         m.linearise("start")

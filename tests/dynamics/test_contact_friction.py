@@ -157,6 +157,17 @@ def test_a_box_with_both_feet_on_the_ground_is_pushed(push: float) -> None:
     np.testing.assert_allclose(sum(sol.contact(f"foot {k}").normal for k in range(2)), 4 * G, rtol=1e-9)
 
 
+@pytest.mark.parametrize("turning", np.linspace(-3e-4, 3e-4, 8))
+def test_a_box_whose_rocking_is_too_slow_to_count_is_at_rest_at_once(turning: float) -> None:
+    """One foot stands, the other goes up slower than what ends the bouncing, and no foot slides."""
+    m = box(0.4, 0.355)
+    m.start_moving(box=(-0.25 * turning, 0.5 * abs(turning), turning))
+    sol = m.simulate(0.05, steps=2)
+    assert [(event.time, event.what) for event in sol.events] == [(0.0, "closes")] * 2
+    np.testing.assert_allclose(sol.v, 0.0, atol=1e-15)
+    np.testing.assert_allclose(sol.q[-1], sol.q[0], atol=1e-15)
+
+
 def test_a_box_tips_when_it_is_pushed_high() -> None:
     """It tips about its foot as soon as push x height exceeds weight x half the width."""
     m = box(0.0, 2.0)

@@ -70,7 +70,7 @@ def test_other_mechanisms_are_not_taken_for_pins(more: str) -> None:
     last, first = m.ground.at(0.0, 0.0), m.bar("bar0", 0.1, mass=0.1)
     bar = first
     for k in range(MANY - (more == "few")):
-        bar = m.bar(f"bar{k}", 0.1, mass=0.0 if more == "light" and k % 2 else 0.1) if k else first
+        bar = m.bar(f"bar{k}", 0.1, mass=0.0 if more == "light" and k % 2 == 0 else 0.1) if k else first
         m.revolute(f"pin{k}", last, bar.start)
         m.start_near(**{bar.name: -60.0 + 3.0 * k})
         last = bar.end

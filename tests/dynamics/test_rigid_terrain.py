@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, ModelError
+from mbsd import Mechanism, ModelError, SimulationError
 
 G = 9.81
 HILLS = [(x, 0.3 * math.sin(x) - 0.05 * x) for x in np.linspace(-4.0, 6.0, 60)]
@@ -116,3 +116,21 @@ def test_what_cannot_be_is_refused() -> None:
     with pytest.raises(ModelError, match="restitution is 2"):
         m.rigid_terrain("ground", m.ground.origin, ball.origin, valley, restitution=2.0)
     assert not m.contacts
+
+
+@pytest.mark.parametrize(("height", "solid"), [(1.5, "within"), (0.0, "outside")])
+def test_a_closed_terrain_that_is_solid_on_the_wrong_side_says_what_cures_it(height: float, solid: str) -> None:
+    """A ball beside a round hill, or within a ring: the remedy that the refusal names is tried."""
+    turn = np.linspace(0, 2 * np.pi, 12, endpoint=False) * (1.0 if solid == "within" else -1.0)
+    points = np.column_stack([np.cos(turn), np.sin(turn)]).tolist()
+
+    def hill(points: list[list[float]]) -> Mechanism:
+        m = Mechanism("hill")
+        ball = m.body("ball", 1.0, inertia=0.01)
+        m.rigid_terrain("hill", m.ground.origin, ball.origin, points, 0.1, closed=True)
+        m.start_near(ball=(0.0, height, 0.0))
+        return m
+
+    with pytest.raises(SimulationError, match="give the points of its closed curve in reverse order"):
+        hill(points).simulate(0.01, 2)
+    assert hill(points[::-1]).simulate(0.01, 2).contact("hill").gap[0] > 0.3

@@ -184,7 +184,7 @@ def test_sweep_balances_springs_with_the_driver() -> None:
         (lambda m, a, b: m.spring("s", a.origin, b.origin, -1.0), "stiffness is -1"),
         (lambda m, a, b: m.spring("s", a.origin, b.origin, math.nan), "finite"),
         (lambda m, a, b: m.spring("s", a.origin, a.origin, 1.0), "with itself"),
-        (lambda m, a, b: m.spring("s", a.origin, "b", 1.0), "needs two markers"),
+        (lambda m, a, b: m.spring("s", a.origin, "b", 1.0), "j is 'b'; it must be a marker"),
         (lambda m, a, b: m.force("s", a.origin, 1.0, direction=(0, 0)), "no direction"),
         (lambda m, a, b: m.bushing("s", a.origin, b.origin, (1.0, 2.0)), "give \\(x, y, turning\\)"),
         (lambda m, a, b: m.curve_of_length("s", a.origin, b.origin), "has no curve"),

@@ -205,7 +205,9 @@ def test_three_bodies_that_only_together_are_rigid_are_solved_by_newton() -> Non
 
 
 @pytest.mark.parametrize("name", ["driven carried", "yoke", "driven slide", "rod driven"])
-def test_a_law_that_jumps_is_refused_by_both_routes(name: str) -> None:
+def test_a_law_that_jumps_is_refused_by_both_routes(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The check of laws before the march is left out: it finds this jump first."""
+    monkeypatch.setattr("mbsd.kinematics.prepared.refuse_bad_laws", lambda *_: None)
     m = MODELS[name]()
     driver = next(iter(m.drivers.values()))
     law = driver.motion

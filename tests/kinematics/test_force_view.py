@@ -10,7 +10,8 @@ import pytest
 from mbsd import Mechanism, ModelError, constant_rate, harmonic
 from mbsd.arrays.reactions import marker_places
 from mbsd.model.force import ForceKind
-from mbsd.results.forces import Moved, force_view
+from mbsd.results.forces import force_view
+from mbsd.results.moved import Moved
 from mbsd.results.solution import Solution
 from mbsd.testing import force_kinds
 from mbsd.testing.forces import example
@@ -104,7 +105,7 @@ def test_what_is_measured_has_its_rate_and_pushes_by_its_effort(kind: ForceKind)
         np.testing.assert_array_equal(getattr(view, view.measures), view.value)
         q, v = (part.reshape(len(sol.t), -1) for part in (sol.q, sol.v))
         after, before = (
-            force_view(Moved(sol.packed, sol.t, q + h * v, v, sol.lam, None, (0.0, 0.02)), view.name).value
+            force_view(Moved(sol.packed, sol.t, q + h * v, v, sol.lam, None, (0.0, 0.02), 0.0 * v), view.name).value
             for h in (1e-6, -1e-6)
         )
         assert after is not None

@@ -183,7 +183,7 @@ def test_gears_by_teeth_are_those_of_their_radii(internal: bool, distance: float
     if internal:
         m.change("g", module=0.020 * 2 / 24)
     np.testing.assert_allclose(m.sweep(1.0, steps=10).body("second").omega, 6.0 if internal else -4.5)
-    m.change("g", teeth=None, module=None, radius_i=0.05, radius_j=0.01)
+    m.change("g", teeth=None, module=None, radius_i=0.025 if internal else 0.05, radius_j=0.005 if internal else 0.01)
     np.testing.assert_allclose(m.sweep(1.0, steps=10).body("second").omega, 15.0 if internal else -15.0)
 
 
@@ -273,7 +273,8 @@ def test_centres_that_meet_end_the_motion(method: str, options: dict, stiffness:
     """Nothing holds the centres apart, and their line keeps its direction: they run into each other."""
     m = Mechanism("loose", gravity=None)
     ring, gear = m.body("ring", 2.0, inertia=1.0), m.body("gear", 1.0, inertia=0.1)
-    m.gear_pair("mesh", ring.origin, gear.origin, radius_i=0.5, radius_j=0.2, internal=True)
+    wide = math.hypot(0.3, 0.05) / 0.3
+    m.gear_pair("mesh", ring.origin, gear.origin, radius_i=0.5 * wide, radius_j=0.2 * wide, internal=True)
     m.torsion_spring("coil", m.ground, gear, stiffness, 0.1, 0.5)
     m.start_near(ring=(0, 0, 0), gear=(0.3, 0.05, 0))
     m.start_moving(gear=(-0.3, -0.05, 0.0), ring=(0.0, 0.0, 0.0))

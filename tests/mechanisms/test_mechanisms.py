@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -16,27 +13,19 @@ from mechanisms.stages.parts_files import read_mesh
 from render import glb
 from shared import contract
 from shared.contract.shot import Names, read_shot, refuse_unknown
-from shared.stage.paths import ROOT, Out, mechanism_names
+from shared.stage.paths import Out, mechanism_names
 from tests.render.glb_file import GlbFile
+from tests.running.warm import Warm
 
-
-def _stage(name: str, stage: str, root: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "mechanisms", stage, name],
-        cwd=ROOT,
-        env=os.environ | {"MBSD_OUT": str(root)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+STAGES = ("parts", "solve", "clearance", "shot")
 
 
 @pytest.fixture(scope="module", params=mechanism_names())
-def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
+def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, warm: Warm) -> tuple[str, Path]:
     """All stages before the pictures, run as a user runs them."""
     root = tmp_path_factory.mktemp(request.param)
-    for stage in ("parts", "solve", "clearance", "shot"):
-        run = _stage(request.param, stage, root)
+    for stage in STAGES:
+        run = warm.run("mechanisms", stage, request.param, MBSD_OUT=str(root))
         assert run.returncode == 0, f"{stage}: {run.stdout}{run.stderr}"
     return request.param, root
 
@@ -144,16 +133,16 @@ def test_the_shot_names_what_there_is(out: Out) -> None:
     refuse_unknown(read_shot(out.shot), Names.of(contract.read_motion(out.motion), contract.read_parts(out.parts)))
 
 
-def test_a_second_run_has_nothing_to_do(made: tuple[str, Path]) -> None:
+def test_a_second_run_has_nothing_to_do(made: tuple[str, Path], warm: Warm) -> None:
     name, root = made
     before = {path: path.read_bytes() for path in sorted(root.rglob("*.json"))}
-    for stage in ("parts", "solve", "clearance", "shot"):
-        assert "nothing to do" in _stage(name, stage, root).stdout
+    for stage in STAGES:
+        assert "nothing to do" in warm.run("mechanisms", stage, name, MBSD_OUT=str(root)).stdout
     assert {path: path.read_bytes() for path in sorted(root.rglob("*.json"))} == before
 
 
-def test_solving_anew_gives_the_same_bytes(made: tuple[str, Path], out: Out) -> None:
+def test_solving_anew_gives_the_same_bytes(made: tuple[str, Path], out: Out, warm: Warm) -> None:
     before = out.motion.read_bytes()
     out.motion.unlink()
-    assert _stage(made[0], "solve", made[1]).returncode == 0
+    assert warm.run("mechanisms", "solve", made[0], MBSD_OUT=str(made[1])).returncode == 0
     assert out.motion.read_bytes() == before

@@ -18,8 +18,8 @@ import pytest
 
 from mechanisms.stages.parts import stage as parts_stage
 from mechanisms.stages.parts.on_cluster import built, dealt
+from mechanisms.stages.parts.on_cluster.answer import Made
 from mechanisms.stages.parts.on_cluster.author_files import collected
-from mechanisms.stages.parts.on_cluster.built import Made
 from shared.cluster import hand
 from shared.stage import locks
 from shared.stage.errors import UserError

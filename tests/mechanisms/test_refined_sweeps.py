@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
-from mbsd import Solution
+from mbsd import Mechanism, Solution, constant_rate
 from mechanisms.quick_return import mechanism as shaper
 from mechanisms.stages.solve import solving
 from mechanisms.stages.solve.refined_times import CLOSE
@@ -42,3 +44,12 @@ def _off(p: shaper.Params, found: Solution) -> float:
     crank = found.body("crank").theta[0] + p.speed * (found.t[:-1] + h / 2)
     exact = np.arctan2(p.height + p.crank * np.sin(crank), p.crank * np.cos(crank))
     return float(np.abs(np.exp(1j * middle) - np.exp(1j * exact)).max())
+
+
+@pytest.mark.parametrize(("turns", "rows"), [(None, 361), (2.0, 721), (0.5, 361)])
+def test_a_duration_of_two_turns_has_rows_for_both(turns: float | None, rows: int) -> None:
+    m = Mechanism("wheel")
+    m.revolute("O", m.ground.origin, m.body("disc").origin)
+    m.drive_angle("motor", m.bodies["disc"], constant_rate(2.0))
+    given = {} if turns is None else {"DURATION": turns * np.pi}
+    assert len(solving.motion_of("wheel", SimpleNamespace(**given), m, None).t) == rows

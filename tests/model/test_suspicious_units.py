@@ -13,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, ModelWarning, constant_rate, cycloidal, harmonic
+from mbsd.analyses.suspicious_units import Finding
 from mbsd.saving.document import build, document
 from shared.stage.paths import mechanism_names
 from tests.models import random_linkages
@@ -30,6 +31,11 @@ def _four_bar(scale: float = 1.0, **lengths: float) -> Mechanism:
     m.revolute("D", m.ground.at(sizes["ground"], 0), rocker.start)
     m.start_near(crank=0, coupler=45, rocker=100)
     return m
+
+
+def _of_units(m: Mechanism) -> list[Finding]:
+    """What is told of numbers: rough starts here may be as near to both assemblies, which is told as well."""
+    return [finding for finding in m.check() if "the links close in two ways" not in finding.problem]
 
 
 def _wire() -> Mechanism:
@@ -115,7 +121,7 @@ def _started(**poses: float) -> Mechanism:
     ],
 )
 def test_told_with_its_name_and_remedy(m: Mechanism, names: list[str], says: str) -> None:
-    found = m.check()
+    found = _of_units(m)
     assert [finding.name for finding in found] == names
     assert re.search(says, str(found[0])), str(found[0])
 
@@ -148,7 +154,7 @@ def test_gravity_in_millimetres_is_told(value: float, unit: str) -> None:
     ],
 )
 def test_sound_mechanisms_pass_in_silence(build: Callable[[], Mechanism]) -> None:
-    assert build().check() == []
+    assert _of_units(build()) == []
 
 
 def test_places_equal_but_for_rounding_are_one() -> None:
@@ -196,7 +202,7 @@ def test_a_long_chain_is_no_mixture_of_units() -> None:
     factor=st.sampled_from([1e-3, 1e3]),
 )
 def test_one_length_in_another_unit_is_always_found(lengths: dict[str, float], wrong: str, factor: float) -> None:
-    assert _four_bar(**lengths).check() == []
+    assert _of_units(_four_bar(**lengths)) == []
     found = _four_bar(**lengths | {wrong: factor * lengths[wrong]}).check()
     assert [finding.name for finding in found if "long beside" in finding.problem] == [wrong]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -27,9 +28,10 @@ from mbsd.extend import (
 )
 from mbsd.model.force import FORCE_KINDS
 from mbsd.model.joint import KINDS
-from mbsd.testing import contact_kinds, force_kinds, joint_kinds
+from mbsd.testing import check_joint, contact_kinds, force_kinds, joint_kinds
 from mbsd.testing.forces import example
 from shared.stage.paths import ROOT
+from tests.models.genevas import geneva
 
 
 @pytest.fixture
@@ -134,6 +136,33 @@ def test_a_torque_of_ones_own_takes_an_effort(monkeypatch: pytest.MonkeyPatch) -
     m.spring("spring", m.ground.at(1.0, 0.0), m.bodies["rod"].end, 10.0)
     with pytest.raises(ModelError, match="force 'spring' is a spring; only drivers, torques, forces and actuators"):
         m.with_efforts(spring=1.0)
+
+
+def maltese(**own) -> JointKind:
+    """A Geneva whose argument has another name."""
+    numbers = {"numbers": lambda params: [(params["stations"], params["radius"])], "problem": None}
+    return replace(KINDS["geneva"], name="maltese", **numbers, **own)
+
+
+def test_a_wheel_that_looks_alike_after_a_turn_has_no_other_way_to_close() -> None:
+    def told(kind: JointKind) -> list[str]:
+        m = geneva(4, start=1.0)
+        index = m.joints.pop("index")
+        join(m, kind, "index", index.i, index.j, None, stations=4, radius=index.params["radius"])
+        m.start_near(wheel=0.0)
+        return [finding.name for finding in m.check()]
+
+    assert told(maltese(symmetry=None)) == ["wheel"]
+    assert told(maltese(symmetry=lambda params: params["stations"])) == []
+
+
+def test_a_wrong_symmetry_is_found() -> None:
+    def wheel(m, i: Marker, j: Marker):
+        return join(m, wrong, "example", i, j, None, stations=5, radius=0.3)
+
+    wrong = maltese(example=wheel, symmetry=lambda params: 4)
+    with pytest.raises(AssertionError, match=r"maltese, seed 0: Phi after a turn of body j by 1/4, row 0 \(geneva\)"):
+        check_joint(wrong)
 
 
 def test_a_place_of_contact_that_does_not_exist_is_refused() -> None:

@@ -10,6 +10,7 @@ import pytest
 
 from mbsd import Mechanism, ModelError, constant_rate
 from mbsd.arrays.user_constraint import derivatives
+from mbsd.compiling.callback import Callback
 
 
 def _rod(x, y, a):
@@ -61,7 +62,7 @@ def test_second_derivatives_are_exact_to_rounding() -> None:
 
     callback = derivatives(f, "test", 1.0)
     x, y, a = 0.4, -0.7, 1.3
-    out = callback.function(0.0, x, y, a)
+    out = callback.function(1.0, x, y, a)
     e, s, c = math.exp(0.3 * x), math.sin(y + a), math.cos(y + a)
     expected = [e * s + x * y * a, 0.3 * e * s + y * a, e * c + x * a, e * c + x * y]
     expected += [0.09 * e * s, 0.3 * e * c + a, 0.3 * e * c + y, -e * s, -e * s + x, -e * s]
@@ -81,3 +82,25 @@ def test_errors_in_the_function_are_told() -> None:
     m = _crank()
     with pytest.raises(ModelError, match="unit 'mm'"):
         m.constraint("other", m.ground.origin, m.bodies["slider"].origin, _rod, unit="mm")
+
+
+@pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled")  # pyright: ignore[reportAttributeAccessIssue, reportPrivateImportUsage]
+def test_a_compiled_function_is_compiled_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """For all mechanisms and sizes, the next simulations among them; so are forces and laws of springs."""
+    made: list[object] = []
+    compile_ = Callback._compile
+    monkeypatch.setattr(Callback, "_compile", lambda self: (made.append(self.function), compile_(self))[1])
+    circle = numba.njit(lambda x, y, a: x * x + y * y - 1.0)
+    push = numba.njit(lambda t, q, v: (-v[0], 0.0, 0.0))
+    law = numba.njit(lambda length, rate: -3.0 * (length - 0.5))
+    ends = []
+    for arm in (0.1, 0.1, 0.2):
+        m = Mechanism("wheel")
+        rim = m.body("rim", 1.0, inertia=0.1)
+        m.constraint("circle", m.ground.origin, rim.at(arm, 0), circle)
+        m.user_force("drag", push, rim)
+        m.spring_law("spring", m.ground.at(0.2, 0), rim.origin, law)
+        m.start_near(rim=(1 - arm, 0, 0))
+        ends.append(m.simulate(0.3, steps=3).body("rim").y[-1])
+    assert len(made) == 3
+    assert ends[0] == ends[1] != ends[2]

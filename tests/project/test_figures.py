@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +31,8 @@ ANALYSES = (
     "forces",
 )
 
+once = cache(drawn)
+
 
 def parts(svg: str) -> tuple[str, np.ndarray, np.ndarray]:
     """An SVG without its numbers; those beside its paths; and the box of each path, which may have other points."""
@@ -42,7 +45,7 @@ def parts(svg: str) -> tuple[str, np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("page", PAGES)
 def test_pictures_are_what_their_pages_compute(page: str) -> None:
     """Up to the last digits of other machines, a tenth of a point."""
-    for name, content in drawn(page).items():
+    for name, content in once(page).items():
         words, numbers, boxes = parts(content.decode())
         kept_words, kept_numbers, kept_boxes = parts((ROOT / "docs" / name).read_text())
         assert words == kept_words, f"docs/{name} shows something else: make docs"
@@ -51,7 +54,7 @@ def test_pictures_are_what_their_pages_compute(page: str) -> None:
 
 
 def test_a_picture_has_the_same_bytes_each_time() -> None:
-    assert drawn("statics") == drawn("statics")
+    assert drawn("statics") == once("statics")
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "docs").glob("*.svg")), ids=lambda path: path.name)

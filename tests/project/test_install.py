@@ -37,7 +37,10 @@ class Tree:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         shutil.copytree(ROOT / "tools", folder / "tools")
+        shutil.copytree(ROOT / "shared" / "system", folder / "shared" / "system")
+        shutil.copy(ROOT / "shared" / "__init__.py", folder / "shared")
         (folder / "mbsd").mkdir()
+        (folder / "mbsd" / "__init__.py").touch()
         (folder / "mbsd" / "__main__.py").write_text("import sys; print('mbsd', *sys.argv[1:])\n")
         self.lock = folder / "requirements.lock"
         self.lock.write_text("numpy==2.5.5\n")
@@ -87,7 +90,7 @@ def tree(tmp_path: Path) -> Tree:
 def test_install_makes_the_environment_once(tree: Tree) -> None:
     first = tree.install()
     assert first.returncode == 0, first.stderr
-    assert tree.calls == ["venv --quiet", "pip sync", "pip install"]
+    assert tree.calls == ["venv --quiet", "pip sync"]
     assert "--require-hashes requirements.lock" in tree.asked.read_text()
     assert "compiling the solver's kernels in the background" in first.stdout
     assert tree.python("tools.compiling", "wait").returncode == 0
@@ -103,7 +106,7 @@ def test_install_follows_the_content_of_the_lock(tree: Tree) -> None:
     assert tree.calls == []
     tree.lock.write_text("numpy==2.5.6\n")
     tree.install()
-    assert tree.calls == ["pip sync", "pip install"]
+    assert tree.calls == ["pip sync"]
 
 
 def test_a_failed_install_is_told_and_tried_again(tree: Tree) -> None:
@@ -114,22 +117,7 @@ def test_a_failed_install_is_told_and_tried_again(tree: Tree) -> None:
     assert "error: the packages of requirements.lock could not be installed" in failed.stderr
     tree.uv("exit 0")
     assert tree.install().returncode == 0
-    assert tree.calls == ["pip sync", "pip install"]
-
-
-def test_the_solver_is_there_for_scripts_in_any_folder(tree: Tree, tmp_path: Path) -> None:
-    """Also where the environment stands already, and again after the packages changed."""
-    tree.install()
-    assert "--editable ." in tree.asked.read_text()
-    (tree.folder / ".venv" / "solver-installed").unlink()
-    tree.install()
-    assert tree.calls == ["pip install"]
-    code = "import mbsd; print(mbsd.__file__)"
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    told = subprocess.run(
-        [sys.executable, "-c", code], cwd=tmp_path / "bin", env=environment, capture_output=True, text=True
-    )
-    assert Path(told.stdout.strip()).name == "__init__.py", told.stderr
+    assert tree.calls == ["pip sync"]
 
 
 def test_a_failed_compilation_is_told_by_who_waits_and_by_the_next_install(tree: Tree) -> None:
@@ -174,17 +162,18 @@ def test_an_environment_whose_python_is_gone_is_made_again(tree: Tree) -> None:
     tree.install()
     (tree.folder / ".venv" / "bin" / "python").unlink()
     tree.install()
-    assert tree.calls == ["venv --quiet", "pip sync", "pip install"]
+    assert tree.calls == ["venv --quiet", "pip sync"]
 
 
 def test_a_missing_system_library_is_named_with_its_cure_until_it_is_there(tree: Tree) -> None:
-    probe = tree.folder / "tools" / "system_libraries.py"
+    probe = tree.folder / "shared" / "system" / "wanted.py"
     text = probe.read_text()
     probe.write_text(text.replace('"libGL.so.1"', '"libNotThere.so.1"'))
     done = tree.install()
     assert done.returncode == 0
     if sys.platform == "linux":
-        assert "missing system libraries libNotThere.so.1: sudo apt-get install -y libgl1\n" in done.stderr
+        line = "missing system libraries libNotThere.so.1: sudo apt-get install -y libgl1\n"
+        assert done.stderr == 2 * line, "before packages are fetched and at the end"
         assert "libNotThere" in tree.install().stderr
     probe.write_text(text)
     tree.install()

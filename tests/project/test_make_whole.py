@@ -35,9 +35,10 @@ def test_check_tells_versions_libraries_disk_and_device() -> None:
         "python",
         "packages",
         "system libraries",
+        "programs",
         "disk",
         "render device",
     ]
     assert re.search(r"numpy \d+\.\d+\.\d+, .*bpy 5\.2", lines[1])
-    assert re.search(r"\d+ GB free", lines[3])
-    assert re.search(r"(CPU|OPTIX|CUDA|HIP|METAL|ONEAPI).*, Blender 5\.2", lines[4])
+    assert re.search(r"\d+ GB free", lines[4])
+    assert re.search(r"(CPU|OPTIX|CUDA|HIP|METAL|ONEAPI).*, Blender 5\.2", lines[5])

@@ -151,4 +151,19 @@ def test_the_makefile_keeps_to_make_3_81_and_a_posix_shell() -> None:
 def test_tests_and_measurements_wait_for_all_kernels() -> None:
     for target in ("test", "bench-start", "check-numbers"):
         done = run("make", "-n", "-o", "install", target)
-        assert done.stdout.splitlines()[0].endswith("-m tools.compiling wait"), target
+        [line] = [number for number, text in enumerate(done.stdout.splitlines()) if "-m tools.compiling wait" in text]
+        assert line == (1 if target == "test" else 0), "before the first test, after a word on missing programs"
+
+
+def test_what_makes_parts_or_pictures_ends_before_it_begins_where_libraries_are_missing(tmp_path: Path) -> None:
+    """install leaves a file where all were found; what needs none of them goes on."""
+    shutil.copy(ROOT / "Makefile", tmp_path)
+    (tmp_path / ".venv").mkdir()
+    for target in ("run-four-bar", "film-four-bar", "parts-four-bar", "overnight"):
+        done = run("make", "-o", "install", "PYTHON=echo", target, cwd=tmp_path)
+        assert done.returncode != 0
+        assert "error: parts and pictures need these libraries; nothing was made" in done.stderr
+        assert done.stdout == ""
+    assert run("make", "-o", "install", "PYTHON=echo", "animate-four-bar", cwd=tmp_path).returncode == 0
+    (tmp_path / ".venv" / "libraries-found").touch()
+    assert run("make", "-o", "install", "PYTHON=echo", "run-four-bar", cwd=tmp_path).returncode == 0

@@ -1,7 +1,8 @@
-"""How tests are spread over processes: a file is a group, so is a folder of mechanisms/; the long ones come first."""
+"""How tests are spread over processes: a file is a group, so is a folder of mechanisms/; quick ones come first."""
 
 from __future__ import annotations
 
+import json
 import re
 import subprocess
 import sys
@@ -9,10 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from shared.stage.paths import mechanism_names
-from tests.conftest import group_of
+from shared.stage.paths import ROOT, mechanism_names
+from tests.running import order
+from tests.running.order import group_of, place_of
 
-TESTS = Path(__file__).parents[1]
+TESTS = ROOT / "tests"
 
 
 class _Seen:
@@ -24,17 +26,43 @@ class _Seen:
         self.items = list(session.items)
 
 
-def test_every_folder_is_a_group_and_comes_before_every_file() -> None:
+def test_files_that_are_not_known_to_be_long_come_before_every_folder_and_no_group_is_torn() -> None:
     seen = _Seen()
     files = [
         str(TESTS / name)
-        for name in ("project/test_rooms.py", "mechanisms/test_mechanisms.py", "project/test_schedule.py")
+        for name in ("mechanisms/test_mechanisms.py", "project/test_rooms.py", "project/test_schedule.py")
     ]
     pytest.main(["--collect-only", "-q", "-p", "no:cacheprovider", *files], plugins=[seen])
-    groups = [group_of(item.nodeid) for item in seen.items]
-    folders = [f"tests/mechanisms/test_mechanisms.py[{name}]" for name in mechanism_names()]
-    assert list(dict.fromkeys(groups)) == [*folders, "tests/project/test_rooms.py", "tests/project/test_schedule.py"]
-    assert groups == sorted(groups, key=list(dict.fromkeys(groups)).index), "no group is torn apart"
+    groups = list(dict.fromkeys(group_of(item.nodeid) for item in seen.items))
+    folders = {f"tests/mechanisms/test_mechanisms.py[{name}]" for name in mechanism_names()}
+    assert groups[:2] == ["tests/project/test_rooms.py", "tests/project/test_schedule.py"]
+    assert set(groups[2:]) == folders
+    assert len(groups) == 2 + len(folders), "no group is torn apart"
+
+
+def test_quick_groups_keep_their_order_and_long_ones_are_longest_first() -> None:
+    seconds = {"a.py": 5.0, "b.py": 90.0, "c.py": 20.0}
+    groups = ["a.py", "x.py", "b.py", "y.py", "c.py", "test_mechanisms.py[new]"]
+    ordered = sorted(groups, key=lambda group: place_of(group, seconds))
+    assert ordered == ["x.py", "y.py", "b.py", "c.py", "test_mechanisms.py[new]", "a.py"]
+
+
+def test_the_recorded_groups_exist_and_are_long() -> None:
+    for group, seconds in order.recorded().items():
+        assert (ROOT / group.partition("[")[0]).is_file(), f"{group} is gone; take it out of tests/running/seconds.json"
+        assert "[" not in group or group.partition("[")[2].rstrip("]") in mechanism_names(), group
+        assert seconds >= order.LONG
+
+
+def test_seconds_of_long_groups_are_recorded(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(order, "SECONDS", tmp_path / "seconds.json")
+    order.SECONDS.write_text(json.dumps({"tests/old.py": 50.0, "tests/a.py": 9.0}))
+    recording = order.Recording()
+    for nodeid, duration in (("tests/a.py::x", 20.0), ("tests/a.py::y", 10.04), ("tests/b.py::x", 1.0)):
+        report = pytest.TestReport(nodeid, ("", 0, ""), {}, "passed", None, "call", duration=duration)
+        recording.pytest_runtest_logreport(report)
+    recording.pytest_sessionfinish()
+    assert json.loads(order.SECONDS.read_text()) == {"tests/old.py": 50.0, "tests/a.py": 30.0}
 
 
 SHARED = """
@@ -51,11 +79,12 @@ def test_three(made):
 """
 
 
-def test_a_folder_is_made_in_one_process_and_folders_in_both(tmp_path: Path) -> None:
+def test_a_folder_is_made_in_one_process_and_folders_in_both(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """By the words that make gives pytest."""
     (tmp_path / "test_mechanisms.py").write_text(SHARED)
     (tmp_path / "conftest.py").write_text((TESTS / "conftest.py").read_text())
-    given = re.search(r"^PYTEST \?= (.*)$", (TESTS.parent / "Makefile").read_text(), flags=re.MULTILINE)
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    given = re.search(r"^PYTEST \?= (.*)$", (ROOT / "Makefile").read_text(), flags=re.MULTILINE)
     assert given is not None
     command = [sys.executable, "-m", "pytest", "-v", "-p", "no:cacheprovider", *given[1].split(), str(tmp_path)]
     told = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False).stdout

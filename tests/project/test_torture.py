@@ -9,9 +9,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import psutil
 import pytest
 
 from shared.stage.paths import ROOT
+from tests.running.processes import ends_with_us, run_to_its_end, working_for
 from tools.torture.damage import cut, flipped, no_text
 from tools.torture.faults import BACKGROUND, CLUSTER, DISK_OF_ONE, FAULTS, FETCH, FULL
 from tools.torture.rounds import Outcome
@@ -22,23 +24,46 @@ def test_two_rounds(out_root: Path, tmp_path: Path) -> None:
 
     Where a small disk can be mounted, one of the two rounds fills it, and the other has no memory.
     """
-    done = subprocess.run(
-        [sys.executable, "-m", "tools.torture", "--n", "2", "--seed", "15"],
-        cwd=ROOT,
-        env=os.environ | {"MBSD_OUT": str(out_root), "TMPDIR": str(tmp_path)},
-        capture_output=True,
-        text=True,
-        timeout=400,
-    )
+    done = run_to_its_end(
+        [sys.executable, "-m", "tools.torture", "--n", "2", "--seed", "10596"], 400.0,
+        cwd=ROOT, env=os.environ | {"MBSD_OUT": str(out_root), "TMPDIR": str(tmp_path)},
+    )  # fmt: skip
     assert done.returncode == 0, done.stdout + done.stderr
     report = json.loads((out_root / "torture.json").read_bytes())
     assert report["rounds"] == len(report["outcomes"]) == 2
     counts = ("wrong", "lost", "redone", "refused", "hangs", "orphans", "tracebacks", "leftovers")
     assert [report[name] for name in counts] == [0] * len(counts)
     assert report["twice"] <= report["hit"]  # the frame in flight
-    listing = subprocess.run(["ps", "-axwwo", "args="], capture_output=True, text=True, check=True).stdout
-    assert str(tmp_path) not in listing
+    assert not working_for(tmp_path)
     assert not list(tmp_path.glob("mbsd-torture-*"))
+
+
+CLUSTER_ALONE = """
+import sys, time
+from pathlib import Path
+from tools.torture import workers
+workers.COUNT = 1
+workers.Workers(Path(sys.argv[1]))
+print("there", flush=True)
+time.sleep(600)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere nothing tells a process that its parent was killed")
+def test_a_cluster_ends_with_the_torture_that_is_killed(tmp_path: Path) -> None:
+    """A scheduler and three workers stayed for minutes, beside what was done next."""
+    command = [sys.executable, "-c", CLUSTER_ALONE, str(tmp_path)]
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, preexec_fn=ends_with_us) as torture:
+        assert torture.stdout is not None
+        assert torture.stdout.readline() == b"there\n"
+        family = psutil.Process(torture.pid).children(recursive=True)
+        torture.kill()
+    _, left = psutil.wait_procs(family, timeout=40.0)
+    subprocess.run(["umount", "-l", str(tmp_path / "w0")], capture_output=True, check=False)
+    for process in left:
+        process.kill()
+    assert len(family) >= 4, "a scheduler, who keeps the worker, its nanny and the worker itself"
+    assert not left
 
 
 @pytest.mark.parametrize("field", ["wrong", "lost", "redone", "refused", "hangs", "orphans", "tracebacks"])

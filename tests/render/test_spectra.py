@@ -21,7 +21,8 @@ from render.plots.asked import spectra_asked
 from render.plots.horizon import horizon
 from render.plots.marks import marks
 from render.plots.pages.beside_spectra import spectra_figure
-from render.plots.spectrum import spectrum
+from render.plots.pages.spectra import stems
+from render.plots.spectrum import Spectrum, spectrum
 from shared.contract import Motion, write_motion
 from shared.contract.skeleton import write_skeleton
 from shared.stage import paths
@@ -126,6 +127,19 @@ def test_rows_that_share_a_time_are_a_jump() -> None:
 # -- pages -----------------------------------------------------------------------------------------------------------
 
 
+def test_stems_of_an_order_stand_with_their_middle_on_it() -> None:
+    """One that is alone at its order stands on it; two stand beside each other, as far left as right."""
+    found = Spectrum(np.arange(4.0), np.array([[0, 0], [3, 0], [2, 1], [0, 1.0]]), True, 1.0, "a turn", "crank")
+    axes = Figure().subplots()
+    stems(axes, found, found.amplitudes, ["black", "red"], ["x", "y"])
+    bars = [segment[0, 0] for lines in axes.collections for segment in lines.get_segments()]
+    assert len(bars) == 4
+    assert bars[0] == 1.0
+    assert bars[3] == 3.0
+    assert (bars[1] + bars[2]) / 2 == pytest.approx(2.0)
+    assert 0.1 < bars[2] - bars[1] < 0.3
+
+
 def test_a_page_tells_what_it_shows() -> None:
     drawn = page("spectrum-shaking-force", MOTION)
     assert "Four-bar: spectrum of the shaking force" in shown(drawn)
@@ -189,8 +203,9 @@ def test_a_clockwise_driver_has_its_angle_as_axis_and_tells_how_long_a_turn_take
 
 @pytest.fixture
 def mechanism_py(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, out_root: Path) -> Path:
-    """Of a four-bar that is solved, for what SPECTRA says."""
+    """Of a four-bar that is solved, for what SPECTRA says; of its other plots the energy alone is drawn."""
     monkeypatch.setattr(paths, "MECHANISMS", tmp_path)
+    monkeypatch.setattr(plots, "plots_of", lambda _: ["energy"])
     (tmp_path / "four_bar").mkdir()
     (tmp_path / "four_bar" / "mechanism.py").write_text("VARIANTS = {'longer': {}}\n")
     for name in ("four_bar", "four_bar-longer"):

@@ -155,6 +155,7 @@ def test_all_that_a_model_holds_is_in_its_file() -> None:
         "name",
         "owner",
         "mass_given",
+        "derived",
         *schema()["$defs"]["body"]["properties"],
     }
 

@@ -14,6 +14,7 @@ import pytest
 
 from shared.stage.lineage import is_ending
 from shared.stage.paths import ROOT
+from tests.running.processes import command_lines, working_for
 
 STAGE = """
 import sys, time
@@ -65,15 +66,14 @@ def test_whatever_ends_run_all_ends_its_stages(tmp_path: Path, victim: str, how:
     try:
         wait_until(left.exists)
         said = f"{sys.executable} -m studio.night run"  # the shell above it has these words, too
-        nights = [pid for pid, _, words in processes() if words.startswith(said) and str(script) in words]
+        nights = [pid for pid, words in command_lines().items() if words.startswith(said) and str(script) in words]
         os.kill(process.pid if victim == "make" else nights[0], how)
         process.wait(timeout=20)
-        wait_until(lambda: not any(str(left) in arguments for *_, arguments in processes()))
+        wait_until(lambda: not working_for(left))
         assert not left.exists()
     finally:
-        for pid, _, arguments in processes():
-            if str(tmp_path) in arguments:
-                os.kill(pid, signal.SIGKILL)
+        for pid in working_for(tmp_path):
+            os.kill(pid, signal.SIGKILL)
 
 
 @LINUX
@@ -87,13 +87,6 @@ def test_a_process_that_starts_another_is_not_ending(blocked: str, ending: bool)
         one.stdout.readline()
         assert is_ending(one.pid) == ending
         one.kill()
-
-
-def processes() -> list[tuple[int, int, str]]:
-    """Number, parent and command line of every process."""
-    listing = subprocess.run(["ps", "-axwwo", "pid=,ppid=,args="], capture_output=True, text=True, check=True).stdout
-    lines = [line.split(maxsplit=2) for line in listing.splitlines()]
-    return [(int(pid), int(parent), "".join(arguments)) for pid, parent, *arguments in lines]
 
 
 def wait_until(condition: Callable[[], bool], seconds: float = 20.0) -> None:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import os
 import signal
-import threading
+import sys
 import warnings
-from collections.abc import Callable, Iterator
-from concurrent.futures import CancelledError
-from types import SimpleNamespace
+from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import dask.config
@@ -55,11 +54,40 @@ def test_the_table_is_that_of_a_local_study(client: Any) -> None:
     assert_frame_equal(mbsd.study(build, LENGTHS, fastest, client.scheduler.address, **QUIET), alone)
 
 
+def test_what_workers_read_and_import_decides_what_is_known(
+    client: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Workers live on: what they have imported for one call is not what the next one means."""
+    data, helper = tmp_path / "data.txt", tmp_path / "helper_of_workers.py"
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+
+    def measure(m: Mechanism) -> dict[str, float]:
+        sys.dont_write_bytecode = True
+        if str(tmp_path) not in sys.path:
+            sys.path.insert(0, str(tmp_path))
+        import helper_of_workers  # pyright: ignore[reportMissingImports]
+
+        return {"y": float(data.read_text()) * helper_of_workers.K}
+
+    def measured() -> list[float]:
+        lengths = {"length": [0.1, 0.2]}
+        return list(mbsd.study(build, lengths, measure, client, progress=False, folder=tmp_path / "kept")["y"])
+
+    for text, k, y in (("2.0", 1.0, 2.0), ("3.0", 1.0, 3.0), ("3.0", 7.0, 21.0)):
+        data.write_text(text)
+        helper.write_text(f"K = {k}\n")
+        assert measured() == [y, y]
+        kept = sorted((tmp_path / "kept").rglob("*.jsonl"))
+        assert measured() == [y, y]
+        assert sorted((tmp_path / "kept").rglob("*.jsonl")) == kept
+
+
+@pytest.mark.filterwarnings("ignore:study.*one is given")
 def test_a_point_that_ends_workers_is_told(client: Any) -> None:
     def deadly(m: Mechanism) -> dict[str, float]:
         if m.bodies["bar"].length == 0.3:
             os.kill(os.getpid(), signal.SIGKILL)
-        return fastest(m)
+        return {"mass": m.bodies["bar"].mass}  # no kernel is loaded in the workers that come after
 
     table = mbsd.study(build, LENGTHS, deadly, client, **QUIET)
     assert list(table["reason"].notna()).count(True) == 2
@@ -73,47 +101,3 @@ def test_workers_with_other_versions_are_refused_by_name(client: Any, monkeypatc
     with warnings.catch_warnings(), pytest.raises(ModelError, match=f"{name}: numpy .*, here 1.0; start workers"):
         warnings.simplefilter("ignore")
         mbsd.study(build, LENGTHS, fastest, client, **QUIET)
-
-
-class Lost:
-    """A chunk's future whose result goes with its worker while it comes: it is there only when cancelled."""
-
-    def __init__(self) -> None:
-        self.asked, self._given_up = threading.Event(), threading.Event()
-
-    def add_done_callback(self, done: Callable[[Any], None]) -> None:
-        threading.Thread(target=done, args=(self,), daemon=True).start()
-
-    def cancelled(self) -> bool:
-        return self._given_up.is_set()
-
-    def cancel(self) -> None:
-        self._given_up.set()
-
-    def result(self) -> Any:
-        self.asked.set()
-        assert self._given_up.wait(10.0)
-        raise CancelledError
-
-
-class Found(Lost):
-    """One whose result comes."""
-
-    def result(self) -> Any:
-        return "the result"
-
-
-def test_a_result_that_goes_with_its_worker_is_made_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It was done, and its worker was killed before it came: nobody waits for it for ever."""
-    futures, living = [Lost(), Found()], iter([["first"], ["second"], ["second"]])
-    client = SimpleNamespace(status="running", submit=lambda *_, **__: futures[handed.pop(0)])
-    handed, lost = [0, 1], futures[0]
-    monkeypatch.setattr(remote.Cluster, "_look", lambda _: None)
-    monkeypatch.setattr(remote.Cluster, "_living", lambda _: frozenset(next(living)))
-    monkeypatch.setattr(remote.Cluster, "_wait_for_workers", lambda self: self._living())
-    cluster = remote.Cluster(b"", client)
-    promise = cluster.submit([])
-    assert lost.asked.wait(10.0)
-    cluster.look_after()
-    assert promise.result(10.0) == "the result"
-    assert lost.cancelled()

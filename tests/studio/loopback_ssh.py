@@ -15,6 +15,9 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from shared.system.missing import program
+from tests.running.processes import ends_with_us
+
 RELAY = Path(__file__).with_name("relay.py")
 PRIVILEGE_SEPARATION = Path("/run/sshd")
 """sshd wants it where it runs as root; a system without sshd's service has none."""
@@ -95,9 +98,12 @@ def _started(folder: Path) -> Iterator[Machine]:
         "PermitRootLogin": "yes",
     }
     (folder / "config").write_text("".join(f"{name} {value}\n" for name, value in settings.items()))
-    server = shutil.which("sshd") or "/usr/sbin/sshd"
+    server = program("sshd")
+    assert server is not None, "who calls this asks first whether sshd is there"
     with (folder / "log").open("wb") as log:
-        process = subprocess.Popen([server, "-D", "-e", "-f", str(folder / "config")], stdout=log, stderr=log)
+        process = subprocess.Popen(
+            [server, "-D", "-e", "-f", str(folder / "config")], stdout=log, stderr=log, preexec_fn=ends_with_us
+        )
     try:
         _wait(process, port, folder / "log")
         yield Machine(folder, port)

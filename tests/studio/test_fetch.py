@@ -6,7 +6,6 @@ import getpass
 import os
 import random
 import re
-import shutil
 import signal
 import subprocess
 import sys
@@ -19,6 +18,8 @@ import pytest
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
 from studio.fetch import fetch, transfer
+from tests.running.needs import needs
+from tests.running.processes import working_for
 from tests.studio.loopback_ssh import Machine, machine
 
 HOST = f"{getpass.getuser()}@127.0.0.1"
@@ -27,6 +28,7 @@ LARGE = 6_000_000
 
 @pytest.fixture(scope="module")
 def other(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
+    needs("rsync", "ssh", "ssh-keygen", "sshd")
     with machine(tmp_path_factory.mktemp("ssh") / "machine") as found:
         yield found
 
@@ -111,13 +113,9 @@ def test_a_killed_transfer_goes_on(out_root: Path, project: Path, other: Machine
     # Blocks and what ssh adds; rsync may have written on for a moment before it ended.
     assert abs(int(other.counted.read_text()) - (LARGE - kept)) < 0.03 * LARGE
     end = time.monotonic() + 15
-    while str(project) in (left := _processes()) and time.monotonic() < end:
+    while (left := working_for(project)) and time.monotonic() < end:
         time.sleep(0.1)
-    assert str(project) not in left
-
-
-def _processes() -> str:
-    return subprocess.run(["ps", "-axwwo", "args="], capture_output=True, text=True, check=True).stdout
+    assert not left
 
 
 def test_two_at_once_do_not_disturb_each_other(out_root: Path, project: Path) -> None:
@@ -142,7 +140,7 @@ def test_what_stands_in_the_way_is_told(
         fetch.run(HOST, str(project))
     monkeypatch.delenv("RSYNC_RSH")
     for name, package in (("rsync", "rsync"), ("ssh", "openssh-client")):
-        monkeypatch.setattr(transfer.shutil, "which", lambda word, name=name: None if word == name else f"/bin/{word}")
+        monkeypatch.setattr(transfer.missing, "program", lambda word, name=name: None if word == name else word)
         with pytest.raises(UserError, match=f"fetch: {name} is not installed here; sudo apt-get install -y {package}"):
             fetch.run(HOST, str(project))
     assert not here(out_root)
@@ -182,9 +180,3 @@ def test_no_path(out_root: Path, folder: str) -> None:
 )
 def test_where_the_films_are(host: str, folder: str, source: str) -> None:
     assert fetch.source_of(host, folder) == source
-
-
-def test_programs_are_there() -> None:
-    """.ci/run installs them for these tests."""
-    missing = [name for name in ("rsync", "ssh", "ssh-keygen") if shutil.which(name) is None]
-    assert not missing, re.sub(r"[\[\]']", "", f"{missing} missing: python -m tools.system_libraries --for-tests")

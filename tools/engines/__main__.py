@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import shutil
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,14 +18,15 @@ from pathlib import Path
 from shared.stage.console import run_cli, say, warn
 from shared.stage.errors import UserError
 from shared.stage.paths import Out, mechanism_name, out_root
+from shared.system import missing
 from tools.engines.firefox import Firefox
 from tools.engines.screen import screen
 from tools.engines.use import listening, use, use_flat
 from tools.engines.webkit import WebKit
 
 ENGINES = {
-    "firefox": (Firefox, ("firefox-esr", "firefox"), "firefox-esr"),
-    "webkit": (WebKit, ("WebKitWebDriver",), "webkit2gtk-driver"),
+    "firefox": (Firefox, "firefox"),
+    "webkit": (WebKit, "WebKitWebDriver"),
 }
 
 
@@ -39,8 +39,8 @@ def main() -> int:
     parser.add_argument("--only", choices=["", *ENGINES], default="")
     asked = parser.parse_args()
     engines = [asked.only] if asked.only else list(ENGINES)
-    programs = {name: _program(*ENGINES[name][1:]) for name in engines}
-    hidden = _program(("Xvfb",), "xvfb")
+    programs = {name: _program(ENGINES[name][1]) for name in engines}
+    hidden = _program("Xvfb")
     pictures = out_root() / "engines"
     faults = 0
     with tempfile.TemporaryDirectory(prefix="mbsd-engines-") as folder, screen(hidden) as environment:
@@ -91,10 +91,10 @@ def _small(folder: Path) -> Out:
     return out
 
 
-def _program(names: tuple[str, ...], package: str) -> str:
-    found = next(filter(None, map(shutil.which, names)), None)
+def _program(name: str) -> str:
+    found = missing.program(name)
     if found is None:
-        raise UserError(f"{names[0]} is not installed; Debian: apt-get install {package}")
+        raise UserError(f"{name} is not installed; {missing.remedy([name])}")
     return found
 
 

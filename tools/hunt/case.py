@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import time
 import warnings
+import zlib
 
 import numpy as np
 
@@ -23,19 +25,32 @@ EXAMPLES = 0.2
 """Share of the registries' examples, however many there are."""
 
 
-def drawn(seed: int, name: str | None = None) -> tuple[Family, Subject, np.random.Generator]:
-    """The mechanism of a seed; of one family if ``name`` says so."""
+def drawn(seed: int, name: str | None = None, skipped: int = 0) -> tuple[Family, Subject, np.random.Generator]:
+    """The mechanism of a seed; of one family if ``name`` says so.
+
+    ``skipped`` random numbers are left out before it is built: two for cases on record from when these drew the family.
+    """
     rng = np.random.default_rng([seed, 71])
-    families = all_families()
-    if name is None:
-        examples = [one for one in families.values() if one.example]
-        others = [one for one in families.values() if not one.example]
-        if rng.random() < EXAMPLES:
-            name = examples[int(rng.integers(len(examples)))].name
-        else:
-            weights = np.array([one.weight for one in others])
-            name = str(rng.choice([one.name for one in others], p=weights / weights.sum()))
-    return families[name], families[name].build(rng), rng
+    rng.random(skipped)
+    family = all_families()[_family(seed) if name is None else name]
+    return family, family.build(rng), rng
+
+
+def _family(seed: int) -> str:
+    """A family drawn by weight; a new one takes cases from all others and leaves the rest as they were.
+
+    Each family draws u^(1 / weight), and the largest wins. Source: Efraimidis, Spirakis, Weighted random sampling with
+    a reservoir, Information Processing Letters 97 (2006).
+    """
+    families = all_families().values()
+    examples = sum(family.example for family in families)
+    others = sum(family.weight for family in families if not family.example)
+
+    def lot(family: Family) -> float:
+        share = EXAMPLES / examples if family.example else (1.0 - EXAMPLES) * family.weight / others
+        return math.log(np.random.default_rng([seed, zlib.crc32(family.name.encode())]).random()) / share
+
+    return max(families, key=lot).name
 
 
 def run(seed: int, name: str | None = None, every: bool = False) -> CaseResult:

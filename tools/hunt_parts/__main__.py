@@ -25,6 +25,7 @@ from tools.hunt.pool import results
 from tools.hunt_parts import case
 from tools.hunt_parts.kept import Kept
 from tools.hunt_parts.outcome import WRONG
+from tools.hunt_parts.own_kinds import KINDS
 from tools.hunt_parts.report import Tally
 
 LIMIT = 900.0
@@ -37,7 +38,7 @@ def main() -> int:
     known.add_argument("--layers", action="store_true")
     known.add_argument("--anew", action="store_true")
     asked = known.parse_args()
-    refuse_unknown(asked.kind)
+    refuse_unknown(None if asked.kind in KINDS else asked.kind)
     if asked.case is not None:
         found = case.run(asked.case, asked.kind, not asked.layers)
         outcome = found.outcomes[-1]

@@ -13,6 +13,7 @@ from mbsd.base.errors import MechanismError
 from shared.stage.errors import UserError
 from tools.hunt.case import drawn
 from tools.hunt.outcome import BASE, CaseResult, Outcome
+from tools.hunt_parts import own_kinds
 from tools.hunt_parts.outcome import BUILT, COLLIDES, ERROR, REFUSED, STUCK, UNSOUND, reason
 
 if TYPE_CHECKING:
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 
 ENGRAVED = 4
 """Of so many cases one has an engraved base; marks only take away, so what is clear of a bare one is clear of it."""
+OWN = 10
+"""Of so many cases one is of the kinds in own_kinds.py."""
 STEPS = 360
 MOST = 4.0
 """Turns of a motion that are looked at."""
@@ -37,12 +40,23 @@ def run(seed: int, name: str | None = None, solids: bool = True) -> CaseResult:
     began = time.perf_counter()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        family, subject, _ = drawn(seed, name)
-        outcome = _outcome(subject, solids, seed % ENGRAVED == 0)
-    return CaseResult(seed, family.name, [outcome], time.perf_counter() - began)
+        kind, subject = _drawn(seed, name)
+        outcome = outcome_of(subject, solids, seed % ENGRAVED == 0)
+    return CaseResult(seed, kind, [outcome], time.perf_counter() - began)
 
 
-def _outcome(subject: Subject, solids: bool, engraved: bool) -> Outcome:
+def _drawn(seed: int, name: str | None) -> tuple[str, Subject]:
+    """The mechanism of a seed, and its kind; of one of :data:`OWN` seeds, one that asks for parts in particular."""
+    if name in own_kinds.KINDS:
+        return name, own_kinds.KINDS[name].build(np.random.default_rng([seed, 72]))
+    if name is None and seed % OWN == OWN // 2:
+        return own_kinds.drawn(seed)
+    family, subject, _ = drawn(seed, name)
+    return family.name, subject
+
+
+def outcome_of(subject: Subject, solids: bool = True, engraved: bool = False) -> Outcome:
+    """How far the parts of a mechanism come; ``engraved``: with marks on its base."""
     try:
         solution = moved(subject)
     except MechanismError as error:
@@ -69,17 +83,18 @@ def moved(subject: Subject, steps: int = STEPS) -> Solution:
 
 def parts_of(m: Mechanism, solution: Solution, solids: bool = True, engraved: bool = True) -> Outcome:
     """Plan and build the parts, with an ``engraved`` base or a bare one, and prove that none touch."""
+    from mechanisms.stages.automatic.assembly.kernel_refusals import KERNEL
     from mechanisms.stages.automatic.automatic import Automatic
 
     made = Automatic(m, solution)
     try:
-        made.plan()
-        found = f"{max(made.levels.values(), default=-1) + 1} layers, pins of {made.sizes.pin:g} mm, {_bridges(made)}"
+        found = _planned(made)
         if not solids:
             return Outcome(BASE, BUILT, _bridges(made), found)
         bodies = made.solids(engraved)
     except UserError as error:
-        return Outcome(BASE, REFUSED, reason(str(error)), str(error))
+        state = UNSOUND if KERNEL in str(error) else REFUSED
+        return Outcome(BASE, state, reason(str(error)), str(error))
     try:
         pieces = meshed(bodies)
     except UserError as error:
@@ -96,9 +111,21 @@ def parts_of(m: Mechanism, solution: Solution, solids: bool = True, engraved: bo
     return Outcome(BASE, BUILT, _bridges(made), f"{found}; {proof}")
 
 
+def _planned(made: Automatic) -> str:
+    """What is to be built, in words. Raises UserError."""
+    if made.along is not None:
+        made.along.refuse()
+        count = len(made.along.shafts), len(made.along.cylinders), len(made.along.machine.links)
+        return f"{count[0]} shafts, {count[1]} pistons, {count[2]} links, pins of {made.sizes.pin:g} mm"
+    made.plan()
+    return f"{max(made.levels.values(), default=-1) + 1} layers, pins of {made.sizes.pin:g} mm, {_bridges(made)}"
+
+
 def _bridges(made: Automatic) -> str:
     from mechanisms.stages.automatic.pins.bridges import Bridge
 
+    if made.along is not None:
+        return "with places"
     count = sum(isinstance(feature, Bridge) for feature in made.layout.features)
     return "without bridges" if count == 0 else "with bridges"
 

@@ -12,6 +12,7 @@ import numpy as np
 from mbsd import MechanismError
 from mbsd.model.force import ForceKind
 from mbsd.model.joint import JointKind
+from mbsd.model.mechanism import Model
 from mbsd.results.solution import Solution
 
 ARRAYS = ("t", "q", "v", "a", "lam", "wrench", "drives", "margin", "work", "held")
@@ -39,6 +40,8 @@ def numbers(value: Any, name: str = "") -> Iterator[tuple[str, bytes]]:
         yield from _of_solution(value, name)
     elif isinstance(value, JointKind | ForceKind):
         yield name, value.name.encode()
+    elif isinstance(value, Model):
+        return  # what was given is no result
     elif dataclasses.is_dataclass(value) and not isinstance(value, type):
         for field in sorted(one.name for one in dataclasses.fields(value)):
             if field not in ("model", "mechanism", "packed"):

@@ -2,7 +2,8 @@
 
 --n 100 --seed 1    a hundred rounds: a run of make with a random fault at a random moment (kills, a full disk, damaged
                     files, two runs at once), then the same command again, which has to end with the right films;
-                    the run is make run-all or make overnight; some with three workers of a cluster
+                    the run is make run-all or make overnight; some with three workers of a cluster, some of them beside
+                    a fourth that answers with rubbish, one with a study whose scheduler is killed
 --only fetch        faults with this word in their names alone
 --keep              keep the project's folder after a round that went wrong, and end there
 
@@ -16,7 +17,6 @@ import argparse
 import json
 import os
 import random
-import shutil
 import signal
 import tempfile
 import time
@@ -29,6 +29,7 @@ from shared.stage.console import run_cli, say, warn
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from shared.stage.paths import out_root
+from shared.system.missing import missing_programs, program, sentence
 from tests.studio.loopback_ssh import machine
 from tools.torture import fetching
 from tools.torture.faults import BACKGROUND, CLUSTER, DISK_OF_ONE, FAULTS, FETCH, FULL, Fault
@@ -61,7 +62,7 @@ def main() -> int:
             *FAULTS,
             *CLUSTER,
             *([*FULL, *DISK_OF_ONE] if project.mounted else []),
-            *(BACKGROUND if shutil.which("tmux") else []),
+            *(BACKGROUND if program("tmux") else []),
         ]
         if fetching.is_possible():
             place = closing.enter_context(tempfile.TemporaryDirectory(prefix="mbsd-ssh-"))
@@ -69,7 +70,8 @@ def main() -> int:
             os.environ["MBSD_TORTURE_RSH"] = other.shell()
             faults += FETCH
         else:
-            warn("torture", "rsync, ssh or sshd is missing, so no film is fetched")
+            lacking = missing_programs(fetching.PROGRAMS)
+            warn("torture", f"{sentence(programs=lacking)}; so no film is fetched")
         if not project.mounted:
             warn(
                 "torture", "a small disk can be mounted by root alone, so no disk gets full; the tests do that as well"

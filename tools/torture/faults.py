@@ -7,8 +7,11 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from tools.torture.cluster.hostile import KINDS
+from tools.torture.cluster.studies import scheduler_killed, study_again
 from tools.torture.damage import cut, flipped, gone, no_text
 from tools.torture.fetching import fetch_again, fetch_killed
+from tools.torture.following import live_page_hit, wrong_pages
 from tools.torture.hits import (
     Hit,
     asked_to_stop,
@@ -33,8 +36,11 @@ from tools.torture.project import COORDINATOR, Project
 from tools.torture.stage import MODULE
 from tools.torture.workers import (
     Workers,
+    admitted,
     disk_of_one,
+    expelled,
     healed,
+    is_there,
     limit_one,
     no_scheduler,
     scheduler_again,
@@ -58,6 +64,10 @@ class Fault:
     """The target of make that it needs; any that makes films if empty."""
     cluster: bool = False
     """Whether the workers of a cluster make the pictures."""
+    before: Callable[[Project], object] | None = None
+    """What is done before the run."""
+    ends_well: bool = False
+    """Whether the run does what it is asked for in spite of it."""
     destroys: int = 0
     """Pictures that it may destroy, each of which is then rendered once more."""
     follow: Callable[[Project], int] | None = None
@@ -86,6 +96,7 @@ FAULTS = [
     Fault("a clock that was set back", clock_set_back),
     Fault("a folder in place of a lock", folder_for_lock),
     Fault("two runs at once", second_run),
+    Fault("processes of a live page hit while it follows", live_page_hit, follow=wrong_pages),
     Fault("a picture cut", damaged(pictures, cut), destroys=1),
     Fault("a picture with a flipped byte", damaged(pictures, flipped), destroys=1),
     Fault("a picture deleted", damaged(pictures, gone), destroys=1),
@@ -126,6 +137,26 @@ CLUSTER = [
         for what, kind in (("room for the files", "files"), ("memory", "memory"))
     ),
     Fault("SIGKILL to the scheduler", no_scheduler, undo=scheduler_again, during=FILM, cluster=True),
+    Fault(
+        "SIGKILL to the scheduler during a study",
+        scheduler_killed,
+        undo=scheduler_again,
+        during=FILM,
+        cluster=True,
+        follow=study_again,
+    ),
+    *(
+        Fault(
+            f"a worker that sends {kind}",
+            is_there,
+            before=admitted(kind),
+            undo=expelled,
+            during=FILM,
+            cluster=True,
+            ends_well=True,
+        )
+        for kind in KINDS
+    ),
 ]
 """Only where there are a scheduler and workers, on Linux."""
 DISK_OF_ONE = [Fault("a full disk of a worker", disk_of_one, undo=healed, during=FILM, cluster=True)]

@@ -12,16 +12,17 @@ import sys
 import time
 from pathlib import Path
 
+from shared.system.missing import missing_programs
 from tools.torture.project import Project
 
+PROGRAMS = ("rsync", "ssh", "ssh-keygen", "sshd")
 PATIENCE = 120.0
 """Seconds that a fetch may take."""
 
 
 def is_possible() -> bool:
     """Whether this machine has the programs."""
-    places = [None, "/usr/sbin:/usr/local/sbin:/sbin"]
-    return all(any(shutil.which(name, path=place) for place in places) for name in ("rsync", "ssh", "sshd"))
+    return not missing_programs(PROGRAMS)
 
 
 def fetch_killed(project: Project, chance: random.Random) -> bool:

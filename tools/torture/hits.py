@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import random
 import resource
@@ -49,12 +50,24 @@ def stop_for_a_while(project: Project, chance: random.Random) -> bool:
     return bool(found)
 
 
+TRIES = 50
+"""To fill a disk on which others write."""
+
+
 def full_disk(project: Project, chance: random.Random) -> bool:
     """Fill the disk but for a few kilobytes."""
-    free = shutil.disk_usage(project.disk).free - chance.randrange(0, 60_000)
-    with (project.disk / "ballast").open("wb") as ballast:
-        os.posix_fallocate(ballast.fileno(), 0, max(free, 1))
-    return True
+    left = chance.randrange(0, 60_000)
+    for _ in range(TRIES):
+        free = shutil.disk_usage(project.disk).free - left
+        try:
+            with (project.disk / "ballast").open("wb") as ballast:
+                os.posix_fallocate(ballast.fileno(), 0, max(free, 1))
+        except OSError as error:
+            if error.errno != errno.ENOSPC:
+                raise
+            continue  # somebody wrote meanwhile
+        return True
+    return False
 
 
 def room_again(project: Project) -> None:

@@ -14,6 +14,7 @@ from pathlib import Path
 from render.frames.store import FrameStore
 from shared.contract.shot import Camera, Shot
 from shared.stage.paths import ROOT, Out
+from shared.stage.signals import end_with_parent
 from studio.night.files import record, runs
 from tools.torture.processes import Process, processes
 from tools.torture.stage import RENDERED
@@ -136,7 +137,7 @@ class Project:
         return self.call(["make", "-o", "install", target, *words], self.environment())
 
     def call(self, command: list[str], environment: dict[str, str]) -> subprocess.Popen[bytes]:
-        """Start a command that is ended with the others."""
+        """Start a command that is ended with the others, and with this process."""
         with (self.folder / "said.txt").open("ab") as said:
             run = subprocess.Popen(
                 command,
@@ -146,7 +147,7 @@ class Project:
                 stdout=said,
                 stderr=said,
                 start_new_session=True,
-                preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL) and None,
+                preexec_fn=_of_a_user,
             )
         self.runs.append(run)
         return run
@@ -186,3 +187,9 @@ class Project:
         for run in self.runs:
             run.wait()
         self.runs.clear()
+
+
+def _of_a_user() -> None:
+    """In the process of a command: it takes Ctrl-C, as in a terminal, and ends with the process that started it."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    end_with_parent(signal.SIGTERM)

@@ -51,7 +51,7 @@ class Outcome:
     """Pictures rendered more than once in both runs, those aside that the fault destroyed; one a fault may be in
     flight."""
     refused: int = 0
-    """Second runs that did not end with code 0."""
+    """Second runs that did not end with code 0, and first ones that should have in spite of the fault."""
     hangs: int = 0
     orphans: int = 0
     left: list[str] = field(default_factory=list)
@@ -87,14 +87,17 @@ def play(project: Project, fault: Fault, chance: random.Random, reference: list[
     _prepare(project, state, chance)
     project.clustered = fault.cluster
     project.hush()
+    if fault.before:
+        fault.before(project)
     _faulted_run(project, fault, chance, outcome)
+    outcome.refused += int(fault.ends_well and outcome.code != 0)
     if outcome.code == 0 and not fault.hits_film:
         outcome.wrong += _wrong(project, reference)
     if fault.undo:
         fault.undo(project)
     before = whole_pictures(project)
     outcome.damaged = len(project.pictures()) - len(before)
-    outcome.refused = int(_run(project, outcome) != 0)
+    outcome.refused += int(_run(project, outcome) != 0)
     project.clustered = False
     after = whole_pictures(project)
     outcome.wrong += _wrong(project, reference)

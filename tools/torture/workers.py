@@ -13,13 +13,16 @@ import sys
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import psutil
 
+from shared.cluster.__main__ import worker_command
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
+from shared.stage.signals import end_with_parent
 
 if TYPE_CHECKING:
     from tools.torture.project import Project
@@ -33,7 +36,9 @@ SMALL = 60
 
 
 class Workers:
-    """The cluster; its folder is not that of the project, so that its processes are nobody's orphans."""
+    """The cluster, which ends with this process; its folder is not that of the project, so that its processes are
+    nobody's orphans.
+    """
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -45,13 +50,19 @@ class Workers:
             free.bind(("127.0.0.1", 0))
             self.port = free.getsockname()[1]
         self.address = f"tcp://127.0.0.1:{self.port}"
-        self.scheduler = self._start("scheduler", "--port", str(self.port))
-        self._wait_for_scheduler()
         self.nannies: list[subprocess.Popen[bytes]] = []
-        self._start_workers()
+        self.hostile: subprocess.Popen[bytes] | None = None
+        self.scheduler = self._start("scheduler", "--port", str(self.port))
+        try:
+            self._wait_for_scheduler()
+            self._start_workers()
+        except BaseException:
+            self.close()
+            raise
 
     def close(self) -> None:
         """End all of it."""
+        self.expel()
         _kill_all(*self.nannies, self.scheduler)
         if self.mounted:
             subprocess.run(["umount", "-l", str(self.small)], check=False)
@@ -77,6 +88,23 @@ class Workers:
                     process.kill()
         self._wait_for_workers()
 
+    def admit(self, kind: str) -> None:
+        """A fourth worker that answers with this kind of rubbish."""
+        folder = self.folder / "hostile"  # it is no process of the project
+        command = [
+            *worker_command(self.address, "127.0.0.1", "hostile", folder),
+            "--preload",
+            "tools.torture.cluster.hostile",
+        ]
+        self.hostile = self._called(command, "hostile", HOSTILE=kind)
+        self._wait_for_workers(1)
+
+    def expel(self) -> None:
+        """End it."""
+        if self.hostile is not None:
+            _kill_all(self.hostile)
+            self.hostile = None
+
     def workers(self) -> list[psutil.Process]:
         """The processes that do the work, each below its nanny."""
         return self._below(lambda words: "spawn_main" in words)
@@ -96,11 +124,15 @@ class Workers:
         return found
 
     def _start(self, *words: str, out: str = "scheduler") -> subprocess.Popen[bytes]:
+        return self._called([sys.executable, "-m", "shared.cluster", *words], out)
+
+    def _called(self, command: list[str], out: str, **more: str) -> subprocess.Popen[bytes]:
         environment = os.environ | {"MBSD_OUT": str(self.folder / out), "PYTHONPATH": str(ROOT), "MBSD_PATIENCE": "12"}
         with (self.folder / "said.txt").open("ab") as said:
             return subprocess.Popen(
-                [sys.executable, "-m", "shared.cluster", *words], cwd=ROOT, env=environment,
+                command, cwd=ROOT, env=environment | more,
                 stdin=subprocess.DEVNULL, stdout=said, stderr=said, start_new_session=True,
+                preexec_fn=partial(end_with_parent, signal.SIGTERM),
             )  # fmt: skip
 
     def _start_workers(self) -> None:
@@ -116,11 +148,12 @@ class Workers:
 
         self._wait(answers, "no scheduler")
 
-    def _wait_for_workers(self) -> None:
+    def _wait_for_workers(self, more: int = 0) -> None:
         from shared.cluster.address import connected, workers_of
 
+        count = COUNT + more
         with connected(self.address) as client:
-            self._wait(lambda: len(workers_of(client) or ()) >= COUNT, "not all workers")
+            self._wait(lambda: len(workers_of(client) or ()) >= count, "not all workers")
 
     def _wait(self, ready: Callable[[], bool], what: str) -> None:
         end = time.monotonic() + BEGIN
@@ -184,6 +217,27 @@ def disk_of_one(project: Project, chance: random.Random) -> bool:
     with (project.workers.small / "ballast").open("wb") as ballast:
         os.posix_fallocate(ballast.fileno(), 0, max(free, 1))
     return True
+
+
+def admitted(kind: str) -> Callable[[Project], None]:
+    """Before the run, a worker that lies in this way."""
+
+    def admit(project: Project) -> None:
+        assert project.workers is not None
+        project.workers.admit(kind)
+
+    return admit
+
+
+def is_there(project: Project, chance: random.Random) -> bool:
+    """Nothing more is done to the run than that there is such a worker."""
+    return project.workers is not None and project.workers.hostile is not None
+
+
+def expelled(project: Project) -> None:
+    """What a user does about a worker whose answers are wrong."""
+    assert project.workers is not None
+    project.workers.expel()
 
 
 def no_scheduler(project: Project, chance: random.Random) -> bool:

@@ -32,6 +32,7 @@ def at_times(sol: Solution, times: np.ndarray) -> Solution:
     return replace(
         sol,
         t=np.asarray(times, float),
+        law_times=None,
         q=q,
         v=v,
         a=a,

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,16 +12,26 @@ from mbsd.base.codes import AXIS, DAMPING, LINE, PUSH, TURN
 from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.look import LOAD
 from mbsd.drawing.pose import Pose
+from mbsd.drawing.symbols.cylinder import draw_engine_cylinder, draw_strut, engine_cylinder_reach
 from mbsd.model.force import Force
 from mbsd.model.laws.curve import Curve
+
+if TYPE_CHECKING:
+    from mbsd.model.joint import Joint
 
 COILS = 5, 12
 """Fewest and most; between them one for each 1.4 units."""
 
 
-def draw_force(canvas: Canvas, force: Force, pose: Pose) -> None:
-    """The sign of what the force's first element measures."""
+def draw_force(canvas: Canvas, force: Force, pose: Pose, joints: Sequence[Joint] = ()) -> None:
+    """The sign of what the force's first element measures; ``joints`` are those of the mechanism."""
     i, j = pose.place(force.i), pose.place(force.j)
+    if force.kind.sign == "engine cylinder":
+        draw_engine_cylinder(canvas, force, pose, joints)
+        return
+    if force.kind.sign == "strut":
+        draw_strut(canvas, force, pose)
+        return
     if not force.kind.elements(force):
         draw_special(canvas, force, pose)
         return
@@ -45,8 +57,10 @@ def draw_force(canvas: Canvas, force: Force, pose: Pose) -> None:
         canvas.label(force.name, j, 1.2, LOAD)
 
 
-def force_reach(force: Force, pose: Pose) -> np.ndarray:
-    """(k, 2) of what a force's sign needs beside its bodies."""
+def force_reach(force: Force, pose: Pose, joints: Sequence[Joint] = ()) -> np.ndarray:
+    """(k, 2) of what a force's sign needs beside its bodies; ``joints`` are those of the mechanism."""
+    if force.kind.sign == "engine cylinder":
+        return engine_cylinder_reach(force, pose, joints)
     place = pose.place(force.j)
     size = force.params["radius"] if "stiffness" in force.params and "radius" in force.params else 0.0
     disc = place + size * np.array([[-1.0, -1.0], [1.0, 1.0]])

@@ -93,7 +93,7 @@ class Jumps:
                 if monitor.what == HALTS:
                     forced[fired.name] = 0.0
             before = [stick.state for stick in self.sticks]
-            self._set(at, decide(at, self._case(monitor, staying, forced)), before)
+            self._set(at, self._settled(at, self._case(monitor, staying, forced)), before)
 
     def _case(self, monitor: Monitor | None, staying: list[RunContact], forced: dict[str, float]) -> Case:
         case = Case(staying, self.sticks, self.state.y[1], self.still, forced)
@@ -101,6 +101,25 @@ class Jumps:
             case.slipping = monitor.what == SLIPS
             case.halted = monitor.stick.name if monitor.what == HALTS else None
         return case
+
+    def _settled(self, at: Compliance, case: Case) -> Verdict:
+        """What contacts and joints do, once those that hold are at rest: a rebound too slow to count ends here.
+
+        Its rate must not go on into accelerations: they would turn bodies that two contacts hold, and make these slide
+        against each other.
+        """
+        verdict = decide(at, case)
+        for _ in case.closed:
+            holding = [one.contact for one in verdict.contacts if one.normal > 0.0]
+            gaps = [contact.gap for contact in holding]
+            if not (np.abs(at.rates(gaps, case.v)) > self.still[gaps]).any():
+                break
+            ways = np.array([contact.way for contact in holding if contact.way is not None], np.int64)
+            resting = ways[np.abs(at.rates(ways, case.v)) <= self.still[ways]]
+            sticking = [stick.way for stick in self.sticks if stick.state == STICKS]
+            self.state.y[1] = case.v = at.stopped([*gaps, *resting, *sticking], case.v)
+            verdict = decide(at, case)
+        return verdict
 
     def _close(self, contact: RunContact) -> float:
         return 1e2 * self.near[contact.gap]

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.base.errors import SimulationError
+from mbsd.base.errors import ModelWarning, SimulationError
+from mbsd.base.warn import warn
 from mbsd.dynamics.events.crossing import first_crossing
 from mbsd.dynamics.events.dense import Quintic
 from mbsd.dynamics.events.jumps import Jumps
@@ -29,6 +30,7 @@ from mbsd.dynamics.events.monitors import (
     event_monitor,
     stick_monitors,
 )
+from mbsd.dynamics.events.resolution import resolved
 from mbsd.dynamics.prepare.exchange import LOOK, exchange_rows
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.rows.held import STICKS
@@ -60,6 +62,10 @@ INSIDE = 1e-6
 """A contact that starts deeper than this part of the size (rad) inside is refused."""
 EVENT_STEPS = 20
 """Steps that an event is worth where the pace of a run is looked at."""
+ROUNDINGS = ((1.0, 1.0, -1.0, -1.0), (-1.0, 1.0, 1.0, -1.0), (1.0, -1.0, 1.0), (-1.0, -1.0, 1.0, 1.0, 1.0))
+"""Signs, repeated, of small changes of a state."""
+AHEAD = (1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3)
+"""Parts of the duration after which the side is looked for to which an event that is zero goes."""
 AT_ONE_TIME = 500
 """Events that may happen without time going on."""
 
@@ -86,6 +92,7 @@ class EventRun:
         self.ended = False
         self._told = 0
         self._times: list[float] = []
+        self._unresolved: set[str] = set()
 
     # -- going on -----------------------------------------------------------------------------------------------
 
@@ -93,7 +100,10 @@ class EventRun:
         """At the start of a simulation: what is closed, and impacts of velocities that contacts forbid."""
         self._refuse_inside()
         for event in self.events:
-            self.now.events[event.name] = float(np.sign(self._value(event)))
+            value = self._value(event)
+            self.now.events[event.name] = (
+                0.0 if abs(value) <= self._rounding(event, value, self.state) else float(np.sign(value))
+            )
         self.jumps.resolve(None)
         self._restart()
 
@@ -183,9 +193,23 @@ class EventRun:
             q, v = quintic.at(x)
             return Samples(self.packed, self.dynamics, self.run.scratch, quintic.times(x), q, v)
 
+        def true(monitor: Monitor, x: float) -> float:
+            return self._true(monitor, before, float(quintic.times(np.array([x]))[0]))
+
+        def looked(monitor: Monitor, x: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            assert monitor.event is not None
+            shortest = monitor.event.shortest
+            x, values, known = resolved(x, values, lambda more: monitor.value(samples(more)), quintic.length, shortest)
+            if not known:
+                self._warn_of(monitor, quintic.start, quintic.length, len(x))
+            return x, values
+
+        def rounding(event: Event, value: float) -> float:
+            return self._rounding(event, value, before)
+
         monitors = list(self.monitors)
         while monitors:
-            found = first_crossing(monitors, samples)
+            found = first_crossing(monitors, samples, true, looked, rounding)
             if found is None:
                 return None
             monitor, where, negative = found
@@ -194,6 +218,17 @@ class EventRun:
                 return monitor, float(times[0]), float(times[1])
             monitors.remove(monitor)  # the quintic dips below zero, the motion does not
         return None
+
+    def _warn_of(self, monitor: Monitor, start: float, length: float, count: int) -> None:
+        """Say once of each event that its function is not resolved."""
+        if monitor.name not in self._unresolved:
+            self._unresolved.add(monitor.name)
+            warn(
+                f"{self.packed.name}: event '{monitor.name}' changes too often to be looked at closely: {count} values "
+                f"between t = {start:.6g} and {start + length:.6g} s do not tell how it goes, so that events may be "
+                "missed. Give shortest= (s), how long the shortest thing in it lasts",
+                ModelWarning,
+            )
 
     def _true(self, monitor: Monitor, before: State, time: float) -> float:
         """The monitored scalar of the motion itself at a time (s) within the step; the state is left before it."""
@@ -214,7 +249,7 @@ class EventRun:
         root = first
         if first > start:
             low, high = start, last
-            reach = 1e-3 * (last - start)
+            reach = min(1e-3 * (last - start), 0.5 * (first - start))  # the start itself may be zero but for rounding
             values: dict[float, float] = {}
 
             def value(time: float) -> float:
@@ -222,7 +257,7 @@ class EventRun:
                     values[time] = self._true(monitor, before, time)
                 return values[time]
 
-            if value(max(first - reach, low)) > 0.0 and first - reach > low:
+            if value(first - reach) > 0.0:
                 low = first - reach
             if first + reach < high and value(first + reach) < 0.0:
                 high = first + reach
@@ -257,6 +292,7 @@ class EventRun:
                 return
             if monitor.event.action is not None:
                 self.jumps.act(monitor.event)
+                self.now.events[monitor.name] = 0.0  # it may go back to where it came from
         self.jumps.resolve(monitor)
         self._restart()
 
@@ -274,7 +310,7 @@ class EventRun:
         self.monitors += stick_monitors(self.sticks, together, self.still, load)
         for event in self.events:
             if self.now.events[event.name] == 0.0:
-                self.now.events[event.name] = float(np.sign(self._value(event)))
+                self.now.events[event.name] = self._side_ahead(event)
             self.monitors.append(event_monitor(self.packed, event, self.now.events[event.name] or 1.0))
         self.snapshots.append(self.snapshot())
 
@@ -305,6 +341,30 @@ class EventRun:
         state = self.state
         return checked(self.packed, event, Moment(self.packed, float(state.clock[TIME]), state.y[0], state.y[1]))
 
+    def _rounding(self, event: Event, value: float, state: State) -> float:
+        """How much the value of an event at a state changes where that does by what counts as no distance."""
+        sizes = np.concatenate([np.zeros(3), self.packed.column_scale()])
+        time, most = float(state.clock[TIME]), 0.0
+        for signs in ROUNDINGS:
+            away = NEAR * sizes * np.resize(signs, len(sizes))
+            moment = Moment(self.packed, time * (1.0 + signs[0] * NEAR), state.y[0] + away, state.y[1] + away)
+            most = max(most, abs(checked(self.packed, event, moment) - value))
+        return most
+
+    def _side_ahead(self, event: Event) -> float:
+        """The sign that an event whose value is zero has next; 0 if it stays zero."""
+        (q, v), a, time = self.state.y, self.state.dy[1], float(self.state.clock[TIME])
+        value = self._value(event)
+        rounding = self._rounding(event, value, self.state)
+        if abs(value) > rounding:
+            return float(np.sign(value))
+        for part in AHEAD:
+            s = part * (self.ready.end - self.ready.start)
+            ahead = checked(self.packed, event, Moment(self.packed, time + s, q + s * v + s * s / 2 * a, v + s * a))
+            if abs(ahead) > 10.0 * rounding:
+                return float(np.sign(ahead))
+        return 0.0
+
     def _refuse_inside(self) -> None:
         state, scale = self.state, self.packed.row_scale()
         time = np.array([state.clock[TIME]])
@@ -312,7 +372,11 @@ class EventRun:
         for contact in self.switches.contacts:
             gap = float(sample.residuals()[0, contact.gap])
             if not contact.always_closed and gap * scale[contact.gap] < -INSIDE:
+                closed = contact.joint.params.get("closed") is True
+                other = (
+                    "give the points of its closed curve in reverse order" if closed else "turn the contact's marker"
+                )
                 raise SimulationError(
                     f"{self.packed.name}: contact '{contact.name}' starts {-gap:.3g} (m or rad) inside; "
-                    "move the start with start_near, or turn the contact's marker"
+                    f"move the start with start_near, or, where its solid side is the wrong one, {other}"
                 )

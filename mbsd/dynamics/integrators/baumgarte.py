@@ -24,7 +24,7 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
     """Go on to ``end`` (s), ``max_steps`` steps at most, writing the outputs passed. Returns a status."""
     dyn.baumgarte[0] = settings.options[0]
     dyn.baumgarte[1] = settings.options[1]
-    status = march(dyn, scratch, state, out, settings, end, max_steps, 0)
+    status = march(dyn, scratch, state, out, settings, end, max_steps, False)
     dyn.baumgarte[0] = 0.0
     dyn.baumgarte[1] = 0.0
     return status

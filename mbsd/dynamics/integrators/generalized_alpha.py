@@ -23,7 +23,7 @@ from mbsd.compiling.jit import internal, kernel
 from mbsd.dynamics.integrators.kind import Integrator, Option, register
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.full_matrix import factor_full, solve_full
-from mbsd.dynamics.reference.projection import project
+from mbsd.dynamics.reference.projection import close_step
 from mbsd.dynamics.reference.tangents import differentiate, too_large
 from mbsd.dynamics.state import (
     ACCEPTED,
@@ -153,7 +153,8 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
             y[0, c] = known[0, c] + h * h * b * x[c]
             y[1, c] = known[1, c] + h * g * x[c]
         state.clock[WORK] += 0.5 * h * state.clock[POWER]
-        project(dyn, scratch, reached, y, 2)
+        if not close_step(dyn, scratch, reached, y):
+            return NO_CONVERGENCE
         state.clock[POWER] = derivative(dyn, scratch, reached, y, state.dy, state.lam)
         state.clock[WORK] += 0.5 * h * state.clock[POWER]
         state.clock[TIME] = reached

@@ -52,6 +52,8 @@ class Integrator:
     """``advance`` of an Embedding, of methods that know independent coordinates."""
     refusal: Callable[[Dynamics], str | None] = lambda dynamics: None
     """Why this method cannot simulate a mechanism, or None."""
+    meets_switches: bool = False
+    """Whether its steps end where contacts by penalty begin, so that it knows how fast they approach then."""
     package: str = ""
     """Another library's, by the name it is imported by; needed for this method alone."""
 

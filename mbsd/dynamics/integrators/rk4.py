@@ -1,5 +1,7 @@
 """The classical Runge-Kutta method of order 4 with a fixed step, each step projected twice onto the constraints.
 
+A step so long that no pose near its end closes the joints ends the run.
+
     k1 = f(t, y),  k2 = f(t + h/2, y + h/2 k1),  k3 = f(t + h/2, y + h/2 k2),  k4 = f(t + h, y + h k3)
     y1 = y + h/6 (k1 + 2 k2 + 2 k3 + k4),   then q and v are projected
 
@@ -13,11 +15,12 @@ import math
 from mbsd.compiling.jit import apart, kernel
 from mbsd.dynamics.integrators.kind import Integrator, register
 from mbsd.dynamics.reference.acceleration import derivative
-from mbsd.dynamics.reference.projection import project
+from mbsd.dynamics.reference.projection import close_step
 from mbsd.dynamics.state import (
     ACCEPTED,
     EVALUATIONS,
     NEXT,
+    NO_CONVERGENCE,
     NOT_FINITE,
     PAUSED,
     POWER,
@@ -33,8 +36,8 @@ STAGES = 4
 
 
 @apart
-def march(dyn, scratch, state, out, settings, end, max_steps, projections):
-    """``advance`` with so many projections after each step."""
+def march(dyn, scratch, state, out, settings, end, max_steps, projected):
+    """``advance``, with the end of each step ``projected`` or as it is."""
     y = state.y
     k = scratch.stages
     trial = scratch.state
@@ -67,8 +70,8 @@ def march(dyn, scratch, state, out, settings, end, max_steps, projections):
         state.clock[WORK] += (
             h / 6.0 * (scratch.power[0] + 2.0 * (scratch.power[1] + scratch.power[2]) + scratch.power[3])
         )
-        if projections > 0:
-            project(dyn, scratch, reached, y, projections)
+        if projected and not close_step(dyn, scratch, reached, y):
+            return NO_CONVERGENCE
         state.clock[POWER] = derivative(dyn, scratch, reached, y, state.dy, state.lam)
         state.clock[TIME] = reached
         state.count[EVALUATIONS] += 4
@@ -84,7 +87,7 @@ def march(dyn, scratch, state, out, settings, end, max_steps, projections):
 @kernel
 def advance(dyn, scratch, state, out, settings, end, max_steps):
     """Go on to ``end`` (s), ``max_steps`` steps at most, writing the outputs passed. Returns a status."""
-    return march(dyn, scratch, state, out, settings, end, max_steps, 2)
+    return march(dyn, scratch, state, out, settings, end, max_steps, True)
 
 
 RK4 = register(Integrator("rk4", advance, STAGES, order=4, fixed_step=True))

@@ -11,6 +11,9 @@ from mbsd.compiling.jit import apart, inlined
 from mbsd.dynamics.integrators.formulation import derivative, for_both
 from mbsd.dynamics.state import EVALUATIONS, TIME
 
+WITHIN = 1e-3
+"""The first step, as part of one that leads to where forces are not finite."""
+
 
 @inlined
 def allowed(settings, before, after, part, c):
@@ -46,6 +49,8 @@ def first_step(dyn, scratch, state, settings, exponent):
     for part in range(2):
         for c in range(3, n3):
             bend += ((scratch.stages[0, part, c] - state.dy[part, c]) / allowed(settings, y, y, part, c)) ** 2
+    if not math.isfinite(bend):
+        return min(WITHIN * h, settings.longest)
     steepest = max(speed, math.sqrt(bend / count) / h)
     step = (0.01 / steepest) ** exponent if steepest > 1e-15 else 100.0 * h
     return min(step if step == step else h, 100.0 * h, settings.longest)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from mbsd.arrays.driver_laws import refuse_bad_laws
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import MobilityError, ModelError
 from mbsd.base.kept import Kept
 from mbsd.dynamics.prepare.dependent import refuse_singular_start
+from mbsd.dynamics.prepare.mass_ratio import passes_for
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import Dynamics, scratch_for
@@ -21,10 +23,10 @@ from mbsd.dynamics.rows.held import Held
 from mbsd.dynamics.rows.joint_sticks import joint_sticks, stuck_rows
 from mbsd.dynamics.rows.switches import Switches, friction_rows
 from mbsd.dynamics.start.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
+from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.limits.contact_rows import all_contacts, with_contacts
 from mbsd.kinematics.pose.initial import consistent
 from mbsd.kinematics.pose.mobility import joint_mobility, rows_at
-from mbsd.kinematics.prepared import refuse_bad_laws
 from mbsd.model.mechanism import Model
 from mbsd.results.mobility import Mobility
 
@@ -36,6 +38,10 @@ BALANCED = 1e-8
 """Part of the largest load that may stay unbalanced at the start; more means a massless body that nothing holds."""
 MOST_BLOCKS = 200
 """Up to so many pairs of rows their sequence is kept for the next simulation."""
+LOOSE = 1e-9
+"""Singular values of the scaled Jacobian below this part of the largest are zero."""
+SHARE = 1e-3
+"""Of a coordinate in a motion of unit length; less is rounding."""
 SLIGHT = 1e-6
 """Accelerations below this (sizes per s^2) are no load."""
 
@@ -69,7 +75,10 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     planned = {*kept, *spare, *range(always, len(packed.ws.phi))}
     schur = _sequence(packed.system.row_body, blocks_of(packed, planned))
     loads = pack_loads(packed)
-    if not (spare or len(loads.friction) or light[3:].any() or m.events):
+    per_size = 1.0 / np.concatenate([np.ones(3), packed.column_scale()])
+    apart = passes_for(packed, start, initial.q, inertia, per_size)
+    passes = max(apart, REFINEMENTS if light[3:].any() else 1)
+    if not (spare or len(loads.friction) or passes > 1 or m.events):
         schur = with_pins(schur, packed.system)
     sliding = sliding_for(friction_rows(packed), len(inertia), len(packed.ws.phi))
     held = Held.of(schur, packed.ws, sliding, loads)
@@ -84,15 +93,24 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
         inverse=_inverse(lifted),
         metric=_inverse(metric),
         weight=(inertia.reshape(-1, 3) * [*packed.system.gravity, 0.0]).ravel(),
-        passes=REFINEMENTS if light[3:].any() else 1,
+        passes=passes,
         baumgarte=np.zeros(2),
-        per_size=1.0 / np.concatenate([np.ones(3), packed.column_scale()]),
+        per_size=per_size,
     )
     ready = PreparedDynamics(
-        packed, dynamics, initial, start, end, mobility, switches, joint_sticks(packed, loads, held)
+        packed,
+        dynamics,
+        initial,
+        start,
+        end,
+        mobility,
+        switches,
+        joint_sticks(packed, loads, held),
+        masses_apart=apart > 1,
     )
     refuse_singular_start(ready, list(kept), always)
-    _refuse_unheld(ready)
+    if light[3:].any():
+        _refuse_unheld(ready)
     return ready
 
 
@@ -147,8 +165,7 @@ def _refuse_superfluous_drivers(packed: Packed, mobility: Mobility) -> None:
 def _refuse_unheld(ready: PreparedDynamics) -> None:
     """A coordinate without inertia that neither joints nor springs hold cannot balance its load."""
     dynamics, packed = ready.dynamics, ready.packed
-    if dynamics.passes == 1:
-        return
+    _refuse_massless(packed, ready.mobility, ready.start, ready.initial.q)
     state = np.stack([ready.initial.q, ready.initial.v])
     out, lam = np.zeros_like(state), np.zeros(len(packed.ws.phi))
     scratch = scratch_for(dynamics, packed.ws, len(packed.motions), 1)
@@ -164,3 +181,30 @@ def _refuse_unheld(ready: PreparedDynamics) -> None:
             f"{('x', 'y', 'angle')[worst % 3]}, and nothing holds it there against a load of {left[worst]:.3g} "
             "(N or N m). Give it a mass and an inertia, or another joint."
         )
+
+
+def _refuse_massless(packed: Packed, mobility: Mobility, start: float, q: np.ndarray) -> None:
+    """Bodies without mass and inertia that can move while all that has any rests: no load tells how.
+
+    Rows of contacts count as if they held, and the turning of point masses is none of theirs.
+    """
+    bare = np.flatnonzero((packed.system.mass == 0) & (packed.system.inertia == 0))
+    free = [int(b) for b in bare if b > 0 and packed.body_names[b] in mobility.free_bodies]
+    if not free or packed.coordinates > MANY_COORDINATES:
+        return
+    residual_and_jacobian(packed.system, q, packed.drives(np.array([start]))[0], packed.ws)
+    scaled = packed.jacobian() * packed.row_scale()[:, None] * packed.column_scale()
+    columns = np.concatenate([3 * (b - 1) + np.arange(3) for b in free])
+    _u, size, basis = np.linalg.svd(scaled[:, columns])
+    rank = int((size > LOOSE * max(1.0, float(size.max(initial=0.0)))).sum())
+    moved = np.abs(basis[rank:]).max(axis=0, initial=0.0).reshape(-1, 3)
+    loose = [packed.body_names[b] for b, most in zip(free, moved.max(axis=1), strict=True) if most > SHARE]
+    if not loose:
+        return
+    names = " and ".join(f"'{name}'" for name in loose[:3]) + (f" and {len(loose) - 3} more" if len(loose) > 3 else "")
+    has, it = ("have", "them") if len(loose) > 1 else ("has", "it")
+    raise MobilityError(
+        f"{packed.name}: {names} {has} neither mass nor inertia, and can move in {len(columns) - rank} "
+        f"way{'s' * (len(columns) - rank > 1)} while all that has any rests, so that no load tells how. Give {it} a "
+        f"mass and an inertia, m.change('{loose[0]}', mass=...), or hold {it} by a joint or a driver"
+    )

@@ -14,6 +14,7 @@ from mbsd.base.errors import ModelError
 from mbsd.compiling.jit import Often
 from mbsd.dynamics import state as run_state
 from mbsd.dynamics.integrators.kind import Integrator
+from mbsd.dynamics.prepare.approaches import Approaches
 from mbsd.dynamics.prepare.following import Following
 from mbsd.dynamics.prepare.stops import Stops, stops_of
 from mbsd.dynamics.reference.arrays import Dynamics, Scratch, scratch_for
@@ -44,6 +45,8 @@ class PreparedDynamics:
     """The contacts and joints whose rows are released and held."""
     sticks: list[JointStick]
     """Joints that stick by events."""
+    masses_apart: bool = False
+    """Whether masses of connected bodies are so far apart that the equations of motion are solved several times."""
     advancing: dict[tuple[str, type], Often] = field(default_factory=dict)
     """The loops of integrators by name and formulation."""
     dropped: tuple[int, ...] = ()
@@ -58,7 +61,9 @@ class PreparedDynamics:
             chosen = method.advance if isinstance(arrays, Dynamics) else method.independent
             assert chosen is not None, method.name
             self.advancing[key] = Often(chosen)
-        advancing = self.advancing[key]
+        advancing: Any = self.advancing[key]
+        if self.approaches:
+            advancing = partial(self.approaches.through, advancing)
         if self.following and isinstance(arrays, Dynamics):
             return self.following.through(partial(self.stops.through, advancing), arrays, *rest)
         return self.stops.through(advancing, arrays, *rest)
@@ -72,6 +77,11 @@ class PreparedDynamics:
     def following(self) -> Following:
         """The points on curves that cross themselves."""
         return Following(self.packed)
+
+    @cached_property
+    def approaches(self) -> Approaches:
+        """How fast contacts approached when they began."""
+        return Approaches(self.dynamics.loads)
 
     @cached_property
     def stops(self) -> Stops:
@@ -91,6 +101,17 @@ class PreparedDynamics:
         refusal = method.refusal(self.dynamics)
         if refusal is not None:
             raise ModelError(f"{self.packed.name}: {refusal}")
+        if self.approaches and not method.meets_switches:
+            names = [
+                force.name
+                for force in self.packed.forces
+                if any(one.remembers for one in force.kind.interactions(force, self.packed.masses))
+            ]
+            raise ModelError(
+                f"{self.packed.name}: the damping of contact '{names[0]}' depends on how fast it approaches when it "
+                f"begins, and the steps of '{method.name}' do not end there; take method='dop853', or damping= instead "
+                "of restitution="
+            )
         return scratch_for(self.dynamics, self.packed.ws, len(self.packed.motions), method.stages, method.matrices)
 
     def settings(

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mbsd.arrays.law_jumps import LAW_STEP, disagreeing
 from mbsd.base.codes import CYCLOIDAL, PIECES
 from mbsd.base.errors import ModelError, ModelWarning
 from mbsd.dynamics.state import ACCEPTED, PAUSED, REACHED, STARTED, STEP, TIME, State
@@ -27,14 +28,15 @@ from mbsd.model.laws.fitting.cuts import BESIDE, ROOTS, Cut, finest, given_cuts
 from mbsd.model.laws.fitting.fit import Fit, fit
 from mbsd.model.laws.fitting.look import FORCE_LOOKS, look_times
 from mbsd.model.laws.fitting.sampled import Sampled
+from mbsd.results.jump_rows import Jumps
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
 
 TOLERANCE, FUNCTION_TOLERANCE = 1e-4, 1e-9
 """Of laws, of their size: enough to see where they are short; of functions, whose jumps and kinks have to be found."""
-LAW_STEP, LAW_KINK = 1e-6, 1e-3
-"""Part of its size by which a law's pieces disagree where it jumps, and where it bends within a long step."""
+LAW_KINK = 1e-3
+"""Part of its size by which a law's pieces disagree where it bends within a long step."""
 PER_STEP = 25
 """Long steps in a simulation."""
 SHRUNK = 8.0
@@ -57,6 +59,14 @@ class Stops:
     before: np.ndarray
     after: np.ndarray
     """(n,)"""
+    names: tuple[tuple[str, ...], ...] = ()
+    """(n,) of the drivers and forces that a step ends for."""
+
+    @property
+    def jumps(self) -> Jumps:
+        """Those where something may jump."""
+        rows = np.flatnonzero(self.after > self.before)
+        return Jumps(self.before[rows], self.after[rows], tuple(self.names[k] for k in rows))
 
     def cross(self, state: State) -> None:
         """Go on after the jump right before which ``state`` stands, if it stands there."""
@@ -88,20 +98,31 @@ def stops_of(packed: Packed, loads: Loads, laws: Laws, start: float, end: float,
     """
     if not end > start or not (packed.motions or packed.forces):
         return Stops(np.zeros(0), np.zeros(0))
-    found: list[tuple[float, float]] = []
-    given: list[Motion | Curve] = list(packed.motions)
+    found: list[tuple[str, list[tuple[float, float]]]] = []
+    given: list[tuple[str, Motion | Curve]] = list(zip(packed.driver_names, packed.motions, strict=True))
     drivers = len(given)
     for force in packed.forces:
-        given += force.laws.values()
-    for k, law in enumerate(given):
+        given += [(force.name, law) for law in force.laws.values()]
+    for k, (name, law) in enumerate(given):
         if isinstance(law, Motion):
-            found += [(t, t) for t in getattr(law, "breaks", ())]
-            found += _of_law(laws, k + 1, start, end, 2 if k < drivers else 0)
+            found.append((name, [(t, t) for t in getattr(law, "breaks", ())]))
+            found.append((name, _of_law(laws, k + 1, start, end, 2 if k < drivers else 0)))
     found += _of_functions(packed, loads, laws, start, end, q, v)
-    inside = sorted({(a, b) for a, b in found if start < a <= b < end})
-    rows = np.array(inside).reshape(-1, 2)
-    rows = rows[np.append(np.ones(min(len(rows), 1), bool), np.diff(rows[:, 0]) > finest(start, end) / 64)]
-    return Stops(rows[:, 0].copy(), rows[:, 1].copy())
+    names: dict[tuple[float, float], dict[str, None]] = {}
+    for name, times in found:
+        for a, b in times:
+            if start < a <= b < end:
+                names.setdefault((a, b), {})[name] = None
+    kept: list[tuple[float, float]] = []
+    before = -np.inf
+    for stop in sorted(names):
+        if stop[0] - before > finest(start, end) / 64:
+            kept.append(stop)
+        else:
+            names[kept[-1]] |= names[stop]
+        before = stop[0]
+    rows = np.array(kept).reshape(-1, 2)
+    return Stops(rows[:, 0].copy(), rows[:, 1].copy(), tuple(tuple(names[stop]) for stop in kept))
 
 
 def _of_law(laws: Laws, k: int, start: float, end: float, order: int) -> list[tuple[float, float]]:
@@ -117,30 +138,13 @@ def _of_law(laws: Laws, k: int, start: float, end: float, order: int) -> list[tu
         tabulate_law(laws, k, np.ascontiguousarray(times), out)
         return out[:, order]
 
-    jumps = [t for t in _disagreeing(own, order, LAW_STEP) if start < t < end]
-    kinks = _disagreeing(own, order, LAW_KINK, (end - start) / PER_STEP)
+    jumps = [t for t in disagreeing(own, order, LAW_STEP) if start < t < end]
+    kinks = disagreeing(own, order, LAW_KINK, (end - start) / PER_STEP)
     cuts = [Cut(float(np.nextafter(t, -np.inf)), t, t) for t in jumps]
     looks = look_times(start, end)
     met = fit(Sampled(values), start, end, cuts, looks, True, TOLERANCE)
     smooth = [t for t in kinks + _pulses(met, end - start) if t not in jumps]
     return [(cut.left, cut.right) for cut in cuts] + [(t, t) for t in smooth]
-
-
-def _disagreeing(own: np.ndarray, order: int, part: float, over: float = 0.0) -> list[float]:
-    """Where the pieces of a law with numbers ``own`` disagree in a derivative by more than this part of its size.
-
-    Within ``over`` (s) if that is given: where the next derivative does.
-    """
-    rows = own[3:].reshape(-1, 7)
-    h = np.diff(rows[:, 0])
-    coefficients = rows[:, 1:]
-    for _ in range(order):
-        coefficients = coefficients[:, 1:] * np.arange(1, coefficients.shape[1])
-    size = float(np.abs(coefficients[:, 0]).max())
-    if over:
-        coefficients, size = coefficients[:, 1:] * np.arange(1, coefficients.shape[1]), size / over
-    ends = (coefficients[:-1] * h[:, None] ** np.arange(coefficients.shape[1])).sum(axis=1)
-    return rows[1:, 0][np.abs(coefficients[1:, 0] - ends) > part * size].tolist()
 
 
 def _pulses(met: Fit, span: float) -> list[float]:
@@ -166,21 +170,22 @@ def _pulses(met: Fit, span: float) -> list[float]:
 
 def _of_functions(
     packed: Packed, loads: Loads, laws: Laws, start: float, end: float, q: np.ndarray, v: np.ndarray
-) -> list[tuple[float, float]]:
-    """Of the user forces, with the bodies as they start."""
-    out: list[tuple[float, float]] = []
+) -> list[tuple[str, list[tuple[float, float]]]]:
+    """Of the user forces by name, with the bodies as they start."""
+    out: list[tuple[str, list[tuple[float, float]]]] = []
     forces = [force for force in packed.forces if "function" in force.params]
     for k, force in enumerate(forces):
         breaks, shortest = force.params.get("breaks", ()), force.params.get("shortest")
         beside = BESIDE * (end - start) + finest(start, end) / 16
-        out += [(t - beside, t + beside) for t in breaks]
+        out.append((force.name, [(t - beside, t + beside) for t in breaks]))
         alone = loads._replace(
             element=loads.element[:0], interaction=loads.interaction[:0], user=loads.user[k : k + 1], total=1
         )
         values = _values(packed, alone, laws, force.params["bodies"], q, v)
         looks = look_times(start, end, shortest, FORCE_LOOKS)
         try:
-            out += _of_function(packed, force.name, Sampled(values), start, end, given_cuts(breaks, start, end), looks)
+            cuts = given_cuts(breaks, start, end)
+            out.append((force.name, _of_function(packed, force.name, Sampled(values), start, end, cuts, looks)))
         except ModelError:
             continue  # it fails at some time: the run reports it when it gets there, if it does
     return out

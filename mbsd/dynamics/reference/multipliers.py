@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.arrays.approaches import stretches
 from mbsd.arrays.curve_branches import tabulate_along
 from mbsd.compiling.jit import kernel
 from mbsd.dynamics.reference.schur import factor_schur, schur_factors, solve_schur, subtract_forces, times_jacobian
@@ -63,6 +64,7 @@ def multipliers_along(
     motion: tuple[np.ndarray, np.ndarray, np.ndarray],
     jacobians: np.ndarray,
     gamma: np.ndarray,
+    approached: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Multipliers (T, m) and margins (T,) along t (T,), q and v (T, 3 nb) with compact J (T, m, 6) and gamma (T, m).
 
@@ -73,7 +75,10 @@ def multipliers_along(
         _, jacobians, gamma = _tabulated(packed, _drives(packed, dynamics, t), q, v)
     force = np.repeat(dynamics.weight[None], len(t), axis=0)
     if dynamics.loads.total:
-        tabulate_loads(packed.system, dynamics.loads, dynamics.laws, t, q, v, packed.ws, force, np.zeros(len(t)))
+        power = np.zeros(len(t))
+        for at in stretches(dynamics.loads, approached, len(t)):
+            rows = t[at], q[at], v[at], packed.ws, force[at], power[at]
+            tabulate_loads(packed.system, dynamics.loads, dynamics.laws, *rows)
         packed.specials.check()
     lam, margin, (pose, a) = np.zeros_like(gamma), np.zeros(len(t)), np.zeros((2, len(dynamics.weight)))
     tabulate_multipliers(

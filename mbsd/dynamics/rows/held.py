@@ -11,6 +11,7 @@ import numpy as np
 
 from mbsd.dynamics.reference.schur import Schur
 from mbsd.dynamics.reference.sliding import Sliding
+from mbsd.equations.interactions.switching import APPROACHED
 from mbsd.equations.joint_friction import SENSE
 from mbsd.equations.loads import Loads
 from mbsd.equations.system import ZERO, Workspace
@@ -31,6 +32,8 @@ class Held:
     """(c,) friction coefficient times direction of sliding of the contacts with friction; 0: it does not slide."""
     senses: np.ndarray
     """(f,) direction in which the friction of each joint acts, or BY_RATE or NONE: see equations/joint_friction.py."""
+    approached: np.ndarray
+    """(n,) speed at which the contact of each interaction began (m/s); NaN: it never did."""
     released: set[int] = field(default_factory=set)
     """Rows of joints that an action released for good."""
     contacts: list[str] = field(default_factory=list)
@@ -47,7 +50,8 @@ class Held:
     @classmethod
     def of(cls, schur: Schur, ws: Workspace, sliding: Sliding, loads: Loads) -> Held:
         """The record of arrays that kernels read."""
-        return cls(schur.rows, ws.relative[:, ZERO:], sliding.table[:, 0], loads.friction_number[:, SENSE])
+        senses, approached = loads.friction_number[:, SENSE], loads.switch[1:, APPROACHED]
+        return cls(schur.rows, ws.relative[:, ZERO:], sliding.table[:, 0], senses, approached)
 
     def copy(self) -> Held:
         """As it is now."""

@@ -40,8 +40,8 @@ class ChoosingRun(Run):
 
         Raises ModelError if independent coordinates were asked for in vain.
         """
-        if self.formulation == REFERENCE:
-            return None
+        if self.formulation == REFERENCE or (self.formulation == AUTO and self.ready.masses_apart):
+            return None  # independent coordinates solve once, and lose the digits of the light bodies
         why, made = self._choice(state)
         if made is not None and (made.pays or self.formulation == INDEPENDENT):
             return EmbeddedRun(self, made, state)

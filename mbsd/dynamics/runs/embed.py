@@ -87,7 +87,7 @@ def can_embed(ready: PreparedDynamics) -> str | None:
     packed, dynamics = ready.packed, ready.dynamics
     count = ready.mobility.dof - len(packed.motions)
     if ready.following:
-        return "a point is on a curve that crosses itself"
+        return "a point is on a curve that crosses itself or its straight continuation"
     if ready.switches.contacts:
         return "it has contacts or limits"
     if ready.mobility.redundant_rows or ready.mobility.singular:

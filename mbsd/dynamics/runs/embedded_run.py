@@ -5,12 +5,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 from mbsd.dynamics import state as run_state
 from mbsd.dynamics.embedding.arrays import LIMIT, SENSITIVITY
 from mbsd.dynamics.embedding.equations import write_alone
 from mbsd.dynamics.runs.embed import DOUBLED, GOOD, POOR, Embedded, begin_at, embed, scratch_for
+from mbsd.dynamics.runs.indexing import Genevas
 from mbsd.dynamics.runs.pace import Pace
 from mbsd.dynamics.state import NEXT, STARTED, STEP, TIME, WORK
 
@@ -32,6 +34,7 @@ class EmbeddedRun:
 
     def __init__(self, run: Run, made: Embedded, state: run_state.State) -> None:
         self.run, self.ready, self.whole = run, run.ready, state
+        self.genevas = Genevas(self.ready.packed)
         self._passing, self._passed = PASSING, -math.inf
         self._take(made)
 
@@ -40,12 +43,11 @@ class EmbeddedRun:
     ) -> None:
         """Go on to the last output time; ``state`` is the one with which this run began."""
         start, end = float(state.clock[TIME]), float(out.t[-1])
-        method, target = self.run.method, end
+        target = end
         pace = None if progress is None else Pace(self.run, state, end, progress)
         while True:
-            arrays = self.arrays, self.scratch, self.own, out, self.settings
-            status = self.ready.advance(method, *arrays, target, self.run.steps_at_once)
-            self.ready.packed.specials.check()
+            status = self._advance(out, target, self.run.steps_at_once)
+            self.ready.packed.specials.check_trials()
             if pace is not None:
                 pace.note(self._in_reference_coordinates)
             if status == run_state.REACHED:
@@ -68,9 +70,8 @@ class EmbeddedRun:
     def one_step(self, out: run_state.Output, end: float) -> int | None:
         """Take one step towards ``end`` (s) and write it into the whole state; PAUSED, REACHED, or None in vain."""
         state = self.whole
-        arrays = self.arrays, self.scratch, self.own, out, self.settings
-        status = self.ready.advance(self.run.method, *arrays, end, 1)
-        self.ready.packed.specials.check()
+        status = self._advance(out, end, 1)
+        self.ready.packed.specials.check_trials()
         if status == run_state.REACHED:
             state.y[...] = out.y[-1]
             state.clock[TIME], state.clock[WORK], state.count[STARTED] = end, out.work[-1], 0
@@ -84,6 +85,14 @@ class EmbeddedRun:
         if status == run_state.PAUSED:
             state.clock[STEP], state.count[STARTED] = step, started
         return run_state.PAUSED
+
+    def _advance(self, out: run_state.Output, end: float, steps: int) -> int:
+        """The integrator's own, from jump to jump where there are Genevas."""
+        arrays = self.arrays, self.scratch, self.own, out, self.settings
+        advance = partial(self.ready.advance, self.run.method)
+        if self.genevas:
+            return self.genevas.through(advance, *arrays, end, steps)
+        return advance(*arrays, end, steps)
 
     def leave(self) -> None:
         """Let the whole state be gone on from in reference coordinates."""

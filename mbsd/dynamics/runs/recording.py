@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from mbsd.dynamics.prepare.approaches import Approaches
 from mbsd.dynamics.rows.held import Held
 from mbsd.dynamics.state import Output
 from mbsd.model.event import Happening
@@ -32,5 +33,7 @@ class Recording:
     steps: int
     happenings: list[Happening] = field(default_factory=list)
     snapshots: list[Snapshot] = field(default_factory=list)
+    approaches: Approaches | None = None
+    """How fast contacts approached; None where none asks."""
     independent: bool = False
     """Integrated in independent coordinates; multipliers and margins are still to be found."""

@@ -15,6 +15,8 @@ from mbsd.dynamics.runs.stuck import jump
 from mbsd.equations.joint_friction import FAILED, X
 
 NO_LIMIT = 10**12
+RECENT = 1e3
+"""Steps before a run stops in which what a function of the user did may be why."""
 JUMP_STEP = 1e-9
 """Part of the longest step within which a force that jumps is looked for where steps shrink to nothing."""
 
@@ -26,8 +28,14 @@ class Run(Running):
         """Go on to ``end`` (s), ``steps`` steps at most; returns REACHED or PAUSED, raises SimulationError."""
         ready = self.ready
         status = ready.advance(self.method, ready.dynamics, self.scratch, state, out, self.settings, end, steps)
-        self.ready.packed.specials.check()
-        if status not in (run_state.REACHED, run_state.PAUSED):
+        accepted, specials = status in (run_state.REACHED, run_state.PAUSED), ready.packed.specials
+        if self.method.fixed_step:
+            specials.check()
+        elif accepted:
+            specials.check_trials()
+        else:
+            specials.check_trials(state.clock[run_state.TIME] - RECENT * state.clock[run_state.STEP])
+        if not accepted:
             raise self._failure(status, state)
         return status
 
@@ -54,9 +62,10 @@ class Run(Running):
         fastest = packed.body_names[1 + int(np.argmax((speeds / [packed.size, packed.size, 1]).max(1)))]
         where = f"{packed.name}: {method.name} stops at t = {time:.6g} s, where '{fastest}' is fastest"
         if status == run_state.NO_CONVERGENCE:
+            own = ", or method='dop853'; stiff springs and dampers ask for method='radau'" if method.fixed_step else ""
             return SimulationError(
-                f"{where}: the equations of a step have no solution near the last one. Take a smaller step, "
-                "or look for a force or law that jumps."
+                f"{where}: the equations of a step of {self.settings.step:.3g} s have no solution near the last one. "
+                f"Take a smaller step{own}, or look for a force or law that jumps."
             )
         loads = self.ready.dynamics.loads
         if loads.iteration[FAILED]:

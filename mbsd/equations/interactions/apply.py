@@ -19,6 +19,9 @@ from numba import types
 
 from mbsd.compiling.jit import at_address
 from mbsd.equations.interactions.law import (
+    APPROACH,
+    CRANK,
+    CRANK_RATE,
     FX,
     FY,
     LAW,
@@ -26,18 +29,31 @@ from mbsd.equations.interactions.law import (
     OMEGA,
     POWER,
     SIDE,
+    SPEED,
     SWITCH,
     TIME,
     TORQUE,
     VX,
     VY,
 )
-from mbsd.equations.interactions.switching import BEYOND, HELD, KEPT, LAW_HERE, LAW_RATE_HERE, NEAR, ROUGH, VALUE, WIDTH
+from mbsd.equations.interactions.switching import (
+    APPROACHED,
+    BEYOND,
+    HELD,
+    KEPT,
+    LAW_HERE,
+    LAW_RATE_HERE,
+    NEAR,
+    ROUGH,
+    SPEED_HERE,
+    VALUE,
+    WIDTH,
+)
 from mbsd.equations.relative.equation import OWN, POINTER, A, X, Y, evaluate_from
 
 GEOMETRY = 7
 """Numbers of an interaction before its own."""
-COLUMNS = 6
+COLUMNS = 7
 """Of Loads.interaction."""
 _WHOLE = types.CPointer(types.int64)
 SIGNATURE = types.float64(
@@ -83,11 +99,16 @@ def apply(interaction, n, given, state, out, switches, t, q, v, cos_sin, load):
         state[VX] = ux * vx + uy * vy + omega * y
         state[VY] = ux * vy - uy * vx - omega * x
         state[OMEGA] = v[j + 2] - omega
+        crank = 3 * interaction[row + 6] + 2
+        state[CRANK] = q[crank] - q[i + 2]
+        state[CRANK_RATE] = v[crank] - omega
         state[TIME] = t
         state[LAW] = switches[own + LAW_HERE]
         state[LAW_RATE] = switches[own + LAW_RATE_HERE]
         side = switches[own + KEPT] * switches[HELD]
         state[SIDE] = side
+        state[APPROACH] = switches[own + APPROACHED]
+        out[SPEED] = 0.0
         out[SWITCH] = math.nan
         out[POWER] = 0.0
         # functions count their own numbers from OWN
@@ -95,6 +116,7 @@ def apply(interaction, n, given, state, out, switches, t, q, v, cos_sin, load):
         value = out[SWITCH]
         switches[own + VALUE] = value
         switches[own + ROUGH] = out[POWER]
+        switches[own + SPEED_HERE] = out[SPEED]
         if -side * value > switches[NEAR]:
             switches[BEYOND] = min(switches[BEYOND], t)
         power += out[FX] * state[VX] + out[FY] * state[VY] + out[TORQUE] * state[OMEGA]

@@ -21,15 +21,20 @@ VX, VY, OMEGA, TIME, LAW, LAW_RATE = 14, 15, 16, 17, 18, 19
 """Of ``state`` beside X, Y, A: rates (m/s, m/s, rad/s), time (s), value and rate of the law of time, 0 without one."""
 SIDE = 23
 """Of ``state``: 1 or -1 where the force is wanted as on that side of its switch, smoothly beyond it too; else 0."""
-STATE = 24
+APPROACH = 24
+"""Of ``state``: SPEED where SWITCH last went above 0 (m/s), not a number before it ever did: see switching.py."""
+CRANK, CRANK_RATE = 25, 26
+"""Of ``state``: angle and rate of the body that the interaction names as its crank, against body i (rad, rad/s)."""
+STATE = 27
 """Numbers of a state."""
-FX, FY, TORQUE, SWITCH, POWER = 0, 1, 2, 3, 4
+FX, FY, TORQUE, SWITCH, POWER, SPEED = 0, 1, 2, 3, 4, 5
 """Of ``out``. SWITCH: what changes its sign where the force has a kink or a jump (m), above 0 where it acts.
-POWER: by which power of that it grows, if that is no whole number."""
+POWER: by which power of that it grows, if that is no whole number. SPEED: rate of SWITCH, of forces that ask for
+APPROACH (m/s)."""
 
 __all__ = [
-    "FX", "FY", "LAW", "LAW_RATE", "OMEGA", "OWN", "POWER", "SIDE", "STATE", "SWITCH", "TIME", "TORQUE", "VX", "VY",
-    "A", "X", "Y",
+    "APPROACH", "CRANK", "CRANK_RATE", "FX", "FY", "LAW", "LAW_RATE", "OMEGA", "OWN", "POWER", "SIDE", "SPEED",
+    "STATE", "SWITCH", "TIME", "TORQUE", "VX", "VY", "A", "X", "Y",
 ]  # fmt: skip
 
 interaction = equation

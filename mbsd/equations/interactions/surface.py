@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import internal, kernel
-from mbsd.equations.relative.curve_pieces import COUNT, CX, CY, DX, DY, TABLE, WIDTH, find_foot
+from mbsd.equations.relative.curve_pieces import COUNT, CX, CY, DX, DY, LATER, TABLE, WIDTH, find_foot
 from mbsd.equations.relative.equation import X, Y
 
 DISTANCE, TX, TY = 20, 21, 22
@@ -21,7 +21,7 @@ DISTANCE, TX, TY = 20, 21, 22
 @internal
 def after(numbers):
     """Where the law's own numbers begin."""
-    return TABLE + WIDTH * int(numbers[COUNT]) + 2
+    return TABLE + WIDTH * int(numbers[COUNT]) + LATER
 
 
 @internal

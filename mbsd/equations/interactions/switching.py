@@ -13,17 +13,19 @@ import math
 
 from mbsd.compiling.jit import inlined
 
-SWITCHING, HELD, BEYOND, NEAR, SIZE, CUTS, FREE, RATE, AT = range(9)
+SWITCHING, HELD, BEYOND, NEAR, SIZE, CUTS, FREE, RATE, AT, REMEMBERS = range(10)
 """Row 0: whether any interaction switches; whether they are held; the earliest time (s) at which one was beyond by
 more than NEAR (m); the mechanism's size (m); steps refused one after the other because of a switch; whether the next
 step holds none; how fast s goes where the last switch was found (m/s),
-and after a step that ended there the next step (s); the time at which the next step begins (s)."""
-KEPT, VALUE, HERE, END, LAW_HERE, LAW_RATE_HERE, ROUGH, LOOSE, BEFORE = range(9)
+and after a step that ended there the next step (s); the time at which the next step begins (s); whether any force asks
+for the speed at which its switch was passed."""
+KEPT, VALUE, HERE, END, LAW_HERE, LAW_RATE_HERE, ROUGH, LOOSE, BEFORE, SPEED_HERE, SPEED_END, APPROACHED = range(12)
 """Row k + 1, interaction k: its side while held, 0 for none; s where it was evaluated last, where the step begins and
 where it ends, not a number where it does not switch; its law of time and the law's rate, 0 without one; the power of s
 by which its force grows, if that is no whole number, else 0; steps, this one included, for which it is not
-held; scratch of KEPT."""
-WIDTH = 9
+held; scratch of KEPT; rate of s where it was evaluated last and where the step ends; that rate where s last went above
+0, not a number before it ever did: events may set it back, so it belongs to the record of a run (Held)."""
+WIDTH = 12
 TIGHT = 1e-12
 """Of the size: interactions so near to their switch are on neither side."""
 
@@ -62,15 +64,48 @@ def note_end(switch):
     """The last evaluation was where the step ends."""
     for row in range(1, switch.shape[0]):
         switch[row, END] = switch[row, VALUE]
+        switch[row, SPEED_END] = switch[row, SPEED_HERE]
+
+
+@inlined
+def note_begin(switch):
+    """The last evaluation was where the run begins or goes on: sides are known, what touches approaches as it does.
+
+    What is before its switch has the rate that it has now, whatever it was before an impact.
+    """
+    switch[0, FREE] = 0.0
+    for row in range(1, switch.shape[0]):
+        switch[row, HERE] = switch[row, VALUE]
+        before = switch[row, APPROACHED]
+        tight = TIGHT * switch[0, SIZE]
+        if switch[row, VALUE] < -tight or (before != before and abs(switch[row, VALUE]) <= tight):
+            switch[row, APPROACHED] = switch[row, SPEED_HERE]
 
 
 @inlined
 def accept(switch, t):
-    """The next step begins where this one ends, at the time t."""
+    """The next step begins where this one ends, at the time t.
+
+    What is before its switch, or ends there (LOOSE is 2), passes it at the rate that it has now. A step that passed a
+    switch unseen began before it, at the rate noted then, and passed it in between; the one after a switch that was met
+    (LOOSE is 1) did not.
+    """
     switch[0, AT] = t
     switch[0, CUTS] = 0.0
     switch[0, FREE] = 0.0
+    tight = TIGHT * switch[0, SIZE]
     for row in range(1, switch.shape[0]):
+        loose = switch[row, LOOSE]
+        here = switch[row, HERE]
+        end = switch[row, END]
+        if end < -tight or loose == 2.0:
+            switch[row, APPROACHED] = switch[row, SPEED_END]
+        elif loose != 1.0 and here < -tight:
+            noted = switch[row, APPROACHED]
+            part = here / (here - end) if noted == noted and end > 0.0 else 1.0
+            switch[row, APPROACHED] = (
+                noted + part * (switch[row, SPEED_END] - noted) if part < 1.0 else switch[row, SPEED_END]
+            )
         switch[row, HERE] = switch[row, END]
         switch[row, LOOSE] = max(switch[row, LOOSE] - 1.0, 0.0)
 

@@ -2,14 +2,19 @@
 
 Numbers, from ``OWN`` on: offset D (m), radius r (m), 1 if closed, span of the parameter, count of pieces, how far the
 foot may go at once (0: as far as it likes); then of each piece, 15: begin u, six coefficients of x(u) and of y(u),
-lowest first, arc length and tangent angle at its begin. Beyond its ends an open curve goes on straight.
+lowest first, arc length and tangent angle at its begin; at last arc length and turning of all of it, place and
+derivative at its end, and how far a place is from its nearest node at most, 0 where the nearest node is known to lead
+to the foot. Beyond its ends an open curve goes on straight.
 
 The foot of a point p: (p - c(u)) . c'(u) = 0, by Newton from the nearest of the nodes; where the curve is bent about
-the point the second derivative is left out (Gauss-Newton), which always leads downhill.
+the point the second derivative is left out (Gauss-Newton), which always leads downhill. Where parts of the curve pass
+so close by each other that a node of another part may be nearer, or turn sharply between two nodes, each node that can
+lead to a nearer foot is tried. Beyond the ends the straight lines are compared with the nearest of the pieces.
 
-On a curve that crosses itself the nearest foot may be on the other branch. There all feet are found, and the one is
-taken that is least off, |d - D| + |u - u_last| / 4, from the parameter last accepted (mbsd/arrays/curve_branches.py):
-the point goes on along the branch it is on. A step that takes the foot farther than it may go at once is divided.
+On a curve that crosses itself or its straight continuations the nearest foot may be on the other branch. There all
+feet are found, and the one is taken that is least off, |d - D| + |u - u_last| / 4, from the parameter last accepted
+(mbsd/arrays/curve_branches.py): the point goes on along the branch it is on. A step that takes the foot farther than
+it may go at once is divided.
 """
 
 from __future__ import annotations
@@ -24,11 +29,17 @@ DISTANCE, RADIUS, CLOSED, SPAN, COUNT, FARTHEST, TABLE = range(OWN, OWN + 7)
 WIDTH = 15
 ARC, TANGENT = 13, 14
 """Of a piece."""
+LENGTH, TURNING, END_X, END_Y, END_DX, END_DY, REACH = range(7)
+"""After the last piece."""
+LATER = 7
+"""Numbers after the last piece."""
 U, PIECE, CX, CY, DX, DY, DDX, DDY, DDDX, DDDY = range(4, 14)
 """Of the scratch after the relative pose: parameter, piece, and place and derivatives by u there."""
 LOOKS = 48
 """Nodes looked at before the ones between the best two."""
 MOST_STEPS = 40
+NEARER, CLOSE = 0.999999, 1e-9
+"""Part of a square, and of REACH, by which another foot is nearer by more than rounding."""
 AWAY = 0.25
 """What one metre along the curve counts against one metre off it."""
 
@@ -112,12 +123,76 @@ def find_foot(numbers, relative):
             least = square
             best = node
     u = numbers[TABLE + WIDTH * best]
-    if best == count - 1 and numbers[CLOSED] == 0.0:  # the end of the last piece is no node
-        end = numbers[TABLE] + numbers[SPAN]
-        place_on(numbers, best, end, relative)
-        if (relative[CX] - x) ** 2 + (relative[CY] - y) ** 2 < least:
-            u = end
+    if numbers[CLOSED] == 0.0:  # the end of the last piece is no node
+        square = _square_to_end(numbers, x, y)
+        if square < least:
+            least = square
+            u = numbers[TABLE] + numbers[SPAN]
+    if numbers[TABLE + WIDTH * count + REACH] > 0.0:
+        u, least = _nearest_foot(numbers, relative, x, y, u, count)
+    if numbers[CLOSED] == 0.0:
+        line, square = _nearest_continuation(numbers, x, y, least)
+        if square < least and line != u:
+            _go_to_foot(numbers, relative, x, y, u)
+            if (relative[CX] - x) ** 2 + (relative[CY] - y) ** 2 <= square:
+                return
+            u = line
     _go_to_foot(numbers, relative, x, y, u)
+
+
+@internal
+def _square_to_end(numbers, x, y):
+    end = TABLE + WIDTH * int(numbers[COUNT])
+    dx = numbers[end + END_X] - x
+    dy = numbers[end + END_Y] - y
+    return dx * dx + dy * dy
+
+
+@internal
+def _nearest_foot(numbers, relative, x, y, u, count):
+    """Parameter of the nearest of the feet that u and all nodes lead to, and how close it is, squared.
+
+    A place of a piece is at most REACH from one of its ends, so that nodes farther away lead to no nearer one.
+    """
+    first = u
+    _go_to_foot(numbers, relative, x, y, u)
+    u = relative[U]
+    least = (relative[CX] - x) ** 2 + (relative[CY] - y) ** 2
+    reach = numbers[TABLE + WIDTH * count + REACH]
+    limit = (math.sqrt(least) + reach) ** 2
+    small = (CLOSE * reach) ** 2
+    for node in range(count if numbers[CLOSED] != 0.0 else count + 1):
+        if node < count:
+            square = _square_to(numbers, node, x, y)
+        else:
+            square = _square_to_end(numbers, x, y)
+        begun = numbers[TABLE + WIDTH * node] if node < count else numbers[TABLE] + numbers[SPAN]
+        if square < limit and begun != first:
+            _go_to_foot(numbers, relative, x, y, begun)
+            square = (relative[CX] - x) ** 2 + (relative[CY] - y) ** 2
+            if square + small < NEARER * least:
+                least = square
+                u = relative[U]
+                limit = (math.sqrt(least) + reach) ** 2
+    return u, least
+
+
+@internal
+def _nearest_continuation(numbers, x, y, least):
+    """Parameter of the end beyond which a straight line passes closest, and how close, squared, if below ``least``."""
+    end = TABLE + WIDTH * int(numbers[COUNT])
+    u = numbers[TABLE]
+    for side in range(2):
+        px = x - (numbers[end + END_X] if side else numbers[TABLE + 1])
+        py = y - (numbers[end + END_Y] if side else numbers[TABLE + 7])
+        dx = numbers[end + END_DX] if side else -numbers[TABLE + 2]
+        dy = numbers[end + END_DY] if side else -numbers[TABLE + 8]
+        if px * dx + py * dy > 0.0:
+            square = (px * dy - py * dx) ** 2 / (dx * dx + dy * dy)
+            if square < least:
+                least = square
+                u = numbers[TABLE] + side * numbers[SPAN]
+    return u, least
 
 
 @internal
@@ -185,6 +260,10 @@ def _go_to_foot(numbers, relative, x, y, u):
         open_ended = numbers[CLOSED] == 0.0
         if open_ended and ((u <= begin and slope < 0.0) or (u >= begin + span and slope > 0.0)):
             step = slope / speed  # on the straight line beyond an end, which does not bend, the first step is exact
+        elif open_ended and u < begin:
+            step = min(slope / speed, begin - u)
+        elif open_ended and u > begin + span:
+            step = max(slope / speed, begin + span - u)
         else:  # the foot is within a piece of the nearest node
             step = slope / (bend if bend > 1e-6 * speed else speed)
             step = min(max(step, -longest), longest)

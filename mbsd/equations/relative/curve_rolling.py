@@ -28,11 +28,13 @@ from mbsd.equations.relative.curve_pieces import (
     DDY,
     DX,
     DY,
+    LENGTH,
     PIECE,
     RADIUS,
     SPAN,
     TABLE,
     TANGENT,
+    TURNING,
     WIDTH,
     U,
     find_foot,
@@ -86,7 +88,7 @@ def residual(numbers, relative, out):
     value = s - r * (beta - relative[A]) - numbers[PHASE] - relative[ZERO]
     if numbers[CLOSED] != 0.0:
         last = TABLE + WIDTH * int(numbers[COUNT])  # a round: arc length and turning of the tangent
-        period = abs(numbers[last] - r * numbers[last + 1])
+        period = abs(numbers[last + LENGTH] - r * numbers[last + TURNING])
         if period > 0.0:
             value -= period * math.floor(value / period + 0.5)
     w = 1.0 - kappa * d

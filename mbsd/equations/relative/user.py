@@ -9,6 +9,6 @@ from mbsd.equations.system import ZERO
 
 @equation
 def residual(numbers, relative, out):
-    """F; own number: the address of a function of the relative pose that fills ``out``."""
-    call(int(numbers[OWN]), 0.0, relative, out)  # pyright: ignore[reportCallIssue]
+    """F; own numbers: the address of a function of length and relative pose that fills ``out``; the length (m)."""
+    call(int(numbers[OWN]), numbers[OWN + 1], relative, out)  # pyright: ignore[reportCallIssue]
     out[F] -= numbers[PHASE] + relative[ZERO]

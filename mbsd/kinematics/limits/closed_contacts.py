@@ -66,12 +66,16 @@ def refuse_passed_contacts(m: Model, packed: Packed, times: np.ndarray, q: np.nd
             )
 
 
-def refuse_resting(m: Model, packed: Packed, start: np.ndarray, q: np.ndarray) -> None:
-    """Raise EquilibriumError for a pose q (3 nb,), found from ``start``, that is beyond a contact or limit."""
+def refuse_resting(m: Model, packed: Packed, start: np.ndarray, q: np.ndarray, said: str | None = None) -> None:
+    """Raise EquilibriumError for a pose q (3 nb,), found from ``start``, that is beyond a contact or limit.
+
+    ``said``: how the text begins where the pose does not balance.
+    """
     for gap in gaps(m, packed, np.stack([start, q]), limits=True):
         if gap.value[1] < -gap.slack:
+            begun = said or f"{m.name}: the pose that balances is"
             raise EquilibriumError(
-                f"{m.name}: the pose that balances is {-gap.value[1]:.3g} {gap.unit} beyond '{gap.name}'. Rest on a "
+                f"{begun} {-gap.value[1]:.3g} {gap.unit} beyond '{gap.name}'. Rest on a "
                 "contact or at a limit is not looked for: simulate with damping until it rests, or start nearer to a "
                 "pose that is free of it."
             )

@@ -54,7 +54,7 @@ def _assembled(m: Model, packed: Packed, drive: np.ndarray, time: float) -> np.n
     for attempt in range(ATTEMPTS):
         q = rough_pose(m, packed, drive, attempt)
         unwind_angles(packed, q)
-        q, worst = _close_with_phases(packed, q, drive)
+        q, worst = close_with_phases(packed, q, drive)
         if worst <= CLOSED:
             refuse_impossible(packed, q)
             return q
@@ -65,7 +65,7 @@ def _assembled(m: Model, packed: Packed, drive: np.ndarray, time: float) -> np.n
     raise AssemblyError(why_open(m, packed, best[1], drive, time))
 
 
-def _close_with_phases(packed: Packed, q: np.ndarray, drive: np.ndarray) -> tuple[np.ndarray, float]:
+def close_with_phases(packed: Packed, q: np.ndarray, drive: np.ndarray) -> tuple[np.ndarray, float]:
     """Close all rows that say where bodies are; the others mesh as they then stand."""
     let_phases_go(packed)
     q, worst = close(packed, q, drive)
@@ -122,7 +122,11 @@ def _least(jac: np.ndarray, right: np.ndarray) -> np.ndarray:
 
 def rough_pose(m: Model, packed: Packed, drive: np.ndarray, attempt: int) -> np.ndarray:
     """(3 nb,) from ``start_near``, the drivers and a walk over the joints; attempts after the first vary angles."""
-    angle = _rough_angles(m, packed, drive, attempt)
+    return placed_pose(m, packed, _rough_angles(m, packed, drive, attempt))
+
+
+def placed_pose(m: Model, packed: Packed, angle: np.ndarray) -> np.ndarray:
+    """(3 nb,) of bodies at angles (nb,), at places that ``start_near`` gives or a walk over the joints."""
     q = np.zeros((len(packed.body_names), 3))
     q[:, 2] = angle
     placed = {0}

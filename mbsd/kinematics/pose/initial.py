@@ -20,7 +20,7 @@ from mbsd.base.kept import Kept
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.close import CLOSED, LONGEST_STEP, assemble, close
 from mbsd.kinematics.pose.mobility import independent_rows
-from mbsd.kinematics.pose.phases import let_phases_go, take_phases
+from mbsd.kinematics.pose.phases import let_phases_go, refuse_impossible, take_phases
 from mbsd.model.mechanism import Model
 
 TOLD = 1e-6
@@ -90,6 +90,7 @@ def start_pose(m: Model, packed: Packed, time: float, drive: np.ndarray) -> tupl
         q = _close_holding(packed, q, drive, wanted[held], targets[held])
     if take_phases(packed, q, drive):
         q = close(packed, q, drive)[0]
+    refuse_impossible(packed, q)
     return q, tell_coordinates(packed, q, list(zip(wanted, targets, strict=True)))
 
 

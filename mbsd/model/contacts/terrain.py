@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 def _numbers(params: Mapping[str, Any]) -> list[np.ndarray]:
     from mbsd.model.plane_curves import disc_numbers
 
-    return disc_numbers(params)
+    return disc_numbers(params, follows=False)
 
 
 TERRAIN = register(
@@ -58,7 +58,8 @@ def rigid_terrain(
     """A point, or a disc of ``radius`` (m) around it, stays on the left of a smooth curve.
 
     It goes through ``points`` (k, 2) in the axes of marker ``terrain`` (m), for a ground from left to right; beyond
-    its ends an open curve goes on straight.
+    its ends an open curve goes on straight. A ``closed`` one is solid within where its points go clockwise, so that
+    what touches it stays outside, and solid outside where they go counter-clockwise.
     """
     from mbsd.model.plane_curves import checked_points, refuse_crossing, refuse_tight
 

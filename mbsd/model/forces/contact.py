@@ -2,6 +2,7 @@
 
     depth  d = radius - distance of marker j from the surface;   d <= 0: no force
     normal N = k d^n (1 + c d'), never below 0                    k: N/m^n, n: 1.5 Hertz, c: s/m
+           c = A(e) / v_0      where a restitution e is given;    v_0: d' where this contact began (m/s)
     along    T = -mu N tanh(s / s_0)                              s: sliding speed of body j at the foot
 
 The surface is the x axis of marker i with matter below it, or a curve y(x) in the axes of marker i; N acts along its
@@ -9,10 +10,19 @@ outer normal at the foot of marker j, and body i takes the opposite. Deepest and
 
     k d_max^(n+1) / ((n+1) m) = w(v_0) = w(-v_1),   w(v) = v / c - ln(1 + c v) / c^2,   so v_1 / v_0 ~ 1 - 2 c v_0 / 3
 
+    damping_model           A(e)                  with it a body returns with v_1 = e' v_0, where
+    "hunt_crossley"         3 (1 - e) / 2         A (1 + e') = ln((1 + A) / (1 - A e')),  whatever k, n, m and v_0 are
+    "lankarani_nikravesh"   3 (1 - e^2) / 4       (v_1 follows from w). For e = 0.9 e' is 0.909, 0.913 and 0.894,
+    "flores"                8 (1 - e) / (5 e)     for e = 0.5 it is 0.66, 0.73 and 0.47: the first two want little loss
+
+v_0 counts as ``least_approach`` at least, so that resting does not get infinitely stiff. A contact in which the motion
+begins has no v_0 and no damping.
+
 The elastic part has the potential energy k d^(n+1) / (n+1). A disc touches at one point, the nearest of the profile.
 T is smooth: within s_0 bodies creep instead of sticking.
 
-Source: Hunt, Crossley 1975, J. Appl. Mech. 42, 440.
+Sources: Hunt, Crossley 1975, J. Appl. Mech. 42, 440; Lankarani, Nikravesh 1990, J. Mech. Des. 112, 369; Flores,
+Machado, Silva, Martins 2011, Multibody Syst. Dyn. 25, 357.
 """
 
 from __future__ import annotations
@@ -20,15 +30,22 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
 from mbsd.model.adding.forces import above_zero, add_force, amounts_given, curves_given
 from mbsd.model.body import Marker
 from mbsd.model.force import Force, ForceKind, Interaction, register
 from mbsd.model.laws.curve import Curve, curve
-from mbsd.model.mechanism import Model
+from mbsd.model.mechanism import Model, number_given
 
 if TYPE_CHECKING:
     from mbsd.model.force import Force
 
+MODELS = {
+    "hunt_crossley": lambda e: 1.5 * (1.0 - e),
+    "lankarani_nikravesh": lambda e: 0.75 * (1.0 - e * e),
+    "flores": lambda e: 1.6 * (1.0 - e) / e,
+}
+"""A(e) by the name of the damping model."""
 OWN = ("radius", "stiffness", "exponent", "damping", "friction", "slip_speed")
 
 
@@ -36,15 +53,18 @@ def surface(force: Force) -> list[float]:
     """Numbers of the surface, as mbsd/equations/interactions/surface.py reads them."""
     profile = force.laws.get("profile")
     if not isinstance(profile, Curve):
-        return [0.0] * 8
+        return [0.0] * 13  # a curve of no pieces
     from mbsd.model.plane_curves import graph_numbers
 
     return graph_numbers(profile).tolist()
 
 
 def _interactions(force, masses):
-    numbers = surface(force) + [force.params[name] for name in OWN]
-    return (Interaction("contact", force.i, force.j, numbers),)
+    p = force.params
+    restitution = p["restitution"]
+    loss = 0.0 if restitution is None else MODELS[p["damping_model"]](restitution)
+    numbers = surface(force) + [p[name] for name in OWN] + [loss, p["least_approach"]]
+    return (Interaction("contact", force.i, force.j, numbers, remembers=loss > 0.0),)
 
 
 def _depth_potential(force, depth):
@@ -87,18 +107,52 @@ def contact(
     radius: float = 0.0,
     profile: Curve | None = None,
     slip_speed: float = 1e-3,
+    restitution: float | None = None,
+    damping_model: str = "flores",
+    least_approach: float = 1e-3,
 ) -> Force:
     """Contact of a disc of ``radius`` (m; 0: a point) about a marker with a surface, never pulling.
 
     The surface is the x axis of marker ``surface`` with matter below it (turn the marker for a wall), or a
     ``profile`` y(x) in its axes. Normal force stiffness * depth^exponent * (1 + damping * rate of depth); the
     friction coefficient is reached at some ``slip_speed`` (m/s).
+
+    ``restitution`` in place of ``damping``: each impact loses what this coefficient (0 .. 1) says, by the
+    ``damping_model`` "hunt_crossley" or "lankarani_nikravesh" (for little loss), or "flores" (for any but 0), whose
+    damping is divided by the speed at which the contact began, ``least_approach`` (m/s) at least. Simulated by
+    "dop853" alone.
     """
     params = amounts_given(
         m, name, stiffness=stiffness, exponent=exponent, damping=damping, friction=friction, radius=radius
     )
     if params["exponent"] < 1.0:
         raise ModelError(f"{m.name}: force '{name}': exponent is {exponent:g}; it must be 1 or more")
+    params |= _restitution_given(m, name, damping, restitution, damping_model, least_approach)
     params["slip_speed"] = above_zero(m, name, "slip_speed", slip_speed)
     laws = {} if profile is None else curves_given(m, name, profile=profile)
     return add_force(m, CONTACT, name, surface, body, params, laws)
+
+
+def _restitution_given(
+    m: Model, name: str, damping: float, restitution: float | None, damping_model: str, least_approach: float
+) -> dict[str, float | str | None]:
+    """Params of damping by approach speed. Raises ModelError."""
+    what = f"{m.name}: force '{name}'"
+    if damping_model not in MODELS:
+        raise ModelError(f"{what}: {no_such('damping_model', damping_model, MODELS)}")
+    least_approach = above_zero(m, name, "least_approach", least_approach)
+    if restitution is not None:
+        restitution = number_given(m, f"force '{name}': restitution", restitution)
+        if not 0.0 <= restitution <= 1.0:
+            raise ModelError(f"{what}: restitution is {restitution:g}; it must be within 0 .. 1")
+        if restitution == 0.0 and damping_model == "flores":
+            raise ModelError(
+                f"{what}: restitution is 0, for which the damping of 'flores' is infinite; give a little more, or take "
+                "damping_model='lankarani_nikravesh'"
+            )
+        if damping:
+            raise ModelError(
+                f"{what}: damping is {damping:g} s/m and restitution {restitution:g}; give one of them, as both say "
+                "how much an impact loses"
+            )
+    return {"restitution": restitution, "damping_model": damping_model, "least_approach": least_approach}

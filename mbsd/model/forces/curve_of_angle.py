@@ -36,6 +36,7 @@ CURVE_OF_ANGLE = register(
             curve([-3.0, 0.0, 3.0], [5.0, 1.0, -4.0]),
             curve([-3.0, 0.0, 3.0], [4.0, 0.0, -2.0]),
         ),
+        also={"torque_speed": "of_rate"},
     )
 )
 

@@ -63,7 +63,7 @@ def friction(
     what = f"{m.name}: force '{name}'"
     key = joint.name if isinstance(joint, Joint) else joint
     known = m.joints.get(key) if isinstance(key, str) else None
-    if known is None or (known is not joint and isinstance(joint, Joint)):
+    if known is None or (isinstance(joint, Joint) and known.bodies != joint.bodies):
         raise ModelError(f"{what}: {no_such('joint', key, m.joints)}")
     if known.kind.pair is None:
         raise ModelError(

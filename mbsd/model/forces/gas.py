@@ -15,6 +15,7 @@ from mbsd.model.adding.forces import (
     amounts_given,
 )
 from mbsd.model.body import Marker
+from mbsd.model.chamber import Chamber
 from mbsd.model.force import Element, Force, ForceKind, Term, register
 from mbsd.model.mechanism import Model, number_given
 
@@ -31,6 +32,7 @@ GAS = register(
     ForceKind(
         "gas",
         _elements,
+        chamber=lambda force, masses: Chamber(*(force.params[key] for key in ("area", "clearance", "outside"))),
         example=lambda m, i, j: m.gas("example", i, j, area=0.002, pressure=1.1e5, at=0.12, clearance=8.0),
     )
 )

@@ -17,7 +17,7 @@ from mbsd.model.adding.joints import join, phase_given, wheels_given
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint, JointKind, register
 from mbsd.model.mechanism import Model
-from mbsd.model.teeth import with_radii
+from mbsd.model.teeth import belt_problem, with_radii
 
 
 def _numbers(params: Mapping[str, Any]) -> list[tuple[float, float]]:
@@ -31,6 +31,7 @@ BELT = register(
         ("gear",),
         example=lambda m, i, j: m.belt("example", i, j, radius_i=0.3, radius_j=0.2, crossed=True),
         numbers=_numbers,
+        problem=belt_problem,
         lengths=("radius_i", "radius_j"),
     )
 )
@@ -51,7 +52,8 @@ def belt(
 ) -> Joint:
     """A belt or chain over pulleys with centres at i and j, open or crossed; ``phase`` as in gear_pair.
 
-    By pitch radii (m), or by ``teeth`` (z_i, z_j) and the belt's ``pitch`` (m from tooth to tooth).
+    By pitch radii (m), or by ``teeth`` (z_i, z_j) and the belt's ``pitch`` (m from tooth to tooth). At the start
+    neither pulley may be in the other, and those of a crossed belt must be apart (AssemblyError).
     """
     wheels = wheels_given(m, name, {"radius_i": radius_i, "radius_j": radius_j}, teeth, pitch=pitch)
     return join(m, BELT, name, i, j, None, **wheels, crossed=bool(crossed), phase=phase_given(m, name, phase))

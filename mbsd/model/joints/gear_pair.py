@@ -6,7 +6,7 @@
 phi is the direction of the line of centres, so the centres may be fixed or carried by an arm (planetary trains). The
 joint holds the turning only; pins hold the centres. The reaction on body j is the force at its pitch point as a force
 at its centre and a torque; it acts along the tangent, without the separating part of a pressure angle. Gears given by
-teeth and module have r = module z / 2 (teeth.py) and must stand as far apart as these mesh.
+teeth and module have r = module z / 2 (teeth.py). At the start gears must stand as far apart as they mesh.
 """
 
 from __future__ import annotations
@@ -56,8 +56,8 @@ def gear_pair(
     """Two gears with centres at i and j, by pitch radii (m), or by ``teeth`` (z_i, z_j) and ``module`` (m).
 
     ``internal``: i is the ring around j. They mesh as they stand at the start; ``phase`` gives angles of both
-    bodies (rad) that belong together. Gears by teeth must stand module (z_i + z_j) / 2 apart at the start, of a
-    ring and its pinion the difference (AssemblyError).
+    bodies (rad) that belong together. At the start they must stand radius_i + radius_j apart, a ring and the gear
+    in it radius_i - radius_j (AssemblyError): to 1/1000 of the smaller radius, or of the module.
     """
     wheels = wheels_given(m, name, {"radius_i": radius_i, "radius_j": radius_j}, teeth, module=module)
     sized = with_radii(wheels)

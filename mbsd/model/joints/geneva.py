@@ -45,6 +45,7 @@ GENEVA = register(
         problem=_problem,
         lengths=("radius",),
         touching="place",
+        symmetry=lambda params: params["slots"],
     )
 )
 

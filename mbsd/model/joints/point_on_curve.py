@@ -3,9 +3,9 @@
     Phi = n . (p_j - c(u)) - D        constraint `curve`, 1 row, c(u) the curve's point nearest to p_j
 
 The curve is a quintic spline through points in the axes of marker i. D > 0 is on its left: the centre of a roller or a
-disc of radius D that slides. The reaction on body j is a force across the curve. Where the curve crosses itself, a
-simulation goes on along the branch the point is on (mbsd/arrays/curve_branches.py), and a sweep that may have left it
-is refused.
+disc of radius D that slides. The reaction on body j is a force across the curve. Where the curve crosses itself or the
+straight lines beyond its ends, a simulation goes on along the branch the point is on (mbsd/arrays/curve_branches.py),
+and a sweep that may have left it is refused.
 """
 
 from __future__ import annotations

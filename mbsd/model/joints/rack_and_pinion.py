@@ -43,7 +43,8 @@ def rack_and_pinion(
 ) -> Joint:
     """A pinion about marker ``pinion`` on the x axis of marker ``rack``, by its pitch radius (m), or by teeth.
 
-    By ``teeth`` and ``module`` (m) its centre must stand module z / 2 above that axis at the start (AssemblyError).
+    At the start its centre must stand as far above that axis, on the side of its y axis, as its radius, or
+    module z / 2 by ``teeth`` and ``module`` (AssemblyError).
     """
     wheels = wheels_given(m, name, {"radius": radius}, teeth, module=module)
     return join(m, RACK_AND_PINION, name, rack, pinion, None, **wheels, phase=phase_given(m, name, phase))

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 def _numbers(params: Mapping[str, Any]) -> list[np.ndarray]:
     from mbsd.model.plane_curves import disc_numbers
 
-    return disc_numbers(params)
+    return disc_numbers(params, follows=True)
 
 
 ROLLING_ON_CURVE = register(

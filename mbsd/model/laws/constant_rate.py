@@ -26,6 +26,11 @@ class ConstantRate(Motion):
         """One turn, for an angle."""
         return 2 * math.pi / abs(self.rate) if self.rate else None
 
+    @property
+    def given_derivatives(self) -> bool:
+        """No: they follow from the numbers."""
+        return False
+
     def knots(self, first: float, last: float) -> np.ndarray:
         """None: it never turns back."""
         return np.zeros(0)

@@ -27,6 +27,11 @@ class Cycloidal(Motion):
     begin: float = 0.0
     start: float = 0.0
 
+    @property
+    def given_derivatives(self) -> bool:
+        """No: they follow from the numbers."""
+        return False
+
     def knots(self, first: float, last: float) -> np.ndarray:
         """Where it begins and ends; it never turns back."""
         times = np.array([self.begin, self.begin + self.duration])

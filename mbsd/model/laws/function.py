@@ -11,6 +11,7 @@ import numpy as np
 
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
+from mbsd.base.pickled import WithFunctions
 from mbsd.base.shown import shown
 from mbsd.base.users_function import value_at
 from mbsd.model.laws.law import Motion, Times
@@ -24,7 +25,7 @@ REMEDY = "give breaks= where it jumps, shortest= (s) if parts of it are short, o
 
 
 @dataclass(frozen=True, eq=False)
-class Function(Motion):
+class Function(WithFunctions, Motion):
     """See :func:`function`."""
 
     f: Callable[[float], float]
@@ -38,6 +39,11 @@ class Function(Motion):
     def period(self) -> float | None:
         """As declared by the user."""
         return self.repeats_after
+
+    @property
+    def given_derivatives(self) -> bool:
+        """Whether the user gave them."""
+        return self.df is not None
 
     def over(self, first: float, last: float) -> Motion:
         """The fit over the span, unless the derivatives were given."""
@@ -122,6 +128,11 @@ class Fitted(Function):
     """Where f itself jumps."""
     missed: str | None = None
     """What could not be fitted, in words."""
+
+    @property
+    def given_derivatives(self) -> bool:
+        """No: they follow from the fit."""
+        return False
 
     def over(self, first: float, last: float) -> Motion:
         """Itself: it was made for one span."""

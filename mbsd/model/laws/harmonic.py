@@ -28,6 +28,11 @@ class Harmonic(Motion):
         """One swing."""
         return 2 * math.pi / abs(self.rate) if self.rate else None
 
+    @property
+    def given_derivatives(self) -> bool:
+        """No: they follow from the numbers."""
+        return False
+
     def knots(self, first: float, last: float) -> np.ndarray:
         """Where it turns back."""
         if not (self.rate and self.amplitude):

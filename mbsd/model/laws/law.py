@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.base.arguments import finite_number
+from mbsd.base.errors import ModelError
 
 if TYPE_CHECKING:
     from mbsd.model.laws.numbers import Compiled
@@ -29,6 +30,11 @@ class Motion:
     def period(self) -> float | None:
         """Time (s) of one turn or one swing; None if the law does not repeat."""
         return None
+
+    @property
+    def given_derivatives(self) -> bool:
+        """Whether f' and f'' are its author's, so that they may be wrong; laws that derive them from f say no."""
+        return True
 
     def knots(self, first: float, last: float) -> np.ndarray:
         """Rising times (s) in ``first`` .. ``last`` so close that the law does not turn back between two.
@@ -57,6 +63,20 @@ class Motion:
         last = last if last > first else first + 1.0
         looks = look_times(first, last)
         return exact_pieces(self, first, last, (), looks, self(looks)[:, 2])
+
+    def refuse_wrong_derivatives(self, time: float) -> None:
+        """Raise ModelError where f' and f'' are not those of f within a second from ``time`` (s) on.
+
+        Whatever else keeps the law from being made ready there is no matter of its value at ``time``.
+        """
+        from mbsd.model.laws.fitting.exact import DerivativeError
+
+        try:
+            self.compiled(time, time)
+        except DerivativeError:
+            raise
+        except ModelError:
+            return
 
     def __call__(self, times: Times) -> np.ndarray:
         """(T,) times to (T, 3): f, f', f''."""

@@ -20,6 +20,11 @@ class Polynomial(Motion):
 
     coefficients: tuple[float, ...]
 
+    @property
+    def given_derivatives(self) -> bool:
+        """No: they follow from the numbers."""
+        return False
+
     def knots(self, first: float, last: float) -> np.ndarray:
         """Where it turns back."""
         roots = np.polynomial.Polynomial(self.coefficients).deriv().roots()

@@ -44,6 +44,11 @@ class Recorded(Motion):
         noise = estimated_noise(self.times, self.values) if self.noise is None else self.noise
         return make_splrep(self.times, self.values, k=5, s=len(self.times) * noise**2)  # pyright: ignore[reportArgumentType]
 
+    @property
+    def given_derivatives(self) -> bool:
+        """No: they follow from the numbers."""
+        return False
+
     def knots(self, first: float, last: float) -> np.ndarray:
         """Where the pieces of its spline meet."""
         times = np.unique(self.spline.t)

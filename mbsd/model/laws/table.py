@@ -30,6 +30,11 @@ class Table(Motion):
         """The table's span, if it was declared periodic."""
         return float(self.times[-1] - self.times[0]) if self.periodic else None
 
+    @property
+    def given_derivatives(self) -> bool:
+        """No: they follow from the numbers."""
+        return False
+
     def knots(self, first: float, last: float) -> np.ndarray:
         """Its own times."""
         times = self.times

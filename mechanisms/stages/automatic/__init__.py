@@ -14,6 +14,8 @@ In this order, a file each:
     assembly/built.py   plates (body_shape.py, marks.py), base (frame.py) and hardware become solids, in millimetres
     automatic.py        the face
 
+Where bodies have places z along the normal, shafts/ plans and builds all of this instead (its docstring says how).
+
 How a kind of joint is added: a module with a class that has the three methods of :class:`layout.Feature`
 (``pins/pins.py`` is the pattern), a function ``gather(m, joints, layout) -> list[Feature]`` under ``@kind("name of the
 joint's kind")``, and a line in ``kinds.py``; ``@force_kind`` and ``@contact_kind`` do the same for forces and

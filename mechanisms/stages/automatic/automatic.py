@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from mechanisms.stages.automatic.assembly.kernel_refusals import kernel_refusals
 from mechanisms.stages.automatic.assembly.looks import ROD, materials
 from mechanisms.stages.automatic.assembly.marks import Wish, place, refuse_letters
 from mechanisms.stages.automatic.decided import decided
@@ -28,6 +29,8 @@ from mechanisms.stages.automatic.layout.sizes import Sizes, of_pin, refuse_sizes
 from mechanisms.stages.automatic.pins.free.free_bodies import free_bodies
 from mechanisms.stages.automatic.pins.free.points import styluses, weights
 from mechanisms.stages.automatic.pins.rods import add_poses, places
+from mechanisms.stages.automatic.shafts.along import Along
+from mechanisms.stages.automatic.shafts.planes import has_places
 from mechanisms.stages.automatic.wheels.sharing import with_own_layers
 from mechanisms.stages.automatic.wished_names import refuse_material, refuse_unknown
 from shared.stage.errors import UserError
@@ -60,6 +63,7 @@ class Automatic:
         self._touching: set[tuple[str, str]] = set()
         self._marks: list[Wish] = []
         self._base_under: list[Point] = []
+        self._flywheels: set[str] = set()
 
     # -- wishes -------------------------------------------------------------------------------------------------
 
@@ -72,6 +76,7 @@ class Automatic:
     def layer(self, body: str, number: int) -> None:
         """Put ``body`` on a layer, counted from 0 above the base; the others are found around it."""
         self._known(body)
+        self._refuse_along("layer", "layers follow the places z of its bodies")
         if number < 0:
             raise UserError(f"{self.m.name}: layer of '{body}' is {number}; the lowest one is 0")
         self._layers[body] = number
@@ -99,6 +104,7 @@ class Automatic:
         from mechanisms.stages.automatic.assembly.joined import Joined
 
         self._known(body)
+        self._refuse_along("join", "join the outline to the solids (made.replace)")
         self._joined.append(Joined(body, outline, at, tuple(holes), sharp))
         self._plan_anew()
 
@@ -109,6 +115,7 @@ class Automatic:
         not, and when it is built where the word is not all on the plate.
         """
         self._known(body)
+        self._refuse_along("engrave", "engrave its solids (shared/shapes/engraving.py)")
         refuse_letters(self.m.name, word)
         if body in self._replaced:
             raise UserError(f"{self.m.name}: '{body}' is replaced; engrave its solids (shared/shapes/engraving.py)")
@@ -152,12 +159,33 @@ class Automatic:
         self._touching.add(pair_of(first, second))
         self._plan_anew()
 
+    def flywheel(self, shaft: str) -> None:
+        """Put a flywheel on the lower end of a body that becomes a shaft, where bodies have places z.
+
+        Raises UserError for a body that becomes none.
+        """
+        self._known(shaft)
+        if self.along is None or shaft not in self.along.machine.shafts:
+            raise UserError(
+                f"{self.m.name}: flywheel('{shaft}'): '{shaft}' becomes no shaft; a shaft turns on ground and carries "
+                "links at places z along the normal"
+            )
+        self._flywheels.add(shaft)
+        self._plan_anew()
+
     # -- results ------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def along(self) -> Along | None:
+        """The plan of a machine whose bodies have places along the normal of the plane; None of others."""
+        if not has_places(self.m):
+            return None
+        return Along(self.m, self.solution, self.wishes(), frozenset(self._left_out), frozenset(self._flywheels))
 
     @property
     def sizes(self) -> Sizes:
         """Proportions and the scale."""
-        return self.layout.sizes
+        return self.layout.sizes if self.along is None else self.along.sizes
 
     @cached_property
     def layout(self) -> Layout:
@@ -195,6 +223,8 @@ class Automatic:
         from mechanisms.stages.automatic.assembly.built import built
         from shared.shapes.bodies import Bodies
 
+        if self.along is not None:
+            return self._solids_along(self.along)
         plan = self.plan()
         made = Bodies(built(plan, self.heights, engraved_too) | self._replaced)
         for body in self.layout.apart.intersection(self.m.bodies):
@@ -212,9 +242,27 @@ class Automatic:
                 made.may_touch(part.body, body)  # solids that are replaced may be anything
         return made
 
+    def _solids_along(self, along: Along) -> Bodies:
+        from mechanisms.stages.automatic.shafts.solids.made import solids
+        from shared.shapes.bodies import Bodies
+
+        made = Bodies(solids(along, self._materials, self._base_under) | self._replaced)
+        made.along = True
+        for body in self._left_out.intersection(self.m.bodies):
+            made.leave_out(body)
+        for first, second in self._touching:
+            made.may_touch(first, second)
+        return made
+
+    def _refuse_along(self, method: str, remedy: str) -> None:
+        if has_places(self.m):
+            raise UserError(f"{self.m.name}: {method} is for plates in layers, and bodies here have places z; {remedy}")
+
     def span(self, body: str) -> tuple[float, float]:
         """Lower and upper face (mm) of the plate of ``body``."""
         self._known(body)
+        if self.along is not None:
+            return self.along.span(body)
         scale = self.sizes.scale
         return self.heights.bottom(body) * scale, self.heights.top(body) * scale
 
@@ -227,7 +275,8 @@ class Automatic:
         plan = Plan(self.layout, named | {web: named[body] for web, body in self.layout.webs.items()})
         plan.reserve([*self.m.bodies, *rods, "base_plate", *self.layout.webs])
         for feature in self.layout.features:
-            build(feature, plan, self.heights)
+            with kernel_refusals(self.m.name, f"the parts of '{getattr(feature, 'name', type(feature).__name__)}'"):
+                build(feature, plan, self.heights)
         place(self._marks, plan)
         plan.base_under += [(x / self.sizes.scale, y / self.sizes.scale) for x, y in self._base_under]
         return plan
@@ -242,7 +291,9 @@ class Automatic:
             return [of_pin(self._pin, self._fit)]
         return sizes(*extents(self.m, self.solution, self._left_out), self._fit)
 
-    def _layout(self, size: Sizes, springs: Springs, tall: bool = False, tubes: bool = False) -> Layout:
+    def _layout(
+        self, size: Sizes, springs: Springs, tubes: bool = False, tall: bool = False, pointers: bool = False
+    ) -> Layout:
         poses = poses_of(self.solution, size.of_metres(1.0))
         layout = Layout(self.m, size, poses, times_of(self.solution), springs)
         layout.apart = frozenset(self._left_out)
@@ -251,14 +302,14 @@ class Automatic:
         layout.features = gathered(layout)
         layout.features += free_bodies(layout)
         layout.features += weights(layout, heavy=True)
-        layout.features += styluses(layout, tall)
+        layout.features += styluses(layout, tall, pointers)
         layout.features += weights(layout, heavy=False)
         layout.features += self._joined
         return with_own_layers(layout, tubes)
 
     def _plan_anew(self) -> None:
         """Forget what was found before a wish."""
-        for name in ("sizes", "layout", "levels", "heights", "_found"):
+        for name in ("sizes", "layout", "levels", "heights", "_found", "along"):
             self.__dict__.pop(name, None)
 
     def _known(self, body: str, ground: bool = False) -> None:

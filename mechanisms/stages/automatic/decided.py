@@ -8,14 +8,15 @@ a body is built up of two webs; then springs are left out, and that is reported.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice, product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from mechanisms.stages.automatic.layout.layout import Springs
 from mechanisms.stages.automatic.layout.order.layers import find_layers
 from mechanisms.stages.automatic.pins.bridges import Bridge, bridges_over, may_hang
+from mechanisms.stages.automatic.pins.free.rim_marks import RimMark
 from mechanisms.stages.automatic.pins.webs import webbed
 from mechanisms.stages.automatic.refusal import in_the_way, refusal
 from mechanisms.stages.automatic.slides.curved_slots import CurvedSlot
@@ -31,8 +32,17 @@ DEVICES = ((False, False), (True, False), (True, True))
 MOST_WEBS = 60
 """So many ways to build a body of two webs are tried."""
 
-type LayoutOf = Callable[[Sizes, Springs, bool, bool], Layout]
-"""The layout with pins of a size, with springs, with tall styluses or flush ones, and with tubes beside arms."""
+
+class LayoutOf(Protocol):
+    """Makes the layout with pins of a size, with springs, and with tubes beside arms."""
+
+    def __call__(
+        self, size: Sizes, springs: Springs, tubes: bool, tall: bool = False, pointers: bool = False
+    ) -> Layout:
+        """``tall``: with styluses that stand up, not flush ones; ``pointers``: with those of points on rims."""
+        ...
+
+
 type Found = tuple[Layout, dict[str, int]]
 
 
@@ -66,7 +76,7 @@ class _Tried:
         """With flush styluses."""
         key = sizes.scale, springs, tubes
         if key not in self.known:
-            self.known[key] = self.layout_of(sizes, springs, False, tubes)
+            self.known[key] = self.layout_of(sizes, springs, tubes)
         return self.known[key]
 
     def with_devices(self, wishes: Sequence[Sizes], tubes: bool = False) -> Found | None:
@@ -137,16 +147,19 @@ class _Tried:
         return best if bridges else self.with_styluses(best)
 
     def with_styluses(self, low: Found) -> Found:
-        """Styluses as tall as layers allow without a layer more."""
+        """Styluses as tall as layers allow without a layer more; else pointers alone, if there is room for them."""
         layout, least = low
         if not layout.m.traces:
             return low
-        high = self.layout_of(layout.sizes, layout.springs, True, layout.tubes)
-        high = high.with_flush_pivots() if layout.flush else high
-        levels = find_layers(high.problem(self.fixed))
-        if levels is None or max(levels[b] for b in high.layered) > max(least[b] for b in layout.layered):
-            return low
-        return high, levels
+        for tall in (True, False):
+            high = self.layout_of(layout.sizes, layout.springs, layout.tubes, tall, pointers=True)
+            if not tall and not any(isinstance(feature, RimMark) for feature in high.features):
+                break
+            high = high.with_flush_pivots() if layout.flush else high
+            levels = find_layers(high.problem(self.fixed))
+            if levels is not None and max(levels[b] for b in high.layered) <= max(least[b] for b in layout.layered):
+                return high, levels
+        return low
 
 
 def _cost(found: Found) -> tuple[int, int]:

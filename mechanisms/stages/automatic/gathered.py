@@ -14,6 +14,7 @@ from mechanisms.stages.automatic.layout.features import CONTACT_KINDS, DRIVER_KI
 from mechanisms.stages.automatic.layout.items import Anchor, Need
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.pins.stops import stops
+from mechanisms.stages.automatic.pins.welds import with_free_bolts
 from mechanisms.stages.automatic.rolling.shared_roads import with_shared_roads
 from mechanisms.stages.automatic.slides.common_pins import refuse_pins_of_both_kinds
 from shared.shapes.link import Eye
@@ -88,6 +89,7 @@ def gathered(layout: Layout) -> list[Feature]:
     features += _of(DRIVER_KINDS, m, m.drivers.values(), layout)
     features += stops(m, features, layout)
     refuse_pins_of_both_kinds(m, features)
+    features = with_free_bolts(features, layout)
     return features + _loose_eyes(loose, features, layout)
 
 

@@ -7,7 +7,9 @@ Every pair of pieces of two bodies is settled by the first of these that suffice
 3. Turn. Bodies with a revolute joint between them turn about one axis: the gap of pieces round it at every angle at
    once (turn.py).
    This also covers a pin in its hole with 0.1 mm of room.
-4. Motion. The gap of the two meshes over the whole motion, found and proven by branch and bound: of their outlines in
+4. Slide. Bodies with a prismatic joint between them slide along one line: the gap of pieces seen along it, at every
+   place at once (slide.py). This covers a piston in its liner.
+5. Motion. The gap of the two meshes over the whole motion, found and proven by branch and bound: of their outlines in
    the plane (outline_search.py), and where these do not tell it, of their facets (search.py). Of gears, over one pitch
    of their teeth (meshing.py).
 
@@ -38,6 +40,7 @@ if TYPE_CHECKING:
     from mechanisms.stages.clearance.pieces import MeshPiece
     from mechanisms.stages.clearance.search.search import Least
     from mechanisms.stages.clearance.search.sweep import Sweep
+    from mechanisms.stages.clearance.slide import Slides
 
 LIMIT = 0.05
 """Smaller gaps between two bodies are refused (mm)."""
@@ -91,6 +94,7 @@ def check(
     from mechanisms.stages.clearance.search.least import least_gap
     from mechanisms.stages.clearance.search.search import RESOLUTION
     from mechanisms.stages.clearance.search.sweep import Sweep
+    from mechanisms.stages.clearance.slide import slides_of
     from shared.contract.spanning import with_rods
 
     name, motion = parts.mechanism, with_rods(motion, parts)
@@ -102,6 +106,7 @@ def check(
         )
     where = paths(motion)
     axes, in_mesh = axes_of(motion, parts, where), meshes(motion, pieces)
+    slides = slides_of(motion, where)
     home = {piece.name: piece.body for piece in pieces}
     own = {frozenset((home[name], name) for name in pair if name in home) for pair in parts.pieces_may_touch}
     """Pairs of pieces that are not compared."""
@@ -132,7 +137,7 @@ def check(
         if height >= limit:
             pairs.append(_pair(first, second, height, height, None, "layers", 0))
             continue
-        found = _turn(first, second, axes, sweep, limit, reach)
+        found = _turn(first, second, axes, sweep, limit, reach) or _slide(first, second, slides, limit)
         if found is None:
             least = least_in_mesh(sweep, in_mesh, where) or least_gap(sweep, reach)
             if least.gap < limit or least.proven < limit / 2:
@@ -176,6 +181,16 @@ def _turn(
     return _pair(first, second, gap, proven, None, "turn", 1)
 
 
+def _slide(first: MeshPiece, second: MeshPiece, slides: Slides, limit: float) -> PairClearance | None:
+    """The gap at every place along the line of a prismatic joint between two bodies; None if that is not enough."""
+    from mechanisms.stages.clearance.slide import slide_gap
+
+    found = slide_gap(first, second, slides)
+    if found is None or found[1] < limit:
+        return None
+    return _pair(first, second, *found, None, "slide", 1)
+
+
 def _height_gap(first: MeshPiece, second: MeshPiece) -> float:
     return max(first.z_range[0] - second.z_range[1], second.z_range[0] - first.z_range[1])
 
@@ -215,7 +230,8 @@ def _refusal(name: str, refused: list[tuple[Sweep, Least]], limit: float) -> str
         text = (
             f"{name}: {pair} come as near as {least.gap:.3g} mm, and between two samples of data.json they may be "
             f"{least.error:.3g} mm from where they are taken to be, so no more than {least.proven:.3g} mm is proven, "
-            f"required {limit / 2:g} mm; solve with more steps, or with event_rows=True if there are impacts"
+            f"required {limit / 2:g} mm; solve with more steps (without STEPS and motion() they are added where it is "
+            "fast), or with event_rows=True if there are impacts"
         )
     elif (overlap := sweep.overlap(least.time)).depth > 0:
         text = (

@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import FrameType
 
+from shared.shapes.kernel import is_of_kernel
+
 OPERATIONS = {
     "fillet": "a fillet must be smaller than half of the narrowest web beside its edges: make it smaller, round fewer "
     "edges, or round them before the cuts that narrow the web",
@@ -47,11 +49,6 @@ def worded(
     if operation is None:
         return f"{text}. CadQuery could not make this shape: look for sizes that are zero, negative or too large"
     return f"{text}. CadQuery could not do {operation}({arguments}): {OPERATIONS[operation]}"
-
-
-def is_of_kernel(error: BaseException) -> bool:
-    """Whether the CAD kernel raised this; it has hundreds of exceptions without a common base."""
-    return type(error).__module__.split(".")[0] == "OCP"
 
 
 def _operation(error: BaseException) -> tuple[str | None, str]:

@@ -113,11 +113,16 @@ def running(folder: str) -> str:
     return name if name is not None and owner_of(name) == folder else folder
 
 
+INSTEAD: dict[str, bytes] = {}
+"""Sources that are loaded in place of a file's, by its real path, where one wants to know what they would be."""
+
+
 class _SourceOnly(SourceFileLoader):
     """Compiles the file each time: Python's own cache misses an edit within a second that keeps the size."""
 
     def get_code(self, fullname: str) -> CodeType:
-        return self.source_to_code(self.get_data(self.path), self.path)
+        source = INSTEAD.get(os.path.realpath(self.path)) if INSTEAD else None
+        return self.source_to_code(self.get_data(self.path) if source is None else source, self.path)
 
 
 def _author_folder(path: str) -> FileFinder:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from mechanisms.stages.loading.recording import Recorder
+from mbsd.dependencies.recorder import Recorder
 
 READERS = (
     ("STEPControl", "STEPControl_Reader", "ReadFile"),

@@ -15,15 +15,21 @@ if TYPE_CHECKING:
 
 
 def described_body(
-    name: str, body: str, solids: list[Any], files: dict[str, bytes], places: tuple[Place, Place] | None
+    name: str,
+    body: str,
+    solids: list[Any],
+    files: dict[str, bytes],
+    places: tuple[Place, Place] | None,
+    along: bool = False,
 ) -> BodyParts:
-    """Describe a body and add its files to ``files``; ``places`` are those that a rod joins.
+    """Describe a body and add its files to ``files``; ``places`` are those that a rod joins. ``along``: z of the solids
+    is that of the model, so masses have it, too.
 
     Raises UserError naming the solid that is refused.
     """
     from mechanisms.stages.parts.mass_properties import combined
 
-    pieces = {solid.name: _piece(name, body, solid, files) for solid in solids}
+    pieces = {solid.name: _piece(name, body, solid, files, along) for solid in solids}
     main = pieces[solids[0].name]
     mass = combined(piece.mass for piece in pieces.values())
     return BodyParts(pieces=pieces, mass=mass, z=(sum(main.z_range)) / 2, spans=places and spans(places))
@@ -35,12 +41,12 @@ def spans(places: tuple[Place, Place]) -> tuple[End, End]:
     return first, second
 
 
-def _piece(name: str, body: str, solid: Any, files: dict[str, bytes]) -> Piece:
+def _piece(name: str, body: str, solid: Any, files: dict[str, bytes], along: bool) -> Piece:
     """Check one solid, add its files to ``files``, and describe it."""
-    from mechanisms.stages.loading.author_errors import is_of_kernel
     from mechanisms.stages.parts.mass_properties import mass_of
     from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
     from mechanisms.stages.parts_files import read_mesh, step_bytes, stl_bytes, volume_of
+    from shared.shapes.kernel import is_of_kernel
 
     where = f"{name}: {body}: {solid.name}"
     if not callable(getattr(solid.shape, "solids", None)):
@@ -67,7 +73,7 @@ def _piece(name: str, body: str, solid: Any, files: dict[str, bytes]) -> Piece:
         material=solid.material,
         stl=f"{solid.name}.stl",
         step=f"{solid.name}.step",
-        mass=mass_of(shape, MATERIALS[solid.material].density),
+        mass=mass_of(shape, MATERIALS[solid.material].density, along),
         z_range=(metres(float(mesh.bounds[0][2])), metres(float(mesh.bounds[1][2]))),
         triangles=len(mesh.faces),
         stl_sha256=hashlib.sha256(stl).hexdigest(),

@@ -10,10 +10,11 @@ from shared.contract import Mass
 from shared.shapes.units import cubic_metres, inertia_metres, metres
 
 
-def mass_of(solid: Any, density: float) -> Mass:
+def mass_of(solid: Any, density: float, along: bool = False) -> Mass:
     """Mass properties (kg, m, kg m^2, m^3) of a ``cadquery.Shape`` in mm, with ``density`` in kg/m^3.
 
-    The centre of mass is in the body's frame; the inertia is about the axis through it, along z.
+    The centre of mass is in the body's frame; the inertia is about the axis through it, along z. ``along``: with z of
+    the centre of mass and the products of inertia, which count where z is that of the model.
     """
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps
@@ -25,11 +26,17 @@ def mass_of(solid: Any, density: float) -> Mass:
         BRepGProp.VolumeProperties_s(smooth.wrapped, found, SHARP)
     centre = found.CentreOfMass()
     volume = cubic_metres(found.Mass())
+    matrix = found.MatrixOfInertia()  # about the centre of mass
+    more = {}
+    if along:
+        products = tuple(-density * inertia_metres(matrix.Value(row, 3)) for row in (1, 2))
+        more = {"z": metres(centre.Z()), "products": products}
     return Mass(
         mass=density * volume,
         com=(metres(centre.X()), metres(centre.Y())),
-        inertia=density * inertia_metres(found.MatrixOfInertia().Value(3, 3)),  # about the centre of mass
+        inertia=density * inertia_metres(matrix.Value(3, 3)),
         volume=volume,
+        **more,
     )
 
 
@@ -42,4 +49,18 @@ def combined(masses: Iterable[Mass]) -> Mass:
     x = sum(piece.mass * piece.com[0] for piece in pieces) / mass
     y = sum(piece.mass * piece.com[1] for piece in pieces) / mass
     inertia = sum(piece.inertia + piece.mass * ((piece.com[0] - x) ** 2 + (piece.com[1] - y) ** 2) for piece in pieces)
-    return Mass(mass=mass, com=(x, y), inertia=inertia, volume=sum(piece.volume for piece in pieces))
+    volume = sum(piece.volume for piece in pieces)
+    return Mass(mass=mass, com=(x, y), inertia=inertia, volume=volume, **_along(pieces, mass, (x, y)))
+
+
+def _along(pieces: list[Mass], mass: float, com: tuple[float, float]) -> dict[str, Any]:
+    """z of the common centre of mass and the products of inertia about it, where all pieces have them."""
+    known = [(piece, piece.z, piece.products) for piece in pieces if piece.z is not None and piece.products is not None]
+    if len(known) < len(pieces):
+        return {}
+    z = sum(piece.mass * own for piece, own, _ in known) / mass
+    px, py = (
+        sum(products[k] + piece.mass * (own - z) * (piece.com[k] - com[k]) for piece, own, products in known)
+        for k in (0, 1)
+    )
+    return {"z": z, "products": (px, py)}

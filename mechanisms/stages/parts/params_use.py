@@ -10,7 +10,8 @@ import ast
 from collections.abc import Iterable
 from pathlib import Path
 
-from mechanisms.stages.loading.loaded_files import DYNAMIC, absolute
+from mbsd.dependencies.imported import absolute_name
+from mbsd.dependencies.meaning import DYNAMIC
 
 
 def only_annotates(files: Iterable[tuple[Path, str]], module: str) -> bool:
@@ -30,7 +31,7 @@ def _file_only_annotates(file: Path, package: str, module: str) -> bool:
             if any(alias.name in (folder, module) for alias in node.names):
                 return False
         elif isinstance(node, ast.ImportFrom):
-            base = absolute(node, package)
+            base = absolute_name(node, package)
             if base == folder and any(alias.name in (stem, "*") for alias in node.names):
                 return False
             if base == module:

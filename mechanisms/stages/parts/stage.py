@@ -91,7 +91,10 @@ def _made_here(name: str, given: Any, by_itself: bool, before: set[str], recorde
     key = _key(given, reads, inputs, by_itself)
     files: dict[str, bytes] = {}
     rods = getattr(bodies, "rods", {})
-    described = {body: described_body(name, body, solids, files, rods.get(body)) for body, solids in bodies.items()}
+    along = getattr(bodies, "along", False)
+    described = {
+        body: described_body(name, body, solids, files, rods.get(body), along) for body, solids in bodies.items()
+    }
     document = Parts(
         mechanism=name,
         provenance=Provenance(inputs=key, versions=versions(*PACKAGES)),

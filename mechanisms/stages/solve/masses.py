@@ -39,7 +39,7 @@ def give_masses(m: Mechanism, parts: Parts | None) -> tuple[dict[str, Source], l
     for name in source:
         if source[name] == "parts":
             mass = solids[name].mass
-            m.set_mass(name, mass.mass, mass.com, mass.inertia)
+            m.set_mass(name, mass.mass, mass.com, mass.inertia, mass.z, mass.products)
     differing = [
         f"{name} {m.bodies[name].mass:.4g} kg (parts {solids[name].mass.mass:.4g} kg)"
         for name in source

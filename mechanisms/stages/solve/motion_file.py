@@ -12,7 +12,7 @@ from shared import contract
 if TYPE_CHECKING:
     import numpy as np
 
-    from mbsd import Solution
+    from mbsd import Force, Solution
     from mbsd.results.force_view import ForceView
 
 FRAME = ("x", "y", "theta", "vx", "vy", "omega", "ax", "ay", "alpha")
@@ -85,6 +85,7 @@ def to_motion(
             work=_list(solution.work),
             audit=_list(solution.audit),
         ),
+        couple=_couple(solution),
         events=[
             contract.EventMark(
                 time=event.time, name=event.name, what=event.what, energy=event.energy, impulse=event.impulse
@@ -104,6 +105,17 @@ def to_motion(
     )
 
 
+def _couple(solution: Solution) -> contract.Couple | None:
+    """About the middle of the bodies along the normal of the plane."""
+    assert solution.planes is not None
+    if solution.planes.is_one:
+        return None
+    middle = solution.planes.middle
+    return contract.Couple(
+        about=middle, reach=solution.planes.reach, **_lists(solution.shaking(z=middle), ("mx", "my"))
+    )
+
+
 def _force(solution: Solution, view: ForceView) -> contract.ForceMotion:
     force = solution.mechanism.forces[view.name]
     on_no_markers = view.several or force.kind.on_bodies
@@ -119,6 +131,25 @@ def _force(solution: Solution, view: ForceView) -> contract.ForceMotion:
         power=view.power.tolist(),
         potential=view.potential.tolist(),
         shape=None if on_no_markers else shape_of(force),
+        gas=_gas(force, view),
+    )
+
+
+def _gas(force: Force, view: ForceView) -> contract.GasMotion | None:
+    """Of a force that comes from gas behind a piston."""
+    from mbsd.results.gas import GasView
+
+    if not isinstance(view, GasView):
+        return None
+    return contract.GasMotion(
+        pressure=view.pressure.tolist(),
+        volume=view.volume.tolist(),
+        outside=force.params["outside"],
+        crank=force.params.get("crank"),
+        crank_angle=_list(view.crank_angle),
+        cycle_angle=view.cycle_angle,
+        displaced=view.displaced,
+        indicated_work=_list(view.indicated_work),
     )
 
 

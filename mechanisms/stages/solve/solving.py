@@ -67,7 +67,8 @@ def motion_of(name: str, module: Any, m: Mechanism, p: Any) -> Solution:
             "as m.sweep() and m.simulate() do"
         )
     _refuse_other(name, m, solution.mechanism)
-    _tell_blurred_impacts(name, solution)
+    if not _tell_blurred_impacts(name, solution):
+        _tell_long_steps(name, module, solution)
     solution.mechanism.name = name  # where motion() built the mechanism of a variant anew
     return solution
 
@@ -81,10 +82,10 @@ def _natural(name: str, module: Any, m: Mechanism) -> Solution:
     free = m.mobility().dof - len(m.drivers)
     if free <= 0:
         if steps is not None:
-            return m.sweep(duration, int(steps))
+            return m.sweep(duration, int(steps), event_rows=True)
         from mechanisms.stages.solve.refined_times import refined_sweep
 
-        return refined_sweep(m.sweep(duration, SWEEP_STEPS if duration else _steps_of_period(m)))
+        return refined_sweep(m.sweep(duration, _steps_of(m, duration)))
     if duration is None:
         freedoms = "1 degree of freedom is" if free == 1 else f"{free} degrees of freedom are"
         raise UserError(
@@ -99,12 +100,14 @@ def _natural(name: str, module: Any, m: Mechanism) -> Solution:
     return simulated_closely(m, duration, min(max(FEWEST, math.ceil(RATE * duration)), MOST))
 
 
-def _steps_of_period(m: Mechanism) -> int:
-    """Steps of a whole period: so many for each turn of its drivers."""
+def _steps_of(m: Mechanism, duration: float | None) -> int:
+    """Steps of a sweep: so many for each turn of its drivers, of the whole period where no duration is given."""
     from mbsd.kinematics.period import common_period
 
-    whole, common = m.period(), common_period(m.drivers.values())
-    return SWEEP_STEPS if whole is None or common is None else min(SWEEP_STEPS * round(whole / common), MOST)
+    whole, common = duration or m.period(), common_period(m.drivers.values())
+    if whole is None or common is None:
+        return SWEEP_STEPS
+    return max(SWEEP_STEPS, min(round(SWEEP_STEPS * whole / common), MOST))
 
 
 def _positive(name: str, module: Any, constant: str, form: str) -> float | None:
@@ -126,8 +129,8 @@ def _refuse_other(name: str, m: Mechanism, solved: Any) -> None:
         )
 
 
-def _tell_blurred_impacts(name: str, solution: Solution) -> None:
-    """Say that impacts lie between rows, so that plots and films would show them as something smooth."""
+def _tell_blurred_impacts(name: str, solution: Solution) -> bool:
+    """Say that impacts lie between rows, so that plots and films would show them as something smooth; whether so."""
     shared = {float(time) for time in solution.t[1:][solution.t[1:] == solution.t[:-1]]}
     lost = [event for event in solution.events if event.what == "impact" and event.time not in shared]
     if lost:
@@ -136,6 +139,24 @@ def _tell_blurred_impacts(name: str, solution: Solution) -> None:
             f"{name}: {len(lost)} impacts, the first '{lost[0].name}' at {lost[0].time:.6g} s, have no rows right "
             "before and after them and are smoothed in plots and films; write m.simulate(..., event_rows=True) in "
             "motion()",
+        )
+    return bool(lost)
+
+
+def _tell_long_steps(name: str, module: Any, solution: Solution) -> None:
+    """Say that rows of a simulation are too far apart for how fast something moves, so that proofs may fail there."""
+    from mechanisms.stages.solve.refined_times import doubted_steps
+
+    long = [] if solution.work is None else doubted_steps(solution)
+    if len(long):
+        own = "motion()" if hasattr(module, "motion") else "STEPS"
+        chosen = hasattr(module, "motion") or variants.constant(name, module, "STEPS") is not None
+        remedy = f"leave out {own}, so that rows are added there, or ask for more steps" if chosen else "end it earlier"
+        steps = "1 step is" if len(long) == 1 else f"{len(long)} steps are"
+        console.warn(
+            "solve",
+            f"{name}: {steps} too long for what moves fast within, first at t = {solution.t[long[0]]:.6g} s: plots and "
+            f"films may stray from the motion there, and clearances may not be proven; {remedy}",
         )
 
 

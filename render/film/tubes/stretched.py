@@ -17,7 +17,7 @@ from shared.contract import Held, Motion, Shape
 
 Array = NDArray[np.float64]
 COILS = ("spring", "spring_law", "curve_of_length")
-CYLINDERS = ("gas", "actuator")
+CYLINDERS = ("gas", "gas_cycle", "gas_strut", "actuator")
 STEEL = SurfaceSpec(colour=(0.78, 0.79, 0.81), finish="polished", roughness=0.24)
 BLACK = SurfaceSpec(colour=(0.035, 0.037, 0.042), finish="satin", roughness=0.34)
 FIBRE = SurfaceSpec(colour=(0.62, 0.45, 0.24), finish="rubber", roughness=0.8)

@@ -24,6 +24,8 @@ NUMBERED = 0.02
 """Of the largest amplitude: smaller ones get no number."""
 NOTHING = 1e-6
 """Of the largest amplitude: no stem."""
+ASIDE = 0.2
+"""Between stems of one order, in orders; together they are centred on it."""
 ROOMY = 12
 """Orders at most for a number at each stem."""
 
@@ -66,16 +68,19 @@ def _amplitudes(figure: Figure, axes: Axes, what: Quantity, found: Spectrum, ink
 
 
 def stems(axes: Axes, found: Spectrum, amplitudes: np.ndarray, inks: list[str], names: list[str]) -> None:
-    """A stem for each order above 0 and each column (K, k) of ``amplitudes``, side by side, with numbers on top."""
+    """A stem for each order above 0 and each column (K, k) of ``amplitudes``, with numbers on top; those that an order
+    has stand side by side with their middle on the order."""
     last = shown_orders(found)
     at, shown = found.at[1 : last + 1], amplitudes[1 : last + 1]
     step = float(at[0])
     columns = shown.shape[1]
     largest = float(shown.max(initial=0.0)) or 1.0
+    drawn = shown > NOTHING * largest
+    before = np.cumsum(drawn, axis=1) - drawn
+    asides = ASIDE * step * (before - (drawn.sum(axis=1, keepdims=True) - 1) / 2)  # of those that are there
     for column in range(columns):
-        aside = step * 0.3 * (column - (columns - 1) / 2) if columns > 1 else 0.0
+        aside, there = asides[:, column], drawn[:, column]
         ink, heights = inks[column], shown[:, column]
-        there = heights > NOTHING * largest
         axes.vlines((at + aside)[there], 0.0, heights[there], color=ink, linewidth=3.0, label=names[column], zorder=3)
         axes.plot((at + aside)[there], heights[there], "o", color=ink, markersize=5.5, zorder=4)
         for x, height in zip(at + aside, heights, strict=True):

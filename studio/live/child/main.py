@@ -5,6 +5,7 @@
     {"do": "solid"}                                -> solid: of the payload, what the parts change
     {"do": "drag", "values", "thing", "time", "to"} -> motion, with the values that put the thing there
     {"do": "fit", ...}                             -> progress ..., fitted
+    {"do": "numbers"}, source of a mechanism.py    -> numbers, that it would have
 
 Every answer has the request's "id". What cannot be done is {"kind": "error", "text"}; what the author's code prints is
 {"kind": "line", "text"}.
@@ -16,44 +17,47 @@ import threading
 import traceback
 from collections.abc import Callable
 from contextlib import suppress
-from multiprocessing.connection import Connection
 from typing import Any
 
 from shared.stage.errors import UserError
-from studio.live.child import guard, spoken
+from studio.live.child import spoken
 from studio.live.child.author import Answer, Author
+from studio.live.child.candidate import numbers_with
 from studio.live.child.dragging import dragged
 from studio.live.child.fitting import fitted
 from studio.live.frames import framed, unframed
 from studio.live.numbers import numbers_of
+from studio.live.processes.pipe import Pipe
 
 Send = Callable[..., None]
 
 
-def main(pipe: Connection, name: str, server: int, most_bytes: int) -> None:
+def main(pipe: Pipe, name: str) -> None:
     """Serve until the pipe is closed."""
     sending = threading.Lock()
 
     def send(header: dict[str, Any], payload: bytes = b"") -> None:
         frame = framed(header, payload)
         with sending:
-            pipe.send_bytes(frame)
+            pipe.send(frame)
 
-    guard.watch(server, most_bytes, lambda text: send({"kind": "error", "id": -1, "text": text}))
     with suppress(EOFError, OSError), spoken.to(lambda text: send({"kind": "line", "text": text})):
         _serve(pipe, name, send)
 
 
-def _serve(pipe: Connection, name: str, send: Send) -> None:
+def _serve(pipe: Pipe, name: str, send: Send) -> None:
     author: Author | None = None
     while True:
-        request, _ = unframed(pipe.recv_bytes())
+        request, source = unframed(pipe.receive())
         number = request.get("id")
 
         def reply(header: dict[str, Any], payload: bytes = b"", number: Any = number) -> None:
             send({"id": number, **header}, payload)
 
         try:
+            if request["do"] == "numbers":
+                reply({"kind": "numbers", "numbers": numbers_with(name, source)})
+                continue
             if author is None or request["do"] == "open":
                 author = Author(name, lambda files, reply=reply: reply({"kind": "files", "files": [*map(str, files)]}))
             HANDLERS[request["do"]](author, request, reply)

@@ -8,18 +8,18 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout, suppress
 from typing import TextIO
 
+from studio.live.processes.lines import Lines
+
 MOST = 200
 """Lines of one run that the page gets."""
-LONGEST = 2000
-"""Characters of a line."""
 
 
 class Spoken(io.TextIOBase):
-    """A stream that passes on what is written, and tells each whole line."""
+    """A stream that passes on what is written, and tells each whole line; long ones are cut."""
 
     def __init__(self, through: TextIO | None, tell: Callable[[str], None]) -> None:
         self._through, self._tell = through, tell
-        self._begun, self._count = "", 0
+        self._lines, self._count = Lines(), 0
 
     def writable(self) -> bool:
         """It is."""
@@ -31,13 +31,22 @@ class Spoken(io.TextIOBase):
             with suppress(OSError, ValueError):
                 self._through.write(text)
                 self._through.flush()
-        *lines, self._begun = (self._begun + text).split("\n")
-        self._begun = self._begun[-LONGEST:]
-        for line in lines:
-            self._count += 1
-            if line.strip() and self._count <= MOST:
-                self._tell(line[:LONGEST])
+        for line in self._lines.add(text):
+            self._line(line)
         return len(text)
+
+    def end(self) -> None:
+        """Tell a last line without an end."""
+        self._line(self._lines.rest())
+
+    def _line(self, line: str) -> None:
+        if not line.strip():
+            return
+        self._count += 1
+        if self._count <= MOST:
+            self._tell(line)
+        elif self._count == MOST + 1:
+            self._tell(f"more than {MOST} lines were printed; the terminal has the others")
 
 
 @contextmanager
@@ -45,4 +54,9 @@ def to(tell: Callable[[str], None]) -> Iterator[None]:
     """Within the block, tell what is printed."""
     out, err = Spoken(sys.stdout, tell), Spoken(sys.stderr, tell)
     with redirect_stdout(out), redirect_stderr(err):
-        yield
+        try:
+            yield
+        finally:
+            with suppress(OSError):
+                out.end()
+                err.end()

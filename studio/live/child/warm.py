@@ -1,6 +1,6 @@
 """What the warm process loads before any author's code: solver with its kernels, stages, payload of the page.
 
-Importing it does the work; children are forked from the process that has.
+Importing it does the work; children are forked from the process that has, and run ``serve``.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ import scipy.optimize  # noqa: E402, F401  (a fit needs it, and it takes long)
 import mechanisms.stages.loading.loaded_files  # noqa: E402
 import mechanisms.stages.solve.estimated_masses  # noqa: E402
 import mechanisms.stages.solve.refined_times  # noqa: E402, F401
-import studio.live.child.main  # noqa: E402, F401
 from mbsd import Mechanism, constant_rate, fit_path  # noqa: E402
 from mechanisms.stages.solve.masses import give_masses  # noqa: E402
+from studio.live.child.main import main as serve  # noqa: E402, F401  (runs in each process that is forked)
 from studio.live.child.shown import Shown  # noqa: E402
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import os
 import re
-import shutil
 import subprocess
 import sys
 import time
@@ -17,6 +16,7 @@ from shared.stage.errors import UserError
 from shared.stage.files import refusal
 from shared.stage.lineage import VARIABLE
 from shared.stage.paths import ROOT, out_root, refuse_links
+from shared.system import missing
 from studio.night.commands import logout
 from studio.night.files import record, runs
 from studio.night.files.runs import Run
@@ -76,7 +76,7 @@ def _launch(command: list[str], environment: dict[str, str]) -> str:
     except OSError as error:
         raise UserError(refusal(runs.folder(), error)) from error
     scope = logout.scope()
-    tmux = shutil.which("tmux")
+    tmux = missing.program("tmux")
     if tmux is not None:
         # A server of its own has the environment of this command; that of the user's server may be of another day.
         socket = f"night-{_tree()}"
@@ -92,7 +92,7 @@ def _launch(command: list[str], environment: dict[str, str]) -> str:
             return f"tmux -L {socket} attach -t {session}"
         warn("night", f"tmux could not start a session ({found.stderr.strip()}); it goes on without")
     else:
-        warn("night", "tmux is not installed (sudo apt-get install -y tmux), so there is nothing to attach to")
+        warn("night", f"tmux is not installed ({missing.remedy(['tmux'])}), so there is nothing to attach to")
     subprocess.Popen(
         [*scope, "nohup", *command],
         cwd=ROOT,

@@ -13,10 +13,10 @@ from mbsd import Mechanism, constant_rate
 from mbsd.model.laws.curve import curve
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.cams.cams import Cam
-from mechanisms.stages.automatic.layout.profiles import distances
 from mechanisms.stages.automatic.rolling.roads import Road
 from mechanisms.stages.automatic.rolling.rounds import Round
 from mechanisms.stages.parts.mesh_check import only_solid
+from shared.shapes.polyline import distances
 from shared.stage.errors import UserError
 
 
@@ -115,7 +115,7 @@ def test_a_wheel_whose_road_would_reach_its_hub_is_refused() -> None:
     with pytest.raises(
         UserError, match=r"car: 'tyre' lets the wheel of wheel be pressed .* mm .* make the contact stiffer"
     ):
-        made.solids()
+        made.solids(engraved_too=False)
 
 
 def test_profiles_of_tyres_reach_as_far_as_the_wheel() -> None:
@@ -131,7 +131,7 @@ def test_profiles_of_tyres_reach_as_far_as_the_wheel() -> None:
     assert road.path[0, 0] < places[:, 0].min() - part.radius
     assert road.path[-1, 0] > places[:, 0].max() + part.radius
     assert made.layout.yielding == {frozenset(("ground", "wheel"))}
-    solids = made.solids()
+    solids = made.solids(engraved_too=False)
     assert (solids.touching, solids.pieces_touching) == (set(), {("road_tyre", "tyre_tyre")})
 
 
@@ -183,7 +183,7 @@ def test_balls_that_meet_share_a_layer_and_never_touch() -> None:
     assert made.levels["cue"] == made.levels["ball"]
     apart = np.linalg.norm(made.layout.seen("cue", (0, 0), "ball"), axis=1).min()
     assert 0.05 < (apart - sum(part.made for part in rounds)) * made.sizes.scale < 1.0  # mm
-    assert set(made.solids()) == {"ground", "cue", "ball"}
+    assert set(made.solids(engraved_too=False)) == {"ground", "cue", "ball"}
 
 
 def test_a_cradle_of_bars_with_discs_has_one_layer() -> None:
@@ -197,7 +197,7 @@ def test_a_cradle_of_bars_with_discs_has_one_layer() -> None:
     made, rounds, _ = _made(m, 0.5)
     assert [part.look for part in rounds] == ["disc"] * 3
     assert len({made.levels[bar.name] for bar in bars}) == 1
-    assert all(solid.shape.val().isValid() for solids in made.solids().values() for solid in solids)
+    assert all(solid.shape.val().isValid() for solids in made.solids(engraved_too=False).values() for solid in solids)
 
 
 def test_a_box_on_two_feet_is_one_solid_without_tyres() -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from manifold3d import CrossSection
 
-from mbsd import Mechanism, constant_rate
+from mbsd import Mechanism, constant_rate, polynomial
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.wheels.gear_solids import wheel_shape
 from mechanisms.stages.automatic.wheels.teeth import module_of
@@ -140,12 +140,14 @@ def test_tips_that_do_not_foul_overlap_nowhere(pinion: int) -> None:
 
 def test_wheels_whose_centres_nothing_holds_are_refused() -> None:
     m = Mechanism("loose")
-    a, b = m.body("a"), m.body("b")
+    a, b, carriage = m.body("a"), m.body("b"), m.body("carriage")
     m.revolute("A", m.ground.at(0, 0), a.origin)
-    m.revolute("B", m.ground.at(0.2, 0), b.origin)
+    m.prismatic("rail", m.ground.at(0, 0), carriage.origin)
+    m.drive_coordinate("screw", m.ground.at(0, 0), carriage.origin, polynomial(0.1, 0.1))
+    m.revolute("B", carriage.origin, b.origin)
     m.gear_pair("mesh", a.origin, b.origin, radius_i=0.05, radius_j=0.05)
     m.drive_angle("motor", a, constant_rate(1.0))
-    with pytest.raises(UserError, match=r"'mesh': the centres of a and b are 200 to 200 mm apart .* mesh at 100 mm"):
+    with pytest.raises(UserError, match=r"'mesh': the centres of a and b are 100 to 200 mm apart .* mesh at 100 mm"):
         _ = Automatic(m, m.sweep(1.0, steps=20)).levels
 
 
@@ -194,7 +196,7 @@ def test_a_pivot_on_the_axis_of_a_wheel_of_ground_stands_on_that_wheel() -> None
     m.drive_angle("motor", carrier, constant_rate(2.0))
     m.start_near(carrier=0, planet=(0.1, 0, 0))
     made = Automatic(m, m.sweep(steps=90))
-    boxes = {one.name: one.shape.val().BoundingBox() for one in made.solids()["ground"]}
+    boxes = {one.name: one.shape.val().BoundingBox() for one in made.solids(engraved_too=False)["ground"]}
     assert boxes["pedestal_O"].zmin > boxes["gear_g"].zmax
     assert boxes["pedestal_O"].zmax < made.span("carrier")[0]
     assert boxes["pedestal_O"].zlen > made.sizes.scale

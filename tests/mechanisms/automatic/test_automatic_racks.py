@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbsd import Mechanism, harmonic
+from mbsd import Mechanism, harmonic, polynomial
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.wheels.racks import Rack
 from mechanisms.stages.automatic.wheels.wheels import Wheel
@@ -91,13 +91,16 @@ def test_bar_and_what_carries_it_are_sound(ground: bool, low: float) -> None:
 
 def test_a_pinion_off_the_pitch_line_is_told_with_its_distance() -> None:
     m = Mechanism("off")
-    pinion, slider = m.body("pinion"), m.body("slider")
-    m.revolute("axle", m.ground.at(0, 0.025), pinion.origin)
+    pinion, slider, lift = m.body("pinion"), m.body("slider"), m.body("lift")
+    upright = m.ground.at(0, 0, math.pi / 2)
+    m.prismatic("column", upright, lift.at(0, 0, math.pi / 2))
+    m.drive_coordinate("jack", upright, lift.origin, polynomial(0.02, 0.01))
+    m.revolute("axle", lift.origin, pinion.origin)
     m.prismatic("guide", m.ground.origin, slider.origin)
     m.rack_and_pinion("mesh", slider.origin, pinion.origin, radius=0.02)
     m.drive_angle("motor", pinion, harmonic(1.0, 2.0))
     with pytest.raises(UserError, match=r"'mesh': at t=.* s the pinion's centre is 25 mm above .* radius of 20 mm"):
-        _ = Automatic(m, m.sweep(steps=20)).levels
+        _ = Automatic(m, m.sweep(0.5, steps=20)).levels
 
 
 def test_a_small_pinion_shortens_the_teeth_of_its_rack() -> None:

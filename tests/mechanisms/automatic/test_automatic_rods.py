@@ -52,7 +52,7 @@ def test_pins_at_both_ends_are_on_both_bodies() -> None:
     for pin in (pins["coupler_1"], pins["coupler_2"]):
         seen = [placed(np.array([at]), made.layout.poses[body])[:, 0] for body, at in pin.places.items()]
         assert seen[0] == pytest.approx(seen[1], abs=0.02)
-    solids = made.solids()
+    solids = made.solids(engraved_too=False)
     assert solids.rods == {"coupler": (("crank", 100.0, 0.0), ("rocker", 250.0, 0.0))}
     assert solids["coupler"][0].material == "steel"
 
@@ -75,10 +75,10 @@ def test_wishes_reach_a_rod() -> None:
     made.material("coupler", "brass")
     made.layer("coupler", 0)
     assert made.levels["coupler"] == 0
-    assert made.solids()["coupler"][0].material == "brass"
+    assert made.solids(engraved_too=False)["coupler"][0].material == "brass"
     made = Automatic(four_bar(), four_bar().sweep())
     made.leave_out("coupler")
-    solids = made.solids()
+    solids = made.solids(engraved_too=False)
     assert "coupler" not in solids
     assert not solids.left_out
     assert [solid.through_holes for solid in (solids["crank"][0], solids["rocker"][0])] == [2, 2]
@@ -103,7 +103,9 @@ def test_a_linear_driver_is_a_cylinder_between_studs() -> None:
     made = Automatic(m, m.sweep(6.0))
     one = stretched(made)["ram"]
     assert one.outer == pytest.approx(0.6 * one.radius)
-    held = [hold.force for solids in made.solids().values() for solid in solids for hold in solid.holds]
+    held = [
+        hold.force for solids in made.solids(engraved_too=False).values() for solid in solids for hold in solid.holds
+    ]
     assert held == ["ram", "ram"]
 
 
@@ -130,5 +132,7 @@ def test_a_rope_has_studs_and_room_to_hang(gravity: tuple[float, float] | None) 
         rope = sagging(np.array([*a, 0.0]), np.array([*b, 0.0]), made.sizes.of_metres(0.35), down)[:, :2]
         lowest = (rope - (a + np.linspace(0, 1, len(rope))[:, None] * (b - a)))[:, 1].min()
         assert 2 * lowest >= sag[1] - 1e-6
-    held = [hold.force for solids in made.solids().values() for solid in solids for hold in solid.holds]
+    held = [
+        hold.force for solids in made.solids(engraved_too=False).values() for solid in solids for hold in solid.holds
+    ]
     assert held == ["rope", "rope"]

@@ -8,9 +8,10 @@ import pytest
 from mbsd import Mechanism, constant_rate
 from mbsd.model.plane_curves import curve_pieces
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.layout.profiles import curve_path, distances
+from mechanisms.stages.automatic.layout.profiles import curve_path
 from mechanisms.stages.automatic.rolling.roads import Road
 from mechanisms.stages.automatic.rolling.rounds import Round
+from shared.shapes.polyline import distances
 
 HILLS = [(-0.2, 0.0), (-0.1, 0.01), (0.0, 0.0), (0.1, -0.01), (0.2, 0.0), (0.3, 0.01), (0.4, 0.0)]
 

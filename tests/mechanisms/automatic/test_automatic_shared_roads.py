@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism, constant_rate, curve
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.layout.profiles import distances
 from mechanisms.stages.automatic.rolling.roads import Road, along
 from mechanisms.stages.automatic.rolling.shared_roads import with_shared_roads
+from shared.shapes.polyline import distances
 from tests.mechanisms.automatic.layouts import meets
 from tests.shared.shape_checks import checked
 
@@ -124,7 +124,8 @@ def test_pieces_of_a_path_are_the_path(
     parts: list[Any] = [along("a", [], path[:first]), along("b", [], path[second:])]
     merged = with_shared_roads(parts[::-1] if backwards else parts)
     if second > first - 1:
-        assert len(merged) == 2
+        both_straight = first == len(path) - second == 2  # these may be one line, and one road over the gap
+        assert len(merged) == 2 or both_straight
         return
     if len(merged) == 1:
         [road] = merged

@@ -17,6 +17,7 @@ from render.blender.patience import FLOOR, START, Patience
 from render.film.scene import Scene, StudioSpec
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
+from tests.running.processes import working_for
 
 STUDIO = StudioSpec(look="studio", centre=(0.0, 0.0, 0.0), radius=1.0, floor=0.0, azimuth=0.0)
 SCENE = Scene(mechanism="x", fps=30, pieces=[], trails=[], labels=[], studio=STUDIO)
@@ -37,8 +38,7 @@ def acts(out_root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
 
     yield run
     assert not list(out_root.glob(".blender/tmp-*"))
-    listing = subprocess.run(["ps", "-axwwo", "args="], capture_output=True, text=True, check=True).stdout
-    assert str(out_root) not in listing
+    assert not working_for(out_root)
 
 
 def test_a_worker_that_hangs_is_started_again_with_what_is_left(acts, capsys: pytest.CaptureFixture[str]):
@@ -150,16 +150,11 @@ def test_a_worker_does_not_outlive_a_killed_parent(out_root: Path, tmp_path: Pat
     assert parent.stdout
     parent.stdout.readline()
     end = time.monotonic() + 30
-    while not (workers := workers_of(out_root)):
+    while not (workers := working_for(out_root)):
         assert time.monotonic() < end
         time.sleep(0.02)
     parent.kill()
     parent.communicate()
-    while workers_of(out_root):
+    while working_for(out_root):
         assert time.monotonic() < end, workers
         time.sleep(0.02)
-
-
-def workers_of(folder: Path) -> list[str]:
-    listing = subprocess.run(["ps", "-axwwo", "pid=,args="], capture_output=True, text=True, check=True).stdout
-    return [line for line in listing.splitlines() if str(folder) in line and f"{os.getpid()} " not in line]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
@@ -20,6 +19,7 @@ from shared.contract.shot import Shot
 from shared.stage.paths import Out
 from tests.render import film_fixture
 from tests.render.view.pins import dot, projected
+from tests.running.needs import needed
 
 JOINTS = ("B", "C", "B", "A", "C", "D", "B", "C", "B", "C")
 STEPS = (0, 31, 77, 110, 150, 190, 222, 260, 301, 340)
@@ -28,10 +28,7 @@ WIDTH, HEIGHT = 1000, 620
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Out, dict[str, Any], Path]]:
-    chromium = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("google-chrome")
-    if chromium is None:
-        assert not os.environ.get("CI"), "the page's test needs a browser: apt-get install chromium"
-        pytest.skip("the page's test needs a browser: apt-get install chromium")
+    chromium = needed("chromium")
     folder = tmp_path_factory.mktemp("page")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("MBSD_OUT", str(folder / "out"))

@@ -9,7 +9,16 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from shared.cluster.hands import Work
 from shared.stage.errors import UserError
+
+HANGS = 3.0
+"""Seconds for which a worker hangs."""
+
+
+def work(do: Any, most: int = 10_000) -> Work:
+    """Work whose results are taken as they come, a letter a byte."""
+    return Work(do, lambda _, content: content.decode("latin-1"), most)
 
 
 def doubled(files: Mapping[str, Path], common: str, order: Any) -> bytes:
@@ -17,35 +26,35 @@ def doubled(files: Mapping[str, Path], common: str, order: Any) -> bytes:
     return files[common].read_bytes() + str(order).encode() * 2
 
 
-def slow(files: Mapping[str, Path], common: str, order: Any) -> tuple[int, int]:
-    """Takes the order's time; the number of the process, too."""
+def slow(files: Mapping[str, Path], common: str, order: Any) -> bytes:
+    """Takes the order's time."""
     time.sleep(order)
-    return os.getpid(), 1
+    return b"done"
 
 
-def deadly(files: Mapping[str, Path], common: str, order: Any) -> int:
+def deadly(files: Mapping[str, Path], common: str, order: Any) -> bytes:
     """The first process that gets the order ends by it."""
     marker = Path(order)
     if marker.name == "dies" and not marker.exists():
         marker.touch()
         os.kill(os.getpid(), signal.SIGKILL)
     time.sleep(0.02)
-    return os.getpid()
+    return b"done"
 
 
-def refusing(files: Mapping[str, Path], common: str, order: Any) -> str:
+def refusing(files: Mapping[str, Path], common: str, order: Any) -> bytes:
     """Fails always, or on one worker."""
     from distributed import get_worker
 
     if order == "always" or order == get_worker().address:
         raise UserError(f"frame of {order}: the disk is full")
-    return get_worker().address
+    return get_worker().address.encode()
 
 
-def hanging(files: Mapping[str, Path], common: str, order: Any) -> str:
+def hanging(files: Mapping[str, Path], common: str, order: Any) -> bytes:
     """Hangs on the worker whose address is the order."""
     from distributed import get_worker
 
     if order == get_worker().address:
-        time.sleep(4.0)
-    return get_worker().address
+        time.sleep(HANGS)
+    return get_worker().address.encode()

@@ -21,14 +21,21 @@ from shared.cluster.contents import Contents, content_hash
 from shared.cluster.deal import Deal
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
+from tests.running.processes import ends_with_us
 from tests.shared.cluster import acting
+
+HOST, OTHER_HOST = ("127.0.0.2", "127.0.0.3") if sys.platform == "linux" else ("127.0.0.1", "127.0.0.1")
+"""Of scheduler and worker; other systems than Linux have one address of loopback."""
 
 
 @contextmanager
 def started(*words: str, log: Path) -> Iterator[subprocess.Popen[bytes]]:
     """A scheduler or worker until the block ends."""
     with log.open("w") as said:
-        process = subprocess.Popen([sys.executable, "-m", "shared.cluster", *words], cwd=ROOT, stdout=said, stderr=said)
+        process = subprocess.Popen(
+            [sys.executable, "-m", "shared.cluster", *words], cwd=ROOT, stdout=said, stderr=said,
+            preexec_fn=ends_with_us,
+        )  # fmt: skip
         try:
             yield process
         finally:
@@ -51,15 +58,24 @@ def wait_until(ready: Callable[[], bool], seconds: float = 60.0) -> None:
 
 def answers_at(port: int) -> bool:
     with suppress(OSError):
-        socket.create_connection(("127.0.0.1", port), 1).close()
+        socket.create_connection((HOST, port), 1).close()
         return True
     return False
+
+
+def listening(process: subprocess.Popen[bytes]) -> list[tuple[str, int]]:
+    """Addresses on which the process and all that it has started listen."""
+    family = [psutil.Process(process.pid), *psutil.Process(process.pid).children(recursive=True)]
+    connections = [one for member in family for one in member.net_connections("inet")]
+    return [(str(one.laddr[0]), int(one.laddr[1])) for one in connections if one.status == psutil.CONN_LISTEN]
 
 
 def test_a_cluster_with_certificates_does_work_and_lets_nobody_else_in(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Its worker outlives the scheduler, and ends when the process that keeps it is killed."""
+    """Its worker outlives the scheduler, and ends when the process that keeps it is killed. Both listen on the address
+    of their HOST alone.
+    """
     authority.make(tmp_path / "certificates")
     assert (tmp_path / "certificates" / "key.pem").stat().st_mode & 0o077 == 0
     with pytest.raises(UserError, match="there already"):
@@ -67,19 +83,23 @@ def test_a_cluster_with_certificates_does_work_and_lets_nobody_else_in(
     port = free_port()
     monkeypatch.setenv("CLUSTER_TLS", str(tmp_path / "certificates"))
     monkeypatch.setenv("MBSD_OUT", str(tmp_path / "out"))
-    monkeypatch.setenv("CLUSTER", f"tls://127.0.0.1:{port}")
+    monkeypatch.setenv("CLUSTER", f"tls://{HOST}:{port}")
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
     content = b"in common"
     name = content_hash(content)
-    with started("worker", f"tls://127.0.0.1:{port}", log=tmp_path / "worker.log") as worker:
+    with started("worker", f"tls://{HOST}:{port}", "--host", OTHER_HOST, log=tmp_path / "worker.log") as worker:
         for life in ("first", "second"):
-            with started("scheduler", "--port", str(port), log=tmp_path / f"{life}.log"):
+            with started("scheduler", "--host", HOST, "--port", str(port), log=tmp_path / f"{life}.log") as scheduler:
                 wait_until(lambda: answers_at(port))
                 with connected() as client:
                     inputs = {name: lambda: content}
-                    work = Deal(client, acting.doubled, name, inputs, {"a": 1, "b": 2}, ("shared/cluster",))
+                    doubled = acting.work(acting.doubled)
+                    work = Deal(client, doubled, name, inputs, {"a": 1, "b": 2}, ("shared/cluster",))
                     answers = {key: value for key, value, _ in work.results()}
-                    assert answers == {"a": b"in common11", "b": b"in common22"}
+                    assert answers == {"a": "in common11", "b": "in common22"}
+                assert listening(scheduler) == [(HOST, port)]
+                assert {host for host, _ in listening(worker)} == {OTHER_HOST}
+                assert len(listening(worker)) == 2  # the worker and its nanny, no HTTP server
                 if life == "second":
                     monkeypatch.setattr("shared.cluster.address.TIMEOUT", 1.0)
                     other = tmp_path / "others"

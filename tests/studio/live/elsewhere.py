@@ -24,6 +24,6 @@ def move(folder: Path) -> None:
 
 
 if FOLDER in os.environ:
-    import studio.live.child.warm  # noqa: F401  (its sources are found where they are)
+    from studio.live.child.warm import serve  # noqa: F401  (its sources are found where they are)
 
     move(Path(os.environ[FOLDER]))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-import multiprocessing.forkserver
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -13,6 +12,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+import psutil
 import pytest
 import uvicorn
 from websockets.sync.client import ClientConnection, connect
@@ -20,9 +20,10 @@ from websockets.sync.client import ClientConnection, connect
 import mechanisms
 from mechanisms.stages.loading import loading
 from shared.stage import paths
-from studio.live import children
 from studio.live.__main__ import bound
 from studio.live.frames import unframed
+from studio.live.processes import nursery
+from studio.live.processes.trees import MARK
 from studio.live.server import LARGEST, Live
 from studio.live.session import Session
 from tests.studio.live import elsewhere
@@ -137,6 +138,7 @@ class Served:
             origin=origin or f"http://{place}",
             max_size=None,
             open_timeout=WAIT,
+            close_timeout=1,
         ) as socket:
             yield Page(socket)
 
@@ -169,15 +171,17 @@ def served(
         (folder / name / file).write_text(text)
     patch = pytest.MonkeyPatch()
     patch.setenv(elsewhere.FOLDER, str(folder))
-    patch.setattr(children, "WARM", ["tests.studio.live.elsewhere"])
+    patch.setattr(nursery, "WARM", "tests.studio.live.elsewhere")
     for module in (paths, loading):
         patch.setattr(module, "MECHANISMS", folder)
     patch.setattr(paths, "ROOT", folder.parent)
     patch.setattr(mechanisms, "__path__", [*mechanisms.__path__, str(folder)])
-    _forget_forkserver()
     listener = bound(0)
     live = Live(name, listener.getsockname()[1], show, limit, parts)
-    config = uvicorn.Config(live.app, log_level="warning", lifespan="on", ws_max_size=LARGEST, server_header=False)
+    config = uvicorn.Config(
+        live.app, log_level="warning", lifespan="on", ws_max_size=LARGEST, server_header=False,
+        ws_per_message_deflate=False,
+    )  # fmt: skip
     server = uvicorn.Server(config)
     thread = threading.Thread(target=lambda: asyncio.run(server.serve(sockets=[listener])), daemon=True)
     thread.start()
@@ -192,10 +196,17 @@ def served(
         thread.join(WAIT)
         listener.close()
         patch.undo()
-        _forget_forkserver()
     assert not thread.is_alive()
+    assert not processes_of(live.nursery.mark), "no process outlives the server"
 
 
-def _forget_forkserver() -> None:
-    """One that other tests have started has other mechanisms."""
-    multiprocessing.forkserver._forkserver._stop()
+def processes_of(mark: str) -> list[psutil.Process]:
+    """Those that run on and have this mark of a server in their environment."""
+    found = []
+    for process in psutil.process_iter():
+        try:
+            if process.status() != psutil.STATUS_ZOMBIE and process.environ().get(MARK) == mark:
+                found.append(process)
+        except (psutil.Error, OSError):
+            continue
+    return found

@@ -70,7 +70,7 @@ def test_two_hundred_edits_half_of_them_broken(live: Served) -> None:
                 used.append(process.memory_info().rss)
                 children.append(len(process.children(recursive=True)))
     assert used[1] - used[0] < 24e6, "memory is flat"
-    assert children[1] <= children[0] + 1, "no process is left behind"  # a killed one may just be ending
+    assert children[1] <= children[0] + 2, "no process is left behind"  # a killed one and its keeper may just be ending
 
 
 def test_endless_loops_are_ended_and_newer_edits_do_not_wait(live: Served, monkeypatch: pytest.MonkeyPatch) -> None:

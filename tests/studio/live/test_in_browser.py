@@ -11,14 +11,14 @@ import pytest
 
 from render.view.bundle import node, node_modules
 from studio.live.page import page
+from tests.running.needs import needed
 from tests.studio.live.served import FOUR_BAR, served
 
 SCRIPT = Path(__file__).parent / "page.cjs"
 
 
 def test_a_page_follows_hand_and_file(tmp_path: Path) -> None:
-    modules = node_modules()
-    environment = os.environ | {"NODE_PATH": str(modules)}
+    environment = os.environ | {"CHROMIUM": needed("chromium"), "NODE_PATH": str(node_modules())}
     with served(tmp_path / "mechanisms", "links", FOUR_BAR, 200.0, show=page) as live:
         command = [str(node()), str(SCRIPT), live.live.address, os.environ.get("MBSD_PICTURES", str(tmp_path))]
         with subprocess.Popen(

@@ -13,8 +13,9 @@ import psutil
 import pytest
 
 from render.view.bundle import node, node_modules
-from studio.live import background
 from studio.live.page import page
+from studio.live.processes import stages
+from tests.running.needs import needed
 from tests.studio.live.served import ARM, served
 
 SCRIPT = Path(__file__).parent / "parts.cjs"
@@ -43,9 +44,9 @@ def long(length: float) -> str:
 def test_parts_follow_the_skeleton(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = tmp_path / "mechanisms"
     monkeypatch.setenv("MBSD_TEST_PARTS", str(folder))
-    monkeypatch.setattr(background, "COMMAND", [sys.executable, "-m", "tests.studio.live.stage"])
-    monkeypatch.setattr(background, "NICE", 0)  # beside other tests it would wait
-    environment = os.environ | {"NODE_PATH": str(node_modules())}
+    monkeypatch.setattr(stages, "COMMAND", [sys.executable, "-m", "tests.studio.live.stage"])
+    monkeypatch.setattr(stages, "NICE", 0)  # beside other tests it would wait
+    environment = os.environ | {"CHROMIUM": needed("chromium"), "NODE_PATH": str(node_modules())}
     edits = {
         "longer": [("parts.py", SLOW), ("mechanism.py", long(0.3))],
         "break": [("mechanism.py", BROKEN)],
@@ -65,7 +66,7 @@ def test_parts_follow_the_skeleton(tmp_path: Path, monkeypatch: pytest.MonkeyPat
             for line in browser.stdout:
                 word, _, told = line.partition(" ")
                 if word == "count":
-                    left[told.strip()] = _stages(0 if told.strip() == "broken" else None)
+                    left[told.strip()] = _stages(0 if told.strip() == "broken" else 1)
                 elif word == "ask":
                     for file, text in edits[told.strip()]:
                         live.write(text, file)
@@ -88,16 +89,16 @@ def test_parts_follow_the_skeleton(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert saw["kept"], "the last parts"
 
 
-def _stages(wanted: int | None) -> int:
-    """Processes that make parts; where some must end, they get a moment to do so."""
+def _stages(wanted: int) -> int:
+    """Processes that make parts, which get a moment to begin or to end."""
     ends = time.monotonic() + 20
     while True:
         found = 0
         for one in psutil.Process().children(recursive=True):
             try:
-                found += one.status() != psutil.STATUS_ZOMBIE and "tests.studio.live.stage" in one.cmdline()
+                found += one.status() != psutil.STATUS_ZOMBIE and "tests.studio.live.stage" in one.cmdline()[:3]
             except psutil.NoSuchProcess:
                 continue
-        if wanted is None or found == wanted or time.monotonic() > ends:
+        if found == wanted or time.monotonic() > ends:
             return found
         time.sleep(0.1)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import os
+import time
 from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import Any
@@ -42,6 +44,27 @@ def test_a_touch_is_no_change(tmp_path: Path) -> None:
     file = tmp_path / "mechanism.py"
     file.write_text("a")
     watch = Watch(tmp_path)
-    assert watch._changed({file}) == {file}
     file.touch()
     assert watch._changed({file}) == set()
+    file.write_text("b")
+    assert watch._changed({file}) == {file}
+
+
+def test_a_file_that_was_saved_while_it_was_read_has_changed(tmp_path: Path) -> None:
+    """What was read of it may be what it was before; its name is known only after that."""
+    (tmp_path / "folder").mkdir()
+    watch = Watch(tmp_path / "folder")
+    old, new = tmp_path / "old.txt", tmp_path / "new.txt"
+    for file in (old, new):
+        file.write_text("a")
+    began = time.time()
+    os.utime(old, (began - 60, began - 60))
+    os.utime(new, (began + 1, began + 1))
+    watch.follow([old, new], began)
+    assert watch._changed(watch._all()) == {new}
+
+
+def test_what_is_being_written_beside_a_file_is_no_file_of_the_author(tmp_path: Path) -> None:
+    watch = Watch(tmp_path)
+    (tmp_path / ".mechanism-x7.py").write_text("half of it")
+    assert watch._changed(watch._all()) == set()

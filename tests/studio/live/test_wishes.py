@@ -31,7 +31,7 @@ def page(live: Served) -> Iterator[Page]:
         elif state["values"]:
             one.say(do="set", values={number["name"]: number["value"] for number in state["numbers"]}, final=True)
             one.hear("motion")
-        live.session.history.written({number["name"] for number in state["numbers"]})
+        live.session.history.written(live.session.history.now)
         yield one
 
 

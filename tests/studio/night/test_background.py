@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from studio.night.commands import logout
+from tests.running.needs import needs
 from tests.studio.night.nights import Night, finished, until
 
 
@@ -36,8 +36,7 @@ def tools(folder: Path, *without: str) -> str:
 
 
 def test_it_goes_on_without_its_terminal_and_says_how_to_attach(night: Night, tmp_path: Path):
-    if shutil.which("tmux") is None:  # the other half is tested below
-        return
+    needs("tmux")
     code, out, err = finished(night.start("four_bar", command="start"))
     assert code == 0, err
     assert "started as run 1; it goes on after you have logged out" in out

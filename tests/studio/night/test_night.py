@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -13,6 +12,7 @@ from render.presets import PRESETS
 from studio.night.plan.options import Options
 from studio.night.plan.steps import STEPS, command
 from tests.project.making import STAGES, planned
+from tests.running.processes import working_for
 from tests.studio.night.nights import Night, finished, until
 
 
@@ -23,8 +23,7 @@ def night(tmp_path: Path) -> Night:
 
 def alive(night: Night) -> list[str]:
     """Processes of stand-ins that are left."""
-    listing = subprocess.run(["ps", "-axwwo", "args="], capture_output=True, text=True, check=True).stdout
-    return [line for line in listing.splitlines() if "stand_in.py" in line and str(night.folder) in line]
+    return [line for line in working_for(night.folder).values() if "stand_in.py" in line]
 
 
 def test_a_failure_stops_no_other_and_table_and_exit_code_tell_it(night: Night):

@@ -13,6 +13,7 @@ import pytest
 from shared.contract.shot import Shot
 from shared.stage.paths import ROOT
 from tests.render import film_fixture
+from tests.running.processes import working_for
 from tests.studio.night.nights import until
 
 PICTURES = 60
@@ -48,7 +49,7 @@ def test_a_film_that_is_killed_and_stopped_has_every_picture_once(command: list[
     until(lambda: len(pictures(out_root)) >= 4, 120)
     os.kill(run.pid, signal.SIGKILL)
     run.communicate(timeout=60)
-    until(lambda: not blenders(out_root))
+    until(lambda: not working_for(out_root))
     killed = pictures(out_root)
 
     run = start()
@@ -70,11 +71,5 @@ def test_a_film_that_is_killed_and_stopped_has_every_picture_once(command: list[
     assert len({name.partition("-")[0] for name in done}) == len(done) == PICTURES
     assert (out_root / "films" / "four_bar-draft.mp4").is_file()
     assert f"{PICTURES}/{PICTURES}" in say("status")
-    assert not blenders(out_root)
+    assert not working_for(out_root)
     assert not list(out_root.glob(".blender/tmp-*"))
-
-
-def blenders(out: Path) -> list[str]:
-    """Processes that work for this folder."""
-    listing = subprocess.run(["ps", "-axwwo", "args="], capture_output=True, text=True, check=True).stdout
-    return [line for line in listing.splitlines() if str(out) in line]

@@ -28,7 +28,24 @@ def pictures(page: SimpleNamespace) -> dict[str, Figure]:
     plain(axes[1, 1], title="friction of a guide", xlabel="speed, m/s", ylabel="force, N")
     _curve(axes[1, 2], 100 * page.slip, page.pull / 1000, GREEN)
     plain(axes[1, 2], title="tyre", xlabel="slip, %", ylabel="pull, kN")
-    return {"forces.svg": figure, "friction.svg": _friction(page)}
+    return {"forces.svg": figure, "engine.svg": _engine(page), "friction.svg": _friction(page)}
+
+
+def _engine(page: SimpleNamespace) -> Figure:
+    """The indicator diagram of the engine, its pressure over the crank's angle, and the torque of its shaft."""
+    figure = Figure(figsize=(10.4, 3.4), layout="constrained")
+    indicated, over, torque = figure.subplots(1, 3)
+    gas, crank = page.gas, np.degrees(page.gas.crank_angle)
+    indicated.plot(1e6 * gas.volume, 1e-5 * gas.pressure, color=BLUE)
+    plain(indicated, title="indicator diagram", xlabel="volume, cm³", ylabel="pressure, bar")
+    over.plot(crank, 1e-5 * gas.pressure, color=BLUE)
+    plain(over, title="pressure", xlabel="crank after firing, degrees", ylabel="pressure, bar")
+    torque.plot(crank, -page.engine.driver("shaft").torque, color=MOVED)
+    torque.axhline(0.0, color=INK, linewidth=0.6)
+    plain(torque, title="what the shaft gives", xlabel="crank after firing, degrees", ylabel="torque, N m")
+    for ax in (over, torque):
+        ax.set_xticks(range(0, 721, 180))
+    return figure
 
 
 def _friction(page: SimpleNamespace) -> Figure:

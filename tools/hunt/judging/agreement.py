@@ -2,7 +2,8 @@
 
 Compared are numbers that do not depend on the description: places, velocities and accelerations of centres of mass and
 angles of bodies, carried back into the first description; forces and moments that joints and drivers give; energies.
-Reactions are left out where joints are redundant, since they are not unique there.
+Reactions are left out where joints are redundant, since they are not unique there; efforts are still differences of
+them, so that their size counts.
 
 Driven motions. Newton-Raphson ends below 1e-12 of the mechanism's size, closed forms at rounding. Either is a
 residual, which the Jacobian's inverse turns into an error of the pose of about the residual times 1 / margin, margin
@@ -113,8 +114,12 @@ def common(first: Solution, other: Solution) -> tuple[np.ndarray, np.ndarray]:
     return k[rows], rows
 
 
-def sizes(values: Numbers, size: float) -> dict[str, float]:
-    """Largest value of each kind, at least what rounding of the mechanism's size makes of it."""
+def sizes(values: Numbers, size: float, first: Solution) -> dict[str, float]:
+    """Largest value of each kind, at least what rounding of the mechanism's size makes of it.
+
+    Of efforts it is that of the usual forces of the ``first`` solution: a motor may hold up a small difference of large
+    ones, and what its power gains or loses is their error.
+    """
     largest = {key: float(np.abs(array[np.isfinite(array)]).max(initial=0.0)) for key, array in values.items()}
     out = dict(largest)
     out["q"] = max(size, 1.0)
@@ -122,6 +127,9 @@ def sizes(values: Numbers, size: float) -> dict[str, float]:
     turning = float(np.abs(values["v"][:, 2::3]).max(initial=0.0))
     out["a"] = max(largest["a"], turning**2, 1e-9)  # where bodies turn evenly, accelerations cancel
     force = max(largest.get("reactions", 0.0), largest.get("efforts", 0.0), 1e-9)
+    if "reactions" not in largest:
+        usual = float(np.median(np.abs(first.wrench).max(axis=(1, 2), initial=0.0)))
+        force = max(force, usual if np.isfinite(usual) else 0.0)
     for key in ("reactions", "efforts"):
         if key in out:
             out[key] = force
@@ -203,7 +211,7 @@ def compare_driven(first: Solution, other: Solution, words: Words = SAME, loosen
     here = numbers(first, first, SAME, first_rows, first_rows)
     there = numbers(other, first, words, rows, first_rows)
     shared = {key: here[key] for key in here if key in there}
-    size = sizes(shared, _extent(first, other))
+    size = sizes(shared, _extent(first, other), first)
     laws = law_error(first) + law_error(other)
     return judge(first, there, shared, driven_limits(first, first_rows, size, loosened, laws), first.t[first_rows])
 
@@ -247,7 +255,7 @@ def compare_free(
     here = numbers(first, first, SAME, first_rows, first_rows)
     there = numbers(other, first, words, rows, first_rows)
     shared = {key: here[key] for key in here if key in there and key in growth.of}
-    size = sizes(shared, _extent(first, other))
+    size = sizes(shared, _extent(first, other), first)
     limits = {}
     for key, largest in size.items():
         grown = growth.of[key][first_rows]

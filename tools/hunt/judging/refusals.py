@@ -15,6 +15,7 @@ PROMISED = (
     "does not take",
     "need scikit-sundae",
     "in reference coordinates",
+    "do not end there",
 )
 """Words of refusals that say what a method or formulation is not made for."""
 

@@ -26,6 +26,10 @@ for _package in (mbsd.model.joints, mbsd.model.drivers, mbsd.model.forces, mbsd.
         importlib.import_module(f"{_package.__name__}.{_module.name}")
 
 
+CENTRES = {"gear_pair": 0.3, "belt": 0.7}
+"""Distances (m) at which the examples meet."""
+
+
 def two_bodies(name: str, rng: np.random.Generator) -> Mechanism:
     """Two bodies on soft mounts; what is between them moves them."""
     m = Mechanism(name, gravity=(float(rng.normal()), -9.81))
@@ -54,8 +58,11 @@ def _joint_or_driver(name: str):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             KINDS[name].example(m, i, j)
-        if KINDS[name].constraints in (("gear",),) and rng.random() < 0.5:
-            m.distance("arm", i, j, length=0.7)
+        if name in CENTRES:
+            m.distance("arm", i, j, length=CENTRES[name])
+        if name == "rack_and_pinion":  # its pinion's radius over the pitch line
+            c, s = math.cos(i.angle), math.sin(i.angle)
+            m.pin_in_slot("held", i.body.at(i.x - 0.3 * s, i.y + 0.3 * c, i.angle), j)
         traits = {"jumps"} if name in ("geneva", "cam_roller", "cam_flat") else set()
         return Subject(m, float(rng.uniform(0.1, 0.4)), False, traits=frozenset(traits))
 

@@ -52,6 +52,15 @@ class Free:
         """Whether events decide the motion."""
         return "contacts" in self.subject.traits
 
+    def remembers(self, k: int) -> bool:
+        """Whether a contact acts at output k whose damping depends on how fast it began, which no start can say."""
+        first = self.first
+        if first is None or first.approached is None:
+            return False
+        damped = [name for name, force in self.m.forces.items() if force.params.get("restitution") is not None]
+        efforts = [first.force(name).effort for name in damped]
+        return any(effort is not None and effort[k] != 0.0 for effort in efforts)
+
     def run(self, m: Mechanism, **options: Any) -> tuple[Solution | None, MechanismError | None]:
         """Simulate over the case's outputs, with its tolerance, unless said otherwise."""
         options = {"times": self.grid, "tolerance": TOLERANCE} | options

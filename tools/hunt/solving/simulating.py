@@ -23,6 +23,7 @@ from tools.hunt.solving.variations import Variations
 from tools.hunt.words.changed import there_and_back
 from tools.hunt.words.described import back, duplicate, on_a_base, seen_from, turnable
 from tools.hunt.words.reordered import exchanged, shuffled
+from tools.hunt.words.same_bits import changed, pickled
 
 STEPS = (1, 2, 3, 5, 12, 30, 360, 1440)
 FIXED_STEPS = 400
@@ -123,12 +124,24 @@ def _changed(case: Free) -> Outcome:
     return case.compared("changed and changed back", m)
 
 
+@variation("changed equals fresh")
+def _changed_to(case: Free) -> Outcome:
+    return changed("changed equals fresh", case.m, case.rng)
+
+
+@variation("pickled and back")
+def _pickled(case: Free) -> Outcome:
+    return pickled("pickled and back", case.first)
+
+
 @variation("from the middle on")
 def _middle(case: Free) -> Outcome:
     name = "from the middle on"
     if case.first is None or case.touches():
         return Outcome(name, UNCLEAR, "refused as built, or contacts remember")
     k = int(case.rng.integers(1, OUTPUTS - 1))
+    if case.remembers(k):
+        return Outcome(name, UNCLEAR, "a contact remembers how it began")
     m = started_at(duplicate(case.m), case.first.packed, case.first.q[k].ravel(), case.first.v[k].ravel())
     other, error = case.run(m, times=case.grid[k:])
     if error is not None:

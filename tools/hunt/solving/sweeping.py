@@ -21,6 +21,7 @@ from tools.hunt.subject import Subject
 from tools.hunt.words.changed import there_and_back
 from tools.hunt.words.described import Pose, back, duplicate, on_a_base, seen_from, turnable
 from tools.hunt.words.reordered import exchanged, shuffled
+from tools.hunt.words.same_bits import changed, pickled
 
 A_TURN = 360
 STEPS = (1, 2, 3, 5, 8, 12, 18, 36, 90, 1440)
@@ -246,6 +247,16 @@ def _changed(case: Driven) -> Outcome:
     if not there_and_back(m, case.rng, lambda: m.sweep(times=times)):
         return Outcome("changed and changed back", UNCLEAR, "nothing to change")
     return case.against_first("changed and changed back", m, case.grid)
+
+
+@variation("changed equals fresh")
+def _changed_to(case: Driven) -> Outcome:
+    return changed("changed equals fresh", case.m, case.rng)
+
+
+@variation("pickled and back")
+def _pickled(case: Driven) -> Outcome:
+    return pickled("pickled and back", case.first)
 
 
 @variation("simulated with its drivers")

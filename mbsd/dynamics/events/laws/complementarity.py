@@ -66,13 +66,24 @@ def complementarity(
     )
     z = lemke(matrix, np.concatenate([b[n], b[t], -b[t], limits * size / fastest]))
     if z is None:
-        names = ", ".join(f"'{contact.name}'" for contact in taking) or "of joints that stick"
-        raise SimulationError(
-            f"{at.packed.name}: at t = {at.time:.6g} s the contacts {names} allow no motion with rigid bodies and this "
-            "friction (jamming, Painleve's paradox). Use less friction, or a contact that yields."
-        )
+        frictions = ", ".join(f"{contact.friction:.4g}" for contact in taking)
+        raise _paradox(at, taking, f" with friction {frictions}" if taking else "")
     z *= fastest / size
     return z[:c] * unit[n], (z[c : c + k] - z[c + k : c + 2 * k]) * unit[t]
+
+
+def _paradox(at: Compliance, taking: Sequence[RunContact], why: str) -> SimulationError:
+    """The error where rigid bodies with Coulomb's friction have no motion; ``taking``: the contacts that jam."""
+    names = [f"'{contact.name}'" for contact in taking]
+    what = "joints that stick jam"
+    if names:
+        what = f"contact {names[0]} jams" if len(names) == 1 else f"contacts {' and '.join(names)} jam"
+    return SimulationError(
+        f"{at.packed.name}: at t = {at.time:.6g} s {what}{why}. This is Painleve's paradox: with rigid bodies and "
+        "Coulomb's friction the equations of motion have no solution in this pose, whatever the step or the method. "
+        "Take less friction, or a contact that yields: m.contact(...) in place of m.rigid_contact(...), see "
+        "docs/events.md."
+    )
 
 
 def _alone(at: Compliance, rows: Sequence[int]) -> np.ndarray:
@@ -87,10 +98,20 @@ def gives_way(at: Compliance, row: int, compliance: float) -> bool:
 
 
 def _refuse_driven(at: Compliance, taking: Sequence[RunContact], compliance: np.ndarray) -> None:
-    """A contact that no force can open: joints and drivers alone decide its gap."""
+    """A contact that no force can open: joints and drivers alone decide its gap, or its friction undoes what it pushes.
+
+    While it slides its compliance is  G_nn - mu G_nt, which is not positive from the friction  mu = G_nn / G_nt  on.
+    """
     for k, contact in enumerate(taking):
-        if not gives_way(at, contact.gap, compliance[k, k]):
-            raise SimulationError(
-                f"{at.packed.name}: at t = {at.time:.6g} s joints and drivers move '{contact.name}' against its stop, "
-                "and nothing can give way. Drive less far, move the stop, or put a spring between."
-            )
+        if gives_way(at, contact.gap, compliance[k, k]):
+            continue
+        direction = at.generalised([contact.gap])
+        own = float((direction.T @ at.answer(direction))[0, 0])
+        if contact.friction and gives_way(at, contact.gap, own):
+            critical = contact.friction * own / (own - compliance[k, k])
+            why = f": its friction {contact.friction:.4g} is above {critical:.4g}, from which on sliding this way "
+            raise _paradox(at, [contact], why + "its own normal force presses the bodies together")
+        raise SimulationError(
+            f"{at.packed.name}: at t = {at.time:.6g} s joints and drivers move '{contact.name}' against its stop, "
+            "and nothing can give way. Drive less far, move the stop, or put a spring between."
+        )

@@ -82,6 +82,13 @@ class Compliance:
         lam[self.rows] = found[self._count :]
         return found[: self._count], lam
 
+    def stopped(self, rows: Sequence[int] | np.ndarray, v: np.ndarray) -> np.ndarray:
+        """(3 nb,) velocities v with the rates of the rows taken off by impulses along them; rows may depend."""
+        directions = self.generalised(rows)
+        dv, out = self.answer(directions), v.copy()
+        out[3:] -= dv @ np.linalg.lstsq(directions.T @ dv, self.rates(rows, v), rcond=1e-12)[0]
+        return out
+
     def loads(self, v: np.ndarray) -> np.ndarray:
         """(3 nb,) weight and all loads but friction of joints."""
         time = np.array([self.time])

@@ -127,10 +127,7 @@ class _Moment:
         resting, known = moved & (halted | (np.abs(rates) <= case.still[ways])), np.zeros_like(halted)
         while not np.array_equal(resting, known):
             known = resting
-            directions = at.generalised(ways[resting])
-            dv, v = at.answer(directions), case.v.copy()
-            v[3:] -= dv @ np.linalg.lstsq(directions.T @ dv, at.rates(ways[resting], case.v), rcond=1e-12)[0]
-            rates = at.rates(ways, v)
+            rates = at.rates(ways, at.stopped(ways[resting], case.v))
             resting = resting | moved & (np.abs(rates) <= case.still[ways])
         return dict(zip(rows, np.where(halted, 0.0, rates).tolist(), strict=True))
 

@@ -19,7 +19,7 @@ from mbsd.compiling.jit import kernel
 from mbsd.dynamics.integrators.dop853.crossing import LANDED, crossing, nearness
 from mbsd.dynamics.integrators.dop853.dense import interpolant, write_outputs
 from mbsd.dynamics.integrators.dop853.tableau import E3, E5, A, B, C
-from mbsd.dynamics.integrators.formulation import accelerate, begin, for_both, project, record_here, settle
+from mbsd.dynamics.integrators.formulation import accelerate, begin, derivative, for_both, project, record_here, settle
 from mbsd.dynamics.integrators.kind import Integrator, register
 from mbsd.dynamics.integrators.step_size import allowed, first_step
 from mbsd.dynamics.state import (
@@ -43,12 +43,15 @@ from mbsd.dynamics.state import (
 from mbsd.equations.interactions.switching import (
     BEYOND,
     CUTS,
+    FREE,
     HELD,
     RATE,
+    REMEMBERS,
     SWITCHING,
     accept,
     begin_sides,
     hold,
+    note_begin,
     note_end,
 )
 
@@ -80,6 +83,10 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
     switching = switch[0, SWITCHING] > 0.0
     begin_sides(switch, state.clock[TIME], state.count[STARTED] != 0)
     begin(dyn, scratch, state)
+    if switching and switch[0, REMEMBERS] > 0.0 and switch[0, FREE] > 0.0:
+        derivative(dyn, scratch, state.clock[TIME], y, k[LANDED], scratch.multipliers)
+        state.count[EVALUATIONS] += 1
+        note_begin(switch)
     if state.clock[STEP] == 0.0:
         state.clock[STEP] = first_step(dyn, scratch, state, settings, 0.125)
     while state.count[NEXT] < out.t.shape[0] and out.t[state.count[NEXT]] <= state.clock[TIME]:
@@ -250,5 +257,13 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
 
 
 DOP853 = register(
-    Integrator("dop853", advance.reference, STAGES, order=8, fixed_step=False, independent=advance.independent)
+    Integrator(
+        "dop853",
+        advance.reference,
+        STAGES,
+        order=8,
+        fixed_step=False,
+        independent=advance.independent,
+        meets_switches=True,
+    )
 )

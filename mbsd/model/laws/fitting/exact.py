@@ -24,11 +24,18 @@ MOST_TIMES = 600_000
 CLOSEST = 1e-12
 """Part of the span within which a jump of f'' is found."""
 DISAGREE = 1e-3
-"""Part of f' by which df may differ from the slope of f, and ddf from that of df."""
+"""Part of f' by which df may differ from the slope of f, and ddf from that of df, where nothing else is known."""
+DISAGREE_SMOOTH = 1e-6
+"""The same on pieces on which the derivative is so straight (RESOLVED) that its mean is known."""
 RESOLVED = 1e-2
 """Part of such a difference below which a derivative must be bent for it to count before all else is tried."""
 ROUNDS = 4
 EPSILON = float(np.finfo(float).eps)
+
+
+class DerivativeError(ModelError):
+    """A derivative that its author gave is not that of f."""
+
 
 Rows = Callable[[np.ndarray], np.ndarray]
 
@@ -170,17 +177,18 @@ def _refuse_derivatives(
     size: np.ndarray,
     straight: float = np.inf,
 ) -> None:
-    """Raise ModelError where a derivative is not that of f; on pieces alone where it is straight to this part of it."""
+    """Raise DerivativeError where a derivative is not that of f; only where it is straight to this part of it."""
     width = at[:, 1] - at[:, 0]
     for order, (of, name) in enumerate((("f", "df"), ("df", "ddf"))):
         slope = (right[:, order] - left[:, order]) / width
         given = (left[:, order + 1] + 4 * middle[:, order + 1] + right[:, order + 1]) / 6  # Simpson's mean
         off = np.abs(slope - given)
         bent = np.abs(left[:, order + 1] - 2 * middle[:, order + 1] + right[:, order + 1])
-        wrong = (off > DISAGREE * size[order + 1]) & (bent <= straight * off)
+        least = DISAGREE if np.isinf(straight) else DISAGREE_SMOOTH
+        wrong = (off > least * size[order + 1]) & (bent <= straight * off)
         if 2 * wrong.sum() > len(wrong) or (np.isinf(straight) and wrong.any()):
             worst = int(np.argmax(np.where(wrong, off, 0.0)))
-            raise ModelError(
+            raise DerivativeError(
                 f"function: {name} is not the derivative of {of}: at t = {at[worst, 0]:.6g} s {of} rises by "
                 f"{slope[worst]:.6g} per second, {name} gives {given[worst]:.6g}; correct it, or leave df and ddf out"
             )

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechanisms.stages.automatic.layout.planar import convex_hull
-from mechanisms.stages.loading.author_errors import is_of_kernel
+from shared.shapes.kernel import first_sound
 from shared.shapes.link import Eye, link, plate_link
 from shared.shapes.outline import hull_holds, inset_corners
 from shared.shapes.solid import placed
@@ -92,19 +92,6 @@ def first_made(ways: Sequence[Callable[[], cq.Workplane]]) -> cq.Workplane:
     """The first shape that has room and that the CAD kernel can make; the last one must."""
     made = first_sound(ways[:-1])
     return ways[-1]() if made is None else made
-
-
-def first_sound(ways: Sequence[Callable[[], cq.Workplane]]) -> cq.Workplane | None:
-    """The first shape that has room and that the CAD kernel can make; None if there is none."""
-    for way in ways:
-        try:
-            shape = way()
-            if shape.val().isValid():
-                return shape
-        except Exception as error:
-            if not isinstance(error, ValueError) and not is_of_kernel(error):
-                raise
-    return None
 
 
 def _plate(corners: list[PlacedEye], inner: list[PlacedEye], thickness: float) -> tuple[cq.Workplane, int]:

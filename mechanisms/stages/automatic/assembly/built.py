@@ -11,6 +11,7 @@ import cadquery as cq
 from mechanisms.stages.automatic.assembly.body_shape import PlacedEye, body_shape
 from mechanisms.stages.automatic.assembly.bores import refuse_meeting_bores
 from mechanisms.stages.automatic.assembly.frame import base
+from mechanisms.stages.automatic.assembly.kernel_refusals import kernel_refusals
 from mechanisms.stages.automatic.assembly.marks import marked
 from mechanisms.stages.automatic.assembly.rod_shape import rod_shape
 from mechanisms.stages.automatic.assembly.yoke_shape import yoke_shape
@@ -35,10 +36,11 @@ def built(plan: Plan, heights: Heights, engraved_too: bool = True) -> dict[str, 
     refuse_meeting_bores(plan)
     made: dict[str, list[Solid]] = {"ground": [*base(plan, engraved_too), *plan.solids.get("ground", [])]}
     for body in plan.layout.moving:
-        shape, holes = _plate(plan, body, heights.thickness)
-        for tool, through in plan.cuts.get(body, []):
-            shape, holes = shape.cut(tool), holes + through
-        shape = marked(shape, plan, body, heights.thickness)
+        with kernel_refusals(plan.layout.m.name, f"the plate of '{body}'"):
+            shape, holes = _plate(plan, body, heights.thickness)
+            for tool, through in plan.cuts.get(body, []):
+                shape, holes = shape.cut(tool), holes + through
+            shape = marked(shape, plan, body, heights.thickness)
         plate = Solid(plan.main[body], placed(shape, z=heights.bottom(body)), plan.materials[body], holes)
         made.setdefault(plan.layout.webs.get(body, body), []).extend([plate, *plan.solids.get(body, [])])
     return {body: [_scaled(solid, plan.layout.sizes) for solid in solids] for body, solids in made.items()}

@@ -25,7 +25,7 @@ def cam_solids(cam: Cam, plan: Plan, heights: Heights) -> None:
     hub = float(np.hypot(cam.outline[:, 0] - x, cam.outline[:, 1] - y).min())
     plan.plate(cam.cam, cam_disc(cam.outline, heights.thickness), (x, y, hub - 1.0))
     if cam.roller is not None:
-        slot_pin(cam.pin, plan, heights, 2 * cam.roller)
+        slot_pin(cam.pin, plan, heights, 0.0 if cam.bare else 2 * cam.roller)
         return
     seat = plan.layout.sizes.pivot.fit.seat
     if heights.bottom(cam.follower) > heights.bottom(cam.cam):

@@ -19,8 +19,9 @@ from mechanisms.stages.automatic.layout.features import kind
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.planar import Rounded, around, disc
-from mechanisms.stages.automatic.layout.profiles import curve_path, on_body
+from mechanisms.stages.automatic.layout.profiles import curve_path, on_body, set_back, turns_left
 from mechanisms.stages.automatic.layout.sizes import CLEAR
+from mechanisms.stages.automatic.pins.free.rim_marks import Face
 from mechanisms.stages.automatic.slides.slots import Slot
 from shared.shapes.cam import evenly
 from shared.stage.errors import UserError
@@ -37,8 +38,8 @@ SHOE = 6.0
 """Half of the height of a shoe behind its face (rmm)."""
 HULL = 60
 """Points of a cam's outline in the plane."""
-BASE, ROLLER = 15.0, 6.5
-"""Least radii (rmm) of base circle and roller."""
+BASE, ROLLER, POINT = 15.0, 6.5, 4.2
+"""Least radii (rmm) of base circle and roller; how far a cam that a point touches is set back, about."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,11 +62,17 @@ class Cam:
     face: tuple[float, float]
     """Where the cam touches the face, from ``at`` along it."""
     clear: float
+    bare: bool = False
+    """Whether the pin itself runs on the cam."""
 
     @property
     def fills(self) -> str:
         """The body whose layer leaves no room for teeth."""
         return self.cam
+
+    def face_of(self, body: str, layout: Layout) -> Face | None:
+        """Within the base circle."""
+        return Face(*self.centre, self.base - 1.0) if body == self.cam else None
 
     @property
     def pin(self) -> Slot:
@@ -136,28 +143,47 @@ def _cam(m: Mechanism, joint: Joint, layout: Layout) -> Cam:
 
 
 def pushing_cam(touch: Joint, layout: Layout) -> list[Feature]:
-    """The cam of a contact whose closed curve pushes a disc that may leave it; none if the disc runs inside."""
+    """The cam of a contact whose closed curve pushes a disc that may leave it; none if the disc runs inside.
+
+    A point is the bare end of a pin, and the cam is smaller by that pin's radius. Raises UserError where nothing of
+    the cam would be left.
+    """
     outline = on_body(curve_path(touch.params["points"], True), touch.i, layout)
-    if _area(outline) > 0:
+    if turns_left(outline):
         return []
     centre, clear = layout.place(touch.i), CLEAR * layout.sizes.pivot.fit.running
-    base = float(np.hypot(*(outline - centre).T).min())
     at = (*layout.place(touch.j), touch.j.angle)
     roller = layout.sizes.of_metres(touch.params["radius"]) - clear
-    return [Cam(touch.name, touch.i.body.name, touch.j.body.name, outline, centre, base, at, roller, (0.0, 0.0), clear)]
+    bare = touch.params["radius"] == 0
+    if bare:
+        roller = layout.sizes.pivot.pin / 2
+        outline = with_room(outline, roller + clear, touch, layout)
+    base = float(np.hypot(*(outline - centre).T).min())
+    names = touch.i.body.name, touch.j.body.name
+    return [Cam(touch.name, *names, outline, centre, base, at, roller, (0.0, 0.0), clear, bare)]
+
+
+def with_room(path: np.ndarray, back: float, touch: Joint | Force, layout: Layout) -> np.ndarray:
+    """A closed curve set back (rmm) from what touches it, because that is larger than in the model.
+
+    Raises UserError where nothing of it would be left.
+    """
+    moved = set_back(path, back)
+    if len(moved):
+        return moved
+    m, scale = layout.m, layout.sizes.scale
+    raise UserError(
+        f"{m.name}: contact '{touch.name}': what touches its closed curve is {back * scale:.3g} mm larger in radius "
+        "than in the model, and nothing of the curve is left when it is set back by that; make it larger, or write "
+        f"mechanisms/{m.name}/parts.py"
+    )
 
 
 def pushing_extent(touch: Joint | Force) -> Extent:
     """As :func:`roller_extent`, of a contact with a closed curve."""
     away, roller = np.hypot(*np.array(touch.params["points"], dtype=float).T), touch.params["radius"]
-    least = ((float(away.min()), BASE), (roller, ROLLER)) if roller > 0 else ()
+    least = ((float(away.min()), BASE), (roller, ROLLER)) if roller > 0 else ((float(away.min()), BASE + POINT),)
     return Extent(((touch.i, float(away.max())), (touch.j, roller)), least)
-
-
-def _area(outline: np.ndarray) -> float:
-    """Twice the signed area: below 0 where the outside is on the left."""
-    x, y = outline.T
-    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
 
 
 def _touched(

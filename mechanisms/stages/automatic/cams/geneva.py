@@ -15,6 +15,7 @@ from mechanisms.stages.automatic.layout.features import kind
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.planar import disc
+from mechanisms.stages.automatic.pins.free.rim_marks import Face
 from mechanisms.stages.automatic.slides.common_pins import passed
 from mechanisms.stages.automatic.slides.slots import Slot
 from shared.shapes.geneva import Geneva
@@ -48,6 +49,11 @@ class GenevaDrive:
     def fills(self) -> str:
         """The body whose layer leaves no room for teeth."""
         return self.wheel
+
+    def face_of(self, body: str, layout: Layout) -> Face | None:
+        """Of the wheel: within its slots."""
+        bottom = self.shape.bottom
+        return Face(*self.wheel_at[:2], bottom - 1.0) if body == self.wheel else None
 
     @property
     def pin(self) -> Slot:

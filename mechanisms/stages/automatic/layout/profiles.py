@@ -1,4 +1,4 @@
-"""Surfaces of the model as places in the plane: curves through points, profiles y(x), how near discs come to them."""
+"""Surfaces of the model as places in the plane: curves through points, and profiles y(x)."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from manifold3d import CrossSection, JoinType
 
 if TYPE_CHECKING:
     from mbsd import Marker
@@ -14,6 +15,8 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.layout import Layout
 
 STRAY, MOST = 2e-5, 12
+ARC = 128
+"""Chords of a whole circle round a corner."""
 FINE = 240
 """Places of a profile between its ends, at least."""
 
@@ -55,24 +58,26 @@ def farthest(points: Sequence[Sequence[float]]) -> float:
     return max(math.hypot(x, y) for x, y in points)
 
 
-def distances(places: np.ndarray, path: np.ndarray) -> np.ndarray:
-    """(T,) from places (T, 2) to the nearest place of a path (n, 2)."""
-    start, way = path[:-1], np.diff(path, axis=0)
-    square = np.maximum((way**2).sum(axis=1), 1e-300)
-    part = np.clip(((places[:, None] - start) * way).sum(axis=2) / square, 0.0, 1.0)
-    return np.sqrt(((places[:, None] - start - part[..., None] * way) ** 2).sum(axis=2).min(axis=1))
+def turns_left(path: np.ndarray) -> bool:
+    """Whether a closed path has its inside on its left."""
+    return area(path) > 0
 
 
-def simplified(path: np.ndarray, tolerance: float) -> np.ndarray:
-    """Those places of a path (n, 2) whose polygon strays from it by ``tolerance`` at most (Ramer, Douglas, Peucker)."""
-    kept, waiting = {0, len(path) - 1}, [(0, len(path) - 1)]
-    while waiting:
-        first, last = waiting.pop()
-        if last - first < 2:
-            continue
-        away = distances(path[first + 1 : last], path[[first, last]])
-        if away.max() > tolerance:
-            middle = first + 1 + int(away.argmax())
-            kept.add(middle)
-            waiting += [(first, middle), (middle, last)]
-    return path[sorted(kept)]
+def set_back(path: np.ndarray, by: float) -> np.ndarray:
+    """A closed path (n, 2) moved to its right by so much (rmm), without the loops that sharp corners would make.
+
+    (0, 2) where nothing is left of what it goes round.
+    """
+    inside = turns_left(path)
+    whole = CrossSection([path if inside else path[::-1]])
+    moved = whole.offset(by if inside else -by, JoinType.Round, circular_segments=ARC).to_polygons()
+    if not moved:
+        return np.empty((0, 2))
+    largest = max(moved, key=lambda corners: abs(area(corners)))
+    return largest if inside else largest[::-1]
+
+
+def area(path: np.ndarray) -> float:
+    """Twice the area within a closed path; above 0 where that is on its left."""
+    x, y = path.T
+    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1))

@@ -1,11 +1,17 @@
-"""Welds: two plates, one above the other, on a spacer with two bolts; on ground a block carries the plate."""
+"""Welds: two plates, one above the other, on a spacer with two bolts; on ground a block carries the plate.
+
+The bolts are at the weld's place, along its direction. Where pins, slots or other bolts of its bodies are in their way
+they stand across, or farther away: what is welded is one rigid thing, wherever its bolts are.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from mechanisms.stages.automatic.layout.features import kind
 from mechanisms.stages.automatic.layout.items import BASE, Anchor, Item, Need, Reach
@@ -17,6 +23,7 @@ from shared.shapes.build import extruded
 from shared.shapes.link import Eye
 from shared.shapes.pin import Head, pin
 from shared.shapes.solid import placed
+from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
@@ -30,6 +37,10 @@ BOLT, HEAD = 5.0, Head(9.0, 3.0, 0.8)
 """Diameter of a bolt (rmm), and its head."""
 APART = 7.0
 """From the weld's middle to either bolt."""
+STEP, FARTHEST = 4.0, 80.0
+"""How far bolts are moved at a time, and at most (rmm)."""
+BESIDE = 1.0
+"""From a spacer to the hardware of a pin (rmm)."""
 BLOCK, ROUND = 6.5, 9.5
 """Radius of a spacer round its bolts, and of the plates there."""
 
@@ -40,6 +51,7 @@ class Weld:
 
     name: str
     ends: tuple[tuple[str, float, float, float], tuple[str, float, float, float]]
+    """In common directions: the second is turned against the first as they stand welded."""
 
     @property
     def movers(self) -> tuple[str, ...]:
@@ -109,3 +121,55 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
         layout.pressing.add(frozenset((first[0], second[0])))
         found.append(Weld(joint.name, (first, second)))
     return found
+
+
+def with_free_bolts(features: Sequence[Feature], layout: Layout) -> list[Feature]:
+    """The features, with the bolts of each weld at the nearest place where nothing of its bodies is in their way.
+
+    Raises UserError for a weld without such a place.
+    """
+    found = [feature for feature in features if not isinstance(feature, Weld)]
+    for weld in (feature for feature in features if isinstance(feature, Weld)):
+        taken = {body: _taken(body, found, layout) for body, *_ in weld.ends}
+        free = next((moved for moved in _moved(weld) if _is_free(moved, taken, layout)), None)
+        if free is None:
+            m, (first, second) = layout.m, (body for body, *_ in weld.ends)
+            raise UserError(
+                f"{m.name}: joint '{weld.name}': the bolts that hold '{first}' and '{second}' together find no place "
+                f"within {FARTHEST * layout.sizes.scale:.3g} mm beside the pins of both; move joints apart, make pins "
+                f"thinner (automatic(m, pin=...)), or write mechanisms/{m.name}/parts.py"
+            )
+        found.append(free)
+    order = {feature.name: feature for feature in found if isinstance(feature, Weld)}
+    return [order[feature.name] if isinstance(feature, Weld) else feature for feature in features]
+
+
+def _moved(weld: Weld) -> Iterable[Weld]:
+    """The weld itself, across, and then farther and farther away in all directions."""
+    for way in (0.0, *np.arange(STEP, FARTHEST, STEP)):
+        count = 1 if way == 0.0 else 8
+        for side in 2 * np.pi * np.arange(count) / count:
+            for turn in (0.0, np.pi / 2, np.pi / 4, -np.pi / 4):
+                ends = [
+                    (body, x + way * math.cos(angle + side), y + way * math.sin(angle + side), angle + turn)
+                    for body, x, y, angle in weld.ends
+                ]
+                yield replace(weld, ends=(ends[0], ends[1])) if way or turn else weld
+
+
+def _taken(body: str, features: Sequence[Feature], layout: Layout) -> list[Anchor]:
+    """Places of a body with something on them; what is welded to it is another body's."""
+    return [anchor for feature in features for anchor in feature.anchors(layout) if anchor.body == body]
+
+
+def _is_free(weld: Weld, taken: Mapping[str, Sequence[Anchor]], layout: Layout) -> bool:
+    """Whether spacer and bolts stay clear of all hardware on both bodies."""
+    for body, anchors in taken.items():
+        (ax, ay), (bx, by) = weld.bolts(body)
+        for anchor in anchors:
+            along = ((anchor.x - ax) * (bx - ax) + (anchor.y - ay) * (by - ay)) / (2 * APART) ** 2
+            part = min(max(along, 0.0), 1.0)
+            gap = math.hypot(anchor.x - ax - part * (bx - ax), anchor.y - ay - part * (by - ay))
+            if gap < BLOCK + min(anchor.radius, layout.sizes.hardware) + BESIDE:
+                return False
+    return True

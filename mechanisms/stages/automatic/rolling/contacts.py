@@ -15,15 +15,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.model.laws.curve import Curve
-from mechanisms.stages.automatic.cams.cams import pushing_cam, pushing_extent
+from mechanisms.stages.automatic.cams.cams import pushing_cam, pushing_extent, with_room
 from mechanisms.stages.automatic.layout.extents import Extent, extent
 from mechanisms.stages.automatic.layout.features import contact_kind, force_kind
 from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.profiles import curve_path, distances, farthest, on_body, profile_path
-from mechanisms.stages.automatic.rolling.roads import along
+from mechanisms.stages.automatic.layout.profiles import curve_path, farthest, on_body, profile_path, turns_left
 from mechanisms.stages.automatic.rolling.rounds import Look, Round, round_at
-from mechanisms.stages.automatic.rolling.tracks import circle, normals, track, turns_left
+from mechanisms.stages.automatic.rolling.surfaces import touched_path, touched_road
+from mechanisms.stages.automatic.rolling.tracks import circle, track
 from mechanisms.stages.automatic.rolling.walls import NOSE, Line, roads
+from shared.shapes.polyline import distances
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
@@ -65,11 +66,11 @@ def terrains(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature
     found: list[Feature] = []
     for touch in touches:
         closed = touch.params["closed"]
-        cam = _pushes(touch) and touch.params["radius"] > 0
-        if cam:
+        if _pushes(touch) and (touch.params["radius"] > 0 or _is_held(m, touch.j.body.name)):
             found += pushing_cam(touch, layout)
         elif touch.j.body.name != "ground":
-            found += _on_road(m, touch, curve_path(touch.params["points"], closed), layout, closed)
+            path = on_body(curve_path(touch.params["points"], True), touch.i, layout) if closed else None
+            found += _on_road(m, touch, path, layout, closed)
     return found
 
 
@@ -122,7 +123,7 @@ def _on_profile(m: Mechanism, touch: Force, profile: Curve, layout: Layout) -> l
     run = (_places(touch, layout) - start) @ way / layout.sizes.of_metres(1.0)
     beyond = BEYOND * touch.params["radius"]
     first, last = min(profile.x[0], run.min() - beyond), max(profile.x[-1], run.max() + beyond)
-    return _on_road(m, touch, profile_path(profile, float(first), float(last)), layout)
+    return _on_road(m, touch, on_body(profile_path(profile, float(first), float(last)), touch.i, layout), layout)
 
 
 def _in_ring(m: Mechanism, touch: Joint, layout: Layout) -> list[Feature]:
@@ -143,22 +144,24 @@ def _in_ring(m: Mechanism, touch: Joint, layout: Layout) -> list[Feature]:
     return [*([part] if new else []), track(touch.name, i.body.name, part, path, True)]
 
 
-def _on_road(m: Mechanism, touch: Touch, path: np.ndarray, layout: Layout, closed: bool = False) -> list[Feature]:
-    path = on_body(path, touch.i, layout)
-    if closed or not _is_on_ground(touch):
-        return _on_track(m, touch, path, closed, layout)
-    gap = distances(_places(touch, layout), path) - layout.sizes.of_metres(touch.params["radius"])
-    part, new = _round(m, touch, layout, float(gap.min()))
-    path = path - _set_back(touch, layout) * _normals(path)
-    return [*([part] if new else []), along(touch.name, [part], path)]
-
-
-def _on_track(m: Mechanism, touch: Touch, path: np.ndarray, closed: bool, layout: Layout) -> list[Feature]:
+def _on_road(
+    m: Mechanism, touch: Touch, path: np.ndarray | None, layout: Layout, closed: bool = False
+) -> list[Feature]:
+    """A road on ground, or a track of another body or along a closed curve; without a ``path`` (n, 2) (rmm, the frame
+    of its body) it is along the contact's open curve.
+    """
+    places, radius = _places(touch, layout), layout.sizes.of_metres(touch.params["radius"])
+    if path is None:
+        path = touched_path(touch, places, radius, layout)
     whole = np.vstack([path, path[:1]]) if closed else path
-    gap = distances(_places(touch, layout), whole) - layout.sizes.of_metres(touch.params["radius"])
+    gap = distances(places, whole) - radius
     part, new = _round(m, touch, layout, float(gap.min()))
-    path = path - _set_back(touch, layout) * (normals(path) if closed else _normals(path))
-    return [*([part] if new else []), track(touch.name, touch.i.body.name, part, path, closed)]
+    found, back, body = [part] if new else [], _set_back(touch, layout), touch.i.body.name
+    if closed:
+        path = with_room(path, back, touch, layout) if back > 0 else path
+        return [*found, track(touch.name, body, part, path, True)]
+    road = touched_road(touch, part, path - back * _normals(path), places, layout)
+    return [*found, road if _is_on_ground(touch) else track(touch.name, body, part, road.path, False, road)]
 
 
 def _pushes(touch: Touch) -> bool:
@@ -186,9 +189,13 @@ def _round(m: Mechanism, touch: Touch, layout: Layout, gap: float) -> tuple[Roun
 
 def _look(m: Mechanism, body: str, turned: bool) -> Look:
     """Of what touches without being a tyre."""
-    if any(body in joint.bodies for joint in m.joints.values()) or _feet(m, body) > 1:
+    if _is_held(m, body) or _feet(m, body) > 1:
         return "disc"
     return "wheel" if turned else "ball"
+
+
+def _is_held(m: Mechanism, body: str) -> bool:
+    return any(body in joint.bodies for joint in m.joints.values())
 
 
 def _feet(m: Mechanism, body: str) -> int:

@@ -13,8 +13,20 @@ import numpy as np
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.plan import Foot
 from mechanisms.stages.automatic.layout.planar import around
-from mechanisms.stages.automatic.layout.profiles import simplified
+from mechanisms.stages.automatic.rolling.backings import (
+    CHORD,
+    PIECES,
+    THICK,
+    Band,
+    band,
+    behind,
+    is_clear,
+    is_free,
+    polygon,
+    straight_back,
+)
 from shared.shapes.build import extruded
+from shared.shapes.polyline import simplified
 
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.items import Levels
@@ -22,13 +34,6 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.rolling.rounds import Round
-
-THICK = 10.0
-"""Of a road under its surface, and of a wall (rmm)."""
-CHORD = 0.006
-"""How far the facets of a surface may stray from it (rmm)."""
-PIECES = 48
-"""Of a road in the plane."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,11 +47,15 @@ class Road:
     """(n, 2) the surface; the free side is on its left."""
     feet: np.ndarray
     """(2, 2) the other corners: behind the last place of the path, and behind the first."""
+    band: Band | None = None
+    """What lies behind the surface where that is no straight lower side."""
 
     @property
     def is_square(self) -> bool:
         """Whether it ends square, and in no mitred corner with another wall."""
         way = self.path[-1] - self.path[0]
+        if self.band is not None:
+            return False
         return bool(np.abs((self.feet - self.path[[-1, 0]]) @ way).max() < 1e-9 * float(way @ way))
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
@@ -63,7 +72,10 @@ class Road:
             yield Item(f"the road of {self.name}", "ground", piece, reach, spares, self, stands="road")
 
     def pieces(self) -> Iterable[np.ndarray]:
-        """(4, 2) corners of convex pieces."""
+        """(n, 2) corners of convex pieces."""
+        if self.band is not None:
+            yield from self.band.pieces
+            return
         back = self.feet[0] - self.feet[1]
         for a, b in pairwise(_thinned(self.path)):
             behind = [self.feet[1] + ((p - self.feet[1]) @ back / (back @ back)) * back for p in (a, b)]
@@ -79,31 +91,45 @@ class Road:
         """The wall; the base plate goes on beside it, under what it carries."""
         seat = plan.layout.sizes.pivot.fit.seat
         top = max(part.top(heights) for part in self.rounds)
-        name = plan.make("ground", f"road_{self.name}", self._wall(seat, top), "aluminium", 0)
+        holes = 0 if self.band is None else len(self.band.holes)
+        name = plan.make("ground", f"road_{self.name}", self._wall(seat, top), "aluminium", holes)
         plan.pressed_into("ground", name, self.rounds)
-        under = _behind(self.path[-1] - self.path[0])
+        if self.band is not None:
+            (x0, y0), (x1, y1) = self.band.border.min(axis=0), self.band.border.max(axis=0)
+            plan.feet += [Foot("", float(u), float(v), THICK) for u in (x0, x1) for v in (y0, y1)]
+            return
+        under = behind(self.path[-1] - self.path[0])
         widest = max(part.radius for part in self.rounds)
         ends = [*self.path[[0, -1]], *self.feet, *(self.path[[0, -1]] - widest * under)]
         plan.feet += [Foot("", float(u), float(v), THICK) for u, v in ends]
 
     def _wall(self, low: float, high: float) -> cq.Workplane:
         """Of flat facets as long as its bends allow: of a spline's many short ones the proof of clearance is long."""
-        corners = [*simplified(self.path, CHORD), *self.feet]
-        outline = cq.Wire.makePolygon([cq.Vector(float(u), float(v), 0.0) for u, v in corners], close=True)
-        return extruded(outline, high - low, low)
+        if self.band is not None:
+            return self.band.wall(low, high)
+        return extruded(polygon(np.vstack([simplified(self.path, CHORD), self.feet])), high - low, low)
 
 
 def along(name: str, rounds: Sequence[Round], path: np.ndarray, thick: float = THICK) -> Road:
     """A road with its surface on ``path`` and a straight lower side."""
-    under = _behind(path[-1] - path[0])
-    lowest = float((path @ under).max()) + thick
-    feet = [path[k] + (lowest - path[k] @ under) * under for k in (-1, 0)]
-    return Road(name, rounds, path, np.array(feet))
+    return Road(name, rounds, path, straight_back(path, thick))
 
 
-def _behind(way: np.ndarray) -> np.ndarray:
-    """(2,) the unit vector to the right of a way."""
-    return np.array([way[1], -way[0]]) / np.hypot(*way)
+def backed(name: str, part: Round, path: np.ndarray, centres: np.ndarray, radius: float) -> Road | None:
+    """A road that a disc about ``centres`` (T, 2) runs on without meeting its other sides: with a straight lower side
+    if it can have one, else a band; None if neither can be.
+    """
+    road = along(name, [part], path)
+    if is_free(path, road.feet, centres, radius):
+        return road
+    found = banded(name, [part], path)
+    return found if found and found.band and is_clear(found.band, path, centres, radius) else None
+
+
+def banded(name: str, rounds: Sequence[Round], path: np.ndarray) -> Road | None:
+    """A road of even thickness; None where that is in several parts."""
+    found = band(path)
+    return None if found is None else Road(name, rounds, path, found.back[[-1, 0]], found)
 
 
 def _thinned(path: np.ndarray) -> np.ndarray:

@@ -17,6 +17,7 @@ from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.profiles import curve_path, farthest, on_body
 from mechanisms.stages.automatic.rolling.roads import along
 from mechanisms.stages.automatic.rolling.rounds import round_at
+from mechanisms.stages.automatic.rolling.surfaces import rolled_road
 from mechanisms.stages.automatic.rolling.tracks import track
 from shared.stage.errors import UserError
 
@@ -53,19 +54,22 @@ def on_curves(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature
     for joint in joints:
         _refuse(m, joint)
         closed = bool(joint.params["closed"])
-        path = on_body(curve_path(joint.params["points"], closed), joint.i, layout)
+        path = on_body(curve_path(joint.params["points"], True), joint.i, layout) if closed else None
         found += _rolling(joint, path, closed, layout)
     return found
 
 
-def _rolling(joint: Joint, path: np.ndarray, closed: bool, layout: Layout) -> list[Feature]:
+def _rolling(joint: Joint, path: np.ndarray | None, closed: bool, layout: Layout) -> list[Feature]:
+    """Wheel and road; without a ``path`` the road is along the joint's open curve."""
     radius = layout.sizes.of_metres(joint.params["radius"])
     wheel, new = round_at(layout, joint.name, joint.j.body.name, layout.place(joint.j), radius, "wheel")
-    body = joint.i.body.name
-    road = (
-        track(joint.name, body, wheel, path, closed) if closed or body != "ground" else along(joint.name, [wheel], path)
-    )
-    return [*([wheel] if new else []), road]
+    body, found = joint.i.body.name, [wheel] if new else []
+    if path is not None and closed:
+        return [*found, track(joint.name, body, wheel, path, True)]
+    road = rolled_road(joint, wheel, layout) if path is None else along(joint.name, [wheel], path)
+    if body == "ground":
+        return [*found, road]
+    return [*found, track(joint.name, body, wheel, road.path, False, road)]
 
 
 def _refuse(m: Mechanism, joint: Joint) -> None:

@@ -18,10 +18,6 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
-TYRE = 0.16
-"""Of the wheel's radius; 5 rmm at most, or as much as it is pressed in."""
-RIM = 1.0
-"""What stays of the wheel between its hub and a tyre that is pressed in far (rmm)."""
 HOLES = 5
 WIDE = 9.0
 """A wheel with so much between hub and tyre (rmm), and with nothing but its axle on it, has round holes."""
@@ -40,7 +36,7 @@ def tyred_wheel(wheel: Round, plan: Plan, heights: Heights) -> None:
     Raises UserError if it is pressed in farther than a tyre can be thick.
     """
     fit, (x, y), hub = plan.layout.sizes.pivot.fit, wheel.at, wheel.hub(plan.layout)
-    tyre = max(min(TYRE * wheel.made, 5.0), min(wheel.pressed + fit.running, wheel.made - hub - RIM))
+    tyre = wheel.tyre(plan.layout)
     if wheel.pressed > tyre:
         scale = plan.layout.sizes.scale
         raise UserError(
@@ -49,7 +45,7 @@ def tyred_wheel(wheel: Round, plan: Plan, heights: Heights) -> None:
             f"its tyre is {tyre * scale:.4g} mm thick at most; make the contact stiffer or the radius larger, "
             "or let the wheel start nearer to the surface"
         )
-    rim = wheel.made - tyre - fit.seat
+    rim = wheel.rim(plan.layout)
     shape = extruded(circle(0, 0, rim), heights.thickness).faces("|Z").edges().chamfer(0.4)
     alone = all(math.hypot(a.x - x, a.y - y) < 0.01 for a in plan.layout.anchors[wheel.body])
     holes = HOLES if alone and rim - hub > WIDE else 0

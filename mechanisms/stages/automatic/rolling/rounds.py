@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Literal, cast
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.planar import disc
 from mechanisms.stages.automatic.layout.sizes import CLEAR
+from mechanisms.stages.automatic.pins.free.rim_marks import Face
 
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.items import Levels
@@ -27,6 +28,10 @@ HUB = 0.3
 """Radius of the hub of a wheel without an axle, in its own."""
 WITHIN = 0.8
 """Radius of the end of a plate within a disc, in the disc's."""
+TYRE = 0.16
+"""Of the wheel's radius; 5 rmm at most, or as much as it is pressed in."""
+RIM = 1.0
+"""What stays of the wheel between its hub and a tyre that is pressed in far (rmm)."""
 OVER = 0.4
 """How far a wall reaches above the middle of a ball, in its radii."""
 
@@ -61,6 +66,21 @@ class Round:
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """The middle, within what touches."""
         return [Anchor(self.body, *self.at, min(self.hub(layout), self.made))]
+
+    def face_of(self, body: str, layout: Layout) -> Face | None:
+        """Within the tyre of a wheel; a disc but for its edge."""
+        if body != self.body or self.look == "ball":
+            return None
+        return Face(*self.at, self.rim(layout) - 0.5 if self.look == "wheel" else self.made - 0.5)
+
+    def tyre(self, layout: Layout) -> float:
+        """How thick the tyre of a wheel is (rmm): thicker where it is pressed in, as far as that is possible."""
+        running = layout.sizes.pivot.fit.running
+        return max(min(TYRE * self.made, 5.0), min(self.pressed + running, self.made - self.hub(layout) - RIM))
+
+    def rim(self, layout: Layout) -> float:
+        """The radius of a wheel within its tyre (rmm)."""
+        return self.made - self.tyre(layout) - layout.sizes.pivot.fit.seat
 
     def hub(self, layout: Layout) -> float:
         """What is solid in the middle."""

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.rolling.roads import Road, along
+from mechanisms.stages.automatic.rolling.roads import Road, along, banded
+from shared.shapes.polyline import distances
 
 SAME = 0.03
 """Surfaces nearer than this to each other, where both are, are one (rmm)."""
@@ -17,17 +18,28 @@ def with_shared_roads(features: Sequence[Feature]) -> list[Feature]:
     """The features, the roads of one surface merged into the first of them."""
     found: list[Feature] = []
     for feature in features:
-        if isinstance(feature, Road) and feature.is_square:
-            for k, other in enumerate(found):
-                path = _common(other.path, feature.path) if isinstance(other, Road) and other.is_square else None
-                if isinstance(other, Road) and path is not None:
-                    found[k] = along(other.name, tuple(dict.fromkeys([*other.rounds, *feature.rounds])), path)
-                    break
-            else:
-                found.append(feature)
+        for k, other in enumerate(found):
+            both = _both(other, feature) if isinstance(other, Road) and isinstance(feature, Road) else None
+            if both is not None:
+                found[k] = both
+                break
         else:
             found.append(feature)
     return found
+
+
+def _both(first: Road, second: Road) -> Road | None:
+    """Two roads on one surface as one; None where they are not on one."""
+    if not all(road.is_square or road.band for road in (first, second)):
+        return None
+    rounds = tuple(dict.fromkeys([*first.rounds, *second.rounds]))
+    if first.band is None and second.band is None:
+        path = _common(first.path, second.path)
+        return None if path is None else along(first.name, rounds, path)
+    for long, short in ((first, second), (second, first)):
+        if distances(short.path, long.path).max() < SAME:
+            return banded(first.name, rounds, long.path)
+    return None
 
 
 def _common(first: np.ndarray, second: np.ndarray) -> np.ndarray | None:

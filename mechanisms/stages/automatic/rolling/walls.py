@@ -12,7 +12,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from mechanisms.stages.automatic.rolling.roads import THICK, Road
+from mechanisms.stages.automatic.rolling.backings import THICK
+from mechanisms.stages.automatic.rolling.roads import Road
 from mechanisms.stages.automatic.rolling.rounds import Round
 
 BEYOND = 1.2

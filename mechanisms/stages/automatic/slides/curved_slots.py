@@ -1,7 +1,9 @@
 """Point on a curve: a slot along the part of the curve that the pin's roller runs through, or a groove all round.
 
 A closed curve that is run all round would cut its plate in two, so it is a groove in the face that the pin comes from.
-Where the point keeps a distance from the curve, the slot is at that distance.
+Where the point keeps a distance from the curve, the slot is at that distance. Beyond the ends of an open curve it goes
+on straight. A slot that comes to itself has no parts: where it crosses itself no wall would hold the roller, and what
+lies within the loop would fall out of the plate.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ from scipy.interpolate import CubicSpline
 
 from mechanisms.stages.automatic.layout.extents import Extent, extent
 from mechanisms.stages.automatic.layout.features import build, kind
+from mechanisms.stages.automatic.layout.followed import continued, end_ways, evenly, followed
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.planar import convex_hull, disc
@@ -32,14 +35,18 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
-STEP, MOST = 2.0, 240
-"""Between places of a slot (rmm), and how many there are at most."""
+STEP, MOST, FINEST = 2.0, 240, 960
+"""Between places of a slot (rmm), and how many there are at most; as many as FINEST where fewer would stray."""
+STRAY = 1 / 8
+"""How far the spline through these places may stray from the curve, in the roller's clearance."""
 BEYOND = 1.0
 """The slot's way beyond the pin's, at either end (rmm)."""
 BEND = 1.25
 """Least radius of curvature, in radii of the roller."""
 LEAST = 9.0
 """The same, in rmm."""
+BETWEEN = 2.0
+"""Least wall between two stretches of a slot (rmm)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,8 +106,9 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
 
 def _slot(m: Mechanism, joint: Joint, layout: Layout) -> CurvedSlot:
     slot, pin, pin_at = joint.i.body.name, joint.j.body.name, layout.place(joint.j)
-    whole = on_body(_offset(joint), joint.i, layout)
-    path, closed = _run_through(whole, bool(joint.params["closed"]), layout.seen(pin, pin_at, slot), layout)
+    whole, seen = on_body(_offset(joint), joint.i, layout), layout.seen(pin, pin_at, slot)
+    ways = None if joint.params["closed"] else end_ways(joint.params["points"], joint.i)
+    path, closed = _run_through(whole, ways, seen, layout)
     bend, least = sharpest(path), BEND * layout.sizes.roller / 2
     if bend < least:
         scale = layout.sizes.scale
@@ -109,7 +117,31 @@ def _slot(m: Mechanism, joint: Joint, layout: Layout) -> CurvedSlot:
             f"runs, and a slot for a roller of {layout.sizes.roller * scale:.3g} mm needs {least * scale:.3g} mm; make "
             "the curve smoother or pins thinner (automatic(m, pin=...))"
         )
+    _refuse_near_itself(m, joint, path, closed, layout)
     return CurvedSlot(joint.name, slot, pin, path, pin_at, closed)
+
+
+def _refuse_near_itself(m: Mechanism, joint: Joint, path: np.ndarray, closed: bool, layout: Layout) -> None:
+    """Raise UserError where two stretches of a slot come so near to each other that no wall is left between them."""
+    sizes = layout.sizes
+    roller, apart = sizes.roller, sizes.roller + sizes.pivot.fit.running + BETWEEN
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+    between = np.abs(way[:, None] - way)
+    if closed:
+        between = np.minimum(between, way[-1] - between)
+    away = np.linalg.norm(path[:, None] - path, axis=2)
+    away[between < np.pi * max(BEND * roller, apart) / 2] = np.inf  # on a bend that a slot may have, places are nearer
+    first, second = np.unravel_index(int(np.argmin(away)), away.shape)
+    if away[first, second] >= apart:
+        return
+    scale, body, (x, y) = sizes.scale, joint.i.body.name, (path[first] + path[second]) / 2 * sizes.scale
+    raise UserError(
+        f"{m.name}: the pin of joint '{joint.name}' crosses its own way, or comes within "
+        f"{away[first, second] * scale:.3g} mm of it, near ({x:.4g}, {y:.4g}) mm in the frame of '{body}', "
+        f"and a slot for its roller of {roller * scale:.3g} mm needs {apart * scale:.3g} mm between two stretches; let "
+        "the motion end before, part the stretches of the curve (its straight continuations are some of them), make "
+        f"pins thinner (automatic(m, pin=...)), or write mechanisms/{m.name}/parts.py"
+    )
 
 
 def _offset(joint: Joint) -> np.ndarray:
@@ -117,49 +149,43 @@ def _offset(joint: Joint) -> np.ndarray:
     path = curve_path(joint.params["points"], bool(joint.params["closed"]))
     if joint.params["closed"]:
         path = np.vstack([path, path[:1]])
-    path = _evenly(path, 4 * len(path))
+    path = evenly(path, 4 * len(path))
     return path + joint.params["distance"] * normals(path)
 
 
-def _evenly(path: np.ndarray, count: int) -> np.ndarray:
-    """(count, 2) places on the spline through a path, with nearly the same way from each to the next.
+def _run_through(
+    whole: np.ndarray, ways: np.ndarray | None, seen: np.ndarray, layout: Layout
+) -> tuple[np.ndarray, bool]:
+    """The part of a path where the pin comes, with a little more at its ends; and whether that is all of a loop.
 
-    Chords would take from the pin's clearance where the curve bends.
+    ``ways`` lead on from both ends of an open path.
     """
-    steps = np.hypot(*np.diff(path, axis=0).T)
-    way = np.concatenate([[0.0], np.cumsum(steps)])
-    apart = np.concatenate([[True], steps > 0.0])
-    return CubicSpline(way[apart], path[apart])(np.linspace(0.0, way[-1], count))
-
-
-def _run_through(whole: np.ndarray, closed: bool, seen: np.ndarray, layout: Layout) -> tuple[np.ndarray, bool]:
-    """The part of a path where the pin comes, with a little more at its ends; and whether that is all of a loop."""
-    step = float(np.hypot(*np.diff(whole, axis=0).T).max())
-    ahead = 0
-    if not closed:  # beyond its ends a curve goes on straight
-        apart = np.linalg.norm(seen[:, None] - whole[[0, -1]], axis=2).max()
-        ahead = int(apart / step) + 2
-        way = np.arange(ahead, 0, -1)[:, None]
-        whole = np.vstack(
-            [whole[0] + way * (whole[0] - whole[1]), whole, whole[-1] + way[::-1] * (whole[-1] - whole[-2])]
-        )
-    nearest = np.array([int(np.argmin(((whole - place) ** 2).sum(axis=1))) for place in seen])
+    step, clearance = float(np.hypot(*np.diff(whole, axis=0).T).max()), layout.sizes.pivot.fit.running
     more = int(BEYOND / step) + 1
-    if not closed:
+    if ways is not None:
+        ahead = float(np.linalg.norm(seen[:, None] - whole[[0, -1]], axis=2).max()) + more * step
+        whole, _ = continued(whole, ways, ahead, step)
+        nearest = followed(whole, seen, False)
         low, high = max(0, nearest.min() - more), min(len(whole) - 1, nearest.max() + more)
-        return _stepped(whole[low : high + 1]), False
-    count = len(whole) - 1
-    turns = np.unwrap(nearest % count * (2 * np.pi / count)) * count / (2 * np.pi)
-    low, high = round(turns.min()) - more, round(turns.max()) + more
+        return _stepped(whole[low : high + 1], clearance), False
+    count, turns = len(whole) - 1, followed(whole, seen, True)
+    low, high = int(turns.min()) - more, int(turns.max()) + more
     between = (count - (high - low)) * step
     if between < layout.sizes.roller + 7.0:
-        return _stepped(whole), True
-    return _stepped(whole[np.arange(low, high + 1) % count]), False
+        return _stepped(whole, clearance), True
+    return _stepped(whole[np.arange(low, high + 1) % count], clearance), False
 
 
-def _stepped(path: np.ndarray) -> np.ndarray:
-    length = float(np.hypot(*np.diff(path, axis=0).T).sum())
-    return _evenly(path, min(MOST, max(8, int(length / STEP))))
+def _stepped(path: np.ndarray, clearance: float) -> np.ndarray:
+    """At even steps, as few as follow the path so closely that the roller keeps its ``clearance`` (rmm)."""
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+    count = min(MOST, max(8, int(way[-1] / STEP)))
+    while True:
+        found = evenly(path, count)
+        off = CubicSpline(np.linspace(0.0, way[-1], count), found)(way) - path
+        if count >= FINEST or np.abs((off * normals(path)).sum(axis=1)).max() < STRAY * clearance:
+            return found
+        count = min(2 * count, FINEST)
 
 
 @extent("point_on_curve")

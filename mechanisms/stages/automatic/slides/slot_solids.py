@@ -104,12 +104,14 @@ def slot_pin(
 ) -> None:
     """A pin with a roller at the height of the slot, on the pin's body: from below its head is on top.
 
-    In a groove of a ``depth`` the pin ends. Through slots at one place of the body have one pin.
+    In a groove of a ``depth`` the pin ends. Through slots at one place of the body have one pin. With a
+    ``roller_diameter`` of 0 the pin is bare.
     """
     through: list[InSlot] = [slot] if roller_diameter is not None or depth is not None else common(slot, plan.layout)
-    outer = roller_diameter or plan.layout.sizes.roller
+    outer = plan.layout.sizes.roller if roller_diameter is None else roller_diameter
     large = outer > plan.layout.sizes.head.diameter + 2 * SEEN
-    _roller(slot, outer, large, depth, plan, heights)
+    if outer > 0:
+        _roller(slot, outer, large, depth, plan, heights)
     if slot.name == through[-1].name:
         _pin(through, large, depth, plan, heights)
 

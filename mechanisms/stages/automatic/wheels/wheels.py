@@ -17,6 +17,7 @@ import numpy as np
 
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.planar import Rounded, disc, least_gap
+from mechanisms.stages.automatic.pins.free.rim_marks import Face
 from mechanisms.stages.automatic.pins.pins import SAME, Pin
 from shared.shapes.involute import DEDENDUM
 
@@ -126,6 +127,14 @@ class Wheel:
             for x, y in self.posts(layout):
                 reach = Reach((self.layer,), -1, -1, base=True)
                 yield Item(f"a post of {self.what}", self.body, disc(x, y, RIM), reach, spares, self, meshes)
+
+    def face_of(self, body: str, layout: Layout) -> Face | None:
+        """Within its teeth, where it is its body's plate."""
+        if body != self.body or self.ring or not self.shares:
+            return None
+        fills = any(getattr(feature, "fills", "") == body for feature in layout.features)
+        in_ring = any(isinstance(mate, Wheel) and mate.ring for mate in self.mates)  # an arm would meet its teeth
+        return None if fills else Face(self.x, self.y, self.root, math.inf if in_ring else max(self.tip, self.radius))
 
     def _pins(self, layout: Layout) -> frozenset[str]:
         """Names of the pins that its tube goes round."""

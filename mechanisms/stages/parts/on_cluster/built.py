@@ -15,10 +15,10 @@ import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, NamedTuple
 
 import msgspec
 
+from mechanisms.stages.parts.on_cluster.answer import Made
 from mechanisms.stages.parts.on_cluster.author_files import Order
 from shared.cluster.identity import sources_of
 from shared.cluster.preload import PARTS
@@ -36,24 +36,11 @@ LEAST = 50e6
 """Bytes that the disk has free after a stage whose error is the author's, and not the disk's."""
 
 
-class Made(NamedTuple):
-    """The parts of a mechanism."""
-
-    document: bytes = b""
-    """parts.json."""
-    files: Mapping[str, bytes] = {}
-    """STL and STEP by name, in the order of the solids."""
-    notes: Mapping[str, Any] = {}
-    """What the stamp of the stage tells of its inputs."""
-    refusal: str = ""
-    """Why the stage made none."""
-
-
-def parts(files: Mapping[str, Path], common: str, name: str) -> Made:
+def parts(files: Mapping[str, Path], common: str, name: str) -> bytes:
     """The parts of the mechanism ``name`` from the contents ``files``, of which ``common`` is the :class:`Order`.
 
-    Raises UserError where this worker, rather than the mechanism, is at fault: its sources have changed since it was
-    started, its disk is full, or the system ended the stage.
+    They are :class:`Made` as MessagePack. Raises UserError where this worker, rather than the mechanism, is at fault:
+    its sources have changed since it was started, its disk is full, or the system ended the stage.
     """
     order = msgspec.json.decode(files[common].read_bytes(), type=Order)
     place = out_root() / ".cluster" / "parts"
@@ -65,7 +52,7 @@ def parts(files: Mapping[str, Path], common: str, name: str) -> Made:
             raise UserError("its sources have changed since it was started; start it again")
         for path, content in order.files.items():
             _put(tree, path, files[content].read_bytes())
-        return _stage(tree, name)
+        return msgspec.msgpack.encode(_stage(tree, name))
 
 
 @contextmanager

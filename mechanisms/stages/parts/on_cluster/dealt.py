@@ -6,14 +6,17 @@ from collections.abc import Callable
 
 import msgspec
 
-from mechanisms.stages.parts.on_cluster import built
+from mechanisms.stages.loading.loading import has
+from mechanisms.stages.parts.on_cluster import answer, built
+from mechanisms.stages.parts.on_cluster.answer import Made
 from mechanisms.stages.parts.on_cluster.author_files import Order, by_content, collected
-from mechanisms.stages.parts.on_cluster.built import Made
 from shared.cluster.address import connected
 from shared.cluster.contents import content_hash
 from shared.cluster.deal import Deal
+from shared.cluster.hands import Work
 from shared.cluster.identity import identity
 from shared.cluster.preload import OF_PARTS, PARTS
+from shared.stage import paths
 from shared.stage.console import say, warn
 from shared.stage.signals import terminable
 
@@ -38,8 +41,15 @@ def made_elsewhere(name: str) -> Made | None:
     common = msgspec.json.encode(order)
     contents[content_hash(common)] = common
     needed = {key: _given(content) for key, content in contents.items()}
+    own = paths.MECHANISMS / paths.owner_of(name) / ("parts.py" if has(name, "parts") else "mechanism.py")
+    own_file = own.relative_to(paths.ROOT).as_posix()
+
+    def read(_: str, content: bytes) -> Made:
+        return answer.read(name, content, own_file, order.program)
+
     with terminable(), connected() as client:
-        deal = Deal(client, built.parts, content_hash(common), needed, {name: name}, PARTS, PATIENCE, OF_PARTS, GRACE)
+        work = Work(built.parts, read, answer.MOST)
+        deal = Deal(client, work, content_hash(common), needed, {name: name}, PARTS, PATIENCE, OF_PARTS, GRACE)
         for _, made, worker in deal.results():
             if not made.refusal:
                 say("parts", f"{name}: made by worker {worker}")

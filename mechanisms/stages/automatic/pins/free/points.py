@@ -11,6 +11,7 @@ from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.planar import disc
 from mechanisms.stages.automatic.pins.free.free_bodies import FreeBody
+from mechanisms.stages.automatic.pins.free.rim_marks import face_at, rim_mark
 from shared.shapes.link import Eye
 from shared.shapes.pin import Head, pin, stylus
 from shared.shapes.solid import placed
@@ -108,14 +109,21 @@ class Weight:
         )
 
 
-def styluses(layout: Layout, tall: bool) -> list[Feature]:
-    """One for every traced point of a moving body, except where a joint's eye or a weight is, and on balls."""
+def styluses(layout: Layout, tall: bool, pointers: bool) -> list[Feature]:
+    """One for every traced point of a moving body, except where a joint's eye or a weight is, and on balls. Points on
+    rims get marks there (rim_marks.py), with ``pointers`` where these are wanted.
+    """
     found: list[Feature] = []
     balls = {feature.body for feature in layout.features if isinstance(feature, FreeBody) and feature.is_ball}
     taken = [a for feature in layout.features for a in feature.anchors(layout)]
     for name, marker in layout.m.traces.items():
         body, (x, y) = marker.body.name, layout.place(marker)
         near = layout.sizes.eye + layout.sizes.stylus_eye
+        face = face_at(body, x, y, layout) if body in layout.moving else None
+        if face is not None:
+            mark = rim_mark(name, body, x, y, face, taken, pointers, layout)
+            found += [mark] if mark else []
+            continue
         if (
             body not in layout.moving
             or body in balls

@@ -64,7 +64,7 @@ def _stretching(force: Force | Joint, layout: Layout) -> Stretching | None:
         return None
     ends = [(marker.body.name, *layout.place(marker)) for marker in (force.i, force.j)]
     path = np.stack([layout.seen(body, (x, y), "ground") for body, x, y in ends], axis=1)
-    along_axis = force.kind.name == "gas" or force.params.get("along_axis")
+    along_axis = force.kind.name in ("gas", "gas_cycle") or force.params.get("along_axis")
     if along_axis and _aside(force, path, layout) > ASIDE:
         return None
     least = float(np.linalg.norm(path[:, 1] - path[:, 0], axis=1).min())
@@ -98,6 +98,8 @@ def _is_coil(force: Force | Joint) -> bool:
 @force_kind("curve_of_length")
 @force_kind("actuator")
 @force_kind("gas")
+@force_kind("gas_cycle")
+@force_kind("gas_strut")
 def gather(m: Mechanism, forces: list[Force], layout: Layout) -> list[Feature]:
     """Those of all kinds at the first of them, since they share studs."""
     return _all_at(forces[0], m, layout)

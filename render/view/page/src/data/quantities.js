@@ -61,7 +61,7 @@ const OF = {
 
 /** Of the whole machine. */
 function overview(payload) {
-  const { drivers, points, energy, bodies } = payload, charts = [];
+  const { drivers, points, energy, bodies, couple } = payload, charts = [];
   for (const unit of ["N m", "N"]) {
     const lines = Object.entries(drivers).filter(([, one]) => one.effort_unit === unit && some([one.effort]));
     if (lines.length) charts.push(chart(unit === "N m" ? "Driving torque" : "Driving force", unit, ...lines.map(([name, one]) => [name, one.effort])));
@@ -70,6 +70,7 @@ function overview(payload) {
   if (speeds.length) charts.push(chart("Speed of traced points", "m/s", ...speeds.slice(0, 6)));
   const spins = Object.entries(bodies).filter(([, one]) => some([one.omega])).map(([name, one]) => [name, one.omega]);
   if (spins.length) charts.push(chart("Angular velocities", "rad/s", ...spins.slice(0, 6)));
+  if (couple && some([couple.mx, couple.my])) charts.push(chart("Couple on the frame", "N m", ["about x", couple.mx], ["about y", couple.my]));
   if (some([energy.kinetic], energy.potential)) charts.push(chart("Energy", "J", ["kinetic", energy.kinetic], ["potential", energy.potential]));
   if (varies(payload.margin)) charts.push(chart("Distance from singular poses", "1", ["margin", payload.margin]));
   return charts;

@@ -47,7 +47,7 @@ export class Fit {
     this.running(true);
     this.say({
       do: "fit", point: this.point.value, path: this.drawn.places(), closed: this.closed.checked, ordered: this.ordered.checked,
-      grashof: this.grashof.checked, least_transmission: (this.angle.valueAsNumber || 0) * Math.PI / 180,
+      grashof: this.grashof.checked, least_transmission: Math.min(Math.max(this.angle.valueAsNumber || 0, 0), 89) * Math.PI / 180,
     });
   }
 

@@ -1,0 +1,1 @@
+"""Counterweights, balance shafts and flywheels that make a machine shake less."""

@@ -1,0 +1,250 @@
+"""Counterweights and balance shafts with which a machine shakes least along a known motion.
+
+    found = balance(m.sweep(steps=360), [Counterweight(crank.start, radius=0.05)])
+    found.weights[0].mass, found.weights[0].angle, found.before["force"], found.after["force"]
+    found.apply()                                          # the bodies of m carry them from now on
+
+The motion stays what it is, so it must be one that drivers give. Source: Berkof, Lowen, A new method for completely
+force balancing simple linkages, 1969; Norton, Design of Machinery, ch. 12.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from mbsd.balancing.effects import QUANTITIES, effect_of_shaft, effect_of_weight
+from mbsd.balancing.least import least_mean_square, least_peak
+from mbsd.balancing.means import BalanceShaft, Counterweight
+from mbsd.base.arguments import finite_number, number_pair, positive_number
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
+from mbsd.model.body import Body
+from mbsd.results.vibration.crank import crank_of
+
+
+@dataclass(frozen=True)
+class Weight:
+    """A counterweight that was found: its mass (kg), direction (rad) and place (m) in the body's frame."""
+
+    body: str
+    mass: float
+    angle: float
+    x: float
+    y: float
+    z: float
+
+
+@dataclass(frozen=True)
+class Shaft:
+    """A balance shaft that was found: mass times radius (kg m), its direction where the crank's angle is 0 (rad)."""
+
+    ratio: float
+    moment: float
+    phase: float
+    at: tuple[float, float]
+    z: float
+
+
+@dataclass(frozen=True, eq=False)
+class Balance:
+    """What was found, and what it brings: ``before`` and ``after`` by quantity, root mean square or peak (N, N m)."""
+
+    weights: tuple[Weight, ...]
+    shafts: tuple[Shaft, ...]
+    norm: str
+    before: Mapping[str, float]
+    after: Mapping[str, float]
+    series: Mapping[str, np.ndarray]
+    """By quantity (T,) or (T, 2), with what was found."""
+    mechanism: Any
+
+    def apply(self) -> None:
+        """Put the counterweights on the bodies of the mechanism: mass, centre of mass, inertia and products follow.
+
+        Balance shafts are bodies of their own, which the author adds where there is room for them.
+        """
+        for weight in self.weights:
+            _carry(self.mechanism.bodies[weight.body], weight)
+
+    def __str__(self) -> str:
+        lines = [f"{name}: {self.norm} {self.before[name]:.4g} -> {self.after[name]:.4g}" for name in self.before]
+        lines += [
+            f"{w.body}: {w.mass:.4g} kg at ({w.x:.4g}, {w.y:.4g}) m" + (f", z {w.z:.4g} m" if w.z else "")
+            for w in self.weights
+        ]
+        lines += [
+            f"shaft of ratio {s.ratio:g}: {s.moment:.4g} kg m at {math.degrees(s.phase):.4g} degrees"
+            for s in self.shafts
+        ]
+        return "\n".join(lines)
+
+
+def balance(
+    sol: Any,
+    means: Sequence[Counterweight | BalanceShaft],
+    of: str | Mapping[str, float] = "force",
+    norm: Literal["rms", "peak"] = "rms",
+    about: tuple[float, float] = (0.0, 0.0),
+    z: float = 0.0,
+    crank: str | None = None,
+) -> Balance:
+    """The masses and directions of ``means`` with which a quantity of the motion ``sol`` is least.
+
+    ``of``: "force", "moment", "couple" (what inertia does to the frame, as in ``sol.shaking(about, z)``) or "torque"
+    (the unevenness of the driver's effort); several by a mapping to their weights, each counted in parts of what it is
+    without them. ``norm``: root mean square over time, or peak. ``crank`` turns the balance shafts; by default that
+    of ``sol.orders``. Raises ModelError for what is no such thing, for a simulation, where the motion would change, and
+    for a torque without exactly one driver.
+    """
+    m = sol.mechanism
+    wanted = _wanted(m.name, of)
+    if norm not in ("rms", "peak"):
+        raise ModelError(f"{m.name}: balance: norm is {norm!r}; it is 'rms' or 'peak'")
+    if not means or not all(isinstance(one, Counterweight | BalanceShaft) for one in means):
+        raise ModelError(f"{m.name}: balance: give a list of Counterweight(...) and BalanceShaft(...)")
+    if sol.work is not None:
+        raise ModelError(f"{m.name}: balance: masses would change a motion that forces make; give one of sweep()")
+    for one in means:
+        if isinstance(one, Counterweight) and m.bodies.get(one.body) is not one.about.body:
+            raise ModelError(f"{m.name}: balance: the counterweight on '{one.body}' is on a body of another mechanism")
+    place, z0 = number_pair(f"{m.name}: balance: about", about), finite_number(f"{m.name}: balance: z", z)
+    shafts = any(isinstance(one, BalanceShaft) for one in means)
+    turned_by = (crank_of(sol) if crank is None else crank) if shafts else ""
+    effects = [
+        effect_of_weight(sol, one, place, z0)
+        if isinstance(one, Counterweight)
+        else effect_of_shaft(sol, one, turned_by, place, z0)
+        for one in means
+    ]
+    given = {name: _given(sol, name, place, z0) for name in wanted}
+    rate = _rate(sol, wanted)
+    added = {name: np.stack([effect.of(name, rate) for effect in effects], axis=2) for name in wanted}
+    if "torque" in wanted:
+        added["torque"] = added["torque"] - added["torque"].mean(axis=0)
+    shares = _shares(sol.t)
+    u = _search(given, added, wanted, norm, np.array([one.largest for one in means]), shares)
+    full = np.concatenate([u, np.hypot(*u.T)[:, None]], axis=1)
+    series = {name: given[name] + np.einsum("tckj,kj->tc", added[name], full) for name in wanted}
+    return Balance(
+        tuple(_weight(one, v) for one, v in zip(means, u, strict=True) if isinstance(one, Counterweight)),
+        tuple(_shaft(one, v) for one, v in zip(means, u, strict=True) if isinstance(one, BalanceShaft)),
+        norm,
+        {name: _measure(given[name], norm, shares) for name in wanted},
+        {name: _measure(series[name], norm, shares) for name in wanted},
+        {name: values if values.shape[1] > 1 else values[:, 0] for name, values in series.items()},
+        m,
+    )
+
+
+def _wanted(name: str, of: str | Mapping[str, float]) -> dict[str, float]:
+    asked = {of: 1.0} if isinstance(of, str) else dict(of)
+    for key, weight in asked.items():
+        if key not in QUANTITIES:
+            raise ModelError(f"{name}: balance: {no_such('quantity', str(key), QUANTITIES)}")
+        positive_number(f"{name}: balance: weight of {key}", weight)
+    if not asked:
+        raise ModelError(f"{name}: balance: nothing is to be made least; there is {', '.join(QUANTITIES)}")
+    return asked
+
+
+def _given(sol: Any, quantity: str, about: tuple[float, float], z0: float) -> np.ndarray:
+    """(T, k) without what is added."""
+    if quantity == "torque":
+        effort = sol.driver(_driver(sol)).effort
+        return (effort - effort.mean())[:, None]
+    shaking = sol.shaking(about, z0)
+    values = {"force": shaking.force, "moment": shaking.moment[:, None], "couple": shaking.couple}
+    return values[quantity]
+
+
+def _driver(sol: Any) -> str:
+    names = list(sol.mechanism.drivers)
+    if len(names) != 1:
+        raise ModelError(
+            f"{sol.mechanism.name}: balance: torque is that of one driver, and there are {len(names)}"
+            + (f": {', '.join(names)}" if names else "")
+        )
+    return names[0]
+
+
+def _rate(sol: Any, wanted: Mapping[str, float]) -> np.ndarray:
+    if "torque" not in wanted:
+        return np.ones(len(sol.t))
+    rate = sol.driver(_driver(sol)).rate
+    if (np.abs(rate) < 1e-9 * np.abs(rate).max(initial=0.0)).any() or not rate.any():
+        raise ModelError(
+            f"{sol.mechanism.name}: balance: the driver '{_driver(sol)}' stands still at times, where no effort "
+            "follows from power; leave these times out"
+        )
+    return rate
+
+
+def _search(
+    given: Mapping[str, np.ndarray],
+    added: Mapping[str, np.ndarray],
+    wanted: Mapping[str, float],
+    norm: str,
+    bounds: np.ndarray,
+    shares: np.ndarray,
+) -> np.ndarray:
+    """(K, 2) vectors of the means."""
+    scales = {name: weight / (_measure(given[name], norm, shares) or 1.0) for name, weight in wanted.items()}
+    b = np.concatenate([(scales[name] * given[name]).ravel() for name in wanted])
+    count = len(bounds)
+    columns = np.concatenate([scales[name] * added[name].reshape(-1, count, 3) for name in wanted])
+    root = np.sqrt(np.concatenate([np.repeat(shares, given[name].shape[1]) for name in wanted]))
+    u = least_mean_square(root * b, root[:, None, None] * columns, bounds)
+    if norm == "rms":
+        return u
+    # A time of a vector's components is one group; quantities are compared by their own peaks.
+    groups, first = [], 0
+    for name in wanted:
+        rows, width = given[name].shape
+        groups.append(first + np.repeat(np.arange(rows), width))
+        first += rows
+    return least_peak(b, columns, bounds, np.concatenate(groups), u)
+
+
+def _measure(values: np.ndarray, norm: str, shares: np.ndarray) -> float:
+    """Root mean square over time, or largest, of (T, k) rows."""
+    squares = (values**2).sum(axis=1)
+    return math.sqrt(float(squares @ shares if norm == "rms" else squares.max()))
+
+
+def _shares(t: np.ndarray) -> np.ndarray:
+    """(T,) weights of the trapezoidal rule, whose sum is 1; over a whole period it is exact for all low harmonics."""
+    if len(t) < 2:
+        return np.ones(len(t))
+    gaps = np.diff(t)
+    return np.append(gaps, 0.0) / (2 * (t[-1] - t[0])) + np.insert(gaps, 0, 0.0) / (2 * (t[-1] - t[0]))
+
+
+def _weight(one: Counterweight, u: np.ndarray) -> Weight:
+    mass, angle = float(np.hypot(*u)), math.atan2(u[1], u[0])
+    x, y = one.about.x + one.radius * math.cos(angle), one.about.y + one.radius * math.sin(angle)
+    return Weight(one.body, mass, angle, x, y, one.plane)
+
+
+def _shaft(one: BalanceShaft, u: np.ndarray) -> Shaft:
+    return Shaft(one.ratio, float(np.hypot(*u)), math.atan2(u[1], u[0]), one.at, one.z)
+
+
+def _carry(body: Body, weight: Weight) -> None:
+    """Add a point mass to a body: parallel axes about the common centre of mass."""
+    total = body.mass + weight.mass
+    if total == 0.0:
+        return
+    share = weight.mass / total
+    dx, dy, dz = weight.x - body.com[0], weight.y - body.com[1], weight.z - (body.z or 0.0)
+    reduced = body.mass * share
+    com = body.com[0] + share * dx, body.com[1] + share * dy
+    products = body.products[0] + reduced * dx * dz, body.products[1] + reduced * dy * dz
+    inertia = body.inertia + reduced * (dx**2 + dy**2)
+    body.mass, body.com, body.inertia, body.products = total, com, inertia, products
+    if dz != 0.0:
+        body.z = (body.z or 0.0) + share * dz

@@ -1,0 +1,122 @@
+"""Where a scalar falls below zero for a moment, between the parts of a step at which it was sampled.
+
+Where a scalar is convex it lies above the lines through the samples on both sides of an interval. So it can fall below
+zero there only where these lines do; where they meet it is looked at next, and each half is judged anew. That closes in
+on a minimum of any width, and costs nothing where the scalar stays away from zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+AT_END = 1e-3
+"""Part of an interval within which the slope at the end of a step is taken."""
+INSIDE = 0.02
+"""The next look is this part of an interval away from its ends."""
+NARROWEST = 1e-10
+MOST_LOOKS = 80
+SLACK = 0.05
+"""Of the higher sample: lines that come down to this are followed."""
+UNSURE = 1e-4
+"""Part of what the scalar changes by in a step below which the quintic does not tell its sign."""
+
+
+class Dip(NamedTuple):
+    """Parts of the step between which the scalar falls through zero for the first time."""
+
+    above: float
+    below: float
+
+
+class _Interval(NamedTuple):
+    a: float
+    fa: float
+    b: float
+    fb: float
+    falls: float
+    """Slope of the line from the left."""
+    rises: float
+
+    def lowest(self) -> tuple[float, float]:
+        """Where the two lines meet, and their value there; the scalar is not below. (a, fa) if it has no minimum."""
+        if self.falls >= 0.0 or self.rises <= 0.0:
+            return self.a, self.fa
+        x = (self.fb - self.fa + self.falls * self.a - self.rises * self.b) / (self.falls - self.rises)
+        x = min(max(x, self.a), self.b)
+        return x, max(self.fa + self.falls * (x - self.a), self.fb + self.rises * (x - self.b))
+
+    def enough(self, level: float) -> float:
+        """Where the lines stay above this, the scalar stays above ``level``."""
+        return level + SLACK * max(self.fa - level, self.fb - level, 0.0)
+
+
+def first_dip(
+    x: np.ndarray, values: np.ndarray, still: float, quintic: Callable[[float], float], true: Callable[[float], float]
+) -> Dip | None:
+    """The first dip below -``still`` between samples ``values`` at parts ``x`` (n,) of a step, none of them below.
+
+    ``quintic`` and ``true`` give the scalar at a part of the step, roughly and exactly.
+    """
+    slopes = np.diff(values) / np.diff(x)
+    spread = float(np.ptp(values))
+    for k in range(len(slopes)):
+        if min(values[k], values[k + 1]) <= still and k == 0:
+            continue  # it has just left zero
+        interval = _interval(x, values, slopes, k, quintic, -still)
+        if interval is None:
+            continue
+        found = _searched(interval, UNSURE * spread - still, quintic)
+        if found is None:
+            continue
+        if quintic(found.below) < -still and true(found.below) < -still:
+            return found
+        found = _searched(interval, -still, true)
+        if found is not None:
+            return found
+    return None
+
+
+def _interval(
+    x: np.ndarray, values: np.ndarray, slopes: np.ndarray, k: int, quintic: Callable[[float], float], level: float
+) -> _Interval | None:
+    """Interval k with its two lines, or None where the scalar does not fall from its left or rise to its right."""
+    a, b, fa, fb = float(x[k]), float(x[k + 1]), float(values[k]), float(values[k + 1])
+    if (k > 0 and slopes[k - 1] >= 0.0) or (k + 1 < len(slopes) and slopes[k + 1] <= 0.0):
+        return None
+    near, level = AT_END * (b - a), level + SLACK * max(fa - level, fb - level, 0.0)
+    if k > 0:
+        falls = float(slopes[k - 1])
+        if fa + falls * (b - a) >= level:
+            return None
+    if k + 1 < len(slopes):
+        rises = float(slopes[k + 1])
+        if fb - rises * (b - a) >= level:
+            return None
+    else:
+        rises = (fb - quintic(b - near)) / near
+    if k == 0:
+        falls = (quintic(a + near) - fa) / near
+    return _Interval(a, fa, b, fb, falls, rises)
+
+
+def _searched(interval: _Interval, level: float, value: Callable[[float], float]) -> Dip | None:
+    """The first place that is found below ``level``, and one before it that is not."""
+    waiting, looks = [interval], 0
+    while waiting and looks < MOST_LOOKS:
+        one = waiting.pop()
+        x, least = one.lowest()
+        width = one.b - one.a
+        if least >= one.enough(level) or width < NARROWEST:
+            continue
+        x = min(max(x, one.a + INSIDE * width), one.b - INSIDE * width)
+        fx = value(x)
+        looks += 1
+        if fx < level:
+            return Dip(one.a, x)
+        left, right = (fx - one.fa) / (x - one.a), (one.fb - fx) / (one.b - x)
+        waiting.append(_Interval(x, fx, one.b, one.fb, max(left, one.falls), one.rises))
+        waiting.append(_Interval(one.a, one.fa, x, fx, one.falls, min(right, one.rises)))
+    return None

@@ -1,0 +1,40 @@
+"""Gas strut between two points; the law is in forces/gas_strut.py."""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.equations.interactions.law import FX, FY, OWN, SIDE, SWITCH, TORQUE, interaction
+from mbsd.equations.interactions.way import measure
+
+(
+    FORCE, GAS, EXPONENT, LENGTH, STROKE, IN, OUT, END, END_WAY, FRICTION, SLIP_SPEED, STOP, STOP_DAMPING,
+) = range(OWN, OWN + 13)  # fmt: skip
+"""GAS: length of the gas in bores of the rod where the strut is extended (m)."""
+SWITCHES = True
+
+
+@interaction
+def force(numbers, state, out):
+    """Own numbers by the names above."""
+    length, rate, ux, uy = measure(False, state)
+    in_by = numbers[LENGTH] - length
+    size = numbers[FORCE] * (numbers[GAS] / (numbers[GAS] - in_by)) ** numbers[EXPONENT]
+    way = math.tanh(rate / numbers[SLIP_SPEED])
+    damping = numbers[OUT]
+    if numbers[END_WAY] > 0.0:
+        u = min(max(1.0 - in_by / numbers[END_WAY], 0.0), 1.0)
+        damping += u * u * u * (10.0 - 15.0 * u + 6.0 * u * u) * (numbers[END] - damping)
+    damping = numbers[IN] + 0.5 * (1.0 + way) * (damping - numbers[IN])
+    size -= damping * rate + numbers[FRICTION] * way
+    outwards = 1.0
+    depth = in_by - numbers[STROKE]
+    if -in_by > depth:
+        outwards = -1.0
+        depth = -in_by
+    out[SWITCH] = depth
+    if state[SIDE] > 0.0 or (state[SIDE] == 0.0 and depth > 0.0):
+        size += outwards * numbers[STOP] * depth * max(1.0 - outwards * numbers[STOP_DAMPING] * rate, 0.0)
+    out[FX] = ux * size
+    out[FY] = uy * size
+    out[TORQUE] = 0.0

@@ -1,0 +1,96 @@
+"""The chain of a lifter: foot, shank, thigh and trunk with their joints, what drives them, and the barbell.
+
+Angles of joints are counted as in anatomy, 0 in standing:
+
+    hip flexion = pi - (trunk - thigh)      knee flexion = thigh - shank      dorsiflexion = -pi/2 - shank - foot
+
+where trunk, thigh, shank and foot are the angles of the bodies (rad), the lifter facing right. The moments extend these
+joints: positive ones stretch hip and knee and press the toes down. Guides are drivers that make the motion; they give
+nothing, because :func:`mbsd.machines.body.lift.lifted` finds the moments that make the same motion.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from mbsd.base.arguments import finite_number
+from mbsd.base.errors import ModelError
+from mbsd.machines.body.figure import Figure
+from mbsd.machines.body.mass_properties import MassProperties, combined
+from mbsd.mechanism import Mechanism
+from mbsd.model.body import Body
+
+MOMENTS = ("hip_extensors", "knee_extensors", "plantarflexors", "shoulder_extensors")
+"""Torques at the joints, by the muscles that give them where they are positive."""
+PLATE = 0.225
+"""Radius of the usual plates of a barbell (m)."""
+BAR_INERTIA = 0.4 * PLATE**2
+"""Of a loaded barbell, by its mass (m^2). It does not turn: its plates hang on sleeves."""
+
+
+@dataclass(frozen=True)
+class Lifter:
+    """The bodies of a figure in a mechanism."""
+
+    figure: Figure
+    foot: Body
+    shank: Body
+    thigh: Body
+    trunk: Body
+
+
+def add_lifter(m: Mechanism, figure: Figure, arms: MassProperties | None) -> Lifter:
+    """Foot, shank, thigh and trunk, joined, with moments at the joints; ``arms`` are fixed to the trunk."""
+    trunk = figure.limb("trunk")
+    if arms is not None:
+        trunk = combined((trunk, arms))
+    foot = add_body(m, "foot", figure.foot())
+    shank = add_body(m, "shank", figure.limb("shank"), figure.length("shank"))
+    thigh = add_body(m, "thigh", figure.limb("thigh"), figure.length("thigh"))
+    body = add_body(m, "trunk", trunk, figure.length("trunk"))
+    m.revolute("ankle", foot.origin, shank.end)
+    m.revolute("knee", thigh.end, shank.start)
+    m.revolute("hip", thigh.start, body.start)
+    m.torque("hip_extensors", body, 0.0, against=thigh)
+    m.torque("knee_extensors", shank, 0.0, against=thigh)
+    m.torque("plantarflexors", shank, 0.0, against=foot)
+    return Lifter(figure, foot, shank, thigh, body)
+
+
+def add_body(m: Mechanism, name: str, given: MassProperties, length: float | None = None) -> Body:
+    """A body with these mass properties; a bar where it has a length (m)."""
+    if length is None:
+        return m.body(name, given.mass, given.com, given.inertia)
+    return m.bar(name, length, given.mass, given.com, given.inertia)
+
+
+def add_barbell(m: Mechanism, load: float, carrier: Body, x: float, y: float) -> Body:
+    """A barbell of ``load`` (kg) on the body ``carrier`` at (x, y) of its frame (m); its middle is traced."""
+    mass = not_below(m.name, "load", load, 0.0, "kg")
+    barbell = m.body("barbell", mass, (0.0, 0.0), mass * BAR_INERTIA)
+    m.revolute("bar", carrier.at(x, y), barbell.origin)
+    m.angle_lock("sleeves", m.ground.origin, barbell.origin)
+    m.trace("bar", barbell.origin)
+    return barbell
+
+
+def not_below(mechanism: str, name: str, value: float, least: float, unit: str) -> float:
+    """A finite number of at least ``least``. Raises ModelError."""
+    number = finite_number(f"{mechanism}: {name}", value)
+    if number < least:
+        raise ModelError(f"{mechanism}: {name} is {number:g} {unit}; it must be {least:g} {unit} or more")
+    return number
+
+
+def ends_given(mechanism: str, name: str, ends: tuple[float, float], least: float, most: float) -> tuple[float, float]:
+    """Angles at the bottom and at the top in DEGREES, as radians. Raises ModelError beyond ``least`` .. ``most``."""
+    if len(ends) != 2:
+        raise ModelError(f"{mechanism}: {name} has {len(ends)} values; give degrees at the bottom and at the top")
+    for place, degrees in zip(("bottom", "top"), ends, strict=True):
+        number = finite_number(f"{mechanism}: {name} at the {place}", degrees)
+        if not least <= number <= most:
+            raise ModelError(
+                f"{mechanism}: {name} is {number:g} degrees at the {place}; it must be from {least:g} to {most:g}"
+            )
+    return math.radians(ends[0]), math.radians(ends[1])

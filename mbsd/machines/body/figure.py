@@ -1,0 +1,121 @@
+"""A figure of a given height and mass: lengths between its joints, mass properties of its limbs.
+
+Both sides move alike, so that each limb is that of the left and the right side together. Frames: a limb's origin is its
+proximal joint and its x axis leads to the distal one; y is a quarter turn counter-clockwise from there. A figure that
+faces right has its back where y of its trunk is positive. The foot's frame stands in the ankle, its x axis points
+forward.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from mbsd.base.arguments import positive_number
+from mbsd.base.errors import ModelError
+from mbsd.machines.body.mass_properties import MassProperties, combined
+from mbsd.machines.body.segments import BALL, HEEL, LENGTHS, WINTER, Segment, SegmentTable
+
+GRIP = 0.5
+"""Assumed: what is held lies half a hand beyond the wrist."""
+
+
+@dataclass(frozen=True)
+class Figure:
+    """Height (m), mass (kg) and the table its segments are from. Raises ModelError for what is no height or mass."""
+
+    height: float = 1.78
+    mass: float = 80.0
+    table: SegmentTable = WINTER
+
+    def __post_init__(self) -> None:
+        for name, unit in (("height", "m"), ("mass", "kg")):
+            positive_number(f"figure: {name}", getattr(self, name), unit)
+        if not isinstance(self.table, SegmentTable):
+            raise ModelError(f"figure: the table is a {type(self.table).__name__}; give WINTER or another SegmentTable")
+
+    def length(self, limb: str) -> float:
+        """Of a limb between its joints (m); see LENGTHS in segments.py. Raises ModelError for an unknown one."""
+        if limb not in LENGTHS:
+            raise ModelError(f"figure: there is no length '{limb}'; known: {', '.join(LENGTHS)}")
+        return LENGTHS[limb] * self.height
+
+    @property
+    def arm(self) -> float:
+        """From the shoulder to what a straight arm holds (m)."""
+        return self.length("upper_arm") + self.reach
+
+    @property
+    def reach(self) -> float:
+        """From the elbow to what the hand holds (m)."""
+        return self.length("forearm") + GRIP * self.length("hand")
+
+    @property
+    def heel(self) -> float:
+        """Of the heel from the ankle along the floor (m): negative, since it is behind."""
+        return -HEEL * self.length("foot")
+
+    @property
+    def toe(self) -> float:
+        """Of the tip of the toes from the ankle along the floor (m)."""
+        return (1.0 - HEEL) * self.length("foot")
+
+    @property
+    def mid_foot(self) -> float:
+        """Of the middle of the foot from the ankle along the floor (m)."""
+        return (self.heel + self.toe) / 2
+
+    def limb(self, name: str) -> MassProperties:
+        """Shank, thigh, upper arm or forearm of both sides, or the trunk with the head, in the limb's frame."""
+        segments: tuple[Segment, ...] = getattr(self.table, name)
+        whole = combined(self._along(segment) for segment in segments)
+        return whole if name == "trunk" else whole.times(2)
+
+    def foot(self) -> MassProperties:
+        """Both feet, flat on the floor, in the frame of the ankle."""
+        ankle, foot = self.length("ankle"), self.length("foot")
+        if self.table.from_heel:
+            start, end = (self.heel, -ankle), (self.toe, -ankle)
+        else:
+            start, end = (0.0, 0.0), (BALL * foot, -ankle)
+        angle = math.atan2(end[1] - start[1], end[0] - start[0])
+        return self._along(self.table.foot).placed(*start, angle).times(2)
+
+    def arms(self, shoulder: tuple[float, float], hand: tuple[float, float], bend: int = 1) -> MassProperties:
+        """Both arms between two places of one frame (m), as one rigid body.
+
+        ``bend`` is 1 where the elbow is on the left of the way from the shoulder to the hand, -1 where it is on its
+        right. Raises ModelError where the hand is out of reach.
+        """
+        upper, lower = self.arm_angles(shoulder, hand, bend)
+        elbow_x = shoulder[0] + self.length("upper_arm") * math.cos(upper)
+        elbow_y = shoulder[1] + self.length("upper_arm") * math.sin(upper)
+        return combined(
+            (
+                self.limb("upper_arm").placed(*shoulder, upper),
+                self.limb("forearm").placed(elbow_x, elbow_y, lower),
+            )
+        )
+
+    def arm_angles(
+        self, shoulder: tuple[float, float], hand: tuple[float, float], bend: int = 1
+    ) -> tuple[float, float]:
+        """Directions (rad) of upper arm and forearm of a hand that holds something; see :meth:`arms`."""
+        a, b = self.length("upper_arm"), self.reach
+        way = complex(*hand) - complex(*shoulder)
+        distance = abs(way)
+        if not abs(a - b) <= distance <= a + b:
+            raise ModelError(
+                f"figure: the hand is {distance:.3g} m from the shoulder, but an arm of {a:.3g} and {b:.3g} m reaches "
+                f"from {abs(a - b):.3g} to {a + b:.3g} m; hold it elsewhere"
+            )
+        direction = math.atan2(way.imag, way.real)
+        upper = direction + bend * math.acos((a * a + distance**2 - b * b) / (2 * a * distance))
+        elbow = complex(a * math.cos(upper), a * math.sin(upper))
+        return upper, math.atan2((way - elbow).imag, (way - elbow).real)
+
+    def _along(self, segment: Segment) -> MassProperties:
+        mass = segment.mass / self.table.total * self.mass
+        length = segment.length * self.height
+        place = segment.start * self.height + segment.com * length
+        return MassProperties(mass, (place, 0.0), mass * (segment.gyration * length) ** 2)

@@ -1,0 +1,46 @@
+"""The crank of a motion: the body on a pin of ground that turns round and round, by whose angle engineers count."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from mbsd.base.errors import ModelError
+
+WHOLE = 1e-6
+"""Turns: what misses a whole number by less is one."""
+
+
+def crank_of(sol: Any) -> str:
+    """Name of the crank: of bodies that turn one way by a turn at least, one that a driver turns, else the first added.
+
+    ``sol`` is the Solution. Raises ModelError where none does.
+    """
+    m = sol.mechanism
+    on_ground = [_moving(m, joint) for joint in m.joints.values() if joint.kind.pair == "pin" and _grounded(m, joint)]
+    driven = [_moving(m, driver) for driver in m.drivers.values() if driver.kind.angular and _grounded(m, driver)]
+    for name in (*driven, *on_ground):
+        if _turns(sol.body(name).theta):
+            return name
+    turning = f"of {', '.join(on_ground)} none does" if on_ground else "nothing is on a pin of ground"
+    raise ModelError(
+        f"{m.name}: orders need a crank, a body on a pin of ground that turns one way by a whole turn; {turning}. "
+        "Name a body that turns with crank=, or solve over a longer duration"
+    )
+
+
+def _grounded(m: Any, joint: Any) -> bool:
+    return m.ground in (joint.i.body, joint.j.body) and joint.i.body is not joint.j.body
+
+
+def _moving(m: Any, joint: Any) -> str:
+    return (joint.j if joint.i.body is m.ground else joint.i).body.name
+
+
+def _turns(angle: np.ndarray) -> bool:
+    """Whether an angle (T,) goes one way, by a turn at least."""
+    steps = np.diff(angle)
+    one_way = bool((steps >= 0).all() or (steps <= 0).all())
+    return one_way and abs(angle[-1] - angle[0]) >= 2 * math.pi * (1 - WHOLE)

@@ -1,0 +1,211 @@
+"""The plan of a machine whose bodies have places along the normal of the plane, in millimetres.
+
+z of the model is z of the parts. The base plate lies below all of it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from mechanisms.stages.automatic.layout.motion import poses_of, times_of
+from mechanisms.stages.automatic.shafts.banks import banks, deck_corners, fins
+from mechanisms.stages.automatic.shafts.bearers import BOSS, Bearers, bearers
+from mechanisms.stages.automatic.shafts.cylinders import Cylinder, cylinders
+from mechanisms.stages.automatic.shafts.free_places import free_places
+from mechanisms.stages.automatic.shafts.machine import Machine, free_links, machine
+from mechanisms.stages.automatic.shafts.passing import (
+    Takes,
+    cylinder_takes,
+    links_take,
+    meeting,
+    refuse_meetings,
+    shaft_takes,
+    weights,
+)
+from mechanisms.stages.automatic.shafts.pins_along import FOOT, Axle, axle_takes, axles
+from mechanisms.stages.automatic.shafts.shaft_plan import ShaftPlan, shaft_plan
+from mechanisms.stages.automatic.shafts.thickness import Measures, thicknesses
+from shared.shapes.units import mm
+from shared.stage.errors import UserError
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from mbsd import Mechanism, Solution
+    from mechanisms.stages.automatic.layout.sizes import Sizes
+
+BELOW = 8.0
+"""From the lowest part that moves to the base plate, at least (rmm)."""
+FAR = 1e4
+"""Where links are, far from each other, that have no place yet (mm)."""
+SMALLER = (1.0, 0.92, 0.84, 0.76, 0.68, 0.6)
+"""Counterweights that are tried, in the largest one."""
+FLYWHEEL = 1.25
+"""Radius of a flywheel, in what the webs of its shaft sweep."""
+
+
+@dataclass(eq=False)
+class Along:
+    """The plan of a machine; ``wishes`` are sizes of pins, the most wanted first."""
+
+    m: Mechanism
+    solution: Solution
+    wishes: Sequence[Sizes]
+    left_out: frozenset[str] = frozenset()
+    flywheels: frozenset[str] = frozenset()
+    """Shafts with a flywheel."""
+
+    @cached_property
+    def machine(self) -> Machine:
+        """What each body becomes."""
+        free = free_links(self.m, self.left_out)
+        return self._machine(self.left_out, self._places(free) if free else {})
+
+    def _machine(self, left_out: frozenset[str], chosen: Mapping[str, float]) -> Machine:
+        return machine(self.m, self._poses, times_of(self.solution), left_out, chosen)
+
+    @cached_property
+    def _poses(self) -> dict[str, np.ndarray]:
+        return poses_of(self.solution, mm(1.0))
+
+    def _places(self, free: Sequence[str]) -> dict[str, float]:
+        """Of links that the model gives none, beside all that it gives a place."""
+        given = replace(self, left_out=self.left_out.union(free))
+        if not given.machine.links:
+            raise UserError(
+                f"{self.m.name}: '{free[0]}' has no place z along the normal, and no link has one; give it one, such "
+                f"as m.body('{free[0]}', z=0.02)"
+            )
+        somewhere = max(link.z for link in given.machine.links.values()) + FAR
+        every = self._machine(self.left_out, {name: somewhere + k * FAR for k, name in enumerate(free)})
+        measures = Measures(every, given.sizes, given.cylinders)
+        taken = [one for plan in given.shafts for one in shaft_takes(plan)] + given._of_cylinders()
+        return free_places(measures, free, given.thickness, axles(every), taken)
+
+    @cached_property
+    def cylinders(self) -> dict[str, Cylinder]:
+        """By piston."""
+        return cylinders(self.machine)
+
+    @cached_property
+    def _sized(self) -> tuple[Measures, dict[str, float]]:
+        """With the thickest pins that the distances along z leave."""
+        for k, sizes in enumerate(self.wishes):
+            measures = Measures(self.machine, sizes, self.cylinders)
+            try:
+                return measures, thicknesses(measures)
+            except UserError:
+                if k == len(self.wishes) - 1:
+                    raise
+        raise UserError(f"{self.m.name}: there is no size of pins to try")
+
+    @property
+    def measures(self) -> Measures:
+        """Sizes that links, pins and shafts share."""
+        return self._sized[0]
+
+    @property
+    def sizes(self) -> Sizes:
+        """Of the pins."""
+        return self.measures.sizes
+
+    @property
+    def thickness(self) -> dict[str, float]:
+        """By link."""
+        return self._sized[1]
+
+    @cached_property
+    def shafts(self) -> list[ShaftPlan]:
+        """Their crank pins, webs and journals, with counterweights as large as what passes them leaves."""
+        every = [shaft_plan(one, self.measures, self.thickness, self.cylinders) for one in self.machine.shafts.values()]
+        bare = [replace(plan, counterweight=0.0) for plan in every]
+        return [
+            self._lightened(plan, [one for k, one in enumerate(bare) if k != own]) for own, plan in enumerate(every)
+        ]
+
+    def _lightened(self, plan: ShaftPlan, shafts: Sequence[ShaftPlan]) -> ShaftPlan:
+        others = [*links_take(self.measures, self.thickness), *self._of_cylinders(), *self._of_axles(-math.inf)]
+        others += [one for other in shafts for one in shaft_takes(other)]
+        for part in SMALLER if plan.has_weights else ():
+            smaller = replace(plan, counterweight=part * plan.counterweight)
+            if not any(meeting(self.machine, one, other) is not None for one in weights(smaller) for other in others):
+                return smaller
+        return replace(plan, counterweight=0.0)
+
+    @cached_property
+    def axles(self) -> list[Axle]:
+        """Pins of links."""
+        return axles(self.machine)
+
+    @cached_property
+    def fins(self) -> dict[str, float]:
+        """Radius of the fins, by piston."""
+        return fins(self.cylinders)
+
+    def flywheel(self, plan: ShaftPlan) -> float:
+        """Radius of a shaft's flywheel; 0 for none."""
+        return FLYWHEEL * plan.swept if plan.shaft.body in self.flywheels else 0.0
+
+    @cached_property
+    def low(self) -> float:
+        """Top of the base plate."""
+        lowest = [link.z - self.thickness[name] / 2 for name, link in self.machine.links.items()]
+        lowest += [own.piston.z - self.fins[name] for name, own in self.cylinders.items()]
+        lowest += [plan.bottom(self.flywheel(plan)) for plan in self.shafts]
+        return min(lowest, default=0.0) - BELOW * self.measures.unit
+
+    @cached_property
+    def bearers(self) -> list[Bearers]:
+        """Of each shaft."""
+        running = max(0.12, self.sizes.pivot.fit.running * self.measures.unit / 2)
+        return [bearers(self.machine, plan, self._others(plan), running) for plan in self.shafts]
+
+    def _others(self, own: ShaftPlan) -> list[Takes]:
+        found = [*links_take(self.measures, self.thickness), *self._of_cylinders()]
+        for plan in self.shafts:
+            found += [] if plan is own else shaft_takes(plan)
+        return found + self._of_axles()
+
+    def _of_cylinders(self) -> list[Takes]:
+        return [one for name, own in self.cylinders.items() for one in cylinder_takes(own, self.fins[name])]
+
+    def _of_axles(self, low: float | None = None) -> list[Takes]:
+        low = self.low if low is None else low
+        return [one for axle in self.axles for one in axle_takes(axle, self.machine, self.thickness, self.sizes, low)]
+
+    def refuse(self) -> None:
+        """Raise UserError where things meet."""
+        taken = [*links_take(self.measures, self.thickness), *self._of_cylinders(), *self._of_axles()]
+        taken += [one for plan in self.shafts for one in shaft_takes(plan)]
+        taken += [one for own in self.bearers for one in own.takes(self.low)]
+        refuse_meetings(self.machine, taken)
+
+    def span(self, body: str) -> tuple[float, float]:
+        """Lowest and highest z of a body's main piece."""
+        if body in self.machine.links:
+            z, half = self.machine.links[body].z, self.thickness[body] / 2
+            return z - half, z + half
+        if body in self.cylinders:
+            own = self.cylinders[body]
+            half = own.bore / 2 - own.running
+            return own.piston.z - half, own.piston.z + half
+        plan = next(plan for plan in self.shafts if plan.shaft.body == body)
+        return plan.bottom(self.flywheel(plan)), plan.top
+
+    @property
+    def feet(self) -> list[tuple[float, float]]:
+        """Corners of what stands on the base plate."""
+        found = [corner for bank in banks(self.cylinders) for corner in deck_corners(bank)]
+        for own in self.bearers:
+            r = BOSS * own.radius
+            found += [(x + u * r, y + v * r) for x, y in own.places for u in (-1, 1) for v in (-1, 1)]
+        r = FOOT * self.measures.unit
+        for axle in self.axles:
+            if axle.holder == "ground":
+                x, y = axle.places["ground"]
+                found += [(x + u * r, y + v * r) for u in (-1, 1) for v in (-1, 1)]
+        return found or [(0.0, 0.0)]

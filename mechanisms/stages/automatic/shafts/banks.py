@@ -1,0 +1,67 @@
+"""Cylinders that stand in line, the fins of their liners, and the deck that holds these (mm)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mechanisms.stages.automatic.shafts.cylinders import Cylinder
+
+DECK = (0.2, 0.05)
+"""Between these distances below the upper end of a liner is the deck that holds it, in bores."""
+FIN = 0.14
+"""How far fins stand out of a liner, in bores, where there is room."""
+BESIDE = 0.12
+"""How far a deck reaches beside its liners."""
+
+
+def fins(all_of: Mapping[str, Cylinder]) -> dict[str, float]:
+    """By piston: radius of the fins of its liner, as far as its neighbours leave room."""
+    found = {}
+    for name, own in all_of.items():
+        radius = own.outer + FIN * own.bore
+        for other in all_of.values():
+            apart = abs(other.piston.z - own.piston.z)
+            if other is own or apart > 2 * radius:
+                continue
+            cosine = sum(a * b for a, b in zip(own.piston.along, other.piston.along, strict=True))
+            between = math.acos(max(-1.0, min(1.0, cosine)))
+            room = apart / 2 - 0.01 * own.bore if between < 1e-6 else own.low * math.tan(between / 2)
+            radius = min(radius, max(room, own.outer))
+        found[name] = radius
+    return found
+
+
+def banks(all_of: Mapping[str, Cylinder]) -> list[list[Cylinder]]:
+    """Cylinders on the same line of the plane, in the order of their places along z."""
+    found: list[list[Cylinder]] = []
+    for own in all_of.values():
+        for bank in found:
+            if (
+                math.dist(bank[0].piston.along, own.piston.along) < 1e-6
+                and math.dist(bank[0].origin, own.origin) < 1e-3
+            ):
+                bank.append(own)
+                break
+        else:
+            found.append([own])
+    return [sorted(bank, key=lambda one: one.piston.z) for bank in found]
+
+
+def deck_corners(bank: Sequence[Cylinder]) -> list[tuple[float, float]]:
+    """Of its foot on the base plate."""
+    first, wide, low, high = bank[0], deck_half(bank), deck_range(bank)[0], deck_range(bank)[1]
+    (x, y), (u, v) = first.origin, first.piston.along
+    return [(x + s * u - q * v, y + s * v + q * u) for s in (low, high) for q in (-wide, wide)]
+
+
+def deck_half(bank: Sequence[Cylinder]) -> float:
+    """Half of the width of a deck."""
+    return max(own.outer + BESIDE * own.bore for own in bank)
+
+
+def deck_range(bank: Sequence[Cylinder]) -> tuple[float, float]:
+    """s of the lower and of the upper face of a deck."""
+    return max(own.top - DECK[0] * own.bore for own in bank), min(own.top - DECK[1] * own.bore for own in bank)

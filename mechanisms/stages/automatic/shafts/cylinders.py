@@ -1,0 +1,231 @@
+"""The sizes of each cylinder: bore, liner and piston, from the stroke, the rod and the neighbours along the shaft (mm).
+
+Along the middle of a bore, s is counted from abreast of the shaft. All proportions are parts of the bore.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechanisms.stages.automatic.layout.planar import Rounded, around, disc, least_gap
+from shared.stage.errors import UserError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from mechanisms.stages.automatic.shafts.machine import Link, Machine, Piston, Shaft
+
+SQUARE = 0.95
+"""Bore over stroke, where there is room and no gas says otherwise."""
+WALL = 0.065
+"""Of a liner."""
+CROWN, SKIRT, LEAST_SKIRT = 0.5, 0.36, 0.16
+"""Of a piston, above and below its wrist pin."""
+SQUISH = 0.07
+"""From the piston to the head at the top dead centre."""
+CRANK_PIN, BIG_END, SMALL_END, WRIST_PIN = 0.26, 0.39, 0.22, 0.125
+"""Radii."""
+SHANK = 0.13
+"""Half of a rod's width."""
+ROOM = 0.05
+"""Between what turns and what stands or slides."""
+ROD = 0.24
+"""Thickness of a connecting rod."""
+LATEST = 0.15
+"""How far above the lowest place of the wrist pin a liner may begin."""
+EVERY = 3
+"""Of the poses, those at which rods and liners are looked at."""
+SMALLEST = 0.4
+"""Bores are tried down to this part of the wished one."""
+STEP = 0.96
+
+
+@dataclass(frozen=True, eq=False)
+class Cylinder:
+    """One piston with its liner."""
+
+    piston: Piston
+    shaft: Shaft | None
+    bore: float
+    origin: tuple[float, float]
+    """Where s is 0, on ground."""
+    lowest: float
+    """s of the wrist pin at the bottom dead centre."""
+    highest: float
+    """s of the wrist pin at the top dead centre."""
+    low: float
+    """s of the liner's lower end."""
+    skirt: float
+    """Length of the piston below its wrist pin."""
+
+    @property
+    def crown(self) -> float:
+        """Height of the piston above its wrist pin."""
+        return CROWN * self.bore
+
+    @property
+    def top(self) -> float:
+        """s of the liner's upper end."""
+        return self.highest + self.crown + SQUISH * self.bore
+
+    @property
+    def outer(self) -> float:
+        """Outer radius of the liner."""
+        return (0.5 + WALL) * self.bore
+
+    @property
+    def running(self) -> float:
+        """Gap of the piston in its liner."""
+        return max(0.12, 0.0025 * self.bore)
+
+    @property
+    def counterweight(self) -> float:
+        """The largest radius about the shaft that stays clear of piston and liner."""
+        return min(self.low, self.lowest - self.skirt) - ROOM * self.bore
+
+
+def cylinders(machine: Machine) -> dict[str, Cylinder]:
+    """By piston. Raises UserError naming cylinders that have no room beside each other, or none for their rod."""
+    wished = {name: _wish(machine, piston) for name, piston in machine.pistons.items()}
+    _refuse_near(machine, wished)
+    found = {}
+    for name, piston in machine.pistons.items():
+        own = wished[name]
+        fixed = piston.area is not None
+        bore = own
+        while bore >= (own if fixed else SMALLEST * own):
+            made = _fitted(machine, piston, bore, wished)
+            if isinstance(made, Cylinder):
+                found[name] = made
+                break
+            bore *= STEP
+        else:
+            raise UserError(
+                f"{machine.m.name}: a bore of {own:.4g} mm has no room for piston '{name}' in '{piston.joint}': "
+                f"{_fitted(machine, piston, bore / STEP, wished)}; make the rod longer, the throw shorter, or shape it "
+                f"by hand in mechanisms/{machine.m.name}/parts.py"
+            )
+    return found
+
+
+def _stroke(machine: Machine, piston: Piston) -> tuple[float, float, np.ndarray]:
+    """Least and largest s of the wrist pin, and where s is 0."""
+    shaft = _shaft(machine, piston)
+    along, line = np.array(piston.along), np.array(piston.line)
+    foot = line if shaft is None else line + ((np.array(shaft.at) - line) @ along) * along
+    s = (machine.path(piston.body, *piston.wrist) - foot) @ along
+    return float(s.min()), float(s.max()), foot
+
+
+def _shaft(machine: Machine, piston: Piston) -> Shaft | None:
+    link = machine.links.get(piston.link or "")
+    return next((machine.shafts[eye.on] for eye in link.eyes if eye.on in machine.shafts), None) if link else None
+
+
+def _wish(machine: Machine, piston: Piston) -> float:
+    """That of the gas; else square, as far as the neighbours along the shaft leave room."""
+    if piston.area is not None:
+        return math.sqrt(4 * piston.area / math.pi)
+    low, high, _ = _stroke(machine, piston)
+    room = [apart / (1 + 2 * WALL + ROOM) for apart in _neighbours(machine, piston).values()]
+    return min([SQUARE * (high - low), *room])
+
+
+def _neighbours(machine: Machine, piston: Piston) -> dict[str, float]:
+    """Pistons whose bores have the same line in the plane, or one beside it, and how far away along z they are."""
+    found = {}
+    for name, other in machine.pistons.items():
+        cross = piston.along[0] * other.along[1] - piston.along[1] * other.along[0]
+        if (
+            other is piston
+            or abs(cross) > 1e-6
+            or piston.along[0] * other.along[0] + piston.along[1] * other.along[1] < 0
+        ):
+            continue
+        found[name] = abs(other.z - piston.z)
+    return {name: z for name, z in found.items() if z > 1e-6}
+
+
+def _refuse_near(machine: Machine, bores: Mapping[str, float]) -> None:
+    for name, piston in machine.pistons.items():
+        for other, apart in _neighbours(machine, piston).items():
+            least = (0.5 + WALL + ROOM / 4) * (bores[name] + bores[other])
+            if name < other and apart < least - 1e-9 and (piston.area or machine.pistons[other].area):
+                raise UserError(
+                    f"{machine.m.name}: the cylinders of '{name}' and '{other}' are {apart:.4g} mm apart along z, and "
+                    f"bores of {bores[name]:.4g} and {bores[other]:.4g} mm with their walls need {least:.4g} mm; move "
+                    "them apart, or make the bores smaller"
+                )
+
+
+def _fitted(machine: Machine, piston: Piston, bore: float, bores: Mapping[str, float]) -> Cylinder | str:
+    """The cylinder with this bore, or why it does not fit."""
+    lowest, highest, foot = _stroke(machine, piston)
+    shaft = _shaft(machine, piston)
+    room = ROOM * bore
+    low, skirt = lowest - SKIRT * bore, SKIRT * bore
+    if shaft is not None:
+        throw = next(throw for throw in shaft.throws if throw.link == piston.link)
+        swept = shaft.radius(throw) + BIG_END * bore + room
+        skirt = min(skirt, max(LEAST_SKIRT * bore, lowest - swept))
+        if lowest - skirt - room < CRANK_PIN * bore * 1.25:
+            return f"its skirt would come down to {lowest - skirt:.4g} mm from the axis of the shaft"
+        low, most = max(swept, _beside(machine, piston, bore)), lowest + LATEST * bore
+        while low <= most and not _has_room(machine, piston, foot, low, bore):
+            low += room / 2
+        if low > most:
+            return (
+                f"rods and liners beside it leave its liner no room below {low:.4g} mm from the shaft, and the wrist "
+                f"pin comes down to {lowest:.4g} mm"
+            )
+    return Cylinder(piston, shaft, bore, (float(foot[0]), float(foot[1])), lowest, highest, low, skirt)
+
+
+def rod_shapes(machine: Machine, link: Link, bore: float) -> list[Rounded]:
+    """What a connecting rod takes in the plane: its shank, and its big end."""
+    places = [(eye.x, eye.y) for eye in link.eyes]
+    big = [disc(eye.x, eye.y, BIG_END * bore) for eye in link.eyes if eye.on in machine.shafts]
+    return [around(places, (SHANK + 2 * ROOM) * bore), *big]
+
+
+def _has_room(machine: Machine, piston: Piston, foot: np.ndarray, low: float, bore: float) -> bool:
+    """Whether no rod meets a liner that begins at ``low``: its own would lean against it, others pass beside it."""
+    along, own = np.array(piston.along), machine.links[piston.link or ""]
+    left = np.array([-along[1], along[0]])
+    eyes = [eye for eye in own.eyes if eye.on == piston.body or eye.on in machine.shafts]
+    start, end = (machine.path(own.body, eye.x, eye.y) - foot for eye in eyes)
+    a, b = sorted((start, end), key=lambda path: float((path @ along).mean()))
+    part = np.clip((low - a @ along) / ((b - a) @ along), 0.0, 1.0)
+    aside = np.abs((a + part[:, None] * (b - a)) @ left).max()
+    if aside + SHANK * bore > (0.5 - ROOM) * bore:
+        return False
+    wide = (0.5 + WALL) * bore
+    ends = [foot + s * along + q * left for s in (low, low + bore) for q in (-wide, wide)]
+    wall = around([(float(x), float(y)) for x, y in ends], 1e-6)
+    still = machine.poses["ground"][::EVERY]
+    for other in machine.pistons.values():
+        link = machine.links.get(other.link or "")
+        if other is piston or link is None or abs(other.z - piston.z) > wide + ROD * bore / 2:
+            continue
+        poses = machine.poses[link.body][::EVERY], still
+        if any(
+            least_gap(shape, wall, poses, ROOM * bore)[0] < ROOM * bore / 2 for shape in rod_shapes(machine, link, bore)
+        ):
+            return False
+    return True
+
+
+def _beside(machine: Machine, piston: Piston, bore: float) -> float:
+    """How far from the shaft liners of other banks leave room for this one."""
+    low = 0.0
+    for other in machine.pistons.values():
+        if other is piston or abs(other.z - piston.z) > (1 + 2 * WALL + ROOM) * bore:
+            continue
+        between = math.acos(max(-1.0, min(1.0, float(np.dot(piston.along, other.along)))))
+        if between > 1e-6:
+            low = max(low, (0.5 + WALL + ROOM / 2) * bore / math.tan(between / 2))
+    return low

@@ -1,0 +1,1 @@
+"""Solids of machines whose bodies have places along the normal (mm): made.py calls the others."""

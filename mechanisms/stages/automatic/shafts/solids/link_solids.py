@@ -1,0 +1,72 @@
+"""Links in one plane: connecting rods with a split big end, and plates round any number of eyes (mm)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING
+
+from mechanisms.stages.automatic.assembly.body_shape import body_shape, first_made
+from mechanisms.stages.automatic.shafts.cylinders import SHANK
+from shared.shapes.link import Eye, link
+from shared.shapes.solid import placed
+
+if TYPE_CHECKING:
+    import cadquery as cq
+
+    from mechanisms.stages.automatic.shafts.machine import Link
+
+KERF = 0.03
+"""Between a rod and its cap, on either side of the middle."""
+
+
+def plate_shape(
+    own: Link, eyes: list[tuple[float, float, Eye]], thickness: float, unit: float
+) -> tuple[cq.Workplane, int]:
+    """The plate from z = 0 up and its number of through holes; ``unit`` millimetres are one rmm."""
+    scaled = [(x / unit, y / unit, Eye(eye.radius / unit, eye.bore / unit)) for x, y, eye in eyes]
+    shape, holes = body_shape(scaled, thickness / unit)
+    return shape.newObject([shape.val().scale(unit)]), holes
+
+
+def rod_shape(eyes: list[tuple[float, float, Eye]], thickness: float, bore: float) -> tuple[cq.Workplane, int]:
+    """A connecting rod from z = 0 up, its big end first in ``eyes``."""
+    unit = bore / 100
+    (x0, y0, big), (x1, y1, small) = eyes
+    length, turn = math.hypot(x1 - x0, y1 - y0) / unit, math.atan2(y1 - y0, x1 - x0)
+    start, end = (Eye(eye.radius / unit, eye.bore / unit) for eye in (big, small))
+    widths, thick = (200 * SHANK, 160 * SHANK), thickness / unit
+    ways: list[Callable[[], cq.Workplane]] = [
+        partial(link, length, thick, start, end, widths, fillet, edge=0.8, pocket=pocket, rim=3.0)
+        for fillet, pocket in ((16.0, 0.3 * thick), (8.0, 0.3 * thick), (8.0, 0.0), (3.0, 0.0))
+    ]
+    ways.append(lambda: body_shape([(0.0, 0.0, start), (length, 0.0, end)], thick)[0])
+    shape = first_made(ways)
+    return placed(shape.newObject([shape.val().scale(unit)]), x0, y0, turn=math.degrees(turn)), 2
+
+
+def split(
+    shape: cq.Workplane, at: tuple[float, float], towards: float, reach: float
+) -> tuple[cq.Workplane, cq.Workplane]:
+    """What lies ahead of a line through ``at``, in the direction ``towards`` (rad), and what lies behind it."""
+    import cadquery as cq
+
+    box = cq.Workplane().box(2 * reach, 4 * reach, 4 * reach)
+    halves = []
+    for side in (1.0, -1.0):
+        half = box.translate((side * (reach + KERF), 0, 0))
+        halves.append(shape.intersect(placed(half, *at, turn=math.degrees(towards))))
+    return halves[0], halves[1]
+
+
+def splits_at(own: Link, x: float, y: float) -> float | None:
+    """Direction (rad) in which all other eyes lie ahead of a place; None if some do not."""
+    others = [(eye.x - x, eye.y - y) for eye in own.eyes if math.hypot(eye.x - x, eye.y - y) > 1e-6]
+    if not others:
+        return None
+    u, v = sum(o[0] for o in others), sum(o[1] for o in others)
+    size = math.hypot(u, v)
+    if size < 1e-6 or any(o[0] * u + o[1] * v <= 0.3 * math.hypot(*o) * size for o in others):
+        return None
+    return math.atan2(v, u)

@@ -1,0 +1,125 @@
+"""A piston with its rings and its wrist pin, and its liner with cooling fins, cut open, with a head (mm)."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from mechanisms.stages.automatic.shafts.banks import DECK
+from mechanisms.stages.automatic.shafts.cylinders import SMALL_END, SQUISH, WRIST_PIN
+from shared.shapes.build import extruded, turned
+from shared.shapes.outline import circle
+
+if TYPE_CHECKING:
+    import cadquery as cq
+
+    from mechanisms.stages.automatic.shafts.cylinders import Cylinder
+
+RINGS = (0.10, 0.19, 0.28)
+"""Middles of the grooves below the crown, in bores."""
+RING, DEEP = 0.035, 0.055
+"""Height and depth of a ring."""
+RING_GAP = 0.7
+"""Of a ring in its liner, in that of the piston."""
+SEAT = 0.02
+HOLLOW = 0.4
+"""Radius of the room inside a piston."""
+WINDOW = 0.27
+"""So far below its upper end a liner is cut open."""
+OPENING = math.radians(78)
+"""Half of the angle that is cut out of a liner."""
+FINS, FIN = 7, 0.025
+"""How many, and their thickness."""
+HEAD = 0.16
+
+
+def along_x(shape: cq.Workplane) -> cq.Workplane:
+    """What was turned about z, turned about x instead."""
+    return shape.rotate((0, 0, 0), (0, 1, 0), 90)
+
+
+def piston_shape(own: Cylinder, thickness: float, gap: float) -> cq.Workplane:
+    """From its wrist pin along x; ``thickness`` of the rod in it, ``gap`` beside that."""
+    import cadquery as cq
+
+    b, r = own.bore, own.bore / 2 - own.running
+    top, low, c = own.crown, -own.skirt, 0.012 * own.bore
+    profile = [(0.0, low), (r - c, low), (r, low + c)]
+    for below in sorted(RINGS, reverse=True):
+        middle, half, inner = top - below * b, RING * b / 2 + SEAT, r - DEEP * b - SEAT
+        profile += [(r, middle - half), (inner, middle - half), (inner, middle + half), (r, middle + half)]
+    profile += [(r, top - c), (r - c, top), (0.0, top)]
+    shape = along_x(turned(profile))
+    inside, roof = HOLLOW * b, (SMALL_END + 0.04) * b
+    slot = cq.Workplane().box(roof - low + 1, 2 * inside, thickness + 2 * gap)
+    shape = shape.cut(slot.translate(((roof + low - 1) / 2, own.piston.aside, 0)))
+    bosses = -1.6 * WRIST_PIN * b
+    if bosses > low + 0.02 * b:
+        shape = shape.cut(along_x(extruded(circle(0, 0, inside), bosses - low + 1, low - 1)))
+    pin = extruded(circle(0, own.piston.aside, WRIST_PIN * b + SEAT), 2 * b, -b)
+    return shape.cut(pin)
+
+
+def ring_shapes(own: Cylinder) -> list[cq.Workplane]:
+    """The rings, where they are on the piston."""
+    b, r = own.bore, own.bore / 2 - own.running
+    outer, inner, half = own.bore / 2 - RING_GAP * own.running, r - DEEP * b, RING * b / 2
+    middles = [own.crown - below * b for below in RINGS]
+    return [
+        along_x(turned([(inner, m - half), (outer, m - half), (outer, m + half), (inner, m + half)])) for m in middles
+    ]
+
+
+def wrist_pin_shape(own: Cylinder) -> cq.Workplane:
+    """A tube along z through the piston."""
+    b, r = own.bore, own.bore / 2 - own.running
+    wide = WRIST_PIN * b
+    reach = abs(own.piston.aside) + wide
+    half = math.sqrt(r**2 - reach**2) - 0.02 * b
+    at = (0.0, own.piston.aside)
+    return extruded(circle(*at, wide), 2 * half, -half, [circle(*at, 0.5 * wide)])
+
+
+def liner_shape(own: Cylinder, fin: float, window: float) -> cq.Workplane:
+    """From its lower end (x = own.low) up; ``fin`` is the radius of its fins, ``window`` the direction about x, from
+    y towards z (rad), to which it is open.
+    """
+    import cadquery as cq
+
+    b, inner, outer = own.bore, own.bore / 2, own.outer
+    low, high = own.low, own.top
+    profile: list[tuple[float, float]] = [(inner, low), (outer, low)]
+    first, last = low + 0.06 * b, high - (DECK[0] + 0.06) * b
+    if fin > outer + 0.02 * b:
+        for k in range(FINS):
+            middle = first + (last - first) * k / (FINS - 1)
+            z0, z1 = middle - FIN * b / 2, middle + FIN * b / 2
+            profile += [(outer, z0), (fin, z0), (fin, z1), (outer, z1)]
+    profile += [(outer, high), (inner, high)]
+    shape = along_x(turned(profile))
+    end, far = high - WINDOW * b, 4 * b
+    corners = [
+        (far * math.cos(window + k * OPENING / 2), far * math.sin(window + k * OPENING / 2)) for k in range(-2, 3)
+    ]
+    wedge = cq.Workplane("YZ", origin=(low - b, 0, 0)).polyline([(0.0, 0.0), *corners]).close().extrude(end - low + b)
+    return shape.cut(wedge)
+
+
+def head_shape(own: Cylinder, radius: float) -> cq.Workplane:
+    """A round head with fins on the liner's upper end, and a plug in its middle."""
+    b, low = own.bore, own.top + SEAT
+    high, plug = low + HEAD * b, 0.08 * b
+    step = HEAD * b / 5
+    profile: list[tuple[float, float]] = [(0, low), (radius, low), (radius, low + step)]
+    for k in (1, 3):
+        inner = 0.8 * radius
+        profile += [(inner, low + k * step), (inner, low + (k + 1) * step)]
+        profile += [(radius, low + (k + 1) * step), (radius, low + (k + 2) * step)]
+    profile += [(2 * plug, high), (2 * plug, high + 0.03 * b), (plug, high + 0.03 * b), (plug, high + 0.18 * b)]
+    profile += [(0.4 * plug, high + 0.2 * b), (0.4 * plug, high + 0.3 * b), (0, high + 0.3 * b)]
+    return along_x(turned(profile))
+
+
+def squish(own: Cylinder) -> float:
+    """From the piston to the head at its top dead centre."""
+    return SQUISH * own.bore

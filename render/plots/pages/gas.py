@@ -1,0 +1,89 @@
+"""The gas behind pistons: pressure over volume, the indicator diagram, and over the angle of the crank or the time."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MultipleLocator
+
+from render.plots.style import QUIET, colour, label_ends, page
+from render.report.written import written
+from shared.contract import GasMotion, Motion
+
+BAR, CUBIC_CENTIMETRE = 1e5, 1e-6
+FEW = 4
+"""Chambers, of which the diagram has the lines of all; of more it has the first's."""
+STEPS = (30, 45, 60, 90, 120, 180)
+"""Of ticks in degrees."""
+
+
+def gas(motion: Motion) -> Figure:
+    """The indicator diagram of the first chambers, and the pressure in all of them; the last cycle of each."""
+    chambers = [
+        (name, force.gas, colour(k)) for k, (name, force) in enumerate(motion.forces.items()) if force.gas is not None
+    ]
+    figure = page(motion.mechanism, "gas in the cylinders", _subtitle(chambers))
+    indicated, over = figure.subplots(1, 2, width_ratios=(1.0, 1.15))
+    figure.subplots_adjust(left=0.075, right=0.9, top=0.845, bottom=0.095, wspace=0.2)
+    for name, one, ink in chambers[:FEW] if len(chambers) <= FEW else chambers[:1]:
+        rows = _last_cycle(one)
+        indicated.plot(
+            np.array(one.volume)[rows] / CUBIC_CENTIMETRE, np.array(one.pressure)[rows] / BAR, color=ink, label=name
+        )
+    outside = chambers[0][1].outside
+    indicated.axhline(outside / BAR, color=QUIET, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1)
+    indicated.set_xlabel("volume (cm³)")
+    indicated.set_ylabel("pressure (bar)")
+    indicated.set_ylim(bottom=min(0.0, indicated.get_ylim()[0]))
+    _over_crank(over, motion, chambers)
+    return figure
+
+
+def _over_crank(axes: Axes, motion: Motion, chambers: list[tuple[str, GasMotion, str]]) -> None:
+    """Pressure over the angle since the firing, one cycle; over time where no crank is known."""
+    turning = [one for _, one, _ in chambers if one.crank_angle is not None]
+    ends = []
+    for name, one, ink in chambers:
+        pressure = np.array(one.pressure) / BAR
+        if len(turning) < len(chambers) or one.crank_angle is None or one.cycle_angle is None:
+            axes.plot(motion.time, pressure, color=ink, label=name)
+            ends.append((name, float(pressure[-1]), ink))
+            continue
+        rows = _last_cycle(one)
+        angle = np.degrees(np.array(one.crank_angle)[rows])
+        period = math.degrees(one.cycle_angle)
+        shown = (angle + period / 2) % period - period / 2
+        order = np.flatnonzero(np.abs(np.diff(shown)) > period / 2) + 1
+        for part in np.split(np.arange(len(shown)), order):
+            axes.plot(shown[part], pressure[rows][part], color=ink, label=name)
+        axes.set_xlim(-period / 2, period / 2)
+        axes.xaxis.set_major_locator(MultipleLocator(next((s for s in STEPS if period / s <= 9), 180)))
+        ends.append((name, float(pressure[rows][np.argmax(shown)]), ink))
+    axes.set_xlabel("crank after firing (deg)" if len(turning) == len(chambers) else "time (s)")
+    axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
+    label_ends(axes, 0.0, ends)
+
+
+def _last_cycle(one: GasMotion) -> np.ndarray:
+    """Rows of the last whole cycle, or of all where there is none."""
+    everything = np.arange(len(one.pressure))
+    if one.crank_angle is None or one.cycle_angle is None:
+        return everything
+    angle = np.array(one.crank_angle)
+    return everything[np.abs(angle - angle[-1]) <= one.cycle_angle * (1.0 + 1e-9)]
+
+
+def _subtitle(chambers: list[tuple[str, GasMotion, str]]) -> str:
+    """What the first chambers give."""
+    words = []
+    for name, one, _ in chambers[:2]:
+        if one.indicated_work and one.displaced:
+            work = float(np.mean(one.indicated_work))
+            words.append(
+                f"{name}: {written(work, 'J')} a cycle, mean effective pressure {written(work / one.displaced, 'Pa')}"
+            )
+    more = f", and {len(chambers) - 2} more" if len(chambers) > 2 and words else ""
+    return "; ".join(words) + more if words else "pressure over volume, and in time"

@@ -1,0 +1,28 @@
+"""How many holes go through a solid whose shape follows from a mechanism, counted on a coarse mesh."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import cadquery as cq
+
+COARSE, ANGLE = 0.05, 0.6
+"""Of the mesh: tolerance in the size of the solid's box, largest angle between facets (rad)."""
+SAME = 1e-7
+"""Corners that are nearer than this part of the size are one."""
+
+
+def through_holes(shape: cq.Workplane) -> int:
+    """Of one closed solid: V - E + F of its mesh is 2 - 2 n."""
+    solid = shape.solids().vals()[0]
+    size = solid.BoundingBox().DiagonalLength
+    corners, triangles = solid.tessellate(COARSE * size, ANGLE)
+    places = np.round(np.array([corner.toTuple() for corner in corners]) / (SAME * size)).astype(np.int64)
+    _, which = np.unique(places, axis=0, return_inverse=True)
+    facets = which.reshape(-1)[np.array(triangles)]
+    edges = np.sort(np.concatenate([facets[:, [0, 1]], facets[:, [1, 2]], facets[:, [2, 0]]]), axis=1)
+    count = len(np.unique(facets)) - len(np.unique(edges, axis=0)) + len(facets)
+    return (2 - count) // 2

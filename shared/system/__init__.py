@@ -1,0 +1,1 @@
+"""What the project needs of the system: libraries and programs, and the packages that bring them."""

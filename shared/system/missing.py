@@ -1,0 +1,78 @@
+"""What of the table is missing on this machine, and the command that installs it.
+
+The standard library of any Python 3 suffices: `make install` asks before there is an environment.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import shutil
+import sys
+from collections.abc import Iterable
+
+from shared.system.wanted import LIBRARIES, PROGRAMS
+
+SBIN = "/usr/sbin:/usr/local/sbin:/sbin"
+"""Where sshd is, which a user's PATH need not have."""
+
+
+def program(name: str) -> str | None:
+    """The path of a program, None where it is missing; one that is not in the table is looked for in PATH."""
+    known = PROGRAMS.get(name)
+    if known and os.environ.get(known.variable or "-"):
+        return os.environ[known.variable]
+    for word in (known and known.names) or (name,):
+        for place in (None, SBIN):
+            found = shutil.which(word, path=place)
+            if found:
+                return found
+    return None
+
+
+def missing_programs(names: Iterable[str] | None = None) -> list[str]:
+    """Those of the programs that are missing; without names: of those that the tests want."""
+    wanted = [name for name in PROGRAMS if PROGRAMS[name].for_tests] if names is None else names
+    return [name for name in wanted if program(name) is None]
+
+
+def missing_libraries() -> list[str]:
+    """Names of the libraries that cannot be loaded; always empty on a Mac, which needs none of them."""
+    return [name for name in LIBRARIES if not _loads(name)] if sys.platform == "linux" else []
+
+
+def packages(names: Iterable[str]) -> list[str]:
+    """The packages of libraries and programs on this system, each once; those outside the table have none."""
+    return list(dict.fromkeys(package for package in map(_package, names) if package))
+
+
+def remedy(names: Iterable[str]) -> str:
+    """The command that installs them: ``sudo apt-get install -y libgl1``; empty where no package is known."""
+    wanted = packages(names)
+    command = "brew install" if sys.platform == "darwin" else "sudo apt-get install -y"
+    return f"{command} {' '.join(wanted)}" if wanted else ""
+
+
+def sentence(libraries: Iterable[str] = (), programs: Iterable[str] = ()) -> str:
+    """One line that names what is missing and the command that installs it."""
+    kinds = {"system libraries": list(libraries), "programs": list(programs)}
+    what = " and ".join(f"{kind} {', '.join(names)}" for kind, names in kinds.items() if names)
+    command = remedy(name for names in kinds.values() for name in names)
+    return f"missing {what}" + (f": {command}" if command else "")
+
+
+def _package(name: str) -> str:
+    if name in LIBRARIES:
+        return LIBRARIES[name]
+    known = PROGRAMS.get(name)
+    if known is None:
+        return ""
+    return known.homebrew if sys.platform == "darwin" else known.debian
+
+
+def _loads(name: str) -> bool:
+    try:
+        ctypes.CDLL(name)
+    except OSError:
+        return False
+    return True

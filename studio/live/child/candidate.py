@@ -1,0 +1,19 @@
+"""The numbers that a mechanism.py would have if it held another source: what was changed in it may have no effect."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from mechanisms.stages.loading import loading
+from shared.stage.paths import mechanism_folder
+from studio.live.numbers import numbers_of
+
+
+def numbers_with(name: str, source: bytes) -> list[dict[str, Any]]:
+    """Of Params, with ``source`` in place of the file's. This process is of no other use after it.
+
+    Raises UserError where it cannot be loaded.
+    """
+    loading.INSTEAD[os.path.realpath(mechanism_folder(name) / "mechanism.py")] = source
+    return [vars(number) for number in numbers_of(loading.params(name))]

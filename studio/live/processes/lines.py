@@ -1,0 +1,35 @@
+"""Text that comes in pieces, as lines of a bounded length: what is longer is cut, and the rest of it is passed over."""
+
+from __future__ import annotations
+
+LONGEST = 2000
+"""Characters of a line."""
+CUT = " ..."
+
+
+class Lines:
+    """Cuts text into lines; no piece of it is too long, and no more than one line is kept."""
+
+    def __init__(self) -> None:
+        self._begun, self._over = "", False
+
+    def add(self, text: str) -> list[str]:
+        """The lines that ``text`` ends."""
+        *whole, rest = text.split("\n")
+        lines = []
+        for piece in whole:
+            self._append(piece)
+            lines.append(self.rest())
+        self._append(rest)
+        return lines
+
+    def rest(self) -> str:
+        """The line that has no end yet; a new one begins."""
+        line = self._begun.rstrip("\r") + CUT * self._over
+        self._begun, self._over = "", False
+        return line
+
+    def _append(self, piece: str) -> None:
+        room = LONGEST - len(self._begun)
+        self._over = self._over or len(piece) > room
+        self._begun += piece[:room]

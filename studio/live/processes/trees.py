@@ -1,0 +1,109 @@
+"""Trees of processes: what is below one, and how all of it ends, however it has been detached."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+
+import psutil
+
+MARK = "MBSD_LIVE"
+"""Variable of the environment that all processes of a server have from it, with a value of its own."""
+PR_SET_CHILD_SUBREAPER = 36
+"""Number of the request in Linux's <sys/prctl.h>."""
+ROUNDS, PAUSE = 400, 0.005
+"""Looks at what is left, and seconds between them: new processes may begin while others are killed."""
+MARKED = 5
+"""Looks for what has the mark of a server that ends."""
+STOPPED = (psutil.STATUS_STOPPED, psutil.STATUS_TRACING_STOP)
+
+
+def adopt_orphans() -> None:
+    """From now on what is below this process stays below it when its parent ends (Linux alone)."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
+
+
+def below(process: int) -> list[int]:
+    """The processes that descend from ``process``, without itself; those that have ended but were not awaited too."""
+    found = []
+    for child in _children(process):
+        found += [child, *below(child)]
+    return found
+
+
+def end_below(process: int) -> None:
+    """Kill all that descends from ``process``, also what begins meanwhile; returns when nothing is left."""
+    for _ in range(ROUNDS):
+        left = below(process)
+        for one in left:
+            with suppress(ProcessLookupError, PermissionError):
+                os.kill(one, signal.SIGKILL)
+        for _ in reaped():
+            pass
+        if not left:
+            return
+        time.sleep(PAUSE)
+
+
+def end_with_below(process: int) -> None:
+    """Kill ``process`` and all that descends from it, where it cannot do so itself."""
+    with suppress(ProcessLookupError, PermissionError):
+        os.kill(process, signal.SIGSTOP)  # so that it begins no other
+    left = below(process)
+    for one in [*left, process]:
+        with suppress(ProcessLookupError, PermissionError):
+            os.kill(one, signal.SIGKILL)
+
+
+def end_marked(mark: str) -> None:
+    """Kill all processes of this user that have ``mark`` from their server: those whose keeper was killed."""
+    for _ in range(MARKED):
+        left = []
+        for process in psutil.process_iter():
+            with suppress(psutil.Error, OSError):
+                if process.pid != os.getpid() and process.environ().get(MARK) == mark:
+                    process.kill()
+                    left.append(process)
+        if not left:
+            return
+        psutil.wait_procs(left, timeout=1.0)
+
+
+def reaped() -> Iterator[tuple[int, int]]:
+    """Children of this process that have ended, with their exit codes; signals are negative."""
+    while True:
+        try:
+            child, status = os.waitpid(-1, os.WNOHANG)
+        except ChildProcessError:
+            return
+        if not child:
+            return
+        yield child, os.waitstatus_to_exitcode(status)
+
+
+def is_stopped(process: int) -> bool:
+    """Whether a signal has stopped the process, so that it does nothing until another one lets it go on."""
+    try:
+        return psutil.Process(process).status() in STOPPED
+    except psutil.Error:
+        return False
+
+
+def _children(process: int) -> list[int]:
+    found: list[int] = []
+    try:
+        for thread in os.listdir(f"/proc/{process}/task"):
+            with suppress(OSError):
+                found += map(int, Path(f"/proc/{process}/task/{thread}/children").read_text().split())
+    except OSError:
+        if not os.path.isdir("/proc/self/task"):
+            with suppress(psutil.Error):
+                return [child.pid for child in psutil.Process(process).children()]
+    return found

@@ -1,0 +1,27 @@
+"""Which distribution brings a module."""
+
+from __future__ import annotations
+
+import os
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+
+from mbsd.dependencies import installed
+
+
+def test_modules_and_distributions_are_those_of_the_standard_library() -> None:
+    """Which asks the disk for every file of every package."""
+    found = {top: {one.metadata["Name"] for one in them} for top, them in installed._by_module().items()}
+    assert found == {top: set(names) for top, names in metadata.packages_distributions().items()}
+
+
+def test_files_of_packages_are_not_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    installed._by_module.cache_clear()
+    looked: list[object] = []
+    plain = os.stat
+    monkeypatch.setattr(Path, "exists", lambda path: looked.append(path))
+    monkeypatch.setattr(os, "stat", lambda path, *rest, **more: looked.append(path) or plain(path, *rest, **more))
+    assert len(installed._by_module()) > 50
+    assert len(looked) < 2000, "they have tens of thousands"

@@ -1,0 +1,60 @@
+"""Heavy bodies that hang at light ones: as few steps, and reactions as exact, as with usual masses."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mbsd import Mechanism, ModelError
+
+pytestmark = pytest.mark.filterwarnings("ignore::mbsd.base.errors.ModelWarning")
+
+
+def _double_pendulum(lower: float, upper: float = 1.0) -> Mechanism:
+    m = Mechanism("pendulum")
+    first, second = m.bar("first", 1.0, mass=upper), m.bar("second", 1.0, mass=lower)
+    m.revolute("hook", m.ground.origin, first.start)
+    m.revolute("elbow", first.end, second.start)
+    m.start_near(first=-60, second=-30)
+    return m
+
+
+def _four_bar(coupler: float) -> Mechanism:
+    m = Mechanism("linkage")
+    a, b, c = m.bar("a", 0.3, mass=1.0), m.bar("b", 1.0, mass=coupler), m.bar("c", 0.8, mass=1.0)
+    m.revolute("A", m.ground.origin, a.start)
+    m.revolute("B", a.end, b.start)
+    m.revolute("C", b.end, c.end)
+    m.revolute("D", m.ground.at(1.0, 0), c.start)
+    m.start_near(a=60, b=20, c=100)
+    return m
+
+
+@pytest.mark.parametrize("formulation", ["reference", "independent"])
+@pytest.mark.parametrize("ratio", [1e9, 1e12])
+def test_motion_and_reactions_are_those_of_a_massless_upper_link(ratio: float, formulation: str) -> None:
+    """Divided by the ratio they differ by parts of its inverse, below what integration leaves."""
+    sol = _double_pendulum(ratio).simulate(3.0, steps=30, formulation=formulation)
+    limit = _double_pendulum(1.0, upper=0.0).simulate(3.0, steps=30, tolerance=1e-10)
+    assert sol.stats.steps < 200
+    np.testing.assert_allclose(sol.body("second").theta, limit.body("second").theta, atol=1e-5)
+    force, expected = np.hypot(sol.joint("hook").fx, sol.joint("hook").fy), np.hypot(*_hook(limit))
+    np.testing.assert_allclose(force / ratio, expected, rtol=1e-4, atol=1e-4)
+    assert sol.stats.acceleration_residual < 1e-10
+
+
+def _hook(sol) -> tuple[np.ndarray, np.ndarray]:
+    return sol.joint("hook").fx, sol.joint("hook").fy
+
+
+def test_formulations_agree_on_a_closed_loop_with_a_heavy_coupler() -> None:
+    one = _four_bar(1e9).simulate(2.0, steps=20, formulation="reference", tolerance=1e-9)
+    other = _four_bar(1e9).simulate(2.0, steps=20, formulation="independent", tolerance=1e-9)
+    np.testing.assert_allclose(one.joint("A").fx, other.joint("A").fx, atol=1e-5 * np.abs(other.joint("A").fx).max())
+    assert one.stats.steps < 2 * other.stats.steps
+
+
+def test_what_rounding_would_decide_is_refused_with_the_bodies() -> None:
+    with pytest.raises(ModelError, match=r"pendulum: body 'first' is joined on to 'second', .* 1\.\de\+15 times apart"):
+        _double_pendulum(1e15).simulate(1.0)
+    _double_pendulum(1e-15).simulate(0.2)  # a light body that hangs at a heavy one costs no digits

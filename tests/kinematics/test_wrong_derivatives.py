@@ -1,0 +1,123 @@
+"""Laws whose given derivatives are not those of their values are refused by every analysis alike."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+import pytest
+
+from mbsd import Mechanism, ModelError, Motion, constant_rate, function
+from mbsd.kinematics import steps
+
+WRONG = {
+    "sign of f''": function(math.sin, math.cos, math.sin),
+    "f' by 1 %": function(math.sin, lambda t: 1.01 * math.cos(t), lambda t: -1.01 * math.sin(t)),
+    "f'' by 1 %": function(math.sin, math.cos, lambda t: -1.01 * math.sin(t)),
+    "f'' by 0.01 %": function(math.sin, math.cos, lambda t: -1.0001 * math.sin(t)),
+    "f' by 2": function(math.sin, lambda t: 2 * math.cos(t), lambda t: -2 * math.sin(t)),
+    "numba": function(numba.njit(lambda t: math.sin(t)), numba.njit(lambda t: math.sin(t)), numba.njit(lambda t: 0.0)),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Doubled(Motion):
+    """A law of the user's own whose rate is twice the right one."""
+
+    def __call__(self, times):
+        return np.stack([np.sin(times), 2 * np.cos(times), -2 * np.sin(times)], axis=1)
+
+
+WRONG["a Motion of one's own"] = Doubled()
+
+ANALYSES = {
+    "sweep": lambda m: m.sweep(2.0, 2000),
+    "simulate": lambda m: m.simulate(2.0, 10),
+    "batch": lambda m: m.batch(lengths={"coupler": [3.0, 3.1]}, duration=2.0, steps=20),
+    "equilibrium": lambda m: m.equilibrium(),
+    "efforts": lambda m: m.inverse_dynamics(m.sweep(2.0, 20), ["drive"]),
+}
+
+
+def four_bar(law: Motion) -> Mechanism:
+    m = Mechanism("four-bar", gravity=(0.0, -9.81))
+    crank, coupler, rocker = m.bar("crank", 1.0, mass=1.0), m.bar("coupler", 3.0, mass=1.0), m.bar("rocker", 2.5)
+    m.set_mass("rocker", 1.0, (1.25, 0.0), 0.1)
+    m.revolute("A", m.ground.at(0, 0), crank.start)
+    m.revolute("B", crank.end, coupler.start)
+    m.revolute("C", coupler.end, rocker.end)
+    m.revolute("D", m.ground.at(3, 0), rocker.start)
+    m.drive_angle("drive", crank, law)
+    m.start_near(crank=0.0, coupler=60.0, rocker=90.0)
+    return m
+
+
+@pytest.mark.parametrize("analysis", ANALYSES.values(), ids=ANALYSES)
+@pytest.mark.parametrize("law", WRONG.values(), ids=WRONG)
+def test_every_analysis_refuses_it(law: Motion, analysis) -> None:
+    with pytest.raises(ModelError, match=r"four-bar: driver 'drive': function: d?df is not the derivative of d?f"):
+        analysis(four_bar(law))
+
+
+def test_right_derivatives_are_compared_once_for_each_law_and_span() -> None:
+    calls = []
+    m = four_bar(function(math.sin, math.cos, lambda t: calls.append(t) or -math.sin(t)))
+    first = m.sweep(2.0, 20)
+    checked = len(calls)
+    calls.clear()
+    again = m.sweep(2.0, 20)
+    assert len(calls) < checked - 4000
+    np.testing.assert_array_equal(again.a, first.a)
+    calls.clear()
+    m.sweep(2.5, 20)
+    assert len(calls) >= checked
+
+
+def test_a_function_that_has_changed_is_compared_again() -> None:
+    of_rate = [1.0]
+    m = four_bar(function(math.sin, lambda t: of_rate[0] * math.cos(t), lambda t: -of_rate[0] * math.sin(t)))
+    m.sweep(2.0, 20)
+    of_rate[0] = 1.01
+    with pytest.raises(ModelError, match="df is not the derivative of f"):
+        m.sweep(2.0, 20)
+
+
+def test_a_changed_law_is_compared_again() -> None:
+    m = four_bar(function(math.sin, math.cos, lambda t: -math.sin(t)))
+    m.sweep(2.0, 20)
+    m.change("drive", law=WRONG["sign of f''"])
+    with pytest.raises(ModelError, match="ddf is not the derivative of df"):
+        m.sweep(2.0, 20)
+
+
+def test_a_distance_and_a_coordinate_are_compared_too() -> None:
+    wrong = function(lambda t: 1 + 0.1 * math.sin(t), lambda t: 0.1 * math.cos(t), lambda t: 0.1 * math.sin(t))
+    for add in (
+        lambda m, b: m.drive_coordinate("drive", m.ground.at(0, 0), b.at(0, 0), wrong),
+        lambda m, b: m.drive_distance("drive", m.ground.at(0, 0), b.at(0, 0), wrong),
+    ):
+        m = Mechanism("slide")
+        block = m.body("block", mass=1.0, inertia=0.1)
+        m.prismatic("rail", m.ground.at(0, 0), block.at(0, 0))
+        m.start_near(block=(1.0, 0.0, 0.0))
+        add(m, block)
+        with pytest.raises(ModelError, match="ddf is not the derivative of df"):
+            m.sweep(2.0, 20)
+
+
+def test_a_motion_whose_steps_are_doubted_without_end_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(steps, "MOST_DIVISIONS", 5)
+    m = Mechanism("nearly a parallelogram")
+    crank, coupler, rocker = m.bar("crank", 1.0), m.bar("coupler", 3.0 + 1e-9), m.bar("rocker", 1.0)
+    m.revolute("A", m.ground.at(0, 0), crank.start)
+    m.revolute("B", crank.end, coupler.start)
+    m.revolute("C", coupler.end, rocker.end)
+    m.revolute("D", m.ground.at(3, 0), rocker.start)
+    m.drive_angle("drive", crank, constant_rate(1.0, 0.5))
+    m.start_near(crank=29.0, coupler=0.0, rocker=29.0)
+    with pytest.raises(
+        ModelError, match=r"given up at t = .* s: \d+ steps were put between the 3 .* driver 'drive' goes"
+    ):
+        m.sweep(20.0, 2)

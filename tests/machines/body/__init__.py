@@ -1,0 +1,1 @@
+"""The human body: segment tables, lifts and their published moments."""

@@ -1,0 +1,1 @@
+"""Parts of machines whose bodies have places along the normal of the plane."""

@@ -1,0 +1,128 @@
+"""Pictures from workers: whole, of the size that was ordered, under the name that they have; nothing else is kept."""
+
+from __future__ import annotations
+
+import io
+import math
+import zlib
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import msgspec
+import pytest
+from PIL import Image
+
+from render.blender.picture_file import name_of
+from render.blender.received_picture import fault_of, most_bytes
+from render.blender.worker.plain_png import SIGNATURE, without_notes
+from render.frames import on_cluster
+from render.frames.served import Made
+from render.frames.store import FrameStore
+from shared.cluster.answers.wrong_answer import WrongAnswer
+from shared.stage.errors import UserError
+
+WIDTH, HEIGHT = 48, 27
+KEY = "0123456789abcdef" * 2
+
+
+def png(width: int = WIDTH, height: int = HEIGHT, mode: str = "RGB", kind: str = "PNG", **more: Any) -> bytes:
+    content = io.BytesIO()
+    noise = Image.effect_noise((width, height), 80.0).convert(mode)
+    noise.save(content, kind, **more)
+    return without_notes(content.getvalue())
+
+
+def chunk(kind: bytes, data: bytes) -> bytes:
+    return len(data).to_bytes(4) + kind + data + zlib.crc32(kind + data).to_bytes(4)
+
+
+def with_rows(rows: bytes, width: int = WIDTH, height: int = HEIGHT) -> bytes:
+    """A PNG whose checksums are right, whatever its rows are."""
+    header = width.to_bytes(4) + height.to_bytes(4) + b"\x08\x02\x00\x00\x00"
+    return SIGNATURE + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+
+
+WHOLE = png()
+ROWS = bytes((3 * WIDTH + 1) * HEIGHT)
+RUBBISH = {
+    "nothing": b"",
+    "text": b"this is no picture",
+    "cut short": WHOLE[: len(WHOLE) // 2],
+    "cut in its rows, with an end": WHOLE[: len(WHOLE) // 2] + WHOLE[-12:],
+    "the last byte is missing": WHOLE[:-1],
+    "more after its end": WHOLE + b"more",
+    "two pictures": WHOLE + WHOLE,
+    "another size": png(8, 8),
+    "height and width exchanged": png(HEIGHT, WIDTH),
+    "a size that no memory holds": with_rows(ROWS, 2**31 - 1, 2**31 - 1),
+    "another kind of file": png(kind="JPEG"),
+    "grey": png(mode="L"),
+    "with an alpha": png(mode="RGBA"),
+    "a palette": png(mode="P"),
+    "with a text": WHOLE[:33] + chunk(b"tEXt", b"Date\x00now") + WHOLE[33:],
+    "a wrong checksum": WHOLE[:60] + bytes([WHOLE[60] ^ 1]) + WHOLE[61:],
+    "half of its rows": with_rows(ROWS[: len(ROWS) // 2]),
+    "a row more": with_rows(ROWS + bytes(3 * WIDTH + 1)),
+    "a filter that is none": with_rows(b"\x09" * len(ROWS)),
+    "rows without end": with_rows(bytes(10_000_000)),
+    "far too large": SIGNATURE + bytes(10_000_000),
+}
+
+
+def reader() -> Any:
+    job = SimpleNamespace(width=WIDTH, height=HEIGHT, pictures=[SimpleNamespace(key=KEY, name="frame 3")])
+    return on_cluster.reader(job)  # pyright: ignore[reportArgumentType]
+
+
+def sent(content: bytes, name: str = "", cycles: float = 0.5, device: str = "CPU") -> bytes:
+    return msgspec.msgpack.encode(Made(name or name_of(KEY, content), content, cycles, device))
+
+
+@pytest.mark.parametrize("picture", [WHOLE, with_rows(ROWS), png(compress_level=0)])
+def test_whole_pictures_are_taken(picture: bytes) -> None:
+    assert fault_of(picture, WIDTH, HEIGHT) is None
+    assert len(picture) <= most_bytes(WIDTH, HEIGHT)
+    made = reader()(KEY, sent(picture, device="a\x1b[2J GPU"))
+    assert (made.content, made.device) == (picture, "a [2J GPU")
+
+
+@pytest.mark.parametrize("kind", RUBBISH)
+def test_rubbish_under_its_right_name_is_refused(kind: str) -> None:
+    with pytest.raises(WrongAnswer, match="frame 3 "):
+        reader()(KEY, sent(RUBBISH[kind]))
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        sent(WHOLE, name=f"../../{name_of(KEY, WHOLE)}"),
+        sent(WHOLE, name=f"/tmp/{name_of(KEY, WHOLE)}"),
+        sent(WHOLE, name=name_of("another", WHOLE)),
+        sent(WHOLE, name=name_of(KEY, WHOLE[:-1])),
+        sent(WHOLE, cycles=math.nan),
+        sent(WHOLE, cycles=-1.0),
+        sent(WHOLE, cycles=math.inf),
+        sent(WHOLE)[:-1],
+        msgspec.msgpack.encode(None),
+        msgspec.msgpack.encode([1, 2]),
+        msgspec.msgpack.encode({"name": "x", "content": b"", "cycles": 0.0, "device": 3}),
+        b"",
+    ],
+)
+def test_what_is_not_as_ordered_is_refused(answer: bytes) -> None:
+    with pytest.raises(WrongAnswer, match="frame 3 "):
+        reader()(KEY, answer)
+
+
+@pytest.mark.parametrize("kind", ["text", "cut short", "another size"])
+def test_rubbish_that_is_in_the_folder_already_is_missed(kind: str, tmp_path: Path) -> None:
+    """The same command makes it again, where it said that there was nothing to do."""
+    content, size = RUBBISH[kind], (WIDTH, HEIGHT)
+    name = name_of(KEY, content)
+    FrameStore(tmp_path).put(name, content)
+    assert FrameStore(tmp_path, size).read(name) is None
+    assert FrameStore(tmp_path, size).find(KEY) is None
+    assert not (tmp_path / name).exists()
+    with pytest.raises(UserError, match="came damaged"):
+        FrameStore(tmp_path, size).put(name, content)

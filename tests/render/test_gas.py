@@ -1,0 +1,100 @@
+"""Gas in data.json, in the report and in the indicator diagram: of engines, and of a cylinder without a cycle."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mbsd import GasView, Mechanism, constant_rate, harmonic
+from mechanisms.stages.solve.motion_file import to_motion
+from render.plots import plots_of
+from render.plots.figures import WHOLE
+from render.report import report
+from shared.contract import Motion, read_motion, write_motion
+from shared.stage.errors import UserError
+from tests.models.engines import slider_crank
+
+
+def motion_of(m: Mechanism, **more) -> Motion:
+    sources = {name: "mechanism" for name in m.bodies if name != "ground"}
+    return to_motion(m.sweep(event_rows=True, **more), None, "0" * 64, {}, sources)  # pyright: ignore[reportArgumentType]
+
+
+@cache
+def engine() -> Motion:
+    return motion_of(slider_crank(), steps=720)
+
+
+def air_spring() -> Motion:
+    m = Mechanism("air_spring", gravity=None)
+    piston = m.body("piston", 1.0)
+    m.prismatic("rail", m.ground.origin, piston.origin)
+    m.gas("air", m.ground.at(-0.1, 0), piston.origin, area=1e-3, pressure=2e5, at=0.1)
+    m.drive_coordinate("drive", m.ground.origin, piston.origin, harmonic(0.05, 10.0))
+    return motion_of(m, steps=180)
+
+
+def test_gas_comes_back_from_data_json(tmp_path: Path) -> None:
+    motion = engine()
+    write_motion(tmp_path / "data.json", motion)
+    gas = read_motion(tmp_path / "data.json").forces["gas"].gas
+    view = slider_crank().sweep(steps=720).force("gas")
+    assert gas is not None
+    assert isinstance(view, GasView)
+    assert gas.indicated_work == pytest.approx(view.indicated_work)
+    assert (gas.crank, gas.outside) == ("crank", 101325.0)
+    assert max(gas.pressure) == pytest.approx(view.pressure.max())
+    gas.crank = "cranc"
+    write = motion.forces["gas"].gas
+    assert write is not None
+    write.crank = "cranc"
+    with pytest.raises(UserError, match=r"forces\.gas\.gas\.crank names 'cranc'"):
+        write_motion(tmp_path / "data.json", motion)
+    write.crank = "crank"
+
+
+def test_the_report_has_peak_work_and_mean_pressure() -> None:
+    gas = engine().forces["gas"].gas
+    assert gas is not None
+    assert gas.indicated_work
+    assert gas.displaced
+    [row] = [line for line in report(engine(), None, None).splitlines() if line.startswith("| gas |") and "MPa" in line]
+    cells = [cell.strip() for cell in row.split("|")]
+    assert cells[2] == f"{max(gas.pressure) / 1e6:.3g} MPa"
+    assert cells[6:9] == [
+        "1",
+        f"{gas.indicated_work[0]:.3g} J",
+        f"{gas.indicated_work[0] / gas.displaced / 1e6:.3g} MPa",
+    ]
+    air = report(air_spring(), None, None)
+    assert "| air | 492 kPa |" in air
+    assert "after the top" not in air
+
+
+def test_the_indicator_diagram_encloses_the_work() -> None:
+    motion = engine()
+    gas = motion.forces["gas"].gas
+    assert gas is not None
+    assert gas.indicated_work
+    assert "gas" in plots_of(motion)
+    left, right = WHOLE["gas"](motion).axes
+    volume, pressure = (np.asarray(part, float) for part in left.lines[0].get_data())
+    area = 0.1 * float(np.trapezoid(np.append(pressure, pressure[0]), np.append(volume, volume[0])))  # bar cm^3
+    assert area == pytest.approx(gas.indicated_work[0], rel=2e-3)
+    assert right.get_xlim() == (-360.0, 360.0)
+    angle, height = (np.concatenate([np.asarray(line.get_data()[k], float) for line in right.lines]) for k in (0, 1))
+    assert 10.0 < angle[height.argmax()] < 25.0
+
+
+def test_gas_without_a_cycle_is_drawn_over_time_and_other_motions_have_no_page() -> None:
+    _, right = WHOLE["gas"](air_spring()).axes
+    assert right.get_xlabel() == "time (s)"
+    m = Mechanism("turning")
+    bar = m.bar("bar", 0.1, 1.0)
+    m.revolute("pin", m.ground.origin, bar.start)
+    m.drive_angle("motor", bar, constant_rate(2 * math.pi))
+    assert "gas" not in plots_of(motion_of(m, steps=12))

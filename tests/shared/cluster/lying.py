@@ -1,0 +1,68 @@
+"""Answers that a worker gives in place of the ones that were ordered."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from shared.cluster.answers.report import Report, encoded
+from shared.cluster.hands import perform
+
+
+def _done(keys: Sequence[str], content: Any = b"x") -> bytes:
+    return encoded(Report(done=[(key, content) for key in keys], seconds=0.001))
+
+
+LIES = {
+    "None": lambda keys: None,
+    "a dictionary": lambda keys: dict.fromkeys(keys, b"x"),
+    "text": lambda keys: "all done",
+    "no bytes": lambda keys: b"",
+    "a report cut short": lambda keys: _done(keys)[:-1],
+    "a report with a tail": lambda keys: _done(keys) + b"x",
+    "nested without end": lambda keys: b"\x91" * 100_000,
+    "another kind of report": lambda keys: msgspec.msgpack.encode({"code": "x"}),
+    "no text": lambda keys: b"\x81\xa4done\x91\x92\xa1\xff\xc4\x00",
+    "results of None": lambda keys: _done(keys, None),
+    "results of text": lambda keys: _done(keys, "x"),
+    "another order": lambda keys: _done(["another"]),
+    "an order of a folder above": lambda keys: _done(["../../x"]),
+    "an order twice": lambda keys: _done([*keys, *keys]),
+    "nothing": lambda keys: _done([]),
+    "a failure of another order": lambda keys: encoded(Report(failed=("another", "no"))),
+    "a wish for other files": lambda keys: encoded(Report(lacking=["/etc/passwd"])),
+    "a time that is none": lambda keys: encoded(Report(done=[(key, b"x") for key in keys], seconds=math.nan)),
+    "time that ran backwards": lambda keys: encoded(Report(done=[(key, b"x") for key in keys], seconds=-1.0)),
+    "a large result": lambda keys: _done(keys, bytes(20_000)),
+    "endless data": lambda keys: bytes(3_000_000),
+    "a result that the reader refuses": lambda keys: _done(keys, b"rubbish"),
+}
+"""By name, what a worker answers for these orders."""
+
+
+def lie(
+    kind: str,
+    liar: str,
+    do: Any,
+    common: str,
+    needed: Sequence[str],
+    orders: Sequence[tuple[str, Any]],
+    sent: Mapping[str, bytes],
+) -> Any:
+    """The answer of this kind on the worker ``liar``, the right one on others; in place of ``perform``."""
+    from distributed import get_worker
+
+    if get_worker().address != liar:
+        return perform(do, common, needed, orders, sent)
+    return LIES[kind]([key for key, _ in orders])
+
+
+def small(files: Mapping[str, Path], common: str, order: Any) -> bytes:
+    """An order that takes little time."""
+    time.sleep(0.03)
+    return b"done"

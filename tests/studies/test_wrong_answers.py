@@ -1,0 +1,242 @@
+"""A study whose workers lie, hang, end or go: the others give the same table, and a sentence says what happened."""
+
+from __future__ import annotations
+
+import json
+import math
+import threading
+import time
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pandas.testing import assert_frame_equal
+
+import mbsd
+from mbsd import Mechanism, ModelError
+from mbsd.dependencies.inputs import Inputs
+from mbsd.studies import remote
+from mbsd.studies.cluster import members
+from mbsd.studies.cluster.answers import WrongAnswer, answer_of, read
+from mbsd.studies.work import Order
+from tests.studies.fake_cluster import Acts, FakeClient, Held
+
+GRID = {"length": [0.1 * n for n in range(1, 9)]}
+NO_INPUTS = Inputs().states()
+
+
+def build(length: float) -> Mechanism:
+    m = Mechanism("bar")
+    m.bar("bar", length, mass=1.0)
+    return m
+
+
+def measured(m: Mechanism) -> dict[str, float]:
+    time.sleep(0.01)
+    length = float(m.bodies["bar"].length or 0.0)
+    return {"double": 2.0 * length, "nothing": math.nan, "whole": int(1e20)}
+
+
+def told(chunk: str, results: Any, seconds: Any = 0.01, inputs: Any = NO_INPUTS) -> bytes:
+    return json.dumps({"chunk": chunk, "seconds": seconds, "results": results, "inputs": inputs}).encode()
+
+
+def fine(points: Sequence[Any]) -> list[Any]:
+    return [[{"double": 1.0}, None, False] for _ in points]
+
+
+LIES: dict[str, Acts] = {
+    "None": lambda f, p, c: None,
+    "a list of results": lambda f, p, c: fine(p),
+    "text": lambda f, p, c: b"all done",
+    "cut short": lambda f, p, c: answer_of(f, p, c)[:-1],
+    "another chunk": lambda f, p, c: told("another", fine(p)),
+    "too few": lambda f, p, c: told(c, fine(p)[1:]),
+    "too many": lambda f, p, c: told(c, fine(p) * 2),
+    "no list": lambda f, p, c: told(c, {"0": 1.0}),
+    "numbers alone": lambda f, p, c: told(c, [1.0 for _ in p]),
+    "text as a number": lambda f, p, c: told(c, [[{"double": "1.0"}, None, False] for _ in p]),
+    "a list as a number": lambda f, p, c: told(c, [[{"double": [1.0]}, None, False] for _ in p]),
+    "a column of the points": lambda f, p, c: told(c, [[{"length": 1.0}, None, False] for _ in p]),
+    "numbers and a reason": lambda f, p, c: told(c, [[{"double": 1.0}, "no", False] for _ in p]),
+    "neither numbers nor a reason": lambda f, p, c: told(c, [[None, None, False] for _ in p]),
+    "a time that is none": lambda f, p, c: told(c, fine(p), math.nan),
+    "time that ran backwards": lambda f, p, c: told(c, fine(p), -1.0),
+    "inputs of no kind": lambda f, p, c: told(c, fine(p), inputs={"files": {}}),
+    "inputs without states": lambda f, p, c: told(c, fine(p), inputs=NO_INPUTS | {"files": ["data.txt"]}),
+    "nested without end": lambda f, p, c: b"[" * 90_000,
+    "a number without end": lambda f, p, c: b"9" * 90_000,
+    "endless data": lambda f, p, c: bytes(5_000_000 + 2_000_000 * len(p)),
+    "an error": lambda f, p, c: (_ for _ in ()).throw(RuntimeError("no")),
+    "functions that it cannot load": lambda f, p, c: answer_of(f._replace(functions=b"rubbish"), p, c),
+}
+
+
+def study(client: Any, **more: Any) -> Any:
+    return mbsd.study(build, GRID, measured, client, **{"progress": False, "folder": None} | more)
+
+
+@pytest.fixture(scope="module")
+def alone() -> Any:
+    return study(None, processes=1)
+
+
+@pytest.fixture(autouse=True)
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(members, "SURVEY", 0.05)
+    monkeypatch.setattr("mbsd.studies.driver.WAIT", 0.05)
+
+
+@pytest.mark.parametrize("kind", LIES)
+def test_a_worker_that_lies_is_left_out(kind: str, alone: Any) -> None:
+    client = FakeClient({"a liar": LIES[kind], "honest": answer_of} | {"liar": LIES[kind]})
+    with pytest.warns(UserWarning, match=r"study: worker .*liar is left out: .*; others do its work"):
+        assert_frame_equal(study(client), alone)
+    assert client.asked.count("liar") <= 2  # what it had before it was found out
+
+
+def test_where_all_lie_the_study_ends_with_their_names() -> None:
+    client = FakeClient({"first": LIES["None"], "second": LIES["too few"]})
+    began = time.monotonic()
+    with warnings.catch_warnings(), pytest.raises(ModelError, match=r"no worker .*; first: .*NoneType.*; second: "):
+        warnings.simplefilter("ignore")
+        study(client)
+    assert time.monotonic() - began < 5.0
+
+
+@pytest.mark.filterwarnings("ignore:study")
+def test_a_worker_that_never_answers_keeps_nothing_back(monkeypatch: pytest.MonkeyPatch, alone: Any) -> None:
+    monkeypatch.setattr(remote, "SILENT", 0.2)
+
+    def hangs(*_: Any) -> None:
+        threading.Event().wait(60.0)
+
+    assert_frame_equal(study(FakeClient({"a": hangs, "b": answer_of, "silent": answer_of})), alone)
+
+
+def test_the_first_answer_counts_and_a_late_one_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(remote, "SILENT", 0.0)
+    wakes, came = threading.Event(), threading.Event()
+
+    def late(_: bytes, points: Sequence[Any], chunk: str) -> bytes:
+        wakes.wait(10.0)
+        came.set()
+        return told(chunk, [[{"by": 1.0}, None, False] for _ in points])
+
+    def soon(_: bytes, points: Sequence[Any], chunk: str) -> bytes:
+        return told(chunk, [[{"by": 2.0}, None, False] for _ in points])
+
+    client = FakeClient({"a": late})
+    cluster = remote.Cluster(Order(b"", None, ""), client)
+    promise = cluster.submit([{"length": 0.1}])
+    client.workers["b"] = soon
+    while not promise.done():
+        cluster.look_after()
+        time.sleep(0.01)
+    wakes.set()
+    assert came.wait(10.0)
+    cluster.look_after()
+    assert client.asked == ["a", "b"]
+    assert promise.result().results[0].values == {"by": 2.0}
+
+
+@pytest.mark.filterwarnings("ignore:study")
+def test_a_worker_that_ends_each_time_is_not_the_points_fault(alone: Any) -> None:
+    """Whoever keeps it starts it again under another name, and it ends again."""
+    client = FakeClient({"0": answer_of})
+
+    def ends(_: bytes, __: Sequence[Any], ___: str) -> None:
+        name = next(name for name in client.workers if name != "0")
+        del client.workers[name]
+        client.workers[f"{int(name) + 1}"] = ends
+        threading.Event().wait(60.0)
+
+    client.workers["1"] = ends
+    assert_frame_equal(study(client), alone)
+
+
+def test_a_result_that_is_lost_with_its_worker_while_it_is_fetched_is_computed_again(alone: Any) -> None:
+    """What was on its way never comes, and nobody waits for it."""
+    over = threading.Event()
+
+    def goes() -> None:
+        client.workers.pop("a", None)
+        over.wait(60.0)
+        raise TimeoutError
+
+    class Client(FakeClient):
+        def submit(self, *arguments: Any, workers: list[str], **more: Any) -> Held:
+            future = super().submit(*arguments, workers=workers, **more)
+            if workers == ["a"] and not self.asked.count("b"):
+                future.fetched = goes
+            return future
+
+    client = Client({"a": answer_of, "b": answer_of})
+    began = time.monotonic()
+    assert_frame_equal(study(client), alone)
+    over.set()
+    assert client.asked[0] == "a"
+    assert time.monotonic() - began < 10.0
+
+
+def test_a_scheduler_that_goes_is_a_sentence_and_what_is_computed_is_kept(tmp_path: Path, alone: Any) -> None:
+    client = FakeClient({})
+
+    def goes(order: Order, points: Sequence[Any], chunk: str) -> bytes:
+        if len(client.asked) > 3:
+            client.status = "connecting"
+            threading.Event().wait(60.0)
+        return answer_of(order, points, chunk)
+
+    client.workers["a"] = goes
+    with pytest.raises(ModelError, match=r"the scheduler tcp://scheduler:8786 has gone; start it again .* goes on"):
+        study(client, folder=tmp_path)
+    known = sum(len(file.read_text().splitlines()) - 1 for file in tmp_path.glob("*/*.jsonl"))
+    assert known >= 3
+    again = FakeClient({"a": answer_of})
+    assert_frame_equal(study(again, folder=tmp_path), alone)
+    assert len(again.asked) <= len(GRID["length"]) - known
+
+
+@pytest.mark.parametrize("error", [OSError("in <closed>"), RuntimeError("IOLoop is closed")])
+def test_an_error_of_the_connection_is_a_sentence(error: Exception) -> None:
+    client = FakeClient({"a": answer_of})
+
+    def fails(**_: Any) -> None:
+        raise error
+
+    client.scheduler.identity = fails
+    with pytest.raises(ModelError, match="has gone; start it again"):
+        study(client)
+
+
+def test_what_is_waited_for_is_told_soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(members, "SOON", 0.1)
+    monkeypatch.setattr(members, "PATIENCE", 0.5)
+    with (
+        pytest.warns(UserWarning, match=r"has no worker that can compute it; silent: it does not answer; one is given"),
+        pytest.raises(ModelError, match="silent: it does not answer"),
+    ):
+        study(FakeClient({"silent": answer_of}))
+
+
+def test_where_all_are_refused_nobody_waits() -> None:
+    began = time.monotonic()
+    with (
+        pytest.warns(UserWarning, match=r"worker other is refused: numpy 0\.1"),
+        pytest.raises(ModelError, match=r"other: numpy 0\.1"),
+    ):
+        study(FakeClient({"other": answer_of}))
+    assert time.monotonic() - began < 2.0
+
+
+def test_answers_survive_the_way_bit_by_bit() -> None:
+    values = {"a": 0.1 + 0.2, "b": -0.0, "c": 10**30, "d": True, "e": math.inf, "f": 5e-324, "\u00e9 x": 1}
+    answer = told("c", [[values, None, False], [None, "why\x1b[2J", True]])
+    first, second = read(answer, [{"x": 1}, {"x": 2}], "c").results
+    assert repr(first.values) == repr(values)
+    assert (second.reason, second.passing) == ("why [2J", True)
+    with pytest.raises(WrongAnswer):
+        read(told("c", [[{"x": 1.0}, None, False]]), [{"x": 1}], "c")

@@ -1,0 +1,60 @@
+"""When the server is killed, nothing of what the author's code has begun goes on."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import psutil
+import pytest
+
+from studio.live.processes.trees import MARK
+from tests.studio.live.served import ARM, WAIT, processes_of
+
+BEGINS = """
+import ctypes
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).parent
+subprocess.Popen([sys.executable, "-c", "import os, time; os.fork() or os.setsid(); time.sleep(600)"],
+                 start_new_session=True)
+if os.fork() == 0:
+    ctypes.PyDLL(None).sleep(600)  # holds Python's lock
+"""
+LOOPS = BEGINS + '(HERE / "making").touch()\nwhile True:\n    pass\n'
+
+
+def until(there: Callable[[], bool], what: str) -> None:
+    ends = time.monotonic() + WAIT
+    while not there():
+        assert time.monotonic() < ends, what
+        time.sleep(0.05)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads the environment of other processes in /proc")
+def test_nothing_outlives_a_server_that_was_killed(tmp_path: Path) -> None:
+    """Those that end in order are looked at by each test that has one (served.py)."""
+    folder = tmp_path / "mechanisms"
+    (folder / "arm").mkdir(parents=True)
+    (folder / "arm" / "mechanism.py").write_text(ARM + BEGINS)
+    (folder / "arm" / "parts.py").write_text(LOOPS)
+    environment = os.environ | {"MBSD_TEST_PARTS": str(folder), "MBSD_OUT": str(tmp_path / "out")}
+    command = [sys.executable, "-m", "tests.studio.live.serving", "arm"]
+    with subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, start_new_session=True) as server:
+        try:
+            until((folder / "arm" / "making").exists, "parts are being made")
+            warm = next(one for one in psutil.Process(server.pid).children() if "forking" in " ".join(one.cmdline()))
+            mark = warm.environ()[MARK]
+            assert len(processes_of(mark)) >= 9, "the warm process, two keepers, what they keep and what that has begun"
+            server.kill()
+            server.wait(WAIT)
+            until(lambda: not processes_of(mark), "all of them have ended")
+        finally:
+            server.kill()

@@ -1,0 +1,1 @@
+"""What is beside the workers of the rounds: one that lies, and a study."""

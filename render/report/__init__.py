@@ -13,7 +13,7 @@ from shared.contract import Motion, Parts, read_motion, read_parts
 from shared.contract.clearance import Clearance, read_clearance
 from shared.stage.console import say
 from shared.stage.files import sources_hash, write_bytes
-from shared.stage.paths import ROOT, Out, mechanism_folder
+from shared.stage.paths import Out, mechanism_folder
 from shared.stage.stages import Stage, contract_sources, key_of, versions
 
 READ = [*contract_sources("clearance"), *FRAME_SOURCES]

@@ -21,11 +21,12 @@ def modules_below(
 ) -> Inputs:
     """The files ``waiting``, each with its package, and what their import statements name, as inputs.
 
-    ``count`` decides for every module that is imported: it counts it, or appends its file to those waiting.
+    ``count`` decides, once for every module that is imported: it counts it, or appends its file to those waiting.
     Where one of the user's files looks at itself, all count by their bytes, too.
     """
     inputs = Inputs()
     seen: set[Path] = {leave_out} if leave_out else set()
+    counted: set[ModuleType] = set()
     reflective = False
     while waiting:
         file, package = waiting.pop()
@@ -37,7 +38,9 @@ def modules_below(
         ours = places.is_program(str(file)) or places.acts_for_itself(str(file))
         reflective |= not ours and looks_at_itself(content_of(file))
         for module in imported(file, package):
-            count(module, inputs, waiting)
+            if module not in counted:
+                counted.add(module)
+                count(module, inputs, waiting)
     if reflective:
         inputs.files.update({name: places.state("files", name) for name in inputs.modules})
     return inputs

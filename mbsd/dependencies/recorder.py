@@ -73,8 +73,8 @@ class Recorder:
             if os.path.isdir(folder) and not is_installed(os.path.abspath(folder) + os.sep):
                 self.read(os.path.join(folder, f"{below}.py"))
                 self.read(os.path.join(folder, below, "__init__.py"))
-        if not top:
-            self.packages.setdefault(name, self.places.package_state(name))
+        if not top and name not in self.packages:
+            self.packages[name] = self.places.package_state(name)
 
     def made(self, path: Any) -> None:
         """Leave out from now on what the run itself writes."""

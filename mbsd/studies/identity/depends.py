@@ -75,8 +75,8 @@ def loaded_inputs(content: Content, places: Places) -> Inputs:
     for name in inputs.modules:
         if os.stat(places.path_of(name)).st_mtime > _begun():
             inputs.modules[name] = CHANGED
-    for package in (*PACKAGES, *(name for top in content.packages for name in distributions(top))):
-        inputs.packages.setdefault(package, places.package_state(package))
+    for package in {*PACKAGES, *(name for top in content.packages for name in distributions(top))} - {*inputs.packages}:
+        inputs.packages[package] = places.package_state(package)
     return inputs
 
 
@@ -110,6 +110,7 @@ def _count(module: ModuleType, inputs: Inputs, waiting: list[tuple[Path, str]]) 
         return
     if is_installed(str(file)):
         for name in distributions(module.__name__.partition(".")[0]):
-            inputs.packages.setdefault(name, package_state(name))
+            if name not in inputs.packages:  # to ask for a version takes milliseconds
+                inputs.packages[name] = package_state(name)
     else:
         waiting.append((file, package_of(module)))

@@ -103,8 +103,10 @@ class Page:
 
     def __init__(self, socket: ClientConnection) -> None:
         self._socket = socket
+        self._passed_over: list[dict[str, Any]] = []
 
     def say(self, **wish: Any) -> None:
+        self._passed_over.clear()
         self._socket.send(json.dumps(wish))
 
     def hear(self, *kinds: str, wanted: Callable[[dict[str, Any]], bool] = lambda header: True) -> Any:
@@ -117,6 +119,15 @@ class Page:
             header["payload"] = payload
             if header["kind"] in kinds and wanted(header):
                 return header
+            self._passed_over.append(header)
+
+    def heard(self, *kinds: str, wanted: Callable[[dict[str, Any]], bool] = lambda header: True) -> Any:
+        """As :meth:`hear`, or a message of one of these kinds that was passed over since the page last said something.
+
+        What a wish leads to by two ways, as an answer and as a file that is watched, comes in either order.
+        """
+        passed_over = (header for header in self._passed_over if header["kind"] in kinds and wanted(header))
+        return next(passed_over, None) or self.hear(*kinds, wanted=wanted)
 
 
 class Served:

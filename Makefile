@@ -3,6 +3,7 @@
 # Twelve frames on one sheet are small: drafts, unless PRESET says otherwise.
 SHEET_PRESET := $(if $(filter undefined,$(origin PRESET)),draft,$(value PRESET))
 PRESET ?= preview
+ASPECT ?=
 FRAME ?= 0
 FRAMES ?=
 NAME ?=
@@ -28,6 +29,7 @@ PYTEST ?= -n 2 --dist loadscope --no-loadscope-reorder
 # Words of the user are taken as they are: make expands nothing in them, and commands get them through the environment,
 # where no shell reads them. Python refuses what is no name (shared/stage/paths.py).
 override PRESET := $(value PRESET)
+override ASPECT := $(value ASPECT)
 override FRAME := $(value FRAME)
 override FRAMES := $(value FRAMES)
 override NAME := $(value NAME)
@@ -49,7 +51,7 @@ override ANYWAY := $(value ANYWAY)
 override CLUSTER := $(value CLUSTER)
 override CLUSTER_TLS := $(value CLUSTER_TLS)
 override MECHANISM = $(subst -,_,$*)
-export PRESET SHEET_PRESET FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N HOST FOLDER ONLY WATTS SEED
+export PRESET SHEET_PRESET ASPECT FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N HOST FOLDER ONLY WATTS SEED
 export CLUSTER CLUSTER_TLS ANYWAY STRICT
 
 PRESETS := draft preview production final
@@ -57,11 +59,18 @@ ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
 $(error PRESET=$(PRESET) is not a preset; choose one of: $(PRESETS))
 endif
 
+ASPECTS := 16:9 1:1 4:5 9:16
+ifneq ($(ASPECT),)
+ifneq ($(words $(ASPECT)) $(filter $(ASPECTS),$(ASPECT)),1 $(ASPECT))
+$(error ASPECT=$(ASPECT) is not an aspect; choose one of: $(ASPECTS))
+endif
+endif
+
 PYTHON := .venv/bin/python
 STAGE = $(PYTHON) -m mechanisms
 PICTURE = $(PYTHON) -m render
 NIGHT = $(PYTHON) -m studio.night
-OF_NIGHT = --preset "$$PRESET" --only="$$ONLY" --show="$$SHOW" --spectra="$$SPECTRA" --watts="$$WATTS" --anyway="$$ANYWAY" --python="$(PYTHON)"
+OF_NIGHT = --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} --only="$$ONLY" --show="$$SHOW" --spectra="$$SPECTRA" --watts="$$WATTS" --anyway="$$ANYWAY" --python="$(PYTHON)"
 # install compiles the kernels in the background; these want all of them, and nothing else running.
 ALL_KERNELS = @$(PYTHON) -m tools.compiling wait
 
@@ -74,7 +83,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new test lint format bench bench-start bench-film hunt hunt-parts torture check-numbers record-numbers schema docs study-engines integrators wheel lock clean clean-all always
+.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new test lint format bench bench-start bench-live bench-film hunt hunt-parts torture check-numbers record-numbers schema docs study-engines study-run-up readme-loop integrators wheel lock clean clean-all always
 
 # A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
 define upto_motion
@@ -94,6 +103,7 @@ SPECTRA_IF_ANY = $${SPECTRA:+--spectra="$$SPECTRA"}
 
 help: ## this list
 	@echo "make <target>, with PRESET=draft|preview|production|final on every picture target (preview by default)."
+	@echo "ASPECT=16:9|1:1|4:5|9:16 on these targets: the shape of the picture, composed for it (16:9 by default)."
 	@echo "SHOW=reactions,forces,velocities,accelerations,title on these targets: arrows and words in the picture."
 	@echo "SPECTRA=\"shaking force,motor\" on run-, plot- and compare-<name>, run-all and all: spectra of these."
 	@echo "A mechanism's name takes hyphens or underscores: run-four-bar, run-four_bar."
@@ -108,8 +118,8 @@ run-%: libraries always ## everything of one mechanism: parts, motion, clearance
 	@$(PICTURE) report "$$MECHANISM"
 	@$(PICTURE) plots "$$MECHANISM" $(SPECTRA_IF_ANY)
 	@$(PICTURE) glb "$$MECHANISM"
-	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
-	@$(PICTURE) film "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
+	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} $${SHOW:+--show="$$SHOW"}
+	@$(PICTURE) film "$$MECHANISM" --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} $${SHOW:+--show="$$SHOW"}
 
 run-all: libraries ## run-<name> for every mechanism or ONLY=four_bar,slider_crank; goes on after a failure
 	@$(NIGHT) run $(OF_NIGHT)
@@ -169,34 +179,34 @@ live-%: install always ## a page that follows the editor: sliders, dragging, fit
 
 poster-%: libraries always ## one picture at its best: out/<name>/poster.png
 	$(upto_shot)
-	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
+	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} $${SHOW:+--show="$$SHOW"}
 
 contact-%: libraries always ## a sheet of twelve frames, drafts if no PRESET is given: out/<name>/contact.png
 	$(upto_shot)
-	@$(PICTURE) contact "$$MECHANISM" --preset "$$SHEET_PRESET" $${SHOW:+--show="$$SHOW"}
+	@$(PICTURE) contact "$$MECHANISM" --preset "$$SHEET_PRESET" $${ASPECT:+--aspect="$$ASPECT"} $${SHOW:+--show="$$SHOW"}
 
 still-%: libraries always ## one frame of the film, FRAME=15 (from 0): out/<name>/stills/
 	$(upto_shot)
-	@$(PICTURE) still "$$MECHANISM" --frame="$$FRAME" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
+	@$(PICTURE) still "$$MECHANISM" --frame="$$FRAME" --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} $${SHOW:+--show="$$SHOW"}
 
 frames-%: libraries always ## the frames of the film: out/<name>/frames/<preset>/
 	$(upto_shot)
-	@$(PICTURE) frames "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
+	@$(PICTURE) frames "$$MECHANISM" --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} $${SHOW:+--show="$$SHOW"}
 
 film-%: libraries always ## the film: out/films/<name>-<preset>.mp4
 	$(upto_shot)
-	@$(PICTURE) film "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
+	@$(PICTURE) film "$$MECHANISM" --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} $${SHOW:+--show="$$SHOW"}
 
 scene-ui-%: libraries always ## open the scene in an installed Blender
 	$(upto_shot)
-	@$(PICTURE) scene-ui "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
+	@$(PICTURE) scene-ui "$$MECHANISM" --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} $${SHOW:+--show="$$SHOW"}
 
 scene-%: libraries always ## save the scene: out/<name>/<name>.blend
 	$(upto_shot)
-	@$(PICTURE) scene "$$MECHANISM" --preset "$$PRESET" $${SHOW:+--show="$$SHOW"}
+	@$(PICTURE) scene "$$MECHANISM" --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} $${SHOW:+--show="$$SHOW"}
 
 verify-%: libraries always ## solids, motion, some frames (FRAMES=0,30) and the film made again in scratch and compared
-	@$(PYTHON) -m studio.verify "$$MECHANISM" --preset "$$PRESET" --frames="$$FRAMES" $${SHOW:+--show="$$SHOW"}
+	@$(PYTHON) -m studio.verify "$$MECHANISM" --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} --frames="$$FRAMES" $${SHOW:+--show="$$SHOW"}
 
 view-all: install ## all pages (ONLY=four_bar,pendulum) and a picture of each by Chromium: view.html, view.png
 	@$(PYTHON) -m studio.pages --only="$$ONLY"
@@ -207,11 +217,11 @@ view-engines: install ## pages used in Firefox and Safari's engine: a small four
 gallery: libraries ## posters of all mechanisms (PRESET) and the page that shows them: docs/gallery/
 	@for file in mechanisms/*/mechanism.py; do one=$${file%/mechanism.py}; one=$${one#mechanisms/}; \
 	"$(MAKE)" --no-print-directory "clearance-$$one" || echo "gallery: no clearance of $$one" >&2; \
-	"$(MAKE)" --no-print-directory "poster-$$one" PRESET="$$PRESET" || echo "gallery: no poster of $$one" >&2; done
+	"$(MAKE)" --no-print-directory "poster-$$one" PRESET="$$PRESET" ASPECT=16:9 || echo "gallery: no poster of $$one" >&2; done
 	@$(PICTURE) gallery
 
 showreel: install ## the finished films of PRESET, each under its title, as one; ONLY=four_bar,geneva_drive
-	@$(PICTURE) showreel --preset "$$PRESET" --only="$$ONLY" $${SHOW:+--show="$$SHOW"}
+	@$(PICTURE) showreel --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} --only="$$ONLY" $${SHOW:+--show="$$SHOW"}
 
 fetch: install ## bring the films of another machine home, what changed alone: HOST=user@machine FOLDER=mbsd
 	@$(PYTHON) -m studio.fetch --folder="$$FOLDER" -- "$$HOST"
@@ -242,7 +252,7 @@ libraries: install ## whether the system has what parts and pictures load; their
 	@test ! -d .venv || test -f .venv/libraries-found || { echo "error: parts and pictures need these libraries; nothing was made" >&2; exit 1; }
 
 test: install ## the tests; PYTEST="-k name" picks some; STRICT=1: none is skipped for want of a program
-	@$(PYTHON) -m shared.system --for-tests || test -z "$$STRICT$$CI"
+	@$(PYTHON) -m shared.system --for-tests || case "$${STRICT:-$$CI}" in ""|0) ;; *) false ;; esac
 	$(ALL_KERNELS)
 	@$(PYTHON) -m pytest $(PYTEST)
 
@@ -264,6 +274,9 @@ bench: install ## the solver beside its peers: a table, and out/bench.json
 bench-start: install ## how long one waits for a first result and for calls as users make them
 	$(ALL_KERNELS)
 	@$(PYTHON) -m benchmarks start
+
+bench-live: install ## from a slider of the live page to the picture, in Chromium; NAME=four_bar N=40 steps
+	@$(PYTHON) -m benchmarks live --name "$${NAME:-four_bar}" --count "$${N:-40}"
 
 bench-film: install ## what a film costs beside Cycles alone, a plain script, one core; NAME=four_bar N=60 frames
 	@$(PYTHON) -m benchmarks film --name "$${NAME:-four_bar}" --preset "$$PRESET" --frames "$${N:-60}"
@@ -300,6 +313,16 @@ docs: install ## write docs/theory.md and the map of rooms from docstrings, and 
 study-engines: install ## which bank angle suits which V engine: out/engines/ and the tables of docs/engines.md
 	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.engine_layouts
+
+study-run-up: install ## engines on mounts run through resonance, 120 simulations on all cores: out/engines/run_up.csv, .svg
+	$(ALL_KERNELS)
+	@$(PYTHON) -m tools.engine_run_up
+
+readme-loop: libraries ## the loop at the top of README.md, filmed by the page in Chromium: docs/readme_loop.webp
+	@$(STAGE) parts four_bar
+	@$(STAGE) solve four_bar
+	@$(STAGE) shot four_bar
+	@$(PYTHON) -m tools.readme_loop
 
 integrators: install ## measure the integrators again, for docs/integrators.md: order, cost, 10 000 periods (5 minutes)
 	$(ALL_KERNELS)

@@ -5,6 +5,7 @@ python -m benchmarks calls            the calls as users make them alone, only s
 python -m benchmarks dynamics         the dynamics problems alone, only shown
 python -m benchmarks machines         gears, a Geneva, a cam and a stiff contact alone, only shown
 python -m benchmarks film [--help]     what a film costs (make bench-film)
+python -m benchmarks live [--help]     from a slider of the live page to the picture (make bench-live)
 python -m benchmarks cluster          what a cluster costs, a task and a worker, only shown
 python -m benchmarks synthesis        lengths for a path alone, only shown
 python -m benchmarks start            the table of start-up (make bench-start)
@@ -56,6 +57,10 @@ def main() -> int:
             return _tell(bars)
         case ["film", *words]:
             return film.measured(words)
+        case ["live", *words]:
+            from benchmarks.live import measure as live
+
+            return live.measured(words)
         case ["cluster"]:
             from benchmarks.cluster import measure as cluster
 
@@ -68,8 +73,8 @@ def main() -> int:
             tune_all(names)
         case other:
             raise UserError(
-                f"bench: {' '.join(other)}? There is: calls, cluster, dynamics, film, machines, start, synthesis, "
-                "table, tune [names], or nothing for all"
+                f"bench: {' '.join(other)}? There is: calls, cluster, dynamics, film, live, machines, start, "
+                "synthesis, table, tune [names], or nothing for all"
             )
     return 0
 

@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from mbsd.results.force_view import ForceView
     from mbsd.results.friction import FrictionView
     from mbsd.results.gas import GasView
+    from mbsd.results.hydraulics import HydraulicView
     from mbsd.results.mobility import Mobility
     from mbsd.results.solution import Solution
     from mbsd.results.views import DriverView, EnergyView, FrameView, JointView, Stats
@@ -84,6 +85,7 @@ __all__ = [
     "GasCycle",
     "GasView",
     "Happening",
+    "HydraulicView",
     "InitialConditionWarning",
     "Joint",
     "JointView",
@@ -149,6 +151,7 @@ _LATER = {
     "FrictionView": "mbsd.results.friction",
     "GasCycle": "mbsd.model.cylinders.cycle",
     "GasView": "mbsd.results.gas",
+    "HydraulicView": "mbsd.results.hydraulics",
     "Happening": "mbsd.model.event",
     "Joint": "mbsd.mechanism",
     "JointView": "mbsd.results.views",

@@ -45,6 +45,7 @@ from mbsd.model.forces.gas import gas
 from mbsd.model.forces.gas_cycle import gas_cycle
 from mbsd.model.forces.gas_strut import gas_strut
 from mbsd.model.forces.gravitation import gravitation
+from mbsd.model.forces.hydraulic_cylinder import hydraulic_cylinder
 from mbsd.model.forces.rotating_frame import rotating_frame
 from mbsd.model.forces.spring import spring
 from mbsd.model.forces.spring_law import spring_law
@@ -136,6 +137,7 @@ class Mechanism(Model):
     gas = gas
     gas_cycle = gas_cycle
     gas_strut = gas_strut
+    hydraulic_cylinder = hydraulic_cylinder
     contact = contact
     tyre = tyre
     drag = drag

@@ -1,10 +1,10 @@
-"""Pictures: ``python -m render COMMAND NAME [--preset P]``."""
+"""Pictures: ``python -m render COMMAND NAME [--preset P] [--aspect A]``."""
 
 from __future__ import annotations
 
 import argparse
 
-from render.presets import PRESETS, Preset, preset_named
+from render.presets import ASPECTS, PRESETS, WIDE, Preset, preset_named
 from render.shown import show_words
 from shared.stage.console import run_cli
 from shared.stage.paths import mechanism_name
@@ -34,6 +34,7 @@ def main() -> int | None:
         sub.add_argument("name", help="mechanism; four-bar and four_bar are one")
         if command not in ("plots", "compare", "report", "glb", "view"):
             sub.add_argument("--preset", default="preview", help=f"{', '.join(PRESETS)}; preview if not given")
+            sub.add_argument("--aspect", default="", help=f"{', '.join(ASPECTS)}; {WIDE} if not given")
             sub.add_argument(
                 "--show", default="", help="what to show: reactions,velocities,title; as shot.py says if not given"
             )
@@ -51,6 +52,7 @@ def main() -> int | None:
     commands.add_parser("gallery", help="docs/gallery/: every mechanism that has a poster")
     reel = commands.add_parser("showreel", help="the finished films, each under its title, as one")
     reel.add_argument("--preset", default="preview", help=f"{', '.join(PRESETS)}; preview if not given")
+    reel.add_argument("--aspect", default="", help=f"of the films: {', '.join(ASPECTS)}; {WIDE} if not given")
     reel.add_argument("--only", default="", help="these films in this order: four_bar,geneva_drive; all if not given")
     reel.add_argument(
         "--show", default="", help="the films that show this; those that show what shot.py says if not given"
@@ -68,7 +70,7 @@ def main() -> int | None:
     if arguments.command == "showreel":
         from render.showreel import showreel
 
-        showreel.run(preset_named(arguments.preset), arguments.only, show_words(arguments.show))
+        showreel.run(preset_named(arguments.preset, arguments.aspect), arguments.only, show_words(arguments.show))
         return None
     name, command = mechanism_name(arguments.name), arguments.command.replace("_", "-")
     if command == "plots":
@@ -91,7 +93,7 @@ def main() -> int | None:
         from render import view
 
         return view.run(name)
-    return _picture(command, name, preset_named(arguments.preset), arguments)
+    return _picture(command, name, preset_named(arguments.preset, arguments.aspect), arguments)
 
 
 def _picture(command: str, name: str, preset: Preset, arguments: argparse.Namespace) -> None:

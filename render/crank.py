@@ -45,7 +45,7 @@ def _on_ground(motion: Motion) -> dict[str, tuple[float, float]]:
     """Bodies that revolute joints hold on ground, with the axis."""
     found: dict[str, tuple[float, float]] = {}
     for joint in motion.joints.values():
-        if joint.kind == "revolute" and "ground" in joint.bodies:
+        if joint.pair == "pin" and "ground" in joint.bodies:
             for body in joint.bodies:
                 if body != "ground":
                     found.setdefault(body, (joint.x[0], joint.y[0]))

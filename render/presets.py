@@ -1,8 +1,8 @@
-"""Presets say how large a picture is and how many samples it gets. The active one is always printed."""
+"""Presets say how large a picture is, in which aspect, and with how many samples. The active one is always printed."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from shared.stage.errors import UserError
 
@@ -16,10 +16,47 @@ class Preset:
     height: int
     samples: int
     motion_blur: bool = False
+    poster: int = 128
+    """Samples of a poster."""
+
+    @property
+    def of_poster(self) -> Preset:
+        """The preset of this size's poster, which one looks at for long."""
+        base, dash, shape = self.name.partition("-")
+        return replace(self, name=f"{base}_poster{dash}{shape}", samples=max(self.samples, self.poster))
 
     def __str__(self) -> str:
         blur = "motion blur" if self.motion_blur else "no blur"
         return f"{self.name} ({self.width}x{self.height}, {self.samples} samples, {blur})"
+
+    @property
+    def aspect(self) -> float:
+        """Width over height, for which the camera frames the machine."""
+        return self.width / self.height
+
+    @property
+    def suffix(self) -> str:
+        """What names of files get where the picture is not 16:9: ``-9x16``, else empty."""
+        _, dash, shape = self.name.partition("-")
+        return dash + shape
+
+    @property
+    def asked(self) -> str:
+        """The words of make that ask for it: ``PRESET=preview ASPECT=9:16``."""
+        base, _, shape = self.name.partition("-")
+        return f"PRESET={base}" + (f" ASPECT={shape.replace('x', ':')}" if shape else "")
+
+    def framed(self, aspect: str) -> Preset:
+        """The same in another aspect of :data:`ASPECTS`: its shorter side keeps its pixels.
+
+        Raises UserError with the known aspects.
+        """
+        wide, high = _sides(aspect)
+        if (wide, high) == ASPECTS[WIDE]:
+            return self
+        unit = self.height // min(wide, high)
+        width, height = (self.height, unit * high) if wide <= high else (unit * wide, self.height)
+        return replace(self, name=f"{self.name}-{wide}x{high}", width=width, height=height)
 
     @property
     def work(self) -> int:
@@ -30,19 +67,33 @@ class Preset:
 PRESETS = {
     preset.name: preset
     for preset in (
-        Preset("draft", 640, 360, 4),
+        Preset("draft", 640, 360, 4, poster=16),
         Preset("preview", 1280, 720, 8),
         Preset("production", 1920, 1080, 16),
         Preset("final", 3840, 2160, 64, motion_blur=True),
     )
 }
+WIDE = "16:9"
+ASPECTS = {WIDE: (16, 9), "1:1": (1, 1), "4:5": (4, 5), "9:16": (9, 16)}
+"""Width and height of a picture, in small whole numbers; the first is that of the presets."""
 ASPECT = 16 / 9
-"""Width over height of every preset; the camera frames the motion for it."""
+"""Width over height of a picture where nothing else is asked for."""
 
 
-def preset_named(name: str) -> Preset:
-    """The preset of that name; raises UserError with the known names."""
+def preset_named(name: str, aspect: str = "") -> Preset:
+    """The preset of that name, in an aspect of :data:`ASPECTS`, which the name may bring along: ``preview-9x16``.
+
+    Raises UserError with the known names.
+    """
+    base, _, shape = name.partition("-")
+    if base not in PRESETS:
+        raise UserError(f"there is no preset '{name}'; there is: {', '.join(PRESETS)}")
+    return PRESETS[base].framed(aspect or shape or WIDE)
+
+
+def _sides(aspect: str) -> tuple[int, int]:
+    """Width and height of an aspect that is written as ``9:16`` or ``9x16``."""
     try:
-        return PRESETS[name]
+        return ASPECTS[aspect.strip().replace("x", ":")]
     except KeyError:
-        raise UserError(f"there is no preset '{name}'; there is: {', '.join(PRESETS)}") from None
+        raise UserError(f"there is no ASPECT={aspect}; there is: {', '.join(ASPECTS)}") from None

@@ -88,7 +88,7 @@ class Film:
     def plain(self, count: int) -> tuple[float, float]:
         """Seconds of a plain script until its first frame, and for each of ``count`` frames."""
         with _results_in(self.root):
-            film = read_film(Out(self.name))
+            film = read_film(Out(self.name), aspect=self.preset.aspect)
         folder = self.root / "plain"
         folder.mkdir(exist_ok=True)
         step = max(1, self.frames // count)

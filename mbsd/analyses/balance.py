@@ -18,6 +18,7 @@ import numpy as np
 from mbsd.analyses.statics import Statics
 from mbsd.analyses.tangent import tangent
 from mbsd.base.errors import EquilibriumError
+from mbsd.base.quantity import written
 from mbsd.kinematics.pose.close import CLOSED, close
 
 LONGEST = 0.3
@@ -186,14 +187,16 @@ def _none(ready: Statics, here: Balance, start: Balance, q: np.ndarray, began: n
     )
     if here.largest > GROWN * start.largest:
         remedy = (
-            f"Its loads have grown from {start.largest / packed.size:.3g} N to {here.largest / packed.size:.3g} N on "
-            "the way: a pull that grows without bound as bodies come near each other has no equilibrium there. Keep "
-            "them apart by a joint or spring, or start nearer to one with start_near."
+            f"Its loads have grown from {written(start.largest / packed.size, 'N')} to "
+            f"{written(here.largest / packed.size, 'N')} on the way: a pull that grows without bound as bodies come "
+            "near each other has no equilibrium there. Keep them apart by a joint or spring, or start nearer to one "
+            "with start_near."
         )
     elif far.max() > AWAY * packed.size:
         remedy = (
             f"It runs away: the loads have drawn '{packed.body_names[1 + int(np.argmax(far))]}' {far.max():.3g} m from "
-            "its start, and on and on. Hold it by a spring, a stop, a driver or a joint."
+            "its start, and on and on. Hold it by a spring, a stop, a driver or a joint; "
+            "equilibrium(nearest=True) also looks for an unstable one."
         )
     elif turned.max() > TURNED:
         remedy = (
@@ -202,7 +205,7 @@ def _none(ready: Statics, here: Balance, start: Balance, q: np.ndarray, began: n
             "torque off, or hold it by a spring or a joint."
         )
     return NoneFound(
-        f"{packed.name}: no equilibrium was found: '{body}' is still driven by {left:.3g} N (or N m over the "
+        f"{packed.name}: no equilibrium was found: '{body}' is still driven by {written(left, 'N')} (or N m over the "
         f"size of {packed.size:.3g} m) where the search has come to.",
         remedy,
         q,

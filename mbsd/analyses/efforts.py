@@ -22,6 +22,7 @@ from mbsd.arrays.loads_along import loads_along
 from mbsd.arrays.packing import Packed, pack
 from mbsd.arrays.reactions import wrenches
 from mbsd.arrays.start_state import AnyModel, copied
+from mbsd.arrays.states import own_states
 from mbsd.base.codes import CONSTANT
 from mbsd.base.errors import MobilityError, ModelError
 from mbsd.base.names import names_in, no_such
@@ -141,7 +142,7 @@ def inverse_dynamics(m: Model, motion: Solution, actuators: Sequence[str]) -> Ac
     approached, times = motion.approached, motion.t if motion.law_times is None else motion.law_times
     if approached is None:
         approached = approached_along(packed, loads, laws, times, q, v)
-    applied = loads_along(packed, loads, laws, times, q, v, approached)
+    applied = loads_along(packed, loads, laws, times, q, v, approached, _states(packed, motion))
     right = (weight.ravel() + applied - inertia * a)[:, 3:]
     push = np.stack([_directions(packed, bare.forces[name], q, times)[:, 3:] for name in actuators], axis=1)
     phi, gamma, compact = np.zeros((count, rows)), np.zeros((count, rows)), np.zeros((count, rows, 6))
@@ -174,6 +175,15 @@ def inverse_dynamics(m: Model, motion: Solution, actuators: Sequence[str]) -> Ac
     route = f"efforts of {', '.join(actuators)}"
     solution = replace(motion, lam=everything, wrench=reactions, work=None, route=route, efforts=efforts)
     return ActuatedMotion(solution, efforts, float(residual[worst]))
+
+
+def _states(packed: Packed, motion: Solution) -> np.ndarray | None:
+    """(T, n) those of the forces that are left of a motion's."""
+    if motion.states is None:
+        return None
+    known = motion.packed.forces
+    parts = [motion.states[:, own_states(known, force.name)] for force in packed.forces if force.kind.states]
+    return np.hstack(parts) if parts else None
 
 
 def _solved(

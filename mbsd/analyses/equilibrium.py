@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.analyses.balance import FLAT, NoneFound, descend, look, newton
+from mbsd.analyses.states_at_rest import refuse_states
 from mbsd.analyses.statics import Statics, statics
 from mbsd.analyses.tangent import Independent, independent_coordinates
 from mbsd.arrays.driver_laws import refuse_bad_laws
@@ -104,6 +105,7 @@ def equilibrium(m: Model, time: float, nearest: bool) -> Equilibrium:
     """See :meth:`mbsd.mechanism.Mechanism.equilibrium`."""
     if len(m.bodies) < 2:
         raise ModelError(f"{m.name}: there is no body beside ground; add one with m.bar(...) or m.body(...)")
+    refuse_states(m, "equilibrium()")
     if not math.isfinite(time):
         raise ModelError(f"{m.name}: time is {time} s; it must be finite")
     resting = held(m, time)

@@ -50,7 +50,8 @@ def linearise(m: Model, at: Equilibrium | Solution | str, t: float | None, input
         raise ModelError(f"{m.name}: t = {t} s is outside of the solution, {at.t[0]:g} .. {at.t[-1]:g} s")
     k = int(np.argmin(np.abs(at.t - t)))
     efforts = {name: float(at.driver(name).effort[k]) for name in _drivers(m, inputs)}
-    model = started_at(m, at.packed, at.q[k].ravel(), at.v[k].ravel())
+    states = None if at.states is None else at.states[k]
+    model = started_at(m, at.packed, at.q[k].ravel(), at.v[k].ravel(), states)
     return linearise_start(with_efforts(model, efforts), float(at.t[k]), inputs)
 
 

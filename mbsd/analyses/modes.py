@@ -33,7 +33,7 @@ class Linear(Protocol):
 
     @property
     def a(self) -> np.ndarray:
-        """(2 f, 2 f) z' and z'' by z and z'."""
+        """(2 f + s, 2 f + s) z', z'' and s' by z, z' and s; s: states of forces."""
         ...
 
     @property
@@ -114,13 +114,18 @@ def modes_of(linear: Linear) -> tuple[Mode, ...]:
     """All modes, by rising frequency; one for each pair of eigenvalues, one for each real eigenvalue."""
     f = len(linear.coordinates)
     values, vectors = np.linalg.eig(linear.a)
-    largest = float(np.abs(linear.a[f:, :f]).max()) + float(np.abs(linear.a[f:, f:]).max()) ** 2
+    pull, slow = linear.a[f : 2 * f, :f], linear.a[f : 2 * f, f : 2 * f]
+    largest = float(np.abs(pull).max()) + float(np.abs(slow).max()) ** 2
+    if len(values) > 2 * f:  # states are large beside places, and what they do to these is none of the two
+        largest = float(np.abs(values).max()) ** 2
+        size = np.abs(vectors[:f]).max(axis=0)
+        vectors = np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 0.0)
     values = np.where(np.abs(values) ** 2 <= ZERO * largest, 0.0, values)
     straight = np.abs(values.imag) <= 1e-9 * np.abs(values)
     values = np.where(straight, values.real, values)
-    modes = [_mode(linear, 0.0, z) for z in _free(linear.a[f:, :f])]
+    modes = [_mode(linear, 0.0, z) for z in _free(pull)]
     for k in np.argsort(np.abs(values), kind="stable"):
-        if values[k].imag >= 0.0 and values[k] != 0.0:
+        if values[k].imag >= 0.0 and values[k] != 0.0 and vectors[:f, k].any():
             modes.append(_mode(linear, complex(values[k]), vectors[:f, k]))
     return tuple(modes)
 

@@ -1,12 +1,13 @@
 """Linearisation on the constraints about a pose or a moving state.
 
     z'' = f(z, z', u)        z: independent coordinates; q(z) on the constraints, J v = nu, v_z = z'
-    dx' = A dx + B du        x = (z - z0, z' - z0'),   y: q = q0 + C dx to first order
+    dx' = A dx + B du        x = (z - z0, z' - z0', s - s0),   y: q = q0 + C dx to first order
 
 A from central differences of fourth order of the compiled accelerations: the pose is put back onto the constraints
-with z held, the velocities follow from z'. B from the masses along the constraints, M_z = B_q^T M B_q with
-dq = B_q dz. Laws of time are frozen at the time of linearisation; drivers that are inputs are replaced by actuators
-with their effort. Source: Haug 1989, ch. 6.5 and 7; Negrut, Ortiz 2006, J. Comput. Nonlinear Dynam. 1.
+with z held, the velocities follow from z'. s: states of forces, such as pressures, with s' = f(z, z', s). B from the
+masses along the constraints, M_z = B_q^T M B_q with dq = B_q dz. Laws of time are frozen at the time of linearisation;
+drivers that are inputs are replaced by actuators with their effort. Source: Haug 1989, ch. 6.5 and 7; Negrut, Ortiz
+2006, J. Comput. Nonlinear Dynam. 1.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from mbsd.analyses.modes import Mode, modes_of
 from mbsd.analyses.statics import DIFFERENCES, OFFSETS
 from mbsd.analyses.tangent import Independent, independent_coordinates, tangent
 from mbsd.arrays.loads import SHARP
+from mbsd.arrays.states import columns_of, ones_of, without_states
 from mbsd.base.errors import MobilityError, ModelError, SingularPoseError
 from mbsd.base.names import no_such
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
@@ -51,9 +53,9 @@ class Linearisation:
     """The mechanism that starts at this state."""
     time: float
     a: np.ndarray
-    """(2 f, 2 f)"""
+    """(2 f + s, 2 f + s)"""
     b: np.ndarray
-    """(2 f, inputs)"""
+    """(2 f + s, inputs)"""
     c: np.ndarray
     """(3 nb, f) change of all coordinates (centres of mass, angles; ground first) by the independent ones."""
     mass: np.ndarray
@@ -67,22 +69,24 @@ class Linearisation:
     """(nb, 2) in the authors' frames (m)."""
     size: float
     """Of the mechanism (m): makes turns comparable with displacements."""
+    states: tuple[str, ...] = ()
+    """States of forces, which are the last s of x: ``boom.pressure_a`` (Pa)."""
 
     @property
     def stiffness(self) -> np.ndarray:
-        """(f, f) K of M_z z'' + D z' + K z = 0."""
+        """(f, f) K of M_z z'' + D z' + K z = 0; states of forces do not change meanwhile."""
         f = len(self.coordinates)
-        return -self.mass @ self.a[f:, :f]
+        return -self.mass @ self.a[f : 2 * f, :f]
 
     @property
     def damping(self) -> np.ndarray:
         """(f, f) D of M_z z'' + D z' + K z = 0."""
         f = len(self.coordinates)
-        return -self.mass @ self.a[f:, f:]
+        return -self.mass @ self.a[f : 2 * f, f : 2 * f]
 
     @cached_property
     def eigenvalues(self) -> np.ndarray:
-        """(2 f,) complex (1/s), slowest first."""
+        """(2 f + s,) complex (1/s), slowest first."""
         values = np.linalg.eigvals(self.a)
         return values[np.lexsort((values.imag, values.real.round(12), np.abs(values).round(9)))]
 
@@ -150,17 +154,20 @@ def linearise(m: Model, time: float, inputs: Sequence[str]) -> Linearisation:
             "more ways than one, and no linear motion describes them. Linearise a little before or after it."
         )
     basis = flow.independent.basis
-    mass = basis.T @ (ready.dynamics.inertia[3:, None] * basis)
+    mass = basis.T @ (ready.dynamics.inertia[3 : 3 + len(basis), None] * basis)
     _refuse_massless(ready.packed.name, flow.independent.names, mass)
-    state = np.zeros((2 * f, 2 * f))
-    state[:f, f:] = np.eye(f)
-    state[f:, :f], state[f:, f:] = flow.slopes(0), flow.slopes(1)
-    pull = float(np.abs(state[f:, :f]).max())
-    for block, usual in ((state[f:, :f], pull), (state[f:, f:], math.sqrt(pull))):
+    count = 2 * f + len(flow.ones)
+    state = np.zeros((count, count))
+    state[:f, f : 2 * f] = np.eye(f)
+    state[f:, :f], state[f:, f : 2 * f], state[f:, 2 * f :] = (flow.slopes(part) for part in range(3))
+    state[2 * f :] *= flow.ones[:, None]
+    state[:, 2 * f :] /= flow.ones
+    pull = float(np.abs(state[f : 2 * f, :f]).max())
+    for block, usual in ((state[f : 2 * f, :f], pull), (state[f : 2 * f, f : 2 * f], math.sqrt(pull))):
         block[np.abs(block) < ROUNDING * max(usual, float(np.abs(block).max()))] = 0.0
-    push = np.array([basis.T @ _direction(ready, name, time) for name in inputs]).reshape(len(inputs), f)
-    b = np.zeros((2 * f, len(inputs)))
-    b[f:] = np.linalg.solve(mass, push.T)
+    push = np.array([basis.T @ _direction(ready, name, time)[: len(basis)] for name in inputs]).reshape(len(inputs), f)
+    b = np.zeros((count, len(inputs)))
+    b[f : 2 * f] = np.linalg.solve(mass, push.T)
     return Linearisation(
         model=m,
         time=time,
@@ -170,9 +177,15 @@ def linearise(m: Model, time: float, inputs: Sequence[str]) -> Linearisation:
         mass=mass,
         coordinates=flow.independent.names,
         inputs=tuple(inputs),
-        q=ready.initial.q,
-        com=ready.packed.com,
+        q=ready.initial.q[: 3 + len(basis)],
+        com=flow.plain.com,
         size=ready.packed.size,
+        states=tuple(
+            f"{force.name}.{name}"
+            for force in ready.packed.forces
+            if force.kind.states
+            for name in force.kind.states.names
+        ),
     )
 
 
@@ -200,7 +213,7 @@ def _direction(ready: PreparedDynamics, name: str, time: float) -> np.ndarray:
 
 
 class _Flow:
-    """z'' as a function of z and z' about a state."""
+    """z'' and s' as functions of z, z' and s about a state."""
 
     def __init__(self, ready: PreparedDynamics, time: float) -> None:
         self.ready, self.time = ready, time
@@ -209,10 +222,13 @@ class _Flow:
         self.lam = np.zeros(len(self.packed.ws.phi))
         self.scratch = scratch_for(ready.dynamics, self.packed.ws, len(self.packed.motions), 1)
         self._derive(self.state)
-        basis = tangent(self.packed, self.packed.jacobian())
-        self.independent: Independent = independent_coordinates(self.packed, basis)
-        self.dependent = np.setdiff1d(np.arange(self.packed.coordinates), self.independent.indices)
-        self.scale = self.packed.column_scale()
+        self.plain = without_states(self.packed)
+        self.columns, self.ones = columns_of(self.packed), ones_of(self.packed)
+        self.count = self.plain.coordinates
+        basis = tangent(self.plain, self.packed.jacobian()[:, : self.count])
+        self.independent: Independent = independent_coordinates(self.plain, basis)
+        self.dependent = np.setdiff1d(np.arange(self.count), self.independent.indices)
+        self.scale = self.plain.column_scale()
 
     def _derive(self, state: np.ndarray) -> np.ndarray:
         out = np.zeros_like(state)
@@ -221,31 +237,35 @@ class _Flow:
         return out
 
     def slopes(self, part: int) -> np.ndarray:
-        """(f, f) dz''/dz (part 0) or dz''/dz' (part 1)."""
+        """(f + s, f or s) dz''/dz and ds'/dz (part 0), by z' (part 1) or by s (part 2)."""
         columns = []
-        for k, c in enumerate(self.independent.indices):
-            h = (POSE_STEP, SPEED_STEP)[part] * self.scale[c]
-            moved = [self._acceleration(k, part, h * offset) for offset in OFFSETS]
+        sizes = np.full(len(self.columns), self.packed.size) if part == 2 else self.scale[self.independent.indices]
+        for k, size in enumerate(sizes):
+            h = (POSE_STEP, SPEED_STEP, SPEED_STEP)[part] * size
+            moved = [self._rates(k, part, h * offset) for offset in OFFSETS]
             columns.append(DIFFERENCES @ np.array(moved) / h)
-        return np.array(columns).T
+        return np.array(columns).T.reshape(len(self.independent.indices) + len(self.columns), -1)
 
-    def _acceleration(self, k: int, part: int, h: float) -> np.ndarray:
-        """(f,) z'' with independent coordinate (or velocity) k changed by h."""
+    def _rates(self, k: int, part: int, h: float) -> np.ndarray:
+        """(f + s,) z'' and s' with independent coordinate, its velocity or state k changed by h."""
         q, v = self.state[0].copy(), self.state[1].copy()
         z = 3 + self.independent.indices
         wanted = v[z].copy()
         if part == 0:
-            q[3:] += h * self.independent.basis[:, k]
+            q[3 : 3 + self.count] += h * self.independent.basis[:, k]
             q = self._closed(q)
-        else:
+        elif part == 1:
             wanted[k] += h
+        else:
+            v[self.columns[k]] += h
         v[z] = wanted
         v = self._consistent(q, v)
-        return self._derive(np.stack([q, v]))[1][z]
+        changes = self._derive(np.stack([q, v]))[1]
+        return np.concatenate([changes[z], changes[self.columns]])
 
     def _jacobian(self, q: np.ndarray) -> np.ndarray:
         self._derive(np.stack([q, self.state[1]]))
-        return self.packed.jacobian() * self.packed.row_scale()[:, None] * self.scale
+        return self.packed.jacobian()[:, : self.count] * self.packed.row_scale()[:, None] * self.scale
 
     def _closed(self, q: np.ndarray) -> np.ndarray:
         """Put back onto the constraints with the independent coordinates held."""

@@ -30,6 +30,9 @@ SAME = 1e-9
 """Places closer than this part of the largest number are equal but for rounding."""
 LARGE, THIN = 10.0, 0.05
 """A body larger than this (m) and lighter than this (kg/m) is a wire, or millimetres."""
+THICK, FAST = 1.0, 50.0
+"""Bore over the length of a cylinder that is fully in, and speed of its piston at its rated flow (m/s), beyond which
+they are not metres or not m^3/s."""
 TURNS = 2.0
 """A marker or law turned by more turns than this, in whole degrees, was meant in degrees."""
 
@@ -60,6 +63,7 @@ def check(m: Model) -> list[Finding]:
         *_world_places(m),
         *_assemblies(m),
         *_planes(m),
+        *_hydraulics(m),
     ]
 
 
@@ -294,6 +298,27 @@ def _planes(m: Model) -> Iterator[Finding]:
             f"its sides lie in the planes z = {i:g} m and z = {j:g} m, and a {kind.replace('_', ' ')} acts in one",
             "Give both bodies the same z, or one of its markers a z of its own: body.at(x, y, z=...)",
         )
+
+
+def _hydraulics(m: Model) -> Iterator[Finding]:
+    for name, force in m.forces.items():
+        if force.kind.oil is None:
+            continue
+        oil, p = force.kind.oil(force), force.params
+        if p["bore"] > THICK * p["retracted"]:
+            yield Finding(
+                name,
+                f"its bore is {_metres(p['bore'])}, and fully in it is {_metres(p['retracted'])} long",
+                "bore, rod, stroke and retracted are in metres: divide millimetres by 1000",
+            )
+        flow = oil.conductance * float(oil.orifice(np.array(p["rated_drop"])))
+        if flow > FAST * oil.area_a:
+            yield Finding(
+                name,
+                f"its valve lets {flow:.3g} m^3/s through at {p['rated_drop']:g} Pa, which moves the piston at "
+                f"{flow / oil.area_a:.3g} m/s",
+                "rated_flow is in m^3/s: divide litres a minute by 60000; orifice is in m^2",
+            )
 
 
 def _angular(driver: Joint) -> bool:

@@ -14,6 +14,7 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
+from mbsd.base.quantity import written
 from mbsd.base.shown import shown
 from mbsd.base.users_function import law_of
 from mbsd.model.laws import Motion
@@ -53,8 +54,8 @@ def refuse_bad_laws(packed: Packed, start: float, end: float) -> None:
         farthest = float(np.abs(values[:, 0]).max())
         if driver.kind.angular and farthest > LARGEST_ANGLE:
             raise ModelError(
-                f"{packed.name}: driver '{driver.name}' turns to {farthest:.4g} rad by t = {end:.6g} s, where numbers "
-                "no longer tell one angle from the next; end the motion earlier, or let the law repeat"
+                f"{packed.name}: driver '{driver.name}' turns to {written(farthest, 'rad', 4)} by t = {end:.6g} s, "
+                "where numbers no longer tell one angle from the next; end the motion earlier, or let the law repeat"
             )
         if driver.kind.constraints == ("distance",) and values[:, 0].min() <= 0:
             raise ModelError(

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.base.errors import SimulationError
+from mbsd.base.quantity import written
 from mbsd.equations.joint_friction import FAINT, MOST_PASSES, SETTLED, tabulate_friction, tabulate_normals
 
 if TYPE_CHECKING:
@@ -95,7 +96,7 @@ def jam(packed: Packed, normal: np.ndarray) -> str:
     joints = [force.params["joint"] for force in packed.forces if force.kind.of_reactions]
     sizes = np.where(np.isfinite(normal), np.abs(normal), 0.0)
     k = int(np.argmax(sizes))
-    largest = f"'{joints[k]}' with the largest normal force (above {sizes[k]:.2g} N)"
+    largest = f"'{joints[k]}' with the largest normal force (above {written(sizes[k], 'N')})"
     among = "among " + ", ".join(f"'{joint}'" for joint in joints)
     words = largest if sizes[k] > 0.0 else among
     return f"friction and reactions of the joints do not agree; joints jam, {words}"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.base.users_function import law_of, tell_missed
-from mbsd.equations.laws import Laws
+from mbsd.equations.laws import Laws, tabulate_law
 from mbsd.model.laws import Motion
 from mbsd.model.laws.numbers import (
     ZERO,
@@ -17,6 +17,7 @@ from mbsd.model.laws.numbers import (
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
+    from mbsd.model.force import Force
 
 
 def pack_laws(laws: Sequence[Compiled]) -> Laws:
@@ -43,6 +44,17 @@ def compiled_laws(packed: Packed, start: float, end: float) -> Laws:
                 laws.append(ready.compiled(start, end))
                 tell_missed(f"{packed.name}: force '{force.name}': {what}", ready)
     return pack_laws(laws) if laws else _NONE
+
+
+def law_values(packed: Packed, laws: Laws, force: Force, times: np.ndarray) -> dict[str, np.ndarray]:
+    """(T,) values of the laws of a force at times (T,) (s), by the names of its method's arguments."""
+    first = len(packed.motions) + 1
+    for other in packed.forces[: packed.forces.index(force)]:
+        first += len(other.laws)
+    out = np.zeros((len(force.laws), len(times), 3))
+    for k, rows in enumerate(out):
+        tabulate_law(laws, first + k, np.ascontiguousarray(times, float), rows)
+    return {name: rows[:, 0] for name, rows in zip(force.laws, out, strict=True)}
 
 
 _NONE = pack_laws(())

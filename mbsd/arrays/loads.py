@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.arrays.states import first_holding
 from mbsd.arrays.user_forces import law_address, pack_user_forces
 from mbsd.base.kept import Kept
 from mbsd.equations.interactions import call
-from mbsd.equations.interactions.law import STATE, address_of, switches
+from mbsd.equations.interactions.law import RESULTS, STATE, address_of, switches
 from mbsd.equations.interactions.switching import APPROACHED, REMEMBERS, SIZE, SWITCHING, WIDTH
 from mbsd.equations.joint_friction import BY_RATE, GUIDE, PIN
 from mbsd.equations.loads import Loads
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
 
 
+COLUMNS = 9
+"""Of Loads.interaction."""
 SHAPES = {"pin": PIN, "guide": GUIDE, "slot": 2}
 """What the kernels call the pairs of :attr:`mbsd.model.joint.JointKind.pair`."""
 SHARP = 1e-9
@@ -69,7 +72,7 @@ def _loads(packed: Packed) -> Loads:
         user,
         user_body,
         user_com,
-        np.zeros((2, 6 * max(1, int(user[:, 2].max(initial=1))))),
+        np.zeros((2, max(RESULTS, 6 * int(user[:, 2].max(initial=1))))),
         friction,
         friction_number,
         np.zeros((4, len(friction))),
@@ -79,7 +82,7 @@ def _loads(packed: Packed) -> Loads:
 
 
 def pack_interactions(packed: Packed) -> tuple[np.ndarray, np.ndarray, bool, bool]:
-    """The table (n, 7) and all numbers, for Loads; whether any has kinks or jumps that it tells, and remembers them."""
+    """The table (n, 9) and all numbers, for Loads; whether any has kinks or jumps that it tells, and remembers them."""
     switching = remembers = False
     number = {name: b for b, name in enumerate(packed.body_names)}
     rows, given, at, law = [], [], 0, len(packed.motions)
@@ -93,12 +96,13 @@ def pack_interactions(packed: Packed) -> tuple[np.ndarray, np.ndarray, bool, boo
             called = (float(law_address(packed, force)),) if one.calls_law else ()
             block = np.array([*arms[0], *axis, *arms[1], one.j.angle - one.i.angle, *called, *one.numbers], float)
             law_of, crank = numbered[one.law] if one.law else 0, number[one.crank] if one.crank else 0
-            rows.append((i, j, law_of, at, address_of(one.function), call.address(), crank))
+            holding = first_holding(force, number) if one.with_states else (0, 0)
+            rows.append((i, j, law_of, at, address_of(one.function), call.address(), crank, *holding))
             given.append(block)
             at += len(block)
             switching = switching or switches(one.function)
             remembers = remembers or one.remembers
-    table = np.array(rows, np.int64).reshape(-1, 7)
+    table = np.array(rows, np.int64).reshape(-1, COLUMNS)
     return table, np.concatenate(given) if given else np.zeros(0), switching, remembers
 
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.arrays.approaches import stretches
+from mbsd.arrays.loads import pack_loads
+from mbsd.arrays.states import widened, with_states
 from mbsd.equations.laws import Laws
 from mbsd.equations.loads import Loads, tabulate_loads
 
@@ -22,12 +24,18 @@ def loads_along(
     q: np.ndarray,
     v: np.ndarray,
     approached: np.ndarray | None = None,
+    states: np.ndarray | None = None,
 ) -> np.ndarray:
     """(T, 3 nb) generalised forces of all loads but friction along a motion q, v (T, 3 nb); zero for ground.
 
     ``approached`` (T, n): how fast contacts approached (m/s), where they ask for it; None: as kernels remember it now.
+    ``states`` (T, n): those of forces (SI), of a mechanism that is packed without them.
     Raises ModelError where a function of the user fails.
     """
+    if states is not None:
+        wide = with_states(packed)
+        wide_q, wide_v = widened(wide, q), widened(wide, v, states)
+        return loads_along(wide, pack_loads(wide), laws, t, wide_q, wide_v, approached)[:, : q.shape[1]]
     out = np.zeros_like(q)
     if loads.total:
         power = np.zeros(len(t))

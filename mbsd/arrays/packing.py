@@ -52,6 +52,8 @@ class Packed:
     """Characteristic length (m): the largest distance between joints, or joint and centre of mass, of one body."""
     constant: tuple[bytes, ...] | None
     """What ``numbers`` has of all but the angle offsets."""
+    states: int = 0
+    """How many of the last bodies hold states of forces; see mbsd/arrays/states.py."""
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Unpickled or copied: equations and functions of the user are called by the addresses of this process."""
@@ -61,7 +63,9 @@ class Packed:
     @property
     def masses(self) -> Masses:
         """Of the bodies, ground included."""
-        return Masses(self.body_names, self.com, self.system.mass, self.system.inertia, self.joints, self.name)
+        end = len(self.body_names) - self.states
+        mass, inertia = self.system.mass[:end], self.system.inertia[:end]
+        return Masses(self.body_names[:end], self.com[:end], mass, inertia, self.joints, self.name, self.size)
 
     @property
     def coordinates(self) -> int:

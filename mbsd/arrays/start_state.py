@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import copy
 import math
+from dataclasses import replace
 from typing import TypeVar
 
 import numpy as np
 
 from mbsd.arrays.packing import Packed
+from mbsd.arrays.states import own_states, states_of, without_states
 from mbsd.base.users_function import law_of
 from mbsd.model.laws import polynomial
 from mbsd.model.mechanism import Model, Start, StartVelocity
@@ -41,9 +43,19 @@ def held(m: AnyModel, time: float) -> AnyModel:
     return out
 
 
-def started_at(m: AnyModel, packed: Packed, q: np.ndarray, v: np.ndarray) -> AnyModel:
-    """The same mechanism that starts exactly at q, v (3 nb,)."""
+def started_at(m: AnyModel, packed: Packed, q: np.ndarray, v: np.ndarray, states: np.ndarray | None = None) -> AnyModel:
+    """The same mechanism that starts exactly at q, v (3 nb,), with ``states`` (n,) of its forces (SI) if known.
+
+    Those of a mechanism that is packed with its states are in v.
+    """
+    if packed.states:
+        states, packed = states_of(packed, v), without_states(packed)
     out = copied(m)
+    for force in packed.forces:
+        if states is not None and force.kind.states is not None:
+            own = states[own_states(packed.forces, force.name)].tolist()
+            params = {**force.params, **dict(zip(force.kind.states.names, own, strict=True))}
+            out.forces[force.name] = replace(force, params=params)
     out.starts, out.velocities = {}, {}
     for b, name in enumerate(packed.body_names[1:], start=1):
         x, y, theta = q[3 * b : 3 * b + 3]

@@ -23,6 +23,7 @@ from mbsd.balancing.means import BalanceShaft, Counterweight
 from mbsd.base.arguments import finite_number, number_pair, positive_number
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
+from mbsd.base.quantity import written
 from mbsd.model.body import Body
 from mbsd.results.vibration.crank import crank_of
 
@@ -74,7 +75,7 @@ class Balance:
     def __str__(self) -> str:
         lines = [f"{name}: {self.norm} {self.before[name]:.4g} -> {self.after[name]:.4g}" for name in self.before]
         lines += [
-            f"{w.body}: {w.mass:.4g} kg at ({w.x:.4g}, {w.y:.4g}) m" + (f", z {w.z:.4g} m" if w.z else "")
+            f"{w.body}: {written(w.mass, 'kg', 4)} at ({w.x:.4g}, {w.y:.4g}) m" + (f", z {w.z:.4g} m" if w.z else "")
             for w in self.weights
         ]
         lines += [

@@ -44,6 +44,8 @@ class Canvas:
     coils: dict[str, int] = field(default_factory=dict)
     """Turns of the springs drawn, by force: a spring that moves keeps them."""
     labels: list[Label] = field(default_factory=list)
+    sign: str | None = None
+    """What is being drawn, where it is shown on demand: a canvas that records keeps it."""
 
     def line(
         self, points: Sequence[Point] | Point, colour: str = INK, width: float = 1.4, order: float = 4, **more: Any

@@ -32,6 +32,8 @@ class Pose:
     """(T, 2) of traced points."""
     travel: dict[str, np.ndarray] = field(default_factory=dict)
     """(T,) place of a joint's second marker along the axis of the first (m); ``force spring``, ``contact floor``."""
+    aside: dict[str, np.ndarray] = field(default_factory=dict)
+    """(T,) the same across that axis, to its left (m)."""
 
     def place(self, marker: Marker) -> np.ndarray:
         """(2,) of a marker in the world (m)."""
@@ -98,26 +100,30 @@ class Tracks:
     """See :class:`Pose`."""
     travel: dict[str, np.ndarray]
     """See :class:`Pose`."""
+    aside: dict[str, np.ndarray]
+    """See :class:`Pose`."""
 
     def pose(self, step: int) -> Pose:
         """At one of the times."""
         frames = {n: (float(v.x[step]), float(v.y[step]), float(v.theta[step])) for n, v in self.views.items()}
-        return Pose(frames, f"t = {self.times[step]:.4g} s", True, self.paths, self.travel)
+        return Pose(frames, f"t = {self.times[step]:.4g} s", True, self.paths, self.travel, self.aside)
 
 
 def tracks_of(sol: Solution) -> Tracks:
     """Of a whole solution."""
     m = sol.mechanism
     views = {name: sol.body(name) for name in m.bodies}
-    travel = {}
+    travel, aside = {}, {}
     for name, joint in _markers_of(m).items():
         first, second = views[joint.i.body.name], views[joint.j.body.name]
         gap = _path(second, joint.j) - _path(first, joint.i)
         angle = first.theta + joint.i.angle
-        travel[name] = gap[:, 0] * np.cos(angle) + gap[:, 1] * np.sin(angle)
+        c, s = np.cos(angle), np.sin(angle)
+        travel[name] = gap[:, 0] * c + gap[:, 1] * s
+        aside[name] = gap[:, 1] * c - gap[:, 0] * s
     points = {name: sol.point(name) for name in m.traces}
     paths = {name: np.stack([view.x, view.y], axis=1) for name, view in points.items()}
-    return Tracks(sol.t, views, paths, travel)
+    return Tracks(sol.t, views, paths, travel, aside)
 
 
 def _markers_of(m: Model) -> dict[str, Joint | Force]:

@@ -12,7 +12,8 @@ from mbsd.base.arguments import switch
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
 from mbsd.drawing.canvas import Canvas
-from mbsd.drawing.look import AXIS_X, AXIS_Y, FAINT, INK, QUIET, colour
+from mbsd.drawing.inks import body_inks
+from mbsd.drawing.look import AXIS_X, AXIS_Y, FAINT, INK, QUIET
 from mbsd.drawing.names import place_names
 from mbsd.drawing.picture import Picture
 from mbsd.drawing.pose import Pose
@@ -53,7 +54,7 @@ def draw(m: Model, pose: Pose, ax: Axes | None, frames: bool, names: bool) -> Pi
     if ax is None:
         ax = _axes(high - low)
     canvas = Canvas(ax, unit)
-    colours = {name: colour(k) for k, name in enumerate(name for name in m.bodies if name != "ground")}
+    colours = body_inks(m)
     for path in pose.paths.values():
         canvas.line(path, QUIET, 1.2, order=1, alpha=0.8)
     draw_on(canvas, m, pose, colours, frames)
@@ -191,11 +192,13 @@ def _link(canvas: Canvas, m: Model, pose: Pose, name: str, points: np.ndarray, e
 
 def _centre_of_mass(canvas: Canvas, centre: np.ndarray) -> None:
     """The quartered circle."""
+    canvas.sign = "centre of mass"
     canvas.circle(centre, 0.42, order=5, width=0.9)
     for first in (0.0, math.pi):
         turn = np.linspace(first, first + math.pi / 2, 9)
         rim = centre + 0.42 * canvas.unit * np.stack([np.cos(turn), np.sin(turn)], axis=1)
         canvas.shape(np.vstack([centre, rim]), fill=INK, order=5.1, width=0.0)
+    canvas.sign = None
 
 
 def _frame(canvas: Canvas, pose: Pose, name: str, length: float) -> None:
@@ -241,7 +244,7 @@ def _finish(ax: Axes, low: np.ndarray, high: np.ndarray, name: str, pose: Pose) 
     for spine in ax.spines.values():
         spine.set_visible(False)
     ax.tick_params(colors=QUIET, labelsize=8, length=0)
-    ax.set_xlabel("x [m]", color=QUIET, fontsize=8.5)
-    ax.set_ylabel("y [m]", color=QUIET, fontsize=8.5)
+    ax.set_xlabel("x / m", color=QUIET, fontsize=8.5)
+    ax.set_ylabel("y / m", color=QUIET, fontsize=8.5)
     title = name.replace("_", " ") + (f",  {pose.title}" if pose.title else "")
     ax.set_title(title, loc="left", color=INK, fontsize=11)

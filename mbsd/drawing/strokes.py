@@ -50,6 +50,8 @@ class Stroke:
     """Higher ones are drawn over lower ones."""
     dash: tuple[float, ...]
     """Lengths of strokes and gaps in line widths; empty: solid."""
+    sign: str | None = None
+    """``"centre of mass"``, of its mark."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +114,8 @@ class Recorder(Canvas):
         dash: Sequence[float] = (),
     ) -> None:
         role = None if fill is None else _role(fill)
-        self.strokes.append(Stroke(points, closed, _role(ink), role, alpha, width, order, tuple(map(float, dash))))
+        dashes = tuple(map(float, dash))
+        self.strokes.append(Stroke(points, closed, _role(ink), role, alpha, width, order, dashes, self.sign))
 
 
 def strokes_of(solution: Solution, steps: Sequence[int]) -> list[Strokes]:

@@ -15,6 +15,7 @@ from mbsd.arrays.curve_branches import tabulate_along
 from mbsd.arrays.friction_along import friction_along
 from mbsd.arrays.loads_along import loads_along
 from mbsd.arrays.reactions import generalised, times_compact, wrenches
+from mbsd.arrays.states import states_of, without_states
 from mbsd.base.errors import InitialConditionWarning, ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
@@ -37,6 +38,7 @@ from mbsd.kinematics.multipliers import JACOBIAN_NUMBERS
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import equal_times, rising_times
 from mbsd.results.solution import Solution
+from mbsd.results.states import check_states
 from mbsd.results.views import Stats
 
 LEAST_TOLERANCE = 1e-16
@@ -97,6 +99,7 @@ def simulate(
     poses = np.ascontiguousarray(recording.out.y[:, 0])
     refuse_passed(ready.packed, recording.out.t, poses)
     check_pistons(ready.packed, recording.out.t, poses)
+    check_states(ready.packed, recording.out.t, poses, states_of(ready.packed, recording.out.y[:, 1]))
     if event_rows:
         recording, asked = with_phase_changes(ready, run, recording, events, grid, asked)
     anew = partial(simulate, m, None, 1, grid, method, tolerance, step, None, options, event_rows, formulation)
@@ -131,7 +134,7 @@ def solution(
     """The results by name, with reactions and residuals; ``between`` gives those at other times."""
     packed, out = ready.packed, recording.out
     count, rows = len(out.t), len(packed.ws.phi)
-    drives = packed.drives(out.t)
+    drives, states = packed.drives(out.t), states_of(packed, out.y[:, 1]) if packed.states else None
     q, v = np.ascontiguousarray(out.y[:, 0]), np.ascontiguousarray(out.y[:, 1])
     approached = None if recording.approaches is None else recording.approaches.at(out.t)
     lam, wrench, residuals = np.zeros((count, rows)), np.zeros((count, len(packed.joints), 3)), np.zeros(4)
@@ -166,14 +169,16 @@ def solution(
             (loads * v[at]).sum(axis=1),
         )
         residuals = np.maximum(residuals, [np.abs(error).max(initial=0.0) for error in errors])
-    shape = (count, -1, 3)
+    shown = without_states(packed)
+    end = 3 * len(shown.body_names)
+    q, v, a = (part[:, :end].reshape(count, -1, 3) for part in (q, v, out.a))
     return Solution(
         mechanism=m,
-        packed=packed,
+        packed=shown,
         t=out.t,
-        q=q.reshape(shape),
-        v=v.reshape(shape),
-        a=out.a.reshape(shape),
+        q=q,
+        v=v,
+        a=a,
         wrench=wrench,
         lam=lam,
         drives=drives,
@@ -188,6 +193,7 @@ def solution(
         held=recording.held,
         span=(ready.start, ready.end),
         approached=approached,
+        states=states,
         between=between,
     )
 

@@ -31,11 +31,12 @@ class Loads(NamedTuple):
     law: Any
     """(3,) scratch of a law."""
     interaction: Any
-    """(n, 7) body i, body j, law of time, first number, addresses of the function and of apply.py, crank."""
+    """(n, 9) body i, body j, law of time, first number, addresses of the function and of apply.py, crank, the first
+    body that holds a state of the force, how many do."""
     given: Any
     """Of each interaction: arm of i, axis of i, arm of j (body axes), angle of j less that of i, then its own."""
     state: Any
-    """(27,) what the function of an interaction reads."""
+    """(29,) what the function of an interaction reads."""
     switch: Any
     """(1 + n, 12) sides of the interactions that switch, see interactions/switching.py."""
     user: Any
@@ -45,7 +46,7 @@ class Loads(NamedTuple):
     user_com: Any
     """(b, 2) centres of mass in the author's frames."""
     exchange: Any
-    """(2, 6 k) inputs and outputs of a user's force on k bodies, or of an interaction."""
+    """(2, n) inputs and outputs of a user's force on k bodies, 6 k, or of an interaction."""
     friction: Any
     """(f, 7) joints with friction; columns in joint_friction.py."""
     friction_number: Any

@@ -24,7 +24,7 @@ from mbsd.model.adding.joints import Law, Limits, join, limits_given, phase_give
 from mbsd.model.body import Body, Marker
 from mbsd.model.contact import ContactKind
 from mbsd.model.contact import register as register_contact
-from mbsd.model.force import Element, Force, ForceKind, Interaction, Term
+from mbsd.model.force import Element, Force, ForceKind, Interaction, States, Term
 from mbsd.model.force import register as register_force
 from mbsd.model.joint import Joint, JointKind
 from mbsd.model.joint import register as register_joint
@@ -56,6 +56,7 @@ __all__ = [
     "Limits",
     "Marker",
     "Model",
+    "States",
     "Term",
     "add_contact",
     "add_force",

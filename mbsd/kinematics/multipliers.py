@@ -49,9 +49,18 @@ class Efforts:
 
 
 def inverse_dynamics(
-    ready: Prepared, times: np.ndarray, drives: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray
+    ready: Prepared,
+    times: np.ndarray,
+    drives: np.ndarray,
+    q: np.ndarray,
+    v: np.ndarray,
+    a: np.ndarray,
+    states: np.ndarray | None = None,
 ) -> Efforts:
-    """Solve for the multipliers of the motion q, v, a (T, 3 nb) and check it against its equations."""
+    """Solve for the multipliers of the motion q, v, a (T, 3 nb) and check it against its equations.
+
+    ``states`` (T, n): those of forces (SI), where any has some.
+    """
     packed, system = ready.packed, ready.packed.system
     count, rows = len(q), len(packed.ws.phi)
     inertia = np.stack([system.mass, system.mass, system.inertia], axis=1).ravel()
@@ -62,7 +71,7 @@ def inverse_dynamics(
         laws = compiled_laws(packed, float(times[0]), float(times[-1]))
         packed_loads = pack_loads(packed)
         approached = approached_along(packed, packed_loads, laws, times, q, v)
-        loads += loads_along(packed, packed_loads, laws, times, q, v, approached)
+        loads += loads_along(packed, packed_loads, laws, times, q, v, approached, states)
     nu = np.zeros((count, rows))
     nu[:, packed.driver_rows :] = drives[:, 1:, 1]
     out = Efforts(np.zeros((count, rows)), np.zeros((count, len(packed.joints), 3)), np.zeros(4), approached)

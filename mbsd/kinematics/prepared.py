@@ -11,6 +11,7 @@ from mbsd.arrays.driver_laws import refuse_bad_laws
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import AssemblyError, BranchError, ModelError, SingularPoseError
 from mbsd.base.kept import Kept
+from mbsd.base.quantity import written
 from mbsd.equations.assembly import residual_and_jacobian, tabulate
 from mbsd.equations.constraints.relative import ACTIVE, ROW
 from mbsd.kinematics import newton as kinematics
@@ -229,8 +230,8 @@ class Prepared:
         if rates.max() > RUNAWAY * usual:
             return SingularPoseError(
                 f"{packed.name}: the links cannot follow the drivers beyond {where}: a toggle, where {fastest} "
-                f"run away ({rates.max():.3g} rad/s, {usual:.3g} rad/s before). Drive within the reachable "
-                "range, change the lengths, or drive another body."
+                f"run away ({written(rates.max(), 'rad/s')}, {written(usual, 'rad/s')} before). Drive within the "
+                "reachable range, change the lengths, or drive another body."
             )
         if status == kinematics.BRANCH_DOUBT:
             return BranchError(

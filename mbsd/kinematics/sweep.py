@@ -19,11 +19,13 @@ from mbsd.kinematics.limits.joints import limits_of, refuse_passed
 from mbsd.kinematics.multipliers import inverse_dynamics, singularity_margin
 from mbsd.kinematics.period import MOST_TURNS, common_period, repetition
 from mbsd.kinematics.prepared import March, Prepared, prepare
+from mbsd.kinematics.states_along import states_along
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import equal_times, rising_times
 from mbsd.results.jump_rows import Asked, jumps_of
 from mbsd.results.returned import returned
 from mbsd.results.solution import Solution
+from mbsd.results.states import check_states
 from mbsd.results.views import Stats
 
 
@@ -62,7 +64,10 @@ def sweep(
     if CurveBranches(packed).rows:
         refuse_jumps(packed, *march.closely())
     check_pistons(packed, grid, q)
-    loads = inverse_dynamics(ready, grid, drives, q, v, a)
+    states = states_along(packed, grid, q, v, a)
+    if states is not None:
+        check_states(packed, grid, q, states)
+    loads = inverse_dynamics(ready, grid, drives, q, v, a, states)
     shape = (len(grid), -1, 3)
     found = Solution(
         mechanism=m,
@@ -74,6 +79,7 @@ def sweep(
         wrench=loads.wrench,
         lam=loads.lam,
         approached=loads.approached,
+        states=states,
         drives=drives,
         margin=partial(singularity_margin, packed, ready.sequence.rows, drives, q),
         stats=Stats(*(float(r) for r in loads.residuals), steps=len(grid), inserted_steps=march.steps.inserted),

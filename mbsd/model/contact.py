@@ -14,6 +14,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mbsd.model.joint import ROWS, SPECIALS, JointKind
+from mbsd.model.looks import refuse_unknown_look
 
 
 @dataclass(frozen=True)
@@ -23,6 +24,11 @@ class ContactKind(JointKind):
     always_closed: bool = False
     """The gap is no place but a way that may only grow: a one-way clutch."""
 
+    @property
+    def of_angle(self) -> bool:
+        """Whether its gap is an angle (rad) and what pushes it open a torque (N m)."""
+        return SPECIALS[self.constraints[0]].unit == "rad"
+
 
 CONTACT_KINDS: dict[str, ContactKind] = {}
 
@@ -31,6 +37,7 @@ def register(kind: ContactKind) -> ContactKind:
     """Enter a kind; raises ValueError if its name is taken or it is not made of constraints of relative pose."""
     if not kind.constraints or any(name not in SPECIALS or ROWS[name] != 1 for name in kind.constraints):
         raise ValueError(f"{kind.name}: constraints {kind.constraints}; there are {', '.join(SPECIALS)}")
+    refuse_unknown_look(kind.name, kind.look)
     if kind.name in CONTACT_KINDS:
         raise ValueError(f"{kind.name}: registered twice")
     CONTACT_KINDS[kind.name] = kind

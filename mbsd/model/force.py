@@ -26,12 +26,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
-from mbsd.base.codes import TURN
+from mbsd.base.codes import MOST_STATES, TURN
 from mbsd.base.derived import adding
 from mbsd.base.pickled import ByName, WithFunctions
 from mbsd.model.body import Marker
 from mbsd.model.laws import Motion
 from mbsd.model.laws.curve import Curve
+from mbsd.model.looks import refuse_unknown_look
 
 if TYPE_CHECKING:
     import numpy as np
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from mbsd.model.body import Marker
     from mbsd.model.chamber import Chamber
     from mbsd.model.joint import Joint
+    from mbsd.model.oil_cylinder import OilCylinder
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -69,7 +71,7 @@ class Interaction:
 
     Where it ``calls_law``, the address of the force's own ``law``, a function of the user, comes before the numbers.
     One that ``remembers`` asks for the speed at which its contact began; one with a ``crank`` reads the angle of the
-    body of this name against body i.
+    body of this name against body i; one ``with_states`` reads the states of the force, and says how they change.
     """
 
     function: str
@@ -80,6 +82,25 @@ class Interaction:
     calls_law: bool = False
     remembers: bool = False
     crank: str | None = None
+    with_states: bool = False
+
+
+@dataclass(frozen=True)
+class States:
+    """The states that a force carries through a motion, as a cylinder its pressures: equations of first order."""
+
+    names: tuple[str, ...]
+    """Also of the params that give them at the start, each a number or None."""
+    unit: str
+    one: Callable[[Force], float]
+    """The value (SI) that tolerances are relative to, as they are to the mechanism's size."""
+    start: Callable[[str, Force, Mapping[str, float], float, float, float], Sequence[float]]
+    """The values (n,) at the start: from the mechanism's name, the values of the force's laws of time, what the force
+    measures, its rate, and the effort at which what it measures would not accelerate. Raises ModelError for a start
+    that cannot be."""
+    check: Callable[[str, Force, np.ndarray, np.ndarray, np.ndarray], None]
+    """From the mechanism's name, times (T,), what the force measures (T,) and its states (T, n). Raises ModelError for
+    a motion that cannot be, SimulationError for one that long steps spoiled, and warns of one that should not be."""
 
 
 class Masses(NamedTuple):
@@ -95,6 +116,8 @@ class Masses(NamedTuple):
     joints: Sequence[Joint] = ()
     model: str = ""
     """The mechanism's name, for errors."""
+    size: float = 1.0
+    """Of the mechanism (m): a state of a force is a speed in it, by ``States.one`` for one size a second."""
 
 
 def _no_elements(force: Force) -> tuple[Element, ...]:
@@ -129,12 +152,20 @@ class ForceKind(ByName):
     """The one element along which its interaction acts, without terms, if it acts along one."""
     chamber: Callable[[Force, Masses], Chamber] | None = None
     """The gas behind a piston that its effort comes from, if it does."""
+    states: States | None = None
+    """What it carries through a motion beside coordinates and velocities, if it does; it then acts ``along`` a line."""
+    oil: Callable[[Force], OilCylinder] | None = None
+    """The cylinder of oil that its effort and its states come from, if they do."""
     outside: bool = False
     """Whether it is a load from outside, to which nothing in the mechanism feels the opposite."""
     of_reactions: bool = False
     """Whether it is friction, which comes from the reaction of a joint; see mbsd/equations/joint_friction.py."""
     on_bodies: bool = False
     """Whether it acts on bodies as a whole, and its markers are no places."""
+    look: str = ""
+    """What pictures of solids draw for it: one of ``LOOKS`` in mbsd/model/looks.py."""
+    motor: str = ""
+    """The law by which it drives a mechanism as a motor does, if it has such a law."""
     sign: str = ""
     """Its sign in drawings, if not that of its first element: see mbsd/drawing/symbols/loads.py."""
     saved: bool = True
@@ -150,6 +181,10 @@ class ForceKind(ByName):
         object.__setattr__(self, "add", made)
         return made
 
+    def drives(self, force: Force) -> bool:
+        """Whether it may move a mechanism in place of drivers: a given torque or push, or a motor."""
+        return bool(self.effort) or self.motor in force.laws
+
     def places(self, force: Force) -> tuple[Marker, ...]:
         """Those of its markers that are places where it acts, and not a direction or a body alone."""
         turning = [element.kind == TURN for element in self.elements(force)]
@@ -160,9 +195,12 @@ FORCE_KINDS: dict[str, ForceKind] = {}
 
 
 def register(kind: ForceKind) -> ForceKind:
-    """Enter a kind; raises ValueError if its name is taken or the example missing."""
+    """Enter a kind; raises ValueError if its name is taken, the example missing, or its states are too many."""
     if not callable(kind.example):
         raise ValueError(f"{kind.name}: an example is missing; the registry test needs one")
+    refuse_unknown_look(kind.name, kind.look)
+    if kind.states is not None and (kind.along is None or not 0 < len(kind.states.names) <= MOST_STATES):
+        raise ValueError(f"{kind.name}: a force with states acts along one element, and has {MOST_STATES} at most")
     if kind.name in FORCE_KINDS:
         raise ValueError(f"{kind.name}: registered twice")
     FORCE_KINDS[kind.name] = kind

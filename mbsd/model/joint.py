@@ -13,6 +13,7 @@ from mbsd.base.derived import adding
 from mbsd.base.pickled import ByName, WithFunctions
 from mbsd.model.body import Marker
 from mbsd.model.laws import Motion
+from mbsd.model.looks import refuse_unknown_look
 from mbsd.model.teeth import with_radii
 
 if TYPE_CHECKING:
@@ -75,6 +76,8 @@ class JointKind(ByName):
     touching: str = ""
     """Where its force acts if that is beside marker j: on a "line" along the x axis of marker i, a "curve" of body i,
     between "discs" about both markers, or at a "place" that follows from its torque."""
+    look: str = ""
+    """What pictures of solids draw for it: one of ``LOOKS`` in mbsd/model/looks.py."""
     symmetry: Callable[[Mapping[str, Any]], int] | None = None
     """From params: the order n of the rotational symmetry of body j about marker j, where its equations do not tell
     n-th parts of a turn apart, as of a wheel that is indexed by its slots.
@@ -152,6 +155,7 @@ def register(kind: JointKind) -> JointKind:
         raise ValueError(
             f"{kind.name}: touching is {kind.touching!r}; it must be one of {', '.join(TOUCHING[1:])}, or empty"
         )
+    refuse_unknown_look(kind.name, kind.look)
     if kind.name in KINDS:
         raise ValueError(f"{kind.name}: registered twice")
     KINDS[kind.name] = kind

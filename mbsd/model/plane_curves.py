@@ -64,6 +64,14 @@ def curve_pieces(points: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarr
     return breaks, coefficients
 
 
+def end_ways(breaks: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
+    """(2, 2) unit vectors out of both ends of an open curve, along which it goes on straight."""
+    powers = np.arange(1, 6)
+    last = (coefficients[-1, :, 1:] * powers * (breaks[-1] - breaks[-2]) ** (powers - 1)).sum(axis=1)
+    ways = np.array([-coefficients[0, :, 1], last])
+    return ways / np.hypot(*ways.T)[:, None]
+
+
 def curve_numbers(
     breaks: np.ndarray,
     coefficients: np.ndarray,

@@ -15,6 +15,7 @@ from mbsd.arrays.approaches import stretches
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.reactions import marker_axes, marker_places, relative_velocity
+from mbsd.arrays.states import own_states, widened, with_states
 from mbsd.base.codes import AXIS, LINE, PUSH, TURN
 from mbsd.equations.loads import tabulate_loads
 from mbsd.model.force import Element
@@ -22,6 +23,7 @@ from mbsd.results.energy import potential_of
 from mbsd.results.force_view import ForceView
 from mbsd.results.friction import friction_view
 from mbsd.results.gas import gas_view
+from mbsd.results.hydraulics import hydraulic_view
 from mbsd.results.measured import measured
 from mbsd.results.moved import Moved
 from mbsd.results.surface import foot_of
@@ -67,6 +69,8 @@ def force_view(moved: Moved, name: str, effort: np.ndarray | None = None) -> For
         effort=effort,
         several=force.kind.outside and len(places) > 1,
     )
+    if force.kind.oil is not None:
+        return hydraulic_view(moved, view, force)
     if chamber is None:
         return view
     return gas_view(moved, view, chamber(force, packed.masses), lambda at: loads_of(at, k)[1])
@@ -165,8 +169,13 @@ def loads_of(moved: Moved, k: int) -> tuple[np.ndarray, np.ndarray]:
     """(T, 3 nb) generalised forces of force number k alone, those on ground too, and its power (T,)."""
     packed = moved.packed
     alone = replace(packed, forces=[packed.forces[k]], force_markers=packed.force_markers[k : k + 1], motions=[])
+    q, v = moved.q, moved.v
+    if moved.states is not None and packed.forces[k].kind.states is not None:
+        alone = with_states(alone)
+        own = moved.states[:, own_states(packed.forces, packed.forces[k].name)]
+        q, v = widened(alone, q), widened(alone, v, own)
     loads, laws = pack_loads(alone), compiled_laws(alone, *moved.span)
-    load, power = np.zeros_like(moved.q), np.zeros(len(moved.t))
+    load, power = np.zeros_like(q), np.zeros(len(moved.t))
     none = np.zeros(0, np.int64)  # loads look at no markers
     system = packed.system.changed(moving=none, directed=none)
     approached = None
@@ -174,10 +183,10 @@ def loads_of(moved: Moved, k: int) -> tuple[np.ndarray, np.ndarray]:
         before = sum(len(force.kind.interactions(force, packed.masses)) for force in packed.forces[:k])
         approached = moved.approached[:, before : before + len(loads.interaction)]
     for at in stretches(loads, approached, len(moved.t)):
-        motion = moved.t[at], moved.q[at], moved.v[at]
+        motion = moved.t[at], q[at], v[at]
         tabulate_loads(system, loads, laws, *motion, packed.ws, load[at], power[at])
     packed.specials.check()
-    return load, power
+    return load[:, : moved.q.shape[1]], power
 
 
 def _wrench(load: np.ndarray, q: np.ndarray, b: int, point: np.ndarray) -> np.ndarray:

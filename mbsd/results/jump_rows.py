@@ -127,6 +127,7 @@ class Asked:
             work=None if work is None else work[keep],
             held=None if held is None else held[keep],
             approached=None if approached is None else approached[keep],
+            states=None if solution.states is None else solution.states[keep],
             events=tuple(events),
         )
 

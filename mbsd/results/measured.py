@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.arrays.reactions import marker_axes, marker_places
+from mbsd.arrays.reactions import marker_axes, marker_places, relative_velocity
 from mbsd.base.codes import AXIS, LINE, TURN
 from mbsd.model.force import Element
 
@@ -20,3 +20,16 @@ def measured(packed: Packed, element: Element, i: int, j: int, q: np.ndarray) ->
         return np.hypot(gap[:, 0], gap[:, 1])
     assert element.kind == AXIS, "a push measures nothing"
     return (marker_axes(packed, q, i, element.turned) * gap).sum(axis=1)
+
+
+def measured_rate(packed: Packed, element: Element, i: int, j: int, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """(T,) its rate (m/s or rad/s) along q and v (T, 3 nb)."""
+    bi, bj = packed.system.marker_body[i], packed.system.marker_body[j]
+    if element.kind == TURN:
+        return v[:, 3 * bj + 2] - v[:, 3 * bi + 2]
+    speed = relative_velocity(packed, q, v, i, j)
+    if element.kind == AXIS:
+        return (marker_axes(packed, q, i, element.turned) * speed).sum(axis=1)
+    gap = marker_places(packed, q, j) - marker_places(packed, q, i)
+    length = np.hypot(gap[:, 0], gap[:, 1])
+    return np.divide((gap * speed).sum(axis=1), length, out=np.zeros_like(length), where=length > 0.0)

@@ -30,3 +30,5 @@ class Moved:
     """(T, 3 nb)"""
     approached: np.ndarray | None = None
     """(T, n) how fast the contact of each interaction approached when it began (m/s), where one asks for it."""
+    states: np.ndarray | None = None
+    """(T, n) of all forces that carry states (SI); None: none does."""

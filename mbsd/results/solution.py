@@ -2,10 +2,11 @@
 
 sol.t                              (T,) s
 sol.body("coupler").theta          also x, y, vx, vy, omega, ax, ay, alpha
-sol.joint("B").reaction            (T, 2) force on the joint's second body; fx, fy, torque, x, y, magnitude
+sol.joint("B").reaction            (T, 2) force on the joint's second body; fx, fy, torque, x, y, place, magnitude
 sol.driver("motor").torque         also effort, force, value, rate, power
 sol.force("spring").force          (T, 2) on its second body; torque, length, rate, effort, power and more
 sol.force("gas_1").pressure        of gas, with volume, indicated_work of each cycle, mean_effective_pressure
+sol.force("boom").pressure_a       of hydraulic cylinders, with pressure_b, flows, volumes, supply_power and losses
 sol.friction("bearing").force          of joints, with normal and rate; sol.contact("floor").normal and more
 sol.point("P").x                   of traced points
 sol.energy.kinetic, .potential
@@ -30,6 +31,7 @@ from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
 from mbsd.model.event import Happening
+from mbsd.results.acting import acting
 from mbsd.results.columns import columns
 from mbsd.results.contacts import ContactView, contact_view
 from mbsd.results.energy import potential_of
@@ -91,6 +93,8 @@ class Solution(Generic[AnyModel]):
     """(T,) times (s) at which laws are evaluated: ``t``, but for rows beside a jump of a force; None: ``t``."""
     approached: np.ndarray | None = field(default=None, repr=False)
     """(T, n) how fast each contact by penalty approached when it began (m/s), where one asks for it; NaN: not yet."""
+    states: np.ndarray | None = field(default=None, repr=False)
+    """(T, n) of all forces that carry states, such as pressures (Pa), in the order of the forces; None: none does."""
     efforts: Mapping[str, np.ndarray] = field(default_factory=dict, repr=False)
     """(T,) of forces that act by these instead of by their own laws (inverse dynamics)."""
     between: Callable[[np.ndarray], Solution] | None = field(default=None, repr=False)
@@ -152,7 +156,9 @@ class Solution(Generic[AnyModel]):
         )
         span = self.span or (float(self.t[0]), float(self.t[-1]))
         times = self.t if self.law_times is None else self.law_times
-        moved = Moved(self.packed, times, flat_q, flat_v, self.lam, self.held, span, flat_a, self.approached)
+        moved = Moved(
+            self.packed, times, flat_q, flat_v, self.lam, self.held, span, flat_a, self.approached, self.states
+        )
         return force_view(moved, name, self.efforts.get(name))
 
     @property
@@ -183,7 +189,7 @@ class Solution(Generic[AnyModel]):
         marker = joints[k].j  # as solved, whatever was changed since
         place = self._frame(self.packed.body_names.index(marker.body.name), (marker.x, marker.y))
         fx, fy, torque = self.wrench[:, k].T
-        return JointView(place.x, place.y, fx, fy, torque)
+        return JointView(place.x, place.y, fx, fy, torque, acting(self.packed, self.q, self.wrench, k))
 
     def driver(self, name: str) -> DriverView:
         """Value, effort and power of a driver."""
@@ -295,7 +301,7 @@ class Solution(Generic[AnyModel]):
         rate: float | None = None,
         fps: float = 30.0,
         size: tuple[int, int] | None = None,
-        names: bool = True,
+        names: bool | str = True,
         progress: Callable[[int, int], object] | None = None,
     ) -> Animation:
         """The moving skeleton as a film, MP4 or GIF by the path's ending; traced points leave trails.
@@ -305,7 +311,8 @@ class Solution(Generic[AnyModel]):
         scale for the whole film, shown by one of a round number. ``rate``: seconds of the motion in a second of the
         film; by default real time, or a round part or multiple of it, stated in the picture, where that would be too
         short or too long to see. ``fps``: pictures a second; ``size``: pixels, (1280, 720) by default, (800, 450) of a
-        GIF. A motion that repeats (``period``) loops; others play once. ``progress`` is called with the number of
+        GIF. ``names``: True for three that matter, ``"all"``, or False. A motion that repeats (``period``) loops;
+        others play once. ``progress`` is called with the number of
         pictures drawn, and of all. Needs the extra ``animate``; raises ModelError for what cannot be drawn or written.
         """
         from mbsd.drawing.of_solution import animate

@@ -49,6 +49,15 @@ class Wrench:
 class JointView(Wrench):
     """What a joint does to its second body, at its second marker."""
 
+    acts: Wrench
+    """The same at the place where it acts: beside the marker where wheels, cams or curves touch; the torque is that
+    about this place."""
+
+    @property
+    def place(self) -> np.ndarray:
+        """(T, 2) where it acts, world (m)."""
+        return np.stack([self.acts.x, self.acts.y], axis=-1)
+
     @property
     def reaction(self) -> np.ndarray:
         """(T, 2) force on the second body, world axes (N)."""

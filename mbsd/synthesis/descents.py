@@ -31,12 +31,13 @@ def descended(
     steps: int,
     enough: float = 0.0,
     halved: tuple[int, ...] = (),
-    seen: Callable[[float], None] = lambda cost: None,
+    seen: Callable[[float, np.ndarray], None] = lambda cost, u: None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Designs (n, k) in parts of the bounds, the best first, and their costs (n,), from designs u.
 
     At the steps ``halved`` the better half goes on alone. A descent ends at a cost of ``enough``; the first that does
-    ends them all. ``seen`` is called with the best cost after each step.
+    ends them all. ``seen`` is called with the best cost and its design
+    after each step.
     """
     u = np.clip(u, 0.0, 1.0)
     missed = residuals.missed(u, fine)
@@ -61,7 +62,8 @@ def descended(
             u[ours] = tried[better]
             missed.put(ours, found.take(better))
             slopes[ours] = residuals.slopes(u[ours], missed.take(ours), fine)
-        seen(float(missed.cost.min()))
+        best = int(missed.cost.argmin())
+        seen(float(missed.cost[best]), u[best])
     order = np.argsort(missed.cost, kind="stable")
     return u[order], missed.cost[order]
 

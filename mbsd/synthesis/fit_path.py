@@ -87,6 +87,7 @@ def fit_path(
     duration: float | None = None,
     steps: int = FINE,
     progress: Callable[[float, float], object] | None = None,
+    better: Callable[[dict[str, Value], float], object] | None = None,
 ) -> PathFit:
     """Fit lengths and places of a driven mechanism, so that a traced point passes through points (N, 2) (m).
 
@@ -111,7 +112,8 @@ def fit_path(
     ``starts`` times with seeds that follow from ``seed``. Equal arguments give equal results.
     All designs are on the branch (assembly) of ``m``; mechanisms that are not made of driven bodies and dyads are swept
     one by one, a hundred times slower. ``progress`` is called with the part done (0 .. 1) and the best
-    root mean square distance (m); what it raises ends the fit.
+    root mean square distance (m), ``better`` with the values of the best design so far, by the names of ``vary``, and
+    its root mean square distance (m), whenever there is a better one; what they raise ends the fit.
 
     Raises ModelError for arguments that cannot be, SynthesisError where no design closes and meets the conditions,
     and what the mechanism's sweep raises.
@@ -136,7 +138,10 @@ def fit_path(
     if target.ordered and target.times is not None:
         raise ModelError(f"{m.name}: fit_path: with times the order of the points is theirs; leave out ordered=True")
     shifts = switch(f"{m.name}: fit_path: free_start", free_start) and target.times is not None
-    search = Search(designs, target, shifts, limit, generations, _told(progress))
+    search = Search(designs, target, shifts, limit, generations, _told("progress", progress))
+    if better is not None:
+        tell = _told("better", better)
+        search.better = lambda x, error: tell(given.values(x[: given.count]), error)
     found = search.run(starts, whole_number(f"{m.name}: fit_path: seed", seed, 0))
     if found is None:
         raise SynthesisError(_nothing(m, search, limit, grashof))
@@ -233,12 +238,12 @@ def _returns(m: Model, grid: np.ndarray) -> bool:
     return bool(abs(turns - round(turns)) < 1e-9 and turns > 0.5)
 
 
-def _told(progress: Callable[[float, float], object] | None) -> Callable[[float, float], None]:
-    if progress is None:
-        return lambda done, error: None
-    if not callable(progress):
-        raise ModelError(f"fit_path: progress is {shown(progress)}; it must be a function of two numbers")
-    return lambda done, error: (progress(done, error), None)[1]
+def _told(name: str, function: Callable[[Any, float], object] | None) -> Callable[[Any, float], None]:
+    if function is None:
+        return lambda what, error: None
+    if not callable(function):
+        raise ModelError(f"fit_path: {name} is {shown(function)}; it must be a function of two arguments")
+    return lambda what, error: (function(what, error), None)[1]
 
 
 def _nothing(m: Model, search: Search, limit: float, grashof: bool) -> str:

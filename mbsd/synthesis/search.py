@@ -21,6 +21,7 @@ from mbsd.synthesis.residuals import Residuals
 from mbsd.synthesis.target import Target
 
 if TYPE_CHECKING:
+    from scipy.optimize import OptimizeResult
     from scipy.stats.qmc import QMCEngine
 
 OPEN = 1e4
@@ -65,6 +66,8 @@ class Search:
     generations: int
     progress: Callable[[float, float], None]
     """Called with the part done (0 .. 1) and the best root mean square so far (m)."""
+    better: Callable[[np.ndarray, float], None] = lambda x, error: None
+    """Called with the best vector so far and its root mean square (m), whenever there is a better one."""
     history: list[float] = field(default_factory=list)
     """Best root mean square (m) after each generation; infinite while no design does."""
     closed: int = 0
@@ -90,7 +93,9 @@ class Search:
             ends.append(error)
             if error < worst_of:
                 best, worst_of = x, error
-                self.best = min(self.best, error)
+                if error < self.best:
+                    self.best = error
+                    self.better(x, error)
             self.progress((start + 1) / starts, self.best)
             if worst_of <= GOOD * self.target.extent:
                 break
@@ -150,10 +155,10 @@ class Search:
         costs = np.concatenate([self._cost(low + (high - low) * some) for some in np.array_split(drawn, 8)])
         order = np.argsort(costs, kind="stable")
         begun = drawn[order][_apart(drawn[order], max(2, len(drawn) // DESCENTS))]
-        self._seen(float(costs.min()), done)
+        self._seen(float(costs.min()), done, drawn[costs.argmin()])
         return descended(
             self._residuals, begun, fine=False, steps=STEPS, enough=NEAR / 100, halved=HALVED,
-            seen=lambda cost: self._seen(cost, done),
+            seen=lambda cost, u: self._seen(cost, done, u),
         )  # fmt: skip
 
     @property
@@ -176,11 +181,11 @@ class Search:
         low, high = self.bounds
         generation, begun = 0, cast(Any, first)  # scipy's types know words alone
 
-        def seen(intermediate_result: object) -> None:
+        def seen(intermediate_result: OptimizeResult) -> None:
             nonlocal generation
             generation += 1
-            cost = float(getattr(intermediate_result, "fun", np.inf))
-            self._seen(cost, (start + generation / (self.generations + 1)) / starts)
+            cost = float(intermediate_result.fun)
+            self._seen(cost, (start + generation / (self.generations + 1)) / starts, intermediate_result.x)
             if cost < NEAR:
                 raise StopIteration
 
@@ -191,9 +196,13 @@ class Search:
         )  # fmt: skip
         return result.population[np.argsort(result.population_energies, kind="stable")]
 
-    def _seen(self, cost: float, done: float) -> None:
-        if cost < 1.0:
-            self.best = min(self.best, float(np.sqrt(cost)) * self.target.extent)
+    def _seen(self, cost: float, done: float, u: np.ndarray) -> None:
+        """A design u (k,) in parts of the bounds, the best of those that were just tried."""
+        error = float(np.sqrt(cost)) * self.target.extent if cost < 1.0 else np.inf
+        if error < self.best:
+            self.best = error
+            low, high = self.bounds
+            self.better(low + (high - low) * u, error)
         self.history.append(self.best)
         self.progress(done, self.best)
 

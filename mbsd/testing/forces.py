@@ -14,6 +14,7 @@ from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
 from mbsd.arrays.packing import Packed, pack
+from mbsd.arrays.states import ones_of, widened, with_states
 from mbsd.base.codes import POTENTIAL_TERMS, PUSH
 from mbsd.equations.assembly import tabulate
 from mbsd.equations.joint_friction import tabulate_friction
@@ -81,7 +82,15 @@ def motion(packed: Packed, seed: int, count: int = 40) -> tuple[np.ndarray, np.n
 
 
 def evaluate(packed: Packed, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(T, 3 nb) loads and (T,) their power (W); friction acts under reactions by multipliers of 1, 2, 3 ..."""
+    """(T, 3 nb) loads and (T,) their power (W).
+
+    Friction acts under reactions by multipliers of 1, 2, 3 ..., forces with states under different ones of ``one``.
+    """
+    wide = with_states(packed)
+    if wide is not packed:
+        states = ones_of(wide) * packed.size * (1.0 + 0.5 * np.sin(t[:, None] + np.arange(wide.states)))
+        force, power = evaluate(wide, t, widened(wide, q), widened(wide, v, states))
+        return force[:, : q.shape[1]], power
     loads, laws = pack_loads(packed), compiled_laws(packed, 0.0, 1.0)
     force, power = np.zeros_like(q), np.zeros(len(t))
     tabulate_loads(packed.system, loads, laws, t, q, v, packed.ws, force, power)

@@ -1,21 +1,48 @@
-"""The leg as a leg: wooden thigh and shank with its foot, a crank with a chainring, seat tube and saddle."""
+"""Bones and the muscles that drive them, on an ergometer: what the leg gives goes into a flywheel."""
 
 from math import cos, radians, sin
 
 from mechanisms.automatic import automatic
 from mechanisms.bicycle_leg.mechanism import Params, build
+from shared.shapes.bicycle import FEET, ergometer
 from shared.shapes.bodies import Bodies
-from shared.shapes.leg import dress, seat
+from shared.shapes.build import eased, extruded
+from shared.shapes.leg import RING, chainring, foot, seat, smooth
+from shared.shapes.outline import Point
+from shared.shapes.solid import Solid
 from shared.shapes.units import mm
 
-PIN = 20.0
+PIN, TALL = 20.0, 7.5
+"""Diameter of the pins, and thickness of the ergometer's tubes (mm)."""
+MUSCLES: dict[str, tuple[str, tuple[Point, ...]]] = {
+    "knee_extensors": (
+        "thigh",
+        ((52, 30), (110, 62), (190, 74), (270, 62), (340, 36), (300, 27), (190, 26), (100, 26)),
+    ),
+    "knee_flexors": (
+        "thigh",
+        ((50, -32), (100, -27), (190, -27), (290, -28), (340, -36), (260, -66), (170, -78), (90, -62)),
+    ),
+    "calf": ("shank", ((252, 95), (320, 66), (396, 38), (386, 72), (332, 106), (276, 114))),
+    "shin": ("shank", ((140, -28), (210, -46), (300, -54), (370, -38), (390, -30), (300, -26), (210, -26))),
+}
+"""By name: the bone that carries each, and its outline in the frame of that bone (mm)."""
 
 
 def parts(p: Params) -> Bodies:
-    """Outlines of a leg round pins and bushings that come by themselves."""
+    """Bones are bars on pins and bushings that come by themselves; their masses are those of mechanism.py."""
     made = automatic(build(p), pin=PIN)
-    dress(made, mm(p.thigh), mm(p.shank), (mm(p.calf[0]), mm(p.calf[1])))
-    solids = made.solids()
+    made.join("shank", foot(mm(p.shank)))
+    ring, windows = chainring(*RING)
+    made.join("crank", ring, holes=windows, sharp=True)
+    for body, material in (("thigh", "pla_white"), ("shank", "pla_white"), ("crank", "aluminium")):
+        made.material(body, material)
     hip = -mm(p.hip) * cos(radians(p.slope)), mm(p.hip) * sin(radians(p.slope))
-    solids["ground"] += seat(hip)
+    made.base_under(*FEET)
+    solids = made.solids()
+    solids.dress("ground", *ergometer(hip, made.sizes.pivot.fit.seat, TALL), seat(hip)[1])
+    for name, (body, outline) in MUSCLES.items():
+        low, high = made.span(body)
+        shape = eased(extruded(smooth(outline), high - low, low), 1.5, ">Z or <Z")
+        solids.dress(body, Solid(name, shape, "aluminium_red", 0))
     return solids

@@ -1,8 +1,9 @@
-"""The parts that the model and its motion give; a valve has also a stem and a head, over a seat on the base."""
+"""The parts that the model and its motion give, and what the cam lifts: a valve in its guide, over a seat on the base.
+
+An arm that swings lifts none.
+"""
 
 from __future__ import annotations
-
-import cadquery as cq
 
 from mechanisms.automatic import automatic
 from mechanisms.cam_follower.mechanism import RETAINER, Params, build
@@ -10,11 +11,16 @@ from shared.shapes.bodies import Bodies
 from shared.shapes.build import eased
 from shared.shapes.solid import Solid
 from shared.shapes.units import mm
+from shared.shapes.workpieces import block, prism
 
 STEM, HEAD = 5.5, 34.0
 """Half widths (mm)."""
-NECK, RIM = 0.192, (24.0, 5.0)
-"""Where the head begins over the roller (m); its height along the seat, and that of its rim (mm)."""
+NECK, RIM = {"valve": 0.192}, (24.0, 5.0)
+"""Where the head begins over the roller (m), by follower; its height along the seat, and that of its rim (mm)."""
+SHORT = 0.148
+"""The same without springs, which need length (m)."""
+GUIDE = (2.0, 10.0)
+"""Where no springs are, the stem is guided: so far beyond the open follower, so thick on either side (mm)."""
 GAP = 0.4
 """Between head and seat when the valve is closed (mm)."""
 
@@ -22,30 +28,28 @@ GAP = 0.4
 def parts(p: Params) -> Bodies:
     """By body."""
     made = automatic(build(p))
+    if p.follower == "oscillating":
+        return made.solids()
+    neck, (rise, rim) = mm(NECK.get(p.follower, SHORT)), RIM
+    start = mm(p.base) + (0.0 if p.follower == "flat" else mm(p.roller))
+    made.base_under(*((side * (HEAD + 20.0), start + neck + rise + rim + mm(p.lift)) for side in (-1, 1)))
     solids = made.solids()
-    if p.follower != "valve":
-        return solids
     low, high = made.span("follower")
-    neck, (rise, rim) = mm(NECK), RIM
-    half = [(STEM, mm(RETAINER[1])), (STEM, neck), (HEAD, neck + rise), (HEAD, neck + rise + rim)]
-    valve = _plate([*half, *((-x, y) for x, y in reversed(half))], low + 1.0, high - 1.0)
-    solids["follower"].append(Solid("valve", eased(valve, 1.0), "steel", 0))
-    start = mm(p.base + p.roller)
+    seat, end = made.sizes.pivot.fit.seat, solids["follower"][0].shape.val().BoundingBox().ymax
+    begin = mm(RETAINER[1]) if p.follower == "valve" else end + seat
+    half = [(STEM, begin), (STEM, neck), (HEAD, neck + rise), (HEAD, neck + rise + rim)]
+    valve = prism([*half, *((-x, y) for x, y in reversed(half))], low + 1.0, high - 1.0)
+    solids.dress("follower", Solid("valve", eased(valve, 1.0), "steel", 0))
     foot, top = start + neck - 1.0, start + neck + rise - GAP
-    for side in (-1, 1):
+    for side, name in ((-1, "left"), (1, "right")):
         inner, outer = STEM + 1.5, HEAD + 14.0
-        slant = [
-            (inner, foot),
-            (outer, foot),
-            (outer, top),
-            (HEAD, top),
-            (inner, top - rise * (HEAD - inner) / (HEAD - STEM)),
-        ]
-        seat = _plate([(side * x, y) for x, y in slant], made.sizes.pivot.fit.seat, high)
-        solids["ground"].append(Solid(f"seat_{'left' if side < 0 else 'right'}", seat, "bronze", 0))
+        meets = top - rise * (HEAD - inner) / (HEAD - STEM)
+        slant = [(inner, foot), (outer, foot), (outer, top), (HEAD, top), (inner, meets)]
+        shape = prism([(side * x, y) for x, y in slant], seat, high)
+        solids.dress("ground", Solid(f"seat_{name}", shape, "bronze", 0))
+        if p.follower != "valve":
+            beyond, thick = GUIDE
+            ends = sorted((side * inner, side * (inner + thick)))
+            guide = block((ends[0], start + end + mm(p.lift) + beyond, ends[1], foot - 3.0), seat, high, 0.8)
+            solids.dress("ground", Solid(f"guide_{name}", guide, "brass", 0))
     return solids
-
-
-def _plate(corners: list[tuple[float, float]], low: float, high: float) -> cq.Workplane:
-    """A plate between two heights (mm)."""
-    return cq.Workplane().polyline(corners).close().extrude(high - low).translate((0, 0, low))

@@ -1,5 +1,5 @@
-"""How the cam is filmed: from high up, so that one sees the valve over its seat."""
+"""How the cam is filmed: its poster shows the valve open."""
 
-from shared.shot import Camera, Shot
+from shared.shot import Shot
 
-shot = Shot(camera=Camera(elevation=62.0))
+shot = Shot(poster=0.11)

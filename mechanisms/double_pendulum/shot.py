@@ -2,4 +2,4 @@
 
 from shared.shot import Shot, Trail
 
-shot = Shot(trails=(Trail(point="P", tail=0.3),))
+shot = Shot(look="studio", trails=(Trail(point="P", tail=0.3),))

@@ -1,9 +1,9 @@
 """How the four-bar is filmed."""
 
-from shared.shot import Camera, Shot, Trail
+from shared.shot import Shot, Trail
 
 shot = Shot(
-    camera=Camera(azimuth=-18.0, elevation=35.0, lens=55.0),
+    look="studio",
     turns=3,
     seconds_per_turn=4.0,
     fps=30,

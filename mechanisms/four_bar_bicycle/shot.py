@@ -1,9 +1,10 @@
-"""How the leg is filmed: from above, so that it is seen from its side."""
+"""How the leg is filmed: from its side; its poster shows the crank going down."""
 
-from shared.shot import Camera, Shot, Trail
+from shared.shot import Camera, Shot, Surface, Trail
 
 shot = Shot(
-    camera=Camera(azimuth=-8.0, elevation=62.0),
+    camera=Camera(azimuth=-8.0),
     trails=(Trail(point="calf"),),
+    materials={"ground/base_plate": Surface(colour=(0.62, 0.64, 0.64), finish="satin")},
     poster=0.25,
 )

@@ -3,7 +3,9 @@
 from shared.shot import Camera, Shot, Trail
 
 shot = Shot(
-    camera=Camera(azimuth=0.0, elevation=83.0, margin=0.06),
+    look="daylight",
+    mount="ground",
+    camera=Camera(azimuth=-30.0, elevation=8.0, margin=0.06),
     trails=(Trail(point="bar"),),
     turns=2,
     seconds_per_turn=3.5,

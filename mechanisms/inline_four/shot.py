@@ -1,5 +1,5 @@
-"""The film: the shaft stands upright, the liners are cut open towards the camera."""
+"""The film: the engine stands upright, its shaft level, and one looks into its liners."""
 
 from shared.shot import Camera, Shot
 
-shot = Shot(camera=Camera(azimuth=40, elevation=28))
+shot = Shot(look="studio", mount="stand", camera=Camera(azimuth=50, elevation=12))

@@ -1,5 +1,5 @@
-"""How the leg is filmed: from high up, so that leg and step read."""
+"""How the leg is filmed: its poster has the foot on its way back."""
 
-from shared.shot import Camera, Shot
+from shared.shot import Shot
 
-shot = Shot(camera=Camera(azimuth=-10.0, elevation=62.0), poster=0.55)
+shot = Shot(look="sand", poster=0.55)

@@ -21,7 +21,7 @@ class Params:
 
 def build(p: Params) -> Mechanism:
     """Stylus and pen are in line with the fixed pivot, at distances 1 : scale."""
-    m = Mechanism("pantograph")
+    m = Mechanism("pantograph", gravity=None)
     short, rest, turn = p.arm / p.scale, p.arm - p.arm / p.scale, 2 * pi / p.time
     first, second = m.bar("first", p.arm), m.bar("second", p.arm)
     low, high = m.bar("low", short), m.bar("high", rest)

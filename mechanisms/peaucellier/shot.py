@@ -1,5 +1,5 @@
-"""How Peaucellier's linkage is filmed: from high up, so that the rhombus reads."""
+"""How Peaucellier's linkage is filmed: its poster has the rhombus open."""
 
-from shared.shot import Camera, Shot
+from shared.shot import Shot
 
-shot = Shot(camera=Camera(azimuth=-12.0, elevation=62.0), poster=0.06)
+shot = Shot(look="blueprint", poster=0.06)

@@ -1,11 +1,11 @@
-"""The parts that the model and its motion give, and round the body's plate the front of a car, in millimetres."""
+"""The parts that the model and its motion give, and round the body's plate the front of a car with its driver (mm)."""
 
 from __future__ import annotations
 
 import cadquery as cq
 
 from mechanisms.automatic import automatic
-from mechanisms.quarter_car.mechanism import DURATION, Params, build
+from mechanisms.quarter_car.mechanism import Params, build
 from shared.shapes.bodies import Bodies
 from shared.shapes.build import extruded
 from shared.shapes.outline import circle
@@ -16,10 +16,10 @@ ARCH = 1.22
 """Radius of the arch over the wheel, in the wheel's."""
 SIDE = ((0.62, -0.44), (0.68, -0.36), (0.68, -0.12), (0.55, 0.02), (0.02, 0.14), (-0.26, 0.38), (-0.66, 0.38))
 """From the bumper over the bonnet to the roof (m), from the middle of the body."""
-SILL, BACK, TOP = -0.44, -0.66, 0.38
-AROUND = 0.15
-"""Of the base plate beyond the car (m)."""
+SILL, BACK = -0.44, -0.66
 WINDOW = ((-0.16, 0.16), (-0.30, 0.32), (-0.59, 0.32), (-0.59, 0.16))
+DRIVER = ((-0.41, 0.25, 0.105), (-0.46, 0.03, 0.17))
+"""Head and shoulders behind the window: x, y, radius (m). They say how large a car is."""
 LAMP = (0.59, -0.12, 0.045)
 ROUND = 28.0
 """Radius of the corners."""
@@ -28,8 +28,6 @@ ROUND = 28.0
 def parts(p: Params) -> Bodies:
     """By body."""
     made = automatic(build(p))
-    way = p.speed * DURATION
-    made.base_under((mm(BACK - AROUND), 0.0), (mm(way + SIDE[0][0] + AROUND), mm(p.radius + p.hub + TOP + AROUND)))
     low, high = made.span("body")
     solids = made.solids()
     plate = solids["body"][0]
@@ -39,7 +37,16 @@ def parts(p: Params) -> Bodies:
     lamp = extruded(circle(x, y, radius - 0.5), 0.5 * (high - low), high - 0.3 * (high - low))
     solids["body"][0] = Solid(plate.name, front, plate.material, plate.through_holes + 1)
     solids["body"].append(Solid("lamp", lamp.faces(">Z").edges().chamfer(0.1 * radius), "pla_white", 0))
+    solids.dress("body", Solid("driver", _driver(low + 0.2 * (high - low), high - 0.3 * (high - low)), "beech", 0))
     return solids
+
+
+def _driver(low: float, high: float) -> cq.Workplane:
+    """What one sees of him through the window."""
+    window = cq.Workplane().polyline([(mm(x), mm(y)) for x, y in WINDOW]).close().extrude(high - low)
+    inside = window.edges("|Z").fillet(ROUND).translate((0, 0, low))
+    head, shoulders = (extruded(circle(*(mm(value) for value in part)), high - low, low) for part in DRIVER)
+    return head.union(shoulders).intersect(inside)
 
 
 def _front(p: Params, height: float) -> cq.Workplane:

@@ -1,5 +1,5 @@
-"""How the quarter car is filmed: from high up, so that the road hides no tyre; its poster is on the bump."""
+"""How the quarter car is filmed: its poster is on the bump."""
 
-from shared.shot import Camera, Shot
+from shared.shot import Shot
 
-shot = Shot(camera=Camera(azimuth=-10.0, elevation=60.0), poster=0.33)
+shot = Shot(poster=0.33)

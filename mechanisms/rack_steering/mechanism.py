@@ -28,7 +28,7 @@ class Params:
 
 def build(p: Params) -> Mechanism:
     """Seen from above, the car drives along y; markers of the knuckles are given in the world, wheels straight."""
-    m = Mechanism("rack_steering")
+    m = Mechanism("rack_steering", gravity=None)
     pinion, rack = m.body("pinion"), m.body("rack")
     radius = p.module * p.teeth / 2
     m.prismatic("guide", m.ground.at(0, -p.behind), rack.origin)

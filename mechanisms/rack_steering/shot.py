@@ -2,4 +2,4 @@
 
 from shared.shot import Camera, Shot
 
-shot = Shot(camera=Camera(azimuth=-14.0, elevation=48.0), poster=0.2)
+shot = Shot(look="road", camera=Camera(azimuth=-14.0, elevation=48.0), poster=0.2)

@@ -2,4 +2,6 @@
 
 from shared.shot import Camera, Shot
 
-shot = Shot(camera=Camera(azimuth=-12.0, elevation=58.0), materials={"rod": "aluminium_orange"}, poster=0.09)
+shot = Shot(
+    look="blueprint", camera=Camera(azimuth=-12.0, elevation=58.0), materials={"rod": "aluminium_orange"}, poster=0.09
+)

@@ -37,6 +37,11 @@ class Job(msgspec.Struct, kw_only=True, frozen=True):
     flat: dict[str, tuple[float, float, float]] | None = None
     """Only these pieces (``body/piece``), as flat linear colours on black, sharp, without a view transform."""
 
+    @property
+    def drawn(self) -> bool:
+        """Whether the look draws lines instead of light."""
+        return self.scene.studio.look.drawing is not None and self.flat is None
+
 
 class Answer(msgspec.Struct, kw_only=True, frozen=True, omit_defaults=True):
     """One line from the Blender process: the device once, what it does, a line per picture; or an error."""

@@ -1,76 +1,145 @@
-"""The camera of a film: it stands where it holds all that is filmed, or swings about its middle."""
+"""The camera of a film: it stands where the machine fills the picture, swings about its middle, or goes along."""
 
 from __future__ import annotations
 
 import math
 from functools import cached_property
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from render.film.clock import Clock
-from render.film.framing import CameraPose, axes, depth_of_field, fit, half_width, lifted, orbit
+from render.film.composing.filling import View, held, outermost
+from render.film.framing import CameraPose, Empty, axes, depth_of_field, half_field, in_studio, in_world, lifted, orbit
 from render.film.scene import Point
+from render.presets import ASPECT
+from shared.contract.mount import Mount
 from shared.contract.shot import Camera
 
 Array = NDArray[np.float64]
+LYING, STANDING = (-16.0, 42.0), (-24.0, 10.0)
+"""Azimuth and elevation (degrees) where a shot says none: of what lies on a desk, and, at eye level, of what stands."""
+TALL = 9 / 16
+LYING_TALL, STANDING_TALL = (-6.0, 15.0), (-12.0, 2.0)
+"""What is added to these in a picture that is 9:16, and in part in those between: from higher up what lies is taller,
+and from farther aside what stands is narrower."""
+
+
+def angles(shot: Camera, mount: Mount, aspect: float = ASPECT) -> tuple[float, float]:
+    """Azimuth and elevation (rad) of the camera; what the shot does not say follows from how the machine stands, and
+    from the ``aspect`` of the picture.
+    """
+    lies = mount.kind == "desk"
+    part = min(max((ASPECT - aspect) / (ASPECT - TALL), 0.0), 1.0)
+    usual, more = (LYING, LYING_TALL) if lies else (STANDING, STANDING_TALL)
+    azimuth, elevation = (value + part * added for value, added in zip(usual, more, strict=True))
+    azimuth = azimuth if shot.azimuth is None else shot.azimuth
+    elevation = elevation if shot.elevation is None else shot.elevation
+    return math.radians(azimuth), math.radians(elevation)
+
+
+class Subject:
+    """What a film is about, in points (n, 3) of the world (m)."""
+
+    def __init__(self, machine: Array, around: Array, drawn: Array, sharp: Array, way: Array | None = None) -> None:
+        """All of the ``machine`` over the motion, what stands ``around`` it, arrows that are ``drawn`` about it, and
+        what is ``sharp``. Where it is followed, ``way`` (frames, 3) is where it is, and points are as seen from there.
+        """
+        self.machine, self.around, self.drawn, self.sharp, self.way = machine, around, drawn, sharp, way
+        self.few = outermost(machine)
 
 
 class FilmCamera:
-    """The camera of a shot; ``filmed`` (n, 3) is what it holds, ``sharp`` (m, 3) what is in focus (m)."""
+    """The camera of a shot, for pictures of an ``aspect``."""
 
-    def __init__(self, shot: Camera, clock: Clock, filmed: Array, sharp: Array, above: float = 0.0) -> None:
-        """``above`` is the part of the picture's height that stays empty at its top beside the margin."""
-        self.shot, self.clock, self.filmed, self.sharp, self.above = shot, clock, filmed, sharp, above
+    def __init__(
+        self,
+        shot: Camera,
+        mount: Mount,
+        clock: Clock,
+        subject: Subject,
+        aspect: float = ASPECT,
+        empty: Empty = (0.0, 0.0),
+    ) -> None:
+        """``empty`` are the parts of the picture's height that stay empty at its top and bottom beside the margin."""
+        self.shot, self.clock, self.empty, self.up, self.aspect = shot, clock, empty, mount.up, aspect
+        self.azimuth, self.elevation = angles(shot, mount, aspect)
+        self.machine, self.around, self.drawn, self.sharp = (
+            in_studio(points, self.up) for points in (subject.machine, subject.around, subject.drawn, subject.sharp)
+        )
+        self.few = in_studio(subject.few, self.up)
+        self.way = None if subject.way is None else in_studio(subject.way, self.up)
 
     def pose(self, frame: int) -> CameraPose:
-        """At a frame: it stands still, or swings about the middle once in each showing of the motion."""
+        """At a frame: it stands still, swings about the middle once in each showing of the motion, or goes along."""
         swing = math.radians(self.shot.orbit)
+        azimuth = self.azimuth + swing * math.sin(math.tau * self.clock.phase(frame))
+        at = np.zeros(3) if self.way is None else self.way[frame % self.clock.frames]
         if not swing:
+            return self._moved(at)
+        return self._posed(azimuth, at)
+
+    def looks(self) -> list[CameraPose]:
+        """Some of its poses that say where things are in the picture, of what is followed as it stands at the start of
+        its way.
+        """
+        if not self.shot.orbit:
+            return [self._still]
+        swing = math.radians(self.shot.orbit)
+        return [self._posed(self.azimuth + swing * part, np.zeros(3)) for part in np.linspace(-1, 1, 5)]
+
+    def _moved(self, by: Array) -> CameraPose:
+        """As it stands, moved by (3,) m of the studio: what is in focus is measured once, not a frame."""
+        if not by.any():
             return self._still
-        return self._posed(math.radians(self.shot.azimuth) + swing * math.sin(math.tau * self.clock.phase(frame)))
+        position = np.array(self._still.position) + in_world(by, self.up)
+        return msgspec.structs.replace(self._still, position=point(position))
 
     @cached_property
     def _still(self) -> CameraPose:
-        """Of a camera that does not swing: what is in focus is measured once, not a frame."""
-        return self._posed(math.radians(self.shot.azimuth))
+        """Of a camera that does not swing, where its way begins to count."""
+        return self._posed(self.azimuth, np.zeros(3))
 
-    def _posed(self, azimuth: float) -> CameraPose:
-        """At an azimuth (rad), where the shot has its own or swings about the middle."""
-        elevation = math.radians(self.shot.elevation)
+    def _posed(self, azimuth: float, by: Array) -> CameraPose:
+        """At an azimuth (rad), where the shot has its own or swings about the middle, moved by (3,) m."""
+        elevation = self.elevation
         position, target, distance = self._stand
         if self.shot.orbit:
             _, up, forward = axes(azimuth, elevation)
-            position = (
-                target - forward * distance + up * lifted(self.shot.lens, self.shot.margin, self.above) * distance
-            )
+            higher = lifted(self.shot.lens, self.shot.margin, self.empty, self.aspect) * distance
+            position = target - forward * distance + up * higher
         depths = (self.sharp - position) @ axes(azimuth, elevation)[2]
         near, far = float(depths.min()), float(depths.max())
         focus, fstop = depth_of_field(near, far, self.shot.lens, self.shot.blur)
         return CameraPose(
-            position=point(position),
+            position=point(in_world(position + by, self.up)),
             azimuth=azimuth,
             elevation=elevation,
             lens=self.shot.lens,
             focus=focus,
             fstop=fstop,
+            up=self.up,
         )
 
     @property
     def width(self) -> float:
         """Of the picture where the machine is (m)."""
-        return 2 * half_width(self.shot.lens) * self._stand[2]
+        return 2 * half_field(self.shot.lens, self.aspect)[0] * self._stand[2]
 
     @cached_property
     def _stand(self) -> tuple[Array, Array, float]:
-        """Camera position, the point it looks at, and their distance."""
-        elevation, azimuth = math.radians(self.shot.elevation), math.radians(self.shot.azimuth)
-        above = 0.0 if self.shot.orbit else self.above
-        position, distance = fit(self.filmed, azimuth, elevation, self.shot.lens, self.shot.margin, above)
-        target = position + axes(azimuth, elevation)[2] * distance
+        """Camera position, the point it looks at, and their distance, in the axes of the studio."""
+        empty = (0.0, 0.0) if self.shot.orbit else self.empty
+        view = View(self.azimuth, self.elevation, self.shot.lens, self.shot.margin, empty, self.aspect)
+        filmed = held(view, self.machine, self.around, self.drawn, self.few)
+        position, distance = view.stand(filmed)
+        target = position + axes(self.azimuth, self.elevation)[2] * distance
         if self.shot.orbit:
-            swing = azimuth + math.radians(self.shot.orbit) * np.linspace(-1, 1, 9)
-            distance = orbit(self.filmed, target, swing, elevation, self.shot.lens, self.shot.margin, self.above)
+            swing = self.azimuth + math.radians(self.shot.orbit) * np.linspace(-1, 1, 9)
+            distance = orbit(
+                filmed, target, swing, self.elevation, self.shot.lens, self.shot.margin, self.empty, self.aspect
+            )
         return position, target, distance
 
 

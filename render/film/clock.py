@@ -110,7 +110,7 @@ def turns_of(motion: Motion) -> int:
     turns = [
         round(abs(driver.value[-1] - driver.value[0]) / math.tau)
         for driver in motion.drivers.values()
-        if "angle" in driver.kind
+        if driver.unit == "rad"
     ]
     return min((count for count in turns if count), default=1)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
 
@@ -14,23 +14,29 @@ from render.film.arrows.arcs import Arcs
 from render.film.arrows.arrows import Arrows
 from render.film.arrows.torques import rounding, torques
 from render.film.arrows.vectors import vectors
-from render.film.camera import FilmCamera, point
+from render.film.camera import FilmCamera, Subject, angles, point
 from render.film.clock import Clock
-from render.film.framing import CameraPose
+from render.film.composing import following, layout, room
+from render.film.composing.layout import Box
+from render.film.framing import CameraPose, axes, in_studio
 from render.film.heights import Heights, trail_heights
 from render.film.pieces import piece_specs, refuse_mismatch
 from render.film.poses import Poses
 from render.film.rolling.rollers import Rollers
-from render.film.scene import LabelSpec, Scene, State, StudioSpec, Writing
+from render.film.scene import Card, LabelSpec, LegendRow, LineSpec, Scene, State, StudioSpec, Writing
 from render.film.swept import SweptSpace
 from render.film.tubes.belts import Belt, belts
 from render.film.tubes.spirals import Spiral, spirals
 from render.film.tubes.stretched import Stretched, stretched
 from render.film.tubes.trails import Trails, trails_of
+from render.looks.chosen import look_of
+from render.presets import ASPECT
 from shared.contract import Held, Motion, Parts
 from shared.contract.shot import Names, Shot, refuse_unknown
 
 Array = NDArray[np.float64]
+MANY = 20_000
+"""About so many points of what moves are looked for under words."""
 LOOKED = 60
 """Frames in which springs and ropes are looked at for the camera."""
 
@@ -38,41 +44,54 @@ LOOKED = 60
 class Film:
     """Everything the film shows, without a picture yet."""
 
-    def __init__(self, motion: Motion, parts: Parts, shot: Shot, folder: Path) -> None:
-        """``folder`` holds the STL files. Raises UserError if names, bodies or files do not fit together."""
-        self.motion, self.parts, self.shot, self.folder = motion, parts, shot, folder
+    def __init__(self, motion: Motion, parts: Parts, shot: Shot, folder: Path, aspect: float = ASPECT) -> None:
+        """``folder`` holds the STL files; pictures have that ``aspect``, width over height. Raises UserError if names,
+        bodies or files do not fit together.
+        """
+        self.motion, self.parts, self.shot, self.folder, self.aspect = motion, parts, shot, folder, aspect
         self.poses = Poses(motion)
         self.clock = Clock(motion, shot)
         refuse_unknown(shot, Names.of(motion, parts))
         refuse_mismatch(motion, parts, folder)
         paths = trail_heights(motion, parts, trails_of(motion, shot))
         self.space = SweptSpace(self.poses, parts, folder, paths)
-        self.trails = Trails(self.poses, self.clock, shot, paths, self.space.size)
+        self.trails = Trails(self.poses, self.clock, shot, paths, self.size)
         self.rollers = Rollers(self.poses, parts)
         self.heights = Heights(self.poses, parts, self.space, self.clock)
         self.number = writing.number(motion, shot)
+        self.look = look_of(shot, motion, parts.mount, self.space.size)
 
     @cached_property
     def scene(self) -> Scene:
         """The scene in plain data."""
-        size = self.space.size
         return Scene(
             mechanism=self.motion.mechanism,
             fps=self.shot.fps,
             pieces=piece_specs(self.parts, self.shot, self.folder),
             trails=self.trails.specs(),
-            labels=[LabelSpec(text=s.text, size=s.size * size, colour=s.colour) for s in self.shot.labels],
-            studio=StudioSpec(
-                look=self.shot.look,
-                centre=point(self.space.middle),
-                radius=size / 2,
-                floor=float(self.space.all[:, 2].min()),
-                azimuth=math.radians(self.shot.camera.azimuth),
-            ),
+            labels=[LabelSpec(text=s.text, size=s.size * self.size, colour=s.colour) for s in self.shot.labels],
+            studio=self.studio,
             tubes=[spec for one in self.drawn for spec in one.specs],
             arrows=self.arrows.specs(),
             arcs=self.arcs.specs(),
             writing=self._writing(),
+        )
+
+    @cached_property
+    def studio(self) -> StudioSpec:
+        """What stands around the machine."""
+        up, azimuth = self.parts.mount.up, angles(self.shot.camera, self.parts.mount, self.aspect)[0]
+        middle, points = in_studio(self.space.middle, up), in_studio(self.space.all, up)
+        right, away = np.abs((points - middle) @ axes(azimuth, 0.0)[::2].T).max(axis=0)
+        return StudioSpec(
+            look=self.look,
+            centre=point(middle),
+            radius=self.space.size / 2,
+            floor=float(points[:, 2].min()),
+            azimuth=azimuth,
+            reach=(float(right), float(away)),
+            wall=float(points[:, 1].max()) if self.parts.mount.kind == "wall" else None,
+            up=up,
         )
 
     def state(self, frame: int) -> State:
@@ -95,16 +114,24 @@ class Film:
         return self._camera.pose(frame)
 
     @cached_property
+    def overview(self) -> CameraPose:
+        """A camera at the start that holds the machine over the whole motion, also where the film follows it."""
+        if self._way is None:
+            return self.camera(0)
+        subject = Subject(self.space.machine, self.space.around, np.zeros((0, 3)), self.space.machine)
+        return FilmCamera(self.shot.camera, self.parts.mount, self.clock, subject, self.aspect).pose(0)
+
+    @cached_property
     def arrows(self) -> Arrows:
         """The straight arrows that the shot shows."""
-        return Arrows(self.poses.time, vectors(self.motion, self.shot.show), self.space.size)
+        return Arrows(self.poses.time, vectors(self.motion, self.shot.show), self.size)
 
     @cached_property
     def arcs(self) -> Arcs:
         """The curved ones."""
         forces = vectors(self.motion, ("forces", "reactions"))
-        least = rounding(forces, self.space.size)
-        return Arcs(self.poses.time, torques(self.motion, self.shot.show), self.space.size, least)
+        least = rounding(forces, self.size)
+        return Arcs(self.poses.time, torques(self.motion, self.shot.show), self.size, least)
 
     @cached_property
     def drawn(self) -> list[Stretched | Spiral | Belt]:
@@ -114,7 +141,7 @@ class Film:
     @cached_property
     def stretched(self) -> list[Stretched]:
         """Springs, dampers and ropes."""
-        return list(stretched(self.motion, self.space.size, self.heights.spring, self._held))
+        return list(stretched(self.motion, self.size, self.heights.spring, self._held))
 
     @cached_property
     def belts(self) -> list[Belt]:
@@ -130,7 +157,7 @@ class Film:
     @cached_property
     def spirals(self) -> list[Spiral]:
         """Torsion springs."""
-        return list(spirals(self.motion, self.space.size, self.heights.site))
+        return list(spirals(self.motion, self.size, self.heights.site))
 
     @cached_property
     def _arrow_heights(self) -> tuple[list[float], list[float]]:
@@ -142,58 +169,130 @@ class Film:
         return straight, curved
 
     @cached_property
-    def _drawn(self) -> list[Array]:
-        """Points (n, 3) around all arrows, over the whole motion (m)."""
+    def size(self) -> float:
+        """Diagonal (m) of the box around what is filmed: everything, or, of what is followed, what is seen of it."""
+        if self._way is None:
+            return self.space.size
+        return float(np.linalg.norm(np.ptp(self._followed, axis=0)))
+
+    @cached_property
+    def _way(self) -> Array | None:
+        """Where the camera goes (frames, 3) in the world (m), if it follows the machine."""
+        clock, follow = self.clock, self.shot.camera.follow
+        if follow is False:
+            return None
+        places = self._places
+        if not places.shape[1] or not (follow or following.travels(places, clock.repeats)):
+            return None
+        return following.way(places, clock.frames, self.shot.fps, clock.repeats)
+
+    @cached_property
+    def _times(self) -> Array:
+        """Of the frames in which the motion goes on, and of its end where it is held (s)."""
+        frames = range(min(self.clock.frames, self.clock.moving + 1))
+        return np.array([self.clock.moment(frame).time for frame in frames])
+
+    @cached_property
+    def _places(self) -> Array:
+        """Points (frames, n, 3) of what moves, while the motion goes on."""
+        return self.space.places(self._times)
+
+    @cached_property
+    def _followed(self) -> Array:
+        """The machine (n, 3) as seen from the way of the camera."""
+        assert self._way is not None
+        return (self._places - self._way[: len(self._times), None]).reshape(-1, 3)
+
+    @cached_property
+    def _tubes(self) -> Array:
+        """Points (n, 3) of springs, ropes and belts, over the whole motion, as seen from the way of the camera."""
+        frames = range(0, self.clock.frames, max(1, self.clock.frames // LOOKED))
+        found = [np.zeros((0, 3))]
+        for frame in frames:
+            at, here = self.clock.moment(frame), 0.0 if self._way is None else self._way[frame]
+            found += [np.asarray(path) - here for one in self.drawn for path in one.paths(self.poses, at)]
+        return np.concatenate(found)
+
+    @cached_property
+    def _drawn(self) -> Array:
+        """Points (n, 3) around all arrows, over the whole motion (m), as seen from the way of the camera."""
         straight, curved = self._arrow_heights
-        return [*self.arrows.tips(straight), *self.arcs.rims(curved)]
+        way = None
+        if self._way is not None:
+            ways = self._way[: len(self._times)].T
+            way = np.stack([np.interp(self.poses.time, self._times, one) for one in ways], axis=1)
+        found = [*self.arrows.tips(straight, way), *self.arcs.rims(curved, way)]
+        return np.concatenate(found) if found else np.zeros((0, 3))
+
+    @cached_property
+    def _subject(self) -> Subject:
+        """What is filmed."""
+        if self._way is None:
+            machine = np.concatenate([self.space.machine, self._tubes])
+            return Subject(machine, self.space.around, self._drawn, machine)
+        machine = np.concatenate([self._followed, self._tubes])
+        return Subject(machine, np.zeros((0, 3)), self._drawn, machine, self._way)
 
     @cached_property
     def _camera(self) -> FilmCamera:
-        """It holds everything that is seen."""
-        frames = range(0, self.clock.frames, max(1, self.clock.frames // LOOKED))
-        moments = [self.clock.moment(frame) for frame in frames]
-        paths = [path for one in self.drawn for at in moments for path in one.paths(self.poses, at)]
-        filmed = np.concatenate([self.space.all, *self._drawn, *map(np.asarray, paths)])
-        camera = FilmCamera(self.shot.camera, self.clock, filmed, self.space.moving)
-        for above in writing.ABOVE:
-            if self._is_readable(camera):
+        """It is as near as what is written over the picture lets it be."""
+        camera = self._camera_with(0.0, 0.0)
+        above = 0.0
+        for above in room.PARTS:
+            camera = self._camera_with(above, 0.0)
+            if room.is_free(camera.looks(), self._seen_moving, self._over, self.aspect):
                 break
-            camera = FilmCamera(self.shot.camera, self.clock, filmed, self.space.moving, above)
+        for below in room.PARTS:
+            camera = self._camera_with(above, below)
+            if self._has_a_free_corner(camera):
+                break
         return camera
 
-    def _is_readable(self, camera: FilmCamera) -> bool:
-        """Whether nothing moves under the title, and some corner is free for a legend."""
-        title = writing.extent(self._said) if self._said[0] else (0.0, 0.0)
-        words = (0.0, 0.0, *title)
-        rows = [*self.arrows.legend(camera.width), *self.arcs.legend()]
-        places = writing.card(rows, title).values() if rows else ()
-        frames = range(0, self.clock.frames, max(1, self.clock.frames // 8)) if self.shot.camera.orbit else range(1)
-        poses = [camera.pose(frame) for frame in frames]
-        moving = self._seen_moving
-        if title[0] and any(writing.held(pose, moving, words) for pose in poses):
-            return False
-        return not places or any(not any(writing.held(pose, moving, place) for pose in poses) for place in places)
+    def _has_a_free_corner(self, camera: FilmCamera) -> bool:
+        """Whether nothing moves where the legend may be."""
+        places = self._places_of(layout.cards(self._legend(camera), self._words, self.aspect)).values()
+        looks, moving = camera.looks(), self._seen_moving
+        return not places or any(room.is_free(looks, moving, place, self.aspect) for place in places)
+
+    def _camera_with(self, above: float, below: float) -> FilmCamera:
+        empty = above, below
+        return FilmCamera(self.shot.camera, self.parts.mount, self.clock, self._subject, self.aspect, empty)
+
+    def _legend(self, camera: FilmCamera) -> list[LegendRow]:
+        return [*self.arrows.legend(camera.width), *self.arcs.legend()]
+
+    def _places_of(self, cards: Mapping[str, Card]) -> dict[str, Box]:
+        return {corner: layout.in_picture(layout.around(card), self.aspect) for corner, card in cards.items()}
 
     @cached_property
-    def _said(self) -> tuple[str, str, str]:
-        """Title, number and rate at the start."""
-        return (
-            writing.title(self.motion, self.shot),
-            self.number(0.0),
-            writing.rate(self.clock, self.shot),
-        )
+    def _lines(self) -> list[LineSpec]:
+        """What is written at the upper left."""
+        numbers = sorted({self.number(float(time)) for time in self._times} - {""})
+        title, rate = writing.title(self.motion, self.shot), writing.rate(self.clock, self.shot)
+        return layout.lines(title, numbers, rate, self.aspect)
+
+    @cached_property
+    def _words(self) -> Box:
+        return layout.box_of(self._lines)
+
+    @cached_property
+    def _over(self) -> Box:
+        """The place of the words, in parts of the picture, of which what moves keeps clear; a rate alone is small."""
+        box = self._words if self.shot.title is not None else layout.box_of([])
+        return layout.in_picture(box, self.aspect)
 
     @cached_property
     def _seen_moving(self) -> Array:
-        """Points (n, 3) of what moves, and around all arrows (m)."""
-        return np.concatenate([self.space.moving, *self._drawn])
+        """Points (n, 3) of what moves, and around all arrows (m), as seen from the way of the camera."""
+        machine = self._subject.machine
+        return np.concatenate([machine[:: max(1, len(machine) // MANY)], self._drawn])
 
     def _writing(self) -> Writing:
-        legend = [*self.arrows.legend(self._camera.width), *self.arcs.legend()]
-        places = writing.card(legend, writing.extent(self._said))
-        return Writing(
-            legend=legend,
-            corner=writing.emptiest(self.camera(0), self._seen_moving, self.space.standing, places),
-            title=writing.title(self.motion, self.shot),
-            rate=writing.rate(self.clock, self.shot),
-        )
+        legend = self._legend(self._camera)
+        cards = layout.cards(legend, self._words, self.aspect)
+        card, looks = None, self._camera.looks()
+        if cards:
+            standing = self.space.standing if self._way is None else np.zeros((0, 3))
+            places = self._places_of(cards)
+            card = cards[room.emptiest(looks, self._seen_moving, standing, places, self.aspect)]
+        return Writing(lines=self._lines, legend=legend, card=card, on_bright=not self.look.dark)

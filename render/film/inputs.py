@@ -6,7 +6,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from render.presets import Preset
+from render.presets import ASPECT, Preset
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash
 from shared.stage.memory import recalled
@@ -16,7 +16,7 @@ from shared.stage.stages import contract_sources, key_of
 if TYPE_CHECKING:
     from render.film.film import Film
 
-SHARED = ("belt_path", "belt_section", "materials", "shot", "spanning")
+SHARED = ("belt_path", "belt_section", "materials", "quantity", "shot", "signals", "spanning")
 """Files of shared/contract/, beside those of motion and parts, that decide what is seen."""
 STAGE_OF = {"motion": "solve", "parts": "parts", "shot": "run"}
 
@@ -37,8 +37,12 @@ def stage_key(out: Out, preset: Preset, *more: object) -> str:
     return key_of(out.motion, out.parts, out.shot, picture_sources(), preset, blender_version(), *more)
 
 
-def named(path: Path, show: str) -> Path:
-    """The path of a picture that shows what SHOW asks for: ``poster-forces-title.png`` beside ``poster.png``."""
+def named(path: Path, show: str, suffix: str = "") -> Path:
+    """The path of a picture that shows what SHOW asks for: ``poster-forces-title.png`` beside ``poster.png``.
+
+    ``suffix`` is that of a preset in another aspect, where the path has not the preset's name: ``poster-9x16.png``.
+    """
+    path = path.with_stem(path.stem + suffix)
     return path.with_stem("-".join([path.stem, *show.split(",")])) if show else path
 
 
@@ -53,7 +57,7 @@ def encoder_version() -> str:
 def picture_sources() -> str:
     """Hash of the sources that make pictures; the plots are not among them."""
     room = Path(__file__).parents[1]
-    rooms = [room / name for name in ("presets.py", "film", "frames", "blender")]
+    rooms = [room / name for name in ("presets.py", "letters.py", "looks", "film", "frames", "blender")]
     return sources_hash(*rooms, *contract_sources(*SHARED))
 
 
@@ -65,8 +69,10 @@ def blender_version() -> str:
         raise UserError("bpy (Blender as a module) is not installed; run make install") from None
 
 
-def read_film(out: Out, show: str = "") -> Film:
-    """Read and check data.json, parts.json and shot.json; ``show`` is what SHOW asks for instead of the shot."""
+def read_film(out: Out, show: str = "", aspect: float = ASPECT) -> Film:
+    """Read and check data.json, parts.json and shot.json; ``show`` is what SHOW asks for instead of the shot, and the
+    film is framed for pictures of that ``aspect``, width over height.
+    """
     from render.film.film import Film
     from shared.contract import read_motion, read_parts
     from shared.contract.shot import read_shot, shown
@@ -75,4 +81,4 @@ def read_film(out: Out, show: str = "") -> Film:
     refuse_missing(out)
     shot = shown(read_shot(out.shot), show)
     parts = read_parts(out.parts, out.name)
-    return Film(with_rods(read_motion(out.motion, out.name), parts), parts, shot, out.parts_folder)
+    return Film(with_rods(read_motion(out.motion, out.name), parts), parts, shot, out.parts_folder, aspect)

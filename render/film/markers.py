@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
-from shared.contract import Motion
+from shared.contract import BodyMotion, Motion
 
 Array = NDArray[np.float64]
 
@@ -20,3 +22,9 @@ def moved(motion: Motion, body: str, marker: tuple[float, float, float]) -> tupl
     theta = np.asarray(one.theta)
     c, s = np.cos(theta), np.sin(theta)
     return np.stack([np.asarray(one.x) + c * x - s * y, np.asarray(one.y) + s * x + c * y], axis=1), theta + turn
+
+
+def local_place(body: BodyMotion, x: float, y: float) -> tuple[float, float]:
+    """A place of the world at the first time, in the body's frame (m)."""
+    dx, dy, c, s = x - body.x[0], y - body.y[0], math.cos(body.theta[0]), math.sin(body.theta[0])
+    return c * dx + s * dy, c * dy - s * dx

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+import msgspec
+
 from render.film.scene import PieceSpec, SurfaceSpec
 from shared.contract import Motion, Parts, Piece
 from shared.contract.materials import MATERIALS
@@ -12,6 +14,11 @@ from shared.contract.shot import Shot, Surface
 from shared.stage.errors import UserError
 from shared.stage.files import file_hash
 from shared.stage.suggestions import did_you_mean
+
+COLOURED, KEPT = 0.05, 0.06
+"""Difference of linear RGB from which on a surface is coloured, and the part of its own colour that it keeps."""
+GREY, DARKEST = 0.9, 0.14
+"""What a coloured surface is beside arrows, in its lightness, and that at least."""
 
 
 def piece_specs(parts: Parts, shot: Shot, folder: Path) -> list[PieceSpec]:
@@ -58,6 +65,19 @@ def _pieces(parts: Parts) -> Iterator[tuple[str, str, Piece]]:
 
 
 def _surface(mechanism: str, shot: Shot, body: str, name: str, piece: Piece) -> SurfaceSpec:
+    chosen = _chosen(mechanism, shot, body, name, piece)
+    return neutral(chosen) if shot.show else chosen
+
+
+def neutral(surface: SurfaceSpec) -> SurfaceSpec:
+    """The surface as grey as it is light: beside arrows no body has a colour, signal colours belong to quantities."""
+    light = sum(part * one for part, one in zip((0.2126, 0.7152, 0.0722), surface.colour, strict=True))
+    grey = GREY * max(light, DARKEST) if max(surface.colour) - min(surface.colour) > COLOURED else light
+    red, green, blue = (KEPT * one + (1 - KEPT) * grey for one in surface.colour)
+    return msgspec.structs.replace(surface, colour=(red, green, blue))
+
+
+def _chosen(mechanism: str, shot: Shot, body: str, name: str, piece: Piece) -> SurfaceSpec:
     chosen = shot.materials.get(f"{body}/{name}", shot.materials.get(body, piece.material))
     if isinstance(chosen, Surface):
         return SurfaceSpec(colour=chosen.colour, finish=chosen.finish, roughness=chosen.roughness)

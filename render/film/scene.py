@@ -8,6 +8,9 @@ from __future__ import annotations
 import msgspec
 
 from render.film.framing import CameraPose
+from render.looks.look import Look
+from shared.contract.mount import Z
+from shared.contract.signals import Head
 
 Colour = tuple[float, float, float]
 Point = tuple[float, float, float]
@@ -73,6 +76,7 @@ class ArrowSpec(msgspec.Struct, kw_only=True, frozen=True):
     shaft: float
     head: float
     point: float
+    tip: Head = "solid"
 
 
 class ArcSpec(msgspec.Struct, kw_only=True, frozen=True):
@@ -99,35 +103,70 @@ class LegendRow(msgspec.Struct, kw_only=True, frozen=True):
     length: float = 0.0
     point: float = 0.0
     sweep: float = 0.0
+    tip: Head = "solid"
 
 
-EDGE = 0.026
-"""Of what is written, from the picture's edges, as a part of its width."""
-SIZES = 1 / 16, 1 / 23, 1 / 27
-"""Heights of the letters of title, number and rate, as parts of the picture's height."""
-LEGEND = 1 / 25
-"""Height of the letters of the legend, as a part of the picture's height."""
-LINE = 1.4
-"""From one line to the next, in heights of letters."""
+ARC = 0.6
+"""Radius of an arc of the legend, in heights of its letters."""
+
+
+class LineSpec(msgspec.Struct, kw_only=True, frozen=True):
+    """A line of words; without words that of the number, which is in every State. Its upper left corner, its width and
+    the height of its letters are in parts of the picture's shorter side.
+    """
+
+    words: str
+    x: float
+    y: float
+    width: float
+    size: float
+    bold: bool = False
+    quiet: bool = False
+
+
+class Card(msgspec.Struct, kw_only=True, frozen=True):
+    """The card of a legend, in parts of the picture's shorter side: its upper left corner, width and height, the height
+    of its letters; from its edges the first row, the end of the arrows, the start of numbers and of words; and from row
+    to row.
+    """
+
+    left: float
+    top: float
+    wide: float
+    high: float
+    size: float
+    pad: float
+    row: float
+    arrows: float
+    numbers: float
+    words: float
 
 
 class Writing(msgspec.Struct, kw_only=True, frozen=True):
-    """What is written over the picture: a legend in a corner, a title at the upper left, the rate of time."""
+    """What is written over the picture: lines at the upper left, a legend on its card."""
 
+    lines: list[LineSpec] = []
     legend: list[LegendRow] = []
-    corner: str = "lower left"
-    title: str = ""
-    rate: str = ""
+    card: Card | None = None
+    on_bright: bool = False
+    """Lines are dark on what is bright, instead of bright on what is dark."""
 
 
 class StudioSpec(msgspec.Struct, kw_only=True, frozen=True):
-    """Backdrop and lights, sized by the swept motion: its middle, its radius, the floor's height."""
+    """Backdrop and lights, sized by the swept motion: its middle, its radius, the floor's height, in the studio's axes
+    (right, away, up); ``up`` is the unit vector of the world that points up.
+    """
 
-    look: str
+    look: Look
     centre: Point
     radius: float
     floor: float
     azimuth: float
+    reach: tuple[float, float] = (0.0, 0.0)
+    """How far everything reaches from the middle, to right and left and away, as the camera stands (m)."""
+    wall: float | None = None
+    """How far away, in the studio's axes, the wall is at which the machine hangs; null where it does not."""
+    up: Point = Z
 
 
 class Scene(msgspec.Struct, kw_only=True, frozen=True):

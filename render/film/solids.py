@@ -12,8 +12,8 @@ from shared.stage.errors import UserError
 Array = NDArray[np.float64]
 MILLIMETRE = 0.001
 """STL files are in millimetres, everything else here is in metres."""
-DIRECTIONS = 24
-"""In the plane, in which points are looked for that are outermost."""
+DIRECTIONS, LEANS = 72, (-2.0, -1.0, -0.4, 0.0, 0.4, 1.0, 2.0)
+"""In the plane, and how steeply up, in which points are looked for that are outermost."""
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
@@ -39,9 +39,12 @@ def prism(vertices: Array) -> Array:
 
 
 def outermost(points: Array) -> Array:
-    """Those of points (n, 3) that are farthest in some direction: within a hundredth of their size, all are inside."""
+    """Those of points (n, 3) that are farthest in some direction: within two thousandths of their size, if they are
+    longer in the plane than high, all are inside.
+    """
     angles = np.linspace(0.0, 2 * np.pi, DIRECTIONS, endpoint=False)
-    ways = np.array([(np.cos(angle), np.sin(angle), lean) for angle in angles for lean in (-1.0, 0.0, 1.0)])
+    ways = np.array([(np.cos(angle), np.sin(angle), lean) for angle in angles for lean in LEANS])
+    ways = np.concatenate([ways, [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0)]])
     return points[np.unique((points @ ways.T).argmax(axis=0))]
 
 

@@ -18,10 +18,6 @@ from shared.contract import Parts
 Array = NDArray[np.float64]
 SAMPLES, MOST = 120, 1200
 """Poses over the motion from which the swept space is taken: of a turn or a second, and of the whole at most."""
-MANY = 5_000_000
-"""Of more points than this, those are taken that are outermost in each body: a chain of a hundred links has forty
-million.
-"""
 
 
 class SweptSpace:
@@ -44,6 +40,28 @@ class SweptSpace:
         """What moves, trails with it; everything if nothing does."""
         bodies = [cloud for name, cloud in self._bodies.items() if name in self._poses.motion.bodies]
         return np.concatenate([*bodies, *self._trails]) if bodies else self.all
+
+    @cached_property
+    def machine(self) -> Array:
+        """What moves, without trails; everything if nothing does."""
+        bodies = [cloud for name, cloud in self._bodies.items() if name in self._poses.motion.bodies]
+        return np.concatenate(bodies) if bodies else self.all
+
+    @cached_property
+    def around(self) -> Array:
+        """What stands still: the base and all that is fixed to it; nothing if nothing moves."""
+        moving = self._poses.motion.bodies
+        bodies = [cloud for name, cloud in self._bodies.items() if name not in moving]
+        return np.concatenate(bodies) if bodies and len(bodies) < len(self._bodies) else np.zeros((0, 3))
+
+    def places(self, times: Array) -> Array:
+        """The outermost points (T, n, 3) of all that moves at ``times`` (T,); none if nothing moves."""
+        found: list[Array] = [np.zeros((len(times), 0, 3))]
+        for body, outlines in self._outlines.items():
+            if body in self._poses.motion.bodies and outlines:
+                points = outermost(np.concatenate(outlines))
+                found.append(swept(points, self._poses.over(body, times)).reshape(len(times), -1, 3))
+        return np.concatenate(found, axis=1)
 
     @cached_property
     def standing(self) -> Array:
@@ -97,12 +115,12 @@ class SweptSpace:
         clouds: dict[str, Array] = {}
         times = np.array([at.time for at in self._moments])
         points = {body: np.concatenate(outlines) for body, outlines in self._outlines.items() if outlines}
-        many = len(times) * sum(map(len, points.values())) > MANY
         for body, outline in points.items():
             poses = self._poses.over(body, times)
             if np.ptp(poses, axis=0).max() < 1e-12:
-                poses = poses[:1]
-            clouds[body] = swept(outermost(outline) if many else outline, poses)
+                clouds[body] = swept(outline, poses[:1])
+            else:  # a chain of a hundred links would have forty million points
+                clouds[body] = swept(outermost(outline), poses)
         return clouds
 
     @cached_property

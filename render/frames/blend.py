@@ -30,7 +30,7 @@ USUAL_PLACES = (
 def save(name: str, preset: Preset, show: str = "") -> Path:
     """The stage: out/<mechanism>/<mechanism>.blend with the motion once on its timeline."""
     out = Out(name)
-    target = named(out.scene, show)
+    target = named(out.scene, show, preset.suffix)
     stage = Stage(out, target.stem.replace(out.name, "scene", 1), stage_key(out, preset, show), [target])
     if stage.is_fresh():
         say("scene", f"{out.name}: {target}: nothing to do")
@@ -39,7 +39,7 @@ def save(name: str, preset: Preset, show: str = "") -> Path:
     from render.blender.job import Job
     from render.film.inputs import read_film
 
-    film = read_film(out, show)
+    film = read_film(out, show, preset.aspect)
     job = Job(
         scene=film.scene,
         states=[film.state(frame) for frame in range(film.clock.frames)],

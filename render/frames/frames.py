@@ -41,7 +41,7 @@ def run(name: str, preset: Preset, show: str = "") -> None:
     if stage.is_fresh():
         say("frames", f"{out.name}: {preset}: nothing to do")
         return
-    film = read_film(out, show)
+    film = read_film(out, show, preset.aspect)
     pictures = Pictures(film, preset)
     frames = range(film.clock.frames)
     say("frames", f"{out.name}: {film.clock.said()}")

@@ -9,37 +9,43 @@ from typing import Any
 
 import msgspec
 
-from render.film.framing import SENSOR
+from render.film.framing import SENSOR, studio
 from render.film.scene import Scene, State
 from render.film.solids import MILLIMETRE
 from render.presets import Preset
+from shared.contract.mount import Z
 from shared.stage.files import sources_hash
 
 DIGITS = 9
 """Poses count to a nanometre and a nanoradian."""
 BLENDER = Path(__file__).parents[1] / "blender"
+LETTERS = Path(__file__).parents[1] / "letters.py"
+"""The font of what Blender's side writes."""
 BLENDER_SOURCES = ("job.py", "scene", "worker")
 """What runs in Blender; the other files of the room start it, and decide nothing that is seen."""
 
 
 def scene_key(scene: Scene, preset: Preset, blender: str) -> str:
-    """Everything that all frames have in common; STL files count by content, not by place.
+    """Everything that all frames have in common; STL files count by content.
 
-    ``blender`` is the version of bpy. Of other rooms than its own, Blender's side takes these two numbers alone.
+    ``blender`` is the version of bpy. Of other rooms, Blender's side takes the letters and these numbers.
     """
     plain = _rounded(msgspec.to_builtins(scene))
     for piece in plain["pieces"]:
         del piece["stl"]
     shown = {key: part for key, part in plain.items() if key not in ("mechanism", "fps")}
     picture = [preset.width, preset.height, preset.samples, preset.motion_blur]
-    return _hash(
-        [shown, picture, sources_hash(*(BLENDER / name for name in BLENDER_SOURCES)), blender, SENSOR, MILLIMETRE]
-    )
+    turned = studio(scene.studio.up).tolist()
+    return _hash([shown, picture, _sources(), blender, SENSOR, MILLIMETRE, Z, turned])
 
 
 def frame_key(scene: str, states: Sequence[State]) -> str:
     """One frame of the scene with that key: its state alone, or with both neighbours' where the shutter blurs them."""
     return _hash([scene, [_rounded(msgspec.to_builtins(state)) for state in states]])[:32]
+
+
+def _sources() -> str:
+    return sources_hash(*(BLENDER / name for name in BLENDER_SOURCES), LETTERS)
 
 
 def _rounded(value: Any) -> Any:

@@ -23,10 +23,10 @@ def still(name: str, preset: Preset, frame: int, show: str = "") -> None:
 
 
 def poster(name: str, preset: Preset, show: str = "") -> None:
-    """out/<mechanism>/poster.png: the moment that ``shot.poster`` names."""
+    """out/<mechanism>/poster.png: the moment that ``shot.poster`` names, with the samples of a poster."""
     out = Out(name)
     stage = _poster(out, preset, show)
-    _make(out, preset, None, stage.outputs[0], stage, show)
+    _make(out, preset.of_poster, None, stage.outputs[0], stage, show)
 
 
 def is_fresh_poster(name: str, preset: Preset, show: str = "") -> bool:
@@ -35,12 +35,12 @@ def is_fresh_poster(name: str, preset: Preset, show: str = "") -> bool:
 
 
 def _poster(out: Out, preset: Preset, show: str) -> Stage:
-    target = named(out.poster, show)
-    return Stage(out, target.stem, stage_key(out, preset, show), [target])
+    target = named(out.poster, show, preset.suffix)
+    return Stage(out, target.stem, stage_key(out, preset.of_poster, show), [target])
 
 
 def _make(out: Out, preset: Preset, frame: int | None, target: Path, stage: Stage, show: str) -> None:
-    """Through the store of frames: a still that the film has shows at once, and the film finds the still."""
+    """Through a store of frames: a still that the film has shows at once, and the film finds the still."""
     word = "poster" if frame is None else "still"
     if stage.is_fresh():
         say(word, f"{out.name}: {preset}: nothing to do")
@@ -50,7 +50,7 @@ def _make(out: Out, preset: Preset, frame: int | None, target: Path, stage: Stag
     from render.frames.store import FrameStore
 
     started = time.perf_counter()
-    film = read_film(out, show)
+    film = read_film(out, show, preset.aspect)
     clock = film.clock
     if frame is None:
         frame = clock.frame_at(film.shot.poster)

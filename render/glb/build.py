@@ -1,12 +1,13 @@
 """The mechanism as a glTF scene: a node for each body, its pieces below, its motion as one animation in real time.
 
-The scene's z is up, glTF's y: the root turns it. A body's translation and rotation are its frame in data.json; the
-ground stands still; springs, ropes and belts stand beside the bodies. There is no floor, no light and no camera:
+The root turns what points up in the scene into y of glTF. A body's translation and rotation are its frame in data.json;
+the ground stands still; springs, ropes and belts stand beside the bodies. There is no floor, no light and no camera:
 viewers bring theirs.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -22,9 +23,19 @@ from render.glb.document import INDICES, VERTICES, Document
 from render.glb.materials import CLEARCOAT, Paints
 from render.glb.mesh import smooth
 from render.glb.springs import Springs
+from shared.contract.mount import Vector, Z
 
-UPRIGHT = (-(0.5**0.5), 0.0, 0.0, 0.5**0.5)
-"""Quaternion x, y, z, w of a quarter turn about x, backwards: z becomes y."""
+Quaternion = tuple[float, float, float, float]
+
+
+def turn(up: Vector) -> Quaternion:
+    """The quaternion x, y, z, w with which ``up``, z or a unit vector in the plane, becomes y of glTF: a quarter turn
+    about x, backwards, or a turn about z.
+    """
+    if up == Z:
+        return -(0.5**0.5), 0.0, 0.0, 0.5**0.5
+    half = math.atan2(up[0], up[1]) / 2
+    return 0.0, 0.0, math.sin(half), math.cos(half)
 
 
 def glb(film: Film) -> bytes:
@@ -64,7 +75,11 @@ def _content(film: Film, pieces: Sequence[PieceSpec]) -> bytes:
     belts = [node for belt in film.belts for node in add_belt(document, animation, paints, film.poses, belt)]
     root = document.add(
         "nodes",
-        {"name": motion.mechanism, "rotation": list(UPRIGHT), "children": [*nodes.values(), *springs.nodes, *belts]},
+        {
+            "name": motion.mechanism,
+            "rotation": list(turn(film.parts.mount.up)),
+            "children": [*nodes.values(), *springs.nodes, *belts],
+        },
     )
     document.add("scenes", {"name": motion.mechanism, "nodes": [root]})
     document.json["scene"] = 0

@@ -8,9 +8,11 @@ from render.film.scene import SurfaceSpec
 from render.glb.document import Document
 
 CLEARCOAT = "KHR_materials_clearcoat"
-METALLIC = {"anodised": 1.0, "brushed": 1.0, "polished": 1.0, "satin": 0.35, "plastic": 0.0, "rubber": 0.0}
+METALLIC = {"anodised": 1.0, "brushed": 1.0, "polished": 1.0, "satin": 0.35, "cast": 0.25}
 TONE = {"anodised": 0.8, "brushed": 0.68}
 """Of the colour."""
+CLEAR = 0.3
+"""Opacity of a pane."""
 
 
 class Paints:
@@ -39,6 +41,9 @@ def material(surface: SurfaceSpec, name: str) -> dict[str, Any]:
             "roughnessFactor": surface.roughness,
         },
     }
+    if surface.finish == "glass":
+        out["alphaMode"] = "BLEND"
+        out["pbrMetallicRoughness"]["baseColorFactor"][3] = CLEAR
     if surface.finish == "anodised":
         out["extensions"] = {CLEARCOAT: {"clearcoatFactor": 0.18, "clearcoatRoughnessFactor": 0.16}}
     return out

@@ -82,8 +82,12 @@ def plots_of(motion: Motion) -> list[str]:
         names += ["reactions", "hodographs"]
     if motion.forces or motion.contacts:
         names.append("forces")
+    if motion.couple is not None and motion.vibration is not None:
+        names.append("frame")
     if any(force.gas is not None for force in motion.forces.values()):
         names.append("gas")
+    if any(force.hydraulics is not None for force in motion.forces.values()):
+        names.append("hydraulics")
     if motion.analysis == "simulation":
         from render.crank import crank_of
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from render.plots.pages.energy import energy
+from render.plots.pages.frame import frame
 from render.plots.pages.gas import gas
+from render.plots.pages.hydraulics import hydraulics
 from render.plots.pages.loads import forces, hodographs, reactions
 from render.plots.pages.path import path
 from render.plots.pages.rates import bodies, point, slider
@@ -27,7 +29,9 @@ WHOLE = {
     "reactions": reactions,
     "hodographs": hodographs,
     "forces": forces,
+    "frame": frame,
     "gas": gas,
+    "hydraulics": hydraulics,
     "energy": energy,
     "turns": turns,
 }

@@ -72,13 +72,13 @@ def quantity(motion: Motion, name: str) -> Quantity:
         says = f"reaction of {joint.bodies[0]} on {joint.bodies[1]}, world axes"
         return Quantity(name, says, "force", "N", _xy(joint.fx, joint.fy), weak["N"])
     if driver := motion.drivers.get(name):
-        symbol, unit = TURNING if "angle" in driver.kind else PUSHING
+        symbol, unit = TURNING if driver.effort_unit == "N m" else PUSHING
         return Quantity(name, "what the driver gives", symbol, unit, {name: np.asarray(driver.effort)}, weak[unit])
     if force := motion.forces.get(name):
         says = force.kind.replace("_", " ")
         if force.effort is None:
             return Quantity(name, says, *PUSHING, _xy(force.actions[0].fx, force.actions[0].fy), weak["N"])
-        symbol, unit = TURNING if force.measures == "angle" else PUSHING
+        symbol, unit = TURNING if force.effort_unit == "N m" else PUSHING
         return Quantity(name, says, symbol, unit, {name: np.asarray(force.effort)}, weak[unit])
     return _moving(motion, name)
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from render import FRAME_SOURCES
 from render.report import sections
 from render.report.loads import load_section
+from render.report.orders import orders_section
 from render.report.transmission_words import transmission_section
 from shared.contract import Motion, Parts, read_motion, read_parts
 from shared.contract.clearance import Clearance, read_clearance
@@ -57,6 +58,7 @@ def report(motion: Motion, parts: Parts | None, clearance: Clearance | None, sai
         ("Speeds", sections.speed_section(motion)),
         ("Loads", load_section(motion)),
         ("Shaking of the frame", sections.frame_section(motion)),
+        ("Orders", orders_section(motion)),
         ("Energy", sections.energy_section(motion)),
         ("Transmission", transmission_section(motion)),
         ("Masses", sections.mass_section(motion, parts)),

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from render.report.loads import NOTHING, SLIDES
+from render.report.loads import NOTHING
 from render.report.transmission import loops
 from render.report.written import counted, degrees, moment, speed, written
 from shared.contract import BodyMotion, Motion, Parts
 from shared.contract.clearance import Clearance
-from shared.contract.loads import ACTUATORS
 
 STILL = 1e-9
 """What is slower (m/s) stands still but for rounding."""
@@ -28,7 +27,7 @@ def facts(motion: Motion, parts: Parts | None, clearance: Clearance | None) -> l
     for name, driver in motion.drivers.items():
         effort = float(np.abs(driver.effort).max())
         if effort > NOTHING * largest:
-            out.append(f"{name} up to {written(effort, 'N' if driver.kind in SLIDES else 'N m')}")
+            out.append(f"{name} up to {written(effort, driver.effort_unit)}")
     if not any(np.any(driver.effort) for driver in motion.drivers.values()):
         out += [f"{name} up to {size}" for name, size in _efforts(motion)[:2]]
     if largest > 0:
@@ -61,17 +60,12 @@ def _speed_of(body: BodyMotion) -> float:
     return float(np.hypot(vx, vy).max())
 
 
-GIVING = (*ACTUATORS, "curve_of_angle")
-"""Kinds of forces that move machines: motors, cylinders, loads."""
-
-
 def _efforts(motion: Motion) -> list[tuple[str, str]]:
     """Peak efforts of what moves the mechanism where no driver does, those that give most power first."""
     found = []
     for name, force in motion.forces.items():
-        if force.kind in GIVING and force.effort is not None and np.any(force.effort) and max(force.power) > 0:
-            unit = "N m" if force.measures == "angle" else "N"
-            found.append((max(force.power), name, written(float(np.abs(force.effort).max()), unit)))
+        if force.drives and force.effort is not None and np.any(force.effort) and max(force.power) > 0:
+            found.append((max(force.power), name, written(float(np.abs(force.effort).max()), force.effort_unit)))
     return [(name, size) for _, name, size in sorted(found, key=lambda one: -one[0])]
 
 

@@ -8,16 +8,14 @@ import numpy as np
 
 from render.magnitudes import effort_floor
 from render.report.gas import gas_section
+from render.report.hydraulics import hydraulics_section
 from render.report.written import first_peak, moment, table, written
 from shared.contract import Motion
-from shared.contract.loads import ACTUATORS
 
 NOTHING = 1e-12
 """Of the largest in a table: no number."""
 ROUNDING = 1e-9
 """Of what power could do all the time: no work."""
-SLIDES = ("coordinate", "distance")
-"""Drivers whose value is a length."""
 
 
 def load_section(motion: Motion) -> list[str]:
@@ -40,15 +38,15 @@ def load_section(motion: Motion) -> list[str]:
             ])  # fmt: skip
         lines += ["### Reactions", ""]
         lines += [*table(["joint", "bodies", "peak force", "at", "peak torque"], rows), ""]
-    acting = any(force.kind in ACTUATORS and any(force.effort or ()) for force in motion.forces.values())
+    acting = any(force.drives and any(force.effort or ()) for force in motion.forces.values())
     drivers = {name: driver for name, driver in motion.drivers.items() if any(driver.effort) or not acting}
     if drivers:  # of a motion that forces were asked for, the drivers give nothing
         lines += ["### Drivers", ""]
         rows = []
         for name, driver in drivers.items():
-            unit = "N" if driver.kind in SLIDES else "N m"
+            unit = driver.effort_unit
             effort, power = np.array(driver.effort), np.array(driver.power)
-            if np.abs(effort).max() <= effort_floor(motion, driver.kind in SLIDES):  # weights or springs do its work
+            if np.abs(effort).max() <= effort_floor(motion, unit == "N"):  # weights or springs do its work
                 effort, power = 0.0 * effort, 0.0 * power
             k = first_peak(np.abs(effort))
             rows.append([
@@ -72,7 +70,7 @@ def load_section(motion: Motion) -> list[str]:
             ])  # fmt: skip
         head = ["force", "peak force", "peak torque", "at", "gives at most", "takes at most", "work"]
         lines += [*table(head, rows), ""]
-    return lines + gas_section(motion) + _contacts(motion, time)
+    return lines + gas_section(motion) + hydraulics_section(motion) + _contacts(motion, time)
 
 
 def _contacts(motion: Motion, time: np.ndarray) -> list[str]:
@@ -85,10 +83,10 @@ def _contacts(motion: Motion, time: np.ndarray) -> list[str]:
         share = float(np.trapezoid(closed, time) / (time[-1] - time[0]))
         hits = [event for event in motion.events if event.what == "impact" and event.name == name]
         hardest = max((abs(event.impulse) for event in hits), default=0.0)
-        angular = contact.kind in ("angle_stop", "one_way")
+        unit = contact.effort_unit
         rows.append([
-            f"{name} ({contact.kind.replace('_', ' ')})", written(float(normal.max()), "N m" if angular else "N"),
-            f"{100 * share:.0f} %", str(len(hits)), written(hardest, "N m s" if angular else "N s") if hits else "",
+            f"{name} ({contact.kind.replace('_', ' ')})", written(float(normal.max()), unit),
+            f"{100 * share:.0f} %", str(len(hits)), written(hardest, f"{unit} s") if hits else "",
         ])  # fmt: skip
     head = ["contact", "peak normal force", "closed", "impacts", "largest impulse"]
     return ["### Contacts", "", *table(head, rows), ""]

@@ -9,7 +9,6 @@ import numpy as np
 
 from render.magnitudes import effort_floor
 from render.report.facts import STILL, fastest
-from render.report.loads import SLIDES
 from render.report.written import written
 from shared.contract import Motion, read_motion, read_parts
 from shared.contract.clearance import read_clearance
@@ -64,9 +63,9 @@ def _numbers(out: Out) -> list[str]:
 
 def _effort(motion: Motion) -> str:
     """The largest force or torque of a driver; of forces where nothing is driven, or drivers push by nothing."""
-    drivers = {name: (driver.effort, driver.kind in SLIDES) for name, driver in motion.drivers.items()}
+    drivers = {name: (driver.effort, driver.effort_unit == "N") for name, driver in motion.drivers.items()}
     forces = {
-        name: (force.effort, force.measures != "angle")
+        name: (force.effort, force.effort_unit == "N")
         for name, force in motion.forces.items()
         if force.effort is not None
     }

@@ -130,7 +130,7 @@ def energy_section(motion: Motion) -> list[str]:
                   f"{written(drift, 'J', 2)}: {drift / scale:.1e} of the largest exchange."]  # fmt: skip
     else:
         lines += ["", f"The power of the drivers differs from the change of energy by at most "
-                  f"{motion.diagnostics.power_residual:.1e} W."]  # fmt: skip
+                  f"{written(motion.diagnostics.power_residual, 'W')}."]  # fmt: skip
     return lines
 
 

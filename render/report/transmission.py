@@ -91,9 +91,9 @@ def loops(motion: Motion) -> list[Loop]:
     out = []
     pins: dict[frozenset[str], np.ndarray] = {}
     for joint in motion.joints.values():
-        if joint.kind == "revolute":
+        if joint.pair == "pin":
             pins.setdefault(frozenset(joint.bodies), np.array([joint.x, joint.y]).T)
-    guides = {frozenset(joint.bodies) for joint in motion.joints.values() if joint.kind == "prismatic"}
+    guides = {frozenset(joint.bodies) for joint in motion.joints.values() if joint.pair == "guide"}
     for crank in _driven(motion) or _turning(motion):
         a = pins.get(frozenset(("ground", crank)))
         for pair, b in pins.items():
@@ -116,7 +116,7 @@ def _driven(motion: Motion) -> list[str]:
     """Bodies that a driver turns against ground; of files that do not tell, those whose angle is the driver's."""
     out = []
     for driver in motion.drivers.values():
-        if driver.kind not in ("angle", "relative_angle"):
+        if driver.unit != "rad":
             continue
         if driver.bodies is not None:
             out += [body for body in driver.bodies if body != "ground" and "ground" in driver.bodies]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import re
 import textwrap
 from collections.abc import Iterator
@@ -11,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from render.blender.worker.words import INK, QUIET, font_of
+from render.blender.worker.words import INK, QUIET
+from render.letters import font_of
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -25,8 +27,10 @@ BLUR = 1 / 40
 """Of the picture's width."""
 LEFT, MIDDLE = 0.085, 0.5
 """Where the words stand, as parts of width and height."""
-LINE, LINES = 76, 3
-"""Letters in a line under the name, and the most lines."""
+LINES = 3
+"""The most lines under the name, in a picture that is wider than tall; taller ones have room for more."""
+LETTER = 0.56
+"""Width of a letter, in its height, on average and with some to spare."""
 ACCENT = (255, 142, 62)
 """The colour of a trail."""
 
@@ -81,27 +85,29 @@ def _words(size: tuple[int, int], title: Title) -> np.ndarray:
     from PIL import Image, ImageDraw
 
     wide, high = size
+    unit = min(size)
     page = Image.new("RGBA", size, (*INK[:3], 0))
     draw = ImageDraw.Draw(page)
-    large = _fitting(draw, title.name, high / 9.5, wide * (1 - 2 * LEFT))
-    small = font_of(high / 29)
-    lines = _lines(title.said)
-    x, y = wide * LEFT, high * (MIDDLE - 0.02 * len(lines))
-    draw.text((x, y - high * 0.028), title.name, fill=INK, font=large, anchor="ls")
-    draw.rectangle((x, y, x + wide * 0.06, y + max(1, round(high / 240))), fill=(*ACCENT, 255))
+    large = _fitting(draw, title.name, unit / 9.5, wide * (1 - 2 * LEFT))
+    small = font_of(unit / 29)
+    letters = math.floor(wide * (1 - 2 * LEFT) / (LETTER * unit / 29))
+    lines = _lines(title.said, letters, round(LINES * max(1.0, high / wide * 16 / 9)))
+    x, y = wide * LEFT, high * MIDDLE - unit * 0.02 * len(lines)
+    draw.text((x, y - unit * 0.028), title.name, fill=INK, font=large, anchor="ls")
+    draw.rectangle((x, y, x + unit * 0.107, y + max(1, round(unit / 240))), fill=(*ACCENT, 255))
     for k, line in enumerate(lines):
-        draw.text((x, y + high * (0.068 + 0.05 * k)), line, fill=QUIET, font=small, anchor="ls")
+        draw.text((x, y + unit * (0.068 + 0.05 * k)), line, fill=QUIET, font=small, anchor="ls")
     return np.asarray(page).astype(np.float32)
 
 
-def _lines(said: str) -> list[str]:
-    """As many whole sentences as fit."""
+def _lines(said: str, letters: int, most: int) -> list[str]:
+    """As many whole sentences as fit into so many lines of so many letters."""
     found = re.split(r"(?<=[.!?])\s+(?=[A-Z0-9])", said)
     for count in range(len(found), 0, -1):
-        lines = textwrap.wrap(" ".join(found[:count]), LINE)
-        if len(lines) <= LINES:
+        lines = textwrap.wrap(" ".join(found[:count]), letters)
+        if len(lines) <= most:
             return lines
-    return textwrap.wrap(said, LINE, max_lines=LINES, placeholder=" ...")
+    return textwrap.wrap(said, letters, max_lines=most, placeholder=" ...")
 
 
 def _fitting(draw: Any, words: str, size: float, width: float) -> Any:

@@ -30,9 +30,7 @@ def run(preset: Preset, only: str = "", show: str = "") -> Path:
     if not found or (only.strip() and left):
         first = (left or ["<name>"])[0].replace("_", "-")
         wanted = ", ".join(left) if only.strip() else "any mechanism"
-        raise UserError(
-            f"showreel: there is no film of {wanted} at {preset.name}; make film-{first} PRESET={preset.name}"
-        )
+        raise UserError(f"showreel: there is no film of {wanted} at {preset.name}; make film-{first} {preset.asked}")
     if any("-" not in name for name in left):
         missing = [name for name in left if "-" not in name]  # a variant's film is one that somebody asked for
         say("showreel", f"left out, since they have no film of {preset.name}: {', '.join(missing)}")

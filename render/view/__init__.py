@@ -26,9 +26,10 @@ def run(name: str) -> None:
     from render.view.bundle import bundle
     from render.view.document import document
     from render.view.inputs import read_payload
+    from render.view.sketch import sketch
 
     payload = read_payload(out)
-    content = document(payload["title"], encode(payload), bundle())
+    content = document(payload["title"], encode(payload), bundle(), sketch=sketch(payload["skeleton"]))
     if len(content) > LARGEST:
         raise UserError(
             f"{out.name}: the page would have {len(content) / 1e6:.1f} MB, more than {LARGEST / 1e6:.0f}; "

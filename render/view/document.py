@@ -23,7 +23,7 @@ FILE = """<!doctype html>
 <style>{style}</style>
 </head>
 <body>
-<div id="mbsd"><noscript>This page shows a machine in motion; it needs JavaScript.</noscript></div>
+<div id="mbsd">{sketch}<noscript>This page shows a machine in motion; it needs JavaScript.</noscript></div>
 <script type="text/plain" id="mbsd-licences">{licences}</script>
 <script type="text/plain" id="mbsd-payload">{payload}</script>
 {more}<script>{script}</script>
@@ -32,8 +32,10 @@ FILE = """<!doctype html>
 """
 
 
-def document(title: str, payload: bytes, bundle: Bundle, more: str = "", connect: str = "'none'") -> bytes:
-    """The file's bytes. ``payload``: from binary.encode.
+def document(
+    title: str, payload: bytes, bundle: Bundle, more: str = "", connect: str = "'none'", sketch: str = ""
+) -> bytes:
+    """The file's bytes. ``payload``: from binary.encode; ``sketch``: an SVG that is seen until the script has run.
 
     A live page adds ``more`` HTML before the script, which may set window.mbsdLive (page/src/main.js), and ``connect``:
     the addresses that it may speak to, as a Content-Security-Policy says.
@@ -41,6 +43,7 @@ def document(title: str, payload: bytes, bundle: Bundle, more: str = "", connect
     return FILE.format(
         policy=html.escape(POLICY.format(connect)),
         title=html.escape(title),
+        sketch=sketch,
         style=bundle.style.replace("</style", "<\\/style"),
         script=bundle.script.replace("</script", "<\\/script").replace("<!--", "<\\!--"),
         licences=html.escape(bundle.licences),

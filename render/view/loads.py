@@ -1,9 +1,10 @@
 """Arrows, arcs and clearances of the page: the same ones and the same scales as in the film.
 
 arrows    full: length of the largest (m); longest: cut at so many of it; tiny: left out below this part of it;
-          scales {unit: {largest, reference, cut, words}}; list [{quantity, name, unit, place, value (2 T,), z}]
-arcs      full: sweep of the largest (rad); scale as above or null; list [{quantity, name, place (2 T,), value (T,),
-          radius, z}]
+          scales {unit: {largest, reference, cut, words}}; list [{quantity, row, name, unit, place, value (2 T,), z}];
+          row: of the legend, which has the colour and the head (shared/contract/signals.py)
+arcs      full: sweep of the largest (rad); scale as above or null; list [{quantity, row, name, place (2 T,),
+          value (T,), radius, z}]
 clearance limit (m), pairs [{bodies, pieces, gap (as proven), time, at, on}] nearest first; at (m) is where,
               in the frame of the body `on` or in the world, or null
 """
@@ -14,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from render.film.arrows.arcs import FULL_TURN, Arcs
+from render.film.arrows.arcs import FULL_TURN, SIGNAL, Arcs
 from render.film.arrows.arrows import FULL, Arrows
-from render.film.arrows.scales import LONGEST, TINY, Scale, with_unit
+from render.film.arrows.scales import LONGEST, TINY, Scale
 from render.film.arrows.torques import rounding, torques
 from render.film.arrows.vectors import vectors
 from render.film.film import Film
@@ -24,6 +25,7 @@ from render.film.heights import Heights
 from render.view.gaps import gap_places
 from shared.contract import Motion
 from shared.contract.clearance import Clearance
+from shared.contract.quantity import written
 from shared.contract.shot import Quantity
 
 ALL: tuple[Quantity, ...] = ("velocities", "accelerations", "forces", "reactions")
@@ -42,6 +44,7 @@ def arrows_of(motion: Motion, size: float, heights: Heights | None = None) -> di
         "list": [
             {
                 "quantity": one.quantity,
+                "row": one.row,
                 "name": one.name,
                 "unit": one.unit,
                 "bodies": list(one.bodies),
@@ -64,6 +67,7 @@ def arcs_of(motion: Motion, size: float, heights: Heights | None = None) -> dict
         "list": [
             {
                 "quantity": one.quantity,
+                "row": SIGNAL[one.quantity],
                 "name": one.name,
                 "bodies": list(one.bodies),
                 "place": one.place.astype(np.float32),
@@ -100,5 +104,5 @@ def _scale(scale: Scale) -> dict[str, Any]:
         "largest": scale.largest,
         "reference": scale.reference,
         "cut": scale.cut,
-        "words": with_unit(scale.reference, scale.unit),
+        "words": written(scale.reference, scale.unit),
     }

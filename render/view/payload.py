@@ -8,12 +8,15 @@ SI units and radians; names are those of data.json. Arrays are float32 unless sa
     period                  s, or null: then it plays forwards, holds at its end and begins anew
     clock                   start, end (s of the motion); seconds: film time of one showing; hold: film time at the end;
                             fps: of the film, for going on by one frame
-    bodies[name]            x y theta vx vy omega ax ay alpha (T,); mass com inertia; colour: number in the palette
-    joints[name]            kind, bodies; x y fx fy torque (T,); at: {body, x, y} of its second marker
+    bodies[name]            x y theta vx vy omega ax ay alpha (T,); mass com inertia; inks: on light and on dark paper
+    joints[name]            kind, bodies; pair: pin, guide, slot or null; x y fx fy torque (T,); at: {body, x, y} of its
+                            second marker
     drivers[name]           kind, bodies; value effort power (T,); unit, effort_unit
     points[name]            body; x y vx vy ax ay (T,)
     forces[name]            kind; value, rate, effort (T,) or null; power potential (T,); unit, effort_unit
-    contacts[name]          kind, bodies; x y fx fy torque gap normal friction (T,)
+    contacts[name]          kind, bodies; unit, effort_unit; x y fx fy torque gap normal friction (T,)
+    frame                   null, or of a motion with couples that repeats with a crank: fx fy x y (T,), force of
+                            inertia and centre of mass; order (K,), harmonics[name]: unit, size (K,)
     couple                  null, or mx my (T,) of bodies in different places along the normal of the plane
     energy                  kinetic potential (T,), work audit (T,) or null
     margin                  (T,) smallest over largest singular value of the scaled Jacobian
@@ -36,6 +39,7 @@ from typing import Any
 import numpy as np
 
 from render.film.clock import Clock
+from render.film.markers import local_place
 from render.film.tubes.trails import trails_of
 from render.report.moments import marks
 from render.shaking import shaking
@@ -43,8 +47,6 @@ from render.view.loads import arcs_of, arrows_of
 from shared.contract import JointMotion, Motion
 from shared.contract.shot import Shot
 from shared.contract.skeleton import Carrier, Moving, Stroke
-
-ANGLES = ("angle", "relative_angle")
 
 
 def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bool = True) -> dict[str, Any]:
@@ -70,7 +72,7 @@ def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bo
             "fps": shot.fps,
             "turns": clock.turns,
         },
-        "bodies": {name: _body(body, k) for k, (name, body) in enumerate(motion.bodies.items())},
+        "bodies": {name: _body(body) for name, body in motion.bodies.items()},
         "joints": {name: _joint(motion, joint) for name, joint in motion.joints.items()},
         "drivers": {name: _driver(driver) for name, driver in motion.drivers.items()},
         "points": {
@@ -79,11 +81,12 @@ def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bo
         },
         "forces": {name: _force(force) for name, force in motion.forces.items()},
         "contacts": {
-            name: {"kind": one.kind, "bodies": list(one.bodies)}
+            name: {"kind": one.kind, "bodies": list(one.bodies), "unit": one.unit, "effort_unit": one.effort_unit}
             | _series(one, "x", "y", "fx", "fy", "torque", "gap", "normal", "friction")
             for name, one in motion.contacts.items()
         },
         "couple": couple_of(motion),
+        "frame": frame_of(motion),
         "energy": _series(motion.energy, "kinetic", "potential", "work", "audit"),
         "margin": floats(motion.diagnostics.singularity_margin),
         "marks": [
@@ -102,8 +105,8 @@ def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bo
 
 
 def skeleton(moving: Moving) -> dict[str, Any]:
-    """Strokes {points (2 n,), closed, ink, fill, alpha, width, order, dash, carrier, shapes (k, 2 n)}, in the order in
-    which they are drawn; names {text, at, clearance, ink, carrier}; a carrier is {kind, ends: [{body, x, y}]}.
+    """Strokes {points (2 n,), closed, ink, fill, alpha, width, order, dash, sign, carrier, shapes (k, 2 n)}, in the
+    order in which they are drawn; names {text, at, clearance, ink, carrier}; carriers {kind, ends: [{body, x, y}]}.
     """
     return {
         "unit": moving.unit,
@@ -150,35 +153,50 @@ def couple_of(motion: Motion) -> dict[str, Any] | None:
     return None if found.mx is None else _series(found, "mx", "my")
 
 
-def _body(body: Any, index: int) -> dict[str, Any]:
+def frame_of(motion: Motion) -> dict[str, Any] | None:
+    """Force of inertia, centre of mass, and the largest size of each harmonic."""
+    found = motion.vibration
+    if found is None or motion.couple is None:
+        return None
+    shaken = shaking(motion)
+    harmonics = {
+        name: {"unit": one.unit, "size": floats(np.add(one.forward, one.backward))}
+        for name, one in found.harmonics.items()
+    }
+    series = _series(shaken, "fx", "fy") | _series(found, "x", "y")
+    return series | {"order": floats(found.order), "harmonics": harmonics}
+
+
+def _body(body: Any) -> dict[str, Any]:
     out = _series(body, "x", "y", "vx", "vy", "omega", "ax", "ay", "alpha")
     # Whole turns at the start say nothing and cost figures.
     out["theta"] = floats(np.asarray(body.theta) - math.tau * round(body.theta[0] / math.tau))
-    return out | {"mass": body.mass, "com": list(body.com), "inertia": body.inertia, "colour": index}
+    return out | {
+        "mass": body.mass,
+        "com": list(body.com),
+        "inertia": body.inertia,
+        "inks": [body.colour, body.colour_on_dark],
+    }
 
 
 def _joint(motion: Motion, joint: JointMotion) -> dict[str, Any]:
     """``at``: the second marker in its body, from where both are at the start."""
     body, x, y = joint.bodies[1], joint.x[0], joint.y[0]
     if body in motion.bodies:
-        first = motion.bodies[body]
-        dx, dy, c, s = x - first.x[0], y - first.y[0], math.cos(first.theta[0]), math.sin(first.theta[0])
-        x, y = c * dx + s * dy, c * dy - s * dx
+        x, y = local_place(motion.bodies[body], x, y)
     at = {"body": body, "x": x, "y": y}
-    out = {"kind": joint.kind, "bodies": list(joint.bodies), "at": at}
+    out = {"kind": joint.kind, "bodies": list(joint.bodies), "pair": joint.pair, "at": at}
     return out | _series(joint, "x", "y", "fx", "fy", "torque")
 
 
 def _driver(driver: Any) -> dict[str, Any]:
-    turns = driver.kind in ANGLES
-    units = {"unit": "rad" if turns else "m", "effort_unit": "N m" if turns else "N"}
+    units = {"unit": driver.unit, "effort_unit": driver.effort_unit}
     bodies = list(driver.bodies) if driver.bodies else []
     return {"kind": driver.kind, "bodies": bodies} | units | _series(driver, "value", "effort", "power")
 
 
 def _force(force: Any) -> dict[str, Any]:
-    turns = force.measures == "angle"
-    units = {"unit": "rad" if turns else "m", "effort_unit": "N m" if turns else "N"}
+    units = {"unit": force.unit or "m", "effort_unit": force.effort_unit}
     bodies = [action.body for action in force.actions]
     out = {"kind": force.kind, "bodies": bodies} | units
     return out | _series(force, "value", "rate", "effort", "power", "potential")
@@ -198,4 +216,5 @@ def _stroke(stroke: Stroke) -> dict[str, Any]:
         "width": stroke.width,
         "order": stroke.order,
         "dash": list(stroke.dash),
+        "sign": stroke.sign,
     }

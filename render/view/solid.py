@@ -1,9 +1,10 @@
 """The parts of the page, as the film has them.
 
-solid   look ("studio", "daylight"); size, middle (m), floor: height (m)
+solid   looks {dark, light}: see looks.py; reach: away from the camera (m); size, middle (m)
+        axes: right, away and up (3, 3) of the picture in the world; floor: its height along up (m)
         camera {azimuth, elevation (rad), lens (mm), position, target (m)}: the film's first
         step (m) and meshes: see meshes.py
-        surfaces [{colour (linear), finish, roughness, metal, coat}]
+        surfaces [{colour (linear), finish, roughness, metal, coat, clear: opacity}]
         pieces [{body, name, mesh, at (m, of its lowest corner in the body), surface, turns}]; turns is null, or
         {x, y, angle (T,)} of a roller about a point of its body (m, rad)
         heights {joints, points, bodies: {name: m}}: of what floats over them
@@ -12,23 +13,24 @@ solid   look ("studio", "daylight"); size, middle (m), floor: height (m)
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from render.film.camera import angles
 from render.film.film import Film
-from render.film.framing import axes
+from render.film.framing import axes, in_studio, studio
 from render.film.pieces import piece_specs
 from render.film.poses import Moment
 from render.film.scene import PieceSpec, SurfaceSpec
 from render.glb.build import tubes
-from render.glb.materials import METALLIC, TONE
+from render.glb.materials import CLEAR, METALLIC, TONE
 from render.view.loads import arcs_of, arrows_of
+from render.view.looks import looks_of
 from render.view.meshes import Meshes, shapes
 
-COAT = {"anodised": 0.18, "plastic": 0.25}
+COAT = {"anodised": 0.18, "plastic": 0.25, "wood": 0.1}
 """Of varnish, by finish."""
 
 
@@ -63,10 +65,12 @@ def solid(film: Film) -> dict[str, Any]:
             {"body": spec.body, "name": spec.name, "mesh": mesh, "at": at, "surface": surface, "turns": turns}
         )
     return {
-        "look": film.shot.look,
+        "reach": film.studio.reach[1],
+        "looks": looks_of(film.look, film.parts.mount.kind != "desk"),
         "size": film.space.size,
         "middle": [float(value) for value in film.space.middle],
-        "floor": float(film.space.all[:, 2].min()),
+        "axes": studio(film.parts.mount.up).tolist(),
+        "floor": float(in_studio(film.space.all, film.parts.mount.up)[:, 2].min()),
         "camera": _camera(film),
         "step": meshes.step,
         "meshes": meshes.list,
@@ -85,6 +89,7 @@ def _surface(surface: SurfaceSpec) -> dict[str, Any]:
         "roughness": surface.roughness,
         "metal": METALLIC.get(surface.finish, 0.0),
         "coat": COAT.get(surface.finish, 0.0),
+        "clear": CLEAR if surface.finish == "glass" else 1.0,
     }
 
 
@@ -96,13 +101,14 @@ def _turns(roller: Any, spec: PieceSpec) -> dict[str, Any] | None:
 
 
 def _camera(film: Film) -> dict[str, Any]:
-    pose = film.camera(0)
-    forward = axes(pose.azimuth, pose.elevation)[2]
+    pose = film.overview
+    forward = axes(pose.azimuth, pose.elevation, pose.up)[2]
+    azimuth, elevation = angles(film.shot.camera, film.parts.mount)
     position = np.array(pose.position)
     target = position + forward * float((film.space.middle - position) @ forward)
     return {
-        "azimuth": math.radians(film.shot.camera.azimuth),
-        "elevation": math.radians(film.shot.camera.elevation),
+        "azimuth": azimuth,
+        "elevation": elevation,
         "lens": pose.lens,
         "position": position.tolist(),
         "target": target.tolist(),

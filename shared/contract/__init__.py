@@ -10,7 +10,7 @@ from pathlib import Path
 
 from shared.contract import consistency
 from shared.contract.base import UNITS, Provenance
-from shared.contract.loads import Action, ContactMotion, ForceMotion, GasMotion, Shape, State
+from shared.contract.loads import Action, Acts, ContactMotion, ForceMotion, GasMotion, HydraulicMotion, Shape, State
 from shared.contract.motion import (
     CONVENTIONS_OF,
     BodyMotion,
@@ -23,7 +23,10 @@ from shared.contract.motion import (
     Motion,
     PointMotion,
 )
+from shared.contract.mount import Mount, mounted
+from shared.contract.older import completed
 from shared.contract.parts import PARTS_UNITS, BodyParts, End, Held, Mass, Parts, Piece, Rolling
+from shared.contract.vibration import Harmonics, Vibration
 from shared.stage import jsonfile
 from shared.stage.errors import UserError
 
@@ -32,6 +35,7 @@ __all__ = [
     "PARTS_UNITS",
     "UNITS",
     "Action",
+    "Acts",
     "BodyMotion",
     "BodyParts",
     "ContactMotion",
@@ -43,10 +47,13 @@ __all__ = [
     "EventMark",
     "ForceMotion",
     "GasMotion",
+    "Harmonics",
     "Held",
+    "HydraulicMotion",
     "JointMotion",
     "Mass",
     "Motion",
+    "Mount",
     "Parts",
     "Piece",
     "PointMotion",
@@ -54,6 +61,8 @@ __all__ = [
     "Rolling",
     "Shape",
     "State",
+    "Vibration",
+    "mounted",
     "read_motion",
     "read_parts",
     "write_motion",
@@ -66,7 +75,7 @@ def read_motion(path: Path, mechanism: str | None = None) -> Motion:
     motion = jsonfile.read(path, Motion)
     _refuse_inconsistent(motion, path)
     _refuse_other_mechanism(motion.mechanism, mechanism, path)
-    return motion
+    return completed(motion)
 
 
 def write_motion(path: Path, motion: Motion) -> None:

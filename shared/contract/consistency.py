@@ -16,13 +16,15 @@ import msgspec
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
-    from shared.contract import Motion, Parts
+    from shared.contract import Motion, Mount, Parts
 
 SPAN_TOLERANCE = 1e-9
 """Largest difference between the period and the time spanned, relative."""
 RETURN_TOLERANCE = 1e-5
 """Largest difference between the poses at both ends of a period (m or rad, relative above 1)."""
-_NO_SERIES = {"redundant", "events", "start_changes", "shape", "indicated_work"}
+UNIT_TOLERANCE = 1e-9
+"""Of the length of a unit vector."""
+_NO_SERIES = {"redundant", "events", "start_changes", "shape", "indicated_work", "order", "harmonics"}
 """Fields with lists that are not of time."""
 _UNFIT = re.compile(r"[/\\\x00-\x1f\x7f]")
 """What the name of a body, joint, driver or point cannot hold, because files are named after it."""
@@ -72,6 +74,7 @@ def refuse_inconsistent_parts(parts: Parts, path: Path | str) -> None:
     """Refuse unfit names, files that are not beside parts.json by their names, heights that are upside down, bodies
     without solids that have some, and pairs of bodies that are not there.
     """
+    refuse_wrong_mount(parts.mount, f"{path}: mount")
     _refuse_unfit_names({"bodies": parts.bodies, "without_solids": parts.without_solids}, path)
     for body in parts.without_solids:
         if body in parts.bodies:
@@ -104,11 +107,25 @@ def refuse_inconsistent_parts(parts: Parts, path: Path | str) -> None:
                 raise UserError(f"{path}: {field}.z_range is {list(piece.z_range)}; the lowest point comes first")
 
 
+def refuse_wrong_mount(mount: Mount, where: str) -> None:
+    """On a desk z points up, else a unit vector in the plane."""
+    x, y, z = mount.up
+    if mount.kind == "desk" and (x, y, z) != (0.0, 0.0, 1.0):
+        raise UserError(f"{where}: up is ({x:g}, {y:g}, {z:g}); on a desk it is (0, 0, 1)")
+    if mount.kind != "desk" and not (z == 0.0 and abs(math.hypot(x, y) - 1.0) < UNIT_TOLERANCE):
+        raise UserError(f"{where}: up is ({x:g}, {y:g}, {z:g}); what stands has a unit vector in the plane, z = 0")
+
+
 def _bodies_of_loads(motion: Motion) -> list[tuple[str, str]]:
     """Fields of forces, contacts and shapes that name a body, with that name."""
     used = [(f"contacts.{name}.bodies", body) for name, one in motion.contacts.items() for body in one.bodies]
     used += [
         (f"drivers.{name}.bodies", body) for name, driver in motion.drivers.items() for body in driver.bodies or ()
+    ]
+    used += [
+        (f"drivers.{name}.actions[{k}].body", action.body)
+        for name, driver in motion.drivers.items()
+        for k, action in enumerate(driver.actions)
     ]
     for name, force in motion.forces.items():
         used += [(f"forces.{name}.actions[{k}].body", action.body) for k, action in enumerate(force.actions)]

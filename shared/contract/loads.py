@@ -7,8 +7,15 @@ from typing import Literal
 from shared.contract.base import NonNegative, Positive, Series, Strict
 
 State = Literal["open", "closed", "slides", "sticks"]
-ACTUATORS = ("torque", "force", "actuator")
-"""Kinds of forces that may move a mechanism in place of its drivers."""
+ValueUnit = Literal["m", "rad"]
+EffortUnit = Literal["N", "N m"]
+Pair = Literal["pin", "guide", "slot"]
+"""How two bodies move on each other: they turn about a point, slide along the first marker's x axis without turning,
+or slide there and turn."""
+Look = Literal["", "band", "roller", "captive", "coil", "cylinder", "spiral", "cord"]
+"""What pictures of solids draw beside the parts of the bodies, of whatever kind it is: a belt or chain round both
+wheels, a roller pressed on one side, a roller between two walls, a coil spring, a cylinder with its rod, a flat spiral
+over a pin, a rope."""
 
 
 class Shape(Strict, kw_only=True):
@@ -39,6 +46,16 @@ class Shape(Strict, kw_only=True):
     outline: list[tuple[float, float]] = []
     """Curve, terrain or cam in the axes of the first marker (m)."""
     outline_closed: bool = False
+
+
+class Acts(Strict, kw_only=True):
+    """Where a joint or contact acts that does not act at its second marker, and with which torque there."""
+
+    x: Series
+    """m"""
+    y: Series
+    torque: Series
+    """On the second body about (x, y) (N m)."""
 
 
 class Action(Strict, kw_only=True):
@@ -73,6 +90,29 @@ class GasMotion(Strict, kw_only=True):
     """Of each whole cycle (J)."""
 
 
+class HydraulicMotion(Strict, kw_only=True):
+    """A hydraulic cylinder over time; chamber A is that of the whole piston."""
+
+    pressure_a: Series
+    """Absolute (Pa)."""
+    pressure_b: Series
+    flow_a: Series
+    """From the valve into the chamber (m^3/s)."""
+    flow_b: Series
+    valve: Series
+    """Its opening, -1 .. 1; above 0 the supply leads into chamber A."""
+    supply_flow: Series
+    """Taken from the supply (m^3/s)."""
+    supply_power: Series
+    """What supply and tank give to the oil (W): lost in valve and leak, in the oil, or for the piston."""
+    valve_loss: Series
+    """W"""
+    leak_loss: Series
+    oil_power: Series
+    """What compresses the oil (W)."""
+    piston_power: Series
+
+
 class ForceMotion(Strict, kw_only=True):
     """One force over time: spring, damper, motor, load, contact by penalty, friction, a function of the user."""
 
@@ -95,10 +135,19 @@ class ForceMotion(Strict, kw_only=True):
     """What it gives to the motion (W); negative where it takes."""
     potential: Series
     """Potential energy it holds (J); 0 of a force without."""
+    unit: ValueUnit | None = None
+    """Of its value."""
+    effort_unit: EffortUnit = "N"
+    """Of its effort."""
+    drives: bool = False
+    """Whether it may move the mechanism in place of drivers: a given torque or push, a motor."""
+    look: Look = ""
     shape: Shape | None
     """Null of a force between no two markers."""
     gas: GasMotion | None = None
     """Null of what is no gas behind a piston."""
+    hydraulics: HydraulicMotion | None = None
+    """Null of what is no hydraulic cylinder."""
 
 
 class ContactMotion(Strict, kw_only=True):
@@ -123,4 +172,11 @@ class ContactMotion(Strict, kw_only=True):
     """Force along the sliding way (N)."""
     state: list[State]
     """Of a contact with friction slides or sticks instead of closed."""
+    unit: ValueUnit = "m"
+    """Of its gap."""
+    effort_unit: EffortUnit = "N"
+    """Of what pushes the gap open."""
+    look: Look = ""
+    acts: Acts | None = None
+    """Null where it acts at (x, y)."""
     shape: Shape

@@ -5,12 +5,23 @@ A body's x, y, theta place the frame its author drew it in, not its centre of ma
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 import msgspec
 
 from shared.contract.base import UNITS, NonNegative, Positive, Provenance, Series, Strict
-from shared.contract.loads import ContactMotion, ForceMotion, Shape
+from shared.contract.loads import (
+    Action,
+    Acts,
+    ContactMotion,
+    EffortUnit,
+    ForceMotion,
+    Look,
+    Pair,
+    Shape,
+    ValueUnit,
+)
+from shared.contract.vibration import Vibration
 
 _FIRST = {
     "axes": "x right, y up, angles counter-clockwise and never wrapped",
@@ -20,16 +31,20 @@ _FIRST = {
     "effort": "generalised force of the driver along its value; power = effort * rate of value",
     "z": "height of the body's layer above the base; the motion is planar",
 }
-CONVENTIONS_OF = {
-    1: _FIRST,
-    2: _FIRST
-    | {
-        "force": "fx, fy, torque of an action: what the force does to that body, at (x, y), world axes",
-        "contact": "normal pushes the gap open; fx, fy, torque act on its second body, at the second marker",
-        "events": "rows right before and right after an event share its time: poses agree there, rates may differ",
-    },
+_SECOND = _FIRST | {
+    "force": "fx, fy, torque of an action: what the force does to that body, at (x, y), world axes",
+    "contact": "normal pushes the gap open; fx, fy, torque act on its second body, at the second marker",
+    "events": "rows right before and right after an event share its time: poses agree there, rates may differ",
 }
+_THIRD = _SECOND | {
+    "acts": "where a joint or contact acts with fx, fy and the torque of acts; null: at (x, y) with its own torque",
+}
+CONVENTIONS_OF = {1: _FIRST, 2: _SECOND, 3: _THIRD}
 """By version of the file."""
+
+
+Colour = Annotated[str, msgspec.Meta(pattern="^#[0-9a-f]{6}$")]
+"""sRGB."""
 
 
 class BodyMotion(Strict, kw_only=True):
@@ -51,6 +66,11 @@ class BodyMotion(Strict, kw_only=True):
     """Where mass, com and inertia are from."""
     com: tuple[float, float]
     inertia: NonNegative
+    colour: Colour = "#66717b"
+    """Its ink on light paper in plots, skeleton, animation, page and legends: that of the material of its main piece,
+    or of its role where there are no parts. Bodies alike have shades that differ."""
+    colour_on_dark: Colour = "#b5bec7"
+    """The same on dark paper."""
 
 
 class JointMotion(Strict, kw_only=True):
@@ -63,6 +83,11 @@ class JointMotion(Strict, kw_only=True):
     fx: Series
     fy: Series
     torque: Series
+    pair: Pair | None = None
+    """Null of other joints."""
+    look: Look = ""
+    acts: Acts | None = None
+    """Null where it acts at (x, y)."""
     shape: Shape | None = None
 
 
@@ -74,6 +99,12 @@ class DriverMotion(Strict, kw_only=True):
     """First and second; null in files of version 1."""
     shape: Shape | None = None
     """Its two markers."""
+    unit: ValueUnit = "rad"
+    """Of its value."""
+    effort_unit: EffortUnit = "N m"
+    look: Look = ""
+    actions: list[Action] = []
+    """What it does to its first body and to its second, each where it acts; none in files of versions 1 and 2."""
     value: Series
     effort: Series
     power: Series
@@ -147,13 +178,17 @@ class Diagnostics(Strict, kw_only=True):
 
 
 class Motion(Strict, kw_only=True):
-    """data.json: the motion of one mechanism. Version 1 had no forces and contacts, and less of the rest."""
+    """data.json: the motion of one mechanism.
+
+    Version 2 did not say where things act, in which units and how they look (older.py); version 1 had no forces and
+    contacts, and less of the rest.
+    """
 
     schema: Literal["mbsd.motion"] = "mbsd.motion"
-    schema_version: Literal[1, 2] = 2
+    schema_version: Literal[1, 2, 3] = 3
     mechanism: str
     units: dict[str, str] = msgspec.field(default_factory=lambda: dict(UNITS))
-    conventions: dict[str, str] = msgspec.field(default_factory=lambda: dict(CONVENTIONS_OF[2]))
+    conventions: dict[str, str] = msgspec.field(default_factory=lambda: dict(CONVENTIONS_OF[3]))
     provenance: Provenance
     gravity: tuple[float, float]
     analysis: Literal["sweep", "simulation"] = "sweep"
@@ -171,6 +206,8 @@ class Motion(Strict, kw_only=True):
     energy: Energy
     couple: Couple | None = None
     """Null where the model gives no body a place along the normal of the plane."""
+    vibration: Vibration | None = None
+    """Null where nothing has mass, or nothing turns round on ground by whose angle the motion repeats."""
     events: list[EventMark] = []
     """In the order of their times."""
     start_changes: list[str] = []

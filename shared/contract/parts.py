@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 import msgspec
 
 from shared.contract.base import UNITS, Count, NonNegative, Positive, Provenance, Strict
+from shared.contract.mount import Mount
 
 PARTS_UNITS = UNITS | {"stl, step": "mm"}
 
@@ -62,6 +63,8 @@ class Piece(Strict, kw_only=True):
     """What to buy, such as "circlip 8x0.8 DIN 471"; empty if the piece is to be made."""
     rolls: Rolling | None = None
     """Null of what does not turn against its body."""
+    dressing: bool = False
+    """Whether it shows what the machine works on, and is none of the mass of its body."""
 
 
 class End(Strict, kw_only=True):
@@ -92,6 +95,8 @@ class Parts(Strict, kw_only=True):
     mechanism: str
     units: dict[str, str] = msgspec.field(default_factory=lambda: dict(PARTS_UNITS))
     provenance: Provenance
+    mount: Mount = Mount()
+    """How ground stands in the world; files without it lie on a desk."""
     bodies: dict[str, BodyParts]
     without_solids: list[str] = []
     """Bodies of mechanism.py that are left out here."""

@@ -15,6 +15,8 @@ import msgspec
 
 from shared.contract import Motion, Parts
 from shared.contract.materials import MATERIALS
+from shared.contract.mount import Kind
+from shared.contract.signals import SIGNALS, linear
 from shared.stage import jsonfile
 from shared.stage.errors import UserError
 from shared.stage.suggestions import did_you_mean
@@ -28,13 +30,19 @@ class _Strict(msgspec.Struct, forbid_unknown_fields=True, kw_only=True, frozen=T
     """Unknown fields are refused."""
 
 
-class Camera(_Strict, frozen=True):
-    """Where the camera stands. Its distance follows from the swept motion, so that all of it is always in the frame."""
+LookName = Literal["studio", "cyclorama", "bench", "daylight", "road", "sand", "blueprint"]
 
-    azimuth: Annotated[float, msgspec.Meta(ge=-180, le=180)] = -16.0
-    """Degrees about z; 0 looks along +y, positive walks to the right."""
-    elevation: Annotated[float, msgspec.Meta(ge=5, le=89)] = 42.0
-    """Degrees above the base."""
+
+class Camera(_Strict, frozen=True):
+    """Where the camera stands. Its distance follows from the swept motion: all of it is in the frame and fills four
+    fifths of its width or height; base and stand are in it as far as that leaves room, trails as it happens."""
+
+    azimuth: Annotated[float, msgspec.Meta(ge=-180, le=180)] | None = None
+    """Degrees about what points up; 0 looks along +y at what lies on a desk, and against z at what stands; positive
+    walks to the right. Null is -16 of what lies, -24 of what stands, and more in a picture that is taller than wide."""
+    elevation: Annotated[float, msgspec.Meta(ge=5, le=89)] | None = None
+    """Degrees above the floor; null is 42 of what lies, and 10, at eye level, of what stands, and more in a picture
+    that is taller than wide."""
     lens: Annotated[float, msgspec.Meta(ge=20, le=200)] = 55.0
     """Focal length in mm on a 36 mm wide sensor."""
     margin: Annotated[float, msgspec.Meta(ge=0, le=0.4)] = 0.09
@@ -43,13 +51,17 @@ class Camera(_Strict, frozen=True):
     """Depth of field: blur in pixels of a 1280 wide frame at the nearest and farthest moving part; 0 is a pinhole."""
     orbit: Annotated[float, msgspec.Meta(ge=0, le=45)] = 0.0
     """Degrees the camera swings to each side, once a turn, so that the film still loops."""
+    follow: bool | None = None
+    """Whether the camera goes along with the machine, damped. Null follows what goes away and does not come back: a
+    car, a walker, a projectile."""
 
 
 class Trail(_Strict, frozen=True):
     """The path of a traced point, a thin light that fades behind it."""
 
     point: str
-    colour: Colour = (0.90, 0.24, 0.0)
+    colour: Colour = linear(SIGNALS["trails"].dark)
+    """Linear RGB; by default that of trails in every picture."""
     tail: Annotated[float, msgspec.Meta(gt=0, le=1)] = 0.92
     """Length behind the point, in turns; of a motion without a period in parts of it."""
     radius: Annotated[float, msgspec.Meta(gt=0, le=0.1)] = 0.0046
@@ -85,7 +97,9 @@ class Surface(_Strict, frozen=True):
     """A surface for a piece, where none of the named materials will do."""
 
     colour: Colour
-    finish: Literal["anodised", "brushed", "polished", "satin", "plastic", "rubber"] = "anodised"
+    finish: Literal[
+        "anodised", "brushed", "polished", "satin", "plastic", "printed", "rubber", "cast", "wood", "glass"
+    ] = "anodised"
     roughness: Unit = 0.3
 
 
@@ -95,7 +109,13 @@ class Shot(_Strict, frozen=True):
     schema: Literal["mbsd.shot"] = "mbsd.shot"
     schema_version: Literal[1] = 1
     camera: Camera = Camera()
-    look: Literal["studio", "daylight"] = "studio"
+    mount: Kind | None = None
+    """How the machine stands: on a "desk", a "stand", at a "wall" or on the "ground"; the parts follow it. Null follows
+    from the model: a machine stands where gravity acts in the plane, on the ground if its wheels run on it."""
+    look: LookName | None = None
+    """Light, ground and background. Null follows from the machine: a road for what drives on one, the studio for
+    engines and what lies on a desk, white for what no motor moves, else a bench, or daylight if it is too large for
+    one."""
     turns: Annotated[int, msgspec.Meta(ge=1, le=1000)] = 3
     """How many turns of the drivers the film shows, whole periods of the motion; after the first they cost nothing to
     render. A motion without a period is shown so often."""

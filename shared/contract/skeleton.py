@@ -23,7 +23,7 @@ class _Strict(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     """Unknown and missing fields are refused."""
 
 
-class Stroke(_Strict, kw_only=True):
+class Stroke(_Strict, kw_only=True, omit_defaults=True):
     """A polyline, or an outline that may be filled."""
 
     points: list[float]
@@ -41,6 +41,8 @@ class Stroke(_Strict, kw_only=True):
     """Higher ones cover lower ones."""
     dash: list[Positive]
     """Lengths of strokes and gaps in line widths; empty: solid."""
+    sign: Literal["centre of mass"] | None = None
+    """What the stroke marks, where pictures show it on demand."""
 
 
 class Name(_Strict, kw_only=True):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 from shared.shapes.solid import Solid
 from shared.stage.errors import UserError
@@ -20,7 +21,9 @@ class Bodies(dict[str, list[Solid]]):
         made.may_touch("cam", "follower")
         made.pieces_may_touch("tyre", "road")
         made.leave_out("string")
+        made.dress("ground", Solid("block", ...))  # what the machine works on
         made.join_places("rod", ("cam", 10.0, 0.0), ("follower", 0.0, -5.0))  # made["rod"] is between them
+        made.mount = ("stand", (0.0, 1.0, 0.0))  # how ground stands, and what points up; else it lies on a desk
         made.along = True  # heights of the solids are places z of mechanism.py: masses have them, too
         return made
 
@@ -31,6 +34,10 @@ class Bodies(dict[str, list[Solid]]):
         super().__init__(*args, **bodies)
         self.along = False
         """Whether heights of the solids are the places z of the model, so that what masses have along z counts."""
+        self.stand: Callable[[Mapping[str, list[Solid]]], list[Solid]] | None = None
+        """Makes the solids of ground with a stand, once all solids are there; None where ground has what it needs."""
+        self.mount: tuple[str, tuple[float, float, float]] | None = None
+        """Kind and up of shared/contract/mount.py: how ground stands in the world; None where nobody says."""
         self._touching: set[tuple[str, str]] = set()
         self._pieces_touching: set[tuple[str, str]] = set()
         self._left_out: set[str] = set()
@@ -50,6 +57,16 @@ class Bodies(dict[str, list[Solid]]):
         """
         self._pieces_touching.add(pair_of(first, second, "pieces_may_touch", "solid"))
 
+    def dress(self, body: str, *solids: Solid) -> None:
+        """Add solids (mm, the frame of ``body``) that show what the machine works on, ground or a body that moves.
+
+        They are made, proven clear and filmed as all others, but are none of its mass: a load, a cup on a table. Raises
+        UserError for a body that has no solids yet, whose main piece they would be.
+        """
+        if not self.get(body):
+            raise UserError(f"dress('{body}'): it has no solids that are to be dressed; there are: {', '.join(self)}")
+        self[body] = [*self[body], *(replace(solid, dressing=True) for solid in solids)]
+
     def leave_out(self, body: str) -> None:
         """``body`` of mechanism.py has no solids; where mechanism.py gives it no mass, that is estimated."""
         self._left_out.add(body)
@@ -63,6 +80,14 @@ class Bodies(dict[str, list[Solid]]):
         if first == second:
             raise UserError(f"join_places('{rod}'): both ends are {first}; name two places")
         self._rods[rod] = first, second
+
+    def on_stand(self) -> Bodies:
+        """With a stand under all that is there now; the parts stage adds it to what ``parts()`` returns."""
+        if self.stand is None:
+            return self
+        stood = self | {"ground": self.stand(self)}
+        stood.stand = None
+        return stood
 
     @property
     def rods(self) -> dict[str, tuple[Place, Place]]:
@@ -94,6 +119,8 @@ class Bodies(dict[str, list[Solid]]):
                 joined._left_out |= one.left_out
                 joined._rods |= one.rods
                 joined.along |= one.along
+                joined.mount = joined.mount or one.mount
+                joined.stand = joined.stand or one.stand
         return joined
 
     def __ror__(self, other: Mapping[str, list[Solid]]) -> Bodies:  # pyright: ignore[reportIncompatibleMethodOverride]

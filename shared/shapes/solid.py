@@ -42,7 +42,8 @@ class Solid:
     ``holds`` says which springs are fixed to it, so that the film adds no pins of its own. ``buy`` says what to ask for
     in a shop where the piece has a standard's sizes, such as "circlip 8x0.8 DIN 471"; a piece without it is to be made.
     ``rolls`` says how it turns in the film. ``tolerance`` is the largest distance (mm) of its mesh from the true
-    surface; None is that of usual parts, which is fine for large ones.
+    surface; None is that of usual parts, which is fine for large ones. ``dressing`` shows what the machine works on
+    (Bodies.dress): it is made, proven and filmed as all else, but is none of the mass of its body.
     """
 
     name: str
@@ -53,6 +54,7 @@ class Solid:
     buy: str = ""
     rolls: Roll | None = None
     tolerance: float | None = None
+    dressing: bool = False
 
 
 def placed(shape: cq.Workplane, x: float = 0.0, y: float = 0.0, z: float = 0.0, turn: float = 0.0) -> cq.Workplane:

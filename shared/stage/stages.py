@@ -116,5 +116,5 @@ def versions(*packages: str) -> dict[str, str]:
 
 def contract_sources(*more: str) -> list[Path]:
     """Files that say what data.json and parts.json hold, and ``more`` of ``shared/contract`` by name: for keys."""
-    names = ("__init__", "base", "loads", "motion", "parts", *more)
+    names = ("__init__", "base", "loads", "motion", "mount", "parts", *more)
     return [ROOT / "shared" / "stage" / "jsonfile.py", *(ROOT / "shared" / "contract" / f"{name}.py" for name in names)]

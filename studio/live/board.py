@@ -20,7 +20,8 @@ class Board:
         self._push = push
         self.history = History()
         self.numbers: list[dict[str, Any]] = []
-        """Of Params as the file has it, with their ranges."""
+        """Of Params as the file has it, with their ranges, labels and units."""
+        self._words: dict[str, dict[str, str]] = {}
         self.payload: bytes | None = None
         """Of the last good motion."""
         self.solid: bytes | None = None
@@ -53,6 +54,7 @@ class Board:
     def solved(self, numbers: list[dict[str, Any]]) -> bool:
         """They are, and Params has these numbers; parts of other numbers are taken away. Whether some stay in sight."""
         self.error, self._again = None, False
+        numbers = [self._described(number) for number in numbers]
         seen, self.solid = self.solid is not None, None  # it has numbers of the motion before
         if numbers != self.numbers and seen:
             seen = False
@@ -61,6 +63,17 @@ class Board:
         self.history.keep({number["name"] for number in numbers})
         self.tell({"kind": "solved", "numbers": numbers, **self._values()})
         return seen
+
+    def describe(self, words: dict[str, dict[str, str]]) -> None:
+        """What people call the numbers of Params; they keep these words when the file is saved again."""
+        self._words = words
+        numbers = [self._described(number) for number in self.numbers]
+        if numbers != self.numbers:
+            self.numbers = numbers
+            self.tell({"kind": "numbers", "numbers": numbers, **self._values()})
+
+    def _described(self, number: dict[str, Any]) -> dict[str, Any]:
+        return number | self._words.get(number["name"], {"label": number["name"], "unit": ""})
 
     def motion(self, header: dict[str, Any], payload: bytes, values: dict[str, float]) -> None:
         """A new motion, with these numbers other than the file's."""

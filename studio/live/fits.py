@@ -17,8 +17,17 @@ Tell = Callable[[dict[str, Any]], None]
 class Fit:
     """At most one at a time; a newer one ends it."""
 
-    def __init__(self, name: str, nursery: Nursery, tell: Tell, found: Callable[[dict[str, float]], None]) -> None:
-        self._name, self._nursery, self._tell, self._found = name, nursery, tell, found
+    def __init__(
+        self,
+        name: str,
+        nursery: Nursery,
+        tell: Tell,
+        found: Callable[[dict[str, float]], None],
+        best: Callable[[dict[str, float] | None], None],
+    ) -> None:
+        """``best`` is called with the numbers of the best linkage so far, with None where a fit ends without any."""
+        self._name, self._nursery, self._tell, self._found, self._best = name, nursery, tell, found, best
+        self._shown = False
         self._child: Child | None = None
 
     @property
@@ -29,6 +38,7 @@ class Fit:
     def begin(self, wish: Wanted, values: dict[str, float]) -> None:
         """Fit from these numbers; it may take as long as it does."""
         self.end()
+        self._shown = False
         self._child = self._nursery.child(self._name, self._heard, limit=0)
         self._child.ask(0, {**to_builtins(wish), "values": values})
         self._tell({"kind": "progress", "done": 0.0, "error": None})
@@ -37,6 +47,7 @@ class Fit:
         """End it, and say that none runs, also to a page that waits for one that has ended already."""
         self.end()
         self._tell({"kind": "fitted", "cancelled": True})
+        self._as_before()
 
     def end(self) -> None:
         """End it, if there is one."""
@@ -49,11 +60,21 @@ class Fit:
             return
         match header.get("kind"):
             case "progress":
+                values = header.pop("values", None)
                 self._tell(header)
+                if values is not None:
+                    self._shown = True
+                    self._best(values)
             case "error":
                 self.end()
                 self._tell({"kind": "fitted", "error": header["text"]})
+                self._as_before()
             case "fitted":
                 self.end()
                 self._tell(header)
                 self._found(header["values"])
+
+    def _as_before(self) -> None:
+        if self._shown:
+            self._shown = False
+            self._best(None)

@@ -49,10 +49,14 @@ class History:
         """Forget numbers that are no longer there, in all states."""
         self._states = [{name: value for name, value in one.items() if name in names} for one in self._states]
 
-    def written(self, values: dict[str, float]) -> None:
-        """The file now holds these: no state changes them any more, so that they are as the file has them.
+    def written(self, values: dict[str, float], before: dict[str, float]) -> None:
+        """The file now holds these, where it held ``before``: all states mean what they meant, beside the new file.
 
-        A number that was set to another value meanwhile stays.
+        So a number that was set to another value meanwhile stays, and undoing goes on to what the file held before.
         """
-        now = {name: value for name, value in self.now.items() if name not in values or values[name] != value}
-        self._states, self._now = [now], 0
+
+        def beside(state: dict[str, float]) -> dict[str, float]:
+            meant = {name: before[name] for name in values if name in before} | state
+            return {name: value for name, value in meant.items() if values.get(name) != value}
+
+        self._states = [beside(state) for state in self._states]

@@ -12,7 +12,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from shared.stage.errors import UserError
@@ -23,6 +23,8 @@ LOW, HIGH = 0.25, 2.0
 """Of a value, the ends of its range."""
 LARGEST = 1e100
 """Beyond it a number has no slider; below its inverse it counts as 0."""
+DIGITS = 4
+"""Of a number that no hand has typed."""
 PARTS = 1000
 """A slider has so many steps."""
 
@@ -75,6 +77,11 @@ def changed(p: Any, values: dict[str, float]) -> Any:
         field, places = parsed(name)
         fields[field] = _with(fields.get(field, getattr(p, field)), places, exact)
     return dataclasses.replace(p, **fields) if fields else p
+
+
+def in_digits(values: Mapping[str, Any]) -> dict[str, float]:
+    """What a drag or a fit has found, in as many digits as people write: so it is shown, solved and written."""
+    return {name: float(f"{value:.{DIGITS}g}") for name, value in values.items() if isinstance(value, float)}
 
 
 def parsed(name: str) -> tuple[str, list[int]]:

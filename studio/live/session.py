@@ -39,19 +39,22 @@ class Session:
         self._new: Child | None = None
         self._wish: dict[str, Any] | None = None
         self._wished: dict[str, Any] | None = None
-        self._parts_ready = self._solid_wanted = False
+        self._parts_ready = self._solid_wanted = self._words_wanted = False
+        self._wordless = False
+        """Whether the process of these files ended while it described its numbers: it is not asked again."""
         self._opened: dict[str, float] = {}
         """Numbers with which the files are being solved."""
         self._began = 0.0
         """When the process was begun that solves them (s since the epoch)."""
         self.stages = Stages(name, nursery.mark, self.board.line, self._parts_made)
         self.writer = Writer(name, nursery)
-        self.fit = Fit(name, nursery, self.board.tell, self._fitted)
+        self.fit = Fit(name, nursery, self.board.tell, self._fitted, self._best_so_far)
 
     # -- files ----------------------------------------------------------------------------------------------------
 
     def changed(self, files: set[Path]) -> None:
         """Some of the author's files have another content, or the server has just begun."""
+        self._wordless = False
         if files and all(file.name == "parts.py" and file.parent == self.watch.folder for file in files):
             self._make_parts()
             return
@@ -91,7 +94,7 @@ class Session:
                 self._solid_wanted = shown or self._parts_ready
                 if not self._parts_ready:
                     self._make_parts()
-                self._parts_ready = False
+                self._parts_ready, self._words_wanted = False, not self._wordless
                 if self.history.now != self._opened:  # numbers were set meanwhile
                     self._solve({"do": "set", "values": self.history.now, "final": True})
                 else:
@@ -161,9 +164,10 @@ class Session:
         if not values:
             raise UserError("no number differs from the file, so there is nothing to write")
         whole = {number["name"] for number in self.board.numbers if number["whole"]}
+        before = {number["name"]: number["value"] for number in self.board.numbers}
 
         def done(written: Written) -> None:
-            self.history.written(values)
+            self.history.written(values, before)
             self.board.tell_values()
             self.board.line(written.text)
 
@@ -173,6 +177,11 @@ class Session:
             done,
             lambda text: self.board.tell({"kind": "refused", "text": text}),
         )
+
+    def _best_so_far(self, values: dict[str, float] | None) -> None:
+        """Show a fit's best linkage so far, which is no step of the history; None: the fit ended without one."""
+        request = {"do": "set", "values": self.history.now if values is None else values, "final": values is None}
+        self._solve(request)
 
     def _fitted(self, values: dict[str, float]) -> None:
         self.history.put(values)
@@ -197,10 +206,13 @@ class Session:
         if kind == "line":
             self.board.line(header["text"])
             return
-        if kind not in ("motion", "error", "solid"):
+        if kind not in ("motion", "error", "solid", "described"):
             return
         if kind == "solid":
             self.board.parts(payload)
+        elif (asked or {}).get("do") == "describe":
+            self._wordless = child.ended
+            self.board.describe(header.get("words") or {})
         elif kind == "motion":
             values = header.get("values") or (asked or {}).get("values") or {}
             if asked and asked["do"] == "drag" and asked.get("final"):
@@ -224,6 +236,9 @@ class Session:
         elif self._solid_wanted:
             self._solid_wanted = False
             self._solve({"do": "solid"})
+        elif self._words_wanted:
+            self._words_wanted = False
+            self._solve({"do": "describe"})
 
     # -- the rest ---------------------------------------------------------------------------------------------------
 

@@ -15,6 +15,7 @@ def main() -> int | None:
     for command, text in (("run", "make everything, here"), ("start", "make everything, in the background")):
         sub = commands.add_parser(command, help=text)
         sub.add_argument("--preset", default="preview")
+        sub.add_argument("--aspect", default="", help="of the pictures: 16:9, 1:1, 4:5 or 9:16; 16:9 if not given")
         sub.add_argument("--only", default="", help="mechanisms and variants, commas between them; all if not given")
         sub.add_argument("--show", default="", help="what films show, in place of what their shots say")
         sub.add_argument("--spectra", default="", help="spectra to plot of every mechanism that has them")
@@ -64,6 +65,7 @@ def _options(arguments: argparse.Namespace) -> Options:
         arguments.watts,
         arguments.python,
         arguments.anyway,
+        arguments.aspect,
     )
 
 

@@ -1,6 +1,7 @@
 """``python -m studio.verify.again NAME PRESET FRAMES SHOW``: frames rendered in a process of their own.
 
-PRESET is its fields, ``preview,1280,720,8,0``. Motion, solids and shot are those of $MBSD_OUT, which gets the pictures.
+PRESET is its fields, ``preview,1280,720,8,0,128``. Motion, solids and shot are those of $MBSD_OUT, which gets the
+pictures.
 """
 
 from __future__ import annotations
@@ -24,9 +25,9 @@ def told(preset: Preset) -> str:
 def main() -> None:
     """Render the frames."""
     name, words, numbers, show = sys.argv[1:]
-    kind, width, height, samples, blur = words.split(",")
-    out, preset = Out(name), Preset(kind, int(width), int(height), int(samples), bool(int(blur)))
-    film, store = read_film(out, show), FrameStore(out.frames(preset.name))
+    kind, width, height, samples, blur, poster = words.split(",")
+    out, preset = Out(name), Preset(kind, int(width), int(height), int(samples), bool(int(blur)), int(poster))
+    film, store = read_film(out, show, preset.aspect), FrameStore(out.frames(preset.name))
     frames = sorted({int(number) % film.clock.frames for number in numbers.split(",")})
     with store.locked():
         render(Pictures(film, preset), store, frames, "to compare", Tally())

@@ -60,7 +60,7 @@ def _compared(out: Out, preset: Preset, frames: str, show: str, scratch: Path) -
         if path.is_file() and (solids or path != out.shot):
             found.append(files.compared(f"{what} ({path.name})", path, made / path.name))
     if index is None or not solids:
-        hint = f"make film-{_hyphens(out.name)} PRESET={preset.name} first"
+        hint = f"make film-{_hyphens(out.name)} {preset.asked} first"
         return [*found, Finding("frames and film", "missing", f"none of {preset.name} are there; {hint}")]
     return [*found, *_of_pictures(out, preset, index, wanted, show, scratch)]
 

@@ -50,11 +50,15 @@ def test_a_port_lies_where_the_piston_opens_it() -> None:
     assert np.ptp(opened[:, 0]) > 1.5 * np.ptp(closed[:, 0])
 
 
-def test_a_strut_has_a_barrel_on_its_first_point_and_a_piston_within() -> None:
+@pytest.mark.parametrize("hydraulic", [False, True])
+def test_a_strut_has_a_barrel_on_its_first_point_and_a_piston_within(hydraulic: bool) -> None:
     m = Mechanism("strut", gravity=None)
     body = m.body("body", 1.0, inertia=1.0)
     m.prismatic("rail", m.ground.origin, body.origin)
-    m.gas_strut("strut", m.ground.origin, body.origin, 400.0, 1.3, 0.5, 0.2)
+    if hydraulic:
+        m.hydraulic_cylinder("strut", m.ground.origin, body.origin, 0.08, 0.05, 0.2, 0.3, 2e7, rated_flow=1e-3)
+    else:
+        m.gas_strut("strut", m.ground.origin, body.origin, 400.0, 1.3, 0.5, 0.2)
     m.start_near(body=(0.45, 0, 0))
     [drawn] = strokes_of(m.simulate(0.01, steps=2), [0])
     lines = [stroke.points for stroke in drawn.strokes if stroke.ink == "load" and not stroke.closed]

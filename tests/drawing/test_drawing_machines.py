@@ -11,7 +11,7 @@ from matplotlib.path import Path
 
 from mbsd import Mechanism, constant_rate
 from mbsd.cams import Lift, flat_cam, roller_cam
-from mbsd.drawing.look import colour
+from mbsd.drawing.inks import INKS, apart
 
 LIFT = Lift.of((math.pi / 2, 0.02, "cycloidal"), (math.pi / 2, 0.02), (math.pi, 0.0, "3-4-5"))
 
@@ -20,11 +20,20 @@ def outlines(ax: Axes, number: int, order: float) -> list[np.ndarray]:
     """Filled outlines of the body of this number, drawn at this height."""
     from matplotlib.colors import to_hex
 
+    edge = colours(ax)[number]
     return [
         np.asarray(patch.get_path().vertices)
         for patch in ax.patches
-        if to_hex(patch.get_edgecolor()) == colour(number) and patch.get_zorder() == order
+        if to_hex(patch.get_edgecolor()) == edge and patch.get_zorder() == order
     ]
+
+
+def colours(ax: Axes) -> list[str]:
+    """Of the bodies, whose names are written in the model's order."""
+    from matplotlib.colors import to_hex
+
+    shades = set(apart({f"{ink} {k}": ink for ink in INKS.values() for k in range(5)}).values())
+    return list(dict.fromkeys(ink for text in ax.texts if (ink := to_hex(text.get_color())) in shades))
 
 
 def lines(ax: Axes) -> list[np.ndarray]:
@@ -82,7 +91,7 @@ def test_teeth_of_a_rack_stand_in_the_gaps_of_its_pinion(on_ground: bool) -> Non
 
     from mbsd.drawing.look import QUIET
 
-    edge = QUIET if on_ground else colour(1)
+    edge = QUIET if on_ground else colours(ax)[1]
     [rack] = [
         np.asarray(p.get_path().vertices)
         for p in ax.patches

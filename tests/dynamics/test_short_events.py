@@ -144,3 +144,16 @@ def test_an_event_ends_where_it_ends_though_rounding_gives_its_begin_either_sign
     m.event("near", value)
     times = [event.time for event in m.simulate(1.0, steps=4).events]
     np.testing.assert_allclose(times, [place - 1e-5, place + 1e-5], rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("tolerance", [1e-7, 1e-9, 1e-11])
+def test_a_tip_passes_near_points_of_its_arc_wherever_steps_end(tolerance: float) -> None:
+    """Its speed changes by much within a step beside the turning point, so that the distance is bent there."""
+    for angle in np.linspace(-31.0, -40.0, 60):
+        m = _pendulum()
+        tip = m.bodies["arm"].at(1.0, 0.0)
+        place = m.ground.at(math.cos(math.radians(angle)), math.sin(math.radians(angle)))
+        m.event("near", distance_reaches(place, tip, 1e-5))
+        times = [event.time for event in m.simulate(0.8, steps=10, tolerance=tolerance).events]
+        assert len(times) == 2, angle
+        assert times[1] - times[0] < 2e-3

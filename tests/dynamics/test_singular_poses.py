@@ -308,3 +308,17 @@ def test_a_massless_base_carries_what_ground_does_near_a_change_point() -> None:
             np.testing.assert_allclose(
                 a, b, rtol=0, atol=1e-3 * np.abs(a).max()
             )  # 1e-9 over a margin of 1e-5, and more
+
+
+@pytest.mark.parametrize("away", [0.0, 1.0, 3.0, 10.0, 30.0])
+def test_redundant_cranks_far_from_the_origin_are_not_singular(away: float) -> None:
+    """The size of the mechanism is that from the origin, and poses are tried at parts of it beside the start."""
+    m = Mechanism("cranks")
+    coupler = m.body("coupler", 0.5, com=(0.2, 0.0), inertia=0.07)
+    for k, (x, y) in enumerate([(0.0, 0.0), (0.2, 0.1), (0.5, 0.2)]):
+        bar = m.bar(f"bar{k}", 0.4, mass=0.5)
+        m.revolute(f"foot{k}", m.ground.at(away + x, 0.7 * away + y), bar.start)
+        m.revolute(f"head{k}", coupler.at(x, y), bar.end)
+    m.start_near(bar0=-121, bar1=-121, bar2=-121, coupler=(away - 0.206, 0.7 * away - 0.343, 0))
+    sol = m.simulate(0.3, steps=10)
+    np.testing.assert_allclose(sol.body("bar0").theta, sol.body("bar2").theta, atol=1e-9)

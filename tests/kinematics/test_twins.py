@@ -75,3 +75,23 @@ def test_what_hangs_freely_or_is_near_is_not_told() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         four.sweep()
+
+
+@pytest.mark.parametrize("slope", [-0.4, 0.0, 0.3])
+def test_bars_below_a_cart_start_at_the_angles_given(slope: float) -> None:
+    """The cart has no place until its rail gives it one; then its pins place the bars."""
+    m, given = Mechanism("chain"), {"upper": -124.0, "middle": -106.0, "lower": -44.0}
+    cart = m.body("cart", 1.0, inertia=0.1)
+    m.prismatic("rail", m.ground.at(0, 0, slope), cart.origin)
+    at = cart.at(0.1, -0.1)
+    for name, angle in given.items():
+        bar = m.bar(name, 0.5, 1.0)
+        m.revolute(name + " pin", at, bar.start)
+        m.start_near(**{name: angle})
+        at = bar.end
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        sol = m.simulate(0.01, steps=1)
+    for name, angle in given.items():
+        assert math.degrees(sol.body(name).theta[0]) == pytest.approx(angle, abs=1e-9)
+    assert math.hypot(sol.body("cart").x[0], sol.body("cart").y[0]) < 1e-12

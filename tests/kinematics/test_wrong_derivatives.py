@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numba
@@ -121,3 +122,70 @@ def test_a_motion_whose_steps_are_doubted_without_end_is_given_up(monkeypatch: p
         ModelError, match=r"given up at t = .* s: \d+ steps were put between the 3 .* driver 'drive' goes"
     ):
         m.sweep(20.0, 2)
+
+
+def _rise(begin: float, length: float, kind: str, off: float) -> tuple[Callable[[float], float], ...]:
+    """A rise by 2 rad between dwells, as an author writes it: f, f', f''."""
+
+    def part(t: float) -> float:
+        return min(max((t - begin) / length, 0.0), 1.0)
+
+    if kind == "cycloidal":
+        turn = 2 * math.pi
+        laws = (
+            lambda u: u - math.sin(turn * u) / turn,
+            lambda u: 1 - math.cos(turn * u),
+            lambda u: turn * math.sin(turn * u),
+        )
+    else:
+        laws = (
+            lambda u: 10 * u**3 - 15 * u**4 + 6 * u**5,
+            lambda u: 30 * (u**2 - 2 * u**3 + u**4),
+            lambda u: 60 * u - 180 * u**2 + 120 * u**3,
+        )
+    f, df, ddf = laws
+    return (
+        lambda t: off + 2 * f(part(t)),
+        lambda t: 2 / length * df(part(t)),
+        lambda t: 2 / length**2 * ddf(part(t)),
+    )
+
+
+@pytest.mark.parametrize("kind", ["cycloidal", "3-4-5"])
+@pytest.mark.parametrize(("begin", "length"), [(3.3, 0.1), (2.0, 1.0), (0.2, 0.01), (9.2, 0.5)])
+@pytest.mark.parametrize("off", [0.0, -450.0])
+def test_a_rise_between_dwells_is_taken_as_it_is(kind: str, begin: float, length: float, off: float) -> None:
+    """Where its terms cancel, beside the rise and in the dwells, its acceleration is rounding."""
+    laws = _rise(begin, length, kind, off)
+    m = Mechanism("index", gravity=None)
+    table = m.body("table", 1.0, inertia=1.0)
+    m.revolute("axle", m.ground.origin, table.origin)
+    m.drive_angle("drive", table, function(*laws))
+    times = np.sort(np.append(np.linspace(0.0, 10.0, 7), begin + length * np.linspace(0.05, 0.95, 13)))
+    sol = m.sweep(times=times)
+    view = sol.body("table")
+    for got, law, size in zip(
+        (view.theta, view.omega, view.alpha), laws, (1.0, 4 / length, 12 / length**2), strict=True
+    ):
+        np.testing.assert_allclose(got, [law(t) for t in times], rtol=1e-12, atol=1e-9 * size)
+
+
+@pytest.mark.parametrize("length", [0.005, 0.05])
+@pytest.mark.parametrize("wrong", [(True, False), (False, True), (True, True)])
+def test_derivatives_that_err_on_a_short_stretch_are_refused(length: float, wrong: tuple[bool, bool]) -> None:
+    def there(t: float, errs: bool) -> float:
+        return 1.01 if errs and 1.0 < t < 1.0 + length else 1.0
+
+    law = function(math.sin, lambda t: there(t, wrong[0]) * math.cos(t), lambda t: -there(t, wrong[1]) * math.sin(t))
+    with pytest.raises(ModelError, match=r"d?df is not the derivative of d?f: at t = 1"):
+        four_bar(law).sweep(2.0, 50)
+
+
+def test_a_dwell_alone_stands_still() -> None:
+    m = Mechanism("index", gravity=None)
+    table = m.body("table", 1.0, inertia=1.0)
+    m.revolute("axle", m.ground.origin, table.origin)
+    m.drive_angle("drive", table, function(*_rise(0.2, 0.05, "cycloidal", 0.0)))
+    sol = m.sweep(times=np.linspace(0.4, 1.0, 5))
+    assert np.ptp(sol.body("table").theta) == 0.0
+    assert not sol.v.any()

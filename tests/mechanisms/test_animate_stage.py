@@ -86,7 +86,7 @@ def test_bodies_have_the_masses_of_their_parts_where_these_are_current(
     out = film_fixture.write()
     drawn: list[dict[str, float]] = []
 
-    def draw(solution: Solution, path: Path, words: str) -> None:
+    def draw(solution: Solution, path: Path, words: str, parts: object) -> None:
         path.write_bytes(b"film")
         drawn.append({name: body.mass for name, body in solution.mechanism.bodies.items() if name != "ground"})
 

@@ -156,7 +156,7 @@ def test_a_folder_without_parts_is_solved_and_says_how_heavy_it_took_its_bodies(
     assert project.run()
     said = capsys.readouterr().out
     assert "solve: arm: no parts yet, so masses are estimated" in said
-    assert "arm 0.479 kg" in said
+    assert "arm 479 g" in said
     motion = read_motion(Out("arm").motion)
     assert motion.bodies["arm"].z is None
     assert motion.bodies["arm"].mass > 0.1

@@ -12,6 +12,7 @@ from mechanisms.stages.loading.inputs import sources_state
 from mechanisms.stages.parts import stage as parts_stage
 from mechanisms.stages.solve import stage as solve_stage
 from shared.contract import read_motion, read_parts
+from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, Out
 from shared.stage.stages import Stage
 from tests.mechanisms.author_project import Project, put
@@ -149,6 +150,54 @@ def test_parts_follow_from_what_parts_py_uses(
     assert parts.run() == again
     assert (read_parts(Out("arm").parts).bodies["arm"].mass.mass != before) == again
     assert not parts.run()
+
+
+def test_of_shot_py_its_mount_alone_counts(parts: Project) -> None:
+    """What it imports and reads counts only where parts.py does so too, which then finds it as new."""
+    put("mechanisms/arm/parts.py", PARTS + CASES["a helper"][0])(parts)
+    put(HELPER, "WIDTH = 8.0\n")(parts)
+    camera = "from shared.shot import Camera\nfrom mechanisms.arm.helper import WIDTH\n"
+    steps = [
+        ("shot = Shot()", "desk", True),
+        (camera + "shot = Shot(camera=Camera(azimuth=WIDTH))", "desk", False),
+        (camera + "shot = Shot(camera=Camera(azimuth=2 * WIDTH), mount='stand')", "stand", True),
+        (camera + "shot = Shot(camera=Camera(azimuth=WIDTH), mount='st' + 'and')", "stand", False),
+        ("shot = Shot(mount='wall')", "wall", True),
+        ("shot = Shot(mount='desk')", "desk", True),
+    ]
+    for text, kind, again in steps:
+        parts.shot(text)
+        assert parts.run() == again
+        assert read_parts(Out("arm").parts).mount.kind == kind
+    modules = Stage(Out("arm"), "parts", "", []).notes()["inputs"]["modules"]
+    assert {"mechanisms/arm/helper.py", "mechanisms/arm/parts.py"} <= set(modules)
+    assert "mechanisms/arm/shot.py" not in modules
+    parts.shot("shot = Shot(mount='ceiling')")
+    with pytest.raises(UserError, match=r"mechanisms/arm/shot\.py.*mount"):
+        parts.run()
+
+
+def test_solids_by_hand_that_stand_follow_gravity(parts: Project) -> None:
+    """mechanism.py counts for them then."""
+    put("mechanisms/arm/parts.py", PARTS + BY_VALUE)(parts)
+    parts.shot("shot = Shot(mount='ground')")
+    assert parts.run()
+    assert read_parts(Out("arm").parts).mount.up == (0.0, 1.0, 0.0)
+    put("mechanisms/arm/mechanism.py", MECHANISM.replace('("arm")', '("arm", gravity=(9.81, 0.0))'))(parts)
+    assert parts.run()
+    assert read_parts(Out("arm").parts).mount.up == (-1.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("said", ["('shelf', (0.0, 1.0, 0.0))", "('stand', (0.0, 2.0, 0.0))", "'stand'"])
+def test_a_mount_of_parts_py_that_cannot_be_is_refused(parts: Project, said: str) -> None:
+    text = BY_VALUE + "_plain = parts\ndef parts(p: Params):\n    from shared.shapes.bodies import Bodies\n"
+    text += f"    made = Bodies(_plain(p))\n    made.mount = {said}\n    return made\n"
+    put("mechanisms/arm/parts.py", PARTS + text)(parts)
+    with pytest.raises(UserError, match=r"arm: parts\(\): mount is"):
+        parts.run()
+    put("mechanisms/arm/parts.py", PARTS + text.replace(said, "('wall', (0.6, 0.8, 0.0))"))(parts)
+    assert parts.run()
+    assert read_parts(Out("arm").parts).mount.kind == "wall"
 
 
 def test_where_mechanism_py_counts_the_solver_counts_that_it_imports(parts: Project) -> None:

@@ -11,9 +11,12 @@ from mechanisms.stages.loading import loading
 from mechanisms.stages.parts.mesh_check import VOLUME_TOLERANCE
 from mechanisms.stages.parts_files import read_mesh
 from render import glb
+from render.film.inputs import read_film
+from render.presets import PRESETS, WIDE
 from shared import contract
 from shared.contract.shot import Names, read_shot, refuse_unknown
 from shared.stage.paths import Out, mechanism_names
+from tests.render.filling import boxes, filled, refuse_overlaps
 from tests.render.glb_file import GlbFile
 from tests.running.warm import Warm
 
@@ -117,7 +120,7 @@ def test_the_glb_moves_as_data_json_has_it(out: Out) -> None:
     found = GlbFile(out.glb.read_bytes())
     boxes = {body: found.box_of(body) for body in parts.bodies}
     assert set(boxes) == {name for name in found.nodes if name in {"ground", *motion.bodies}}
-    start, time = motion.time[0], np.array(motion.time)
+    start, time, turned = motion.time[0], np.array(motion.time), _with_y_up(parts.mount.up)
     for t in found.clock[:: max(1, len(found.clock) // 12)]:
         k = int(np.abs(time - start - t).argmin())
         matrices = found.matrices(float(t))
@@ -125,8 +128,14 @@ def test_the_glb_moves_as_data_json_has_it(out: Out) -> None:
             pose = motion.bodies.get(body)
             x, y, angle = (pose.x[k], pose.y[k], pose.theta[k]) if pose else (0.0, 0.0, 0.0)
             place = (corners[:, 0] + 1j * corners[:, 1]) * np.exp(1j * angle) + complex(x, y)
-            upright = np.column_stack([place.real, corners[:, 2], -place.imag])  # glTF's y is up
+            upright = np.column_stack([place.real, place.imag, corners[:, 2]]) @ turned.T
             np.testing.assert_allclose((corners @ matrices[body][:3, :3].T) + matrices[body][:3, 3], upright, atol=1e-5)
+
+
+def _with_y_up(up: tuple[float, float, float]) -> np.ndarray:
+    """(3, 3) that turns what points up into glTF's y: z of what lies, a direction of the plane of what stands."""
+    x, y, z = up
+    return np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]] if z else [[y, -x, 0], [x, y, 0], [0, 0, 1]], dtype=float)
 
 
 def test_the_shot_names_what_there_is(out: Out) -> None:
@@ -146,3 +155,15 @@ def test_solving_anew_gives_the_same_bytes(made: tuple[str, Path], out: Out, war
     out.motion.unlink()
     assert warm.run("mechanisms", "solve", made[0], MBSD_OUT=str(made[1])).returncode == 0
     assert out.motion.read_bytes() == before
+
+
+def test_it_fills_wide_and_tall_pictures_and_its_words_have_room(out: Out) -> None:
+    """Of width or height four fifths, measured on coarse solids, springs and belts over the film; with titles and all
+    arrows at once, too, nothing that is written overlaps or leaves the picture.
+    """
+    for aspect in (WIDE, "9:16"):
+        shape = PRESETS["draft"].framed(aspect).aspect
+        assert filled(read_film(out, "", shape)) >= 0.8 - 5e-3, aspect
+        written = boxes(read_film(out, "velocities,accelerations,forces,reactions,title", shape))
+        assert len(written) >= 2
+        refuse_overlaps(written)

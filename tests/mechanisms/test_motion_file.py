@@ -62,7 +62,7 @@ def test_forces_are_those_of_the_solution(loaded: Solution, tmp_path: Path) -> N
     motion = to_motion(loaded, None, "key", {}, {"arm": "mechanism"})
     contract.write_motion(tmp_path / "data.json", motion)
     motion = contract.read_motion(tmp_path / "data.json")
-    assert motion.schema_version == 2
+    assert motion.schema_version == 3
     assert motion.analysis == "simulation"
     assert list(motion.forces) == ["spring", "twist", "rub", "air", "push", "turning"]
     for name, force in motion.forces.items():

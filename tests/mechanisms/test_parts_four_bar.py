@@ -99,7 +99,8 @@ def test_what_can_be_bought_is_told(parts: Parts) -> None:
         "shim ring 8x14x1 DIN 988": 6,
         "circlip 8x0.8 DIN 471": 2,
         "M3x12 socket head cap screw ISO 4762": 6,
-        "M5x8 socket head cap screw ISO 4762": 4,
+        "M5x10 socket head cap screw ISO 4762": 4,  # they hold the back plate on its column
+        "M4x16 socket head cap screw ISO 4762": 2,  # and this in its foot
     }
 
 

@@ -223,10 +223,10 @@ def test_a_computed_parameter_makes_the_text_of_its_file_count(
     monkeypatch.setattr(parts_stage, "mechanism_folder", lambda _: folder)
     for module in [module for module in sys.modules if module.startswith("mechanisms.four_bar")]:
         monkeypatch.delitem(sys.modules, module)  # the real one, which an earlier test may have loaded
-    nothing = Inputs()
-    plain = parts_stage._key(Params(), ["crank"], nothing)
-    assert parts_stage._key(Params(speed=1.0), ["crank"], nothing) == plain
-    assert parts_stage._key(Params(crank=0.041), ["crank"], nothing) != plain
+    nothing, by_hand = Inputs(), parts_stage._Wish(by_itself=False, mount=None)
+    plain = parts_stage._key(Params(), ["crank"], nothing, by_hand)
+    assert parts_stage._key(Params(speed=1.0), ["crank"], nothing, by_hand) == plain
+    assert parts_stage._key(Params(crank=0.041), ["crank"], nothing, by_hand) != plain
     assert not parts_stage._more_than_values("four_bar", Params(), ["crank"])
     assert parts_stage._more_than_values("four_bar", Params(), ["crank", "half"])
     bench.run()

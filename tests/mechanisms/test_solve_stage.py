@@ -140,6 +140,6 @@ def test_a_mass_of_mechanism_py_wins_over_that_of_the_parts() -> None:
     source, (said,) = give_masses(m, _parts("ground", "arm"))
     assert source == {"arm": "mechanism"}
     assert (m.bodies["arm"].mass, m.bodies["arm"].com, m.bodies["arm"].inertia) == (0.5, (0.1, 0.0), 1e-3)
-    assert said == "masses of mechanism.py count, not those of the parts: arm 0.5 kg (parts 0.3 kg)"
+    assert said == "masses of mechanism.py count, not those of the parts: arm 500 g (parts 300 g)"
     m = _mechanism()
     assert give_masses(m, _parts("ground", "arm")) == ({"arm": "parts"}, [])

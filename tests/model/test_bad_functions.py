@@ -145,7 +145,7 @@ class _Text(Motion):
         (_Short(), r"its law gives .* of shape \(17, 2\) for 17 times; it must give \(17, 3\)"),
         (_Raising(), "its law fails: KeyError: 'row'"),
         (_Text(), "its law gives .* numbers"),
-        (constant_rate(1e60), "turns to 1e[+]60 rad"),
+        (constant_rate(1e60), "turns to 1 × 10⁶⁰ rad"),
     ],
 )
 def test_a_law_of_the_users_own_class_is_told_with_its_driver(law: Motion, says: str) -> None:

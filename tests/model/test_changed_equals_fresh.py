@@ -64,7 +64,8 @@ OTHERS: dict[str, list[Any]] = {
     "crank": ["first", "third"],
     "cycle": [two_stroke(7.0, heat=3.0), pressure_table([0.0, 1.0, 2.0, 9.0], [1e5, 3e5, 2e5, 1e5])],
     "length": [0.37, 1.4, 5.0],
-    "rod": [14.0, None],
+    "rod": [14.0, None, 0.03],
+    "supply": [5e4],
     "breaks": [(0.5, 1.5)],
     "shortest": [0.01, None],
     "direction": [(0.3, -0.4), 1.2],
@@ -225,6 +226,7 @@ def test_every_argument_alone_and_in_pairs(kind: Any) -> None:
     in_groups = {"teeth", "module", "pitch"}  # with each other alone: tests/kinematics/test_gears.py
     in_groups |= {"length"} if kind.name == "friction" else set()  # of guides: below
     in_groups |= {"restitution"} if kind.name == "contact" else set()  # in place of damping: below
+    in_groups |= {"orifice"} if kind.name == "hydraulic_cylinder" else set()  # in place of rated_flow: below
     assert accepted | in_groups >= set(own), f"never changed: {set(own) - accepted}"
 
 
@@ -232,6 +234,17 @@ def test_every_argument_alone_and_in_pairs(kind: Any) -> None:
 def test_a_contact_takes_a_restitution_in_place_of_its_damping(model: str) -> None:
     [kind] = [kind for kind in KINDS if kind.name == "contact"]
     values = {"damping": 0.0, "restitution": 0.6, "damping_model": model}
+    there = example(kind)
+    assert isinstance(there, Mechanism)
+    here, fresh = changed(there, values), example(kind, values)
+    assert isinstance(here, Mechanism), here
+    assert isinstance(fresh, Mechanism), fresh
+    assert state(here) == state(fresh)
+
+
+def test_a_hydraulic_cylinder_takes_an_orifice_in_place_of_its_rated_flow() -> None:
+    [kind] = [kind for kind in KINDS if kind.name == "hydraulic_cylinder"]
+    values = {"rated_flow": None, "orifice": 1e-4}
     there = example(kind)
     assert isinstance(there, Mechanism)
     here, fresh = changed(there, values), example(kind, values)

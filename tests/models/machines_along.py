@@ -55,3 +55,19 @@ def legs(
     m.drive_angle("motor", crank, constant_rate(2 * math.pi))
     m.start_near(crank=0)
     return m
+
+
+def press(places: Sequence[float] = (-0.03, 0.03), rod_z: bool = True, ram_z: float | None = None) -> Mechanism:
+    """A crank that pushes one ram by rods at several places (m); with ``rod_z`` False the markers alone tell them."""
+    m = Mechanism("press")
+    crank, ram = m.body("crank"), m.body("ram", z=ram_z)
+    m.revolute("main", m.ground.at(0, 0), crank.origin)
+    for k, z in enumerate(places, start=1):
+        rod = m.bar(f"rod_{k}", 5 * THROW, z=z if rod_z else None)
+        m.revolute(f"pin_{k}", crank.at(THROW, 0, z=z), rod.start)
+        m.revolute(f"wrist_{k}", rod.end, ram.origin)
+        m.start_near(**{f"rod_{k}": -90})
+    m.prismatic("guide", m.ground.at(0, 0, -math.pi / 2), ram.origin)
+    m.drive_angle("motor", crank, constant_rate(2 * math.pi))
+    m.start_near(crank=-90, ram=(0, -6 * THROW, -90))
+    return m

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from shared.contract import (
+    Action,
     BodyMotion,
     Diagnostics,
     DriverMotion,
@@ -129,6 +130,7 @@ def four_bar_motion(
         joints={
             k: JointMotion(
                 kind="revolute",
+                pair="pin",
                 bodies=ends[k],
                 x=pins[k][:, 0].tolist(),
                 y=pins[k][:, 1].tolist(),
@@ -141,6 +143,14 @@ def four_bar_motion(
         drivers={
             "motor": DriverMotion(
                 kind="angle",
+                actions=[
+                    Action(
+                        body=body,
+                        **dict.fromkeys(("x", "y", "fx", "fy"), zero.tolist()),
+                        torque=(sign * torque).tolist(),
+                    )
+                    for body, sign in (("ground", -1.0), ("crank", 1.0))
+                ],
                 value=theta["crank"].tolist(),
                 effort=torque.tolist(),
                 power=(torque * speed).tolist(),

@@ -9,8 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mbsd.drawing.look import FAINT, INK, QUIET
 from shared.stage.paths import ROOT
 from tools.figures.__main__ import PAGES, drawn
+from tools.figures.dark import COLOUR, NEUTRAL, PAPER, dark, data_colours, name_of
 
 LARGEST = 300_000
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e-?\d+)?")
@@ -58,14 +60,41 @@ def test_a_picture_has_the_same_bytes_each_time() -> None:
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "docs").glob("*.svg")), ids=lambda path: path.name)
-def test_pictures_are_small_and_shown(path: Path) -> None:
+def test_pictures_are_small_and_shown_in_dark_and_light(path: Path) -> None:
     assert path.stat().st_size < LARGEST
-    assert any(f"]({path.name})" in page.read_text() for page in (ROOT / "docs").glob("*.md"))
+    light = path.with_name(f"{path.stem.removesuffix('_dark')}.svg")
+    assert any(shown(light.name) in page.read_text() for page in (ROOT / "docs").glob("*.md"))
+    assert dark(light.read_bytes()) == light.with_name(name_of(light.name)).read_bytes(), "make docs"
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "docs").glob("*_dark.svg")), ids=lambda path: path.name)
+def test_dark_pictures_have_no_white_slab_and_ink_that_is_read(path: Path) -> None:
+    """WCAG 2: contrast of 3 at least of lines, 4.5 of words; words of matplotlib and mbsd have the ink's colours."""
+    colours = set(COLOUR.findall(path.read_text())) - data_colours()
+    assert PAPER in colours
+    assert "#ffffff" not in colours
+    for colour in colours - {PAPER, NEUTRAL[FAINT]}:
+        assert contrast(colour, PAPER) > 3, colour
+    assert all(contrast(NEUTRAL[ink], PAPER) > 4.5 for ink in (INK, QUIET))
+
+
+def contrast(first: str, second: str) -> float:
+    def light(colour: str) -> float:
+        rgb = np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)]) / 255
+        return float(np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4) @ [0.2126, 0.7152, 0.0722])
+
+    low, high = sorted((light(first), light(second)))
+    return (high + 0.05) / (low + 0.05)
+
+
+def shown(name: str) -> str:
+    """How a page shows a picture."""
+    return f'srcset="{name_of(name)}">\n  <img alt='
 
 
 def test_each_analysis_has_a_page_with_a_picture_and_stands_in_the_index() -> None:
     index = (ROOT / "docs" / "README.md").read_text()
     for name in ANALYSES:
-        assert f"]({name}.svg)" in (ROOT / "docs" / f"{name}.md").read_text()
+        assert f'src="{name}.svg">' in (ROOT / "docs" / f"{name}.md").read_text()
     for page in (ROOT / "docs").glob("*.md"):
         assert page.name == "README.md" or f"]({page.name})" in index, f"docs/README.md does not name {page.name}"

@@ -22,7 +22,8 @@ def test_help_is_the_default_and_has_a_line_for_every_target() -> None:
     assert listed == [target for target in targets if target != "always"]
     wanted = "help check install list run-<name> solve-<name> parts-<name> clearance-<name> plot-<name> still-<name> "
     wanted += "poster-<name> frames-<name> film-<name> scene-<name> scene-ui-<name> run-all all new test lint bench "
-    wanted += "bench-start animate-<name> report-<name> glb-<name> contact-<name> gallery clean clean-all"
+    wanted += "bench-start bench-live readme-loop animate-<name> report-<name> glb-<name> contact-<name> gallery "
+    wanted += "clean clean-all"
     assert set(wanted.split()) <= set(listed)
     assert max(map(len, done.stdout.splitlines())) <= 120
 
@@ -85,6 +86,18 @@ def test_an_unknown_preset_is_refused_with_the_known_ones(preset: str) -> None:
     done = run("make", "help", f"PRESET={preset}")
     assert done.returncode != 0
     assert "choose one of: draft preview production final" in done.stderr
+
+
+def test_an_aspect_reaches_every_picture_and_an_unknown_one_is_refused_with_the_known_ones() -> None:
+    for target in ("film", "frames", "still", "poster", "contact", "scene", "scene-ui", "run"):
+        assert "--aspect=9:16" in planned(f"{target}-four-bar", "ASPECT=9:16")[-1]
+        assert "aspect" not in planned(f"{target}-four-bar")[-1]
+    recipes = (ROOT / "Makefile").read_text().splitlines()
+    assert all("--aspect=" in line for line in recipes if "--preset " in line and "benchmarks" not in line)
+    for wrong in ("3:2", "9:16 1:1", "16/9"):
+        done = run("make", "help", f"ASPECT={wrong}")
+        assert done.returncode != 0
+        assert "choose one of: 16:9 1:1 4:5 9:16" in done.stderr
 
 
 def test_an_unknown_mechanism_is_refused_with_the_known_ones() -> None:

@@ -85,6 +85,11 @@ def test_strictly_it_is_an_error_before_the_first_test(tmp_path: Path, variable:
     assert "passed" not in done.stdout
 
 
+def test_in_ci_it_is_skipped_where_that_is_asked_for(tmp_path: Path) -> None:
+    (tmp_path / "test_some.py").write_text(TESTS)
+    assert "2 passed, 2 skipped" in tried(tmp_path, CI="true", STRICT="0").stdout
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="a Mac needs no libraries")
 def test_without_the_libraries_tests_of_the_solver_run_alone(tmp_path: Path) -> None:
     for room in ("dynamics", "render"):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from shared.contract import BodyParts, Mass, Parts, Piece, Provenance, write_motion, write_parts
+from shared.contract import BodyParts, Mass, Mount, Parts, Piece, Provenance, write_motion, write_parts
 from shared.contract.shot import Shot, write_shot
 from shared.contract.skeleton import write_skeleton
 from shared.stage.files import file_hash
@@ -44,7 +44,7 @@ def solids() -> dict[str, dict[str, tuple[Any, str]]]:
     return made
 
 
-def write(shot: Shot | None = None, name: str = "four_bar") -> Out:
+def write(shot: Shot | None = None, name: str = "four_bar", mount: Mount | None = None) -> Out:
     """data.json, skeleton.json, parts.json with its STL files, and shot.json below the folder of results."""
     out = Out(name)
     motion = four_bar_motion()
@@ -71,6 +71,7 @@ def write(shot: Shot | None = None, name: str = "four_bar") -> Out:
             )
         bodies[body] = BodyParts(pieces=pieces, mass=mass, z=LAYERS.get(body, 0.0))
     provenance = Provenance(inputs="0" * 64, versions={})
-    write_parts(out.parts, Parts(mechanism=name, provenance=provenance, bodies=bodies))
+    parts = Parts(mechanism=name, provenance=provenance, mount=mount or Mount(), bodies=bodies)
+    write_parts(out.parts, parts)
     write_shot(out.shot, shot or Shot())
     return out

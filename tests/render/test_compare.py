@@ -58,7 +58,7 @@ def test_each_panel_holds_the_lines_of_all_motions(solved: dict[str, Motion]) ->
     motions = {"as it is": solved["four_bar"], "faster": solved["four_bar-faster"]}
     figure = beside.figures("four_bar", motions)["drivers"]
     torque = figure.axes[0]
-    assert torque.get_title(loc="left") == "motor, torque (N m)"
+    assert torque.get_title(loc="left") == "motor, torque / (mN m)"
     for line, motion in zip(torque.lines, motions.values(), strict=True):
         np.testing.assert_array_equal(line.get_xdata(), motion.time)
         np.testing.assert_array_equal(line.get_ydata(), motion.drivers["motor"].effort)
@@ -78,7 +78,7 @@ def test_of_many_panels_those_that_differ_most_are_shown(solved: dict[str, Motio
     figure = beside.figures("many", motions)["reactions"]
     titles = [axes.get_title(loc="left") for axes in figure.axes if axes.get_visible()]
     assert len(titles) == beside.PANELS
-    assert "j17, reaction (N)" in titles
+    assert "j17, reaction / N" in titles
     assert any("11 more that differ less" in text.get_text() for text in figure.texts)
 
 

@@ -103,7 +103,7 @@ def test_where_no_driver_works_facts_tell_the_force_that_does() -> None:
     action = Action(body="crank", x=zeros, y=zeros, fx=zeros, fy=zeros, torque=[0.02] * 361)
     torque = ForceMotion(
         kind="torque", actions=[action], several=False, measures="angle", value=None, rate=None, effort=[0.02] * 361,
-        normal=None, power=[0.1] * 361, potential=zeros, shape=None,
+        normal=None, power=[0.1] * 361, potential=zeros, shape=None, effort_unit="N m", drives=True,
     )  # fmt: skip
     load = msgspec.structs.replace(torque, effort=[-0.5] * 361, power=[-1.0] * 361)
     driven = msgspec.structs.replace(motion, drivers={"wish": idle}, forces={"load": load, "hand": torque})

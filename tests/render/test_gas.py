@@ -92,7 +92,7 @@ def test_the_indicator_diagram_encloses_the_work() -> None:
 
 def test_gas_without_a_cycle_is_drawn_over_time_and_other_motions_have_no_page() -> None:
     _, right = WHOLE["gas"](air_spring()).axes
-    assert right.get_xlabel() == "time (s)"
+    assert right.get_xlabel() == "time / s"
     m = Mechanism("turning")
     bar = m.bar("bar", 0.1, 1.0)
     m.revolute("pin", m.ground.origin, bar.start)

@@ -10,7 +10,7 @@ import pytest
 
 from render import glb
 from render.glb.mesh import smooth
-from shared.contract import read_motion
+from shared.contract import mounted, read_motion
 from shared.contract.materials import MATERIALS
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
@@ -44,6 +44,18 @@ def test_between_samples_it_is_as_near(out: Out) -> None:
         place = read.matrices(t)["coupler"] @ np.array([0.0, 0.0, 0.0, 1.0])
         angle = 2 * math.pi * t
         assert place[:3] == pytest.approx([0.04 * math.cos(angle), 0.0, -0.04 * math.sin(angle)], abs=1e-5)
+
+
+@pytest.mark.parametrize("gravity", [(0.0, 0.0), (0.0, -9.81), (3.0, 4.0)])
+def test_what_points_up_is_y(out_root: Path, gravity: tuple[float, float]) -> None:
+    """On a desk z, else the direction against gravity; the normal of a plane that stands comes towards the viewer."""
+    mount = mounted(gravity)
+    written = film_fixture.write(mount=mount)
+    glb.run("four_bar")
+    root = GlbFile(written.glb.read_bytes()).matrices(0.0)["ground"]
+    assert root[:3, :3] @ mount.up == pytest.approx([0.0, 1.0, 0.0])
+    if mount.kind != "desk":
+        assert root[:3, :3] @ [0.0, 0.0, 1.0] == pytest.approx([0.0, 0.0, 1.0])
 
 
 def test_another_program_reads_the_same_solids(out: Out) -> None:

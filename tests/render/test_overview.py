@@ -81,6 +81,7 @@ def test_a_driver_that_pushes_by_nothing_leaves_the_place_to_a_motor() -> None:
     motor = ForceMotion(
         kind="torque", actions=[], several=False, measures="angle", value=zeros, rate=zeros,
         effort=[0.02, -0.5, *zeros[2:]], normal=None, power=zeros, potential=zeros, shape=None,
+        effort_unit="N m", drives=True,
     )  # fmt: skip
     [(name, driver)] = MOTION.drivers.items()
     idle = msgspec.structs.replace(driver, effort=zeros)

@@ -31,7 +31,7 @@ def test_the_balance_is_said_as_it_is() -> None:
         MOTION.drivers["motor"], power=[power + 0.3 for power in MOTION.drivers["motor"].power]
     )
     motion = msgspec.structs.replace(MOTION, drivers={"motor": dragged})
-    assert "drivers and other forces (friction, dampers, loads; up to 0.3 W) is the rate" in statement(motion)
+    assert "drivers and other forces (friction, dampers, loads; up to 300 mW) is the rate" in statement(motion)
     (line,) = [line for line in figure("energy", motion).axes[1].lines if line.get_label() == "other forces"]
     np.testing.assert_allclose(line.get_ydata(), -0.3, atol=1e-9)
     assert not [line for line in figure("energy", MOTION).axes[1].lines if line.get_label() == "other forces"]
@@ -71,11 +71,11 @@ def test_rounding_is_drawn_as_a_flat_line() -> None:
             assert high - low > 1e-3, (plot, axes.get_ylabel())
             for line in axes.lines:
                 values = np.asarray(line.get_ydata())
-                if "angle (deg)" not in axes.get_ylabel() and len(values) == count:
+                if "angle / °" not in axes.get_ylabel() and len(values) == count:
                     assert np.ptp(values) == 0.0, (plot, line.get_label())
     assert [axes.get_ylabel() for axes in figure("reactions", motion).axes] == [
-        "reaction force (N)",
-        "driver torque (N m)",
+        "reaction force / mN",
+        "driver torque / (N m)",
     ]
 
 

@@ -71,7 +71,7 @@ def with_slider_and_torque() -> Motion:
         bodies=("ground", "slider"),
         torque=[0.1 * x for x in MOTION.joints["C"].fx],
     )
-    pusher = msgspec.structs.replace(MOTION.drivers["motor"], kind="distance")
+    pusher = msgspec.structs.replace(MOTION.drivers["motor"], kind="distance", unit="m", effort_unit="N")
     return msgspec.structs.replace(
         MOTION,
         bodies={**MOTION.bodies, "slider": body},
@@ -88,7 +88,7 @@ def test_a_slider_a_joint_torque_and_a_pusher_get_their_plots(out: Out) -> None:
     assert (out.plots / "slider-slider.png").is_file()
     assert not list(out.plots.glob("point-*"))
     labels = [axes.get_ylabel() for axes in figure("reactions", motion).axes]
-    assert labels == ["reaction force (N)", "reaction torque (N m)", "driver torque (N m)", "driver force (N)"]
+    assert labels == ["reaction force / N", "reaction torque / (mN m)", "driver torque / (mN m)", "driver force / mN"]
     assert all(overlaps(figure(plot, motion)) == [] for plot in ("path", "reactions", "bodies", "hodographs"))
 
 

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from mbsd import Mechanism
+from mbsd import Mechanism, harmonic
 from mechanisms.stages.solve.motion_file import to_motion
+from render.plots import plots_of
+from render.plots.pages.frame import frame
 from render.plots.quantities import known_names, quantity
+from render.plots.style import house_style
 from render.report import report
 from render.shaking import shaking
-from render.view.payload import couple_of
-from shared.contract import Motion
+from render.view.payload import couple_of, frame_of
+from shared.contract import Motion, read_motion, write_motion
 from tests.results.test_couples import two_cylinders
 
 
@@ -41,3 +46,46 @@ def test_without_places_nothing_is_said_of_couples() -> None:
     assert "shaking couple" not in known_names(motion)
     assert "Shaking" not in report(motion, None, None)
     assert couple_of(motion) is None
+
+
+def test_orders_are_in_the_file_the_report_and_the_page_as_the_solution_has_them(tmp_path: Path) -> None:
+    m = two_cylinders()
+    m.bodies["piston_1"].mass = 0.7
+    motion, sol = motion_of(m), m.sweep(steps=360)
+    found, exact = motion.vibration, sol.orders(sol.shaking().force)
+    assert found is not None
+    assert (found.crank, found.turns) == ("crank", 1)
+    one, k = found.harmonics["shaking force"], found.order.index(1.0)
+    row = exact.index(1)
+    assert one.amplitude[1][k] == pytest.approx(exact.amplitude[row, 1])
+    assert one.phase[1][k] == pytest.approx(exact.phase[row, 1])
+    assert one.forward[k] + one.backward[k] == pytest.approx(exact.largest[row])
+    torque = sol.orders(sol.driver("motor").effort)
+    assert found.harmonics["motor"].amplitude[0][1] == pytest.approx(torque.amplitude[torque.index(2)])
+    main = sol.orders(sol.joint("main").reaction)
+    assert found.harmonics["main"].amplitude[0][1] == pytest.approx(main.amplitude[main.index(2), 0])
+    centre = sol.centre_of_mass()
+    assert found.y == pytest.approx(centre.y)
+    text = report(motion, None, None)
+    assert "## Orders" in text
+    assert "goes 0 m along x" in text
+    page = frame_of(motion)
+    assert page is not None
+    assert page["harmonics"]["motor"]["size"][1] == pytest.approx(torque.largest[torque.index(2)], rel=1e-6)
+    assert "frame" in plots_of(motion)
+    with house_style():
+        assert len(frame(motion).axes) == 3
+    write_motion(tmp_path / "data.json", motion)
+    assert read_motion(tmp_path / "data.json").vibration == found
+
+
+def test_a_motion_without_a_crank_or_without_mass_has_no_orders() -> None:
+    m = Mechanism("pendulum")
+    arm = m.bar("arm", 1.0, mass=1.0)
+    m.revolute("A", m.ground.origin, arm.start)
+    m.drive_angle("motor", arm, harmonic(0.3, 1.0))
+    assert motion_of(m).vibration is None
+    m = two_cylinders()
+    for name in ("piston_1", "piston_2"):
+        m.bodies[name].mass = 0.0
+    assert motion_of(m).vibration is None

@@ -143,10 +143,10 @@ def test_stems_of_an_order_stand_with_their_middle_on_it() -> None:
 def test_a_page_tells_what_it_shows() -> None:
     drawn = page("spectrum-shaking-force", MOTION)
     assert "Four-bar: spectrum of the shaking force" in shown(drawn)
-    assert [axes.get_ylabel() for axes in drawn.axes] == ["force (N)", "amplitude (N)"]
-    assert drawn.axes[1].get_xlabel() == "order of the crank (order 1 is 1 Hz)"
+    assert [axes.get_ylabel() for axes in drawn.axes] == ["force / mN", "amplitude / mN"]
+    assert drawn.axes[1].get_xlabel() == "order of the crank; order 1 is 1 Hz"
     assert all(shown(page(f"spectrum-{what}", MOTION)) for what in ("A", "motor", "P", "rocker", "shaking-moment"))
-    assert "frequency (Hz)" in page("spectrum-ball", bouncing_ball()).axes[1].get_xlabel()
+    assert "frequency / Hz" in page("spectrum-ball", bouncing_ball()).axes[1].get_xlabel()
 
 
 def test_a_balanced_wheel_shakes_nothing() -> None:
@@ -163,8 +163,8 @@ def test_a_simulated_crank_gets_a_page_turn_by_turn() -> None:
     assert "turns" not in plots.plots_of(MOTION)
     assert "turns" not in plots.plots_of(bouncing_ball())
     drawn = page("turns", motion)
-    assert [axes.get_ylabel() for axes in drawn.axes] == ["speed (rad/s)", "bearing force (N)"]
-    assert drawn.axes[-1].get_xlabel() == "disc angle (deg, clockwise)"
+    assert [axes.get_ylabel() for axes in drawn.axes] == ["speed / (rad/s)", "bearing force / N"]
+    assert drawn.axes[-1].get_xlabel() == "disc angle, clockwise / °"
     strong = [line for line in drawn.axes[0].lines if line.get_linewidth() > 2]
     assert sum(float(np.ptp(np.asarray(line.get_xdata()))) for line in strong) == pytest.approx(360.0)
     ends = [float(np.asarray(line.get_xdata()).max()) for line in drawn.axes[0].lines]
@@ -193,9 +193,12 @@ def test_a_clockwise_driver_has_its_angle_as_axis_and_tells_how_long_a_turn_take
     m.drive_angle("motor", m.bodies["disc"], constant_rate(-4 * np.pi))
     motion = to_motion(m.sweep(steps=36), None, "", {}, {"disc": "mechanism"})
     over = horizon(motion)
-    assert over.label == "motor angle (deg; a turn takes 0.5 s)"
-    np.testing.assert_allclose(over.values, np.linspace(0, -360, 37), atol=1e-9)
-    assert figures.figure("bodies", motion, plain_skeleton(motion)).axes[-1].get_xlim() == pytest.approx((0, -360))
+    assert (over.words, over.note) == ("motor angle, clockwise", "; a turn takes 500 ms")
+    np.testing.assert_allclose(over.values, np.linspace(0, 360, 37), atol=1e-9)
+    axes = figures.figure("bodies", motion, plain_skeleton(motion)).axes
+    assert axes[-1].get_xlim() == pytest.approx((0, 360))
+    assert np.diff(axes[-1].get_xticks()) == pytest.approx(45)
+    assert axes[0].get_ylim()[0] > -45  # the disc's own angle falls, within its turn
 
 
 # -- what is asked for -----------------------------------------------------------------------------------------------
@@ -279,7 +282,7 @@ def test_spectra_of_variants_stand_beside_each_other() -> None:
     )
     drawn = spectra_figure("four_bar", {"as it is": MOTION, "heavier": heavier}, ["shaking force", "nothing of it"])
     assert drawn is not None
-    assert [axes.get_title(loc="left") for axes in drawn.axes] == ["shaking force x (N)", "shaking force y (N)"]
+    assert [axes.get_title(loc="left") for axes in drawn.axes] == ["shaking force x / N", "shaking force y / N"]
     heights = [np.asarray(line.get_ydata()) for line in drawn.axes[0].lines]
     np.testing.assert_allclose(heights[1], 2 * heights[0], rtol=1e-9)
     assert spectra_figure("four_bar", {"as it is": MOTION}, []) is None

@@ -49,7 +49,7 @@ def test_defaults_and_the_four_bar_survive_a_round_trip(tmp_path: Path):
         (Shot(camera=Camera(elevation=120.0)), "camera.elevation"),
         (Shot(camera=Camera(azimuth=float("nan"))), "camera.azimuth"),
         (Shot(trails=(Trail(point="P", tail=0.0),)), "tail"),
-        (Shot(look="candlelight"), "look; known: studio, daylight"),  # type: ignore[arg-type]
+        (Shot(look="candlelight"), "look; known: studio, cyclorama, bench, daylight, road, sand, blueprint"),  # type: ignore[arg-type]
         (Shot(show=("force",)), r"show\[0\]; known: velocities, .*reactions"),  # type: ignore[arg-type]
         (Shot(title="Four bar"), "Expected .*title"),  # type: ignore[arg-type]
     ],

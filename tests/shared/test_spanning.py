@@ -77,7 +77,7 @@ def test_the_model_has_no_body_for_a_rod() -> None:
     parts.bodies["rod"] = msgspec.structs.replace(parts.bodies["rod"], mass=mass)
     sources, sentences = give_masses(m, parts)
     assert sources == {"crank": "parts"}
-    assert sentences == ["rods have no mass in the motion, because distance joints have none: rod 0.3 kg"]
+    assert sentences == ["rods have no mass in the motion, because distance joints have none: rod 300 g"]
 
 
 def test_bodies_keep_their_rods_when_they_are_joined() -> None:

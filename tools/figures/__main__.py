@@ -28,6 +28,7 @@ from matplotlib.transforms import Bbox
 
 import tools.figures.pages
 from mbsd.drawing.picture import Picture, Svg
+from tools.figures.dark import dark, name_of
 from tools.figures.look import STYLE
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -36,12 +37,13 @@ PAGES = tuple(sorted(m.name for m in pkgutil.iter_modules(tools.figures.pages.__
 
 
 def drawn(page: str) -> dict[str, bytes]:
-    """The pictures of a page by file name."""
+    """The pictures of a page by file name, each also on dark paper."""
     with mpl.rc_context(STYLE):  # pyright: ignore[reportArgumentType]
         variables = _run(page)
         out = {}
         for name, picture in importlib.import_module(f"tools.figures.pages.{page}").pictures(variables).items():
             out[name] = _bytes(picture)
+            out[name_of(name)] = dark(out[name])
         pyplot.close("all")
     return out
 

@@ -18,6 +18,7 @@ from tools.hunt.solving.free_case import Free, nudged
 from tools.hunt.solving.simulating import RUNS
 from tools.hunt.solving.sweeping import HEALTHY, SWEEPS, Driven
 from tools.hunt.subject import Family, Subject, all_families
+from tools.hunt.words.described import restarted
 
 VARIATIONS = 4
 """Of each mechanism, drawn at random."""
@@ -92,7 +93,7 @@ def _driven(subject: Subject, rng: np.random.Generator, result: CaseResult, ever
         )
         if problems:
             return
-        subject.m = started_at(subject.m, case.first.packed, case.first.q[0].ravel(), case.first.v[0].ravel())
+        subject.m = restarted(subject.m, case.first, 0)
     else:
         error = case.refused
         kind = type(error).__name__

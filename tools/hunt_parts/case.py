@@ -91,7 +91,7 @@ def parts_of(m: Mechanism, solution: Solution, solids: bool = True, engraved: bo
         found = _planned(made)
         if not solids:
             return Outcome(BASE, BUILT, _bridges(made), found)
-        bodies = made.solids(engraved)
+        bodies = made.solids(engraved).on_stand()
     except UserError as error:
         state = UNSOUND if KERNEL in str(error) else REFUSED
         return Outcome(BASE, state, reason(str(error)), str(error))

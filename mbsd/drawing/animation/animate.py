@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from mbsd.base.arguments import finite_number, switch
+from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
@@ -52,13 +52,14 @@ def animate(
     sol: Solution,
     path: str | os.PathLike[str],
     show: str | Sequence[str],
-    rate: float | None,
-    fps: float,
-    size: tuple[int, int] | None,
-    names: bool,
-    progress: Callable[[int, int], object] | None,
+    rate: float | None = None,
+    fps: float = 30.0,
+    size: tuple[int, int] | None = None,
+    names: bool | str = True,
+    progress: Callable[[int, int], object] | None = None,
+    inks: Mapping[str, str] | None = None,
 ) -> Animation:
-    """See :meth:`mbsd.results.solution.Solution.animate`."""
+    """See :meth:`mbsd.results.solution.Solution.animate`; ``inks``: ``#rrggbb`` of bodies instead of those by role."""
     name = f"{sol.mechanism.name}: animate"
     target, suffix = _target(name, path)
     groups = _groups(name, show)
@@ -68,7 +69,8 @@ def animate(
     fps = finite_number(f"{name}: fps", fps)
     if not 1.0 <= fps <= 120.0:
         raise ModelError(f"{name}: fps is {fps:g}; a film has 1 .. 120 pictures a second")
-    switch(f"{name}: names", names)
+    if not isinstance(names, bool) and not (isinstance(names, str) and names == "all"):
+        raise ModelError(f"{name}: names is {shown(names)}; it must be True (three that matter), False or 'all'")
     if progress is not None and not callable(progress):
         raise ModelError(
             f"{name}: progress is {shown(progress)}; it must be a function of the pictures drawn, and of all"
@@ -82,7 +84,7 @@ def animate(
     else:
         fps = 100.0 / max(2, round(100.0 / fps))  # its times are hundredths of a second; most viewers slow down below 2
     clip = clip_of(sol, rate, fps)
-    page = Page(sol, scene_of(sol, clip), groups, (wide, high), names)
+    page = Page(sol, scene_of(sol, clip, inks), groups, (wide, high), names)
     count = len(clip.times)
 
     def pictures() -> Iterator[np.ndarray]:

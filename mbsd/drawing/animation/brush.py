@@ -12,10 +12,15 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.drawing.animation.words import Head
 from mbsd.drawing.canvas import Canvas, Label, Point
 from mbsd.drawing.look import INK, MOVED, PAPER
 
 Colour = tuple[float, float, float, float]
+HALO = "#ffffff"
+"""Round arrows, on light paper."""
+BEHIND = 0.72
+"""How far the second point of a head lies behind the first, in its length."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +59,8 @@ class Brush(Canvas):
     marks: list[Mark] = field(default_factory=list)
     tints: dict[str, tuple[str, float]] = field(default_factory=dict)
     """Another filling for what is drawn in a colour: colour and alpha."""
+    driver: str = MOVED
+    """Colour of the signs of drivers: quiet beside arrows."""
     dpi: float = 100.0
     thin: float = 1.0
     """Of the widths of lines in metres: less where symbols are small."""
@@ -67,7 +74,7 @@ class Brush(Canvas):
         points = np.asarray(points, float)
         self.keep(points)
         dash = more.get("linestyle", (0, None))
-        ink = rgba(colour, more.get("alpha", 1.0))
+        ink = rgba(self._own(colour), more.get("alpha", 1.0))
         self._add(self.view.pixels(points), False, ink, None, self.thin * width, order, dash)
 
     def shape(
@@ -83,9 +90,12 @@ class Brush(Canvas):
         if order == 2 and edge in self.tints:
             fill, alpha = self.tints[edge]
         self.keep(points)
-        filled = rgba(fill, alpha) if alpha > 0 else None
-        ink = rgba(edge) if width > 0 else None
+        filled = rgba(self._own(fill), alpha) if alpha > 0 else None
+        ink = rgba(self._own(edge)) if width > 0 else None
         self._add(self.view.pixels(points), True, ink, filled, self.thin * width, order)
+
+    def _own(self, colour: str) -> str:
+        return self.driver if colour == MOVED else colour
 
     def band(self, outer: Point, inner: Point, colour: str) -> None:
         """What lies between two closed outlines (m)."""
@@ -166,29 +176,53 @@ def rgba(colour: str, alpha: float = 1.0) -> Colour:
     return (int(colour[1:3], 16) / 255, int(colour[3:5], 16) / 255, int(colour[5:7], 16) / 255, alpha)
 
 
-def arrow(brush: Brush, tail: np.ndarray, vector: np.ndarray, colour: str, size: float, cut: bool = False) -> None:
-    """An arrow of ``vector`` pixels with a white rim; ``size``: thickness of its shaft (pixels).
+def arrow(
+    brush: Brush,
+    tail: np.ndarray,
+    vector: np.ndarray,
+    colour: str,
+    size: float,
+    cut: bool = False,
+    head: Head = "solid",
+) -> None:
+    """An arrow of ``vector`` pixels with a thin halo; ``size``: thickness of its shaft (pixels).
 
-    ``cut``: two strokes across say that it is longer.
+    ``cut``: two strokes across say that it is longer. Its head says what it stands for (words.py).
     """
     length = float(np.hypot(*vector))
     if length < 0.8 * size:
         return
     along = vector / length
-    across = np.array([-along[1], along[0]])
-    head = min(4.6 * size, 0.72 * length)
-    half, wide = 0.5 * size * min(1.0, length / (4.0 * size)), 0.36 * head
-    neck = tail + (length - head) * along
-    outline = np.array([
-        tail + half * across, neck + half * across, neck + wide * across, tail + vector,
-        neck - wide * across, neck - half * across, tail - half * across,
-    ])  # fmt: skip
-    brush.plate(outline, None, rgba(PAPER, 0.9), 2.6, 10.0)
-    brush.plate(outline, rgba(colour, 0.95), None, 0.0, 10.1)
-    for back in (0.8, 1.5) if cut else ():
-        middle = neck - back * head * 0.5 * along
-        slant = across + 0.5 * along
+    frame = np.array([along, [-along[1], along[0]]])
+    point = min(4.6 * size, (0.72 if "double" not in head else 0.44) * length)
+    half = 0.5 * size * min(1.0, length / (4.0 * size))
+    outlines = [tail + outline @ frame for outline in _outlines(length, point, half, head)]
+    for outline in outlines:
+        brush.plate(outline, None, rgba(HALO, 0.9), 2.8, 10.0)
+    for outline in outlines:
+        brush.plate(outline, rgba(colour), None, 0.0, 10.1)
+    for back in (1.4, 2.1) if cut else ():
+        middle = tail + vector - (back + 0.5) * point * along
+        slant = frame[1] + 0.5 * along
         brush.stroke(np.array([middle - 1.6 * size * slant, middle + 1.6 * size * slant]), rgba(PAPER), 2.2, 10.2)
+
+
+def _outlines(length: float, point: float, half: float, head: Head) -> list[np.ndarray]:
+    """Closed outlines of an arrow along x: its shaft, then its points; ``half`` is that of the shaft's thickness."""
+    solid, wide = head.startswith("solid"), 0.36 * point
+    neck = length - (point if solid else 1.2 * half)
+    out = [np.array([(0.0, half), (neck, half), (neck, -half), (0.0, -half)])]
+    for back in (0.0, BEHIND * point) if head.endswith("double") else (0.0,):
+        tip = length - back
+        if solid:
+            out.append(np.array([(tip, 0.0), (tip - point, wide), (tip - point, -wide)]))
+        else:
+            far, barb = tip - point, 2.4 * half
+            out.append(np.array([
+                (tip, 0.0), (far, 1.3 * wide), (far - barb, 1.3 * wide),
+                (tip - 1.5 * barb, 0.0), (far - barb, -1.3 * wide), (far, -1.3 * wide),
+            ]))  # fmt: skip
+    return out
 
 
 def arc(brush: Brush, centre: np.ndarray, radius: float, sweep: float, colour: str, size: float) -> None:
@@ -206,8 +240,8 @@ def arc(brush: Brush, centre: np.ndarray, radius: float, sweep: float, colour: s
     wing = 0.36 * head * out
     tip = path[-1] + head * along - 0.12 * head * out
     triangle = np.array([tip, path[-1] + wing, path[-1] - wing])
-    brush.stroke(path, rgba(PAPER, 0.9), size * 72 / brush.dpi + 2.2, 10.0)
-    brush.plate(triangle, None, rgba(PAPER, 0.9), 2.2, 10.0)
+    brush.stroke(path, rgba(HALO, 0.9), size * 72 / brush.dpi + 2.2, 10.0)
+    brush.plate(triangle, None, rgba(HALO, 0.9), 2.2, 10.0)
     brush.stroke(path, rgba(colour, 0.95), size * 72 / brush.dpi, 10.1)
     brush.plate(triangle, rgba(colour, 0.95), None, 0.0, 10.1)
 

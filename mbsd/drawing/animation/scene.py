@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -15,7 +15,7 @@ from mbsd.drawing.animation.quantities.arrows import Arc, Arrow
 from mbsd.drawing.animation.quantities.flow import Balance, balance_of, flow_arrows
 from mbsd.drawing.animation.quantities.loads import force_arrows, reaction_arrows
 from mbsd.drawing.animation.quantities.motions import motion_arrows
-from mbsd.drawing.look import colour
+from mbsd.drawing.inks import body_inks
 from mbsd.drawing.pose import Pose, Tracks, tracks_of
 from mbsd.drawing.skeleton import draw_on
 from mbsd.drawing.steady import Steady, steady_of
@@ -48,6 +48,8 @@ class Scene:
     tracks: Tracks
     steady: Steady
     """Extent and symbols."""
+    inks: dict[str, str]
+    """Of moving bodies where no arrows are."""
     _drawn: dict[tuple[int, float], Drawn] = field(default_factory=dict)
 
     @property
@@ -118,7 +120,7 @@ class Scene:
             "velocities": motion_arrows(m, tracks, "velocities"),
             "accelerations": motion_arrows(m, tracks, "accelerations"),
             "forces": force_arrows(self.sol, tracks),
-            "reactions": reaction_arrows(self.sol, tracks),
+            "reactions": reaction_arrows(self.sol),
             "energy": list(flow_arrows(self.sol, tracks)),
         }
 
@@ -145,13 +147,12 @@ class Scene:
         }
 
 
-def scene_of(sol: Solution, clip: Clip) -> Scene:
-    """Of a whole solution; symbols and extent are the same in all pictures."""
+def scene_of(sol: Solution, clip: Clip, inks: Mapping[str, str] | None = None) -> Scene:
+    """Of a whole solution; symbols and extent are the same in all pictures. ``inks``: of bodies, by default by role."""
     m = sol.mechanism
     here = at_times(sol, clip.times)
     whole = tracks_of(sol)
-    tracks = replace(tracks_of(here), travel=whole.travel, paths=whole.paths)
+    tracks = replace(tracks_of(here), travel=whole.travel, aside=whole.aside, paths=whole.paths)
     some = [tracks.pose(k) for k in np.unique(np.linspace(0, len(clip.times) - 1, LOOKED_AT).round().astype(int))]
-    colours = {name: colour(k) for k, name in enumerate(name for name in m.bodies if name != "ground")}
-    steady = steady_of(m, some, colours, Brush)
-    return Scene(clip, sol, here, tracks, steady)
+    inks = dict(inks) if inks else body_inks(m)
+    return Scene(clip, sol, here, tracks, steady_of(m, some, inks, Brush), inks)

@@ -82,8 +82,9 @@ def draw_strut(canvas: Canvas, force: Force, pose: Pose) -> None:
         return
     u = (j - i) / gap
     n = np.array([-u[1], u[0]])
-    long = force.params["length"] - force.params["stroke"]
-    half = max(SLENDER * long, 0.4 * canvas.unit)
+    p = force.params
+    long = p["retracted"] if "retracted" in p else p["length"] - p["stroke"]
+    half = max(p["bore"] / 2 if "bore" in p else SLENDER * long, 0.4 * canvas.unit)
     piston = gap - force.params["stroke"] - 0.05 * long
     box = [(0.06 * long, -half), (long, -half), (long, half), (0.06 * long, half), (0.06 * long, -half)]
     canvas.line([i, i + 0.06 * long * u], LOAD, 1.6, order=3)

@@ -13,8 +13,9 @@ from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.look import LOAD
 from mbsd.drawing.pose import Pose
 from mbsd.drawing.symbols.cylinder import draw_engine_cylinder, draw_strut, engine_cylinder_reach
+from mbsd.drawing.symbols.reach import BESIDE
+from mbsd.drawing.symbols.ways import draw_way, surface_way
 from mbsd.model.force import Force
-from mbsd.model.laws.curve import Curve
 
 if TYPE_CHECKING:
     from mbsd.model.joint import Joint
@@ -64,16 +65,9 @@ def force_reach(force: Force, pose: Pose, joints: Sequence[Joint] = ()) -> np.nd
     place = pose.place(force.j)
     size = force.params["radius"] if "stiffness" in force.params and "radius" in force.params else 0.0
     disc = place + size * np.array([[-1.0, -1.0], [1.0, 1.0]])
-    if "stiffness" not in force.params or isinstance(force.laws.get("profile"), Curve) or not size:
+    if "stiffness" not in force.params or not size:
         return disc
-    return np.vstack([disc, pose.place(force.i) + _way(force, pose, size)[:, None] * pose.axis(force.i)])
-
-
-def _way(force: Force, pose: Pose, beyond: float) -> np.ndarray:
-    """(2,) ends of the straight surface that a body touches, along its x axis (m): where the body comes, and more."""
-    here = float((pose.place(force.j) - pose.place(force.i)) @ pose.axis(force.i))
-    ways = np.append(pose.travel.get(f"force {force.name}", np.zeros(0)), here)
-    return np.array([ways.min() - beyond, ways.max() + beyond])
+    return np.vstack([disc, surface_way(force, pose, BESIDE * size, whole=False)])
 
 
 def draw_special(canvas: Canvas, force: Force, pose: Pose) -> None:
@@ -88,17 +82,13 @@ def draw_special(canvas: Canvas, force: Force, pose: Pose) -> None:
 
 
 def _surface(canvas: Canvas, force: Force, pose: Pose) -> None:
-    """The profile, or a piece of the line near the body, and the disc that touches it."""
-    origin, centre, along = pose.place(force.i), pose.place(force.j), pose.axis(force.i)
-    profile, radius = force.laws.get("profile"), force.params["radius"]
-    if isinstance(profile, Curve):
-        x = np.linspace(profile.x[0], profile.x[-1], 121)
-        y = profile(x)[:, 0]
-    else:
-        x = _way(force, pose, max(radius, 3.0 * canvas.unit))
-        y = np.zeros(2)
-    canvas.line(origin + np.outer(x, along) + np.outer(y, [-along[1], along[0]]), LOAD, 1.6, order=1.5)
-    canvas.circle(centre, radius / canvas.unit, edge=LOAD, order=1.6, width=1.2, alpha=0.1)
+    """The profile or line as far as the body comes, with strokes on the solid side where it is ground's, and the disc
+    that touches it.
+    """
+    radius, body = force.params["radius"], force.i.body.name
+    path = surface_way(force, pose, max(BESIDE * radius, 3.0 * canvas.unit))
+    draw_way(canvas, path, body, {body: LOAD})
+    canvas.circle(pose.place(force.j), radius / canvas.unit, edge=LOAD, order=1.6, width=1.2, alpha=0.1)
 
 
 def _coil(canvas: Canvas, name: str, i: np.ndarray, j: np.ndarray, damped: bool) -> None:

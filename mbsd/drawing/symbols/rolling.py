@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.look import INK, PAPER, QUIET
-from mbsd.drawing.pose import Pose
-from mbsd.drawing.symbols.reach import BESIDE, placed
+from mbsd.drawing.symbols.reach import BESIDE
+from mbsd.drawing.symbols.ways import curve_way, draw_way
 from mbsd.drawing.symbols.wheels import FEWEST, PITCH, draw_disc, draw_gear, tooth, tooth_depth
 from mbsd.model.body import Marker
-from mbsd.model.joint import Joint
 from mbsd.model.teeth import with_radii
 
 if TYPE_CHECKING:
@@ -94,38 +92,5 @@ def _disc(canvas: Canvas, place: Place, radius: float) -> None:
     draw_disc(canvas, place.j, radius, place.pose.frames[marker.body.name][2], colour)
 
 
-def draw_way(canvas: Canvas, path: np.ndarray, body: str, colours: dict[str, str]) -> None:
-    """A line or curve of a body that something rolls on, on its left; ground's has strokes on the other side."""
-    if body != "ground":
-        canvas.line(path, colours[body], 2.2, order=3.5)
-        return
-    canvas.line(path, order=1.5)
-    steps = np.diff(path, axis=0)
-    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*steps.T))])
-    count = max(3, round(arc[-1] / (0.62 * canvas.unit)))
-    for s in (np.arange(count) + 0.8) / count * arc[-1]:
-        k = min(int(np.searchsorted(arc, s, side="right")) - 1, len(steps) - 1)
-        along = steps[k] / (arc[k + 1] - arc[k])
-        root = path[k] + (s - arc[k]) * along
-        lean = (np.array([along[1], -along[0]]) - along) * 0.55 * canvas.unit
-        canvas.line([root, root + lean], width=0.9, order=1.5)
-
-
 def _curve(place: Place) -> np.ndarray:
-    return curve_path(place.joint, place.pose)
-
-
-def curve_path(joint: Joint, pose: Pose) -> np.ndarray:
-    """(k, 2) of the spline through the points of a joint or contact, in the world (m)."""
-    points = tuple((float(x), float(y)) for x, y in joint.params["points"])
-    return placed(pose, joint.i, _spline(points, joint.params["closed"]))
-
-
-@lru_cache(maxsize=32)
-def _spline(points: tuple[tuple[float, float], ...], closed: bool) -> np.ndarray:
-    """(k, 2) in the axes of the marker (m)."""
-    from mbsd.model.plane_curves import curve_pieces
-
-    breaks, coefficients = curve_pieces(np.array(points), closed)
-    end = (coefficients[-1] * (breaks[-1] - breaks[-2]) ** np.arange(6)).sum(axis=1)
-    return np.vstack([coefficients[:, :, 0], end])
+    return curve_way(place.joint, place.pose, place.joint.name)

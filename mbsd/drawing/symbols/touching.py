@@ -10,8 +10,8 @@ import numpy as np
 from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.look import INK, QUIET
 from mbsd.drawing.pose import Pose
-from mbsd.drawing.symbols.reach import ROUND, placed
-from mbsd.drawing.symbols.rolling import curve_path, draw_way
+from mbsd.drawing.symbols.reach import ROUND
+from mbsd.drawing.symbols.ways import curve_way, draw_way
 from mbsd.drawing.symbols.wheels import draw_disc
 from mbsd.model.joint import Joint
 
@@ -38,7 +38,7 @@ def contact_reach(joint: Joint, pose: Pose) -> np.ndarray:
         ends = _travel(joint, pose)
         out.append(i + np.array([ends.min(), ends.max()])[:, None] * pose.axis(joint.i))
     elif joint.kind.touching == "curve":
-        out.append(placed(pose, joint.i, np.array(joint.params["points"], float)))
+        out.append(curve_way(joint, pose, f"contact {joint.name}"))
     elif joint.kind.touching == "discs":
         out.append(i + joint.params["radius_i"] * ROUND)
     elif joint.kind.drawn_as == "rope":
@@ -86,7 +86,7 @@ def _floor(canvas: Canvas, feet: list[Joint], pose: Pose, colours: dict[str, str
 
 
 def _terrain(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
-    draw_way(canvas, curve_path(joint, pose), joint.i.body.name, colours)
+    draw_way(canvas, curve_way(joint, pose, f"contact {joint.name}"), joint.i.body.name, colours)
     _disc(canvas, joint, pose, colours)
 
 

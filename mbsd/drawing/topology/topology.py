@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.base.errors import AssemblyError, ModelError
+from mbsd.base.quantity import written
 from mbsd.drawing import look
 from mbsd.drawing.picture import Svg
 from mbsd.drawing.topology.graph_layout import layout
@@ -73,7 +74,7 @@ def _body(m: Model, name: str, k: int) -> Node:
     if name == "ground":
         return Node(name, "", "ground", look.INK, (max(84.0, _width(name, 13) + 30), BODY_HEIGHT + 16))
     mass = m.bodies[name].mass
-    below = f"{mass:.3g} kg" if mass else "no mass"
+    below = f"{written(mass, 'kg')}" if mass else "no mass"
     width = max(_width(name, 13), _width(below, 10)) + 30
     return Node(name, below, "body", look.colour(k - 1), (width, BODY_HEIGHT + 12))
 

@@ -13,6 +13,7 @@ import numpy as np
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
 from mbsd.base.files import write_whole
+from mbsd.drawing.inks import body_inks, on_dark
 from mbsd.drawing.view.carried import moving
 from mbsd.drawing.view.carriers import Carrier
 from mbsd.results.solution import Solution
@@ -96,6 +97,7 @@ def _data(sol: Solution) -> dict[str, Any]:
         "bodies": {
             name: [_short(values[kept], 8) for values in (one.x, one.y, one.theta)] for name, one in views.items()
         },
+        "inks": {name: [ink, on_dark(ink)] for name, ink in body_inks(sol.mechanism).items()},
         "times": _short(found.times, 10),
         "paths": [_short(np.stack([one.x[kept], one.y[kept]], axis=1).ravel()) for one in traces],
         "strokes": [

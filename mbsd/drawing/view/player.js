@@ -1,16 +1,12 @@
-// Plays a skeleton on a canvas: {name, unit, low, high, t, loops, bodies: {name: [x, y, theta]}, times, strokes, names}.
+// Plays a skeleton on a canvas: {name, unit, low, high, t, loops, bodies: {name: [x, y, theta]}, inks: {name: [on light, on dark]}, times, strokes, names}.
 // What carries a stroke is told in carried.py. Plain JavaScript, no libraries.
 (function (root, data) {
   "use strict";
   const LIGHT = { ink: "#20252b", quiet: "#5d6670", paper: "#ffffff", faint: "#e9ecef", driver: "#c2410c", load: "#4b5563", wrong: "#c81e1e" };
   const DARK = { ink: "#e6e9ee", quiet: "#98a3b1", paper: "#10141b", faint: "#222a35", driver: "#ff8a4c", load: "#a9b6c6", wrong: "#ff6b6b" };
-  const BODIES = {
-    light: ["#0b62a8", "#00805e", "#a83a82", "#8a6d00", "#5a4fcf", "#3b7d8c", "#8f4a1d", "#4d6b1f"],
-    dark: ["#5db2ff", "#37d3a4", "#f08bd0", "#e2bd4b", "#a59bff", "#74cde0", "#e89a68", "#a9cf6b"],
-  };
   const canvas = root.querySelector("canvas"), g = canvas.getContext("2d"), button = root.querySelector("button");
   const bar = root.querySelector("input"), time = root.querySelector("output"), dark = matchMedia("(prefers-color-scheme: dark)");
-  const start = data.t[0], end = data.t[data.t.length - 1], span = end - start || 1, order = Object.keys(data.bodies);
+  const start = data.t[0], end = data.t[data.t.length - 1], span = end - start || 1;
   const seconds = data.loops ? 4 : Math.min(Math.max(span, 2), 12), digits = Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(span))));
   let t = start, playing = !matchMedia("(prefers-reduced-motion: reduce)").matches, last = 0, held = 0, scale = 1, middle = [0, 0];
 
@@ -62,8 +58,8 @@
   }
   const pixel = (x, y) => [middle[0] + scale * (x - (data.low[0] + data.high[0]) / 2), middle[1] - scale * (y - (data.low[1] + data.high[1]) / 2)];
   function draw() {
-    const colours = dark.matches ? DARK : LIGHT, bodies = BODIES[dark.matches ? "dark" : "light"];
-    const of = (role) => role.startsWith("body:") ? bodies[Math.max(order.indexOf(role.slice(5)), 0) % bodies.length] : colours[role] || colours.ink;
+    const colours = dark.matches ? DARK : LIGHT;
+    const of = (role) => role.startsWith("body:") ? (data.inks[role.slice(5)] || [])[dark.matches ? 1 : 0] || colours.ink : colours[role] || colours.ink;
     const ratio = Math.min(devicePixelRatio || 1, 2), width = canvas.clientWidth, height = canvas.clientHeight, pad = 3 * data.unit;
     canvas.width = width * ratio;
     canvas.height = height * ratio;

@@ -3,7 +3,8 @@
 The program takes the mechanism apart from ground on; wherever no group and no wheel of a gear train can be added it
 takes the next hinge or slide as a coordinate, and goes back where that leads nowhere. Of the choices that come to an
 end it keeps the first under which no body moves much faster than its coordinate, or else the best. Blocks, whose bodies
-Newton-Raphson places (blocks/), are added only where closed forms alone come to no end.
+Newton-Raphson places (blocks/), are added only where closed forms alone come to no end. States of forces are the last
+coordinates in every choice.
 """
 
 from __future__ import annotations
@@ -31,6 +32,8 @@ TRIALS = 200
 """Joints tried altogether."""
 CHOICES = 12
 """Plans compared."""
+ALONG_X = 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0
+"""Numbers of a slide (mbsd/kinematics/groups/kinds/slide.py) of a body's origin along the x axis of ground."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +85,7 @@ class Choice:
 
 
 def choices(packed: Packed, q: np.ndarray, count: int) -> Iterator[Choice]:
-    """Complete choices of ``count`` coordinates at a closed pose q (3 nb,), without blocks if there are any."""
+    """Complete choices of ``count`` coordinates, with states, at a closed pose q (3 nb,); without blocks if any are."""
     if not 0 < count <= MOST:
         return
     everything = range(len(packed.joints))
@@ -91,12 +94,21 @@ def choices(packed: Packed, q: np.ndarray, count: int) -> Iterator[Choice]:
         if not blocks and not trains.possible:
             continue
         start = Choice(Plan(packed, q.reshape(-1, 3), links_of_joints(packed, everything)))
-        found = _complete(start, trains, count, 0, [TRIALS], blocks)
+        _take_states(start.plan, count)
+        found = _complete(start, trains, count - packed.states, 0, [TRIALS], blocks)
         first = next(found, None)
         if first is not None:
             yield first
             yield from islice(found, CHOICES - 1)
             return
+
+
+def _take_states(plan: Plan, count: int) -> None:
+    """The bodies that hold states slide along the x axis of ground, each as its coordinate says."""
+    states = plan.packed.states
+    for k in range(states):
+        body = len(plan.links) - states + k
+        plan.take((SLIDE, (body, -1, 0, 0), states - count - k - 1, list(ALONG_X)), (body,))
 
 
 def coordinates_of(plan: Plan, count: int) -> list[Coordinate]:

@@ -3,6 +3,9 @@
 Where a scalar is convex it lies above the lines through the samples on both sides of an interval. So it can fall below
 zero there only where these lines do; where they meet it is looked at next, and each half is judged anew. That closes in
 on a minimum of any width, and costs nothing where the scalar stays away from zero.
+
+A distance is no convex scalar: the arms of its V bend inwards where the point moves on an arc. So lines that come near
+zero are drawn again from the ends of the interval, where they are steeper.
 """
 
 from __future__ import annotations
@@ -18,8 +21,8 @@ INSIDE = 0.02
 """The next look is this part of an interval away from its ends."""
 NARROWEST = 1e-10
 MOST_LOOKS = 80
-SLACK = 0.05
-"""Of the higher sample: lines that come down to this are followed."""
+NEAR, SLACK = 0.3, 0.05
+"""Of the higher sample: lines of the neighbours, and of the ends, that come down to this are followed."""
 UNSURE = 1e-4
 """Part of what the scalar changes by in a step below which the quintic does not tell its sign."""
 
@@ -86,19 +89,17 @@ def _interval(
     a, b, fa, fb = float(x[k]), float(x[k + 1]), float(values[k]), float(values[k + 1])
     if (k > 0 and slopes[k - 1] >= 0.0) or (k + 1 < len(slopes) and slopes[k + 1] <= 0.0):
         return None
-    near, level = AT_END * (b - a), level + SLACK * max(fa - level, fb - level, 0.0)
+    level += NEAR * max(fa - level, fb - level, 0.0)
+    if k > 0 and fa + slopes[k - 1] * (b - a) >= level:
+        return None
+    if k + 1 < len(slopes) and fb - slopes[k + 1] * (b - a) >= level:
+        return None
+    near = AT_END * (b - a)
+    falls, rises = (quintic(a + near) - fa) / near, (fb - quintic(b - near)) / near
     if k > 0:
-        falls = float(slopes[k - 1])
-        if fa + falls * (b - a) >= level:
-            return None
+        falls = min(falls, float(slopes[k - 1]))
     if k + 1 < len(slopes):
-        rises = float(slopes[k + 1])
-        if fb - rises * (b - a) >= level:
-            return None
-    else:
-        rises = (fb - quintic(b - near)) / near
-    if k == 0:
-        falls = (quintic(a + near) - fa) / near
+        rises = max(rises, float(slopes[k + 1]))
     return _Interval(a, fa, b, fb, falls, rises)
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.arrays.states import own_states, states_of
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.model.body import Marker, finite_number
@@ -50,6 +51,16 @@ class Moment:
         """A marker."""
         return self._frame(self._number(marker.body.name), (marker.x, marker.y), marker.angle)
 
+    def state(self, force: str, name: str) -> float:
+        """A state of a force (SI), such as ``pressure_a`` of a hydraulic cylinder. Raises ModelError for no such."""
+        known = {one.name: one.kind.states.names for one in self.packed.forces if one.kind.states is not None}
+        if not isinstance(force, str) or force not in known:
+            raise ModelError(f"{self.packed.name}: {no_such('force with states', force, known)}")
+        if name not in known[force]:
+            raise ModelError(f"{self.packed.name}: force '{force}': {no_such('state', name, known[force])}")
+        own = states_of(self.packed, self.v)[own_states(self.packed.forces, force)]
+        return float(own[known[force].index(name)])
+
     # -- for actions --------------------------------------------------------------------------------------------
 
     def set_velocity(self, name: str, vx: float, vy: float, omega: float) -> None:
@@ -88,7 +99,7 @@ class Moment:
     # -----------------------------------------------------------------------------------------------------------
 
     def _number(self, name: str, moving: bool = False) -> int:
-        names = self.packed.body_names[1 if moving else 0 :]
+        names = self.packed.body_names[1 if moving else 0 : len(self.packed.body_names) - self.packed.states]
         if not isinstance(name, str) or name not in names:
             raise ModelError(f"{self.packed.name}: {no_such('body', name, names)}")
         return self.packed.body_names.index(name)

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from mbsd.dynamics.prepare.prepared import PreparedDynamics
 
 BESIDE = (0.003, 0.001)
-"""How far beside the start is looked, in sizes and rad; nearer where the links do not close."""
+"""How far beside the start is looked, in sizes and rad; nearer where the links do not close, or a row opens: from afar
+they may have closed on another branch."""
 CLOSED = 1e-9
 OPENED = 1e-7
 """Residuals (sizes, rad) of rows that hold, and of rows that do not."""
@@ -37,21 +38,22 @@ def refuse_singular_start(ready: PreparedDynamics, kept: list[int], rows: int) -
     random = np.random.default_rng(3)
     for _ in range(3):
         away = np.concatenate([np.zeros(3), packed.column_scale() * random.standard_normal(packed.coordinates)])
+        opened = None
         for part in BESIDE:
             state = np.stack([ready.initial.q + part * away, ready.initial.v])
             project(ready.dynamics, scratch, ready.start, state, PASSES)
             packed.specials.check()
             gaps = np.abs(packed.ws.phi * scale)
             if gaps[kept].max(initial=0.0) <= CLOSED:
-                _refuse(ready, gaps)
-                break
+                opened = [row for row in ready.dropped if not gaps[row] <= OPENED]
+                if not opened:
+                    break
+        if opened:
+            _refuse(ready, opened)
 
 
-def _refuse(ready: PreparedDynamics, gaps: np.ndarray) -> None:
+def _refuse(ready: PreparedDynamics, opened: list[int]) -> None:
     packed = ready.packed
-    opened = [row for row in ready.dropped if not gaps[row] <= OPENED]
-    if not opened:
-        return
     names = ", ".join(dict.fromkeys(f"'{packed.joint_of_row(row).name}'" for row in opened))
     raise SingularPoseError(
         f"{packed.name}: the start pose at t = {ready.start:.6g} s is singular (a toggle, a change point or a "

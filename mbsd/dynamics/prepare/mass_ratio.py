@@ -4,6 +4,9 @@ A body's part of a row's mobility is J_b M_b^-1 J_b^T (1/kg). Where the parts of
 a solution of the Schur complement loses the r-th part of its digits; each pass more solves for what the last one left
 and gains what one solution has, so that 16 digits take 16 / (15 - log10 r) passes. A light body that hangs at one
 other body alone costs none: what moves it is no difference of large numbers.
+
+A body that joints hold on ground does not accelerate, so any inertia serves there: it counts as heavy as the heaviest,
+as ground would.
 """
 
 from __future__ import annotations
@@ -28,16 +31,31 @@ FAINT = 1e-6
 """Part of a row's largest entry, in sizes, below which an entry is rounding."""
 
 
-def passes_for(packed: Packed, time: float, q: np.ndarray, inertia: np.ndarray, per_size: np.ndarray) -> int:
+def as_heavy_as_ground(inertia: np.ndarray, still: np.ndarray, per_size: np.ndarray) -> np.ndarray:
+    """Inertia (3 nb,) in which coordinates that are ``still`` (3 nb,) weigh as much as the heaviest.
+
+    It is ``inertia`` itself where masses are not far apart.
+    """
+    scaled = inertia * per_size**2
+    moving = scaled[3:][~still[3:] & (inertia[3:] > 0.0)]
+    if not still[3:].any() or not len(moving) or moving.max() <= USUAL * scaled[3:][inertia[3:] > 0.0].min():
+        return inertia
+    return np.where(still, np.maximum(inertia, moving.max() / per_size**2), inertia)
+
+
+def passes_for(
+    packed: Packed, time: float, q: np.ndarray, inertia: np.ndarray, per_size: np.ndarray, still: np.ndarray
+) -> int:
     """Passes that the equations of motion take at q, inertia (3 nb,), time (s); ``per_size`` (3 nb,) 1/m and 1/rad.
 
-    Raises ModelError, with the bodies, where masses are too far apart.
+    Coordinates that are ``still`` (3 nb,) are ground's. Raises ModelError, with the bodies, where masses are too far
+    apart.
     """
     usual = inertia[3:] * per_size[3:] ** 2
     usual = usual[usual > 0.0]
     if not len(usual) or usual.max() <= USUAL * usual.min() or not len(packed.ws.phi):
         return 1
-    ratio, light, heavy = _farthest_apart(packed, time, q, inertia, per_size)
+    ratio, light, heavy = _farthest_apart(packed, time, q, inertia, per_size, still)
     if ratio <= USUAL:
         return 1
     if ratio > LARGEST:
@@ -51,7 +69,7 @@ def passes_for(packed: Packed, time: float, q: np.ndarray, inertia: np.ndarray, 
 
 
 def _farthest_apart(
-    packed: Packed, time: float, q: np.ndarray, inertia: np.ndarray, per_size: np.ndarray
+    packed: Packed, time: float, q: np.ndarray, inertia: np.ndarray, per_size: np.ndarray, still: np.ndarray
 ) -> tuple[float, int, int]:
     """The largest ratio of parts within connected bodies, and the bodies with the largest and the least of them."""
     rows = len(packed.ws.phi)
@@ -66,6 +84,7 @@ def _farthest_apart(
     entry = np.where(plain > FAINT * plain.max(axis=1, keepdims=True), entry, 0.0)
     mobility = np.divide(entry**2, inertia[columns], out=np.zeros_like(entry), where=inertia[columns] > 0.0)
     part = mobility.reshape(rows, 2, 3).sum(axis=2)
+    bodies = np.where(still[::3][bodies], 0, bodies)
     part[bodies == 0] = 0.0
     most, least = np.zeros(len(packed.body_names)), np.full(len(packed.body_names), np.inf)
     np.maximum.at(most, bodies.ravel(), part.ravel())

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from mbsd.arrays.driver_laws import refuse_bad_laws
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
+from mbsd.arrays.states import widened, with_states
 from mbsd.base.errors import MobilityError, ModelError
 from mbsd.base.kept import Kept
 from mbsd.dynamics.prepare.dependent import refuse_singular_start
-from mbsd.dynamics.prepare.mass_ratio import passes_for
+from mbsd.dynamics.prepare.mass_ratio import as_heavy_as_ground, passes_for
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.prepare.start_states import take_start_states
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import Dynamics, scratch_for
 from mbsd.dynamics.reference.pins import with_pins
@@ -60,23 +64,29 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     large = packed.coordinates > MANY_COORDINATES
     initial = (consistent_large if large else consistent)(m, packed, start, _inverse(metric))
     kept, mobility = independent_large(packed, start, initial.q) if large else _rows(packed, initial.q)
-    if not m.events:  # their actions may release a joint
-        still = _still(packed, mobility)
-        lifted = np.where(still, metric, lifted)
-        light = (inertia == 0) & ~still
-    else:
-        light = inertia == 0
+    still = _still(packed, mobility) & (not m.events)  # their actions may release a joint
+    per_size = 1.0 / np.concatenate([np.ones(3), packed.column_scale()])
+    weights = as_heavy_as_ground(inertia, still, per_size)
+    lifted = np.where(still, np.maximum(metric, weights), lifted)
+    light = (inertia == 0) & ~still
     _refuse_superfluous_drivers(packed, mobility)
     switched = [*all_contacts(m, packed, initial.q), *stuck_rows(packed)] if contacts else []
     if switched:
         packed = with_contacts(m, packed, switched)
+    apart = passes_for(packed, start, initial.q, weights, per_size, still)
+    weight = (inertia.reshape(-1, 3) * [*packed.system.gravity, 0.0]).ravel()
+    packed = with_states(packed)
+    if packed.states:
+        initial = replace(initial, q=widened(packed, initial.q), v=widened(packed, initial.v))
+        weight, none = widened(packed, weight), np.ones(3 * packed.states)
+        inertia, lifted, metric = (np.concatenate([part, none]) for part in (inertia, lifted, metric))
+        light = np.concatenate([light, none == 0.0])
+        per_size = 1.0 / np.concatenate([np.ones(3), packed.column_scale()])
     always = packed.contact_rows
     spare = set() if large else set(range(always)) - set(kept)
     planned = {*kept, *spare, *range(always, len(packed.ws.phi))}
     schur = _sequence(packed.system.row_body, blocks_of(packed, planned))
     loads = pack_loads(packed)
-    per_size = 1.0 / np.concatenate([np.ones(3), packed.column_scale()])
-    apart = passes_for(packed, start, initial.q, inertia, per_size)
     passes = max(apart, REFINEMENTS if light[3:].any() else 1)
     if not (spare or len(loads.friction) or passes > 1 or m.events):
         schur = with_pins(schur, packed.system)
@@ -92,7 +102,7 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
         inertia=inertia,
         inverse=_inverse(lifted),
         metric=_inverse(metric),
-        weight=(inertia.reshape(-1, 3) * [*packed.system.gravity, 0.0]).ravel(),
+        weight=weight,
         passes=passes,
         baumgarte=np.zeros(2),
         per_size=per_size,
@@ -111,6 +121,8 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     refuse_singular_start(ready, list(kept), always)
     if light[3:].any():
         _refuse_unheld(ready)
+    if packed.states:
+        take_start_states(ready)
     return ready
 
 

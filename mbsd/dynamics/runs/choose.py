@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from mbsd.base.errors import ModelError
+from mbsd.base.errors import ModelError, SimulationError
 from mbsd.dynamics import state as run_state
 from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
@@ -96,4 +96,10 @@ def integrate(
     state, out = ready.begun(times)
     run = ChoosingRun(ready, method, tolerance, step, float(times[-1] - times[0]), options or {}, formulation)
     run.to_end(state, out, progress)
+    missing = len(times) - int(state.count[run_state.NEXT])
+    if missing:
+        raise SimulationError(
+            f"{ready.packed.name}: the last {missing} of {len(times)} outputs were not reached, which is a fault of "
+            "mbsd, not of the model; formulation='reference' goes another way"
+        )
     return state, out

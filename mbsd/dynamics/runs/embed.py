@@ -85,7 +85,7 @@ NO_PLAN = (
 def can_embed(ready: PreparedDynamics) -> str | None:
     """Why a mechanism must stay in reference coordinates, or None."""
     packed, dynamics = ready.packed, ready.dynamics
-    count = ready.mobility.dof - len(packed.motions)
+    count = _freedoms(ready)
     if ready.following:
         return "a point is on a curve that crosses itself or its straight continuation"
     if ready.switches.contacts:
@@ -95,7 +95,8 @@ def can_embed(ready: PreparedDynamics) -> str | None:
     if len(dynamics.loads.friction):
         return "friction of joints depends on their reactions"
     if not 0 < count <= MOST:
-        return f"it has {count} degrees of freedom beside its drivers; 1 to {MOST} are possible"
+        states = f", {packed.states} of them states of forces" if packed.states else ""
+        return f"it has {count} degrees of freedom beside its drivers{states}; 1 to {MOST} are possible"
     return None
 
 
@@ -151,7 +152,7 @@ def _embedded(ready: PreparedDynamics, best: tuple[Choice, float] | None) -> Emb
 
 
 def _freedoms(ready: PreparedDynamics) -> int:
-    return ready.mobility.dof - len(ready.packed.motions)
+    return ready.mobility.dof - len(ready.packed.motions) + ready.packed.states
 
 
 def scratch_for(ready: PreparedDynamics, made: Embedded, stages: int, q: np.ndarray) -> EmbeddingScratch:

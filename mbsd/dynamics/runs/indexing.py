@@ -19,11 +19,26 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.compiling.jit import Often
 from mbsd.dynamics.embedding.equations import write_alone
-from mbsd.dynamics.state import ACCEPTED, ERROR, PAUSED, REACHED, STARTED, STEP, TIME, State, copied, output_for
+from mbsd.dynamics.state import (
+    ACCEPTED,
+    ERROR,
+    NEXT,
+    PAUSED,
+    REACHED,
+    STARTED,
+    STEP,
+    TIME,
+    WORK,
+    State,
+    copied,
+    output_for,
+)
 
 SHORT = 1e-3
 """Part of the way to the jump that is left, so that Newton's steps do not go beyond it."""
 MOST = 60
+SIDE = 1e-300
+"""A gap (m) that has a sign, and no size."""
 NEAR = 3.0
 """Steps from which on a jump is gone for."""
 MOST_UNSEEN = 10
@@ -62,18 +77,18 @@ class Genevas:
             step = float(state.clock[STEP]) or settings.longest
             before = _Point(arrays, scratch, state)
             if wait < min(NEAR * step, end - float(state.clock[TIME])):
-                status = self._meet(advance, arrays, scratch, state, out, settings, math.inf)
+                status = self._meet(advance, arrays, scratch, state, out, settings, gaps, wait, math.inf)
                 gaps, wait = self._look(arrays, scratch, state)
             else:
                 ahead = int(min(max(wait / (4.0 * step), 1.0), MOST_UNSEEN))
                 status = advance(arrays, scratch, state, out, settings, end, min(ahead, steps))
                 there, after = self._look(arrays, scratch, state)
                 if not self._crossed(gaps, there):
-                    gaps, wait = there, after
+                    gaps, wait = self._sides(gaps, there), after
                 else:
                     late = float(state.clock[TIME])
                     before.restore(arrays, scratch, state)
-                    status = self._meet(advance, arrays, scratch, state, out, settings, late)
+                    status = self._meet(advance, arrays, scratch, state, out, settings, gaps, wait, late)
                     gaps, wait = self._look(arrays, scratch, state)
             if state.count[STARTED] == 0:
                 state.clock[STEP], state.clock[ERROR] = step, 0.0
@@ -81,9 +96,19 @@ class Genevas:
             if status not in (REACHED, PAUSED):
                 return status
             if state.clock[TIME] >= end:
+                self._finish(arrays, scratch, state, out)
                 return REACHED
             if steps <= 0:
                 return PAUSED
+
+    def _finish(self, arrays: Any, scratch: Any, state: State, out: Any) -> None:
+        """Write outputs that the hop over a jump left behind, as at the end: no step is there to do it."""
+        k = int(state.count[NEXT])
+        while k < len(out.t) and out.t[k] <= state.clock[TIME]:
+            self._write(arrays, scratch, float(state.clock[TIME]), state.y, scratch.stages[0], out, k)
+            out.work[k] = state.clock[WORK]
+            k += 1
+        state.count[NEXT] = k
 
     def _look(self, arrays: Any, scratch: Any, state: State) -> tuple[list[float], float]:
         """x - r of each (m), and the time until the first is zero if they go on as they go (s)."""
@@ -110,11 +135,26 @@ class Genevas:
         """Whether a jump lies between them."""
         return any(a * b < 0.0 for a, b in zip(before, after, strict=True))
 
+    def _sides(self, before: list[float], after: list[float]) -> list[float]:
+        """``after``, where a gap of exactly zero counts to the side it came from: the jump is still ahead."""
+        return [b or math.copysign(SIDE, a) if a else b for a, b in zip(before, after, strict=True)]
+
     def _meet(
-        self, advance: Callable[..., int], arrays: Any, scratch: Any, state: State, out: Any, settings: Any, late: float
+        self,
+        advance: Callable[..., int],
+        arrays: Any,
+        scratch: Any,
+        state: State,
+        out: Any,
+        settings: Any,
+        gaps: list[float],
+        wait: float,
+        late: float,
     ) -> int:
-        """Go on to right after the next jump, which is before ``late`` (s); if it moves away, only towards it."""
-        gaps, wait = self._look(arrays, scratch, state)
+        """Go on to right after the next jump, which is before ``late`` (s); if it moves away, only towards it.
+
+        ``gaps`` and ``wait`` are what ``_look`` says of the state.
+        """
         for _ in range(MOST):
             now = float(state.clock[TIME])
             least = ROUNDING * math.ulp(now)
@@ -137,12 +177,19 @@ class Genevas:
                 if wait < math.inf:
                     share = min(a / (a - b) for a, b in zip(gaps, there, strict=True) if a * b < 0.0)  # secant
                 wait = share * (late - float(state.clock[TIME]))
+            elif 0.0 in there:
+                wait = 0.0
+                break
             else:
                 gaps, wait = there, after
         else:
             return PAUSED
         hop = min(wait, late - float(state.clock[TIME])) + ROUNDING * math.ulp(float(state.clock[TIME]))
-        for _ in range(MOST):  # rates are those before the jump, over a time that does not matter
+        before = _Point(arrays, scratch, state)
+        while True:  # rates are those before the jump, over a time that does not matter
+            if hop > SHORT * settings.longest:
+                before.restore(arrays, scratch, state)
+                return PAUSED
             state.clock[TIME] += hop
             state.y[0] += hop * state.y[1]
             if self._crossed(gaps, self._look(arrays, scratch, state)[0]):

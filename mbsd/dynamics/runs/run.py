@@ -58,7 +58,8 @@ class Run(Running):
 
     def _failure(self, status: int, state: run_state.State) -> SimulationError:
         packed, method = self.ready.packed, self.method
-        time, speeds = state.clock[run_state.TIME], np.abs(state.y[1].reshape(-1, 3)[1:])
+        bodies = len(packed.body_names) - packed.states
+        time, speeds = state.clock[run_state.TIME], np.abs(state.y[1].reshape(-1, 3)[1:bodies])
         fastest = packed.body_names[1 + int(np.argmax((speeds / [packed.size, packed.size, 1]).max(1)))]
         where = f"{packed.name}: {method.name} stops at t = {time:.6g} s, where '{fastest}' is fastest"
         if status == run_state.NO_CONVERGENCE:

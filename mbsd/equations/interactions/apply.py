@@ -3,6 +3,7 @@
 d  = p_j - p_i;   u unit axis of marker i, n = u_perp;   x = u . d,  y = n . d,  a = theta_j - theta_i + offset
 x' = u . d' + omega_i y,   y' = n . d' - omega_i x,   a' = omega_j - omega_i
 on body j: F at marker j and T; on body i: -F at the same point and -T;   power = F . (x', y') + T a'
+A state s of a force is the velocity of a body of its own along the x axis of ground, of mass 1: its load is s'.
 
     double f(const long *interaction, long n, double *given, double *state, double *out, double *switches, double t,
              const double *q, const double *v, const double *cos_sin, double *load)
@@ -27,7 +28,9 @@ from mbsd.equations.interactions.law import (
     LAW,
     LAW_RATE,
     OMEGA,
+    OWN_STATE,
     POWER,
+    RATE,
     SIDE,
     SPEED,
     SWITCH,
@@ -53,7 +56,7 @@ from mbsd.equations.relative.equation import OWN, POINTER, A, X, Y, evaluate_fro
 
 GEOMETRY = 7
 """Numbers of an interaction before its own."""
-COLUMNS = 7
+COLUMNS = 9
 """Of Loads.interaction."""
 _WHOLE = types.CPointer(types.int64)
 SIGNATURE = types.float64(
@@ -108,6 +111,9 @@ def apply(interaction, n, given, state, out, switches, t, q, v, cos_sin, load):
         side = switches[own + KEPT] * switches[HELD]
         state[SIDE] = side
         state[APPROACH] = switches[own + APPROACHED]
+        holding = 3 * interaction[row + 7]
+        for s in range(interaction[row + 8]):
+            state[OWN_STATE + s] = v[holding + 3 * s]
         out[SPEED] = 0.0
         out[SWITCH] = math.nan
         out[POWER] = 0.0
@@ -128,4 +134,6 @@ def apply(interaction, n, given, state, out, switches, t, q, v, cos_sin, load):
         load[i] -= fx
         load[i + 1] -= fy
         load[i + 2] -= out[TORQUE] + (arm_ix + dx) * fy - (arm_iy + dy) * fx
+        for s in range(interaction[row + 8]):
+            load[holding + 3 * s] += out[RATE + s]
     return power

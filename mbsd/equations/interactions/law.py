@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import importlib
 
+from mbsd.base.codes import MOST_STATES
 from mbsd.compiling.jit import COMPILED
 from mbsd.equations.relative.equation import _PYTHON, OWN, A, X, Y, equation
 
@@ -25,16 +26,20 @@ APPROACH = 24
 """Of ``state``: SPEED where SWITCH last went above 0 (m/s), not a number before it ever did: see switching.py."""
 CRANK, CRANK_RATE = 25, 26
 """Of ``state``: angle and rate of the body that the interaction names as its crank, against body i (rad, rad/s)."""
-STATE = 27
+OWN_STATE = 27
+"""The first of the states that the force itself carries, as speeds (mbsd/arrays/states.py)."""
+STATE = OWN_STATE + MOST_STATES
 """Numbers of a state."""
-FX, FY, TORQUE, SWITCH, POWER, SPEED = 0, 1, 2, 3, 4, 5
+FX, FY, TORQUE, SWITCH, POWER, SPEED, RATE = 0, 1, 2, 3, 4, 5, 6
 """Of ``out``. SWITCH: what changes its sign where the force has a kink or a jump (m), above 0 where it acts.
 POWER: by which power of that it grows, if that is no whole number. SPEED: rate of SWITCH, of forces that ask for
-APPROACH (m/s)."""
+APPROACH (m/s). RATE: the first of the rates of its own states."""
+RESULTS = RATE + MOST_STATES
+"""Numbers of ``out``."""
 
 __all__ = [
-    "APPROACH", "CRANK", "CRANK_RATE", "FX", "FY", "LAW", "LAW_RATE", "OMEGA", "OWN", "POWER", "SIDE", "SPEED",
-    "STATE", "SWITCH", "TIME", "TORQUE", "VX", "VY", "A", "X", "Y",
+    "APPROACH", "CRANK", "CRANK_RATE", "FX", "FY", "LAW", "LAW_RATE", "OMEGA", "OWN", "OWN_STATE",
+    "POWER", "RATE", "RESULTS", "SIDE", "SPEED", "STATE", "SWITCH", "TIME", "TORQUE", "VX", "VY", "A", "X", "Y",
 ]  # fmt: skip
 
 interaction = equation

@@ -135,8 +135,11 @@ def placed_pose(m: Model, packed: Packed, angle: np.ndarray) -> np.ndarray:
             b = packed.body_names.index(name)
             q[b, :2] = start.place + turned(angle[b], packed.com[b])
             placed.add(b)
-    for reach in ("point", "distance", "slot", "along", "angle"):
-        _place_along(packed, q, placed, reach)
+    k, reaches = 0, ("point", "distance", "slot", "along", "angle")
+    while k < len(reaches):  # what hangs from a slider by pins is placed by them, once the slider is
+        before = len(placed)
+        _place_along(packed, q, placed, reaches[k])
+        k = 0 if len(placed) > before and k > 0 else k + 1
     return q.ravel()
 
 

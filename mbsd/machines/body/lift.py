@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from mbsd.base.errors import ModelError
+from mbsd.base.quantity import written
 from mbsd.machines.body.chain import MOMENTS
 from mbsd.machines.body.figure import Figure
 from mbsd.mechanism import Mechanism
@@ -120,8 +121,9 @@ def with_moments(m: Mechanism, motion: Solution) -> Solution:
         worst = int(push.argmin())
         if push[worst] <= 0.0:
             raise ModelError(
-                f"{m.name}: at t = {solution.t[worst]:.3g} s the {name} would have to pull by {-push[worst]:.3g} N; "
-                "the lifter would fly off. Give the way up or down more time, or change posture or grip"
+                f"{m.name}: at t = {solution.t[worst]:.3g} s the {name} would have to pull by "
+                f"{written(-push[worst], 'N')}; the lifter would fly off. Give the way up or down more time, or change "
+                "posture or grip"
             )
     return solution
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 from mbsd.base.arguments import not_negative_number, number_pair, positive_number
 from mbsd.base.errors import ModelError
+from mbsd.base.shown import shown
 
 
 @dataclass(frozen=True)
@@ -34,18 +35,23 @@ class Mount:
 class Block:
     """Mass (kg), inertia about its centre of mass (kg m^2) and mounts of what the shaft turns in.
 
-    ``com``: place of its centre of mass against the shaft's axis (m).
+    ``com``: place of its centre of mass against the shaft's axis (m). ``motor_on``: where stands what drives the shaft:
+    "block", as a starter does, so that gas and load act within the engine; or "ground", as the drive line of a heavy
+    load does, so that the torque of gas and inertia rocks the block.
     """
 
     mass: float
     inertia: float
     mounts: tuple[Mount, ...]
     com: tuple[float, float] = (0.0, 0.0)
+    motor_on: str = "block"
 
     def __post_init__(self) -> None:
         for what, unit in (("mass", "kg"), ("inertia", "kg m^2")):
             positive_number(f"engine: {what} of the block", getattr(self, what), unit)
         number_pair("engine: com of the block (m)", self.com)
+        if self.motor_on not in ("block", "ground"):
+            raise ModelError(f"engine: motor_on of the block is {shown(self.motor_on)}; it is 'block' or 'ground'")
         if not self.mounts or not all(isinstance(mount, Mount) for mount in self.mounts):
             raise ModelError("engine: a block needs a list of Mount(...), or it falls")
 

@@ -14,7 +14,9 @@ f takes the moment (N_k is the number of rods on throw k)
 
     U_k = r [m_throw + N_k (m_r (1 - s) + f (m_p + m_r s))]
 
-from each throw; f = 1/2 cancels all of the first order that turns with the shaft, whatever the layout.
+from each throw; f = 1/2 cancels all of the first order that turns with the shaft, whatever the layout. In radial
+engines the rods of cylinders 2, 3 and so on hang on ``knuckle_k`` of the master rod ``rod_1``, see
+:mod:`mbsd.machines.engines.master_rod`: all cylinders are in one plane, and U_k is that of rods on one pin.
 
 Source: Norton, Design of Machinery, ch. 13 and 14; Maass, Klier 1981, ch. 3.
 """
@@ -22,27 +24,32 @@ Source: Norton, Design of Machinery, ch. 13 and 14; Maass, Klier 1981, ch. 3.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
 
 from mbsd.base.arguments import finite_number, not_negative_number, positive_number
 from mbsd.base.errors import ModelError
 from mbsd.machines.engines.block import Block
+from mbsd.machines.engines.crankshaft import ShaftMasses, crankshaft, share_of
 from mbsd.machines.engines.firing import firing
 from mbsd.machines.engines.layout import Layout
+from mbsd.machines.engines.master_rod import NO_RING, Knuckle, MasterRod, Ring, knuckles, ring_of
 from mbsd.machines.engines.named import named
+from mbsd.machines.engines.throws import SAME
+from mbsd.machines.engines.valve_train import ValveTrain, valve_train
 from mbsd.mechanism import Mechanism
 from mbsd.model.body import Body
 from mbsd.model.cylinders.cycle import GasCycle
 from mbsd.model.forces.gas_cycle import gas_cycle
 from mbsd.model.laws.constant_rate import constant_rate
+from mbsd.model.laws.law import Motion
+from mbsd.model.laws.polynomial import polynomial
 
 UPRIGHT = 0.5 * math.pi
 SPACE = 1.2
 """Spacing of cylinders beside each other, in bores, where none is given."""
-SAME = 1e-6
-"""Of two angles (rad) or places (spacings)."""
 
 
 def engine(
@@ -56,6 +63,7 @@ def engine(
     throws: Sequence[float] | None = None,
     split: float | None = None,
     bank_offset: float | None = None,
+    rods: str | MasterRod | None = None,
     piston_mass: float | None = None,
     rod_mass: float | None = None,
     rod_com: float = 0.3,
@@ -63,8 +71,10 @@ def engine(
     counterweight: str | float = "auto",
     flywheel: float = 0.0,
     speed: float | None = None,
+    acceleration: float | None = None,
     gas: GasCycle | None = None,
     order: Sequence[int] | None = None,
+    valves: ValveTrain | None = None,
     block: Block | None = None,
     name: str | None = None,
 ) -> Mechanism:
@@ -72,17 +82,22 @@ def engine(
 
     ``bore``, ``stroke``, ``rod`` (m, between pin and wrist pin); ``spacing`` of neighbouring throws along the shaft (m,
     1.2 bores by default); ``angle``, ``throws``, ``split`` (degrees): those of :func:`named`; ``bank_offset``: how far
-    rods that share a throw are apart (m, a sixth of the spacing by default).
+    rods that share a throw are apart (m, a sixth of the spacing by default). ``rods``: "pin" (all of a throw side by
+    side on its pin), "master" or :class:`MasterRod` (one on the pin, the others on knuckle pins of this master rod, all
+    in one plane); radial engines have a master rod by default, others none.
 
     ``piston_mass`` with rings and wrist pin, ``rod_mass`` (kg), or neither: then the bodies have no mass, and in a
     mechanism's folder get that of their parts. ``rod_com``: place of the rod's centre of mass from the crank pin, in
     parts of its length. ``throw_mass``: of one throw at the radius of the pin (kg). ``counterweight``: "auto" (half of
     the oscillating masses), "rotating" (none of them), "none", or the share of them that each throw's counterweight
     balances beside all that rotates. ``flywheel``: moment of inertia of what turns with the shaft (kg m^2). ``speed``
-    (rad/s) drives the shaft; without it nothing does.
+    (rad/s) drives the shaft; with ``acceleration`` (rad/s^2) it runs up by speed t + acceleration t^2 / 2 from
+    rest without ``speed``. Without both nothing drives it.
 
     ``gas``: the cycle of each cylinder, such as ``four_stroke(10.0, heat_density=1.5e6)``, in the firing ``order``
-    (numbers of the cylinders, by default the one that fires most evenly); forces ``gas_1`` and so on.
+    (numbers of the cylinders, by default the one that fires most evenly); forces ``gas_1`` and so on. ``valves``:
+    :class:`ValveTrain` adds overhead camshafts (``camshaft``, or ``camshaft_1`` and ``camshaft_2``) on belts, valves
+    ``intake_k`` and ``exhaust_k``, and their springs.
 
     ``block``: with it shaft and bores are in a body ``block`` on mounts ``mount_1`` and so on, at rest at the start; it
     is to be simulated, and ``m.modes()`` has its natural frequencies. Without it they are in ground.
@@ -104,7 +119,13 @@ def engine(
         )
     apart = SPACE * size["bore"] if spacing is None else spacing
     spacing = positive_number(f"engine '{name}': spacing", apart, "m")
-    z = _places(of, name, spacing, bank_offset)
+    master_rod, hung = knuckles(of, name, rods, throw, size["rod"], size["bore"])
+    if hung and bank_offset:
+        raise ModelError(
+            f"engine '{name}': bank_offset is {1000 * bank_offset:g} mm, but rods on a master rod are in one plane; "
+            "leave it out, or take rods='pin'"
+        )
+    z = _places(of, name, spacing, 0.0 if hung else bank_offset)
     _refuse_overlaps(of, name, z, size["bore"])
     if (piston_mass is None) != (rod_mass is None):
         raise ModelError(f"engine '{name}': give both piston_mass and rod_mass, or neither")
@@ -113,31 +134,67 @@ def engine(
         raise ModelError(f"engine '{name}': rod_com is {end:g}; it must be from 0, at the crank pin, to 1")
     m = Mechanism(name)
     frame = m.ground if block is None else _on_mounts(m, block)
-    crank = _crank(m, of, z, throw, _share(name, counterweight), (piston_mass, rod_mass, end, throw_mass), flywheel)
+    ring = NO_RING if master_rod is None else ring_of(name, master_rod, hung, rod_mass)
+    masses = ShaftMasses(piston_mass, rod_mass, end, throw_mass, ring.mass)
+    crank = crankshaft(m, of, z, throw, share_of(name, counterweight), masses, flywheel)
     m.revolute("main", frame.origin, crank.origin)
+    masters = {knuckle.master for knuckle in hung.values()}
+    leans = [UPRIGHT + c.bank - math.asin(throw / rod * math.sin(c.throw - c.bank)) for c in of.cylinders]
     poses: dict[str, float] = {}
-    for k, (cylinder, place) in enumerate(zip(of.cylinders, z, strict=True), start=1):
-        inertia = None if rod_mass is None else rod_mass * end * (1 - end) * rod**2
-        con = m.bar(f"rod_{k}", rod, mass=rod_mass, com=(end * rod, 0.0), inertia=inertia, z=place)
-        piston = m.body(f"piston_{k}", mass=piston_mass, z=place)
-        pin = UPRIGHT + cylinder.throw
-        m.revolute(f"pin_{k}", crank.at(throw * math.cos(pin), throw * math.sin(pin), z=place), con.start)
-        m.revolute(f"wrist_{k}", con.end, piston.origin)
-        axis = UPRIGHT + cylinder.bank
-        m.prismatic(f"bore_{k}", frame.at(0.0, 0.0, axis, z=place), piston.origin)
-        poses[f"rod_{k}"] = math.degrees(axis - math.asin(throw / rod * math.sin(cylinder.throw - cylinder.bank)))
+    for k in sorted(range(len(z)), key=lambda k: k in hung):
+        cylinder, place, number = of.cylinders[k], z[k], k + 1
+        pin, axis = UPRIGHT + cylinder.throw, UPRIGHT + cylinder.bank
+        at = throw * math.cos(pin), throw * math.sin(pin)
+        if k in hung:
+            knuckle = hung[k]
+            con = _rod(m, f"rod_{number}", knuckle.motion.rod, rod_mass, end, place)
+            x, y = knuckle.radius * math.cos(knuckle.angle), knuckle.radius * math.sin(knuckle.angle)
+            m.revolute(f"knuckle_{number}", m.bodies[f"rod_{knuckle.master + 1}"].at(x, y), con.start)
+            poses[f"rod_{number}"] = math.degrees(knuckle.rod_starts(leans[knuckle.master], complex(*at), axis))
+        else:
+            con = _rod(m, f"rod_{number}", rod, rod_mass, end, place, ring if k in masters else NO_RING)
+            m.revolute(f"pin_{number}", crank.at(*at, z=place), con.start)
+            poses[f"rod_{number}"] = math.degrees(leans[k])
+        piston = m.body(f"piston_{number}", mass=piston_mass, z=place)
+        m.revolute(f"wrist_{number}", con.end, piston.origin)
+        m.prismatic(f"bore_{number}", frame.at(0.0, 0.0, axis, z=place), piston.origin)
     m.start_near(**poses)
-    if gas is not None:
-        _burn(m, frame, of, gas, order, bore=size["bore"], top=throw + rod, stroke=2 * throw)
-    elif order is not None:
+    if gas is None and valves is None and order is not None:
         raise ModelError(f"engine '{name}': a firing order without gas; give gas=four_stroke(...)")
-    if speed is not None:
-        law = constant_rate(finite_number(f"engine '{name}': speed", speed))
-        if block is None:
+    if gas is not None or valves is not None:
+        fires = _fires(m.name, of, hung, gas, order)
+        if gas is not None:
+            _burn(m, frame, of, hung, gas, fires, bore=size["bore"], top=throw + rod, stroke=2 * throw)
+        if valves is not None:
+            _refuse_valves(name, valves, bool(hung))
+            valve_train(m, frame, of, valves, fires, size["bore"], throw + rod, z, gas, piston_mass is not None)
+    law = _law(name, speed, acceleration)
+    if law is not None:
+        if block is None or block.motor_on == "ground":
             m.drive_angle("motor", crank, law)
         else:
             m.drive_relative_angle("motor", frame, crank, law)
     return m
+
+
+def _law(name: str, speed: float | None, acceleration: float | None) -> Motion | None:
+    """The angle of the shaft: at a constant speed or, with an acceleration, through a run-up."""
+    rate = None if speed is None else finite_number(f"engine '{name}': speed", speed)
+    if acceleration is None:
+        return None if rate is None else constant_rate(rate)
+    return polynomial(0.0, rate or 0.0, 0.5 * finite_number(f"engine '{name}': acceleration", acceleration))
+
+
+def _rod(
+    m: Mechanism, name: str, length: float, mass: float | None, end: float, z: float, ring: Ring = NO_RING
+) -> Body:
+    """A connecting rod, with a ring about its pin."""
+    if mass is None or not ring.mass:
+        inertia = None if mass is None else mass * end * (1 - end) * length**2
+        return m.bar(name, length, mass=mass, com=(end * length, 0.0), inertia=inertia, z=z)
+    far, total = mass * end, mass + ring.mass
+    inertia = far * (total - far) / total * length**2 + ring.mass * ring.radius**2
+    return m.bar(name, length, mass=total, com=(far / total * length, 0.0), inertia=inertia, z=z)
 
 
 def _on_mounts(m: Mechanism, block: Block) -> Body:
@@ -150,76 +207,54 @@ def _on_mounts(m: Mechanism, block: Block) -> Body:
     return body
 
 
+def _fires(
+    name: str, of: Layout, hung: Mapping[int, Knuckle], gas: GasCycle | None, order: Sequence[int] | None
+) -> dict[int, float]:
+    """Angle of the crank (rad) at which each cylinder, by its number, fires; the first of the order at its first top
+    dead centre.
+    """
+    if gas is not None and not isinstance(gas, GasCycle):
+        raise ModelError(f"engine '{name}': gas must be four_stroke(...), two_stroke(...) or pressure_table(...)")
+    fired = firing(of, order, 4 if gas is None else 2 * gas.turns)
+    first = of.cylinders[fired.order[0] - 1]
+    begin = (first.bank - first.throw) % (2 * math.pi)
+    late = {number: knuckle.late for number, knuckle in ((k + 1, one) for k, one in hung.items())}
+    return {
+        number: begin + float(since) + late.get(number, 0.0)
+        for number, since in zip(fired.order, fired.angles, strict=True)
+    }
+
+
+def _refuse_valves(name: str, valves: object, has_knuckles: bool) -> None:
+    if not isinstance(valves, ValveTrain):
+        raise ModelError(f"engine '{name}': valves must be ValveTrain(...)")
+    if has_knuckles:
+        raise ModelError(
+            f"engine '{name}': pistons on a master rod have dead centres of their own, and camshafts are for rods on "
+            "crank pins; leave valves out, or take rods='pin'"
+        )
+
+
 def _burn(
     m: Mechanism,
     frame: Body,
     of: Layout,
+    hung: Mapping[int, Knuckle],
     gas: GasCycle,
-    order: Sequence[int] | None,
+    fires: Mapping[int, float],
     bore: float,
     top: float,
     stroke: float,
 ) -> None:
-    """Gas in every cylinder; the first of the order fires at its first top dead centre."""
-    if not isinstance(gas, GasCycle):
-        raise ModelError(f"engine '{m.name}': gas must be four_stroke(...), two_stroke(...) or pressure_table(...)")
-    fired = firing(of, order, 2 * gas.turns)
-    first = of.cylinders[fired.order[0] - 1]
-    for number, since in zip(fired.order, fired.angles, strict=True):
+    """Gas in every cylinder."""
+    for number, at in fires.items():
         axis = UPRIGHT + of.cylinders[number - 1].bank
         piston = m.bodies[f"piston_{number}"]
-        roof = top + (stroke / (gas.compression - 1.0) if gas.compression else 0.0)
+        knuckle = hung.get(number - 1)
+        reach, way = (top, stroke) if knuckle is None else (knuckle.motion.reach, knuckle.motion.stroke)
+        roof = reach + (way / (gas.compression - 1.0) if gas.compression else 0.0)
         head = frame.at(roof * math.cos(axis), roof * math.sin(axis), axis + math.pi, z=piston.z)
-        at = (first.bank - first.throw) % (2 * math.pi) + float(since)
         gas_cycle(m, f"gas_{number}", head, piston.origin, m.bodies["crank"], gas, bore=bore, fires_at=at)
-
-
-def _crank(
-    m: Mechanism,
-    of: Layout,
-    z: np.ndarray,
-    throw: float,
-    share: float | None,
-    masses: tuple[float | None, float | None, float, float],
-    flywheel: float,
-) -> Body:
-    """The shaft as one body: its throws, counterweights and flywheel. ``share`` None: without counterweights."""
-    piston, rod, end, throw_mass = masses
-    spin = not_negative_number(f"engine '{m.name}': flywheel", flywheel)
-    heavy = not_negative_number(f"engine '{m.name}': throw_mass", throw_mass)
-    if piston is None or rod is None:
-        return m.body("crank")
-    piston = not_negative_number(f"engine '{m.name}': piston_mass", piston, "kg")
-    rod = not_negative_number(f"engine '{m.name}': rod_mass", rod, "kg")
-    points: list[tuple[float, float, float, float]] = []
-    for direction, place, count in _throws(of, z):
-        outward = np.array([math.cos(UPRIGHT + direction), math.sin(UPRIGHT + direction)]) * throw
-        opposite = 0.0
-        if share is not None:
-            opposite = heavy + count * (rod * (1 - end) + share * (piston + rod * end))
-        points += [(heavy, *outward, place), (opposite, *-outward, place)]
-    return _of_points(m, np.array(points), spin)
-
-
-def _of_points(m: Mechanism, points: np.ndarray, spin: float) -> Body:
-    """The body of point masses (n, 4) of m, x, y, z, and an inertia that turns about the origin beside them."""
-    mass, at, z = points[:, 0], points[:, 1:3], points[:, 3]
-    total = float(mass.sum())
-    if total == 0.0:
-        return m.body("crank", mass=0.0, inertia=spin)
-    com, middle = mass @ at / total, float(mass @ z) / total
-    inertia = spin + float(mass @ ((at - com) ** 2).sum(axis=1))
-    products = (mass * (z - middle)) @ (at - com)
-    return m.body("crank", total, com.tolist(), inertia, z=middle, products=products.tolist())
-
-
-def _throws(of: Layout, z: np.ndarray) -> list[tuple[float, float, int]]:
-    """Direction (rad), place (m) and number of rods of each throw; pins that are split are throws of their own."""
-    found: dict[tuple[int, int], list[int]] = {}
-    for k, cylinder in enumerate(of.cylinders):
-        turned = round(math.remainder(cylinder.throw, 2 * math.pi) / SAME)
-        found.setdefault((turned, round(cylinder.z / SAME)), []).append(k)
-    return [(of.cylinders[ks[0]].throw, float(z[ks].mean()), len(ks)) for ks in found.values()]
 
 
 def _places(of: Layout, name: str, spacing: float, bank_offset: float | None) -> np.ndarray:
@@ -231,6 +266,15 @@ def _places(of: Layout, name: str, spacing: float, bank_offset: float | None) ->
     z = of.z * spacing
     for ks in groups.values():
         z[ks] += apart * (np.arange(len(ks)) - 0.5 * (len(ks) - 1))
+    for before, after in pairwise(sorted(groups)):
+        first, second = groups[before][-1], groups[after][0]
+        if len(of.cylinders) > len(groups) and z[second] - z[first] < SAME * spacing:
+            room = 1000 * float(of.z[second] - of.z[first]) * spacing
+            most = room / max(0.5 * (len(groups[before]) + len(groups[after])) - 1.0, 0.5)
+            raise ModelError(
+                f"engine '{name}': with a bank_offset of {1000 * apart:.4g} mm rod {first + 1} does not stand before "
+                f"rod {second + 1} of the next throw, {room:.4g} mm along the shaft; make it less than {most:.4g} mm"
+            )
     return z
 
 
@@ -243,17 +287,6 @@ def _refuse_overlaps(of: Layout, name: str, z: np.ndarray, bore: float) -> None:
             if abs(side) < SAME and gap < bore:
                 raise ModelError(
                     f"engine '{name}': cylinders {first + 1} and {second + 1} of one bank are {1000 * gap:.4g} mm "
-                    f"apart along the shaft, and the bore is {1000 * bore:g} mm; make spacing larger"
+                    f"apart along the shaft, and the bore is {1000 * bore:g} mm; "
+                    + (f"make spacing {bore / gap:.4g} times as large" if gap > 0 else "give them different places z")
                 )
-
-
-def _share(name: str, counterweight: str | float) -> float | None:
-    """Part of the oscillating masses that counterweights balance; None: there are none."""
-    words = {"auto": 0.5, "rotating": 0.0, "none": None}
-    if isinstance(counterweight, str):
-        if counterweight not in words:
-            raise ModelError(
-                f"engine '{name}': counterweight '{counterweight}'; it is 'auto', 'rotating', 'none' or a number"
-            )
-        return words[counterweight]
-    return not_negative_number(f"engine '{name}': counterweight", counterweight)

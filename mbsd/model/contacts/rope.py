@@ -16,6 +16,7 @@ ROPE = register(
     ContactKind(
         "rope",
         ("radial",),
+        look="cord",
         example=lambda m, i, j: m.rope("example", i, j, 5.0),
         numbers=lambda params: ((-1.0, params["length"]),),
         lengths=("length",),

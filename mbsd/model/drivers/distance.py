@@ -17,6 +17,7 @@ DRIVE_DISTANCE = register(
     JointKind(
         "drive_distance",
         ("distance",),
+        look="cylinder",
         example=lambda m, i, j: m.drive_distance("example", i, j, harmonic(0.3, 1.7, 0.2, 0.9)),
         driven=True,
         units=("N", "m"),

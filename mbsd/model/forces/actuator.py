@@ -28,6 +28,7 @@ ACTUATOR = register(
         "actuator",
         _elements,
         effort="force",
+        look="cylinder",
         example=lambda m, i, j: m.actuator("example", i, j, 12.0, along_axis=True),
     )
 )

@@ -29,6 +29,8 @@ CURVE_OF_ANGLE = register(
     ForceKind(
         "curve_of_angle",
         _elements,
+        look="spiral",
+        motor="of_rate",
         example=lambda m, i, j: m.curve_of_angle(
             "example",
             i.body,

@@ -28,6 +28,7 @@ CURVE_OF_LENGTH = register(
     ForceKind(
         "curve_of_length",
         _elements,
+        look="coil",
         example=lambda m, i, j: m.curve_of_length(
             "example",
             i,

@@ -33,6 +33,7 @@ GAS = register(
         "gas",
         _elements,
         chamber=lambda force, masses: Chamber(*(force.params[key] for key in ("area", "clearance", "outside"))),
+        look="cylinder",
         example=lambda m, i, j: m.gas("example", i, j, area=0.002, pressure=1.1e5, at=0.12, clearance=8.0),
     )
 )

@@ -92,6 +92,7 @@ GAS_CYCLE = register(
         along=lambda force: Element(AXIS, ()),
         chamber=_chamber,
         sign="engine cylinder",
+        look="cylinder",
         example=lambda m, i, j: m.gas_cycle(
             "example", i, j, j.body, four_stroke(8.0), bore=0.08, stroke=12.0, rod=30.0, top=-9.0
         ),

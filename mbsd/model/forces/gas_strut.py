@@ -24,6 +24,7 @@ from mbsd.model.adding.forces import above_zero, add_force, amounts_given
 from mbsd.model.body import Marker
 from mbsd.model.force import Element, Force, ForceKind, Interaction, Masses, register
 from mbsd.model.mechanism import Model, number_given
+from mbsd.model.places import marker_place
 
 OWN = (
     "exponent", "length", "stroke", "compression_damping", "extension_damping", "end_damping", "end_way", "friction",
@@ -42,17 +43,9 @@ def _interactions(force, masses):
     return (Interaction("gas_strut", force.i, force.j, numbers),)
 
 
-def _place(marker: Marker, masses: Masses, q: np.ndarray) -> np.ndarray:
-    """(T, 2) of a marker (m)."""
-    b = list(masses.names).index(marker.body.name)
-    x, y = marker.x - masses.com[b, 0], marker.y - masses.com[b, 1]
-    c, s = np.cos(q[:, 3 * b + 2]), np.sin(q[:, 3 * b + 2])
-    return q[:, 3 * b : 3 * b + 2] + np.stack([c * x - s * y, s * x + c * y], axis=1)
-
-
 def _potential(force: Force, masses: Masses, q: np.ndarray) -> np.ndarray:
     p, gas = force.params, _gas_length(force)
-    gap = _place(force.j, masses, q) - _place(force.i, masses, q)
+    gap = marker_place(force.j, masses, q) - marker_place(force.i, masses, q)
     pushed = p["length"] - np.hypot(gap[:, 0], gap[:, 1])
     left, n = 1.0 - pushed / gas, p["exponent"]
     held = -np.log(left) if n == 1.0 else (left ** (1.0 - n) - 1.0) / (n - 1.0)
@@ -67,6 +60,7 @@ GAS_STRUT = register(
         potential=_potential,
         along=lambda force: Element(LINE, ()),
         sign="strut",
+        look="cylinder",
         example=lambda m, i, j: m.gas_strut(
             "example", i, j, 40.0, 1.3, length=4.0, stroke=3.5, compression_damping=2.0, extension_damping=9.0,
             end_damping=20.0, end_way=1.0, friction=3.0, slip_speed=5.0, stop_stiffness=50.0, stop_damping=0.1,

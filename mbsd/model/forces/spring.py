@@ -44,6 +44,7 @@ SPRING = register(
         "spring",
         lambda force: (Element(LINE, constant_terms(force, "free_length")),),
         interactions=lambda force, masses: terms_in_time(force, "free_length", turning=False),
+        look="coil",
         example=lambda m, i, j: m.spring("example", i, j, 120.0, damping=3.0, free_length=0.4),
     )
 )

@@ -34,6 +34,7 @@ SPRING_LAW = register(
         "spring_law",
         lambda force: (Element(LINE, ()),),
         interactions=law_of,
+        look="coil",
         example=lambda m, i, j: m.spring_law("example", i, j, _example_law),
         saved=False,
     )

@@ -20,6 +20,7 @@ TORSION_SPRING = register(
         "torsion_spring",
         lambda force: (Element(TURN, constant_terms(force, "free_angle")),),
         interactions=lambda force, masses: terms_in_time(force, "free_angle", turning=True),
+        look="spiral",
         example=lambda m, i, j: m.torsion_spring("example", i.body, j.body, 14.0, damping=0.3, free_angle=0.2),
     )
 )

@@ -32,6 +32,7 @@ TORSION_SPRING_LAW = register(
         "torsion_spring_law",
         lambda force: (Element(TURN, ()),),
         interactions=law_of,
+        look="spiral",
         example=lambda m, i, j: m.torsion_spring_law("example", i.body, j.body, _example_law),
         saved=False,
     )

@@ -29,6 +29,7 @@ BELT = register(
     JointKind(
         "belt",
         ("gear",),
+        look="band",
         example=lambda m, i, j: m.belt("example", i, j, radius_i=0.3, radius_j=0.2, crossed=True),
         numbers=_numbers,
         problem=belt_problem,

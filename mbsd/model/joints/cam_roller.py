@@ -26,6 +26,7 @@ CAM_ROLLER = register(
     JointKind(
         "cam_roller",
         ("curve",),
+        look="roller",
         example=lambda m, i, j: m.cam_roller(
             "example",
             i,

@@ -40,6 +40,7 @@ GENEVA = register(
     JointKind(
         "geneva",
         ("geneva",),
+        look="captive",
         example=lambda m, i, j: m.geneva("example", i, j, slots=5, radius=0.3),
         numbers=lambda params: [(params["slots"], params["radius"])],
         problem=_problem,

@@ -12,7 +12,9 @@ from mbsd.model.body import Marker
 from mbsd.model.joint import Joint, JointKind, register
 from mbsd.model.mechanism import Model
 
-PIN_IN_SLOT = register(JointKind("pin_in_slot", ("slot",), example=lambda m, i, j: m.pin_in_slot("example", i, j)))
+PIN_IN_SLOT = register(
+    JointKind("pin_in_slot", ("slot",), look="captive", example=lambda m, i, j: m.pin_in_slot("example", i, j))
+)
 
 
 @PIN_IN_SLOT.adds

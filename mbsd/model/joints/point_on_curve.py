@@ -38,6 +38,7 @@ POINT_ON_CURVE = register(
     JointKind(
         "point_on_curve",
         ("curve",),
+        look="captive",
         example=lambda m, i, j: m.point_on_curve(
             "example",
             i,

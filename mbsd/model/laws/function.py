@@ -64,8 +64,7 @@ class Function(WithFunctions, Motion):
 
         last = last if last > first else first + 1.0
         looks = look_times(first, last, self.shortest)
-        seen = _samples(self.ddf, looks)
-        return exact_pieces(self, first, last, self.breaks, looks, seen)
+        return exact_pieces(self, first, last, self.breaks, looks, self(looks))
 
     def knots(self, first: float, last: float) -> np.ndarray:
         """Where a pulse cannot hide, and its breaks."""

@@ -62,14 +62,14 @@ class Motion:
 
         last = last if last > first else first + 1.0
         looks = look_times(first, last)
-        return exact_pieces(self, first, last, (), looks, self(looks)[:, 2])
+        return exact_pieces(self, first, last, (), looks, self(looks))
 
     def refuse_wrong_derivatives(self, time: float) -> None:
         """Raise ModelError where f' and f'' are not those of f within a second from ``time`` (s) on.
 
         Whatever else keeps the law from being made ready there is no matter of its value at ``time``.
         """
-        from mbsd.model.laws.fitting.exact import DerivativeError
+        from mbsd.model.laws.fitting.derivatives import DerivativeError
 
         try:
             self.compiled(time, time)

@@ -17,6 +17,7 @@ from mechanisms.stages.loading import loading
 from mechanisms.stages.loading.inputs import Inputs, observed, sources_state
 from mechanisms.stages.loading.recording import recording
 from mechanisms.stages.solve import solving
+from mechanisms.stages.solve.body_colours import body_colours, main_material
 from shared import contract
 from shared.stage import console
 from shared.stage.errors import UserError
@@ -36,7 +37,7 @@ SUFFIXES = (".mp4", ".gif")
 _STAGE = (
     "animate/stage",
     "loading/variants",
-    *(f"solve/{name}" for name in ("solving", "refined_times", "masses", "estimated_masses")),
+    *(f"solve/{name}" for name in ("solving", "refined_times", "masses", "estimated_masses", "body_colours")),
 )
 SOURCES = [ROOT / "mechanisms" / "stages" / f"{name}.py" for name in _STAGE]
 
@@ -61,7 +62,7 @@ def run(name: str, view: str = "") -> None:
     for words in stale:
         paths = _paths(out, words)
         for path in paths:
-            _draw(solution, path, words)
+            _draw(solution, path, words, parts)
         Stage(out, paths[0].stem, _key(parts, inputs), paths).done(inputs=inputs.names())
 
 
@@ -123,13 +124,14 @@ def _fresh(out: Out, parts: Parts | None, words: str) -> bool:
 
 def _key(parts: Parts | None, inputs: Inputs) -> str:
     """Hash of all that a film follows from; ``inputs``: what mechanism.py is made of, and what it reads."""
-    masses = parts and {body: solids.mass for body, solids in parts.bodies.items()}
+    masses = parts and {body: (solids.mass, main_material(solids)) for body, solids in parts.bodies.items()}
     sources = sources_hash(*SOURCES), sources_state("mbsd"), sources_state("mbsd/drawing")
     return key_of(*sources, masses, versions(*PACKAGES), inputs.digest())
 
 
-def _draw(solution: Solution, path: Path, words: str) -> None:
+def _draw(solution: Solution, path: Path, words: str, parts: Parts | None) -> None:
     from mbsd import MechanismError
+    from mbsd.drawing.of_solution import animate
 
     name = solution.mechanism.name
     show = "all" if not words else () if words == "skeleton" else tuple(words.split(","))
@@ -144,7 +146,8 @@ def _draw(solution: Solution, path: Path, words: str) -> None:
 
         try:
             with whole_file(path) as temporary:
-                film = solution.animate(temporary, show=show, progress=progress)
+                inks = body_colours(solution.mechanism, parts)
+                film = animate(solution, temporary, show, progress=progress, inks=inks)
         except MechanismError as error:
             raise UserError(f"{name}: {path.name}: {error}") from error
     rate = "" if film.rate == 1.0 else f", {film.rate:g} of real time"

@@ -25,14 +25,18 @@ from mechanisms.stages.automatic.layout.items import Need
 from mechanisms.stages.automatic.layout.layout import Layout, Springs
 from mechanisms.stages.automatic.layout.motion import poses_of, times_of
 from mechanisms.stages.automatic.layout.order.heights import Heights, heights
-from mechanisms.stages.automatic.layout.sizes import Sizes, of_pin, refuse_sizes, sizes
+from mechanisms.stages.automatic.layout.sizes import THINNEST, Sizes, of_pin, refuse_sizes, sizes
 from mechanisms.stages.automatic.pins.free.free_bodies import free_bodies
 from mechanisms.stages.automatic.pins.free.points import styluses, weights
 from mechanisms.stages.automatic.pins.rods import add_poses, places
-from mechanisms.stages.automatic.shafts.along import Along
-from mechanisms.stages.automatic.shafts.planes import has_places
+from mechanisms.stages.automatic.rolling.roads import runs_on_ground
+from mechanisms.stages.automatic.shafts.along import THINNEST_ALONG, Along
+from mechanisms.stages.automatic.shafts.bodies.planes import has_places
+from mechanisms.stages.automatic.standing.held import hold
 from mechanisms.stages.automatic.wheels.sharing import with_own_layers
 from mechanisms.stages.automatic.wished_names import refuse_material, refuse_unknown
+from mechanisms.stages.loading.wished_mount import wished
+from shared.contract.mount import Mount, mounted
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
@@ -122,7 +126,7 @@ class Automatic:
         self._marks.append(Wish(body, word, at, height))
 
     def base_under(self, *places: Point) -> None:
-        """Let the base plate reach places (x, y) of ground (mm), besides all that stands on it.
+        """Let the base plate and roads on it reach places (x, y) of ground (mm), besides all that stands on it.
 
         Raises UserError for a place that is not finite.
         """
@@ -180,7 +184,14 @@ class Automatic:
         """The plan of a machine whose bodies have places along the normal of the plane; None of others."""
         if not has_places(self.m):
             return None
-        return Along(self.m, self.solution, self.wishes(), frozenset(self._left_out), frozenset(self._flywheels))
+        plan = Along(self.m, self.solution, self.wishes(), frozenset(self._left_out), frozenset(self._flywheels))
+        return plan.with_pins_that_pass()
+
+    @property
+    def mount(self) -> Mount:
+        """How ground stands: as shot.py says while the parts stage runs, else as gravity says."""
+        rolls = self.along is None and runs_on_ground(self.layout)
+        return mounted(self.m.gravity or (0.0, 0.0), wished(), rolls)
 
     @property
     def sizes(self) -> Sizes:
@@ -216,17 +227,20 @@ class Automatic:
         return heights_of
 
     def solids(self, engraved_too: bool = True) -> Bodies:
-        """Every piece by the body it moves with, in mm; the first of each list is the body's main piece.
-
-        ``engraved_too``: the base with its names, rule and dial, which cost as much as a link.
+        """Every piece by the body it moves with, in mm; the first of each list is the body's main piece. ``on_stand()``
+        adds a stand. ``engraved_too``: the base with its names, rule and dial, which cost as much as a link.
         """
         from mechanisms.stages.automatic.assembly.built import built
+        from mechanisms.stages.automatic.assembly.frame import back_plate
         from shared.shapes.bodies import Bodies
 
         if self.along is not None:
             return self._solids_along(self.along)
         plan = self.plan()
         made = Bodies(built(plan, self.heights, engraved_too) | self._replaced)
+        scale, plate = self.sizes.scale, back_plate(plan)
+        poses = {body: pose * [scale, scale, 1.0] for body, pose in self.layout.poses.items()}
+        hold(made, self.mount, plate and plate.scaled(scale), poses, self.sizes)
         for body in self.layout.apart.intersection(self.m.bodies):
             made.leave_out(body)
         for rod, joint in self.layout.rods.items():
@@ -243,11 +257,13 @@ class Automatic:
         return made
 
     def _solids_along(self, along: Along) -> Bodies:
-        from mechanisms.stages.automatic.shafts.solids.made import solids
+        from mechanisms.stages.automatic.shafts.solids.made import plate_of, solids
         from shared.shapes.bodies import Bodies
 
-        made = Bodies(solids(along, self._materials, self._base_under) | self._replaced)
+        made = Bodies(solids(along, self._materials, self.mount, self._base_under) | self._replaced)
         made.along = True
+        plate = plate_of(along, self.mount, self._base_under)
+        hold(made, self.mount, plate, along.machine.poses, self.sizes)
         for body in self._left_out.intersection(self.m.bodies):
             made.leave_out(body)
         for first, second in self._touching:
@@ -273,12 +289,13 @@ class Automatic:
         rods = dict.fromkeys(self.layout.rods, ROD)
         named = materials(self.m) | rods | self._materials
         plan = Plan(self.layout, named | {web: named[body] for web, body in self.layout.webs.items()})
+        plan.mount = self.mount
         plan.reserve([*self.m.bodies, *rods, "base_plate", *self.layout.webs])
+        plan.base_under += [(x / self.sizes.scale, y / self.sizes.scale) for x, y in self._base_under]
         for feature in self.layout.features:
             with kernel_refusals(self.m.name, f"the parts of '{getattr(feature, 'name', type(feature).__name__)}'"):
                 build(feature, plan, self.heights)
         place(self._marks, plan)
-        plan.base_under += [(x / self.sizes.scale, y / self.sizes.scale) for x, y in self._base_under]
         return plan
 
     @cached_property
@@ -289,7 +306,8 @@ class Automatic:
         """Sizes of pins and all that goes with them, the most wanted first."""
         if self._pin is not None:
             return [of_pin(self._pin, self._fit)]
-        return sizes(*extents(self.m, self.solution, self._left_out), self._fit)
+        thinnest = THINNEST_ALONG if has_places(self.m) else THINNEST
+        return sizes(*extents(self.m, self.solution, self._left_out), self._fit, thinnest)
 
     def _layout(
         self, size: Sizes, springs: Springs, tubes: bool = False, tall: bool = False, pointers: bool = False

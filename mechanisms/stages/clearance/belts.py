@@ -40,7 +40,7 @@ def bands(parts: Parts, motion: Motion, where: Mapping[str, BodyPath]) -> Iterat
     """Of all belts that pieces hold, as far as their pulleys leave room for a path."""
     for name, joint in motion.joints.items():
         own, held = _holding(parts, name)
-        if joint.kind != "belt" or held is None or joint.shape is None:
+        if joint.look != "band" or held is None or joint.shape is None:
             continue
         shape = joint.shape
         if not shape.radius_first or not shape.radius_second:

@@ -31,7 +31,7 @@ def described_body(
 
     pieces = {solid.name: _piece(name, body, solid, files, along) for solid in solids}
     main = pieces[solids[0].name]
-    mass = combined(piece.mass for piece in pieces.values())
+    mass = combined(piece.mass for piece in pieces.values() if not piece.dressing)
     return BodyParts(pieces=pieces, mass=mass, z=(sum(main.z_range)) / 2, spans=places and spans(places))
 
 
@@ -80,6 +80,7 @@ def _piece(name: str, body: str, solid: Any, files: dict[str, bytes], along: boo
         rolls=_rolling(solid.rolls),
         holds={hold.force: Held(z=metres(hold.z), radius=metres(hold.radius)) for hold in solid.holds},
         buy=solid.buy,
+        dressing=solid.dressing,
     )
 
 

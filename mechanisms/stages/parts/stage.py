@@ -1,9 +1,10 @@
 """The ``parts`` stage: mechanisms/<name>/parts.py, or the model by itself, becomes STL, STEP and parts.json.
 
 It runs again only if something changed that the solids follow from: parts.py and what it imports or reads, the part
-library, the densities, CadQuery, or a parameter that ``parts()`` reads. mechanism.py itself counts only where parts.py
-uses more of it than the parameters' values; and where there is no parts.py, because then the solids follow from the
-model and its motion (mechanisms/automatic). A file whose bytes would be the same is not touched.
+library, the densities, CadQuery, a parameter that ``parts()`` reads, or ``mount`` of shot.py, whose other fields count
+for nothing here. mechanism.py itself counts only where parts.py uses more of it than the parameters' values; and where
+there is no parts.py, because then the solids follow from the model and its motion (mechanisms/automatic). A file whose
+bytes would be the same is not touched.
 """
 
 from __future__ import annotations
@@ -18,11 +19,13 @@ import msgspec
 from mechanisms.stages.loading.inputs import Inputs, observed
 from mechanisms.stages.loading.loading import author_code, has, load, package_of, params
 from mechanisms.stages.loading.recording import Recorder, recording
+from mechanisms.stages.loading.wished_mount import of_shot, wishing
 from mechanisms.stages.parts.plain_values import plain_text
 from mechanisms.stages.parts.traced_params import fields_of, traced
 from shared.cluster.address import address
 from shared.contract import Parts, Provenance, write_parts
 from shared.contract.materials import MATERIALS
+from shared.contract.mount import Kind
 from shared.stage.console import say, warn
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash, write_bytes
@@ -30,7 +33,7 @@ from shared.stage.paths import ROOT, Out, mechanism_folder
 from shared.stage.stages import Stage, contract_sources, key_of, versions
 
 _STAGES = ROOT / "mechanisms" / "stages"
-_STAGE = ("stage", "described_body", "returned_parts", "mass_properties", "mesh_check", "traced_params")
+_STAGE = ("stage", "described_body", "mount_of", "returned_parts", "mass_properties", "mesh_check", "traced_params")
 SOURCES = [
     ROOT / "shared" / "shapes",
     _STAGES / "parts_files.py",
@@ -57,17 +60,26 @@ def run(name: str) -> None:
     before = set(sys.modules)
     with recording() as recorder:
         given = params(out.name)
-    by_itself = not has(out.name, "parts")
-    if _is_fresh(out, given, by_itself):
+    wish = _Wish(not has(out.name, "parts"), of_shot(out.name))
+    if _is_fresh(out, given, wish):
         say("parts", f"{out.name}: nothing to do")
         return
-    found = _of_cluster(out.name, given, by_itself) if address() else None
-    found = found or _made_here(out.name, given, by_itself, before, recorder)
+    found = _of_cluster(out.name, given, wish) if address() else None
+    found = found or _made_here(out.name, given, wish, before, recorder)
     written = _write(out, found.files, found.document)
     outputs = [out.parts, *(out.parts_folder / file for file in found.files)]
     notes = {"parameters": found.reads, "inputs": found.inputs.names()}
     Stage(out, "parts", found.document.provenance.inputs, outputs).done(**notes)
     say("parts", _summary(out.name, found.document, written))
+
+
+class _Wish(NamedTuple):
+    """What an author leaves to the stage, and how the machine is to stand."""
+
+    by_itself: bool
+    """There is no parts.py."""
+    mount: Kind | None
+    """Of shot.py."""
 
 
 class _Found(NamedTuple):
@@ -79,16 +91,21 @@ class _Found(NamedTuple):
     inputs: Inputs
 
 
-def _made_here(name: str, given: Any, by_itself: bool, before: set[str], recorder: Recorder) -> _Found:
+def _made_here(name: str, given: Any, wish: _Wish, before: set[str], recorder: Recorder) -> _Found:
     """Run the author's code; ``recorder`` has seen what mechanism.py read."""
     from mechanisms.stages.loading.loaded_files import loaded_inputs
     from mechanisms.stages.parts.described_body import described_body
+    from mechanisms.stages.parts.mount_of import follows_gravity, mount_of
+    from shared.shapes.bodies import Bodies
 
-    bodies, reads, inputs = _build(name, given)
-    if by_itself or _more_than_values(name, given, reads):
+    with wishing(wish.mount):
+        bodies, reads, inputs = _build(name, given)
+    if isinstance(bodies, Bodies):
+        bodies = bodies.on_stand()
+    if wish.by_itself or follows_gravity(bodies, wish.mount) or _more_than_values(name, given, reads):
         mechanism = loaded_inputs(mechanism_folder(name) / "mechanism.py", package_of(name), before)
         inputs = inputs.joined(mechanism).joined(recorder.inputs())
-    key = _key(given, reads, inputs, by_itself)
+    key = _key(given, reads, inputs, wish)
     files: dict[str, bytes] = {}
     rods = getattr(bodies, "rods", {})
     along = getattr(bodies, "along", False)
@@ -98,6 +115,7 @@ def _made_here(name: str, given: Any, by_itself: bool, before: set[str], recorde
     document = Parts(
         mechanism=name,
         provenance=Provenance(inputs=key, versions=versions(*PACKAGES)),
+        mount=mount_of(name, bodies, wish.mount),
         bodies=described,
         without_solids=sorted(getattr(bodies, "left_out", ())),
         may_touch=sorted(getattr(bodies, "touching", ())),
@@ -106,7 +124,7 @@ def _made_here(name: str, given: Any, by_itself: bool, before: set[str], recorde
     return _Found(document, files, reads, inputs)
 
 
-def _of_cluster(name: str, given: Any, by_itself: bool) -> _Found | None:
+def _of_cluster(name: str, given: Any, wish: _Wish) -> _Found | None:
     """The parts that a worker of the cluster made; None where they did not follow from what is here."""
     from mechanisms.stages.parts.on_cluster.dealt import made_elsewhere
 
@@ -115,7 +133,7 @@ def _of_cluster(name: str, given: Any, by_itself: bool) -> _Found | None:
         return None
     document = msgspec.json.decode(made.document, type=Parts)
     reads, inputs = made.notes["parameters"], observed(made.notes["inputs"])
-    if inputs is None or _key(given, reads, inputs, by_itself) != document.provenance.inputs:
+    if inputs is None or _key(given, reads, inputs, wish) != document.provenance.inputs:
         warn("parts", f"{name}: its files read something that the worker has not, or has otherwise; it is made here")
         return None
     return _Found(document, made.files, reads, inputs)
@@ -124,7 +142,7 @@ def _of_cluster(name: str, given: Any, by_itself: bool) -> _Found | None:
 def are_current(name: str) -> bool:
     """Whether the parts that are there are those of the mechanism as it is. Raises UserError for one without Params."""
     out = Out(name)
-    return _is_fresh(out, params(out.name), not has(out.name, "parts"))
+    return _is_fresh(out, params(out.name), _Wish(not has(out.name, "parts"), of_shot(out.name)))
 
 
 def run_or_none(name: str) -> None:
@@ -141,21 +159,21 @@ def run_or_none(name: str) -> None:
         warn("parts", f"{error}; until then there are none")
 
 
-def _is_fresh(out: Out, given: Any, by_itself: bool) -> bool:
+def _is_fresh(out: Out, given: Any, wish: _Wish) -> bool:
     notes = Stage(out, "parts", "", []).notes()
     reads, inputs = notes.get("parameters"), observed(notes.get("inputs"))
     if not isinstance(reads, list) or not inputs:
         return False
-    return Stage(out, "parts", _key(given, reads, inputs, by_itself), [out.parts]).is_fresh()
+    return Stage(out, "parts", _key(given, reads, inputs, wish), [out.parts]).is_fresh()
 
 
-def _key(given: Any, reads: list[str], inputs: Inputs, by_itself: bool = False) -> str:
+def _key(given: Any, reads: list[str], inputs: Inputs, wish: _Wish) -> str:
     """Hash of all that the parts follow from; ``reads`` are the attributes of Params that parts() reads."""
     fields = fields_of(given)
     values = {read: plain_text(fields[read]) for read in reads if read in fields}
     densities = {material: MATERIALS[material].density for material in sorted(MATERIALS)}
-    sources = sources_hash(*(AUTOMATIC if by_itself else SOURCES))
-    return key_of(sources, by_itself, versions(*PACKAGES), densities, values, inputs.digest())
+    sources = sources_hash(*(AUTOMATIC if wish.by_itself else SOURCES))
+    return key_of(sources, wish, versions(*PACKAGES), densities, values, inputs.digest())
 
 
 def _more_than_values(name: str, given: Any, reads: list[str]) -> bool:

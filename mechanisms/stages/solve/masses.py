@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
+from shared.contract.quantity import written
 from shared.stage.errors import UserError
 from shared.stage.suggestions import did_you_mean
 
@@ -41,13 +42,13 @@ def give_masses(m: Mechanism, parts: Parts | None) -> tuple[dict[str, Source], l
             mass = solids[name].mass
             m.set_mass(name, mass.mass, mass.com, mass.inertia, mass.z, mass.products)
     differing = [
-        f"{name} {m.bodies[name].mass:.4g} kg (parts {solids[name].mass.mass:.4g} kg)"
+        f"{name} {written(m.bodies[name].mass, 'kg', 4)} (parts {written(solids[name].mass.mass, 'kg', 4)})"
         for name in source
         if source[name] == "mechanism" and name in solids and _differ(m.bodies[name].mass, solids[name].mass.mass)
     ]
     if differing:
         sentences.append(f"masses of mechanism.py count, not those of the parts: {_some(differing)}")
-    rods = [f"{name} {one.mass.mass:.4g} kg" for name, one in parts.bodies.items() if name not in solids]
+    rods = [f"{name} {written(one.mass.mass, 'kg', 4)}" for name, one in parts.bodies.items() if name not in solids]
     if rods:
         sentences.append(f"rods have no mass in the motion, because distance joints have none: {_some(rods)}")
     return source, sentences
@@ -67,7 +68,7 @@ def _estimate(m: Mechanism, names: list[str], left_out: bool) -> list[str]:
     estimates = estimated_masses(m)
     for name in names:
         m.set_mass(name, estimates[name].mass, estimates[name].com, estimates[name].inertia)
-    masses = _some([f"{name} {estimates[name].mass:.3g} kg" for name in names])
+    masses = _some([f"{name} {written(estimates[name].mass, 'kg')}" for name in names])
     why = "bodies without solids" if left_out else "no parts yet, so masses"
     return [f"{why} are estimated as aluminium bars and plates through the markers: {masses}"]
 

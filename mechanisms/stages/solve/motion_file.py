@@ -5,15 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from mechanisms.stages.solve.body_colours import body_colours
 from mechanisms.stages.solve.masses import Source
 from mechanisms.stages.solve.shapes import shape_of
+from mechanisms.stages.solve.vibration import vibration
 from shared import contract
 
 if TYPE_CHECKING:
     import numpy as np
 
-    from mbsd import Force, Solution
+    from mbsd import Force, Joint, Solution
     from mbsd.results.force_view import ForceView
+    from mbsd.results.views import Wrench
+    from shared.contract.loads import Look
 
 FRAME = ("x", "y", "theta", "vx", "vy", "omega", "ax", "ay", "alpha")
 PLACED = ("x", "y", "fx", "fy", "torque")
@@ -31,7 +35,9 @@ def to_motion(
     ``sources`` tells where the mass of each body is from; if it is not given, from the parts.
     """
     import mbsd
+    from mbsd.drawing.inks import on_dark
 
+    inks = body_colours(solution.mechanism, parts)
     m, stats, energy = solution.mechanism, solution.stats, solution.energy
     bodies = {
         name: contract.BodyMotion(
@@ -41,6 +47,8 @@ def to_motion(
             mass_from=sources[name] if sources else "parts",
             com=body.com,
             inertia=body.inertia,
+            colour=inks[name],
+            colour_on_dark=on_dark(inks[name]),
         )
         for name, body in m.bodies.items()
         if name != "ground"
@@ -58,6 +66,9 @@ def to_motion(
                 kind=joint.kind.name,
                 bodies=joint.bodies,
                 **_lists(solution.joint(name), PLACED),
+                pair=joint.kind.pair,  # pyright: ignore[reportArgumentType]  (the contract lists them)
+                look=joint.kind.look,  # pyright: ignore[reportArgumentType]
+                acts=_acts(solution.joint(name).acts) if joint.kind.touching else None,
                 shape=shape_of(joint),
             )
             for name, joint in m.joints.items()
@@ -66,6 +77,10 @@ def to_motion(
             name: contract.DriverMotion(
                 kind=driver.kind.name.removeprefix("drive_"),
                 bodies=driver.bodies,
+                unit="rad" if driver.kind.angular else "m",
+                effort_unit="N m" if driver.kind.angular else "N",
+                look=driver.kind.look,  # pyright: ignore[reportArgumentType]
+                actions=_actions(solution, driver),
                 shape=shape_of(driver),
                 **_lists(solution.driver(name), ("value", "effort", "power")),
             )
@@ -86,6 +101,7 @@ def to_motion(
             audit=_list(solution.audit),
         ),
         couple=_couple(solution),
+        vibration=vibration(solution),
         events=[
             contract.EventMark(
                 time=event.time, name=event.name, what=event.what, energy=event.energy, impulse=event.impulse
@@ -130,9 +146,34 @@ def _force(solution: Solution, view: ForceView) -> contract.ForceMotion:
         normal=_list(solution.friction(view.name).normal) if force.kind.of_reactions else None,
         power=view.power.tolist(),
         potential=view.potential.tolist(),
+        unit=None if view.measures is None else "rad" if view.measures == "angle" else "m",
+        effort_unit="N m" if view.measures == "angle" else "N",
+        drives=force.kind.drives(force),
+        look=_look(force.kind.look, bool(view.potential.any())),
         shape=None if on_no_markers else shape_of(force),
         gas=_gas(force, view),
+        hydraulics=_hydraulics(view),
     )
+
+
+def _acts(wrench: Wrench) -> contract.Acts:
+    return contract.Acts(**_lists(wrench, ("x", "y", "torque")))
+
+
+def _actions(solution: Solution, driver: Joint) -> list[contract.Action]:
+    """What a driver does to its bodies, each where it acts."""
+    from mbsd.results.acting import actions
+
+    number = solution.packed.joints.index(driver)
+    found = actions(solution.packed, solution.q, solution.wrench, number)
+    return [contract.Action(body=one.body, **_lists(one, PLACED)) for one in found]
+
+
+def _look(look: str, holds_energy: bool) -> Look:
+    """A coil that holds no energy is a damper, such a spiral nothing that is seen."""
+    if not holds_energy:
+        look = {"coil": "cylinder", "spiral": ""}.get(look, look)
+    return look  # pyright: ignore[reportReturnType]  (the contract lists them)
 
 
 def _gas(force: Force, view: ForceView) -> contract.GasMotion | None:
@@ -153,11 +194,27 @@ def _gas(force: Force, view: ForceView) -> contract.GasMotion | None:
     )
 
 
+def _hydraulics(view: ForceView) -> contract.HydraulicMotion | None:
+    from mbsd.results.hydraulics import HydraulicView
+
+    if not isinstance(view, HydraulicView):
+        return None
+    names = (
+        "pressure_a", "pressure_b", "flow_a", "flow_b", "valve", "supply_flow", "supply_power", "valve_loss",
+        "leak_loss", "oil_power", "piston_power",
+    )  # fmt: skip
+    return contract.HydraulicMotion(**_lists(view, names))
+
+
 def _contact(solution: Solution, name: str, row: int) -> contract.ContactMotion:
     """Of the contact whose gap is ``row`` of J; the way on which it slides is the next one."""
+    from mbsd.model.contact import ContactKind
+    from mbsd.results.acting import acting
+
     packed, view = solution.packed, solution.contact(name)
     joint = packed.joint_of_row(row)
-    number = [one.name for one in packed.joints].index(name)
+    assert isinstance(joint.kind, ContactKind)
+    number = packed.joints.index(joint)
     fx, fy, torque = solution.wrench[:, number].T
     assert solution.held is not None, "simulations tell which rows held"
     rubs = joint.params.get("friction", 0.0) > 0.0
@@ -176,6 +233,10 @@ def _contact(solution: Solution, name: str, row: int) -> contract.ContactMotion:
         torque=torque.tolist(),
         **_lists(view, ("gap", "rate", "normal", "friction")),
         state=states,
+        unit="rad" if joint.kind.of_angle else "m",
+        effort_unit="N m" if joint.kind.of_angle else "N",
+        look=joint.kind.look,  # pyright: ignore[reportArgumentType]
+        acts=_acts(acting(packed, solution.q, solution.wrench, number)) if joint.kind.touching else None,
         shape=shape_of(joint),
     )
 

@@ -94,4 +94,5 @@ def _stroke(stroke: Any, digits: int) -> Stroke:
         width=stroke.width,
         order=stroke.order,
         dash=list(stroke.dash),
+        sign=stroke.sign,
     )

@@ -9,8 +9,9 @@ from mechanisms.stages.loading import loading
 from mechanisms.stages.loading.inputs import Inputs, observed, sources_state
 from mechanisms.stages.loading.recording import recording
 from mechanisms.stages.solve import solving
+from mechanisms.stages.solve.body_colours import main_material
 from shared import contract
-from shared.contract.loads import ACTUATORS
+from shared.contract.quantity import written
 from shared.contract.skeleton import write_skeleton
 from shared.stage import console
 from shared.stage.files import sources_hash
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite")
 _MOTION = ("solving", "refined_times", "masses", "estimated_masses")
-_STAGE = ("stage", *_MOTION, "motion_file", "shapes", "skeleton_file")
+_STAGE = ("stage", *_MOTION, "motion_file", "body_colours", "shapes", "skeleton_file")
 SOURCES = [
     *(ROOT / "mechanisms" / "stages" / "solve" / f"{name}.py" for name in _STAGE),
     ROOT / "mechanisms" / "stages" / "loading" / "variants.py",
@@ -77,7 +78,7 @@ def _is_fresh(out: Out, parts: contract.Parts | None) -> bool:
 
 def _key(parts: contract.Parts | None, inputs: Inputs) -> str:
     """Hash of all that the motion follows from; ``inputs``: what mechanism.py is made of, and what it reads."""
-    masses = parts and {body: (solids.mass, solids.z) for body, solids in parts.bodies.items()}
+    masses = parts and {body: (solids.mass, solids.z, main_material(solids)) for body, solids in parts.bodies.items()}
     return key_of(
         sources_hash(*SOURCES),
         sources_state("mbsd"),
@@ -104,6 +105,10 @@ def solve(name: str, parts: contract.Parts | None) -> tuple[Solution, dict[str, 
 
 
 def _summary(solution: Solution) -> str:
+    def drives(name: str) -> bool:
+        force = solution.mechanism.forces[name]
+        return force.kind.drives(force)
+
     efforts = {
         name: (driver.effort, driver.angular)
         for name in solution.mechanism.drivers
@@ -112,13 +117,13 @@ def _summary(solution: Solution) -> str:
     acting = {
         name: (force.effort, force.measures == "angle")
         for name, force in solution.forces.items()
-        if force.kind in ACTUATORS and force.effort is not None
+        if force.effort is not None and drives(name)
     }
     idle = [name for name, (effort, _) in efforts.items() if not effort.any()]
     if idle:  # their place is taken by forces that were asked for, or nothing has mass
         efforts = {name: one for name, one in (efforts | acting).items() if name not in idle}
     peaks = [
-        f"{name} up to {abs(effort).max():.3g} {'N m' if angular else 'N'}"
+        f"{name} up to {written(float(abs(effort).max()), 'N m' if angular else 'N')}"
         for name, (effort, angular) in efforts.items()
     ]
     return ", ".join(

@@ -23,6 +23,10 @@ STOUT = 2.2
 """Arrows shorter than so many cones shrink as a whole."""
 BALL = 1.9
 """Radius of the ball, in radii of the shaft: of arrows on one line it shows where each begins."""
+BACK, NECK = 0.72, 0.3
+"""How far the second point of a head lies behind the first, in lengths of it, and its radius where they meet."""
+WIDE, BARB = 1.45, 0.3
+"""Half width of an open head in that of a cone, and how thick its two barbs are along the arrow."""
 GONE = 1e-7
 """Length (m) for Blender of an arrow that is not there: no matrix is singular."""
 
@@ -76,8 +80,12 @@ def build(scene: Any, spec: ArrowSpec) -> Arrow:
     scene.collection.objects.link(root)
     made = paint(spec.name, spec.colour)
     things = []
-    for name, profile in (("shaft", [(0.0, 1.0), (1.0, 1.0)]), ("head", [(0.0, 1.0), (1.0, 1e-3)]), ("ball", ROUND)):
-        mesh = _turned(f"{name} {spec.name}", profile)
+    meshes = (
+        _turned(f"shaft {spec.name}", [(0.0, 1.0), (1.0, 1.0)]),
+        _tip(f"head {spec.name}", spec),
+        _turned(f"ball {spec.name}", ROUND),
+    )
+    for mesh in meshes:
         mesh.materials.append(made)
         thing = bpy.data.objects.new(mesh.name, mesh)
         thing.parent = root
@@ -85,6 +93,36 @@ def build(scene: Any, spec: ArrowSpec) -> Arrow:
         scene.collection.objects.link(thing)
         things.append(thing)
     return Arrow(root, *things)
+
+
+def _tip(name: str, spec: ArrowSpec) -> Any:
+    """The head from its neck (x = 0) to its tip (x = 1), whose half width is 1 in y and z."""
+    if spec.tip == "solid":
+        return _turned(name, [(0.0, 1.0), (1.0, 1e-3)])
+    if spec.tip == "solid double":
+        return _turned(name, [(-BACK, 1.0), (BACK * NECK, NECK), (BACK * NECK, 1.0), (1.0, 1e-3)])
+    thick = spec.shaft / spec.head
+    prisms = [[(0.0, -thick), (0.9, -thick), (0.9, thick), (0.0, thick)]]
+    for back in (0.0, BACK) if spec.tip == "open double" else (0.0,):
+        outline = [(1.0, 0.0), (0.0, WIDE), (-BARB, WIDE), (1.0 - 1.6 * BARB, 0.0), (-BARB, -WIDE), (0.0, -WIDE)]
+        prisms.append([(x - back, y) for x, y in outline])
+    return _flat(name, prisms, thick)
+
+
+def _flat(name: str, outlines: Sequence[Sequence[tuple[float, float]]], half: float) -> Any:
+    """Upright prisms over outlines in the plane of the motion, from -half to half."""
+    import bpy
+
+    corners: list[tuple[float, float, float]] = []
+    faces: list[tuple[int, ...]] = []
+    for outline in outlines:
+        of, count = len(corners), len(outline)
+        corners += [(x, y, z) for z in (-half, half) for x, y in outline]
+        faces += [tuple(reversed(range(of, of + count))), tuple(range(of + count, of + 2 * count))]
+        faces += [(of + k, of + (k + 1) % count, of + count + (k + 1) % count, of + count + k) for k in range(count)]
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(corners, [], faces)
+    return mesh
 
 
 def _turned(name: str, profile: Sequence[tuple[float, float]]) -> Any:

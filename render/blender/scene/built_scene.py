@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from render.blender.job import Job
-from render.blender.scene import arcs, arrows, labels, pieces, studio, trail, tubes
+from render.blender.scene import arcs, arrows, coded, labels, pieces, studio, trail, tubes
 from render.film.framing import SENSOR
 from render.film.scene import State
+from shared.contract.mount import Z
 
 
 @dataclass
@@ -52,18 +53,22 @@ def build(job: Job) -> BuiltScene:
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.unit_settings.system = "METRIC"
-    bodies = pieces.build(scene, job.scene.pieces, job.flat)
+    bodies = pieces.build(scene, job.scene.pieces, job.scene.studio.radius, job.flat)
     camera = _camera(scene, job.states[0])
     texts: list[Any] = []
     trails: list[Any] = []
     wires: list[Any] = []
     if job.flat is None:
-        studio.build(scene, job.scene.studio)
+        if not job.drawn:
+            studio.build(scene, job.scene.studio)
         trails = [trail.build(scene, spec) for spec in job.scene.trails]
-        wires = [tubes.build(scene, spec) for spec in job.scene.tubes]
+        wires = [tubes.build(scene, spec, job.scene.studio.radius) for spec in job.scene.tubes]
         texts = [labels.build(scene, spec) for spec in job.scene.labels]
-    else:
+    if job.flat is not None or job.drawn:
         _dark(scene)
+    if job.drawn:
+        solids = [thing for thing in scene.objects if thing.type == "MESH" and thing not in trails]
+        coded.number(solids, [*trails, *texts], job.scene.studio.radius)
     _animate(job, bodies, camera, texts)
     drawn = (job.scene.arrows or job.scene.arcs) and job.flat is None
     front = _front(job, camera) if drawn else None
@@ -125,7 +130,7 @@ def _camera(scene: Any, state: State) -> Any:
 
     pose = state.camera
     lens = bpy.data.cameras.new("camera")
-    lens.sensor_fit, lens.sensor_width, lens.lens = "HORIZONTAL", SENSOR, pose.lens
+    lens.sensor_fit, lens.sensor_width, lens.lens = "AUTO", SENSOR, pose.lens
     lens.clip_start, lens.clip_end = pose.focus / 100, pose.focus * 100
     lens.dof.use_dof = pose.fstop > 0
     lens.dof.focus_distance = pose.focus
@@ -155,15 +160,29 @@ def _animate(job: Job, bodies: dict[str, Any], camera: Any, texts: list[Any]) ->
         zero = np.zeros(len(states))
         _key(thing, "location", [x, y, zero])
         _key(thing, "rotation_euler", [zero, zero, theta])
-    tilt = np.array([math.pi / 2 - state.camera.elevation for state in states])
-    turn = np.array([state.camera.azimuth for state in states])
-    facing = [tilt, np.zeros(len(states)), turn]
+    facing = _facing(states)
     _key(camera, "location", list(np.array([state.camera.position for state in states]).T))
     _key(camera, "rotation_euler", facing)
     _key(camera.data, "dof.focus_distance", [np.array([state.camera.focus for state in states])], "CAMERA")
     for index, thing in enumerate(texts):
         _key(thing, "location", list(np.array([state.labels[index] for state in states]).T))
         _key(thing, "rotation_euler", facing)
+
+
+def _facing(states: list[State]) -> list[np.ndarray]:
+    """Three angles (T,) of the camera; what faces it has the same."""
+    tilt = np.array([math.pi / 2 - state.camera.elevation for state in states])
+    turn = np.array([state.camera.azimuth for state in states])
+    up = states[0].camera.up
+    if up == Z:
+        return [tilt, np.zeros(len(states)), turn]
+    from mathutils import Euler
+
+    found = [Euler((tilt[0], 0.0, turn[0]))]
+    for a, b in zip(tilt, turn, strict=True):
+        turned = studio.to_world(up) @ Euler((a, 0.0, b)).to_matrix().to_4x4()
+        found.append(turned.to_euler("XYZ", found[-1]))
+    return list(np.array([list(angles) for angles in found[1:]]).T)
 
 
 def _key(thing: Any, path: str, channels: list[np.ndarray], slot: str = "OBJECT") -> None:

@@ -4,17 +4,31 @@
 # bpy fills itself in when it is imported, its stubs are empty.
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 from render.blender.scene.nodes import Graph
-from render.film.scene import SurfaceSpec
+from render.film.scene import Colour, SurfaceSpec
+
+BARE: Colour = (0.62, 0.63, 0.65)
+IRON: Colour = (0.36, 0.355, 0.35)
+LAYER = 0.0004
+"""Height (m) of a printed layer, twice what printers make, so that pixels can show it."""
 
 
-def material(surface: SurfaceSpec, name: str) -> Any:
-    """The Blender material of a surface."""
+WORN = ("anodised", "cast")
+"""Finishes whose chamfers are rubbed."""
+EDGE = "edge"
+"""Attribute of faces: 1 on chamfers, where paint and oxide wear off first."""
+REFERENCE = 0.12
+"""Radius (m) of the machine whose grain is as it is made; larger ones have coarser grain, which pixels can show."""
+
+
+def material(surface: SurfaceSpec, name: str, radius: float = REFERENCE) -> Any:
+    """The Blender material of a surface in a picture of a machine of this ``radius`` (m)."""
     made, graph = _new(name)
-    shader = FINISHES[surface.finish](graph, surface)
+    shader = FINISHES[surface.finish](graph, surface, max(1.0, radius / REFERENCE))
     output = graph.add("OutputMaterial", Surface=shader)
     output.target = "CYCLES"
     return made
@@ -25,6 +39,14 @@ def flat(colour: tuple[float, float, float], name: str) -> Any:
     made, graph = _new(name)
     graph.add("OutputMaterial", Surface=graph.add("Emission", Color=colour, Strength=1.0).outputs[0])
     made.cycles.emission_sampling = "NONE"
+    return made
+
+
+def ink(light: bool) -> Any:
+    """Paint in what is engraved."""
+    made, graph = _new("ink")
+    colour = (0.60, 0.60, 0.585) if light else (0.012, 0.012, 0.013)
+    graph.add("OutputMaterial", Surface=_principled(graph, Base_Color=colour, Roughness=0.6))
     return made
 
 
@@ -40,71 +62,172 @@ def _principled(graph: Graph, **inputs: Any) -> Any:
     return graph.add("BsdfPrincipled", **inputs).outputs[0]
 
 
-def _cloudy(graph: Graph, roughness: float, swing: float, scale: float) -> Any:
+def _place(graph: Graph, scale: float | tuple[float, float, float], grain: float) -> Any:
+    """Where a point is in its body, times ``scale`` (1/m)."""
+    scales = scale if isinstance(scale, tuple) else (scale,) * 3
+    place = graph.add("TexCoord").outputs["Object"]
+    return graph.add("Mapping", Vector=place, Scale=tuple(s / grain for s in scales)).outputs[0]
+
+
+def _noise(graph: Graph, place: Any, detail: float = 2.0, roughness: float = 0.5) -> Any:
+    return graph.add("TexNoise", Vector=place, Scale=1.0, Detail=detail, Roughness=roughness).outputs[0]
+
+
+def _swing(graph: Graph, value: Any, middle: float, swing: float) -> Any:
+    """A noise of 0..1 as ``middle`` plus and minus half a ``swing``."""
+    return graph.math("ADD", middle - swing / 2, graph.math("MULTIPLY", value, swing))
+
+
+def _cloudy(graph: Graph, roughness: float, swing: float, scale: float, grain: float) -> Any:
     """Roughness with a slow, faint unevenness: what keeps a large face from looking computed."""
-    noise = graph.add(
-        "TexNoise", Vector=graph.add("TexCoord").outputs["Object"], Scale=scale, Detail=2.0, Roughness=0.5
-    )
-    return graph.math("ADD", roughness - swing / 2, graph.math("MULTIPLY", noise.outputs[0], swing))
+    return _swing(graph, _noise(graph, _place(graph, scale, grain)), roughness, swing)
 
 
-def _anodised(graph: Graph, surface: SurfaceSpec) -> Any:
-    """Dyed oxide on blasted aluminium: a coloured metal under a thin clear layer."""
+def _mixed(graph: Graph, part: Any, first: Any, second: Any) -> Any:
+    """Between two colours."""
+    mix = graph.add("Mix", {"data_type": "RGBA"})
+    for socket, value in ((0, part), (6, first), (7, second)):
+        graph.set(mix, socket, value)
+    return mix.outputs[2]
+
+
+def _toned(graph: Graph, colour: Colour, tone: Any) -> Any:
+    scaled = graph.add("VectorMath", {"operation": "SCALE"}, Scale=tone)
+    graph.set(scaled, 0, colour)
+    return scaled.outputs[0]
+
+
+def _worn(graph: Graph, most: float, grain: float) -> Any:
+    """How much of a chamfer is bare, unevenly along it."""
+    edge = graph.add("Attribute", {"attribute_name": EDGE}).outputs["Fac"]
+    patches = _noise(graph, _place(graph, 90.0, grain))
+    return graph.math("MULTIPLY", edge, _swing(graph, patches, most, 0.5 * most))
+
+
+def _anodised(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
+    """Dyed oxide on blasted aluminium: a coloured metal under a thin clear layer, rubbed bright on its chamfers."""
+    worn = _worn(graph, 0.42, grain)
+    colour = _mixed(graph, worn, tuple(0.8 * c for c in surface.colour), BARE)
     return _principled(
         graph,
-        Base_Color=tuple(0.8 * c for c in surface.colour),
+        Base_Color=colour,
         Metallic=1.0,
-        Roughness=_cloudy(graph, surface.roughness + 0.02, 0.06, 60.0),
+        Roughness=_cloudy(graph, surface.roughness + 0.02, 0.06, 60.0, grain),
         Coat_Weight=0.18,
         Coat_Roughness=0.16,
         Coat_IOR=1.5,
     )
 
 
-def _brushed(graph: Graph, surface: SurfaceSpec) -> Any:
-    """Metal brushed along its length: fine streaks in roughness and tone along x of the body."""
-    place = graph.add("TexCoord").outputs["Object"]
-    stretched = graph.add("Mapping", Vector=place, Scale=(14.0, 900.0, 40.0)).outputs[0]
-    streaks = graph.add("TexNoise", Vector=stretched, Scale=1.0, Detail=3.0, Roughness=0.6).outputs[0]
-    rough = graph.math("ADD", surface.roughness - 0.06, graph.math("MULTIPLY", streaks, 0.16))
-    tone = graph.math("ADD", 0.58, graph.math("MULTIPLY", streaks, 0.20))
-    colour = graph.add("VectorMath", {"operation": "SCALE"}, Scale=tone)
-    graph.set(colour, 0, surface.colour)
+def _brushed(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
+    """Metal brushed lengthwise: fine streaks in roughness and tone along x of the body, highlights across them."""
+    streaks = _noise(graph, _place(graph, (14.0, 900.0, 40.0), grain), 3.0, 0.6)
     tangent = graph.add("Tangent", {"direction_type": "RADIAL", "axis": "Y"}).outputs[0]
     return _principled(
-        graph, Base_Color=colour.outputs[0], Metallic=1.0, Roughness=rough, Anisotropic=0.45, Tangent=tangent
+        graph,
+        Base_Color=_toned(graph, surface.colour, _swing(graph, streaks, 0.68, 0.20)),
+        Metallic=1.0,
+        Roughness=_swing(graph, streaks, surface.roughness + 0.02, 0.16),
+        Anisotropic=0.6,
+        Tangent=tangent,
     )
 
 
-def _polished(graph: Graph, surface: SurfaceSpec) -> Any:
+def _polished(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
     """Turned and polished; never so smooth that a few samples sparkle."""
     return _principled(graph, Base_Color=surface.colour, Metallic=1.0, Roughness=max(surface.roughness, 0.2))
 
 
-def _satin(graph: Graph, surface: SurfaceSpec) -> Any:
+def _satin(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
     """Hard black anodising: dark, with a wide soft sheen."""
     return _principled(
         graph,
         Base_Color=surface.colour,
         Metallic=0.35,
-        Roughness=_cloudy(graph, surface.roughness - 0.06, 0.05, 40.0),
+        Roughness=_cloudy(graph, surface.roughness - 0.06, 0.05, 40.0, grain),
         Specular_IOR_Level=0.8,
     )
 
 
-def _plastic(graph: Graph, surface: SurfaceSpec) -> Any:
-    return _principled(graph, Base_Color=surface.colour, Roughness=surface.roughness, Subsurface_Weight=0.0)
+def _plastic(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
+    """Moulded, smooth."""
+    return _principled(graph, Base_Color=surface.colour, Roughness=surface.roughness)
 
 
-def _rubber(graph: Graph, surface: SurfaceSpec) -> Any:
-    return _principled(graph, Base_Color=surface.colour, Roughness=surface.roughness, Specular_IOR_Level=0.3)
+def _printed(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
+    """Layers along z, each a round bead: light catches their crowns, and their tone varies a little."""
+    height = graph.add("SeparateXYZ", Vector=_place(graph, 1.0, 1.0)).outputs["Z"]
+    layer = graph.math("DIVIDE", height, LAYER * grain)
+    crown = graph.math("ABSOLUTE", graph.math("SINE", graph.math("MULTIPLY", layer, math.pi)))
+    number = graph.math("FLOOR", layer)
+    chance = graph.add("TexWhiteNoise", {"noise_dimensions": "1D"}, W=number).outputs["Value"]
+    tone = graph.math("MULTIPLY", _swing(graph, crown, 0.93, 0.14), _swing(graph, chance, 1.0, 0.10))
+    normal = graph.add("Bump", Height=crown, Strength=0.5, Distance=LAYER * grain / 2).outputs[0]
+    return _principled(
+        graph, Base_Color=_toned(graph, surface.colour, tone), Roughness=surface.roughness, Normal=normal
+    )
 
 
-FINISHES: dict[str, Callable[[Graph, SurfaceSpec], Any]] = {
+def _rubber(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
+    """Matt, with a grey bloom where one looks along it."""
+    return _principled(
+        graph,
+        Base_Color=surface.colour,
+        Roughness=_cloudy(graph, surface.roughness, 0.08, 30.0, grain),
+        Specular_IOR_Level=0.3,
+        Sheen_Weight=0.12,
+        Sheen_Roughness=0.4,
+    )
+
+
+def _cast(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
+    """Cast in sand: a rough skin, bright iron where its edges are rubbed."""
+    skin = _noise(graph, _place(graph, 420.0, grain), 3.0, 0.6)
+    worn = _worn(graph, 0.75, grain)
+    colour = _mixed(graph, worn, _toned(graph, surface.colour, _swing(graph, skin, 1.0, 0.35)), IRON)
+    normal = graph.add("Bump", Height=skin, Strength=0.25, Distance=0.0008 * grain).outputs[0]
+    return _principled(
+        graph,
+        Base_Color=colour,
+        Metallic=graph.math("ADD", 0.25, graph.math("MULTIPLY", worn, 0.75)),
+        Roughness=_swing(graph, skin, surface.roughness, 0.16),
+        Normal=normal,
+    )
+
+
+def _wood(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
+    """Planed and oiled: rings of the year along x of the body, fine pores in them."""
+    slow = _noise(graph, _place(graph, (2.5, 22.0, 22.0), grain), 1.0)
+    rings = graph.math("PINGPONG", graph.math("MULTIPLY", slow, 11.0), 1.0)
+    pores = _noise(graph, _place(graph, (26.0, 900.0, 900.0), grain), 2.0, 0.6)
+    tone = graph.math("ADD", _swing(graph, rings, 1.0, 0.42), _swing(graph, pores, 0.0, 0.55))
+    return _principled(
+        graph,
+        Base_Color=_toned(graph, surface.colour, tone),
+        Roughness=_swing(graph, pores, surface.roughness, 0.2),
+    )
+
+
+def _glass(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
+    """A pane: it tints what is behind and mirrors at a flat angle; light passes straight through."""
+    mirror = graph.add("BsdfGlossy", Color=(1.0, 1.0, 1.0), Roughness=0.06).outputs[0]
+    clear = graph.add("BsdfTransparent", Color=surface.colour).outputs[0]
+    mix = graph.add("MixShader")
+    part = graph.add("Fresnel", IOR=1.45).outputs[0]
+    for index, value in enumerate((part, clear, mirror)):
+        graph.set(mix, index, value)
+    return mix.outputs[0]
+
+
+FINISHES: dict[str, Callable[[Graph, SurfaceSpec, float], Any]] = {
     "anodised": _anodised,
     "brushed": _brushed,
     "polished": _polished,
     "satin": _satin,
     "plastic": _plastic,
+    "printed": _printed,
     "rubber": _rubber,
+    "cast": _cast,
+    "wood": _wood,
+    "glass": _glass,
 }

@@ -7,16 +7,25 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from render.blender.scene.materials import flat, material
+import numpy as np
+
+from render.blender.scene.materials import WORN, flat, ink, material
+from render.blender.scene.worked import engraved, mark_chamfers
 from render.film.scene import Colour, PieceSpec, SurfaceSpec
 from render.film.solids import MILLIMETRE
 
+LIGHT = 0.3
+"""Brightest channel of a surface on which dark paint reads."""
 SHARP = math.radians(32)
 """Edges that turn by more stay sharp; the facets of round walls are smoothed."""
 
 
-def build(scene: Any, pieces: list[PieceSpec], only_flat: dict[str, Colour] | None = None) -> dict[str, Any]:
+def build(
+    scene: Any, pieces: list[PieceSpec], radius: float, only_flat: dict[str, Colour] | None = None
+) -> dict[str, Any]:
     """Load every piece; returns the empties that carry them: of bodies, and of pieces that turn against theirs.
+
+    ``radius`` is that of the swept motion (m).
 
     With ``only_flat`` just those pieces, in one flat colour.
     """
@@ -24,6 +33,7 @@ def build(scene: Any, pieces: list[PieceSpec], only_flat: dict[str, Colour] | No
 
     bodies: dict[str, Any] = {}
     paints: dict[SurfaceSpec, Any] = {}
+    inks: dict[bool, Any] = {}
     for piece in pieces:
         name = f"{piece.body}/{piece.name}"
         carrier = piece.body if piece.turns_about is None else name
@@ -39,11 +49,26 @@ def build(scene: Any, pieces: list[PieceSpec], only_flat: dict[str, Colour] | No
         if only_flat is not None:
             paint = flat(only_flat[name], name)
         else:
-            paint = paints.get(piece.surface) or material(piece.surface, name)
+            paint = paints.get(piece.surface) or material(piece.surface, name, radius)
             paints[piece.surface] = paint
+            if piece.surface.finish in WORN:
+                mark_chamfers(solid.data)
         solid.data.materials.clear()
         solid.data.materials.append(paint)
+        if only_flat is None:
+            _fill_engraving(solid.data, piece.surface, inks)
     return bodies
+
+
+def _fill_engraving(mesh: Any, surface: SurfaceSpec, inks: dict[bool, Any]) -> None:
+    """Paint in what is engraved: light on dark metal, dark on light."""
+    faces = engraved(mesh)
+    if faces.any():
+        dark = max(surface.colour) < LIGHT
+        if dark not in inks:
+            inks[dark] = ink(dark)
+        mesh.materials.append(inks[dark])
+        mesh.polygons.foreach_set("material_index", faces.astype(np.int32))
 
 
 def _empty(scene: Any, name: str) -> Any:

@@ -14,8 +14,8 @@ from render.film.scene import Point, TubeSpec
 SIDES = 16
 
 
-def build(scene: Any, spec: TubeSpec) -> Any:
-    """The tube as a mesh object whose vertices :func:`place` moves; its ends are flat."""
+def build(scene: Any, spec: TubeSpec, radius: float) -> Any:
+    """The tube, whose vertices :func:`place` moves; its ends are flat. ``radius`` is the motion's (m)."""
     import bpy
 
     mesh = bpy.data.meshes.new(spec.name)
@@ -28,7 +28,7 @@ def build(scene: Any, spec: TubeSpec) -> Any:
     faces += [tuple(reversed(range(SIDES))), tuple(range((spec.points - 1) * SIDES, spec.points * SIDES))]
     mesh.from_pydata([(0.0, 0.0, 0.0)] * (spec.points * SIDES), [], faces)
     mesh.polygons.foreach_set("use_smooth", [True] * round_ones + [False] * 2)
-    mesh.materials.append(material(spec.surface, spec.name))
+    mesh.materials.append(material(spec.surface, spec.name, radius))
     thing = bpy.data.objects.new(mesh.name, mesh)
     scene.collection.objects.link(thing)
     return thing

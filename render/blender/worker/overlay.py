@@ -6,17 +6,19 @@ from pathlib import Path
 
 import numpy as np
 
-from render.blender.worker.words import written
+from render.blender.worker.words import lay_words
 from render.film.scene import Writing
 
-SHADE, SHADE_WIDTH = 0.62, 0.0028
-"""How far the picture is darkened around an arrow, and how wide, as a part of its width."""
-GLOW, GLOW_WIDTH = 0.42, 0.011
+HALO, HALO_WIDTH, HALO_EDGE = 0.9, 0.0013, 4.0
+"""How far the picture is darkened around an arrow, how wide, as a part of its width, and how sharply that ends."""
+SHADE, SHADE_WIDTH = 0.4, 0.004
+"""The same of the soft shade beyond."""
+GLOW, GLOW_WIDTH = 0.22, 0.011
 
 
 def lay(path: Path, over: Path | None, writing: Writing, number: str) -> None:
     """Write the picture at ``path`` anew with all that lies over it; does nothing where that is nothing."""
-    if over is None and not (writing.legend or writing.title or writing.rate):
+    if over is None and not (writing.legend or writing.lines):
         return
     from PIL import Image
 
@@ -26,19 +28,20 @@ def lay(path: Path, over: Path | None, writing: Writing, number: str) -> None:
         with Image.open(over) as opened:
             picture = _with_arrows(picture, np.asarray(opened.convert("RGBA")).astype(np.float64) / 255)
     page = Image.fromarray(np.rint(255 * np.clip(picture, 0, 1)).astype(np.uint8), "RGB")
-    words = written(page.width, page.height, writing, number)
-    page.paste(words, (0, 0), words)
+    lay_words(page, writing, number)
     page.save(path, format="PNG", compress_level=4)
 
 
 def _with_arrows(picture: np.ndarray, arrows: np.ndarray) -> np.ndarray:
-    """The picture (h, w, 3) darkened beside the arrows (h, w, 4), with their glow, and themselves on top."""
+    """The picture (h, w, 3) with a thin dark halo round the arrows (h, w, 4), their glow, and themselves on top."""
     colour, alpha = arrows[..., :3], arrows[..., 3:]
     wide = picture.shape[1]
+    halo = np.clip(HALO_EDGE * _blurred(alpha, HALO_WIDTH * wide), 0, 1)
     shade = np.clip(1.6 * _blurred(alpha, SHADE_WIDTH * wide), 0, 1)
     glow = _blurred(colour * alpha, GLOW_WIDTH * wide)
     under = picture * (1 - SHADE * shade)
     under = 1 - (1 - np.clip(under, 0, 1)) * (1 - GLOW * np.clip(glow, 0, 1))
+    under = under * (1 - HALO * halo)
     return under * (1 - alpha) + colour * alpha
 
 

@@ -14,6 +14,7 @@ from typing import Any
 from render.blender.job import Job, Picture
 from render.blender.picture_file import fault, name_of
 from render.blender.worker.saved import save_whole
+from render.blender.worker.settings import fineness
 
 
 def render(scene: Any) -> float:
@@ -71,7 +72,10 @@ def save_picture(scene: Any, job: Job, picture: Picture, over: Path | None) -> P
     from render.blender.worker.plain_png import make_plain
 
     def save(path: Path) -> None:
-        bpy.data.images["Render Result"].save_render(str(path), scene=scene)
+        if job.drawn:
+            _save_drawing(scene, job, path)
+        else:
+            bpy.data.images["Render Result"].save_render(str(path), scene=scene)
         if job.flat is None:
             overlay.lay(path, over, job.scene.writing, job.states[picture.state].number)
         make_plain(path)
@@ -87,3 +91,25 @@ def save_picture(scene: Any, job: Job, picture: Picture, over: Path | None) -> P
     path = part.with_name(name_of(picture.key, part.read_bytes()))
     os.replace(part, path)
     return path
+
+
+def _save_drawing(scene: Any, job: Job, path: Path) -> None:
+    """Lines on paper instead of the codes that were rendered, as a PNG."""
+    import bpy
+    import numpy as np
+    from PIL import Image
+
+    from render.blender.worker import drawing
+
+    codes = path.with_suffix(".codes.exr")
+    times = fineness(job)
+    try:
+        bpy.data.images["Render Result"].save_render(str(codes), scene=scene)
+        values = drawing.read_codes(codes, times * job.width, times * job.height)
+    finally:
+        codes.unlink(missing_ok=True)
+    look = job.scene.studio.look.drawing
+    assert look is not None
+    picture = drawing.drawn(values, look, job.width, job.height)
+    page = Image.fromarray(np.rint(255 * np.clip(picture, 0, 1)).astype(np.uint8), "RGB")
+    page.save(path, format="PNG", compress_level=4)

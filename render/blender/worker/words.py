@@ -2,100 +2,136 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
-from pathlib import Path
+from functools import lru_cache
 from typing import Any
 
+import msgspec
 import numpy as np
 
-from render.film.scene import EDGE, LEGEND, LINE, SIZES, LegendRow, Writing
+from render.film.scene import ARC, LegendRow, Writing
+from render.letters import font_of
 
 FINE = 3
 """Letters and legend are drawn so many times larger."""
-INK, QUIET, CARD = (240, 243, 247, 255), (172, 181, 192, 255), (9, 12, 17, 132)
-SHADOW = (0, 0, 0, 120)
-ARC = 0.6
-"""Radius of an arc of the legend, in heights of its letters."""
+INK, QUIET, CARD = (240, 243, 247, 255), (172, 181, 192, 255), (9, 12, 17, 205)
+"""On the card of a legend, which is dark in every look."""
+BRIGHT, DARK = ((240, 243, 247), (196, 204, 214)), ((24, 28, 34), (52, 58, 66))
+"""Words and quiet words without a card."""
+HALO, HALO_REACH, HALO_SOFT = 0.86, 0.17, 0.08
+"""How much of the picture a halo of the opposite tone hides, how far it reaches beyond a letter, and how soft it ends,
+in heights of letters. With it the contrast is above 4.5 on whatever is behind."""
+HALOS = (9, 12, 17), (250, 251, 252)
+"""Of bright words and of dark ones."""
 
 
-def written(wide: int, high: int, writing: Writing, number: str) -> Any:
-    """Letters and legend alone, RGBA at the size of the picture."""
+def lay_words(page: Any, writing: Writing, number: str) -> None:
+    """Write lines and legend over a picture (RGB)."""
+    box, halo, words = _written(page.width, page.height, msgspec.json.encode(writing), number)
+    if box is not None:
+        part = page.crop(box)
+        part.paste(HALOS[writing.on_bright], (0, 0), halo)
+        part.paste(words, (0, 0), words)
+        page.paste(part, box[:2])
+    card = _card(page.width, page.height, msgspec.json.encode(writing))
+    if card is not None:
+        place, drawn = card
+        page.paste(drawn, place, drawn)
+
+
+@lru_cache(maxsize=4)
+def _written(wide: int, high: int, writing: bytes, number: str) -> tuple[Any, Any, Any]:
+    """The lines: the box of the picture that they take, their halo (L) and themselves (RGBA); None without lines."""
+    from PIL import Image, ImageChops, ImageDraw, ImageFilter
+
+    spec, unit = msgspec.json.decode(writing, type=Writing), min(wide, high)
+    lines = [(line, line.words or number) for line in spec.lines if line.words or number]
+    if not lines:
+        return None, None, None
+    right = max(unit * (line.x + line.width + line.size) for line, _ in lines)
+    lower = max(unit * (line.y + 2 * line.size) for line, _ in lines)
+    size = min(wide, math.ceil(right)), min(high, math.ceil(lower))
+    halo = Image.new("L", size, 0)
+    page = Image.new("RGBA", (FINE * size[0], FINE * size[1]), (0, 0, 0, 0))
+    for line, words in lines:
+        fine = FINE * unit * line.size
+        font, at = font_of(fine, line.bold), (FINE * unit * line.x, FINE * unit * line.y)
+        ink = (DARK if spec.on_bright else BRIGHT)[line.quiet]
+        ImageDraw.Draw(page).text(at, words, fill=(*ink, 255), font=font, anchor="la")
+        behind = Image.new("L", page.size, 0)
+        ImageDraw.Draw(behind).text(
+            at, words, fill=255, font=font, anchor="la", stroke_width=HALO_REACH * fine, stroke_fill=255
+        )
+        soft = behind.resize(size, Image.Resampling.BOX).filter(ImageFilter.GaussianBlur(HALO_SOFT * unit * line.size))
+        halo = ImageChops.lighter(halo, soft)
+    return (0, 0, *size), halo.point([round(HALO * value) for value in range(256)]), _averaged(page, size)
+
+
+@lru_cache(maxsize=2)
+def _card(wide: int, high: int, writing: bytes) -> tuple[tuple[int, int], Any] | None:
+    """The legend on its card (RGBA) and its place in the picture; None where there is none."""
     from PIL import Image, ImageDraw
 
-    page = Image.new("RGBA", (FINE * wide, FINE * high), (0, 0, 0, 0))
-    draw = ImageDraw.Draw(page)
-    edge = EDGE * FINE * wide
-    if writing.legend:
-        _legend(draw, page.size, edge, writing)
-    _title(draw, page.size, edge, writing, number)
-    # Averaged with alpha premultiplied, else letters have dark rims.
-    fine = np.asarray(page).astype(np.float64) / 255
+    spec, unit = msgspec.json.decode(writing, type=Writing), min(wide, high)
+    if spec.card is None:
+        return None
+    card = spec.card
+    place = math.floor(unit * card.left), math.floor(unit * card.top)
+    size = math.ceil(unit * (card.left + card.wide)) - place[0], math.ceil(unit * (card.top + card.high)) - place[1]
+    page = Image.new("RGBA", (FINE * size[0], FINE * size[1]), (0, 0, 0, 0))
+    _legend(ImageDraw.Draw(page), spec, FINE * unit, (FINE * place[0], FINE * place[1]), FINE * wide)
+    return place, _averaged(page, size)
+
+
+def _averaged(page: Any, size: tuple[int, int]) -> Any:
+    """A page (RGBA), :data:`FINE` times smaller: averaged with alpha premultiplied, else letters have dark rims."""
+    from PIL import Image
+
+    wide, high = size
+    fine = np.asarray(page).astype(np.float32) / 255
     fine[..., :3] *= fine[..., 3:]
     mean = fine.reshape(high, FINE, wide, FINE, 4).mean(axis=(1, 3))
     mean[..., :3] = np.divide(mean[..., :3], mean[..., 3:], out=np.zeros_like(mean[..., :3]), where=mean[..., 3:] > 0)
     return Image.fromarray(np.rint(255 * mean).astype(np.uint8), "RGBA")
 
 
-def font_of(size: float, bold: bool = False) -> Any:
-    """Inter, which Blender brings along; Pillow's own where it does not."""
-    from PIL import ImageFont
-
-    blender = importlib.util.find_spec("bpy")
-    places = Path(blender.origin).parent.glob("*/datafiles/fonts/Inter.woff2") if blender and blender.origin else ()
-    for path in places:
-        font = ImageFont.truetype(path, max(1.0, size))
-        font.set_variation_by_axes([14, 600 if bold else 450])
-        return font
-    return ImageFont.load_default(max(1.0, size))
-
-
-def _title(draw: Any, page: tuple[int, int], edge: float, writing: Writing, number: str) -> None:
-    """Name and number at the upper left; the rate of time under them, or alone at the upper left."""
-    y, shadow = edge, page[1] / 520
-    for words, part, ink in zip((writing.title, number, writing.rate), SIZES, (INK, INK, QUIET), strict=True):
-        if words:
-            size = part * page[1]
-            font = font_of(size, bold=words == writing.title)
-            draw.text(
-                (edge + shadow, y + shadow), words, fill=SHADOW, font=font, anchor="la",
-                stroke_width=size / 14, stroke_fill=SHADOW,
-            )  # fmt: skip
-            draw.text((edge, y), words, fill=ink, font=font, anchor="la")
-            y += LINE * size
-
-
-def _legend(draw: Any, page: tuple[int, int], edge: float, writing: Writing) -> None:
-    """A card in its corner: arrow, number and word in each row."""
-    size = LEGEND * page[1]
+def _legend(draw: Any, writing: Writing, unit: float, origin: tuple[int, int], wide: int) -> None:
+    """A card with arrow, number and word in each row; ``unit`` is the picture's shorter side in pixels, ``wide`` its
+    width, ``origin`` the pixel of the picture that is this page's first.
+    """
+    card = writing.card
+    assert card is not None
+    left, top = unit * card.left - origin[0], unit * card.top - origin[1]
+    size = unit * card.size
     font = font_of(size)
-    row, pad, gap = 1.5 * size, 0.7 * size, 0.8 * size
-    arrows = max(2.6 * ARC * size if one.sweep else one.length * page[0] for one in writing.legend)
-    numbers = max(draw.textlength(one.number, font=font) for one in writing.legend)
-    words = max(draw.textlength(one.words, font=font) for one in writing.legend)
-    wide = 2 * pad + arrows + gap + numbers + gap + words
-    high = 2 * pad + row * len(writing.legend) - 0.3 * size
-    left = edge if "left" in writing.corner else page[0] - edge - wide
-    top = edge if "upper" in writing.corner else page[1] - edge - high
-    draw.rounded_rectangle((left, top, left + wide, top + high), radius=0.5 * size, fill=CARD)
-    for k, one in enumerate(writing.legend):
-        y = top + pad + (k + 0.4) * row
-        if one.sweep:
-            _arc(draw, left + pad + arrows - 1.3 * ARC * size, y, ARC * size, one)
+    box = left, top, left + unit * card.wide, top + unit * card.high
+    draw.rounded_rectangle(box, radius=0.5 * size, fill=CARD)
+    for k, row in enumerate(writing.legend):
+        y = top + unit * card.pad + (k + 0.4) * unit * card.row
+        end = left + unit * card.arrows
+        if row.sweep:
+            _arc(draw, end - 1.3 * ARC * size, y, ARC * size, row)
         else:
-            _reference(draw, left + pad + arrows - one.length * page[0], y, one, page)
-        x = left + pad + arrows + gap
-        draw.text((x, y), one.number, fill=INK, font=font, anchor="lm")
-        draw.text((x + numbers + gap, y), one.words, fill=QUIET, font=font, anchor="lm")
+            _reference(draw, end - row.length * wide, y, row, wide)
+        draw.text((left + unit * card.numbers, y), row.number, fill=INK, font=font, anchor="lm")
+        draw.text((left + unit * card.words, y), row.words, fill=QUIET, font=font, anchor="lm")
 
 
-def _reference(draw: Any, x: float, y: float, row: LegendRow, page: tuple[int, int]) -> None:
+def _reference(draw: Any, x: float, y: float, row: LegendRow, wide: int) -> None:
     """The reference arrow, flat, in the proportions of those in the picture."""
-    length, ink = row.length * page[0], tuple(round(255 * c) for c in row.colour)
-    point = min(row.point * page[0], 0.45 * length)
+    length, ink = row.length * wide, tuple(round(255 * c) for c in row.colour)
+    point = min(row.point * wide, 0.45 * length)
     half, shaft = 0.34 * point, 0.11 * point
-    draw.rectangle((x, y - shaft, x + length - point, y + shaft), fill=ink)
-    draw.polygon([(x + length, y), (x + length - point, y - half), (x + length - point, y + half)], fill=ink)
+    end = x + length
+    if row.tip.startswith("solid"):
+        draw.rectangle((x, y - shaft, end - point, y + shaft), fill=ink)
+        for back in (0.0, 0.72 * point) if row.tip.endswith("double") else (0.0,):
+            draw.polygon([(end - back, y), (end - back - point, y - half), (end - back - point, y + half)], fill=ink)
+        return
+    draw.rectangle((x, y - shaft, end - 0.5 * shaft, y + shaft), fill=ink)
+    for back in (0.0, 0.72 * point) if row.tip.endswith("double") else (0.0,):
+        for side in (-1.45 * half, 1.45 * half):
+            draw.line((end - back - point, y + side, end - back, y), fill=ink, width=max(1, round(2 * shaft)))
 
 
 def _arc(draw: Any, x: float, y: float, radius: float, row: LegendRow) -> None:

@@ -60,7 +60,7 @@ def _work(job: Job, more: Iterator[Picture], answer: Callable[..., None]) -> Non
     from render.blender.worker import device
     from render.blender.worker.picture import render, save_picture, signs_of_life
     from render.blender.worker.scene_file import save_scene
-    from render.blender.worker.settings import front_settings, picture_settings
+    from render.blender.worker.settings import drawing_settings, front_settings, picture_settings
 
     answer(doing="builds the scene")
     built = build(job)
@@ -73,6 +73,8 @@ def _work(job: Job, more: Iterator[Picture], answer: Callable[..., None]) -> Non
     picture_settings(built.scene, job)
     if built.front is not None:
         front_settings(built.front, built.scene, job)
+    if job.drawn:
+        drawing_settings(built.scene, job)
     for picture in chain(job.pictures, more):
         built.show(picture.state)
         over = None

@@ -8,11 +8,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from render.film.arrows.arrows import COLOURS, HEAD, POINT, SHAFT
-from render.film.arrows.scales import LONGEST, TINY, scales_of, with_unit
+from render.film.arrows.arrows import HEAD, POINT, SHAFT
+from render.film.arrows.scales import LONGEST, TINY, scales_of
 from render.film.arrows.torques import UNIT, Torque
 from render.film.arrows.vectors import at_time
 from render.film.scene import ArcSpec, LegendRow, Point
+from shared.contract.quantity import written
+from shared.contract.signals import SIGNALS, rgb
 
 Array = NDArray[np.float64]
 FULL_TURN = 1.25 * math.pi
@@ -20,6 +22,10 @@ FULL_TURN = 1.25 * math.pi
 RADIUS, APART = 0.066, 0.022
 """Radius of an arc, and how much wider each further one about the same point is, as parts of the size."""
 WORDS = {"forces": "torques", "reactions": "torques of joints"}
+SIGNAL = {"forces": "torques", "reactions": "reactions"}
+"""Whose colour they have."""
+STOUT = 1.3
+"""Thickness of an arc in that of an arrow: it stands on parts, not beside them."""
 
 
 class Arcs:
@@ -36,10 +42,10 @@ class Arcs:
         return [
             ArcSpec(
                 name=f"{torque.quantity} {torque.name}",
-                colour=COLOURS[torque.quantity],
+                colour=rgb(SIGNALS[SIGNAL[torque.quantity]].dark),
                 radius=self._radius(k),
-                shaft=SHAFT * self.size,
-                head=HEAD * self.size,
+                shaft=STOUT * SHAFT * self.size,
+                head=STOUT * HEAD * self.size,
                 point=POINT * self.size,
             )
             for k, torque in enumerate(self.torques)
@@ -52,9 +58,9 @@ class Arcs:
             return []
         return [
             LegendRow(
-                number=with_unit(scale.reference, scale.unit),
+                number=written(scale.reference, scale.unit),
                 words=f"{WORDS[quantity]}, peaks cut" if scale.cut else WORDS[quantity],
-                colour=COLOURS[quantity],
+                colour=rgb(SIGNALS[SIGNAL[quantity]].dark),
                 sweep=FULL_TURN * scale.reference / scale.largest,
             )
             for quantity in dict.fromkeys(torque.quantity for torque in self.torques)
@@ -69,14 +75,15 @@ class Arcs:
             out.append(((x, y, z), sweep if abs(sweep) >= TINY * FULL_TURN else 0.0))
         return out
 
-    def rims(self, heights: Sequence[float]) -> list[Array]:
-        """Points (8 T, 3) around each over the whole motion (m)."""
+    def rims(self, heights: Sequence[float], way: Array | None = None) -> list[Array]:
+        """Points (8 T, 3) around each over the whole motion (m), as seen from a ``way`` (T, 3)."""
         turn = math.tau * np.arange(8) / 8
         out = []
         for k, (torque, z) in enumerate(zip(self.torques, heights, strict=True)):
-            reach = self._radius(k) + HEAD * self.size
+            reach = self._radius(k) + STOUT * HEAD * self.size
             rim = torque.place[:, None] + reach * np.stack([np.cos(turn), np.sin(turn)], axis=1)
-            out.append(np.column_stack([rim.reshape(-1, 2), np.full(8 * len(torque.place), z)]))
+            ring = np.column_stack([rim.reshape(-1, 2), np.full(8 * len(torque.place), z)])
+            out.append(ring - (0.0 if way is None else np.repeat(way, 8, axis=0)))
         return out
 
     def _radius(self, k: int) -> float:

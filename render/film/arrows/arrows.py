@@ -8,23 +8,17 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from render.film.arrows.scales import LONGEST, TINY, scales_of, with_unit
+from render.film.arrows.scales import LONGEST, TINY, scales_of
 from render.film.arrows.vectors import Vector, at_time
-from render.film.scene import ArrowSpec, Colour, LegendRow, Point
+from render.film.scene import ArrowSpec, LegendRow, Point
+from shared.contract.quantity import written
+from shared.contract.signals import SIGNALS, rgb
 
 Array = NDArray[np.float64]
 FULL = 0.25
 """Length of the largest arrow, as a part of the size of the swept motion."""
 SHAFT, HEAD, POINT = 0.0042, 0.0125, 0.037
 """Radii of shaft and cone and the cone's length, as parts of the size of the swept motion."""
-COLOURS: dict[str, Colour] = {
-    "velocities": (0.16, 0.86, 0.54),
-    "accelerations": (0.72, 0.50, 1.0),
-    "forces": (1.0, 0.56, 0.13),
-    "weights": (1.0, 0.90, 0.50),
-    "reactions": (0.30, 0.66, 1.0),
-}
-"""sRGB: those of the drawn animations, brighter, for a dark studio."""
 
 
 class Arrows:
@@ -41,7 +35,8 @@ class Arrows:
         return [
             ArrowSpec(
                 name=f"{vector.quantity} {vector.name}",
-                colour=COLOURS[vector.row],
+                colour=rgb(SIGNALS[vector.row].dark),
+                tip=SIGNALS[vector.row].head,
                 shaft=SHAFT * self.size,
                 head=HEAD * self.size,
                 point=POINT * self.size,
@@ -63,9 +58,10 @@ class Arrows:
             words = f"{quantity}, peaks cut" if cut else quantity
             rows.append(
                 LegendRow(
-                    number=with_unit(scale.reference, scale.unit),
+                    number=written(scale.reference, scale.unit),
                     words=words,
-                    colour=COLOURS[quantity],
+                    colour=rgb(SIGNALS[quantity].dark),
+                    tip=SIGNALS[quantity].head,
                     length=length,
                     point=POINT * self.size / width,
                 )
@@ -84,14 +80,14 @@ class Arrows:
             out.append(((x, y, z), (x + u / size * length, y + v / size * length, z)))
         return out
 
-    def tips(self, heights: Sequence[float]) -> list[Array]:
-        """Where each tip is (n, 3) over the whole motion (m), as often as there is one."""
+    def tips(self, heights: Sequence[float], way: Array | None = None) -> list[Array]:
+        """Where each tip is (n, 3) over the whole motion (m), wherever there is one, as seen from a ``way`` (T, 3)."""
         out = []
         for vector, z in zip(self.vectors, heights, strict=True):
             length = self._lengths(vector)
             seen = length >= TINY * FULL * self.size
             tip = vector.place[seen] + vector.value[seen] * (length[seen] / vector.size[seen])[:, None]
-            out.append(np.column_stack([tip, np.full(len(tip), z)]))
+            out.append(np.column_stack([tip, np.full(len(tip), z)]) - (0.0 if way is None else way[seen]))
         return out
 
     def _lengths(self, vector: Vector) -> Array:

@@ -21,7 +21,6 @@ NEVER = 0.02
 """Of the largest: what is smaller than this at nearly all times is a motion at rest."""
 TINY = 0.025
 """Of the full length: shorter arrows are left out."""
-PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 
 
 @dataclass(frozen=True)
@@ -72,11 +71,3 @@ def round_below(value: float) -> float:
     """The largest of ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ... that is not above ``value`` > 0."""
     power = 10.0 ** math.floor(math.log10(value) + 1e-9)
     return next(step for step in (5.0, 2.0, 1.0, 0.5) if step * power <= value * (1 + 1e-9)) * power
-
-
-def with_unit(value: float, unit: str) -> str:
-    """``0.5 N``, ``20 mN``, ``5 kN``; a small speed in mm/s."""
-    if unit.startswith("m"):
-        return f"{value:g} {unit}" if value >= 0.1 else f"{value * 1000:g} m{unit}"
-    power = 3 * min(max(math.floor(math.log10(value) / 3 + 1e-9), -3), 3) if value < 0.1 or value >= 1000 else 0
-    return f"{float(f'{value / 10.0**power:.6g}'):g} {PREFIXES[power]}{unit}"

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from render.film.arrows.vectors import TOUCHING, Acting, Vector
-from render.film.markers import moved
-from shared.contract import DriverMotion, Motion
+from render.film.arrows.vectors import Acting, Vector
+from shared.contract import Motion
 from shared.contract.shot import Quantity
 
 Array = NDArray[np.float64]
@@ -53,41 +52,22 @@ def rounding(vectors: Sequence[Vector], size: float) -> float:
 
 
 def _reactions(motion: Motion, quantity: Quantity) -> Iterator[Torque]:
-    """Of joints and contacts. Where they touch beside the marker, the force alone has the torque, if there is one."""
+    """Of joints and contacts, about where they act."""
     for name, one in (*motion.joints.items(), *motion.contacts.items()):
-        torque = np.asarray(one.torque, float)
-        if one.kind in TOUCHING or name in motion.contacts:
-            torque = np.where((np.asarray(one.fx) == 0) & (np.asarray(one.fy) == 0), torque, 0.0)
+        at = one.acts or one
         sign = 1.0 if one.bodies[1] != "ground" else -1.0
-        yield Torque(quantity, name, one.bodies, _two(one.x, one.y), sign * torque)
+        yield Torque(quantity, name, one.bodies, _two(at.x, at.y), sign * np.asarray(at.torque, float))
 
 
 def _applied(motion: Motion, quantity: Quantity) -> Iterator[Torque]:
-    """Of forces and of drivers of angles."""
-    for name, force in motion.forces.items():
-        actions = [action for action in force.actions if action.body != "ground"]
-        for action in actions if force.several else actions[-1:]:
-            bodies = (action.body,) if force.several else tuple(one.body for one in force.actions)
+    """Of forces and drivers."""
+    for name, one in (*motion.forces.items(), *motion.drivers.items()):
+        several = getattr(one, "several", False)
+        moving = [action for action in one.actions if action.body != "ground"]
+        for action in moving if several else moving[-1:]:
+            bodies = (action.body,) if several else tuple(other.body for other in one.actions)
             value = np.asarray(action.torque, float)
             yield Torque(quantity, f"{name} on {action.body}", bodies, _two(action.x, action.y), value)
-    for name, driver in motion.drivers.items():
-        if driver.kind in ("angle", "relative_angle") and driver.bodies is not None:
-            first, second = driver.bodies
-            sign, on = (1.0, second) if second != "ground" else (-1.0, first)
-            value = sign * np.asarray(driver.effort, float)
-            yield Torque(quantity, f"{name} on {on}", driver.bodies, _pivot(motion, driver), value)
-
-
-def _pivot(motion: Motion, driver: DriverMotion) -> Array:
-    """(T, 2) where a driver of an angle turns its bodies against each other: their pin, else its own marker."""
-    assert driver.bodies is not None
-    for joint in motion.joints.values():
-        if joint.kind == "revolute" and set(joint.bodies) == set(driver.bodies):
-            return _two(joint.x, joint.y)
-    body, marker = driver.bodies[1], (0.0, 0.0, 0.0)
-    if driver.shape is not None:
-        body, marker = driver.shape.bodies[1], driver.shape.markers[1]
-    return moved(motion, body, marker)[0]
 
 
 def _two(x: Sequence[float], y: Sequence[float]) -> Array:

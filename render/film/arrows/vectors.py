@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from render.film.markers import moved
-from shared.contract import BodyMotion, DriverMotion, Motion
+from render.film.markers import local_place
+from shared.contract import BodyMotion, Motion
 from shared.contract.shot import Quantity
 
 Array = NDArray[np.float64]
+SAME = 1e-6
+"""Of the mechanism's size: places that stay closer than this are one, and stand still."""
 UNITS = {"velocities": "m/s", "accelerations": "m/s²", "forces": "N", "reactions": "N"}
-TOUCHING = {
-    *("rolling_disc", "rolling_on_curve", "rack_and_pinion", "gear_pair"),
-    *("cam_flat", "geneva", "point_on_curve", "constraint"),
-}
-"""Joints whose force acts beside the second marker: on the line where it has no torque."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +56,14 @@ class Vector(Acting):
         return "weights" if self.weight else self.quantity
 
 
+class Moves(NamedTuple):
+    """A place that moves, (T, 2) each, world axes (SI)."""
+
+    place: Array
+    velocity: Array
+    acceleration: Array
+
+
 def vectors(motion: Motion, show: Sequence[Quantity]) -> list[Vector]:
     """All that ``show`` asks for, in the order of the file; vectors that are nothing all the time are among them."""
     made = {"velocities": _movements, "accelerations": _movements, "forces": _forces, "reactions": _reactions}
@@ -76,80 +82,73 @@ def at_time(time: Array, values: Array, t: float) -> Array:
 def _reactions(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
     """What joints and rigid contacts do to their second body; to the first one where the second is ground."""
     for name, one in (*motion.joints.items(), *motion.contacts.items()):
-        place, force = _two(one.x, one.y), _two(one.fx, one.fy)
-        if one.kind in TOUCHING or name in motion.contacts:
-            place = place + _beside(force, np.asarray(one.torque))
-        on = one.bodies[1] if one.bodies[1] != "ground" else one.bodies[0]
-        yield Vector(quantity, name, one.bodies, place, force if on == one.bodies[1] else -force)
+        at, force = one.acts or one, _two(one.fx, one.fy)
+        sign = 1.0 if one.bodies[1] != "ground" else -1.0
+        yield Vector(quantity, name, one.bodies, _two(at.x, at.y), sign * force)
 
 
 def _forces(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
-    """On each moving body that feels them, of drivers of a length too, and the weights."""
-    for name, force in motion.forces.items():
-        for action in force.actions:
+    """Forces and drivers on each moving body that feels them, and the weights."""
+    for name, one in (*motion.forces.items(), *motion.drivers.items()):
+        for action in one.actions:
             if action.body != "ground":
                 place, value = _two(action.x, action.y), _two(action.fx, action.fy)
                 yield Vector(quantity, f"{name} on {action.body}", (action.body,), place, value)
-    for name, driver in motion.drivers.items():
-        for body, place, value in _pushes(motion, driver):
-            if body != "ground":
-                yield Vector(quantity, f"{name} on {body}", (body,), place, value)
     gravity = np.array(motion.gravity)
     for name, body in motion.bodies.items():
         if body.mass > 0 and gravity.any():
-            place = _centre(body)[0]
+            place = at_body(body, *body.com).place
             value = np.tile(body.mass * gravity, (len(place), 1))
             yield Vector(quantity, f"weight of {name}", (name,), place, value, weight=True)
 
 
-def _pushes(motion: Motion, driver: DriverMotion) -> Iterator[tuple[str, Array, Array]]:
-    """What a driver of a distance or coordinate does to its two bodies: each, where (T, 2), and the force (T, 2)."""
-    shape = driver.shape
-    if shape is None or driver.kind not in ("distance", "coordinate"):
-        return
-    (first, angle), (second, _) = (moved(motion, b, m) for b, m in zip(shape.bodies, shape.markers, strict=True))
-    if driver.kind == "distance":  # along the line between the two, on each at its end
-        way = second - first
-        length = np.hypot(*way.T)[:, None]
-        way = np.divide(way, length, out=np.zeros_like(way), where=length > 0)
-    else:  # along the first marker's axis, on both where the second is
-        way, first = np.stack([np.cos(angle), np.sin(angle)], axis=1), second
-    force = np.asarray(driver.effort)[:, None] * way
-    yield shape.bodies[0], first, -force
-    yield shape.bodies[1], second, force
-
-
 def _movements(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
-    """Of traced points, and of the centres of mass of bodies that have none."""
+    """Of traced points, of pins and other joints that move, and of the centres of mass of bodies that have neither."""
     fast = quantity == "velocities"
-    for name, point in motion.points.items():
-        value = _two(point.vx, point.vy) if fast else _two(point.ax, point.ay)
-        yield Vector(quantity, f"{quantity} of {name}", (point.body,), _two(point.x, point.y), value)
-    traced = {point.body for point in motion.points.values()}
+    slack = SAME * _extent(motion)
+    shown: list[Array] = []
+    found: set[str] = set()
+    for name, on, (place, velocity, acceleration) in _marked(motion):
+        if np.ptp(place, axis=0).max() <= slack:
+            continue
+        found |= {on}
+        if not any(np.abs(place - other).max() <= slack for other in shown):
+            shown.append(place)
+            yield Vector(quantity, f"{quantity} of {name}", (on,), place, velocity if fast else acceleration)
     for name, body in motion.bodies.items():
-        if name not in traced:
-            place, velocity, acceleration = _centre(body)
+        if name not in found:
+            place, velocity, acceleration = at_body(body, *body.com)
             yield Vector(quantity, f"{quantity} of {name}", (name,), place, velocity if fast else acceleration)
 
 
-def _centre(body: BodyMotion) -> tuple[Array, Array, Array]:
-    """Place, velocity and acceleration (T, 2) of a body's centre of mass."""
+def _marked(motion: Motion) -> Iterator[tuple[str, str, Moves]]:
+    """Traced points, then the second markers of joints: name, body, and how each moves."""
+    for name, point in motion.points.items():
+        yield name, point.body, Moves(_two(point.x, point.y), _two(point.vx, point.vy), _two(point.ax, point.ay))
+    for name, joint in motion.joints.items():
+        for on in joint.bodies[::-1]:
+            if joint.pair != "pin" and on == joint.bodies[0]:
+                continue  # what slides is at another place of its first body each time
+            if body := motion.bodies.get(on):
+                yield name, on, at_body(body, *local_place(body, joint.x[0], joint.y[0]))
+
+
+def at_body(body: BodyMotion, x: float, y: float) -> Moves:
+    """How the place (x, y) of a body's frame moves."""
     theta, omega, alpha = (np.asarray(s)[:, None] for s in (body.theta, body.omega, body.alpha))
-    x, y = body.com
     arm = np.hstack([np.cos(theta) * x - np.sin(theta) * y, np.sin(theta) * x + np.cos(theta) * y])
     across = np.stack([-arm[:, 1], arm[:, 0]], axis=1)
-    return (
+    return Moves(
         _two(body.x, body.y) + arm,
         _two(body.vx, body.vy) + omega * across,
         _two(body.ax, body.ay) + alpha * across - omega**2 * arm,
     )
 
 
-def _beside(force: Array, torque: Array) -> Array:
-    """(T, 2) from the second marker to the line on which the force has no torque."""
-    square = (force**2).sum(axis=1)
-    off = np.divide(torque, square, out=np.zeros(len(torque)), where=square > 0)
-    return off[:, None] * np.stack([force[:, 1], -force[:, 0]], axis=1)
+def _extent(motion: Motion) -> float:
+    """The larger side (m) of what joints, points and frames sweep."""
+    things = [*motion.bodies.values(), *motion.joints.values(), *motion.points.values()]
+    return max((float(max(np.ptp(thing.x), np.ptp(thing.y))) for thing in things), default=0.0) or 1.0
 
 
 def _two(x: Sequence[float], y: Sequence[float]) -> Array:

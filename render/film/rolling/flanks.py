@@ -1,9 +1,9 @@
 """Where a roller touches what it rolls on, as the reactions tell: the direction from its centre, and when it touches.
 
-cam_roller, contacts    the nearest point of the outline; of a contact while it is closed
-pin_in_slot             across the slot, to the wall from which the reaction on the pin comes
-point_on_curve          across the curve, to the side from which the reaction comes
-geneva                  across the slot that the pin is in, to the flank that it pushes; none while the wheel is locked
+roller, contacts        the nearest point of the outline; of a contact while it is closed
+captive, in a slot      across the slot, to the wall from which the reaction on the pin comes
+captive, on a curve     across the curve, to the side from which the reaction comes
+captive, of a wheel     across the slot that the pin is in, to the flank that it pushes; none while the wheel is locked
 
 Without a reaction that is more than rounding the last flank counts that had one, and before the first nothing is
 touched.
@@ -41,16 +41,16 @@ def flank_of(motion: Motion, name: str, centre: Array) -> Flank | None:
     """That of a roller whose middle is at ``centre`` (T, 2) in a joint or contact; None if nothing rolls in it."""
     joint, contact = motion.joints.get(name), motion.contacts.get(name)
     if joint is not None and joint.shape is not None:
-        if joint.kind == "cam_roller":
-            return _always(_nearest(motion, joint.shape, centre)[0])
-        if joint.kind == "pin_in_slot":
-            angle = moved(motion, joint.shape.bodies[0], joint.shape.markers[0])[1]
-            return _pushed(_across(angle), joint, -1.0)
-        if joint.kind == "point_on_curve":
-            along = _nearest(motion, joint.shape, centre)[1]
+        shape = joint.shape
+        if joint.look == "roller":
+            return _always(_nearest(motion, shape, centre)[0])
+        if joint.look == "captive" and shape.slots is not None:
+            return _in_wheel(motion, joint, shape)
+        if joint.look == "captive" and shape.outline:
+            along = _nearest(motion, shape, centre)[1]
             return _pushed(np.stack([-along[:, 1], along[:, 0]], axis=1), joint, -1.0)
-        if joint.kind == "geneva":
-            return _in_wheel(motion, joint, joint.shape)
+        if joint.look == "captive":
+            return _pushed(_across(moved(motion, shape.bodies[0], shape.markers[0])[1]), joint, -1.0)
     if contact is not None and contact.shape.outline:
         return _leaving(_nearest(motion, contact.shape, centre)[0], contact)
     return None

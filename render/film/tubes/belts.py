@@ -146,7 +146,7 @@ def belts(motion: Motion, held: Mapping[str, Held]) -> Iterator[Belt]:
     time = np.asarray(motion.time)
     for name, joint in motion.joints.items():
         shape, own = joint.shape, held.get(name)
-        if joint.kind != "belt" or shape is None or own is None or not shape.radius_first or not shape.radius_second:
+        if joint.look != "band" or shape is None or own is None or not shape.radius_first or not shape.radius_second:
             continue
         places = [
             _places(motion, body, marker, len(time)) for body, marker in zip(shape.bodies, shape.markers, strict=True)

@@ -15,14 +15,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from render.film.markers import moved
+from render.film.markers import local_place, moved
 from render.film.poses import Moment, Poses
 from render.film.scene import Point, SurfaceSpec, TubeSpec
 from render.film.tubes.stretched import STEEL, placed
 from shared.contract import ForceMotion, Motion
 
 Array = NDArray[np.float64]
-KINDS = ("torsion_spring", "torsion_spring_law", "curve_of_angle")
 BLUED = SurfaceSpec(colour=(0.075, 0.115, 0.26), finish="polished", roughness=0.28)
 RIM, HUB, WIRE, STUD = 0.056, 0.016, 0.0042, 0.0052
 """Radii of the spiral's outer end, the hub, the wire and the stud, as parts of the size of the swept motion."""
@@ -139,10 +138,10 @@ def spirals(
 
 def _pin(motion: Motion, force: ForceMotion, size: float) -> tuple[tuple[str, str], Array] | None:
     """The two bodies of a torsion spring, and where they are pinned together (T, 2); None where they are not."""
-    if force.kind not in KINDS or force.shape is None or not any(force.potential):
+    if force.look != "spiral" or force.shape is None:
         return None
     for joint in motion.joints.values():
-        if joint.kind == "revolute" and set(joint.bodies) == set(force.shape.bodies):
+        if joint.pair == "pin" and set(joint.bodies) == set(force.shape.bodies):
             return force.shape.bodies, np.stack([np.asarray(joint.x), np.asarray(joint.y)], axis=1)
     first, second = (moved(motion, b, m)[0] for b, m in zip(force.shape.bodies, force.shape.markers, strict=True))
     return (force.shape.bodies, second) if np.abs(second - first).max() < SAME_PLACE * size else None
@@ -156,6 +155,4 @@ def _local(motion: Motion, body: str, place: Array) -> tuple[float, float]:
     """A place of the world at the first time, in a body's frame (m)."""
     if body not in motion.bodies:
         return float(place[0]), float(place[1])
-    one = motion.bodies[body]
-    x, y, c, s = place[0] - one.x[0], place[1] - one.y[0], math.cos(one.theta[0]), math.sin(one.theta[0])
-    return float(c * x + s * y), float(c * y - s * x)
+    return local_place(motion.bodies[body], float(place[0]), float(place[1]))

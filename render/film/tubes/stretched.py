@@ -16,8 +16,6 @@ from render.film.scene import Point, SurfaceSpec, TubeSpec
 from shared.contract import Held, Motion, Shape
 
 Array = NDArray[np.float64]
-COILS = ("spring", "spring_law", "curve_of_length")
-CYLINDERS = ("gas", "gas_cycle", "gas_strut", "actuator")
 STEEL = SurfaceSpec(colour=(0.78, 0.79, 0.81), finish="polished", roughness=0.24)
 BLACK = SurfaceSpec(colour=(0.035, 0.037, 0.042), finish="satin", roughness=0.34)
 FIBRE = SurfaceSpec(colour=(0.62, 0.45, 0.24), finish="rubber", roughness=0.8)
@@ -88,10 +86,10 @@ def stretched(
         least, most = min(map(abs, force.value)), max(map(abs, force.value))
         if least <= 0:
             continue
-        coil = force.kind in COILS and any(force.potential)
-        if not coil and force.kind not in (*COILS, *CYLINDERS):
+        if force.look not in ("coil", "cylinder"):
             continue
         radius = own.radius if own else min(COIL * size, BROAD * least)
+        coil = force.look == "coil"
         tubes = _coil(name, radius, least, most) if coil else _cylinder(name, 0.6 * radius, least, most)
         if own:
             yield Stretched(name, force.shape, own.z, tubes)
@@ -100,11 +98,11 @@ def stretched(
         yield Stretched(name, force.shape, z, [*tubes, *_pins(name, force.shape, PIN * WIRE * radius, z, feet)])
     for name, driver in motion.drivers.items():
         own = held.get(name)
-        if own and driver.kind == "distance" and driver.shape is not None and min(driver.value) > 0:
+        if own and driver.look == "cylinder" and driver.shape is not None and min(driver.value) > 0:
             tubes = _cylinder(name, 0.6 * own.radius, min(driver.value), max(driver.value))
             yield Stretched(name, driver.shape, own.z, tubes)
     for name, contact in motion.contacts.items():
-        if contact.kind == "rope" and contact.shape.length:
+        if contact.look == "cord" and contact.shape.length:
             own, length = held.get(name), contact.shape.length
             radius = own.radius if own else ROPE * size
             path: Path = lambda a, b, length=length: sagging(a, b, length, down)  # noqa: E731

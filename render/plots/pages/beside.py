@@ -8,11 +8,12 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from render.magnitudes import NOISE, energy_floor, force_scale, speed_scale, without_noise
+from render.plots.measures import dress_axis, dress_plane
 from render.plots.style import QUIET, colour, house_style, page
 from shared.contract import Motion
+from shared.contract.quantity import labelled
 
 PANELS = 9
 """On one page; of more, those in which the motions differ most."""
@@ -53,18 +54,20 @@ def _page(name: str, motions: Motions, title: str, panels: Sequence[Panel]) -> F
     figure.subplots_adjust(left=0.075, right=0.975, top=0.79, bottom=0.085, wspace=0.24, hspace=0.3)
     for axes, k in zip(grid.ravel(), shown, strict=False):
         text, unit, _ = panels[k]
-        axes.set_title(f"{text} ({unit})", fontsize=10, loc="left")
+        axes.set_title(text, fontsize=10, loc="left")
         for number, (line, motion) in enumerate(zip(values[k], motions.values(), strict=True)):
             if line is not None:
                 _draw(axes, np.asarray(motion.time), line, number)
-        axes.locator_params(nbins=5)
         axes.margins(x=0.0)
+        dress_axis(axes.yaxis, "", unit)
+        axes.set_title(labelled(text, axes.get_ylabel().removeprefix(" / ").strip("()")), fontsize=10, loc="left")
+        axes.set_ylabel("")
         axes.tick_params(labelbottom=False)
     used = list(grid.ravel()[: len(shown)])
     for axes in grid.ravel()[len(shown) :]:
         axes.set_visible(False)
     for axes in used[-columns:]:
-        axes.set_xlabel("time (s)")
+        dress_axis(axes.xaxis, "time", "s")
         axes.tick_params(labelbottom=True)
     legend(figure, list(motions))
     return figure
@@ -98,7 +101,7 @@ def _body_panels(motions: Motions) -> list[Panel]:
             for field in ("x", "y", "theta")
         }
         if moved["theta"] > STILL:
-            out.append((f"{body}, angle", "deg", _of("bodies", body, "theta", np.degrees(1.0))))
+            out.append((f"{body}, angle", "°", _of("bodies", body, "theta", np.degrees(1.0))))
             floor = NOISE * max(map(speed_scale, motions.values()))
             out.append((f"{body}, turning", "rad/s", _of("bodies", body, "omega", 1.0, floor)))
         elif max(moved["x"], moved["y"]) > STILL:
@@ -111,7 +114,7 @@ def _body_panels(motions: Motions) -> list[Panel]:
 def _driver_panels(motions: Motions) -> list[Panel]:
     out: list[Panel] = []
     for name, driver in next(iter(motions.values())).drivers.items():
-        unit = "N m" if "angle" in driver.kind else "N"
+        unit = driver.effort_unit
         out.append((f"{name}, {'torque' if unit == 'N m' else 'force'}", unit, _of("drivers", name, "effort")))
         out.append((f"{name}, power", "W", _of("drivers", name, "power")))
     return out
@@ -135,11 +138,12 @@ def _force_panels(motions: Motions) -> list[Panel]:
     out: list[Panel] = []
     for name, force in next(iter(motions.values())).forces.items():
         if force.effort is not None:
-            unit = "N m" if force.measures == "angle" else "N"
+            unit = force.effort_unit
             out.append((f"{name}, {'torque' if unit == 'N m' else 'force'}", unit, _of("forces", name, "effort")))
         out.append((f"{name}, power", "W", _of("forces", name, "power")))
-    for name in next(iter(motions.values())).contacts:
-        out.append((f"{name}, normal force", "N", _of("contacts", name, "normal")))
+    for name, contact in next(iter(motions.values())).contacts.items():
+        says = "normal force" if contact.effort_unit == "N" else "torque"
+        out.append((f"{name}, {says}", contact.effort_unit, _of("contacts", name, "normal")))
     return out
 
 
@@ -189,9 +193,6 @@ def _paths(name: str, motions: Motions) -> Figure | None:
     axes = figure.add_axes((0.075, 0.085, 0.9, 0.72))
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.06)
-    axes.xaxis.set_major_locator(MaxNLocator(nbins=15, steps=[1, 2, 5, 10]))
-    axes.set_xlabel("x (m)")
-    axes.set_ylabel("y (m)")
     for number, motion in enumerate(motions.values()):
         for text, point in motion.points.items():
             x, y = np.asarray(point.x), np.asarray(point.y)
@@ -202,5 +203,6 @@ def _paths(name: str, motions: Motions) -> Figure | None:
             axes.plot(x[0], y[0], "o", color="white", markeredgecolor=colour(number), markeredgewidth=2, zorder=4)
             if first:
                 axes.annotate(text, (x[0], y[0]), (8, 8), textcoords="offset points", color=QUIET)
+    dress_plane(axes)
     legend(figure, list(motions))
     return figure

@@ -15,6 +15,7 @@ from render.plots.quantities import known_names, quantity
 from render.plots.spectrum import spectrum
 from render.plots.style import colour, house_style, page
 from shared.contract import Motion
+from shared.contract.quantity import labelled
 
 Series = tuple[np.ndarray, np.ndarray]
 """Orders and amplitudes."""
@@ -55,7 +56,7 @@ def _panels(motions: Mapping[str, Motion], asked: Sequence[str]) -> list[tuple[s
             last = shown_orders(found)
             for column, component in enumerate(series.components):
                 part = f" {component}" if component in ("x", "y") else ""
-                panel = panels.setdefault(f"{what}{part} ({series.unit})", {})
+                panel = panels.setdefault(labelled(f"{what}{part}", series.unit), {})
                 panel[number] = found.at[1 : last + 1], found.amplitudes[1 : last + 1, column]
     return [(title, found) for title, found in panels.items() if any(sizes.any() for _, sizes in found.values())]
 

@@ -10,8 +10,9 @@ from matplotlib.transforms import blended_transform_factory
 from render.magnitudes import centre_of_mass, energy_floor, power_floor, without_noise
 from render.plots.horizon import Horizon, horizon
 from render.plots.pages.rates import draw
-from render.plots.style import INK, PALETTE, QUIET, page, rows
+from render.plots.style import INK, PARTS, QUIET, page, rows
 from shared.contract import EventMark, Motion
+from shared.contract.quantity import written
 
 BALANCED = 2e-3
 """The elastic energy is known at the samples alone; its rate is this good, relative to the largest power."""
@@ -29,14 +30,14 @@ def energy(motion: Motion) -> Figure:
     impacts = sorted(_impacts(motion, floor), key=lambda event: event.energy)
     figure = page(motion.mechanism, "energy and power", statement(motion))
     upper, lower = rows(figure, 2)
-    lines = [("kinetic", kinetic, PALETTE[0]), ("Δ potential", gained, PALETTE[1])]
-    draw(upper, over, "energy (J)", [*lines, ("total", kinetic + gained, INK)], floor=floor)
-    lines = [("drivers", given, PALETTE[2])] if motion.drivers else []
+    lines = [("kinetic", kinetic, PARTS[0]), ("Δ potential", gained, PARTS[1])]
+    draw(upper, over, "energy", "J", [*lines, ("total", kinetic + gained, INK)], floor=floor)
+    lines = [("drivers", given, PARTS[0])] if motion.drivers else []
     others = rate - given
     tolerance = _tolerance(motion, given, rate)
     if np.abs(others).max() > tolerance:
-        lines += [("other forces", np.where(np.abs(others) > tolerance, others, 0.0), PALETTE[3])]
-    draw(lower, over, "power (W)", lines or [("none", given, PALETTE[2])], floor=power_floor(motion))
+        lines += [("other forces", np.where(np.abs(others) > tolerance, others, 0.0), PARTS[1])]
+    draw(lower, over, "power", "W", lines or [("none", given, PARTS[0])], floor=power_floor(motion))
     if motion.drivers:
         lower.lines[0].set(linewidth=5.0, alpha=0.35)
     lower.plot(over.values, rate, color=INK, linewidth=1.2, linestyle=(0, (5, 3)), zorder=4)
@@ -76,7 +77,7 @@ def statement(motion: Motion) -> str:
     largest = float(np.abs(others).max())
     if largest > _tolerance(motion, given, rate):
         givers = "drivers and other forces" if motion.drivers else "forces without potential"
-        text = f"power of {givers} (friction, dampers, loads; up to {largest:.3g} W) is the rate of the energy"
+        text = f"power of {givers} (friction, dampers, loads; up to {written(largest, 'W')}) is the rate of the energy"
     elif motion.drivers:
         text = "the drivers' power is the rate of the energy"
     else:
@@ -86,7 +87,7 @@ def statement(motion: Motion) -> str:
         return text
     taken = -sum(event.energy for event in impacts)
     count = f"{len(impacts)} impacts that take" if len(impacts) > 1 else "an impact that takes"
-    return f"{text}, but for {count} {taken:.3g} J at once"
+    return f"{text}, but for {count} {written(taken, 'J')} at once"
 
 
 def _tolerance(motion: Motion, given: np.ndarray, rate: np.ndarray) -> float:
@@ -120,6 +121,6 @@ def _mark(axes: Axes, over: Horizon, motion: Motion, impacts: list[EventMark]) -
         if all(abs(x - other) > 0.07 * span for other in placed):
             placed.append(x)
             axes.text(
-                x, 1.015, f"{event.energy:+.3g} J".replace("-", "\N{MINUS SIGN}"), transform=beside, color=QUIET,
+                x, 1.015, f"{'+' * (event.energy > 0)}{written(event.energy, 'J')}", transform=beside, color=QUIET,
                 fontsize=9, ha="center", va="bottom",
             )  # fmt: skip

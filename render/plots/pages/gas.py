@@ -9,21 +9,21 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
-from render.plots.style import QUIET, colour, label_ends, page
+from render.plots.inks import acting_on
+from render.plots.style import QUIET, label_ends, page
 from render.report.written import written
 from shared.contract import GasMotion, Motion
+from shared.contract.quantity import angle_step, labelled
 
 BAR, CUBIC_CENTIMETRE = 1e5, 1e-6
 FEW = 4
 """Chambers, of which the diagram has the lines of all; of more it has the first's."""
-STEPS = (30, 45, 60, 90, 120, 180)
-"""Of ticks in degrees."""
 
 
 def gas(motion: Motion) -> Figure:
     """The indicator diagram of the first chambers, and the pressure in all of them; the last cycle of each."""
     chambers = [
-        (name, force.gas, colour(k)) for k, (name, force) in enumerate(motion.forces.items()) if force.gas is not None
+        (name, force.gas, acting_on(motion, name)) for name, force in motion.forces.items() if force.gas is not None
     ]
     figure = page(motion.mechanism, "gas in the cylinders", _subtitle(chambers))
     indicated, over = figure.subplots(1, 2, width_ratios=(1.0, 1.15))
@@ -35,8 +35,8 @@ def gas(motion: Motion) -> Figure:
         )
     outside = chambers[0][1].outside
     indicated.axhline(outside / BAR, color=QUIET, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1)
-    indicated.set_xlabel("volume (cm³)")
-    indicated.set_ylabel("pressure (bar)")
+    indicated.set_xlabel(labelled("volume", "cm³"))
+    indicated.set_ylabel(labelled("pressure", "bar"))
     indicated.set_ylim(bottom=min(0.0, indicated.get_ylim()[0]))
     _over_crank(over, motion, chambers)
     return figure
@@ -60,9 +60,10 @@ def _over_crank(axes: Axes, motion: Motion, chambers: list[tuple[str, GasMotion,
         for part in np.split(np.arange(len(shown)), order):
             axes.plot(shown[part], pressure[rows][part], color=ink, label=name)
         axes.set_xlim(-period / 2, period / 2)
-        axes.xaxis.set_major_locator(MultipleLocator(next((s for s in STEPS if period / s <= 9), 180)))
+        axes.xaxis.set_major_locator(MultipleLocator(angle_step(period)))
         ends.append((name, float(pressure[rows][np.argmax(shown)]), ink))
-    axes.set_xlabel("crank after firing (deg)" if len(turning) == len(chambers) else "time (s)")
+    over_angle = len(turning) == len(chambers)
+    axes.set_xlabel(labelled("crank after firing", "°") if over_angle else labelled("time", "s"))
     axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
     label_ends(axes, 0.0, ends)
 

@@ -9,10 +9,15 @@ from matplotlib.figure import Figure
 
 from render.magnitudes import NOISE, force_scale, power_floor, torque_scale, without_noise
 from render.plots.horizon import horizon
+from render.plots.inks import acting_on, ink_of
+from render.plots.measures import dress_plane
 from render.plots.pages.rates import draw
-from render.plots.style import INK, colour, page, rows
+from render.plots.style import INK, SIZE, page, rows
 from shared.contract import Motion
+from shared.contract.quantity import written
 
+TITLE, LETTER = 9.5, 0.56
+"""Size of a title (points), and the width of a letter in it."""
 PANELS = 12
 """Hodographs on one page; of more joints, those with the largest reactions."""
 
@@ -21,29 +26,30 @@ def reactions(motion: Motion) -> Figure:
     """Magnitude of every joint's reaction (N), its torque where it carries one (N m), and the drivers' effort."""
     over = horizon(motion)
     weak, slack = NOISE * force_scale(motion), NOISE * torque_scale(motion)
-    forces = [(name, np.hypot(joint.fx, joint.fy), colour(i)) for i, (name, joint) in enumerate(motion.joints.items())]
+    forces = [(n, np.hypot(joint.fx, joint.fy), ink_of(motion, joint.bodies)) for n, joint in motion.joints.items()]
     torques = [
-        (name, np.asarray(joint.torque), colour(i))
-        for i, (name, joint) in enumerate(motion.joints.items())
+        (name, np.asarray(joint.torque), ink_of(motion, joint.bodies))
+        for name, joint in motion.joints.items()
         if np.abs(joint.torque).max() > slack
     ]
     turning, pushing = [], []
-    for i, (name, driver) in enumerate(motion.drivers.items()):
-        (turning if "angle" in driver.kind else pushing).append((name, np.asarray(driver.effort), colour(i)))
+    for name, driver in motion.drivers.items():
+        panel = turning if driver.effort_unit == "N m" else pushing
+        panel.append((name, np.asarray(driver.effort), ink_of(motion, driver.bodies or ())))
     panels = [
-        ("reaction force (N)", forces),
-        ("reaction torque (N m)", torques),
-        ("driver torque (N m)", turning),
-        ("driver force (N)", pushing),
+        ("reaction force", "N", forces),
+        ("reaction torque", "N m", torques),
+        ("driver torque", "N m", turning),
+        ("driver force", "N", pushing),
     ]
-    panels = [(label, lines) for label, lines in panels if lines]
+    panels = [panel for panel in panels if panel[2]]
     figure = page(
         motion.mechanism,
         "what the joints carry",
         "magnitude of each joint's reaction, and what the driver must give",
     )
-    for axes, (label, lines) in zip(rows(figure, len(panels)), panels, strict=True):
-        draw(axes, over, label, lines, floor=slack if "N m" in label else weak)
+    for axes, (words, unit, lines) in zip(rows(figure, len(panels)), panels, strict=True):
+        draw(axes, over, words, unit, lines, floor=slack if unit == "N m" else weak)
     over.dress(figure.axes[-1])
     return figure
 
@@ -53,29 +59,30 @@ def forces(motion: Motion) -> Figure:
     over = horizon(motion)
     weak, slack = NOISE * force_scale(motion), NOISE * torque_scale(motion)
     pushing, turning, giving = [], [], []
-    for i, (name, force) in enumerate(motion.forces.items()):
+    for name, force in motion.forces.items():
+        ink = acting_on(motion, name)
         if force.effort is not None:
-            (turning if force.measures == "angle" else pushing).append((name, np.asarray(force.effort), colour(i)))
+            (turning if force.effort_unit == "N m" else pushing).append((name, np.asarray(force.effort), ink))
         elif len(force.actions) == 1:
             sizes = np.hypot(force.actions[0].fx, force.actions[0].fy)
-            pushing.append((f"|{name}|", sizes, colour(i)))
-        giving.append((name, np.asarray(force.power), colour(i)))
-    for i, (name, contact) in enumerate(motion.contacts.items(), len(motion.forces)):
-        of_angle = "angle" in contact.kind or contact.kind == "one_way"
-        (turning if of_angle else pushing).append((name, np.asarray(contact.normal), colour(i)))
+            pushing.append((f"|{name}|", sizes, ink))
+        giving.append((name, np.asarray(force.power), ink))
+    for name, contact in motion.contacts.items():
+        panel = turning if contact.effort_unit == "N m" else pushing
+        panel.append((name, np.asarray(contact.normal), ink_of(motion, contact.bodies)))
     panels = [
-        ("force (N)", pushing, weak),
-        ("torque (N m)", turning, slack),
-        ("power (W)", giving, power_floor(motion)),
+        ("force", "N", pushing, weak),
+        ("torque", "N m", turning, slack),
+        ("power", "W", giving, power_floor(motion)),
     ]
-    panels = [panel for panel in panels if panel[1]]
+    panels = [panel for panel in panels if panel[2]]
     figure = page(
         motion.mechanism,
         "what the forces do",
         "positive where it makes its length, angle or gap grow; power: what it gives to the motion",
     )
-    for axes, (label, lines, floor) in zip(rows(figure, len(panels)), panels, strict=True):
-        draw(axes, over, label, lines, floor=floor)
+    for axes, (words, unit, lines, floor) in zip(rows(figure, len(panels)), panels, strict=True):
+        draw(axes, over, words, unit, lines, floor=floor)
     over.dress(figure.axes[-1])
     return figure
 
@@ -83,14 +90,13 @@ def forces(motion: Motion) -> Figure:
 def hodographs(motion: Motion) -> Figure:
     """The tip of each joint's reaction vector (N) over the motion, drawn from the origin; the dot is the start."""
     weak = NOISE * force_scale(motion)
-    largest = sorted(
-        motion.joints, key=lambda name: -float(np.hypot(motion.joints[name].fx, motion.joints[name].fy).max())
-    )
+    sizes = {name: float(np.hypot(joint.fx, joint.fy).max()) for name, joint in motion.joints.items()}
+    largest = sorted((name for name in sizes if sizes[name] > weak), key=lambda name: -sizes[name]) or list(sizes)
     shown = [name for name in motion.joints if name in largest[:PANELS]]
     figure = page(
         motion.mechanism,
         "reactions by direction",
-        "tip of the force on the joint's second body, world axes, in N; the dot marks the start, the arrow the largest",
+        "tip of the force on the joint's second body, world axes; the dot marks the start, the arrow the largest",
     )
     columns = min(len(shown), max(3, math.ceil(math.sqrt(len(shown)))) if len(shown) != 4 else 2)
     grid = figure.subplots(math.ceil(len(shown) / columns), columns, squeeze=False).ravel()
@@ -98,7 +104,7 @@ def hodographs(motion: Motion) -> Figure:
     for axes, name in zip(grid, shown, strict=False):
         joint = motion.joints[name]
         fx, fy = without_noise(np.asarray(joint.fx), weak), without_noise(np.asarray(joint.fy), weak)
-        ink = colour(list(motion.joints).index(name))
+        ink = ink_of(motion, joint.bodies)
         top = int(np.hypot(fx, fy).argmax())
         axes.axhline(0, color="#9aa3ab", linewidth=0.8, zorder=1)
         axes.axvline(0, color="#9aa3ab", linewidth=0.8, zorder=1)
@@ -111,17 +117,21 @@ def hodographs(motion: Motion) -> Figure:
             arrowprops={"arrowstyle": "-|>", "color": INK, "linewidth": 1.1, "shrinkA": 0, "shrinkB": 0, "zorder": 1.5},
             zorder=1.5,
         )
+        head, peak = f"{name}: {joint.bodies[0]} on {joint.bodies[1]}", f"at most {written(sizes[name], 'N')}"
+        room = axes.get_position().width * SIZE[0] * 72 / (LETTER * TITLE)
         axes.set_title(
-            f"{name}: {joint.bodies[0]} on {joint.bodies[1]}, at most {math.hypot(fx[top], fy[top]):.3g} N",
-            fontsize=10,
-            loc="left",
-            color=ink,
-        )
+            f"{head}, {peak}" if len(head) + len(peak) + 2 <= room else f"{_within(head, room)}\n{peak}",
+            fontsize=TITLE, loc="left", color=ink,
+        )  # fmt: skip
         axes.set_aspect("equal", adjustable="datalim")
-        axes.locator_params(nbins=6)
         axes.margins(0.08)
-        axes.set_xlabel("fx (N)", labelpad=1)
-        axes.set_ylabel("fy (N)", labelpad=1)
+        dress_plane(axes, ("fx", "fy"), "N", (6, 6))
+        axes.xaxis.labelpad = axes.yaxis.labelpad = 1
     for axes in grid[len(shown) :]:
         axes.set_visible(False)
     return figure
+
+
+def _within(text: str, room: float) -> str:
+    """As many letters as there is room for."""
+    return text if len(text) <= room else f"{text[: max(int(room) - 1, 1)]}…"

@@ -6,11 +6,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from render.plots.labels import Labels
-from render.plots.style import FAINT, INK, QUIET, colour, page
+from render.plots.measures import dress_plane
+from render.plots.style import FAINT, INK, QUIET, page
 from shared.contract import Motion
+from shared.contract.quantity import written
 from shared.contract.skeleton import Skeleton, Stroke
 
 WAY = "#c3c9cf"
@@ -40,10 +41,6 @@ def path(motion: Motion, skeleton: Skeleton) -> Figure:
     axes = figure.add_axes((0.075, 0.085, 0.9, 0.775))
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.06)
-    axes.xaxis.set_major_locator(MaxNLocator(nbins=15, steps=[1, 2, 5, 10]))
-    axes.yaxis.set_major_locator(MaxNLocator(nbins=9, steps=[1, 2, 5, 10]))
-    axes.set_xlabel("x (m)")
-    axes.set_ylabel("y (m)")
     labels = Labels(axes)
     for joint in motion.joints.values():
         axes.plot(joint.x, joint.y, color=WAY, linewidth=0.9, zorder=1)
@@ -60,6 +57,7 @@ def path(motion: Motion, skeleton: Skeleton) -> Figure:
         labels.add(
             name.text, name.at, _ink(name.ink, motion), weight="normal" if of_body else "bold", clearance=name.clearance
         )
+    dress_plane(axes)
     labels.write()
     return figure
 
@@ -67,7 +65,7 @@ def path(motion: Motion, skeleton: Skeleton) -> Figure:
 def _span(motion: Motion) -> str:
     whole = motion.time[-1] - motion.time[0]
     turns = whole / motion.period if motion.period else None
-    return f"{whole:.3g} s" + (" (one period)" if turns and abs(turns - 1) < 1e-9 else "")
+    return written(whole, "s") + (" (one period)" if turns and abs(turns - 1) < 1e-9 else "")
 
 
 def _corners(stroke: Stroke) -> np.ndarray:
@@ -110,5 +108,5 @@ def _ink(role: str, motion: Motion) -> str:
     """The colour that a role of skeleton.json has on this page; a body's is that of its other plots."""
     body = role.removeprefix("body:")
     if body != role and body in motion.bodies:
-        return colour(list(motion.bodies).index(body))
+        return motion.bodies[body].colour
     return INKS.get(role, INK)

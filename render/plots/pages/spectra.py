@@ -10,11 +10,13 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
 from render.plots.horizon import horizon
+from render.plots.measures import dress_axis
 from render.plots.pages.rates import draw
 from render.plots.quantities import Quantity, quantity
 from render.plots.spectrum import Spectrum, spectrum
-from render.plots.style import INK, PALETTE, QUIET, page
+from render.plots.style import INK, PARTS, QUIET, page
 from shared.contract import Motion
+from shared.contract.quantity import figures, labelled, written
 
 SEEN = 1e-3
 """Of the largest amplitude: the highest order that reaches it is the last one shown."""
@@ -40,12 +42,12 @@ def spectrum_page(motion: Motion, name: str) -> Figure:
     upper, lower = figure.subplots(2, 1)
     figure.subplots_adjust(left=0.095, right=0.885, top=0.855, bottom=0.085, hspace=0.34)
     figure.align_ylabels([upper, lower])
-    inks = dict(zip(what.components, PALETTE if len(what.components) > 1 else (INK,), strict=False))
-    label = f"{what.symbol} ({what.unit})"
+    inks = dict(zip(what.components, PARTS if len(what.components) > 1 else (INK,), strict=False))
     draw(
         upper,
         over,
-        label,
+        what.symbol,
+        what.unit,
         [(text, values, inks[text]) for text, values in zip(what.components, what.rows.T, strict=True)],
     )
     over.dress(upper)
@@ -53,17 +55,17 @@ def spectrum_page(motion: Motion, name: str) -> Figure:
 
 
 def _amplitudes(figure: Figure, axes: Axes, what: Quantity, found: Spectrum, inks: Mapping[str, str]) -> Figure:
-    axes.set_ylabel(f"amplitude ({what.unit})")
     if found.harmonic:
         stems(axes, found, found.amplitudes, list(inks.values()), list(inks))
-        axes.set_xlabel(f"order of the {found.order_of} (order 1 is {found.base:.4g} Hz)")
+        axes.set_xlabel(f"order of the {found.order_of}; order 1 is {written(found.base, 'Hz', 4)}")
     else:
         for column, (text, ink) in enumerate(inks.items()):
             axes.plot(found.at[1:], found.amplitudes[1:, column], color=ink, label=text)
         last = shown_orders(found)
         axes.set_xlim(0.0, found.at[min(last, len(found.at) - 1)])
         axes.set_ylim(bottom=0.0)
-        axes.set_xlabel(f"frequency (Hz); resolved to {2 * found.base:.2g} Hz")
+        axes.set_xlabel(f"{labelled('frequency', 'Hz')}; resolved to {written(2 * found.base, 'Hz', 2)}")
+    dress_axis(axes.yaxis, "amplitude", what.unit)
     return figure
 
 
@@ -86,7 +88,7 @@ def stems(axes: Axes, found: Spectrum, amplitudes: np.ndarray, inks: list[str], 
         for x, height in zip(at + aside, heights, strict=True):
             if height > NUMBERED * largest and len(at) <= ROOMY:
                 axes.annotate(
-                    f"{height:.3g}", (float(x), float(height)), (0, 5), textcoords="offset points", ha="center",
+                    figures(height, 3), (float(x), float(height)), (0, 5), textcoords="offset points", ha="center",
                     fontsize=9, color=ink,
                 )  # fmt: skip
     axes.set_xlim(at[0] - 0.7 * step, at[-1] + 0.7 * step)

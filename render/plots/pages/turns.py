@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MultipleLocator
 
 from render.crank import Crank, crank_of
 from render.magnitudes import NOISE, force_scale, speed_scale, without_noise
-from render.plots.style import PALETTE, page, rows
+from render.plots.measures import dress_axis
+from render.plots.style import page, rows
 from shared.contract import Motion
 
 STILL = 1e-9
@@ -18,8 +18,8 @@ TURN = 2 * np.pi
 EARLIER = "#b9c1c8"
 MOST = 30
 """Turns that are drawn: the last ones."""
-Panel = tuple[str, np.ndarray]
-"""Label, values."""
+Panel = tuple[str, str, np.ndarray, str]
+"""Words, unit, values, colour."""
 
 
 def turns(motion: Motion) -> Figure:
@@ -34,15 +34,13 @@ def turns(motion: Motion) -> Figure:
     forwards = bool(theta[-1] > theta[crank.first])
     angle = (theta if forwards else -theta)[crank.first :]
     panels = _panels(motion, crank)
-    for axes, (label, values), ink in zip(rows(figure, len(panels)), panels, PALETTE, strict=False):
-        axes.set_ylabel(label)
+    for axes, (words, unit, values, ink) in zip(rows(figure, len(panels)), panels, strict=True):
         _draw(axes, angle, values[crank.first :], ink)
         axes.margins(y=0.08)
-        axes.locator_params(axis="y", nbins=5)
+        dress_axis(axes.yaxis, words, unit)
     lowest = figure.axes[-1]
     lowest.set_xlim(0.0, 360.0)
-    lowest.xaxis.set_major_locator(MultipleLocator(30.0))
-    lowest.set_xlabel(f"{crank.body} angle (deg{'' if forwards else ', clockwise'})")
+    dress_axis(lowest.xaxis, f"{crank.body} angle{'' if forwards else ', clockwise'}", "°", 9)
     return figure
 
 
@@ -74,24 +72,22 @@ def _piece(
 def _panels(motion: Motion, crank: Crank) -> list[Panel]:
     """(T,) each."""
     body, fastest = motion.bodies[crank.body], speed_scale(motion)
-    panels = [("speed (rad/s)", np.asarray(body.omega))]
+    panels = [("speed", "rad/s", np.asarray(body.omega), body.colour)]
     follower = _follower(motion, crank.body)
     if follower is not None:
         name, moves = follower, motion.bodies[follower]
         if np.ptp(moves.theta) > STILL:
-            label, values, floor = f"{name} (rad/s²)", np.asarray(moves.alpha), NOISE * fastest**2
+            unit, values, floor = "rad/s²", np.asarray(moves.alpha), NOISE * fastest**2
         else:
             field = "ax" if np.ptp(moves.x) >= np.ptp(moves.y) else "ay"
-            label, values = f"{name} {field} (m/s²)", np.asarray(getattr(moves, field))
+            unit, values, name = "m/s²", np.asarray(getattr(moves, field)), f"{name} {field}"
             floor = NOISE * float(np.abs(values).max())
-        panels.append((label, without_noise(values, floor)))
+        panels.append((name, unit, without_noise(values, floor), moves.colour))
     bearing = next(
-        joint
-        for joint in motion.joints.values()
-        if joint.kind == "revolute" and set(joint.bodies) == {"ground", crank.body}
+        joint for joint in motion.joints.values() if joint.pair == "pin" and set(joint.bodies) == {"ground", crank.body}
     )
     pull = without_noise(np.hypot(bearing.fx, bearing.fy), NOISE * force_scale(motion))
-    return [*panels, ("bearing force (N)", pull)]
+    return [*panels, ("bearing force", "N", pull, body.colour)]
 
 
 def _follower(motion: Motion, crank: str) -> str | None:

@@ -22,7 +22,7 @@ from mbsd.synthesis.designs import Designs
 from mbsd.synthesis.varied import Varied
 from shared.stage.errors import UserError
 from studio.live.child.author import Author
-from studio.live.numbers import numbers_of
+from studio.live.numbers import in_digits, numbers_of
 
 Places = Callable[[np.ndarray], np.ndarray]
 """Numbers (n, k) in, places (n, 2) out (m); NaN where the links do not close."""
@@ -70,7 +70,7 @@ def dragged(
         return np.where(found.closes[:, None], found.path[:, -1], np.nan)
 
     x = _nearest(places, designs.ready.packed.size, start, size, delta, np.asarray(to, float))
-    return values | {name: float(value) for name, value in zip(names, x, strict=True)}
+    return values | _found(names, start, x)
 
 
 def _at_start(
@@ -98,7 +98,13 @@ def _at_start(
     names, start, delta = [name for name, one in zip(names, moving, strict=True) if one], start[moving], delta[moving]
     size = np.where(start == 0, max(float(np.abs(start).max()), extent), np.abs(start))
     x = _nearest(places, extent, start, size, delta, np.asarray(to, float))
-    return values | {name: float(value) for name, value in zip(names, x, strict=True)}
+    return values | _found(names, start, x)
+
+
+def _found(names: list[str], start: np.ndarray, x: np.ndarray) -> dict[str, float]:
+    """The numbers that have changed, in as many digits as are written."""
+    changed = np.flatnonzero(np.abs(x - start) > 1e-9 * np.abs(start))
+    return in_digits({names[k]: float(x[k]) for k in changed})
 
 
 def _start_place(author: Author, values: dict[str, float], thing: dict[str, str]) -> np.ndarray:

@@ -10,10 +10,10 @@ from mbsd import Mechanism, MechanismError, fit_path
 from shared.stage.errors import UserError
 from studio.live.child.author import Author
 from studio.live.child.dragging import lengths
-from studio.live.numbers import numbers_of
+from studio.live.numbers import in_digits, numbers_of
 
 PERIOD = 0.1
-"""Seconds between two words on how far it is."""
+"""Seconds between two words on how far it is; the last word always comes."""
 
 
 def fitted(author: Author, request: dict[str, Any], reply: Callable[..., None]) -> None:
@@ -27,17 +27,22 @@ def fitted(author: Author, request: dict[str, Any], reply: Callable[..., None]) 
     p = author.changed(values)
     m = author.build(p)
     vary = request.get("vary") or _all_lengths(author, values)
-    last = 0.0
+    last, leader = 0.0, None
 
     def build(**numbers: Any) -> Mechanism:
         return author.build(author.changed(values | numbers))
 
     def progress(done: float, error: float) -> None:
-        nonlocal last
+        nonlocal last, leader
         now = time.monotonic()
-        if now - last >= PERIOD:
+        if done >= 1.0 or now - last >= PERIOD:
             last = now
-            reply({"kind": "progress", "done": done, "error": error})
+            reply({"kind": "progress", "done": done, "error": error, "values": leader})
+            leader = None
+
+    def better(found: dict[str, Any], _: float) -> None:
+        nonlocal leader
+        leader = values | in_digits(found)
 
     try:
         fit = fit_path(
@@ -46,10 +51,11 @@ def fitted(author: Author, request: dict[str, Any], reply: Callable[..., None]) 
             grashof=bool(request.get("grashof")),
             least_transmission=float(request.get("least_transmission") or 0.0), starts=int(request.get("starts") or 2),
             seed=int(request.get("seed") or 0), generations=int(request.get("generations") or 60), progress=progress,
+            better=better,
         )  # fmt: skip
     except MechanismError as error:
         raise UserError(str(error)) from error
-    found = values | {name: value for name, value in fit.values.items() if isinstance(value, float)}
+    found = values | in_digits(fit.values)
     reply(
         {
             "kind": "fitted",

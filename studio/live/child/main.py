@@ -3,6 +3,7 @@
     {"do": "open"}                                 -> motion, with numbers and files
     {"do": "set", "values": {...}}                 -> motion
     {"do": "solid"}                                -> solid: of the payload, what the parts change
+    {"do": "describe"}                             -> described: label and unit of each number of Params
     {"do": "drag", "values", "thing", "time", "to"} -> motion, with the values that put the thing there
     {"do": "fit", ...}                             -> progress ..., fitted
     {"do": "numbers"}, source of a mechanism.py    -> numbers, that it would have
@@ -23,6 +24,7 @@ from shared.stage.errors import UserError
 from studio.live.child import spoken
 from studio.live.child.author import Answer, Author
 from studio.live.child.candidate import numbers_with
+from studio.live.child.described import described
 from studio.live.child.dragging import dragged
 from studio.live.child.fitting import fitted
 from studio.live.frames import framed, unframed
@@ -78,6 +80,10 @@ def _set(author: Author, request: dict[str, Any], reply: Send) -> None:
     _motion(author.answer(request["values"], not request.get("final"), bool(request.get("arrows"))), reply)
 
 
+def _describe(author: Author, request: dict[str, Any], reply: Send) -> None:
+    reply({"kind": "described", "words": described(author)})
+
+
 def _solid(author: Author, request: dict[str, Any], reply: Send) -> None:
     author.answer({})
     found = author.solid()
@@ -103,5 +109,6 @@ HANDLERS: dict[str, Callable[[Author, dict[str, Any], Send], None]] = {
     "set": _set,
     "drag": _drag,
     "solid": _solid,
+    "describe": _describe,
     "fit": _fit,
 }

@@ -17,7 +17,7 @@ from studio.live.processes.trees import end_with_below
 from studio.live.processes.warm_process import Failed, Link, ending
 
 Heard = Callable[["Child", dict[str, Any], bytes], None]
-ANSWERS = ("motion", "error", "fitted", "solid", "numbers")
+ANSWERS = ("motion", "error", "fitted", "solid", "numbers", "described")
 """Kinds of messages that end a request."""
 MOMENT = 1.0
 """Seconds between the end of what a child says and its keeper's word on it."""

@@ -35,12 +35,14 @@ class Options:
     """Whether it begins on a disk that is surely too small."""
 
 
-def options(only: str, preset: str, show: str, spectra: str, watts: str, python: str, anyway: str = "") -> Options:
+def options(
+    only: str, preset: str, show: str, spectra: str, watts: str, python: str, anyway: str = "", aspect: str = ""
+) -> Options:
     """Options from words as the Makefile has them. Raises UserError naming the word that cannot be."""
     wanted = only_of(only)
     return Options(
         names=wanted or tuple(mechanism_names()),
-        preset=preset_named(preset),
+        preset=preset_named(preset, aspect),
         show=show,
         spectra=spectra,
         watts=watts_of(watts),

@@ -45,7 +45,7 @@ class Frames:
                 return self._measured()
             from render.frames.frames import Pictures  # with numpy, which a run that has nothing to do never needs
 
-            film = read_film(out, show)
+            film = read_film(out, show, self.preset.aspect)
             pictures = Pictures(film, self.preset)
             self.keys = frozenset(pictures.key(frame) for frame in range(film.clock.frames))
         except (UserError, OSError, ValueError):

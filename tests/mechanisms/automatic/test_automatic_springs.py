@@ -129,6 +129,9 @@ GASES = {
     "gas": lambda m, i, j: m.gas("gas", i, j, 1e-3, 1.1e5, 0.2),
     "gas_cycle": lambda m, i, j: m.gas_cycle("gas", i, j, "block", four_stroke(3.0), 0.04, stroke=0.3, top=0.05),
     "gas_strut": lambda m, i, j: m.gas_strut("gas", i, j, 30.0, 1.3, 0.25, 0.15, extension_damping=20.0),
+    "hydraulic_cylinder": lambda m, i, j: m.hydraulic_cylinder(
+        "gas", i, j, bore=0.02, rod=0.012, stroke=0.15, retracted=0.12, supply=2e6, valve=0.01, rated_flow=1e-4
+    ),
 }
 
 
@@ -140,6 +143,7 @@ GASES = {
         ("gas_cycle", 0.0, True),
         ("gas_cycle", 0.02, False),
         ("gas_strut", 0.02, True),
+        ("hydraulic_cylinder", 0.02, True),
     ],
 )
 def test_gas_has_a_cylinder_where_its_piston_is_on_its_axis(gas: str, aside: float, held: bool) -> None:

@@ -11,6 +11,7 @@ from mechanisms.inverse_slider_crank import mechanism as inverse
 from mechanisms.stages.solve import stage as solve_stage
 from mechanisms.stages.solve.motion_file import to_motion
 from render.report.loads import load_section
+from shared.contract.quantity import written
 
 
 def test_inverse_slider_crank_torque_makes_the_wished_motion() -> None:
@@ -35,7 +36,7 @@ def test_the_line_and_the_report_tell_the_torque_and_not_the_driver_that_gives_n
     sol = inverse.motion(m, p)
     said = solve_stage._summary(sol)
     assert "wish" not in said
-    assert said.endswith(f"motor up to {abs(sol.force('motor').effort).max():.3g} N m")
+    assert said.endswith(f"motor up to {written(float(abs(sol.force('motor').effort).max()), 'N m')}")
     given = dict.fromkeys(("crank", "rod", "slider"), "mechanism")
     motion = to_motion(sol, None, "0" * 64, {}, given)  # pyright: ignore[reportArgumentType]
     lines = "\n".join(load_section(motion))

@@ -19,7 +19,7 @@ from render.film.tubes.trails import MOST_RINGS, STRAY, Trails
 from render.frames.frames import Pictures
 from render.presets import PRESETS
 from shared.contract import Motion, read_motion, read_parts
-from shared.contract.shot import Shot, Trail, read_shot, write_shot
+from shared.contract.shot import Camera, Shot, Trail, read_shot, write_shot
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
 from tests.models.motions import bouncing_ball, four_bar_motion
@@ -174,7 +174,7 @@ def test_the_tube_of_a_point_that_stands_keeps_its_direction() -> None:
 
 
 def test_held_frames_are_one_picture_and_showings_share_all(out_root: Path) -> None:
-    film = ball_film(out_root, Shot(trails=(Trail(point="P"),)))
+    film = ball_film(out_root, Shot(camera=Camera(follow=False), trails=(Trail(point="P"),)))
     made = Pictures(film, PRESETS["draft"])
     clock = film.clock
     held = {made.key(frame) for frame in range(clock.moving, clock.frames)}

@@ -11,15 +11,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from render.film.arrows import writing
+from render.film.composing import room
 from render.film.film import Film
 from render.film.framing import NEAREST, SENSOR, CameraPose, axes, depth_of_field, fit, project
 from render.film.solids import prism, read_vertices, swept
-from shared.contract import read_motion, read_parts
+from render.presets import ASPECTS
+from shared.contract import Mount, mounted, read_motion, read_parts
 from shared.contract.shot import Camera, Shot, Title
 from shared.stage.errors import UserError
 from tests.render import film_fixture
 
+MOUNTS = [mounted((0.0, 0.0)), mounted((0.0, -9.81)), mounted((3.0, 4.0), "wall")]
+"""On a desk, on a stand, and at a wall in a world that is turned."""
 CLOUDS = arrays(float, (12, 3), elements=st.floats(-0.2, 0.2))
 ANGLES = st.tuples(st.floats(-3, 3), st.floats(0.1, 1.5))
 
@@ -48,29 +51,46 @@ def test_what_is_right_up_and_near_lands_right_up():
     assert project(camera, np.array([[0.5, 0.0, 0.25]]), 160, 90)[0] == pytest.approx([120, 25])
 
 
+@pytest.mark.parametrize("mount", MOUNTS)
 @pytest.mark.parametrize("above", [0.0, 0.2])
 @pytest.mark.parametrize("orbit", [0.0, 14.0])
-def test_every_body_stays_in_the_frame_over_the_whole_film(
-    out_root: Path, orbit: float, above: float, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("shape", [(16, 9), (9, 16)])
+def test_every_body_that_moves_stays_in_the_frame_over_the_whole_film_and_fills_it(
+    out_root: Path, orbit: float, above: float, mount: Mount, shape: tuple[int, int], monkeypatch: pytest.MonkeyPatch
 ):
-    """Under what stays empty ``above``, where something is written."""
-    monkeypatch.setattr(writing, "ABOVE", (above,))
-    monkeypatch.setattr(Film, "_is_readable", lambda *of: above == 0)
+    """Within what stays empty ``above`` and below, where something is written. The base may leave it."""
+    monkeypatch.setattr(room, "PARTS", (above,))
     shot = Shot(camera=Camera(orbit=orbit, margin=0.08), seconds_per_turn=1.0, title=Title())
-    out = film_fixture.write(shot)
-    film = Film(read_motion(out.motion), read_parts(out.parts), shot, out.parts_folder)
+    out = film_fixture.write(shot, mount=mount)
+    film = Film(read_motion(out.motion), read_parts(out.parts), shot, out.parts_folder, shape[0] / shape[1])
     extremes = []
     for frame in range(30):
         state = film.state(frame)
-        for body, solids in film.parts.bodies.items():
-            for piece in solids.pieces.values():
+        for body in film.motion.bodies:
+            for piece in film.parts.bodies[body].pieces.values():
                 corners = swept(read_vertices(out.parts_folder / piece.stl), np.array([state.bodies[body]]))
-                extremes.append(project(state.camera, corners, 1280, 720) / [1280, 720])
+                extremes.append(project(state.camera, corners, *shape) / shape)
     pixels = np.concatenate(extremes)
     assert pixels.min() >= 0.08 - 2e-3
     assert pixels.max() <= 0.92 + 2e-3
     assert pixels[:, 1].min() >= 0.08 + above - 2e-3
-    assert (np.ptp(pixels, axis=0) / (1, 1 - above)).max() > 0.65  # and not lost in it
+    assert pixels[:, 1].max() <= 0.92 - above + 2e-3
+    left = (0.84 - 2 * above) / 0.84  # of the height, by words and a legend
+    assert (np.ptp(pixels, axis=0) / (1, left)).max() > (0.65 if orbit else 0.8)
+
+
+@pytest.mark.parametrize("aspect", ["16:9", "1:1", "4:5", "9:16"])
+@given(points=CLOUDS, where=ANGLES, margin=st.floats(0, 0.3))
+def test_a_camera_holds_all_points_in_a_picture_of_any_shape(
+    aspect: str, points: np.ndarray, where: tuple[float, float], margin: float
+):
+    points = np.concatenate([points, [[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0.05]]])
+    shape = ASPECTS[aspect]
+    position, _ = fit(points, *where, 55.0, margin, (0.0, 0.0), shape[0] / shape[1])
+    camera = CameraPose(position=tuple(position), azimuth=where[0], elevation=where[1], lens=55.0, focus=1.0, fstop=0.0)
+    parts = project(camera, points, *shape) / shape
+    assert parts.min() >= margin - 1e-6
+    assert parts.max() <= 1 - margin + 1e-6
 
 
 def test_depth_of_field_blurs_the_nearest_and_the_farthest_part_alike():
@@ -83,11 +103,41 @@ def test_depth_of_field_blurs_the_nearest_and_the_farthest_part_alike():
     assert depth_of_field(near, far, lens, 0.0)[1] == 0.0
 
 
-def test_axes_are_right_handed():
-    right, up, forward = axes(0.4, 0.7)
+@pytest.mark.parametrize("mount", MOUNTS)
+def test_axes_are_right_handed(mount: Mount):
+    right, up, forward = axes(0.4, 0.7, mount.up)
     assert np.cross(right, forward) == pytest.approx(up)
     assert np.linalg.norm([right, up, forward], axis=1) == pytest.approx([1, 1, 1])
-    assert forward[2] == pytest.approx(-math.sin(0.7))
+    assert forward @ mount.up == pytest.approx(-math.sin(0.7))
+    assert right @ mount.up == pytest.approx(0.0, abs=1e-15)
+
+
+@given(st.floats(-math.pi, math.pi))
+def test_a_world_that_is_turned_in_its_plane_has_the_same_picture(angle: float):
+    """With gravity, bodies and camera turned by the same angle about z, what stands is seen as before."""
+    c, s = math.cos(angle), math.sin(angle)
+    turned = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    mount = mounted((9.81 * s, -9.81 * c), "stand")
+    assert mount.up == pytest.approx(tuple(turned @ [0.0, 1.0, 0.0]))
+    assert axes(0.3, 0.2, mount.up) @ turned == pytest.approx(axes(0.3, 0.2, (0.0, 1.0, 0.0)))
+
+
+def test_a_plane_that_stands_is_seen_from_in_front_and_its_floor_is_below(out_root: Path):
+    """y of the world is up in the picture, x to the right; the floor is under the lowest y, z comes towards one."""
+    shot = Shot(camera=Camera(azimuth=0.0, elevation=5.0))
+    out = film_fixture.write(shot, mount=mounted((0.0, -9.81)))
+    film = Film(read_motion(out.motion), read_parts(out.parts), shot, out.parts_folder)
+    pose = film.camera(0)
+    middle, right, up, near = project(
+        pose, film.space.middle + np.array([[0, 0, 0], [0.01, 0, 0], [0, 0.01, 0], [0, 0, 0.01]]), 1280, 720
+    )
+    assert right[0] > middle[0] + 1
+    assert up[1] < middle[1] - 1
+    assert near[1] > middle[1]
+    assert pose.position[2] > film.space.all[:, 2].max()
+    studio = film.scene.studio
+    assert studio.floor == pytest.approx(film.space.all[:, 1].min())
+    assert studio.centre == pytest.approx((film.space.middle[0], -film.space.middle[2], film.space.middle[1]))
 
 
 @given(arrays(float, (30, 3), elements=st.floats(-1, 1)))

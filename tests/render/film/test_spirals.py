@@ -34,6 +34,7 @@ def with_spring(motion: Motion, bodies: tuple[str, str] = ("ground", "rocker"), 
     force = ForceMotion(
         kind="torsion_spring", actions=acts, several=False, measures="angle", value=zero, rate=zero, effort=zero,
         normal=None, power=zero, potential=[0.1 if stiff else 0.0] * len(zero), shape=shape,
+        look="spiral" if stiff else "",
     )  # fmt: skip
     return msgspec.structs.replace(motion, forces={"spring": force})
 

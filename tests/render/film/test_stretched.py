@@ -34,6 +34,7 @@ def force(motion: Motion, stiff: bool) -> ForceMotion:
         actions=[Action(body="rocker", x=end[:, 0].tolist(), y=end[:, 1].tolist(), fx=zero, fy=zero, torque=zero)],
         several=False, measures="length", value=value.tolist(), rate=zero, effort=zero, normal=None, power=zero,
         potential=[float(stiff)] * len(value), shape=Shape(bodies=("ground", "rocker"), markers=MARKERS),
+        look="coil" if stiff else "cylinder",
     )  # fmt: skip
 
 
@@ -44,7 +45,7 @@ def film(stiff: bool = True, rope: float | None = None) -> Film:
     shape = Shape(bodies=("ground", "rocker"), markers=MARKERS, length=rope)
     contact = ContactMotion(
         kind="rope", bodies=("ground", "rocker"), x=zero, y=zero, fx=zero, fy=zero, torque=zero, gap=zero, rate=zero,
-        normal=zero, friction=zero, state=["open"] * len(zero), shape=shape,
+        normal=zero, friction=zero, state=["open"] * len(zero), shape=shape, look="cord",
     )  # fmt: skip
     motion = msgspec.structs.replace(
         motion, forces={"spring": force(motion, stiff)}, contacts={} if rope is None else {"rope": contact}

@@ -16,19 +16,22 @@ from render.blender.scene.arcs import FRONT, RINGS, SIDES, faces, vertices
 from render.blender.worker import overlay
 from render.film.arrows import writing
 from render.film.arrows.arcs import APART, FULL_TURN, RADIUS, Arcs
-from render.film.arrows.arrows import COLOURS
 from render.film.arrows.scales import LONGEST, TINY
 from render.film.arrows.torques import Torque, rounding, torques
 from render.film.arrows.vectors import vectors
+from render.film.composing import layout
 from render.film.framing import project
 from render.film.inputs import read_film
 from render.film.scene import ArcSpec, LegendRow, Writing
 from render.frames import still
-from render.presets import Preset
-from shared.contract import Action, DriverMotion, ForceMotion, Motion, Shape
+from render.presets import ASPECT, Preset
+from shared.contract import Action, Acts, DriverMotion, ForceMotion, Motion
 from shared.contract.shot import Shot, Title
+from shared.contract.signals import SIGNALS, rgb
 from tests.models.motions import four_bar_motion
 from tests.render import film_fixture
+
+TORQUE = rgb(SIGNALS["torques"].dark)
 
 TIME = np.linspace(0.0, 1.0, 101)
 SPEC = ArcSpec(name="a", colour=(1, 1, 1), radius=0.02, shaft=0.0012, head=0.0036, point=0.01)
@@ -47,7 +50,7 @@ def with_driver(motion: Motion, **fields: Any) -> Motion:
     return msgspec.structs.replace(motion, drivers={"lift": DriverMotion(**blank | fields)})
 
 
-def with_force(motion: Motion, torque: float, bodies: tuple[str, ...], kind: str = "torsion_spring") -> Motion:
+def with_force(motion: Motion, torque: float, bodies: tuple[str, ...], drives: bool = False) -> Motion:
     """The four-bar with a torque on these bodies at D, the opposite on the first of two."""
     d, count = motion.joints["D"], len(motion.time)
     zero = [0.0] * count
@@ -56,21 +59,20 @@ def with_force(motion: Motion, torque: float, bodies: tuple[str, ...], kind: str
         for body, sign in zip(bodies, (-1.0, 1.0)[-len(bodies) :], strict=True)
     ]
     force = ForceMotion(
-        kind=kind, actions=actions, several=False, measures="angle", value=zero, rate=zero, effort=[torque] * count,
-        normal=None, power=zero, potential=zero, shape=None,
+        kind="any", actions=actions, several=False, measures="angle", value=zero, rate=zero, effort=[torque] * count,
+        normal=None, power=zero, potential=zero, shape=None, effort_unit="N m", drives=drives,
     )  # fmt: skip
     return msgspec.structs.replace(motion, forces={"spring": force})
 
 
 def test_the_motors_torque_is_drawn_about_the_pin_it_turns():
-    motion = msgspec.structs.replace(four_bar_motion())
-    motion.drivers["motor"].bodies = ("ground", "crank")
+    motion = four_bar_motion()
     [motor] = torques(motion, ("forces",))
     assert motor.name == "motor on crank"
     assert motor.value == pytest.approx(motion.drivers["motor"].effort)
     assert motor.place == pytest.approx(np.zeros((361, 2)))
-    motion.drivers["motor"].bodies = ("crank", "ground")
-    assert torques(motion, ("forces",))[0].value == pytest.approx(-np.array(motion.drivers["motor"].effort))
+    motion.drivers["motor"].actions.reverse()  # of a driver from the crank to ground
+    assert torques(motion, ("forces",))[0].name == "motor on crank"
     assert torques(motion, ("velocities", "accelerations")) == []
 
 
@@ -84,41 +86,18 @@ def test_a_torque_between_two_bodies_is_drawn_once_and_as_the_moving_one_feels_i
     assert (other.name, other.value[0]) == ("spring on rocker", -0.3)
 
 
-def test_a_guide_has_a_torque_and_what_touches_beside_its_marker_has_the_force_alone():
+def test_a_guide_has_a_torque_and_what_acts_beside_its_marker_the_torque_there():
     motion = four_bar_motion()
     count = len(motion.time)
-    for kind, value in (("prismatic", 0.2), ("gear_pair", 0.0)):
-        joint = msgspec.structs.replace(motion.joints["D"], kind=kind, torque=[0.2] * count)
+    beside = Acts(x=[0.3] * count, y=[0.1] * count, torque=[0.0] * count)
+    for acts, value, place in ((None, 0.2, (0.12, 0.0)), (beside, 0.0, (0.3, 0.1))):
+        joint = msgspec.structs.replace(motion.joints["D"], kind="any", pair=None, torque=[0.2] * count, acts=acts)
         changed = msgspec.structs.replace(motion, joints=motion.joints | {"D": joint})
         [at_d] = [torque for torque in torques(changed, ("reactions",)) if torque.name == "D"]
-        assert at_d.value == pytest.approx(np.full(count, value)), kind
-    held = msgspec.structs.replace(
-        motion.joints["D"], kind="geneva", torque=[0.2] * count, fx=[0.0] * count, fy=[0.0] * count
-    )
-    locked = msgspec.structs.replace(motion, joints={"D": held})
-    assert torques(locked, ("reactions",))[0].value == pytest.approx(np.full(count, 0.2))
-
-
-def test_a_distance_driver_pushes_along_its_line_and_a_coordinate_driver_along_its_axis():
-    motion = four_bar_motion()
-    shape = Shape(bodies=("crank", "rocker"), markers=((0.02, 0.0, 0.3), (0.09, 0.0, 0.0)))
-    made = {
-        kind: {
-            vector.name: vector
-            for vector in vectors(with_driver(motion, kind=kind, bodies=("crank", "rocker"), shape=shape), ("forces",))
-            if "lift" in vector.name
-        }
-        for kind in ("distance", "coordinate")
-    }
-    first, second = made["distance"]["lift on crank"], made["distance"]["lift on rocker"]
-    gap = second.place - first.place
-    assert second.value == pytest.approx(2.0 * gap / np.hypot(*gap.T)[:, None])
-    assert first.value == pytest.approx(-second.value)
-    assert second.place == pytest.approx(np.stack([motion.joints["C"].x, motion.joints["C"].y], axis=1), abs=1e-9)
-    axis = np.array(motion.bodies["crank"].theta) + 0.3
-    first, second = made["coordinate"]["lift on crank"], made["coordinate"]["lift on rocker"]
-    assert second.value == pytest.approx(2.0 * np.stack([np.cos(axis), np.sin(axis)], axis=1))
-    assert first.place == pytest.approx(second.place)
+        [push] = [vector for vector in vectors(changed, ("reactions",)) if vector.name == "D"]
+        assert at_d.value == pytest.approx(np.full(count, value))
+        assert at_d.place[0] == pytest.approx(place)
+        assert push.place[0] == pytest.approx(place)
 
 
 def test_the_largest_has_the_full_sweep_tiny_ones_and_rounding_are_left_out():
@@ -179,27 +158,27 @@ def test_the_legend_shows_how_far_an_arc_reaches(tmp_path: Path):
     seen = []
     for sweep in (0.5 * np.pi, np.pi):
         Image.new("RGB", (640, 360), (40, 40, 40)).save(path)
-        row = LegendRow(number="5 N m", words="torques", colour=COLOURS["forces"], sweep=sweep)
-        overlay.lay(path, None, Writing(legend=[row]), "")
-        orange = np.abs(np.asarray(Image.open(path)) - 255 * np.array(COLOURS["forces"])).sum(axis=2) < 40
+        row = LegendRow(number="5 N m", words="torques", colour=TORQUE, sweep=sweep)
+        card = layout.cards([row], layout.box_of([]), ASPECT)["lower right"]
+        overlay.lay(path, None, Writing(legend=[row], card=card), "")
+        orange = np.abs(np.asarray(Image.open(path)) - 255 * np.array(TORQUE)).sum(axis=2) < 40
         seen.append(int(orange.sum()))
     assert 12 < seen[0] < 0.75 * seen[1]
 
 
 def test_the_number_beside_the_title_is_of_what_acts_where_the_drivers_give_nothing():
     shot = Shot(title=Title())
-    idle = with_driver(four_bar_motion(), kind="coordinate", effort=[0.0] * 361)
+    idle = with_driver(four_bar_motion(), kind="any", effort=[0.0] * 361)
     assert writing.number(idle, shot)(0.0).startswith("lift")
-    acting = with_force(idle, 0.3, ("rocker",), "torque")
-    assert writing.number(acting, shot)(0.0) == "spring  0.300 N m"
-    assert writing.number(with_force(four_bar_motion(), 0.3, ("rocker",), "torque"), shot)(0.0).startswith("motor")
+    acting = with_force(idle, 0.3, ("rocker",), True)
+    assert writing.number(acting, shot)(0.0) == "spring  300 mN m"
+    assert writing.number(with_force(four_bar_motion(), 0.3, ("rocker",), True), shot)(0.0).startswith("motor")
 
 
 def test_an_arc_is_drawn_where_it_is(out_root: Path):
     preset = Preset("stamp", 240, 135, 2)
     out = film_fixture.write(Shot(seconds_per_turn=0.4, trails=()))
     motion = four_bar_motion()
-    motion.drivers["motor"].bodies = ("ground", "crank")
     from shared.contract import write_motion
 
     write_motion(out.motion, motion)

@@ -6,19 +6,26 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PIL import Image
+from hypothesis import given
+from hypothesis import strategies as st
+from PIL import Image, ImageFilter
 
-from render.blender.worker import overlay
+from render.blender.worker import overlay, words
 from render.film.arrows import writing
-from render.film.arrows.arrows import COLOURS
 from render.film.clock import Clock
-from render.film.framing import axes, half_width, project
+from render.film.composing import layout, room
+from render.film.framing import axes, half_field, project
 from render.film.inputs import read_film
-from render.film.scene import LegendRow, Writing
+from render.film.scene import ARC, LegendRow, Writing
+from render.letters import width_of
+from render.presets import ASPECT, ASPECTS
 from shared.contract.shot import Camera, Names, Shot, Title, refuse_unknown
+from shared.contract.signals import SIGNALS, rgb
 from shared.stage.errors import UserError
 from tests.models.motions import bouncing_ball, four_bar_motion
 from tests.render import film_fixture
+
+FORCE = rgb(SIGNALS["forces"].dark)
 
 
 def test_titles_and_numbers_that_live():
@@ -30,13 +37,14 @@ def test_titles_and_numbers_that_live():
     effort = motion.drivers["motor"].effort
     said = writing.number(motion, shot)(motion.time[90])
     assert said.startswith("motor  ")
-    assert float(said.split()[1].replace("−", "-")) == pytest.approx(effort[90], abs=5.1e-5)
+    assert float(said.split()[1].replace("−", "-")) == pytest.approx(1000 * effort[90], abs=0.051)
+    assert said.endswith(" mN m")
     point, at = motion.points["P"], motion.time[33]
     speed = float(np.hypot(point.vx[33], point.vy[33]))
     words = writing.number(motion, Shot(title=Title(number="P")))(at).split()
-    assert words[2] == "m/s"
+    assert words[2] == "mm/s"
     assert words[4] == "km/h"
-    assert float(words[1]) == pytest.approx(speed, abs=1e-3)
+    assert float(words[1]) == pytest.approx(1000 * speed, abs=1)
     assert float(words[3]) == pytest.approx(3.6 * speed, abs=1e-2)
     assert writing.number(motion, Shot())(0.0) == ""
     with pytest.raises(UserError, match="motor"):
@@ -46,29 +54,28 @@ def test_titles_and_numbers_that_live():
 def test_the_legend_keeps_clear_of_what_moves_and_then_of_what_stands(out_root: Path):
     film = read_film(film_fixture.write(Shot(seconds_per_turn=0.4)))
     camera, none = film.camera(0), np.zeros((0, 3))
-    wide = 2 * half_width(camera.lens)
+    across, up = half_field(camera.lens)
 
     def seen_at(x: float, y: float) -> np.ndarray:
         """A point that is at these parts of the picture."""
-        sight = np.array([(x - 0.5) * wide, (0.5 - y) * wide * 9 / 16, 1.0])
+        sight = np.array([(2 * x - 1) * across, (1 - 2 * y) * up, 1.0])
         return np.array([camera.position]) + sight @ axes(camera.azimuth, camera.elevation)
 
     left, right = seen_at(0.1, 0.9), seen_at(0.9, 0.9)
     assert project(camera, right, 100, 100 * 9 / 16)[0] == pytest.approx([90, 90 * 9 / 16])
-    places = writing.card(
-        [LegendRow(number="5 N", words="forces", colour=(0, 0, 0), length=0.1, point=0.0)], (0.0, 0.0)
-    )
-    assert writing.emptiest(camera, none, none, places) == "lower left"
-    assert writing.emptiest(camera, left, none, places) == "lower right"
-    assert writing.emptiest(camera, np.concatenate([left, right]), none, places) == "upper right"
-    assert writing.emptiest(camera, none, left, places) == "lower right"
-    assert writing.emptiest(camera, left, np.tile(right, (9, 1)), places) == "upper right"
+    empty = layout.box_of([])
+    small = layout.cards([LegendRow(number="5 N", words="forces", colour=(0, 0, 0), length=0.1)], empty, ASPECT)
+    places = {corner: layout.in_picture(layout.around(card), ASPECT) for corner, card in small.items()}
+
+    def chosen(moving: np.ndarray, standing: np.ndarray) -> str:
+        return room.emptiest([camera], moving, standing, places)
+
+    assert chosen(none, none) == "lower left"
+    assert chosen(left, none) == "lower right"
+    assert chosen(np.concatenate([left, right]), none) == "upper right"
+    assert chosen(none, left) == "lower right"
+    assert chosen(left, np.tile(right, (9, 1))) == "upper right"
     assert len(film.space.standing) > 100
-    rows = 4 * [LegendRow(number="100 mN m", words="torques of joints", colour=(0, 0, 0), length=0.2, point=0.0)]
-    large = writing.card(rows, (0.0, 0.0))
-    assert large["lower left"][2] > places["lower left"][2]
-    assert large["lower left"][1] < places["lower left"][1]
-    assert "upper right" not in writing.card(rows, (0.6, 0.1))  # a title is there
 
 
 def test_the_rate_of_a_simulation_that_is_not_in_real_time_is_always_told():
@@ -78,21 +85,115 @@ def test_the_rate_of_a_simulation_that_is_not_in_real_time_is_always_told():
     assert writing.rate(Clock(motion, Shot(rate=1.0)), Shot(rate=1.0)) == ""
 
 
-def test_the_overlay_writes_its_legend_into_its_corner_alone(tmp_path: Path):
+def test_the_overlay_writes_its_legend_onto_its_card_alone(tmp_path: Path):
     path = tmp_path / "p.png"
     Image.new("RGB", (320, 180), (40, 40, 40)).save(path)
     before = path.read_bytes()
     overlay.lay(path, None, Writing(), "")
     assert path.read_bytes() == before
-    row = LegendRow(number="5 N", words="forces", colour=COLOURS["forces"], length=0.1, point=0.03)
-    overlay.lay(path, None, Writing(legend=[row], corner="lower right"), "")
-    changed = np.abs(np.asarray(Image.open(path)).astype(int) - 40).sum(axis=2) > 6
-    rows, columns = np.nonzero(changed)
-    assert changed.any()
-    assert rows.min() > 120
-    assert columns.min() > 130
-    orange = np.abs(np.asarray(Image.open(path)) - 255 * np.array(COLOURS["forces"])).sum(axis=2) < 12
+    row = LegendRow(number="5 N", words="forces", colour=FORCE, length=0.1, point=0.03)
+    card = layout.cards([row], layout.box_of([]), ASPECT)["lower right"]
+    overlay.lay(path, None, Writing(legend=[row], card=card), "")
+    pixels = np.asarray(Image.open(path)).astype(int)
+    rows, columns = np.nonzero(np.abs(pixels - 40).sum(axis=2) > 6)
+    assert rows.min() >= 180 * card.top - 1
+    assert rows.max() <= 180 * (card.top + card.high) + 1
+    assert columns.min() >= 180 * card.left - 1
+    assert columns.max() <= 180 * (card.left + card.wide) + 1
+    orange = np.abs(pixels - 255 * np.array(FORCE)).sum(axis=2) < 12
     assert 27 <= np.ptp(np.nonzero(orange)[1]) <= 34  # a tenth of the picture
+
+
+WORDS = st.text("abcdefgh IlmW", min_size=1, max_size=60).map(str.strip).filter(bool)
+ROWS = st.lists(
+    st.builds(
+        LegendRow,
+        number=st.sampled_from(["5 N", "100 mN m", "0.05 m/s"]),
+        words=st.sampled_from(["forces", "torques of joints", "accelerations, peaks cut"]),
+        colour=st.just((1.0, 0.5, 0.1)),
+        length=st.floats(0.02, 0.33),
+        sweep=st.sampled_from([0.0, 2.0]),
+    ),
+    max_size=6,
+)
+
+
+@given(st.sampled_from(list(ASPECTS.values())), WORDS, st.lists(WORDS, max_size=2), WORDS | st.just(""), ROWS)
+def test_words_and_legend_neither_overlap_nor_leave_a_picture_of_any_shape(
+    shape: tuple[int, int], title: str, numbers: list[str], rate: str, rows: list[LegendRow]
+):
+    aspect = shape[0] / shape[1]
+    wide, high = layout.sides(aspect)
+    lines = layout.lines(title, numbers, rate, aspect)
+    below = 0.0
+    for line in lines:
+        words = [line.words] if line.words else numbers
+        assert all(line.x + line.size * width_of(word, line.bold) <= wide - layout.EDGE + 1e-9 for word in words)
+        assert line.y >= below
+        below = line.y + 1.2 * line.size
+    assert below <= high / 2
+    assert " ".join(line.words for line in lines if line.bold) == title
+    for card in layout.cards(rows, layout.box_of(lines), aspect).values():
+        right, lower = card.left + card.wide, card.top + card.high
+        assert card.left >= layout.EDGE / 2
+        assert right <= wide - layout.EDGE / 2
+        assert card.top >= layout.EDGE / 2
+        assert lower <= high - layout.EDGE / 2
+        for line in lines:
+            assert card.left >= line.x + line.width or card.top >= line.y + line.size
+        for row in rows:
+            arrow = 2.6 * ARC * card.size if row.sweep else row.length * wide
+            assert arrow <= card.arrows - card.pad + 1e-9
+            assert card.numbers + card.size * width_of(row.number) <= card.words
+            assert card.words + card.size * width_of(row.words) <= card.wide
+        assert card.row >= 1.2 * card.size
+
+
+def contrast(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Of WCAG 2.2, between sRGB colours (..., 3), 0..255."""
+
+    def luminance(colour: np.ndarray) -> np.ndarray:
+        part = np.asarray(colour) / 255
+        linear = np.where(part <= 0.04045, part / 12.92, ((part + 0.055) / 1.055) ** 2.4)
+        return linear @ [0.2126, 0.7152, 0.0722]
+
+    pair = np.broadcast_arrays(luminance(one), luminance(other))
+    low, high = np.sort(pair, axis=0)
+    return (high + 0.05) / (low + 0.05)
+
+
+BEHIND = [(0, 0, 0), (255, 255, 255), (128, 128, 128), (255, 142, 62), (60, 120, 230)]
+"""What may be behind words: the darkest, the brightest, what lies between, a trail, an anodised part."""
+
+
+@pytest.mark.parametrize("behind", BEHIND)
+@pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.parametrize("shape", [(1920, 1080), (1080, 1920)])
+def test_words_have_a_contrast_of_four_and_a_half_to_whatever_is_behind_them(
+    behind: tuple[int, int, int], dark: bool, shape: tuple[int, int]
+):
+    """Measured where a letter hides nothing any more: three pixels beside those that have its ink alone."""
+    number = "motor  −0.0143 N m"
+    lines = layout.lines("Four bar", [number], "4 times slower", shape[0] / shape[1])
+    page = Image.new("RGB", shape, behind)
+    words.lay_words(page, Writing(lines=lines, on_bright=dark), number)
+    pixels = np.asarray(page).astype(int)
+    for line in lines:
+        ink = np.array((words.DARK if dark else words.BRIGHT)[line.quiet])
+        mine = np.zeros(pixels.shape[:2], bool)
+        mine[round(1080 * line.y) : round(1080 * (line.y + 1.35 * line.size))] = True
+        letters = Image.fromarray((255 * ((np.abs(pixels - ink).max(axis=2) < 2) & mine)).astype(np.uint8))
+        near, farther = (np.asarray(letters.filter(ImageFilter.MaxFilter(size))) > 0 for size in (5, 7))
+        found = contrast(pixels[farther & ~near], ink)
+        assert len(found) > 500
+        assert np.quantile(found, 0.01) >= 4.5, line
+
+
+@pytest.mark.parametrize("behind", BEHIND)
+def test_words_of_a_legend_have_that_contrast_to_its_card(behind: tuple[int, int, int]):
+    card = np.array(words.CARD[:3]) + (np.array(behind) - words.CARD[:3]) * (1 - words.CARD[3] / 255)
+    for ink in (words.INK, words.QUIET):
+        assert contrast(card, np.array(ink[:3])) >= 4.5
 
 
 def test_a_title_makes_room_for_itself_and_nothing_moves_under_it(out_root: Path):
@@ -100,14 +201,16 @@ def test_a_title_makes_room_for_itself_and_nothing_moves_under_it(out_root: Path
         close = Camera(elevation=elevation, margin=0.01)
         out = film_fixture.write(Shot(seconds_per_turn=0.4, camera=close))
         film, plain = read_film(out, "velocities,title"), read_film(out, "velocities")
-        moving, title = film._seen_moving, (0.0, 0.0, *writing.extent(film._said))
-        assert film.scene.writing.title == "Four bar"
-        assert (writing.held(plain.camera(0), moving, title) > 0) == in_the_way
-        assert writing.held(film.camera(0), moving, title) == 0
-        legend = writing.card(film.scene.writing.legend, title[2:])[film.scene.writing.corner]
-        assert writing.held(film.camera(0), moving, legend) == 0
+        writing, moving = film.scene.writing, film._seen_moving
+        title = layout.in_picture(layout.box_of(writing.lines), ASPECT)
+        assert writing.lines[0].words == "Four bar"
+        assert (room.held(plain.camera(0), moving, title) > 0) == in_the_way
+        assert room.held(film.camera(0), moving, title) == 0
+        assert writing.card is not None
+        legend = layout.in_picture(layout.around(writing.card), ASPECT)
+        assert room.held(film.camera(0), moving, legend) == 0
         if in_the_way:
             assert film.camera(0) != plain.camera(0)
-        pixels = project(film.camera(0), film.space.all, 1600, 900)
+        pixels = project(film.camera(0), film.space.machine, 1600, 900)
         assert (pixels > -1e-6).all()
         assert (pixels < (1600 + 1e-6, 900 + 1e-6)).all()

@@ -15,11 +15,12 @@ from render.blender import child, memory
 from render.blender.job import Job, Picture
 from render.blender.patience import FLOOR, START, Patience
 from render.film.scene import Scene, StudioSpec
+from render.looks.looks import LOOKS
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
 from tests.running.processes import working_for
 
-STUDIO = StudioSpec(look="studio", centre=(0.0, 0.0, 0.0), radius=1.0, floor=0.0, azimuth=0.0)
+STUDIO = StudioSpec(look=LOOKS["studio"], centre=(0.0, 0.0, 0.0), radius=1.0, floor=0.0, azimuth=0.0)
 SCENE = Scene(mechanism="x", fps=30, pieces=[], trails=[], labels=[], studio=STUDIO)
 
 

@@ -55,18 +55,38 @@ def test_frames_lie_in_rows_with_their_times(tmp_path: Path) -> None:
         pictures.append(tmp_path / f"{k}.png")
         Image.new("RGB", (96, 54), (20 * k, 0, 255 - 20 * k)).save(pictures[-1])
     page = Image.open(io.BytesIO(contact.sheet(pictures, ["t = 0 s"] * 12, "four bar")))
-    wide, high = 96 + contact.GAP, 54 + contact.GAP
+    wide, high = 96 + contact.GAP, 54 + contact.FOOT
     assert page.size == (4 * wide + contact.GAP, contact.HEAD + 3 * high)
-    for k in range(12):
-        at = contact.GAP + k % 4 * wide + 80, contact.HEAD + k // 4 * high + 10
-        assert page.getpixel(at) == (20 * k, 0, 255 - 20 * k)
+    for k in range(12):  # every pixel of a frame is the frame's, and its time is under it
+        left, top = contact.GAP + k % 4 * wide, contact.HEAD + k // 4 * high
+        frame = np.asarray(page)[top : top + 54, left : left + 96]
+        assert (frame == (20 * k, 0, 255 - 20 * k)).all()
+        under = np.asarray(page)[top + 54 : top + high, left : left + 96]
+        assert (under == contact.PAPER).all(axis=2)[[0, -1]].all()
+        assert (np.abs(under.astype(int) - contact.INK).sum(axis=2) < 90).any()
+
+
+@pytest.mark.parametrize(("size", "across"), [((96, 54), 4), ((54, 54), 6), ((48, 60), 6), ((54, 96), 6)])
+def test_a_sheet_of_tall_frames_has_more_of_them_in_a_row_and_no_time_is_wider_than_its_frame(
+    tmp_path: Path, size: tuple[int, int], across: int
+) -> None:
+    path = tmp_path / "frame.png"
+    Image.new("RGB", size, (0, 0, 0)).save(path)
+    page = Image.open(io.BytesIO(contact.sheet([path] * 12, ["0.000000001 s"] * 12, "four bar")))
+    assert page.width == across * (size[0] + contact.GAP) + contact.GAP
+    assert page.height == contact.HEAD + 12 // across * (size[1] + contact.FOOT)
+    pixels = np.asarray(page).astype(int)
+    foot = pixels[contact.HEAD + size[1] : contact.HEAD + size[1] + contact.FOOT]
+    for k in range(across + 1):  # nothing is written between two columns
+        left = k * (size[0] + contact.GAP)
+        assert (foot[:, left : left + contact.GAP] == contact.PAPER).all()
 
 
 def test_the_film_finds_the_frames_of_the_sheet(out_root: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = film_fixture.write(Shot(turns=1, seconds_per_turn=0.4))  # twelve frames
     contact.run("four_bar", TINY)
     with Image.open(out.contact) as page:
-        assert page.size == (4 * 106 + 10, 46 + 3 * 64)
+        assert page.size == (4 * 106 + 10, 46 + 3 * 80)
     assert len(list(FrameStore(out.frames("tiny")).folder.glob("[!.]*.png"))) == 12
     capsys.readouterr()
     contact.run("four_bar", TINY)

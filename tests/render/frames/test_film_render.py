@@ -22,8 +22,8 @@ from render.film.inputs import read_film
 from render.frames import blend, film, frames, still
 from render.frames.store import FrameIndex, FrameStore, Timing
 from render.presets import PRESETS, Preset
-from shared.contract import Rolling, read_parts, write_motion, write_parts
-from shared.contract.shot import Label, Shot, write_shot
+from shared.contract import Rolling, mounted, read_parts, write_motion, write_parts
+from shared.contract.shot import Camera, Label, Shot, write_shot
 from shared.stage import jsonfile
 from shared.stage.paths import ROOT, Out
 from tests.render import film_fixture
@@ -87,9 +87,10 @@ def test_three_turns_cost_one_and_a_changed_colour_costs_all(out_root: Path, cap
     film.run("four-bar", TINY)
     assert "0 of 6 pictures to render" in capsys.readouterr().out
 
-    still.poster("four_bar", TINY)
     still.still("four_bar", TINY, 8)
     assert "1 of 1 pictures to render" not in capsys.readouterr().out
+    still.poster("four_bar", TINY)
+    assert "tiny_poster (96x54, 128 samples" in capsys.readouterr().out
     assert np.array_equal(pixels(out.stills / "tiny-0008.png"), pixels(store.folder / index.frames[2]))
     assert out.poster.is_file()
     assert not [path for path in out_root.rglob("*") if "tmp-" in path.name or ".part." in path.name]
@@ -126,15 +127,17 @@ def test_blur_smears_what_moves(out_root: Path):
     assert np.median(change) <= 3  # the studio stands still
 
 
-@pytest.mark.parametrize("name", ["four_bar", "default"])
+@pytest.mark.parametrize("name", ["four_bar", "default", "standing"])
 def test_pins_are_within_a_pixel_of_where_the_solver_has_them(out_root: Path, name: str):
     """Balls on the pins of the STL solids, through poses, timeline and camera, against the joints of data.json.
 
     One of them is a roller, which is placed by its own axis.
     """
     shot = msgspec.structs.replace(four_bar_shot, trails=None) if name == "four_bar" else Shot()
+    if name == "standing":
+        shot = Shot(camera=Camera(orbit=12))
     shot = msgspec.structs.replace(shot, seconds_per_turn=4.0, fps=30, labels=(), materials={})
-    out = film_fixture.write(shot)
+    out = film_fixture.write(shot, mount=mounted((0.0, -9.81)) if name == "standing" else None)
     parts = read_parts(out.parts)
     parts.bodies["coupler"].pieces["end"].rolls = Rolling(joint="C", x=0.12, y=0.0, radius=0.003, marks=1)
     write_parts(out.parts, parts)

@@ -23,9 +23,9 @@ REACH = 5
 def projected(out: Out, joint: str, place: tuple[float, float], stage: dict[str, float]) -> tuple[float, float]:
     """Pixels in the stage of a joint's label place (m), by the film's camera."""
     film = read_film(out)
-    pose = film.camera(0)
+    pose = film.overview
     z = film.heights.label(joint, Moment(0.0, 0))[2]
-    u, v, w = axes(pose.azimuth, pose.elevation) @ (np.array([*place, z]) - np.array(pose.position))
+    u, v, w = axes(pose.azimuth, pose.elevation, pose.up) @ (np.array([*place, z]) - np.array(pose.position))
     aspect = stage["width"] / stage["height"]
     scale = stage["height"] * min(aspect, ASPECT) / (SENSOR / pose.lens)
     return stage["width"] / 2 + scale * u / w, stage["height"] / 2 - scale * v / w

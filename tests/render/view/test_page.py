@@ -93,7 +93,7 @@ def test_a_click_shows_a_joints_curves_and_a_drag_on_them_moves_the_machine(page
     out, seen, folder = page
     motion = read_motion(out.motion)
     assert seen["clicked"]["selected"] == {"kind": "joint", "name": "B"}
-    assert seen["charts"][0] == "Reaction N"
+    assert seen["charts"][0] == "Reaction / N"
     time = seen["dragged"]["time"]
     assert time == pytest.approx(0.75 * motion.time[-1], abs=0.01)
     assert not seen["dragged"]["playing"]

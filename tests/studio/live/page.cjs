@@ -23,12 +23,17 @@ async function main() {
   await page.goto(address);
   await until(() => window.mbsd?.live?.connection && document.querySelectorAll(".slide").length);
 
+  await until(() => document.querySelector(".slide .unit").textContent);
+  saw.units = await page.locator(".slide .unit").allTextContents();
   saw.sliders = await page.locator(".slide label").allTextContents();
   const slider = page.locator('input[type=range][aria-label="crank"]'), box = await slider.boundingBox();
   await page.mouse.move(box.x + box.width * 0.25, box.y + box.height / 2);
+  const paper = () => page.evaluate(() => { const { paper } = mbsd.app.stage.plane; return [paper.scale, ...paper.pixel(0, 0)]; });
+  const lay = await paper();
   await page.mouse.down();
   for (let k = 0; k <= 20; k++) await page.mouse.move(box.x + box.width * (0.2 + k / 400), box.y + box.height / 2);
   await until(() => mbsd.live.frames > 1);
+  saw.still = [lay, await paper()];
   await page.mouse.up();
   await until(() => !document.querySelector(".live .push").disabled);
   await until(() => Math.abs(Math.hypot(mbsd.app.payload.joints.B.x[0], mbsd.app.payload.joints.B.y[0]) - mbsd.live.values.crank) < 1e-7);
@@ -102,6 +107,9 @@ async function main() {
   await until(() => mbsd.live.values.crank === 0.0375);
   await page.getByRole("button", { name: /Write/ }).click();
   await until(() => !Object.keys(mbsd.live.values).length && mbsd.live.file.find(({ name }) => name === "crank").value === 0.0375);
+  await page.getByRole("button", { name: "Undo" }).click();
+  await until(() => Object.keys(mbsd.live.values).length);
+  saw.after = await page.evaluate(() => mbsd.live.values);
   saw.errors = errors;
   await browser.close();
   process.stdout.write(`saw ${JSON.stringify(saw)}\n`, () => process.exit(0)); // what is asked holds standard input open

@@ -14,7 +14,7 @@ async function main() {
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && !/GPU stall|GL Driver/.test(message.text()) && errors.push(message.text()));
   page.on("pageerror", (error) => errors.push(String(error.stack ?? error)));
   const until = (f, argument) => page.waitForFunction(f, argument, { timeout: 120000 }).catch(async (error) => { throw new Error(`${error.stack} ${await page.evaluate(() => document.querySelector(".live")?.innerText)}`); });
-  const picture = (name) => page.screenshot({ path: `${folder}/parts-${name}.png` });
+  const picture = (name) => page.screenshot({ path: `${folder}/parts-${name}.png`, timeout: 180000 });
   const state = () => page.evaluate(() => ({ solid: !!mbsd.app.payload.solid, state: document.querySelector(".live .state").textContent }));
   /** Length of the crank's piece (m), once parts of about that length are shown and nothing more is awaited. */
   const shown = async (length) => {
@@ -27,6 +27,13 @@ async function main() {
     }, length);
     return page.evaluate(() => window.found);
   };
+  /** Length of the crank's piece as it is placed (m), and whether the parts are those of other numbers. */
+  const placed = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => {
+    const { solid } = mbsd.app.stage, [mesh] = solid.parts.meshes, { min, max } = (mesh.geometry.computeBoundingBox(), mesh.geometry.boundingBox), other = min.clone();
+    other.x = max.x;
+    const [a, b] = [min.clone(), other].map((place) => solid.machine.worldToLocal(mesh.localToWorld(place)));
+    done({ solid: !!mbsd.app.payload.solid, length: a.distanceTo(b), other: !!mbsd.app.payload.other, clear: mesh.material.opacity });
+  }))));
   const tip = (length) => until((wanted) => Math.abs(mbsd.app.payload.points.P.x[0] - wanted) < 1e-6, length);
   await page.goto(address);
   await until(() => document.querySelector(".live .state")?.textContent === "making parts");
@@ -34,10 +41,21 @@ async function main() {
   saw.parts = await shown(0.2);
   await picture("first");
 
+  const field = page.locator('input[type=number][aria-label="length, as a number"]');
+  await field.fill("0.25");
+  await field.press("Enter");
+  await tip(0.25);
+  saw.slid = await placed();
+  await picture("slid");
+  await page.getByRole("button", { name: "Undo" }).click();
+  await tip(0.2);
+  await until(() => !mbsd.app.payload.other);
+  saw.back = await placed();
+
   await ask("longer");
   await tip(0.3);
   await until(() => document.querySelector(".live .state").textContent === "making parts");
-  saw.longer = await state();
+  saw.longer = { ...(await placed()), ...(await state()) };
   await ask("longer", "count");
   await ask("break");
   await until(() => /error in the file/.test(document.querySelector(".live .state").textContent));

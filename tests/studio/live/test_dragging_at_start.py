@@ -74,11 +74,11 @@ def test_numbers_put_a_thing_there_at_the_start(swing: tuple) -> None:
     to = size * np.array([0.4, -0.2])
     found = dragged(author, {}, {"kind": "point", "name": "tip"}, 0.0, list(to))
     assert set(found) == {"upper", "lower", "angle", "turn"}, "a stiffness moves nothing at the start"
-    np.testing.assert_allclose(size * tip(found), to, atol=1e-6 * size)
+    np.testing.assert_allclose(size * tip(found), to, atol=1e-3 * size)  # numbers have four digits
     joint = dragged(author, {}, {"kind": "joint", "name": "B"}, 0.0, [0.1 * size, -0.3 * size])
     assert set(joint) == {"upper", "angle"}
-    assert joint["upper"] == pytest.approx(np.hypot(0.1, 0.3), rel=1e-6)
-    assert joint["angle"] == pytest.approx(np.degrees(np.arctan2(-0.3, 0.1)), rel=1e-6)
+    assert joint["upper"] == pytest.approx(np.hypot(0.1, 0.3), rel=1e-4)
+    assert joint["angle"] == pytest.approx(np.degrees(np.arctan2(-0.3, 0.1)), rel=1e-4)
 
 
 def test_elsewhere_and_what_no_number_moves_are_refused(swing: tuple) -> None:

@@ -67,6 +67,10 @@ def test_a_save_ends_a_fit_and_the_page_hears_of_it(live: Served) -> None:
 def test_a_process_stopped_while_it_solves_is_replaced(live: Served, monkeypatch: pytest.MonkeyPatch) -> None:
     with live.page() as page:
         followed(live, page, 0.43)
+        ends = time.monotonic() + 60
+        # Its numbers are described after the motion, within the old limit.
+        while (live.session._good is None or live.session._good.busy) and time.monotonic() < ends:
+            time.sleep(0.05)
         assert live.session._good is not None
         monkeypatch.setattr(live.session._good, "_limit", 1.0)
         os.kill(live.session._good.pid, signal.SIGSTOP)

@@ -40,8 +40,10 @@ def test_a_page_follows_hand_and_file(tmp_path: Path) -> None:
         saw = json.loads(told)
         written = (live.folder / "links" / "mechanism.py").read_text()
     assert saw["errors"] == []
-    assert saw["sliders"] == ["ground", "crank", "coupler", "rocker", "tracer[0]", "tracer[1]", "teeth", "speed"]
+    assert saw["sliders"] == ["ground", "crank", "coupler", "rocker", "tracer x", "tracer y", "teeth", "speed"]
+    assert saw["units"] == ["m"] * 6 + ["", "rad/s"]
     assert saw["slid"] == pytest.approx(0.02 + 0.25 * 0.18, abs=0.012)  # where the slider was let go
+    assert saw["still"][0] == saw["still"][1], "the view stays while a number is dragged"
     assert saw["undone"] == pytest.approx(0.04, rel=1e-6)
     assert "rocker" in saw["dragged"]
     assert "speed" not in saw["dragged"]
@@ -51,3 +53,4 @@ def test_a_page_follows_hand_and_file(tmp_path: Path) -> None:
     assert saw["kept"] == pytest.approx(0.04, rel=1e-6), "the last good motion"
     assert saw["cured"]
     assert written == FOUR_BAR.replace("0.040", "0.0375")
+    assert saw["after"] == {"crank": 0.045}, "what the file held before"

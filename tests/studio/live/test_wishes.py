@@ -31,7 +31,7 @@ def page(live: Served) -> Iterator[Page]:
         elif state["values"]:
             one.say(do="set", values={number["name"]: number["value"] for number in state["numbers"]}, final=True)
             one.hear("motion")
-        live.session.history.written(live.session.history.now)
+        live.session.history.keep(set())
         yield one
 
 
@@ -144,11 +144,12 @@ def test_dragging_changes_lengths_as_little_as_may_be(page: Page, thing: tuple[s
     where = shown["joints" if thing[0] == "joint" else "points"][thing[1]]
     k = int(np.argmin(np.abs(shown["time"] - moment)))
     assert shown["time"][k] == pytest.approx(moment)
-    np.testing.assert_allclose([where["x"][k], where["y"][k]], to, atol=1e-6)
+    np.testing.assert_allclose([where["x"][k], where["y"][k]], to, atol=4e-5)  # of lengths in four digits
+    assert all(float(f"{value:.4g}") == value for value in values.values())
     assert "speed" not in values
     assert "teeth" not in values
     if thing[0] == "joint":  # the coupler's point does not move the joint
-        assert values["tracer[0]"] == pytest.approx(0.06)
+        assert "tracer[0]" not in values
     page.say(do="undo")
     assert page.hear("values")["values"] == {}
     page.hear("motion")
@@ -181,13 +182,19 @@ def test_numbers_are_written_back_and_nothing_else(live: Served, page: Page) -> 
     assert (live.folder / "links" / "mechanism.py").read_text() == expected.replace("teeth: int = 3", "teeth: int = 5")
     page.say(do="write")
     assert "nothing to write" in page.hear("refused")["text"]
+    page.say(do="undo")
+    assert page.hear("values")["values"] == {"crank": 0.04, "tracer[1]": 0.03, "teeth": 3}, "beside the new file"
+    page.say(do="redo")
+    assert page.hear("values")["values"] == {}
 
 
 def test_a_drawn_path_is_fitted_with_progress(page: Page) -> None:
     path = [[0.02, 0.075], [0.05, 0.085], [0.075, 0.07]]
     page.say(do="fit", point="P", path=path[::-1], starts=1, generations=40, ordered=True)
     assert page.hear("progress", wanted=lambda one: one["done"] > 0)["done"] <= 1
-    fitted = page.hear("fitted")
+    assert page.hear("motion")["values"], "the best linkage so far"
+    fitted = page.heard("fitted")
+    assert all(float(f"{value:.4g}") == value for value in fitted["values"].values())
     assert fitted["largest"] < 0.002
     shown = decoded(page.hear("motion")["payload"])["points"]["P"]
     on_path = np.column_stack([shown["x"], shown["y"]])
@@ -198,7 +205,8 @@ def test_a_drawn_path_is_fitted_with_progress(page: Page) -> None:
 
 
 def test_a_fit_is_cancelled(page: Page) -> None:
-    page.say(do="fit", point="P", path=[[0.02, 0.075], [0.05, 0.085]], starts=50, generations=5000)
+    zigzag = [[0.02 + 0.01 * k, 0.02 + 0.09 * (k % 2)] for k in range(9)]  # no linkage follows it, so the fit goes on
+    page.say(do="fit", point="P", path=zigzag, starts=50, generations=5000)
     page.hear("progress", wanted=lambda one: one["done"] > 0)
     began = time.monotonic()
     page.say(do="cancel")

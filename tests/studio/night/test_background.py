@@ -30,7 +30,7 @@ def tools(folder: Path, *without: str) -> str:
     folder.mkdir()
     for place in os.environ["PATH"].split(os.pathsep):
         for program in Path(place).iterdir() if Path(place).is_dir() else ():
-            if program.name not in without and not (folder / program.name).exists():
+            if program.name not in without and program.is_file() and not os.path.lexists(folder / program.name):
                 (folder / program.name).symlink_to(program)
     return str(folder)
 

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from render.presets import PRESETS
-from studio.night.plan.options import Options
+from render.presets import PRESETS, preset_named
+from shared.stage.errors import UserError
+from studio.night.plan.options import Options, options
 from studio.night.plan.steps import STEPS, command
 from tests.project.making import STAGES, planned
 from tests.running.processes import working_for
@@ -59,6 +60,16 @@ def test_steps_and_commands_are_those_of_run_in_the_makefile():
     assert [step.name for step in STEPS] == list(STAGES)
     commands = [" ".join(command(step.name, "four_bar", asked)[3:]) for step in STEPS]
     assert commands == [line + " --every" * line.startswith("plots") for line in lines]
+
+
+def test_an_aspect_is_asked_of_the_stages_by_the_name_of_its_preset():
+    asked = options("four_bar", "draft", "", "", "", "echo", "", "9:16")
+    assert asked.preset == PRESETS["draft"].framed("9:16")
+    for step in ("poster", "film"):
+        words = command(step, "four_bar", asked)
+        assert preset_named(words[words.index("--preset") + 1]) == asked.preset
+    with pytest.raises(UserError, match="there is no ASPECT=3:2; there is: 16:9, 1:1, 4:5, 9:16"):
+        options("", "draft", "", "", "", "", "", "3:2")
 
 
 def test_a_film_that_another_process_renders_is_waited_for(night: Night):

@@ -28,7 +28,12 @@ def pictures(page: SimpleNamespace) -> dict[str, Figure]:
     plain(axes[1, 1], title="friction of a guide", xlabel="speed, m/s", ylabel="force, N")
     _curve(axes[1, 2], 100 * page.slip, page.pull / 1000, GREEN)
     plain(axes[1, 2], title="tyre", xlabel="slip, %", ylabel="pull, kN")
-    return {"forces.svg": figure, "engine.svg": _engine(page), "friction.svg": _friction(page)}
+    return {
+        "forces.svg": figure,
+        "engine.svg": _engine(page),
+        "friction.svg": _friction(page),
+        "excavator.svg": _excavator(page),
+    }
 
 
 def _engine(page: SimpleNamespace) -> Figure:
@@ -45,6 +50,27 @@ def _engine(page: SimpleNamespace) -> Figure:
     plain(torque, title="what the shaft gives", xlabel="crank after firing, degrees", ylabel="torque, N m")
     for ax in (over, torque):
         ax.set_xticks(range(0, 721, 180))
+    return figure
+
+
+def _excavator(page: SimpleNamespace) -> Figure:
+    """The arm as it starts and ends, pressures of its cylinders, and where the power of its pump goes."""
+    figure = Figure(figsize=(10.4, 3.6), layout="constrained")
+    arm, pressures, powers = figure.subplots(1, 3)
+    sol, rams = page.digger, page.rams
+    sol.draw(step=len(sol.t) - 1, ax=arm, names=False)
+    for name, colour in zip(rams, (BLUE, GREEN, MOVED), strict=True):
+        pressures.plot(sol.t, 1e-5 * rams[name].pressure_a, color=colour, label=name)
+        pressures.plot(sol.t, 1e-5 * rams[name].pressure_b, color=colour, linestyle=(0, (4, 3)), linewidth=0.9)
+    pressures.legend(frameon=False)
+    plain(pressures, title="pressures; dashed: rod side", xlabel="time, s", ylabel="bar", xlim=(0, 5))
+    for what, colour, name in (("supply_power", INK, "pump"), ("valve_loss", MOVED, "lost in valves"),
+                               ("piston_power", BLUE, "pistons")):  # fmt: skip
+        total = np.sum([getattr(ram, what) for ram in rams.values()], axis=0)
+        powers.plot(sol.t, 1e-3 * total, color=colour, label=name)
+    powers.axhline(0.0, color=INK, linewidth=0.6)
+    powers.legend(frameon=False)
+    plain(powers, title="power", xlabel="time, s", ylabel="kW", xlim=(0, 5), ylim=(-10, 130))
     return figure
 
 

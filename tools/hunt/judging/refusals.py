@@ -16,8 +16,13 @@ PROMISED = (
     "need scikit-sundae",
     "in reference coordinates",
     "do not end there",
+    "is lost in rounding",
+    "may be on the other branch",
 )
-"""Words of refusals that say what a method or formulation is not made for."""
+"""Words of refusals that say what a method or formulation is not made for.
+
+How far masses are apart, and so what is lost in rounding, depends on the frames of bodies by a factor of two.
+"""
 
 
 def expected_refusal(error: MechanismError) -> bool:

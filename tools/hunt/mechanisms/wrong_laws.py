@@ -1,4 +1,4 @@
-"""Laws of drivers whose given derivatives are not those of their values: every analysis must refuse them."""
+"""Laws of drivers with given derivatives: those of rises between dwells are taken, wrong ones refused by all."""
 
 from __future__ import annotations
 
@@ -39,3 +39,46 @@ def wrong(rng: np.random.Generator) -> Subject:
     m.revolute("A", crank.end, bob.start)
     m.start_near(bob=-60.0)
     return Subject(m, duration, False, truth=_taken, possible=False)
+
+
+@family("rise with given derivatives", weight=0.3)
+def rise(rng: np.random.Generator) -> Subject:
+    """A cycloidal or 3-4-5 rise between dwells, right or with f' or f'' that errs on a part of the rise."""
+    m, begin, length = (
+        Mechanism("rise", gravity=(0.0, -9.81)),
+        float(rng.uniform(0, 0.5)),
+        float(10 ** rng.uniform(-2, -0.4)),
+    )
+    size, turn = float(rng.uniform(0.1, 2.0)), 2 * math.pi
+    laws = (
+        (
+            lambda u: u - math.sin(turn * u) / turn,
+            lambda u: 1 - math.cos(turn * u),
+            lambda u: turn * math.sin(turn * u),
+        )
+        if rng.random() < 0.5
+        else (
+            lambda u: 10 * u**3 - 15 * u**4 + 6 * u**5,
+            lambda u: 30 * (u**2 - 2 * u**3 + u**4),
+            lambda u: 60 * u - 180 * u**2 + 120 * u**3,
+        )
+    )
+    errs, off = int(rng.integers(0, 3)), 1.0 + float(10 ** rng.uniform(-3, 0))
+
+    def of_order(order: int):
+        def law(t: float) -> float:
+            u = min(max((t - begin) / length, 0.0), 1.0)
+            wrong = order > 0 and order == errs and 0.3 < u < 0.7
+            return size / length**order * laws[order](u) * (off if wrong else 1.0)
+
+        return law
+
+    crank, bob = m.bar("crank", 0.3, 1.0), m.bar("bob", 0.4, 0.5)
+    m.revolute("O", m.ground.origin, crank.start)
+    m.drive_angle("motor", crank, function(of_order(0), of_order(1), of_order(2)))
+    m.start_near(bob=-60.0)
+    if rng.random() < 0.5:
+        m.weld("A", crank.end, bob.start)
+        return Subject(m, 1.0, True, 1.0, _taken if errs else None, possible=not errs)
+    m.revolute("A", crank.end, bob.start)
+    return Subject(m, 1.0, False, truth=_taken if errs else None, possible=not errs)

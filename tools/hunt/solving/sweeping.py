@@ -19,7 +19,7 @@ from tools.hunt.outcome import AGREED, REFUSED, UNCLEAR, WRONG, Outcome, attempt
 from tools.hunt.solving.variations import Variations
 from tools.hunt.subject import Subject
 from tools.hunt.words.changed import there_and_back
-from tools.hunt.words.described import Pose, back, duplicate, on_a_base, seen_from, turnable
+from tools.hunt.words.described import Pose, back, duplicate, on_a_base, restarted, seen_from, turnable
 from tools.hunt.words.reordered import exchanged, shuffled
 from tools.hunt.words.same_bits import changed, pickled
 
@@ -200,10 +200,8 @@ def _one(case: Driven) -> Outcome:
 
 
 def _from_here(case: Driven, k: int) -> Mechanism:
-    from mbsd.arrays.start_state import started_at
-
     assert case.first is not None
-    return started_at(duplicate(case.m), case.first.packed, case.first.q[k].ravel(), case.first.v[k].ravel())
+    return restarted(duplicate(case.m), case.first, k)
 
 
 def _compared_later(case: Driven, name: str, m: Mechanism, times: np.ndarray) -> Outcome:
@@ -268,10 +266,8 @@ def _simulated(case: Driven) -> Outcome:
     formulation = str(case.rng.choice(["auto", "reference"]))
     duration = case.subject.duration * (60 / A_TURN if case.subject.turns > 0.2 else 1.0)
     times = case.grid[case.grid <= duration]
-    from mbsd.arrays.start_state import started_at
-
     first = case.first
-    m = started_at(duplicate(case.m), first.packed, first.q[0].ravel(), first.v[0].ravel())
+    m = restarted(duplicate(case.m), first, 0)
     other, error = attempt(lambda: m.simulate(times=times, tolerance=tolerance, formulation=formulation))
     if error is not None:
         return case.refusal(name, error)

@@ -17,7 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from mbsd import Mechanism
+from mbsd import Mechanism, Solution
+from mbsd.arrays.start_state import started_at
 from mbsd.model.body import Body, Marker
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
@@ -226,6 +227,12 @@ def _rehosted(old: Any, new: Any, base: Body) -> Any:
     if motion and "ground" not in old.bodies:
         motion = {}
     return replace(new, i=i, j=j, **motion)
+
+
+def restarted(m: Mechanism, sol: Solution, k: int) -> Mechanism:
+    """The same mechanism that starts where a solution of it is at its output k."""
+    states = None if sol.states is None else sol.states[k]
+    return started_at(m, sol.packed, sol.q[k].ravel(), sol.v[k].ravel(), states)
 
 
 def duplicate(m: Mechanism) -> Mechanism:

@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.base.quantity import written
 from mbsd.drawing.animation.brush import Brush, Colour, rgba
 from mbsd.drawing.animation.picture.sprites import lay, sprite
 from mbsd.drawing.animation.quantities.flow import Balance
-from mbsd.drawing.animation.words import KINETIC, POTENTIAL, TAKEN, with_unit
+from mbsd.drawing.animation.words import KINETIC, POTENTIAL, TAKEN
 from mbsd.drawing.look import INK, QUIET
 
 ROWS = 4
@@ -123,5 +124,5 @@ def _short(value: float, unit: str, largest: float) -> str:
     decimals = max(0, 2 - max(0, math.floor(math.log10(largest / 10.0**power) + 1e-9)))
     if abs(scaled) < 0.5 * 10.0**-decimals:
         scaled = 0.0
-    unit_word = with_unit(10.0**power, unit).split(" ")[1]
+    unit_word = written(10.0**power, unit).split(" ")[1]
     return f"{scaled:.{decimals}f} {unit_word}".replace("-", chr(0x2212))

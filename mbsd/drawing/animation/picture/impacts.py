@@ -10,11 +10,9 @@ import numpy as np
 from mbsd.drawing.animation.between import at_times
 from mbsd.drawing.animation.brush import Brush, rgba
 from mbsd.drawing.animation.clip import Clip
-from mbsd.drawing.animation.quantities.arrows import moving_marker
-from mbsd.drawing.animation.quantities.loads import touched
 from mbsd.drawing.animation.scene import Scene
 from mbsd.drawing.look import MOVED
-from mbsd.drawing.pose import tracks_of
+from mbsd.results.acting import acting
 
 SECONDS = 0.35
 """For which the ring is seen."""
@@ -44,14 +42,13 @@ def impacts_of(scene: Scene) -> list[Impact]:
     if not hits or most <= 0.0:
         return []
     times = np.unique([min(event.time, float(sol.t[-1])) for event in hits])
-    tracks = tracks_of(at_times(sol, times))
+    here = at_times(sol, times)
     out = []
     for event in hits:
-        joint = m.contacts[event.name]
-        place = moving_marker(tracks.views, joint.j).place
-        where = touched(tracks, joint, place, np.zeros_like(place), np.zeros(len(place)))
+        number = here.packed.joints.index(m.contacts[event.name])
+        where = acting(here.packed, here.q, np.zeros_like(here.wrench), number)  # by the geometry alone
         k = int(np.argmin(np.abs(times - event.time)))
-        out.append(Impact(event.time, where[k], abs(event.impulse) / most))
+        out.append(Impact(event.time, np.array([where.x[k], where.y[k]]), abs(event.impulse) / most))
     return sorted(out, key=lambda impact: impact.time)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from mbsd.drawing.animation.brush import Brush
 from mbsd.drawing.animation.picture.sprites import sprite
 from mbsd.drawing.names import offsets
+from mbsd.model.mechanism import Model
 
 DIRECTIONS = 12
 DISTANCES = (0.0, 0.6, 1.4)
@@ -54,6 +55,18 @@ def place_names(
             )
         out.append(Placed(number, word, best))
     return out
+
+
+def that_matter(m: Model) -> list[str]:
+    """Names in the order in which they matter: what is driven, what comes out, traced points, then all other bodies."""
+    driven = [name for driver in m.drivers.values() for name in driver.bodies if name != "ground"]
+    grounded = [name for joint in m.joints.values() if "ground" in joint.bodies for name in joint.bodies[::-1]]
+    out = [name for name in grounded if name != "ground" and name not in driven][-1:]
+    first, others = (
+        [*driven[:1], *out, *list(m.traces)[:1]],
+        [*m.traces, *(name for name in m.bodies if name != "ground")],
+    )
+    return list(dict.fromkeys([*first, *others]))
 
 
 def _costs(

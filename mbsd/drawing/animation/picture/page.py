@@ -32,7 +32,7 @@ class Page:
         scene: Scene,
         groups: Sequence[tuple[str, ...]],
         size: tuple[int, int],
-        names: bool,
+        names: bool | str,
     ) -> None:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure

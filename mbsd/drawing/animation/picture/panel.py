@@ -12,14 +12,15 @@ import numpy as np
 from mbsd.drawing.animation.brush import Brush, View, arc, arrow, fresh
 from mbsd.drawing.animation.picture.bars import Bars
 from mbsd.drawing.animation.picture.impacts import draw_impacts, impacts_of
-from mbsd.drawing.animation.picture.names import Placed, place_names
+from mbsd.drawing.animation.picture.names import Placed, place_names, that_matter
 from mbsd.drawing.animation.picture.scales import FULL_TURN, LONGEST, Scale, scales_of, unit_of
 from mbsd.drawing.animation.picture.sprites import lay
 from mbsd.drawing.animation.picture.trails import Trail, draw_trails
 from mbsd.drawing.animation.quantities.arrows import Arc, Arrow
 from mbsd.drawing.animation.scene import Scene
-from mbsd.drawing.animation.words import QUANTITIES, SLATE
-from mbsd.drawing.look import colour
+from mbsd.drawing.animation.words import QUANTITIES, WEIGHTS
+from mbsd.drawing.inks import neutral_inks
+from mbsd.drawing.look import MOVED, QUIET
 
 Box = tuple[float, float, float, float]
 """Left, low, width, height in pixels."""
@@ -27,8 +28,8 @@ AROUND = 2.8
 """Room beside the machine, in units of its symbols."""
 NAMED_AT = 8
 """Pictures in which the places of names are tried."""
-MOST_NAMES = 16
-"""In a panel; of a mechanism with more, traced points alone have names."""
+FEW_NAMES, MOST_NAMES = 3, 16
+"""In a panel: those that matter, and all; of a mechanism with more, traced points alone."""
 FINE = 5.0
 """Pixels of a unit below which lines are thinner."""
 
@@ -43,7 +44,8 @@ class Panel:
     dpi: float
     titled: bool
     """Whether its own quantities stand above it: one of several."""
-    names: bool
+    names: bool | str
+    """Whether there are any: those that matter, or ``"all"``."""
     trails: list[Trail]
     marks: list[Arrow | Arc] = field(init=False)
     scales: dict[str, Scale] = field(init=False)
@@ -63,9 +65,8 @@ class Panel:
             self.bars = Bars(self.scene.balance, (right - wide, bottom, wide, top - bottom), self.dpi)
             right -= wide + 8 * px
         self.room = (left + 12 * px, bottom, right, top)
-        inks = self._inks()
-        self.colours = {n: inks[k] for k, n in enumerate(n for n in self.scene.tracks.views if n != "ground")}
-        self.brush = Brush(None, self.scene.unit, dpi=self.dpi)
+        self.colours = neutral_inks(self.scene.tracks.views) if self.quantities else self.scene.inks
+        self.brush = Brush(None, self.scene.unit, dpi=self.dpi, driver=QUIET if self.quantities else MOVED)
         self._look_at(self._view())
         self.impacts = impacts_of(self.scene)
 
@@ -77,13 +78,6 @@ class Panel:
     def _seen(self, mark: Arrow | Arc) -> bool:
         scale = self.scales.get(unit_of(mark))
         return scale is not None and float(mark.size.max()) > 2e-3 * scale.largest
-
-    def _inks(self) -> list[str]:
-        """Quiet colours beside arrows; each is another, so that a body is recognised by it."""
-        count = len(self.scene.tracks.views)
-        if not self.quantities:
-            return [colour(k) for k in range(count)]
-        return [f"#{int(SLATE[k % len(SLATE)][1:], 16) + k // len(SLATE):06x}" for k in range(count)]
 
     def extent(self) -> tuple[np.ndarray, np.ndarray]:
         """Lowest and highest x, y (m) of machine and arrows."""
@@ -131,12 +125,14 @@ class Panel:
             brush = fresh(self.brush, wheels={}, turned={}, coils={}, remembers=True)
             self.scene.draw(brush, int(k), self.colours)
             drawn.append(brush)
-        count, bodies = len(drawn[0].labels), len(self.colours)
-        joints = count - bodies
-        wanted = range(count if not self.quantities else joints)
-        if len(wanted) > MOST_NAMES:
-            wanted = range(joints - len(self.trails), joints)
-        self.placed = place_names(drawn, self.room, list(wanted)[:MOST_NAMES])
+        texts = [label.text for label in drawn[0].labels]
+        if self.names == "all" and len(texts) <= MOST_NAMES:
+            wanted = list(range(len(texts)))
+        else:
+            m = self.scene.sol.mechanism
+            names = that_matter(m) if len(texts) <= MOST_NAMES else list(m.traces)
+            wanted = [texts.index(name) for name in names if name in texts][:FEW_NAMES]
+        self.placed = place_names(drawn, self.room, wanted)
 
     def paint(self, renderer: Any, picture: np.ndarray, k: int) -> None:
         """Machine, trails, arrows and names of picture ``k``."""
@@ -146,7 +142,7 @@ class Panel:
         draw_trails(brush, self.trails, scene.clip, k)
         draw_impacts(brush, self.impacts, scene.clip, k)
         for mark in self.marks:
-            scale, ink = self.scales[unit_of(mark)], QUANTITIES[mark.quantity].colour
+            scale, words = self.scales[unit_of(mark)], QUANTITIES[mark.quantity]
             size = float(mark.size[k])
             if size == 0.0:
                 continue
@@ -154,10 +150,19 @@ class Panel:
             at = brush.view.pixels(mark.place[k])
             if isinstance(mark, Arc):
                 radius = max(2.9 * scene.unit * brush.view.scale, 15 * px)
-                arc(brush, at, radius, math.copysign(part * FULL_TURN, mark.value[k]), ink, 3.0 * px)
+                arc(
+                    brush,
+                    at,
+                    radius,
+                    math.copysign(part * FULL_TURN, mark.value[k]),
+                    words.arcs or words.colour,
+                    3.6 * px,
+                )
             else:
                 vector = mark.vector[k] / size * part * scene.length * brush.view.scale
-                arrow(brush, at - 0.5 * vector if mark.middle else at, vector, ink, 3.4 * px, part >= LONGEST)
+                ink = WEIGHTS if mark.weight else words.colour
+                tail = at - 0.5 * vector if mark.middle else at
+                arrow(brush, tail, vector, ink, 3.4 * px, part >= LONGEST, words.head)
         if self.bars is not None:
             self.bars.draw(brush, k)
         corner = brush.view.left, brush.view.low

@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mbsd.base.quantity import written
 from mbsd.drawing.animation.brush import arc, arrow, fresh, rgba
 from mbsd.drawing.animation.picture.scales import FULL_TURN
 from mbsd.drawing.animation.quantities.arrows import Arc, Arrow
-from mbsd.drawing.animation.words import CARD, QUANTITIES, round_below, with_unit
+from mbsd.drawing.animation.words import CARD, QUANTITIES, WEIGHTS, round_below
 from mbsd.drawing.look import INK, QUIET
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ def _scale_bar(panel: Panel, figure: Any, renderer: Any, taken: float) -> None:
     for end in (x - long, x):
         bar.stroke(np.array([(end, y - 3 * px), (end, y + 3 * px)]), rgba(QUIET), 1.2, 1)
     bar.paint(renderer)
-    _word(figure, renderer, with_unit(metres, "m"), x - long - 7 * px, y, QUIET, 8.5, "right")
+    _word(figure, renderer, written(metres, "m"), x - long - 7 * px, y, QUIET, 8.5, "right")
 
 
 def _legend(panel: Panel, figure: Any, renderer: Any) -> float:
@@ -64,19 +65,23 @@ def _legend(panel: Panel, figure: Any, renderer: Any) -> float:
             if not mine or (kind is Arc and unit == words.unit):
                 continue
             scale = panel.scales[unit]
-            text = with_unit(scale.reference, unit)
+            text = written(scale.reference, unit)
             if kind is Arrow:
                 long = scale.reference / scale.largest * panel.scene.length * panel.brush.view.scale
-                arrow(brush, np.array([x, y]), np.array([long, 0.0]), words.colour, 3.4 * px)
+                arrow(brush, np.array([x, y]), np.array([long, 0.0]), words.colour, 3.4 * px, head=words.head)
                 x += long + 8 * px
                 text += f"  {words.title}" if several else ""
             else:
                 sweep = scale.reference / scale.largest * FULL_TURN
-                arc(brush, np.array([x + 11 * px, y]), 10 * px, sweep, words.colour, 2.8 * px)
+                arc(brush, np.array([x + 11 * px, y]), 10 * px, sweep, words.arcs or words.colour, 2.8 * px)
                 x += 30 * px
             if scale.cut:
                 text += ", higher ones cut"
             x += _word(figure, renderer, text, x, y, INK, 9.0, "left") + 22 * px
+            if kind is Arrow and any(isinstance(mark, Arrow) and mark.weight for mark in mine):
+                arrow(brush, np.array([x, y]), np.array([26 * px, 0.0]), WEIGHTS, 3.4 * px)
+                x += 34 * px
+                x += _word(figure, renderer, "weights", x, y, INK, 9.0, "left") + 22 * px
     if not panel.marks and panel.quantities and not panel.bars:
         titles = " and ".join(QUANTITIES[quantity].title for quantity in panel.quantities)
         x += _word(figure, renderer, f"no {titles}: nothing acts", x, y, QUIET, 9.0, "left")

@@ -8,7 +8,7 @@ import numpy as np
 
 from mbsd.drawing.animation.brush import Brush, rgba
 from mbsd.drawing.animation.clip import Clip
-from mbsd.drawing.look import PALETTE
+from mbsd.drawing.animation.words import TRAIL
 from mbsd.results.solution import Solution
 
 PARTS = 4
@@ -17,7 +17,6 @@ BRIGHT = 0.3
 """Of the whole motion: how far back the trail is bright."""
 SHADES = 10
 FAINT, STRONG = 0.20, 0.9
-INKS = (PALETTE[2], PALETTE[5], PALETTE[4], PALETTE[6])
 
 
 @dataclass(frozen=True)
@@ -35,11 +34,11 @@ def trails_of(whole: Solution, here: Solution) -> list[Trail]:
     times, first = np.unique(np.concatenate([whole.t, here.t]), return_index=True)
     jumps = np.array([event.time for event in whole.events])
     out = []
-    for k, name in enumerate(whole.mechanism.traces):
+    for name in whole.mechanism.traces:
         a, b = whole.point(name), here.point(name)
         place = np.concatenate([np.stack([a.x, a.y], axis=1), np.stack([b.x, b.y], axis=1)])[first]
         speed = np.concatenate([np.stack([a.vx, a.vy], axis=1), np.stack([b.vx, b.vy], axis=1)])[first]
-        out.append(Trail(*_smooth(times, place, speed, jumps), INKS[k % len(INKS)]))
+        out.append(Trail(*_smooth(times, place, speed, jumps), TRAIL))
     return out
 
 

@@ -25,6 +25,8 @@ class Arrow:
     """(T, 2) in its own unit, world axes."""
     middle: bool = False
     """Whether ``place`` is its middle instead."""
+    weight: bool = False
+    """Whether it is the weight of a body, one of the forces."""
 
     @property
     def size(self) -> np.ndarray:
@@ -70,7 +72,7 @@ def moving(view: FrameView, x: float, y: float) -> Moving:
     )
 
 
-def acting(sol: Solution) -> Iterator[tuple[Action, np.ndarray]]:
+def applied(sol: Solution) -> Iterator[tuple[Action, np.ndarray]]:
     """What each force of the model does to each moving body that feels it, and where (T, 2) (m)."""
     for view in sol.forces.values():
         for body in view.bodies:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.drawing.animation.quantities.arrows import Arrow, acting, moving, moving_marker
+from mbsd.drawing.animation.quantities.arrows import Arrow, applied, moving, moving_marker
 from mbsd.drawing.pose import Tracks
 from mbsd.model.mechanism import Model
 from mbsd.results.solution import Solution
@@ -43,7 +43,7 @@ def flow_arrows(sol: Solution, tracks: Tracks) -> list[Arrow]:
         passes = first != "ground" and joint not in drivers
         giver = middles[first] if passes else 2 * at.place - middles[second]
         out.append(_arrow(at.place, middles[second] - giver, power, force, middle=passes))
-    for action, place in acting(sol):
+    for action, place in applied(sol):
         frame = tracks.views[action.body]
         arm = place - np.stack([frame.x, frame.y], axis=1)
         speed = np.stack([frame.vx - frame.omega * arm[:, 1], frame.vy + frame.omega * arm[:, 0]], axis=1)

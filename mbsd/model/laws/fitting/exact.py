@@ -1,19 +1,27 @@
 """A law whose derivatives are given, as quintic pieces through f, f', f'' at their ends.
 
-A piece is met where it agrees with the law in its middle, where its error is largest, and with f'' at the times that
-are looked at beside (look.py); else it is halved. Pieces that shrink onto a point tell where f'' jumps: the span is cut
-there, as rounding spoils f'' of narrow pieces. Where f at both ends agrees with f' and f'' but for rounding, their
-quartic is taken, so that f'' does not show the rounding of f.
+The derivatives are compared with f between the times of look.py first (derivatives.py). A piece is met where it agrees
+with the law in its middle, where its error is largest, and with f'' at those times; else it is halved. Pieces that
+shrink onto a point tell where f'' jumps: the span is cut there, as rounding spoils f'' of narrow pieces. Where f at
+both ends agrees with f' and f'' but for rounding, their quartic is taken, so that f'' does not show the rounding of f.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.model.laws.fitting.cuts import Cut, finest, given_cuts, merged, roots, without_edges
+from mbsd.model.laws.fitting.derivatives import (
+    Rows,
+    refuse_between,
+    refuse_derivatives,
+    refuse_rows_of_pieces,
+    sizes,
+    stands_still,
+)
 from mbsd.model.laws.fitting.leaves import FAINT, JUMP, KINK, POINT, ROUNDING, USUAL, refuse_jump, refuse_kink
 from mbsd.model.laws.fitting.sampled import Sampled
 from mbsd.model.laws.numbers import Compiled, pieces, quintic_coefficients
@@ -23,30 +31,24 @@ TOLERANCE = np.array([1e-12, 1e-10, 1e-9])
 MOST_TIMES = 600_000
 CLOSEST = 1e-12
 """Part of the span within which a jump of f'' is found."""
-DISAGREE = 1e-3
-"""Part of f' by which df may differ from the slope of f, and ddf from that of df, where nothing else is known."""
-DISAGREE_SMOOTH = 1e-6
-"""The same on pieces on which the derivative is so straight (RESOLVED) that its mean is known."""
-RESOLVED = 1e-2
-"""Part of such a difference below which a derivative must be bent for it to count before all else is tried."""
+CANCELLED = 64 * np.finfo(float).eps
+"""Part of the largest f' and f'' that is rounding where their terms cancel, as at the ends of a 3-4-5 rise and beyond
+(31 eps of a 3-4-5, 140 of a 4-5-6-7 polynomial), or where sin(2 pi) is -2.4e-16 in a dwell.
+"""
 ROUNDS = 4
 EPSILON = float(np.finfo(float).eps)
-
-
-class DerivativeError(ModelError):
-    """A derivative that its author gave is not that of f."""
-
-
-Rows = Callable[[np.ndarray], np.ndarray]
 
 
 def exact_pieces(
     law: Rows, first: float, last: float, breaks: Sequence[float], looks: np.ndarray, seen: np.ndarray
 ) -> Compiled:
-    """``law`` gives (n, 3) at times (n,); ``seen`` (n,): f'' at the times ``looks``.
+    """``law`` gives (n, 3) at times (n,); ``seen`` (n, 3): what it gives at the times ``looks``.
 
     Raises ModelError where f or f' jumps, and where the derivatives are not those of f.
     """
+    if stands_still(looks, seen):
+        return pieces(np.array([first, last]), np.array([[seen[0, 0], 0.0, 0.0, 0.0, 0.0, 0.0]]))
+    refuse_between(law, looks, seen)
     sampled = Sampled(law)
     found = given_cuts(breaks, first, last)
     for _ in range(ROUNDS):
@@ -62,17 +64,18 @@ def exact_pieces(
         k = int(np.searchsorted(at[:, 0], cut.at))
         refuse_jump(cut.at, left[k, 0] - right[k - 1, 0], JUMP * float(np.ptp(left[:, 0])))
         refuse_kink(cut.at, left[k, 1] - right[k - 1, 1], KINK * float(np.abs(left[:, 1]).max()))
-    coefficients = _quintics(at[:, 1] - at[:, 0], left, right, max(abs(first), abs(last)))
+    whole = float(np.ptp(seen[:, 0]))
+    coefficients = _quintics(at[:, 1] - at[:, 0], left, right, max(abs(first), abs(last)), whole)
     return pieces(np.append(at[:, 0], at[-1, 1]), coefficients)
 
 
-def _quintics(h: np.ndarray, left: np.ndarray, right: np.ndarray, far: float) -> np.ndarray:
-    """(n, 6) of widths h (n,), from f, f', f'' (n, 3) at both ends; ``far`` (s): largest time."""
+def _quintics(h: np.ndarray, left: np.ndarray, right: np.ndarray, far: float, whole: float) -> np.ndarray:
+    """(n, 6) of widths h (n,), from f, f', f'' (n, 3) at both ends; ``far`` (s): latest time, ``whole``: range of f."""
     slope, bend = (right[:, 1] - left[:, 1] - h * left[:, 2]) * h, (right[:, 2] - left[:, 2]) * h**2
     rise = right[:, 0] - left[:, 0] - h * left[:, 1] - h**2 * left[:, 2] / 2
     beside = np.maximum(np.abs(left), np.abs(right))
     by_rates = slope / 2 - bend / 12
-    rounded = np.abs(rise - by_rates) <= EPSILON * (beside[:, 0] + beside[:, 1] * far)
+    rounded = np.abs(rise - by_rates) <= EPSILON * (beside[:, 0] + beside[:, 1] * far) + CANCELLED * whole
     return quintic_coefficients(h, left, np.where(rounded, by_rates, rise), slope, bend)
 
 
@@ -103,6 +106,8 @@ def _refined(
     left, right = sampled(at[:, 0]), sampled(at[:, 1])
     size = np.maximum(np.abs(left), np.abs(right)).max(axis=0)
     range_ = float(np.ptp(np.append(left[:, 0], right[:, 0])))
+    peak, whole = sizes(looks, seen), max(range_, float(np.ptp(seen[:, 0])))
+    seen = seen[:, 2]
     usual = max(float(np.quantile(np.abs(seen), USUAL)), FAINT * range_ / long**2)
     far = max(map(abs, span))
     done, points = [], []
@@ -113,12 +118,14 @@ def _refined(
         middle = at.mean(axis=1)
         real = sampled(middle)
         size = np.maximum(size, np.abs(real).max(axis=0))
-        coefficients = _quintics(width, left, right, far)
+        coefficients = _quintics(width, left, right, far, whole)
         bend = np.maximum.reduce([np.abs(left[:, 2]), np.abs(right[:, 2]), np.abs(real[:, 2]), above])
         scale = np.stack([np.full(len(at), size[0]), np.full(len(at), size[1]), np.maximum(bend, usual)], axis=1)
         value, slope = np.abs(real[:, 0]) + size[1] * far, np.abs(real[:, 1]) + np.maximum(bend, usual) * far
         rounding = ROUNDING * np.stack([value, slope, np.abs(real[:, 2]) + slope / width], axis=1)
+        peak = np.maximum(peak, size)
         allowed = TOLERANCE * scale
+        rounding[:, 2] = np.maximum(rounding[:, 2], CANCELLED * (peak[2] + peak[1] / width))
         met = (np.abs(_at(coefficients, width / 2) - real) <= np.maximum(allowed, rounding)).all(axis=1)
         low, high = np.searchsorted(looks, at[:, 0], "right"), np.searchsorted(looks, at[:, 1])
         count = np.maximum(high - low, 0)
@@ -130,13 +137,12 @@ def _refined(
         narrow = width <= max(finest(*span), CLOSEST * long)
         points += [Cut(*at[k, [0, 0, 1]]) for k in np.flatnonzero(~met & narrow)]
         for k in np.flatnonzero(~met & (width < POINT * long)):
-            refuse_jump(float(at[k, 0]), right[k, 0] - left[k, 0], max(JUMP * range_, 10 * size[1] * width[k]))
-            refuse_kink(float(at[k, 0]), right[k, 1] - left[k, 1], max(KINK * size[1], 10 * bend[k] * width[k]))
+            refuse_jump(float(at[k, 0]), right[k, 0] - left[k, 0], max(JUMP * whole, 10 * peak[1] * width[k]))
+            refuse_kink(float(at[k, 0]), right[k, 1] - left[k, 1], max(KINK * peak[1], 10 * bend[k] * width[k]))
         failing = at[~met], left[~met], real[~met], right[~met]
-        if 2 * len(failing[0]) > len(rows) << depth:
-            _refuse_derivatives(*failing, size, RESOLVED)
+        refuse_rows_of_pieces(sampled, *failing, peak, 2 * len(failing[0]) > len(rows) << depth)
         if sampled.count > MOST_TIMES:
-            _refuse_derivatives(*failing, size)
+            refuse_derivatives(*failing, peak)
             raise ModelError(
                 f"function: the law with its derivatives does not settle near t = {failing[0][0, 0]:.6g} s, after "
                 f"{MOST_TIMES} times: it scatters, or what it does is too short; give a shorter span, or breaks="
@@ -167,28 +173,3 @@ def _continued(row: np.ndarray, by: float) -> np.ndarray:
     """f, f', f'' (3,) a little (s) later or earlier."""
     f, slope, bend = row
     return np.array([f + by * (slope + by * bend / 2), slope + by * bend, bend])
-
-
-def _refuse_derivatives(
-    at: np.ndarray,
-    left: np.ndarray,
-    middle: np.ndarray,
-    right: np.ndarray,
-    size: np.ndarray,
-    straight: float = np.inf,
-) -> None:
-    """Raise DerivativeError where a derivative is not that of f; only where it is straight to this part of it."""
-    width = at[:, 1] - at[:, 0]
-    for order, (of, name) in enumerate((("f", "df"), ("df", "ddf"))):
-        slope = (right[:, order] - left[:, order]) / width
-        given = (left[:, order + 1] + 4 * middle[:, order + 1] + right[:, order + 1]) / 6  # Simpson's mean
-        off = np.abs(slope - given)
-        bent = np.abs(left[:, order + 1] - 2 * middle[:, order + 1] + right[:, order + 1])
-        least = DISAGREE if np.isinf(straight) else DISAGREE_SMOOTH
-        wrong = (off > least * size[order + 1]) & (bent <= straight * off)
-        if 2 * wrong.sum() > len(wrong) or (np.isinf(straight) and wrong.any()):
-            worst = int(np.argmax(np.where(wrong, off, 0.0)))
-            raise DerivativeError(
-                f"function: {name} is not the derivative of {of}: at t = {at[worst, 0]:.6g} s {of} rises by "
-                f"{slope[worst]:.6g} per second, {name} gives {given[worst]:.6g}; correct it, or leave df and ddf out"
-            )

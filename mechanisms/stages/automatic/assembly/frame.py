@@ -1,14 +1,16 @@
-"""The base: a plate on feet, engraved with the joints' names, a rule and a dial round what is driven."""
+"""The base: a plate, engraved with the joints' names, a rule and a dial round what is driven; it lies, or stands."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechanisms.stages.automatic.layout.plan import BOLT_HOLE
+from mechanisms.stages.automatic.standing.back_plate import BackPlate, Upright
 from shared.shapes.base import base_plate, foot
 from shared.shapes.engraving import LETTERS, dial, engraved, rule, text
 from shared.shapes.screw import SOCKET, head_diameter, socket_screw
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
 PLATE, FOOT_HEIGHT = 12.0, 3.0
 MARGIN = (48.0, 40.0)
 """Of the plate beyond the places where something stands (rmm)."""
+SLIM = (42.0, 36.0)
+"""Of one on a stand, whose corners carry no screws."""
 INSET = 12.0
 """Of the screws at the corners."""
 LONGEST_RULE = 420.0
@@ -32,15 +36,20 @@ MOST_LETTERS = 3
 
 
 def base(plan: Plan, engraved_too: bool = True) -> list[Solid]:
-    """Plate, screws and feet; the plate is the ground's main piece, ``engraved_too`` unless nobody is to see it."""
-    x0, y0, x1, y1 = _extent(plan)
-    corners = [(x, y) for x in (x0 + INSET, x1 - INSET) for y in (y0 + INSET, y1 - INSET)]
-    hole = plan.layout.sizes.screw / plan.layout.sizes.scale + 0.4
-    bolts = [(x, y, hole, BOLT_HOLE) for stand in plan.feet for x, y in stand.holes]
+    """The plate, the ground's main piece, ``engraved_too`` unless nobody is to see it; screws and feet, or spacers to a
+    wall, where it is on no stand. Nothing where the ground itself is all that one needs.
+    """
+    found = back_plate(plan)
+    if found is None:
+        return []
+    upright, (x0, y0, x1, y1) = Upright.of(plan.mount), found.corners
+    bolts = [(x, y, 2 * radius, BOLT_HOLE) for x, y, radius in found.holes]
+    rests = plan.mount.kind in ("desk", "wall")
+    corners = [(x, y) for x in (x0 + INSET, x1 - INSET) for y in (y0 + INSET, y1 - INSET)] if rests else []
     screw = _corner_screw(plan.layout.sizes)
     plate = base_plate((x0, y0, x1, y1), PLATE, 12.0, corners, screw.diameter, screw.room, bolts)
     if engraved_too:
-        plate = engraved(plate, _marks(plan, (x0, y0, x1, y1)), 0.0)
+        plate = engraved(plate, _marks(plan, upright, (x0, y0, x1, y1)), 0.0)
     seat = plan.layout.sizes.pivot.fit.seat
     solids = [Solid("base_plate", plate, "aluminium_black", len(corners))]
     under = foot(18.0, FOOT_HEIGHT, screw.diameter + 0.4)
@@ -49,7 +58,17 @@ def base(plan: Plan, engraved_too: bool = True) -> list[Solid]:
             Solid(f"corner_screw_{i + 1}", placed(screw.shape, x, y, seat - screw.room[1]), "steel", 0, buy=screw.buy),
             Solid(f"foot_{i + 1}", placed(under, x, y, -PLATE - seat), "rubber", 1),
         ]
-    return solids
+    return [replace(solid, shape=upright.in_model(solid.shape)) for solid in solids]
+
+
+def back_plate(plan: Plan) -> BackPlate | None:
+    """The plate (rmm) as its mount has it; None where the ground itself is all that one needs."""
+    if plan.mount.kind == "ground" and all(stand.road for stand in plan.feet) and not plan.base_under:
+        return None
+    upright, sizes = Upright.of(plan.mount), plan.layout.sizes
+    hole = sizes.screw / sizes.scale + 0.4
+    bolts = [(*upright.seen_place(x, y), hole / 2) for stand in plan.feet for x, y in stand.holes]
+    return BackPlate(_extent(plan, upright), 0.0, PLATE, 1.0, sizes.pivot.fit.seat, tuple(bolts))
 
 
 @dataclass(frozen=True)
@@ -76,39 +95,48 @@ def _corner_screw(sizes: Sizes) -> _Screw:
     return _Screw(shape, diameter, room, screw_name(nominal, length))
 
 
-def _extent(plan: Plan) -> tuple[float, float, float, float]:
+def _extent(plan: Plan, upright: Upright) -> tuple[float, float, float, float]:
     """Of the plate: round all feet; without any, under what moves; and as far as one wishes."""
     if plan.feet:
         places = np.array([[stand.x, stand.y] for stand in plan.feet])
     else:
         places = np.concatenate([plan.layout.poses[body][:, :2] for body in plan.layout.moving])
+    places = upright.seen(places)
     (x0, y0), (x1, y1) = places.min(axis=0), places.max(axis=0)
-    corners = np.array([[x0 - MARGIN[0], y0 - MARGIN[1]], [x1 + MARGIN[0], y1 + MARGIN[1]], *plan.base_under])
+    right, up = MARGIN if plan.mount.kind in ("desk", "wall") else SLIM
+    under = [upright.seen_place(x, y) for x, y in plan.base_under]
+    corners = np.array([[x0 - right, y0 - up], [x1 + right, y1 + up], *under])
     return (*corners.min(axis=0).tolist(), *corners.max(axis=0).tolist())
 
 
-def _marks(plan: Plan, extent: tuple[float, float, float, float]) -> list[cq.Face]:
+def _marks(plan: Plan, upright: Upright, extent: tuple[float, float, float, float]) -> list[cq.Face]:
     y0 = extent[1]
     marks: list[cq.Face] = []
-    xs = [stand.x for stand in plan.feet]
+    feet = [_seen(stand, upright) for stand in plan.feet]
+    xs = [stand.x for stand in feet]
     middle = (min(xs) + max(xs)) / 2 if xs else 0.0
-    for stand in plan.feet:
-        if stand.dial and plan.layout.room_on_base(stand.x, stand.y) > DIAL + 4.0:
+    for stand, there in zip(feet, plan.feet, strict=True):
+        if stand.dial and plan.layout.room_on_base(there.x, there.y) > DIAL + 4.0:
             marks += dial(stand.x, stand.y, DIAL, 10.0)
-        marks += _letters(stand, middle, plan)
+        marks += _letters(stand, middle, feet)
     reach = max(xs) - min(xs) if xs else 0.0
     if 30.0 < reach < LONGEST_RULE:
         marks += _ruler(plan.layout.sizes, reach, min(xs), y0)
     return marks
 
 
-def _letters(stand: Foot, middle: float, plan: Plan) -> list[cq.Face]:
+def _seen(stand: Foot, upright: Upright) -> Foot:
+    x, y = upright.seen_place(stand.x, stand.y)
+    return replace(stand, x=x, y=y)
+
+
+def _letters(stand: Foot, middle: float, feet: Sequence[Foot]) -> list[cq.Face]:
     """The joint's name beside its foot, away from the others, if it is short and its place is free."""
     if not 0 < len(stand.label) <= MOST_LETTERS or any(letter not in LETTERS for letter in stand.label):
         return []
     aside = stand.radius + 10.5 + 3.0 * (len(stand.label) - 1) + (4.0 if stand.dial else 0.0)
     x = stand.x + (aside if stand.x > middle + 1.0 else -aside)
-    if any(math.hypot(x - s.x, stand.y - s.y) < s.radius + 8.0 for s in plan.feet if s is not stand):
+    if any(math.hypot(x - s.x, stand.y - s.y) < s.radius + 8.0 for s in feet if s is not stand):
         return []
     return text(stand.label, 7.0, x, stand.y, width=1.2)
 

@@ -19,7 +19,9 @@ LINK, STUD = 22.0, 18.0
 """Least distances of two pins of one body, and of a spring's stud and a pin or stud beside it (rmm)."""
 ROD = "distance"
 """The kind of joint that is a rod: like a body here, though it has no mass and no pose of its own in the model."""
-STRETCHING = ("spring", "spring_law", "curve_of_length", "actuator", "gas", "gas_cycle", "gas_strut")
+STRETCHING = (
+    "spring", "spring_law", "curve_of_length", "actuator", "gas", "gas_cycle", "gas_strut", "hydraulic_cylinder",
+)  # fmt: skip
 """Kinds of forces that act along the line of two points, or along an axis on which both may be."""
 ROPE, LINEAR = "rope", "drive_distance"
 """The kinds of contact and of driver that do."""

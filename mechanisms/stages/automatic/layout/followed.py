@@ -26,14 +26,11 @@ def end_ways(points: Sequence[Sequence[float]], marker: Marker) -> np.ndarray:
     """(2, 2) unit vectors out of the first and out of the last end of the open curve through ``points``, in the axes
     of the marker's body.
     """
-    from mbsd.model.plane_curves import curve_pieces
+    from mbsd.model import plane_curves
 
-    breaks, coefficients = curve_pieces(np.array(points, dtype=float), False)
-    powers = np.arange(1, 6)
-    last = (coefficients[-1, :, 1:] * powers * (breaks[-1] - breaks[-2]) ** (powers - 1)).sum(axis=1)
-    ways = np.array([-coefficients[0, :, 1], last])
+    ways = plane_curves.end_ways(*plane_curves.curve_pieces(np.array(points, dtype=float), False))
     c, s = math.cos(marker.angle), math.sin(marker.angle)
-    return ways @ np.array([[c, s], [-s, c]]) / np.hypot(*ways.T)[:, None]
+    return ways @ np.array([[c, s], [-s, c]])
 
 
 def continued(path: np.ndarray, ways: np.ndarray, ahead: float, step: float) -> tuple[np.ndarray, int]:

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Protocol
 
+from shared.contract.mount import Mount
 from shared.shapes.link import Eye
 from shared.shapes.solid import Solid
 
@@ -33,6 +34,8 @@ class Foot:
     holes: tuple[tuple[float, float], ...] = ()
     """Places of its screws."""
     dial: bool = False
+    road: bool = False
+    """Whether it is of a road, which may be the ground itself."""
 
 
 @dataclass(frozen=True)
@@ -84,6 +87,8 @@ class Plan:
     """Round parts, and the bodies and pieces into which they press."""
     base_under: list[tuple[float, float]] = field(default_factory=list)
     """Places that the base plate has to reach."""
+    mount: Mount = Mount()
+    """How ground stands."""
     names: set[str] = field(default_factory=set)
     main: dict[str, str] = field(default_factory=dict)
     """Names of the main pieces."""

@@ -124,12 +124,12 @@ class Sizes:
         return nearest if nearest <= THICKEST_SCREW * self.scale else 0.0
 
 
-def sizes(shortest: float, overall: float, fit: Fit | None = None) -> list[Sizes]:
+def sizes(shortest: float, overall: float, fit: Fit | None = None, thinnest: float = THINNEST) -> list[Sizes]:
     """From the shortest distance of two joints of one body and the longer side of what all joints sweep (m); then
-    with thinner pins.
+    with thinner pins, the last ``thinnest`` times as thick at least.
     """
     pin = standard(min(mm(shortest) / LEAST_LINK, mm(overall) / OVERALL))
-    thinner = [d for d in reversed(STANDARD) if THINNEST * pin <= d < pin]
+    thinner = [d for d in reversed(STANDARD) if thinnest * pin <= d < pin]
     return [of_pin(d, fit) for d in (pin, *thinner)]
 
 

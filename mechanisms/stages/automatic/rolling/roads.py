@@ -29,11 +29,16 @@ from shared.shapes.build import extruded
 from shared.shapes.polyline import simplified
 
 if TYPE_CHECKING:
+    from mbsd import Mechanism
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
     from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.rolling.rounds import Round
+
+
+HELD = 0.7
+"""Cosine of the angle between gravity and what is under a road on which it holds a wheel."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,16 +97,41 @@ class Road:
         seat = plan.layout.sizes.pivot.fit.seat
         top = max(part.top(heights) for part in self.rounds)
         holes = 0 if self.band is None else len(self.band.holes)
-        name = plan.make("ground", f"road_{self.name}", self._wall(seat, top), "aluminium", holes)
+        road, material = self, "aluminium"
+        if self.holds(plan.layout.m):
+            road = self.reaching(plan.base_under, np.array(plan.layout.m.gravity))
+            material = "concrete"
+        name = plan.make("ground", f"road_{self.name}", road._wall(seat, top), material, holes)
         plan.pressed_into("ground", name, self.rounds)
         if self.band is not None:
             (x0, y0), (x1, y1) = self.band.border.min(axis=0), self.band.border.max(axis=0)
-            plan.feet += [Foot("", float(u), float(v), THICK) for u in (x0, x1) for v in (y0, y1)]
+            plan.feet += [Foot("", float(u), float(v), THICK, road=True) for u in (x0, x1) for v in (y0, y1)]
             return
         under = behind(self.path[-1] - self.path[0])
         widest = max(part.radius for part in self.rounds)
         ends = [*self.path[[0, -1]], *self.feet, *(self.path[[0, -1]] - widest * under)]
-        plan.feet += [Foot("", float(u), float(v), THICK) for u, v in ends]
+        plan.feet += [Foot("", float(u), float(v), THICK, road=True) for u, v in ends]
+
+    def holds(self, m: Mechanism) -> bool:
+        """Whether gravity holds a wheel on it."""
+        pull = np.array(m.gravity or (0.0, 0.0))
+        down = behind(self.path[-1] - self.path[0]) @ pull > HELD * np.hypot(*pull) > 0.0
+        return bool(down) and any(part.look == "wheel" for part in self.rounds)
+
+    def reaching(self, places: Sequence[tuple[float, float]], pull: np.ndarray) -> Road:
+        """The road with as much of its straight continuations as lies over or under ``places`` (rmm), ``pull`` (2,)
+        pointing down.
+        """
+        if not self.is_square or not len(places):
+            return self
+        level = np.array([-pull[1], pull[0]]) / np.hypot(*pull)  # to the right of what stands upright
+        level *= np.sign((self.path[-1] - self.path[0]) @ level)
+        ends = []
+        for end, inner, out in ((self.path[0], self.path[1], -level), (self.path[-1], self.path[-2], level)):
+            run, far = float((end - inner) @ out), float(((np.array(places) - end) @ out).max())
+            goes_on = far > 0.0 and run > 0.0
+            ends.append((end + far / run * (end - inner))[None] if goes_on else self.path[:0])
+        return along(self.name, self.rounds, np.vstack([ends[0], self.path, ends[1]]))
 
     def _wall(self, low: float, high: float) -> cq.Workplane:
         """Of flat facets as long as its bends allow: of a spline's many short ones the proof of clearance is long."""
@@ -130,6 +160,11 @@ def banded(name: str, rounds: Sequence[Round], path: np.ndarray) -> Road | None:
     """A road of even thickness; None where that is in several parts."""
     found = band(path)
     return None if found is None else Road(name, rounds, path, found.back[[-1, 0]], found)
+
+
+def runs_on_ground(layout: Layout) -> bool:
+    """Whether a wheel runs on a road of ground, and gravity holds it there."""
+    return any(road.holds(layout.m) for road in layout.features if isinstance(road, Road))
 
 
 def _thinned(path: np.ndarray) -> np.ndarray:

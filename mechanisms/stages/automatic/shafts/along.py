@@ -12,12 +12,17 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from mechanisms.stages.automatic.layout.motion import poses_of, times_of
-from mechanisms.stages.automatic.shafts.banks import banks, deck_corners, fins
+from mechanisms.stages.automatic.layout.planar import disc
+from mechanisms.stages.automatic.shafts.banks import banks, deck_corners, deck_takes, fins
 from mechanisms.stages.automatic.shafts.bearers import BOSS, Bearers, bearers
+from mechanisms.stages.automatic.shafts.bodies.kinds import Machine
+from mechanisms.stages.automatic.shafts.bodies.machine import free_links, machine
 from mechanisms.stages.automatic.shafts.cylinders import Cylinder, cylinders
 from mechanisms.stages.automatic.shafts.free_places import free_places
-from mechanisms.stages.automatic.shafts.machine import Machine, free_links, machine
+from mechanisms.stages.automatic.shafts.mounted.valves import ValvePlan, valve_plans
+from mechanisms.stages.automatic.shafts.mounted.wheels import Wheels, wheels
 from mechanisms.stages.automatic.shafts.passing import (
+    Meeting,
     Takes,
     cylinder_takes,
     links_take,
@@ -27,6 +32,7 @@ from mechanisms.stages.automatic.shafts.passing import (
     weights,
 )
 from mechanisms.stages.automatic.shafts.pins_along import FOOT, Axle, axle_takes, axles
+from mechanisms.stages.automatic.shafts.rams import RamPlan, ram_plans
 from mechanisms.stages.automatic.shafts.shaft_plan import ShaftPlan, shaft_plan
 from mechanisms.stages.automatic.shafts.thickness import Measures, thicknesses
 from shared.shapes.units import mm
@@ -37,13 +43,18 @@ if TYPE_CHECKING:
 
     from mbsd import Mechanism, Solution
     from mechanisms.stages.automatic.layout.sizes import Sizes
+    from mechanisms.stages.automatic.shafts.bodies.mounted import Mounted
 
 BELOW = 8.0
 """From the lowest part that moves to the base plate, at least (rmm)."""
+THINNEST_ALONG = 0.35
+"""Of the pins that are tried, in the first ones: where places are given, thinner pins are all that can be tried."""
 FAR = 1e4
 """Where links are, far from each other, that have no place yet (mm)."""
 SMALLER = (1.0, 0.92, 0.84, 0.76, 0.68, 0.6)
 """Counterweights that are tried, in the largest one."""
+ROOM = 0.03
+"""Between a flywheel and the liners, in bores."""
 FLYWHEEL = 1.25
 """Radius of a flywheel, in what the webs of its shaft sweep."""
 
@@ -58,6 +69,19 @@ class Along:
     left_out: frozenset[str] = frozenset()
     flywheels: frozenset[str] = frozenset()
     """Shafts with a flywheel."""
+
+    def with_pins_that_pass(self) -> Along:
+        """The same plan with the thickest pins with which nothing meets; itself if there are none."""
+        for k, _ in enumerate(self.wishes):
+            plan = self if k == 0 else replace(self, wishes=self.wishes[k:])
+            try:
+                plan.refuse()
+            except Meeting:
+                continue
+            except UserError:
+                break
+            return plan
+        return self
 
     @cached_property
     def machine(self) -> Machine:
@@ -121,14 +145,45 @@ class Along:
     @cached_property
     def shafts(self) -> list[ShaftPlan]:
         """Their crank pins, webs and journals, with counterweights as large as what passes them leaves."""
-        every = [shaft_plan(one, self.measures, self.thickness, self.cylinders) for one in self.machine.shafts.values()]
+        every = [
+            self._below_liners(shaft_plan(one, self.measures, self.thickness, self.cylinders, self._mounted(one.body)))
+            for one in self.machine.shafts.values()
+        ]
         bare = [replace(plan, counterweight=0.0) for plan in every]
         return [
             self._lightened(plan, [one for k, one in enumerate(bare) if k != own]) for own, plan in enumerate(every)
         ]
 
+    @cached_property
+    def wheels(self) -> Wheels:
+        """Gears, pulleys and belts."""
+        return wheels(self.machine, self.measures)
+
+    def _mounted(self, shaft: str) -> list[Mounted]:
+        """What sits on a shaft beside its throws."""
+        cams = [one.mounted for one in self.valves.values() if one.valve.shaft == shaft]
+        return [*(one.mounted for one in self.wheels.of(shaft)), *cams]
+
+    @cached_property
+    def valves(self) -> dict[str, ValvePlan]:
+        """By body."""
+        return valve_plans(self.machine, self.measures, self.cylinders)
+
+    def _of_valves(self) -> list[Takes]:
+        return [one for own in self.valves.values() for one in own.takes()]
+
+    def _below_liners(self, plan: ShaftPlan) -> ShaftPlan:
+        """With a first journal so long that a flywheel turns below all liners."""
+        if plan.shaft.body not in self.flywheels:
+            return plan
+        first, *rest = plan.journals
+        liners = [own.piston.z - self.fins[name] for name, own in self.cylinders.items()]
+        low = min([first.low, *(z - ROOM * plan.unit for z in liners)])
+        return replace(plan, journals=(replace(first, low=low), *rest))
+
     def _lightened(self, plan: ShaftPlan, shafts: Sequence[ShaftPlan]) -> ShaftPlan:
         others = [*links_take(self.measures, self.thickness), *self._of_cylinders(), *self._of_axles(-math.inf)]
+        others += [*self._of_rams(-math.inf), *self.wheels.takes()]
         others += [one for other in shafts for one in shaft_takes(other)]
         for part in SMALLER if plan.has_weights else ():
             smaller = replace(plan, counterweight=part * plan.counterweight)
@@ -142,13 +197,18 @@ class Along:
         return axles(self.machine)
 
     @cached_property
+    def rams(self) -> dict[str, RamPlan]:
+        """By body that slides on ground and is driven in several planes."""
+        return ram_plans(self.machine, self.measures, self.thickness)
+
+    @cached_property
     def fins(self) -> dict[str, float]:
         """Radius of the fins, by piston."""
         return fins(self.cylinders)
 
     def flywheel(self, plan: ShaftPlan) -> float:
         """Radius of a shaft's flywheel; 0 for none."""
-        return FLYWHEEL * plan.swept if plan.shaft.body in self.flywheels else 0.0
+        return FLYWHEEL * plan.webs_sweep if plan.shaft.body in self.flywheels else 0.0
 
     @cached_property
     def low(self) -> float:
@@ -156,16 +216,19 @@ class Along:
         lowest = [link.z - self.thickness[name] / 2 for name, link in self.machine.links.items()]
         lowest += [own.piston.z - self.fins[name] for name, own in self.cylinders.items()]
         lowest += [plan.bottom(self.flywheel(plan)) for plan in self.shafts]
+        lowest += [own.span[0] for own in self.rams.values()]
         return min(lowest, default=0.0) - BELOW * self.measures.unit
 
     @cached_property
     def bearers(self) -> list[Bearers]:
         """Of each shaft."""
         running = max(0.12, self.sizes.pivot.fit.running * self.measures.unit / 2)
-        return [bearers(self.machine, plan, self._others(plan), running) for plan in self.shafts]
+        return [bearers(self.machine, plan, self._others(plan), running, self.flywheel(plan)) for plan in self.shafts]
 
     def _others(self, own: ShaftPlan) -> list[Takes]:
-        found = [*links_take(self.measures, self.thickness), *self._of_cylinders()]
+        found = [*links_take(self.measures, self.thickness), *self._of_cylinders(), *self._of_rams()]
+        found += self._of_decks()
+        found += [one for one in [*self.wheels.takes(), *self._of_valves()] if one.body != own.shaft.body]
         for plan in self.shafts:
             found += [] if plan is own else shaft_takes(plan)
         return found + self._of_axles()
@@ -173,16 +236,33 @@ class Along:
     def _of_cylinders(self) -> list[Takes]:
         return [one for name, own in self.cylinders.items() for one in cylinder_takes(own, self.fins[name])]
 
+    def _of_decks(self) -> list[Takes]:
+        return [deck_takes(bank, self.low) for bank in banks(self.cylinders)]
+
+    def _of_rams(self, low: float | None = None) -> list[Takes]:
+        return [one for own in self.rams.values() for one in own.takes(self.low if low is None else low)]
+
     def _of_axles(self, low: float | None = None) -> list[Takes]:
         low = self.low if low is None else low
         return [one for axle in self.axles for one in axle_takes(axle, self.machine, self.thickness, self.sizes, low)]
 
     def refuse(self) -> None:
-        """Raise UserError where things meet."""
+        """Raise UserError where things meet, a :class:`Meeting` where thinner pins may help."""
+        return self._passes
+
+    @cached_property
+    def _passes(self) -> None:
         taken = [*links_take(self.measures, self.thickness), *self._of_cylinders(), *self._of_axles()]
+        taken += [*self._of_rams(), *self._of_decks(), *self._of_valves(), *self.wheels.takes()]
         taken += [one for plan in self.shafts for one in shaft_takes(plan)]
         taken += [one for own in self.bearers for one in own.takes(self.low)]
+        taken += [self._flywheel(plan) for plan in self.shafts if self.flywheel(plan)]
         refuse_meetings(self.machine, taken)
+
+    def _flywheel(self, plan: ShaftPlan) -> Takes:
+        body, radius = plan.shaft.body, self.flywheel(plan)
+        shape = disc(*plan.shaft.axis, radius)
+        return Takes(f"the flywheel of '{body}'", body, shape, plan.bottom(radius), plan.ends[0])
 
     def span(self, body: str) -> tuple[float, float]:
         """Lowest and highest z of a body's main piece."""
@@ -193,6 +273,12 @@ class Along:
             own = self.cylinders[body]
             half = own.bore / 2 - own.running
             return own.piston.z - half, own.piston.z + half
+        if body in self.rams:
+            return self.rams[body].span
+        if body in self.valves:
+            own = self.valves[body]
+            half = max(own.radius, own.tappet)
+            return own.valve.z - half, own.valve.z + half
         plan = next(plan for plan in self.shafts if plan.shaft.body == body)
         return plan.bottom(self.flywheel(plan)), plan.top
 
@@ -200,6 +286,7 @@ class Along:
     def feet(self) -> list[tuple[float, float]]:
         """Corners of what stands on the base plate."""
         found = [corner for bank in banks(self.cylinders) for corner in deck_corners(bank)]
+        found += [corner for own in self.rams.values() for corner in own.corners]
         for own in self.bearers:
             r = BOSS * own.radius
             found += [(x + u * r, y + v * r) for x, y in own.places for u in (-1, 1) for v in (-1, 1)]

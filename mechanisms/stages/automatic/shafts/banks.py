@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from mechanisms.stages.automatic.shafts.passing import Takes, box
+
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.shafts.cylinders import Cylinder
 
@@ -55,6 +57,21 @@ def deck_corners(bank: Sequence[Cylinder]) -> list[tuple[float, float]]:
     first, wide, low, high = bank[0], deck_half(bank), deck_range(bank)[0], deck_range(bank)[1]
     (x, y), (u, v) = first.origin, first.piston.along
     return [(x + s * u - q * v, y + s * v + q * u) for s in (low, high) for q in (-wide, wide)]
+
+
+def deck_takes(bank: Sequence[Cylinder], low: float) -> Takes:
+    """The room of a deck, from the base plate (z = ``low``) up."""
+    first, (below, above), last = bank[0], deck_range(bank), bank[-1]
+    inside = [own.piston.body for own in bank] + [own.piston.link for own in bank if own.piston.link]
+    inside += [own.against[0] for own in bank if own.against is not None]
+    shape = box(first.origin, first.piston.along, below, above, deck_half(bank))
+    what = f"the deck of '{first.piston.body}'"
+    return Takes(what, "ground", shape, low, deck_top(last), frozenset(inside))
+
+
+def deck_top(last: Cylinder) -> float:
+    """Upper end (z) of the deck whose last cylinder this is."""
+    return last.piston.z + last.outer + BESIDE * last.bore
 
 
 def deck_half(bank: Sequence[Cylinder]) -> float:

@@ -15,7 +15,7 @@ from shared.stage.errors import UserError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from mechanisms.stages.automatic.shafts.machine import Machine
+    from mechanisms.stages.automatic.shafts.bodies.kinds import Machine
     from mechanisms.stages.automatic.shafts.shaft_plan import Journal, ShaftPlan
 
 PILLAR = 0.085
@@ -46,6 +46,8 @@ class Bearers:
     """Gap of a journal in its bearing."""
     journals: tuple[Journal, ...]
     """Those that have a bearing."""
+    tapered: bool = False
+    """Whether there is room for its arms only as they are, thinner towards the pillars."""
 
     @property
     def hub(self) -> float:
@@ -61,7 +63,7 @@ class Bearers:
             a, b = heights_of(self.plan, journal)
             found.append(Takes("a bearing", "ground", disc(x, y, self.hub), a, b, body))
             for place in self.places:
-                arm = _arm(self.plan, place, self.radius)
+                arm = _arm(self.plan, place, self.radius, self.tapered)
                 found.append(Takes("the arm of a bearing", "ground", arm, a, b, body))
         return found
 
@@ -71,19 +73,28 @@ class Bearers:
         return heights_of(self.plan, self.plan.journals[-1])[1] + 0.05 * self.plan.unit
 
 
-def bearers(machine: Machine, plan: ShaftPlan, taken: Sequence[Takes], running: float) -> Bearers:
-    """Find places for pillars that nothing comes near to. Raises UserError where there are not two."""
+def bearers(
+    machine: Machine, plan: ShaftPlan, taken: Sequence[Takes], running: float, flywheel: float = 0.0
+) -> Bearers:
+    """Find places for pillars that nothing comes near to, also not a flywheel of that radius. Raises UserError where
+    there are not two.
+    """
     radius = PILLAR * plan.unit
     room = 0.05 * plan.unit + (BOSS - 1) * radius
-    nearest = max(plan.swept, _hubs_of_links(plan)) + BOSS * radius + 0.05 * plan.unit
+    nearest = max(plan.swept, _hubs_of_links(plan), flywheel) + BOSS * radius + 0.05 * plan.unit
     ends = plan.journals[0], plan.journals[-1]
-    for journals in (plan.journals, ends):
+    tries = [(tapered, journals) for tapered in (False, True) for journals in (plan.journals, ends)]
+    for tapered, journals in tries:
+
+        def holds(place: tuple[float, float], journal: Journal, tapered: bool = tapered) -> bool:
+            return _is_free(machine, _arm(plan, place, radius, tapered), _beside(plan, journal, taken))
+
         for wider in WIDER:
             free = []
             for turn in np.radians(np.arange(0, 360, STEP)):
                 place = _at(plan, wider * nearest, turn)
                 if _is_free(machine, disc(*place, radius + room), taken) and all(
-                    _is_free(machine, _arm(plan, place, radius), _beside(plan, journal, taken)) for journal in journals
+                    holds(place, journal) for journal in journals
                 ):
                     free.append(turn)
             chosen = _spread(machine, plan, free)
@@ -92,12 +103,9 @@ def bearers(machine: Machine, plan: ShaftPlan, taken: Sequence[Takes], running: 
                 held = tuple(
                     journal
                     for journal in plan.journals
-                    if journal in journals
-                    or all(
-                        _is_free(machine, _arm(plan, place, radius), _beside(plan, journal, taken)) for place in places
-                    )
+                    if journal in journals or all(holds(place, journal) for place in places)
                 )
-                return Bearers(plan, radius, places, running, held)
+                return Bearers(plan, radius, places, running, held, tapered)
     raise UserError(
         f"{machine.m.name}: round the shaft '{plan.shaft.body}' there is no room for two pillars that carry its "
         f"bearings; bodies sweep all of it up to {WIDER[-1] * nearest:.4g} mm: leave one out "
@@ -114,8 +122,12 @@ def _at(plan: ShaftPlan, away: float, turn: float) -> tuple[float, float]:
     return float(x + away * math.cos(turn)), float(y + away * math.sin(turn))
 
 
-def _arm(plan: ShaftPlan, place: tuple[float, float], radius: float) -> Rounded:
+def _arm(plan: ShaftPlan, place: tuple[float, float], radius: float, tapered: bool) -> Rounded:
     """Of a bearing, from the axis to a pillar."""
+    wide, end = 0.8 * HUB * plan.journal, BOSS * radius
+    if tapered and wide > end:
+        (x, y), turns = plan.shaft.at, [k * math.pi / 8 for k in range(16)]
+        return around([place, *((x + (wide - end) * math.cos(t), y + (wide - end) * math.sin(t)) for t in turns)], end)
     return around([plan.shaft.at, place], max(BOSS * radius, 0.8 * HUB * plan.journal))
 
 

@@ -6,18 +6,29 @@ Along the middle of a bore, s is counted from abreast of the shaft. All proporti
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechanisms.stages.automatic.layout.planar import Rounded, around, disc, least_gap
+from mechanisms.stages.automatic.shafts.bodies.planes import SAME
+from mechanisms.stages.automatic.shafts.knuckles import (
+    HUB,
+    KNUCKLE_EYE,
+    carrier,
+    is_carrier,
+    refuse_near,
+    ring_reach,
+    rod_foot,
+    throw_of,
+)
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from mechanisms.stages.automatic.shafts.machine import Link, Machine, Piston, Shaft
+    from mechanisms.stages.automatic.shafts.bodies.kinds import Link, Machine, Piston, Shaft
 
 SQUARE = 0.95
 """Bore over stroke, where there is room and no gas says otherwise."""
@@ -31,6 +42,8 @@ CRANK_PIN, BIG_END, SMALL_END, WRIST_PIN = 0.26, 0.39, 0.22, 0.125
 """Radii."""
 SHANK = 0.13
 """Half of a rod's width."""
+HEAD = 0.16
+"""Height of a head."""
 ROOM = 0.05
 """Between what turns and what stands or slides."""
 ROD = 0.24
@@ -61,6 +74,8 @@ class Cylinder:
     """s of the liner's lower end."""
     skirt: float
     """Length of the piston below its wrist pin."""
+    against: tuple[str, float] | None = None
+    """A piston in the same cylinder from its other end, and s halfway between both crowns."""
 
     @property
     def crown(self) -> float:
@@ -70,6 +85,8 @@ class Cylinder:
     @property
     def top(self) -> float:
         """s of the liner's upper end."""
+        if self.against is not None:
+            return self.against[1]
         return self.highest + self.crown + SQUISH * self.bore
 
     @property
@@ -96,6 +113,8 @@ def cylinders(machine: Machine) -> dict[str, Cylinder]:
     for name, piston in machine.pistons.items():
         own = wished[name]
         fixed = piston.area is not None
+        if fixed and piston.link in machine.links:
+            refuse_near(machine, machine.links[piston.link], own)
         bore = own
         while bore >= (own if fixed else SMALLEST * own):
             made = _fitted(machine, piston, bore, wished)
@@ -104,12 +123,40 @@ def cylinders(machine: Machine) -> dict[str, Cylinder]:
                 break
             bore *= STEP
         else:
+            wider = ", the angle between banks wider" if _beside(machine, piston, own) else ""
             raise UserError(
                 f"{machine.m.name}: a bore of {own:.4g} mm has no room for piston '{name}' in '{piston.joint}': "
-                f"{_fitted(machine, piston, bore / STEP, wished)}; make the rod longer, the throw shorter, or shape it "
-                f"by hand in mechanisms/{machine.m.name}/parts.py"
+                f"{_fitted(machine, piston, bore / STEP, wished)}; make the rod longer, the throw shorter{wider}, "
+                f"or shape it by hand in mechanisms/{machine.m.name}/parts.py"
             )
-    return found
+    return {name: _beside_its_mate(machine, own, found) for name, own in found.items()}
+
+
+def _beside_its_mate(machine: Machine, own: Cylinder, every: Mapping[str, Cylinder]) -> Cylinder:
+    """With the piston that works against it in the same cylinder. Raises UserError where their crowns would meet."""
+    for name, other in every.items():
+        way = np.array(other.origin) - np.array(own.origin)
+        along = np.array(own.piston.along)
+        aside = abs(float(along[0] * way[1] - along[1] * way[0]))
+        faces = float(along @ other.piston.along) < -1 + 1e-9 and float(way @ along) > own.highest
+        if other is own or not faces or aside > SAME or abs(other.piston.z - own.piston.z) > SAME:
+            continue
+        low, high = own.highest + own.crown, float(way @ along) - other.highest - other.crown
+        middle = (low + high) / 2
+        gap = float(_between(machine, own, other, along).min()) - own.crown - other.crown
+        if gap < own.running:
+            raise UserError(
+                f"{machine.m.name}: the crowns of '{own.piston.body}' and '{name}' in one cylinder come as near as "
+                f"{gap:.4g} mm; pistons reach {CROWN:g} bores beyond their wrist pins, so move the shafts apart"
+            )
+        return replace(own, against=(name, middle))
+    return own
+
+
+def _between(machine: Machine, own: Cylinder, other: Cylinder, along: np.ndarray) -> np.ndarray:
+    """(T,): distance of the wrist pins of two pistons along their cylinder."""
+    ends = [machine.path(one.piston.body, *one.piston.wrist) @ along for one in (own, other)]
+    return ends[1] - ends[0]
 
 
 def _stroke(machine: Machine, piston: Piston) -> tuple[float, float, np.ndarray]:
@@ -123,7 +170,8 @@ def _stroke(machine: Machine, piston: Piston) -> tuple[float, float, np.ndarray]
 
 def _shaft(machine: Machine, piston: Piston) -> Shaft | None:
     link = machine.links.get(piston.link or "")
-    return next((machine.shafts[eye.on] for eye in link.eyes if eye.on in machine.shafts), None) if link else None
+    found = throw_of(machine, link) if link else None
+    return found[0] if found else None
 
 
 def _wish(machine: Machine, piston: Piston) -> float:
@@ -169,12 +217,13 @@ def _fitted(machine: Machine, piston: Piston, bore: float, bores: Mapping[str, f
     room = ROOM * bore
     low, skirt = lowest - SKIRT * bore, SKIRT * bore
     if shaft is not None:
-        throw = next(throw for throw in shaft.throws if throw.link == piston.link)
-        swept = shaft.radius(throw) + BIG_END * bore + room
+        link = machine.links[piston.link or ""]
+        _, throw = throw_of(machine, link) or (shaft, shaft.throws[0])
+        swept = shaft.radius(throw) + max(BIG_END * bore, ring_reach(machine, link, bore)) + room
         skirt = min(skirt, max(LEAST_SKIRT * bore, lowest - swept))
         if lowest - skirt - room < CRANK_PIN * bore * 1.25:
             return f"its skirt would come down to {lowest - skirt:.4g} mm from the axis of the shaft"
-        low, most = max(swept, _beside(machine, piston, bore)), lowest + LATEST * bore
+        low, most = max(swept, lowest - skirt, _beside(machine, piston, bore)), lowest + LATEST * bore
         while low <= most and not _has_room(machine, piston, foot, low, bore):
             low += room / 2
         if low > most:
@@ -187,16 +236,41 @@ def _fitted(machine: Machine, piston: Piston, bore: float, bores: Mapping[str, f
 
 def rod_shapes(machine: Machine, link: Link, bore: float) -> list[Rounded]:
     """What a connecting rod takes in the plane: its shank, and its big end."""
+    if is_carrier(machine, link):
+        return [*shank_shapes(machine, link, bore), flange_shape(machine, link, bore)]
+    if carrier(machine, link) is not None:
+        return shank_shapes(machine, link, bore)
     places = [(eye.x, eye.y) for eye in link.eyes]
     big = [disc(eye.x, eye.y, BIG_END * bore) for eye in link.eyes if eye.on in machine.shafts]
     return [around(places, (SHANK + 2 * ROOM) * bore), *big]
+
+
+def shank_shapes(machine: Machine, link: Link, bore: float) -> list[Rounded]:
+    """Of a carrier or of a rod on one: shank and small end, and the eye on the knuckle pin or the hub on the crank."""
+    main = rod_foot(machine, link)
+    ends = [eye for eye in link.eyes if eye.on in machine.pistons or eye is main]
+    shank = around([(eye.x, eye.y) for eye in ends], (SHANK + ROOM / 2) * bore)
+    radius = HUB if is_carrier(machine, link) else KNUCKLE_EYE
+    discs = [disc(eye.x, eye.y, (radius if eye is main else SMALL_END) * bore) for eye in ends]
+    return [shank, *discs]
+
+
+def flange_shape(machine: Machine, link: Link, bore: float) -> Rounded:
+    """What holds the flanges of a carrier: round its knuckle pins and its big end."""
+    main = rod_foot(machine, link)
+    pins = [eye for eye in link.eyes if eye.on in machine.links]
+    turns = [k * math.pi / 6 for k in range(12)] if main is not None else []
+    wide = (BIG_END - KNUCKLE_EYE) * bore
+    own = [(main.x + wide * math.cos(a), main.y + wide * math.sin(a)) for a in turns] if main is not None else []
+    return around([*((eye.x, eye.y) for eye in pins), *own], KNUCKLE_EYE * bore)
 
 
 def _has_room(machine: Machine, piston: Piston, foot: np.ndarray, low: float, bore: float) -> bool:
     """Whether no rod meets a liner that begins at ``low``: its own would lean against it, others pass beside it."""
     along, own = np.array(piston.along), machine.links[piston.link or ""]
     left = np.array([-along[1], along[0]])
-    eyes = [eye for eye in own.eyes if eye.on == piston.body or eye.on in machine.shafts]
+    main = rod_foot(machine, own)
+    eyes = [eye for eye in own.eyes if eye.on == piston.body or eye is main]
     start, end = (machine.path(own.body, eye.x, eye.y) - foot for eye in eyes)
     a, b = sorted((start, end), key=lambda path: float((path @ along).mean()))
     part = np.clip((low - a @ along) / ((b - a) @ along), 0.0, 1.0)

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 from mechanisms.stages.automatic.layout.items import Item, Reach
 from mechanisms.stages.automatic.layout.order.layers import Problem, find_layers
 from mechanisms.stages.automatic.layout.planar import least_gap
+from mechanisms.stages.automatic.shafts.bodies.planes import SAME
 from mechanisms.stages.automatic.shafts.pins_along import pin_outline
-from mechanisms.stages.automatic.shafts.planes import SAME
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.shafts.machine import Machine
+    from mechanisms.stages.automatic.shafts.bodies.kinds import Machine
     from mechanisms.stages.automatic.shafts.passing import Takes
     from mechanisms.stages.automatic.shafts.pins_along import Axle
     from mechanisms.stages.automatic.shafts.thickness import Measures

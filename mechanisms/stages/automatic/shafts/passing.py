@@ -9,19 +9,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechanisms.stages.automatic.layout.planar import Rounded, around, disc, least_gap
-from mechanisms.stages.automatic.shafts.cylinders import rod_shapes
+from mechanisms.stages.automatic.shafts.cylinders import HEAD, flange_shape, rod_shapes, shank_shapes
+from mechanisms.stages.automatic.shafts.knuckles import carrier, flange, is_carrier
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from mechanisms.stages.automatic.shafts.bodies.kinds import Link, Machine
     from mechanisms.stages.automatic.shafts.cylinders import Cylinder
-    from mechanisms.stages.automatic.shafts.machine import Machine
     from mechanisms.stages.automatic.shafts.shaft_plan import ShaftPlan
     from mechanisms.stages.automatic.shafts.thickness import Measures
 
 LEAST = 0.1
 """Gap (mm) that must be left."""
+
+
+class Meeting(UserError):
+    """Two things meet."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,12 +47,35 @@ def links_take(measures: Measures, thickness: Mapping[str, float]) -> list[Takes
     found = []
     for name, link in measures.machine.links.items():
         half, on = thickness[name] / 2, frozenset(eye.on for eye in link.eyes)
-        pistons = on & set(measures.machine.pistons)
+        sliding = on & {*measures.machine.pistons, *measures.machine.rams}
         bore = measures.of_rod(link)
+        if bore is not None and is_carrier(measures.machine, link):
+            found += _carrier_takes(measures, link, thickness, bore, sliding)
+            continue
+        if bore is not None and carrier(measures.machine, link) is not None:
+            shapes = shank_shapes(measures.machine, link, bore)
+            found += [Takes(f"'{name}'", name, shape, link.z - half, link.z + half, sliding) for shape in shapes]
+            continue
         shapes = (
             [measures.outline(link)] if bore is None or len(link.eyes) > 2 else rod_shapes(measures.machine, link, bore)
         )
-        found += [Takes(f"'{name}'", name, shape, link.z - half, link.z + half, pistons) for shape in shapes]
+        found += [Takes(f"'{name}'", name, shape, link.z - half, link.z + half, sliding) for shape in shapes]
+    return found
+
+
+def _carrier_takes(
+    measures: Measures, link: Link, thickness: Mapping[str, float], bore: float, pistons: frozenset[str]
+) -> list[Takes]:
+    """Its flanges, and between them the shank."""
+    half, between = thickness[link.body] / 2, measures.shank(link, thickness) / 2
+    thick = flange(2 * half, measures.axial)
+    round_pins = flange_shape(measures.machine, link, bore)
+    found = [
+        Takes(f"a flange of '{link.body}'", link.body, round_pins, link.z + low, link.z + low + thick, pistons)
+        for low in (-half, half - thick)
+    ]
+    for shape in shank_shapes(measures.machine, link, bore):
+        found.append(Takes(f"'{link.body}'", link.body, shape, link.z - between, link.z + between, pistons))
     return found
 
 
@@ -65,6 +93,9 @@ def shaft_takes(plan: ShaftPlan) -> list[Takes]:
         found.append(
             Takes(f"a crank pin of '{body}'", body, disc(x + pin.x, y + pin.y, plan.pin), pin.low, pin.high, held)
         )
+    if not plan.pins:
+        rod = disc(x, y, plan.journal)
+        found.append(Takes(f"the shaft of '{body}'", body, rod, plan.bottom(0.0), plan.top))
     for one in plan.journals:
         found.append(Takes(f"a journal of '{body}'", body, disc(x, y, plan.journal), one.low, one.high))
     return found
@@ -82,16 +113,20 @@ def cylinder_takes(own: Cylinder, fin: float) -> list[Takes]:
     spares = frozenset(["ground", *link])
     c, s = np.cos(piston.turn), np.sin(piston.turn)
     x, y = piston.wrist[0] + s * piston.aside, piston.wrist[1] - c * piston.aside
-    moving = _box((x, y), (float(c), float(s)), -own.skirt, own.crown, own.bore / 2 - own.running)
-    liner = _box(own.origin, piston.along, own.low, own.top, fin)
-    on = frozenset([piston.body, *link])
+    moving = box((x, y), (float(c), float(s)), -own.skirt, own.crown, own.bore / 2 - own.running)
+    liner = box(own.origin, piston.along, own.low, own.top, fin)
+    head = box(own.origin, piston.along, own.top, own.top + HEAD * own.bore, fin)
+    mate = [own.against[0]] if own.against is not None else []
+    on = frozenset([piston.body, *link, *mate])
     return [
         Takes(f"'{piston.body}'", piston.body, moving, piston.z - own.bore / 2, piston.z + own.bore / 2, spares),
         Takes(f"the liner of '{piston.body}'", "ground", liner, piston.z - fin, piston.z + fin, on),
+        *([] if mate else [Takes(f"the head of '{piston.body}'", "ground", head, piston.z - fin, piston.z + fin, on)]),
     ]
 
 
-def _box(at: tuple[float, float], along: tuple[float, float], low: float, high: float, half: float) -> Rounded:
+def box(at: tuple[float, float], along: tuple[float, float], low: float, high: float, half: float) -> Rounded:
+    """A rectangle about a line through ``at``, from ``low`` to ``high`` along it and ``half`` to either side."""
     u, place = np.array(along), np.array(at)
     left = np.array([-u[1], u[0]])
     corners = [place + s * u + q * left for s in (low, high) for q in (-half, half)]
@@ -108,14 +143,22 @@ def meeting(machine: Machine, first: Takes, second: Takes) -> int | None:
 
 
 def refuse_meetings(machine: Machine, taken: Sequence[Takes]) -> None:
-    """Raise UserError naming the first two things that meet, when, and what to do."""
+    """Raise Meeting naming the first two things that meet, when, and what to do."""
     for first, second in combinations(taken, 2):
         at = meeting(machine, first, second)
         if at is not None:
             share = max(first.low, second.low), min(first.high, second.high)
-            raise UserError(
+            bored = [
+                one.body in machine.pistons or one.what.startswith(("the liner", "the head")) for one in (first, second)
+            ]
+            remedy = (
+                "make rods longer, bores smaller, or the angle between the banks wider"
+                if all(bored)
+                else "give one of them another place z, make links shorter or pins thinner (automatic(m, pin=...))"
+            )
+            raise Meeting(
                 f"{machine.m.name}: {first.what} and {second.what} meet at t={machine.times[at]:.3g} s between "
-                f"z = {share[0]:.4g} and {share[1]:.4g} mm; give one of them another place z, make links shorter, "
+                f"z = {share[0]:.4g} and {share[1]:.4g} mm; {remedy}, "
                 f"or shape them by hand in mechanisms/{machine.m.name}/parts.py"
             )
 

@@ -7,16 +7,17 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
-from mechanisms.stages.automatic.shafts.machine import NEAR
+from mechanisms.stages.automatic.shafts.bodies.kinds import NEAR
+from mechanisms.stages.automatic.shafts.bodies.planes import SAME
+from mechanisms.stages.automatic.shafts.knuckles import carries
 from mechanisms.stages.automatic.shafts.passing import Takes
-from mechanisms.stages.automatic.shafts.planes import SAME
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from mechanisms.stages.automatic.layout.sizes import Sizes
-    from mechanisms.stages.automatic.shafts.machine import Machine
+    from mechanisms.stages.automatic.shafts.bodies.kinds import Machine
 
 FOOT = 16.0
 """Radius of the foot of what carries an axle on ground (rmm)."""
@@ -44,6 +45,8 @@ def axles(machine: Machine) -> list[Axle]:
         for eye in link.eyes:
             if eye.on not in machine.links and eye.on != "ground":  # shafts, pistons, free ends
                 continue
+            if eye.on in machine.links and carries(machine, link, machine.links[eye.on]):
+                continue  # between the flanges of its carrier
             other = _place_of(machine, eye.joint, eye.on)
             ends = {body: (eye.x, eye.y), eye.on: other}
             near = [group for group in groups if _share(group[1], ends)]
@@ -66,7 +69,7 @@ def axles(machine: Machine) -> list[Axle]:
 
 
 def _place_of(machine: Machine, joint: str, body: str) -> tuple[float, float]:
-    from mechanisms.stages.automatic.shafts.planes import marker_on, place
+    from mechanisms.stages.automatic.shafts.bodies.planes import marker_on, place
 
     return place(marker_on(machine.m.joints[joint], body))
 

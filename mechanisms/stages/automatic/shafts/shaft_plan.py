@@ -7,13 +7,15 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from mechanisms.stages.automatic.shafts.cylinders import CRANK_PIN
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
+    from mechanisms.stages.automatic.shafts.bodies.kinds import Shaft, Throw
+    from mechanisms.stages.automatic.shafts.bodies.mounted import Mounted
     from mechanisms.stages.automatic.shafts.cylinders import Cylinder
-    from mechanisms.stages.automatic.shafts.machine import Shaft, Throw
     from mechanisms.stages.automatic.shafts.thickness import Measures
 
 WEB, LEAST_WEB = 0.22, 0.09
@@ -29,8 +31,20 @@ NECK = 1.1
 """Radius of a web about the axis, in that of the journals."""
 CHEEK = 1.3
 """Radius of a web round its crank pin in that of the pin."""
+HOLE = 0.55
+"""Radius of the hole through a crank pin and its webs, in that of the pin."""
+WEIGHT = 1.15
+"""Radius of a counterweight at most, in what the webs reach."""
 SNOUT, FLANGE = 0.3, 0.12
 """Lengths beyond the journals at the upper and at the lower end, in bores."""
+THIN = 0.7
+"""Radius of a shaft beyond its last bearing, in that of its journals."""
+PROUD = 0.05
+"""So far a shaft reaches beyond a wheel at its end, in bores."""
+PLAIN = 0.6
+"""Radius of a shaft without throws, at most, in the least radius within what sits on it."""
+BETWEEN = 2.4
+"""Least distance of two cams or wheels with a bearing between them, in radii of the journal."""
 SAME = 1e-3
 
 
@@ -79,6 +93,8 @@ class ShaftPlan:
     """Along the axis, beside what turns on it or in what it turns."""
     counterweight: float
     """The largest radius of a counterweight."""
+    mounted: tuple[Mounted, ...] = ()
+    """Wheels and cams, in the order of their planes."""
 
     @property
     def journal(self) -> float:
@@ -96,6 +112,21 @@ class ShaftPlan:
         return self.counterweight > 1.15 * self.neck
 
     @property
+    def hole(self) -> float:
+        """Radius of the holes through crank pins and their webs; 0 where they would come out in a journal or a pin."""
+        radius = HOLE * self.pin
+        near = [math.hypot(pin.x, pin.y) - self.neck for pin in self.pins]
+        near += [math.dist((a.x, a.y), (b.x, b.y)) - self.pin for a, b in pairwise(self.pins) if self._flies(a, b)]
+        return radius if min(near, default=0.0) > radius + 0.1 * self.pin else 0.0
+
+    def _flies(self, before: Pin, after: Pin) -> bool:
+        return any(web.low == before.high and web.high == after.low for web in self.webs)
+
+    def beside(self, pin: Pin) -> list[Web]:
+        """The webs at both ends of a crank pin."""
+        return [web for web in self.webs if web.high == pin.low or web.low == pin.high]
+
+    @property
     def neck(self) -> float:
         """Radius of a web about the axis."""
         return NECK * self.journal
@@ -104,7 +135,13 @@ class ShaftPlan:
     def swept(self) -> float:
         """What its webs sweep about the axis, and a counterweight at most."""
         reach = max((math.hypot(pin.x, pin.y) for pin in self.pins), default=0.0) + self.cheek
-        return max(reach, self.counterweight if self.has_weights else 0.0, self.journal)
+        on_it = max((one.radius for one in self.mounted), default=0.0)
+        return max(reach, self.counterweight if self.has_weights else 0.0, self.journal, on_it)
+
+    @property
+    def webs_sweep(self) -> float:
+        """What its webs sweep about the axis, without wheels."""
+        return max(math.hypot(pin.x, pin.y) for pin in self.pins) + self.cheek if self.pins else self.journal
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -114,17 +151,41 @@ class ShaftPlan:
     @property
     def top(self) -> float:
         """Highest z of the shaft."""
-        return self.ends[1] + SNOUT * self.unit
+        beyond = [one.high + PROUD * self.unit for one in self.mounted if one.low > self.ends[1]]
+        return max([self.ends[1] + (SNOUT if self.pins else PROUD) * self.unit, *beyond])
+
+    @property
+    def has_flange(self) -> bool:
+        """Whether its lower end is a flange: that of a crankshaft without a wheel there."""
+        return bool(self.pins) and not any(one.high < self.ends[0] for one in self.mounted)
 
     def bottom(self, flywheel: float) -> float:
         """Lowest z of the shaft; ``flywheel`` is the radius of its flywheel, 0 for none."""
-        return self.ends[0] - (2.2 if flywheel else 1.0) * FLANGE * self.unit
+        beyond = [one.low - PROUD * self.unit for one in self.mounted if one.high < self.ends[0]]
+        end = (2.2 if flywheel else 1.0) * FLANGE if self.pins else PROUD
+        return min([self.ends[0] - end * self.unit, *beyond])
+
+    def through(self, one: Mounted) -> float:
+        """Radius of the shaft where a wheel or a cam sits."""
+        inside = self.ends[0] < one.z < self.ends[1]
+        return self.journal if inside or not self.pins else THIN * self.journal
 
 
 def shaft_plan(
-    shaft: Shaft, measures: Measures, thickness: Mapping[str, float], cylinders: Mapping[str, Cylinder]
+    shaft: Shaft,
+    measures: Measures,
+    thickness: Mapping[str, float],
+    cylinders: Mapping[str, Cylinder],
+    mounted: Sequence[Mounted] = (),
 ) -> ShaftPlan:
-    """Plan a shaft. Raises UserError naming two links that are too near along z for a web between them."""
+    """Plan a shaft. Raises UserError naming two links that are too near along z for a web between them, and wheels that
+    have no room on it.
+    """
+    on_it = tuple(sorted(mounted, key=lambda one: one.z))
+    if not shaft.throws:
+        bores = [one.bore for one in cylinders.values()]
+        unit = min(bores) if bores and not all(one.is_wheel for one in on_it) else measures.of_shaft(shaft)
+        return _plain(shaft, measures, on_it, unit)
     unit, gap = measures.of_shaft(shaft), measures.axial
     pins = _pins(shaft, thickness, gap, _both(unit))
     webs, journals = _between(measures, shaft, pins, unit)
@@ -135,8 +196,67 @@ def shaft_plan(
     journals = [Journal(first - END * unit, first), *journals, Journal(last, last + END * unit)]
     own = [one.counterweight for one in cylinders.values() if one.shaft is shaft]
     reach = max(math.hypot(pin.x, pin.y) for pin in pins) + CHEEK * measures.crank_pin(shaft)
-    weight = min([*own, 1.05 * reach])
-    return ShaftPlan(shaft, unit, measures.crank_pin(shaft), tuple(pins), tuple(webs), tuple(journals), gap, weight)
+    weight = min([*own, WEIGHT * reach])
+    radius = measures.crank_pin(shaft)
+    plan = ShaftPlan(shaft, unit, radius, tuple(pins), tuple(webs), tuple(journals), gap, weight, on_it)
+    _refuse_mounted(measures.machine.m.name, plan)
+    return plan
+
+
+def _refuse_mounted(name: str, plan: ShaftPlan) -> None:
+    """Raise UserError for a wheel among the throws, and for one that is too small for its shaft."""
+    low, high = plan.ends
+    for one in plan.mounted:
+        if plan.pins and one.high > low - plan.gap and one.low < high + plan.gap:
+            raise UserError(
+                f"{name}: {one.what} is at z = {one.z:.4g} mm, where '{plan.shaft.body}' has its crank pins and "
+                f"bearings, from {low:.4g} to {high:.4g} mm; give it a place beyond, below "
+                f"{low - plan.gap - one.thickness / 2:.4g} or above {high + plan.gap + one.thickness / 2:.4g} mm"
+            )
+        if one.inner < plan.through(one):
+            raise UserError(
+                f"{name}: {one.what} has no room for its shaft, whose radius is {plan.through(one):.4g} mm, and inside "
+                f"of its rim there are {one.inner:.4g} mm; make the wheel larger"
+            )
+
+
+def _plain(shaft: Shaft, measures: Measures, mounted: Sequence[Mounted], unit: float) -> ShaftPlan:
+    """A shaft without throws: a rod with bearings between what sits on it; wheels at its ends are beyond the last."""
+    room = min(one.inner for one in mounted)
+    pin = min(CRANK_PIN * unit, PLAIN * room / JOURNAL)
+    journal, gap = JOURNAL * pin, measures.axial
+    long = LEAST_BEARING * unit + 2 * gap
+    first, last = mounted[0], mounted[-1]
+    hangs = [len(mounted) > 1 and one.is_wheel for one in (first, last)]
+    found = []
+    for k, (before, after) in enumerate(pairwise(mounted)):
+        needed = (k == 0 and hangs[0]) or (k == len(mounted) - 2 and hangs[1])
+        space = after.low - before.high
+        if needed and space < long + 2 * gap:
+            raise UserError(
+                f"{measures.machine.m.name}: {before.what} and {after.what} are {after.z - before.z:.4g} mm apart "
+                f"along '{shaft.body}', and with a bearing between them they need "
+                f"{after.z - before.z - space + long + 2 * gap:.4g} mm; move one of them along z"
+            )
+        if needed or space > BETWEEN * journal:
+            found.append((before.high, after.low, needed))
+    both = len(found) == 1 and all(hangs)
+    journals = []
+    for low, high, _ in found:
+        most = END * unit
+        if both and high - low > 2 * long + 2 * gap:
+            size = min(most, (high - low) / 2 - 2 * gap)
+            journals += [Journal(low + gap, low + gap + size), Journal(high - gap - size, high - gap)]
+        else:
+            middle, half = (low + high) / 2, min(most, high - low - 2 * gap) / 2
+            journals.append(Journal(middle - half, middle + half))
+    if not hangs[0]:
+        journals.insert(0, Journal(first.low - gap - END * unit, first.low - gap))
+    if not hangs[1]:
+        journals.append(Journal(last.high + gap, last.high + gap + END * unit))
+    plan = ShaftPlan(shaft, unit, pin, (), (), tuple(journals), gap, 0.0, tuple(mounted))
+    _refuse_mounted(measures.machine.m.name, plan)
+    return plan
 
 
 def _pins(shaft: Shaft, thickness: Mapping[str, float], gap: float, most: float) -> list[Pin]:

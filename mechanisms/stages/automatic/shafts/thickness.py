@@ -7,16 +7,26 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from mechanisms.stages.automatic.layout.planar import Rounded, around, least_gap
+from mechanisms.stages.automatic.shafts.bodies.planes import SAME
 from mechanisms.stages.automatic.shafts.cylinders import BIG_END, CRANK_PIN, ROD, SMALL_END
-from mechanisms.stages.automatic.shafts.planes import SAME
+from mechanisms.stages.automatic.shafts.knuckles import (
+    KNUCKLE_EYE,
+    carrier,
+    carries,
+    height_for,
+    is_carrier,
+    knuckle_eyes,
+    middle,
+    refuse_near,
+)
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from mechanisms.stages.automatic.layout.sizes import Sizes
+    from mechanisms.stages.automatic.shafts.bodies.kinds import Link, LinkEye, Machine, Shaft
     from mechanisms.stages.automatic.shafts.cylinders import Cylinder
-    from mechanisms.stages.automatic.shafts.machine import Link, LinkEye, Machine, Shaft
 
 WEB = 0.1
 """Between two links on crank pins at different places, in bores of their shaft."""
@@ -69,12 +79,21 @@ class Measures:
             return (BIG_END / CRANK_PIN) * self.crank_pin(self.machine.shafts[eye.on])
         if eye.on in self.cylinders and bore is not None:
             return SMALL_END * bore
+        if bore is not None and eye in knuckle_eyes(self.machine, link):
+            return KNUCKLE_EYE * bore
         return self.sizes.eye * self.unit
 
     def wished(self, link: Link) -> float:
-        """Thickness of a link where there is room."""
+        """Thickness of a link where there is room; of one that carries rods, with its flanges."""
         bore = self.of_rod(link)
+        if bore is not None and is_carrier(self.machine, link):
+            return height_for(ROD * bore, self.axial)
         return ROD * bore if bore is not None else self.sizes.thickness * self.unit
+
+    def shank(self, link: Link, thickness: Mapping[str, float]) -> float:
+        """Thickness of a link away from its flanges."""
+        own = thickness[link.body]
+        return middle(own, self.axial) if is_carrier(self.machine, link) else own
 
     def outline(self, link: Link) -> Rounded:
         """What holds it in the plane."""
@@ -119,6 +138,12 @@ def thicknesses(measures: Measures) -> dict[str, float]:
         both = (found[first] + found[second]) / 2
         if both > room:
             found[first], found[second] = (found[name] * room / both for name in (first, second))
+    for name, link in machine.links.items():
+        above, bore = carrier(machine, link), measures.of_rod(link)
+        if above is not None:
+            found[name] = min(found[name], measures.shank(above, found))
+        elif bore is not None and is_carrier(machine, link):
+            refuse_near(machine, link, bore)
     return found
 
 
@@ -126,6 +151,8 @@ def _near(measures: Measures, thickness: Mapping[str, float]) -> Sequence[tuple[
     """Pairs that are near along z and meet in the plane, or share a pin."""
     machine, found = measures.machine, []
     for a, b in combinations(machine.links.values(), 2):
+        if carries(machine, a, b):
+            continue
         more = max((WASHER + APART) * measures.unit, WEB * (_web_between(measures, a, b) or 0.0) + 2 * measures.axial)
         if abs(a.z - b.z) > (thickness[a.body] + thickness[b.body]) / 2 + more:
             continue

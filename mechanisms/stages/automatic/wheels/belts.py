@@ -31,14 +31,16 @@ def extent_of(joint: Joint, solution: Solution) -> Extent:
 
 def belts(m: Mechanism, layout: Layout) -> list[Belt]:
     """All belts of the mechanism, with their pulleys. Raises UserError where two pulleys overlap."""
-    found: list[Belt] = []
-    for joint in (joint for joint in m.joints.values() if joint.kind.name == BELTS):
-        pair = _pulley(joint, 0, layout), _pulley(joint, 1, layout)
-        _fit(m, joint, pair, layout)
-        for one, mate in (pair, pair[::-1]):
-            one.mates.append(mate)
-        found.append(Belt(joint.name, pair, bool(joint.params["crossed"])))
-    return found
+    return [belt_of(m, joint, layout) for joint in m.joints.values() if joint.kind.name == BELTS]
+
+
+def belt_of(m: Mechanism, joint: Joint, layout: Layout) -> Belt:
+    """The belt of a joint, with its pulleys. Raises UserError where these overlap."""
+    pair = _pulley(joint, 0, layout), _pulley(joint, 1, layout)
+    _fit(m, joint, pair, layout)
+    for one, mate in (pair, pair[::-1]):
+        one.mates.append(mate)
+    return Belt(joint.name, pair, bool(joint.params["crossed"]))
 
 
 def _pulley(joint: Joint, end: int, layout: Layout) -> Pulley:

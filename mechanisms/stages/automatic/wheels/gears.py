@@ -76,7 +76,7 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
             second = wheel_at(found, joint.name, joint.j, sized["radius_j"], False, layout)
             tip = layout.sizes.of_metres(joint.params.get("module") or TIP * min(sized["radius_i"], sized["radius_j"]))
             first, second = _apart(found, first, second, tip, layout), _apart(found, second, first, tip, layout)
-            _hold(m, joint, first, second, layout)
+            refuse_apart(m, joint, first, second, layout)
         first.mates.append(second)
         second.mates.append(first)
         meshes.append(Mesh(first, second, joint))
@@ -111,7 +111,7 @@ def _meet(first: Wheel, second: Wheel, tip: float, layout: Layout) -> bool:
     return bool(np.hypot(*away.T).min() < first.radius + second.radius + 2 * tip + layout.sizes.room)
 
 
-def _hold(m: Mechanism, joint: Joint, first: Wheel, second: Wheel, layout: Layout) -> None:
+def refuse_apart(m: Mechanism, joint: Joint, first: Wheel, second: Wheel, layout: Layout) -> None:
     """Raises UserError unless the centres of two wheels stay as far apart as their radii want."""
     wanted = abs(first.radius - second.radius) if first.ring else first.radius + second.radius
     way = layout.seen(second.body, (second.x, second.y), first.body) - (first.x, first.y)

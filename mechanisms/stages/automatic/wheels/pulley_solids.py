@@ -56,8 +56,13 @@ def build_pulley(pulley: Pulley, plan: Plan, heights: Heights) -> None:
 
 def build_rim(pulley: Pulley, plan: Plan, heights: Heights) -> None:
     """The rim about its disc."""
-    thickness, z = heights.thickness, heights.bottom(pulley.layer)
-    inner = pulley.root + plan.layout.sizes.pivot.fit.seat
+    seat = plan.layout.sizes.pivot.fit.seat
+    plan.add(pulley.body, rim_of(pulley, heights.thickness, heights.bottom(pulley.layer), seat))
+
+
+def rim_of(pulley: Pulley, thickness: float, z: float, seat: float) -> Solid:
+    """The rim of a pulley from z up, ``seat`` around its disc."""
+    inner = pulley.root + seat
     middle, radius = z + thickness / 2, BELT
     if pulley.teeth:
         height = SPROCKET * thickness
@@ -71,7 +76,7 @@ def build_rim(pulley: Pulley, plan: Plan, heights: Heights) -> None:
     hold = Hold(pulley.belt, middle, radius)
     material = "steel" if pulley.teeth else "aluminium"
     rim = placed(shape, pulley.x, pulley.y, z)
-    plan.add(pulley.body, Solid(f"rim_{pulley.name}", rim, material, 1, holds=(hold,)))
+    return Solid(f"rim_{pulley.name}", rim, material, 1, holds=(hold,))
 
 
 def sprocket_outline(teeth: int, radius: float, tooth: float, phase: float) -> np.ndarray:

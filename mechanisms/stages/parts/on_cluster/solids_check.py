@@ -94,7 +94,7 @@ def _refuse_wrong_sums(body: str, solids: BodyParts) -> None:
         raise UserError(f"{body}: it has no pieces")
     pieces = list(solids.pieces.values())
     largest = max(abs(place) for piece in pieces for place in (*piece.mass.com, *piece.z_range))
-    if not _alike(combined(piece.mass for piece in pieces), solids.mass, largest, 1e-6):
+    if not _alike(combined(piece.mass for piece in pieces if not piece.dressing), solids.mass, largest, 1e-6):
         raise UserError(f"{body}: its mass is not that of its pieces")
     if not any(abs(sum(piece.z_range) / 2 - solids.z) < 1e-9 for piece in pieces):
         raise UserError(f"{body}: its middle is not that of a piece")

@@ -28,6 +28,6 @@ exports.open = async (browser, file, { width = 1280, height = 720, theme = "dark
   page.on("pageerror", (error) => errors.push(String(error.stack ?? error)));
   page.on("request", (request) => !/^(file|data|blob):/.test(request.url()) && errors.push(`request of ${request.url()}`));
   await page.goto(`file://${file}`);
-  await page.waitForFunction(() => window.mbsd?.app, null, { timeout: 60000 });
+  await page.waitForFunction(() => window.mbsd?.app && !window.mbsd.app.stage.waits, null, { timeout: 120000 });
   return { page, errors, context };
 };

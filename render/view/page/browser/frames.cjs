@@ -3,24 +3,10 @@
  * Prints what draws, draw calls and triangles of a frame, frames, frames a second, and the processor time of the browser
  * for a frame, which another load of the machine does not change much (Linux).
  */
-const fs = require("node:fs");
 const { launch, open } = require("./browser.cjs");
+const { used } = require("./processor.cjs");
 
 const [, , file, width = 1280, height = 720, seconds = 10] = process.argv;
-
-/** Seconds of processor time of all processes below this one. */
-function used() {
-  const parents = new Map(), times = new Map();
-  for (const pid of fs.readdirSync("/proc").filter((name) => /^\d+$/.test(name))) {
-    try {
-      const fields = fs.readFileSync(`/proc/${pid}/stat`, "utf8").replace(/^.*\) /, "").split(" ");
-      parents.set(pid, fields[1]);
-      times.set(pid, (Number(fields[11]) + Number(fields[12])) / 100);
-    } catch { /* it has ended */ }
-  }
-  const ours = (pid) => pid === String(process.pid) || (parents.has(pid) && ours(parents.get(pid)));
-  return [...times].filter(([pid]) => pid !== String(process.pid) && ours(pid)).reduce((sum, [, time]) => sum + time, 0);
-}
 
 (async () => {
   const browser = await launch();

@@ -6,7 +6,7 @@
  *   app.slot            an element in the side panel for who embeds the page (sliders)
  *   app.store           what is shown (state.js); app.store.set({time: 0.2}) moves the machine
  *   app.payload, app.motion, app.clock
- *   app.select(thing), app.placeOf(thing), app.redraw()
+ *   app.select(thing), app.placeOf(thing), app.redraw(), app.hold(on): the view stays while numbers are dragged
  *
  * live: {drag(thing, [x, y], phase)} is called while a joint or traced point is dragged in the 2D view, in m; phase is
  * "start", "move" or "end". Without it the plane is panned.
@@ -68,6 +68,9 @@ export class App {
     this.redraw();
   }
 
+  /** While numbers are dragged the 2D view stays where it is. */
+  hold(on) { this.held = this.stage.plane.held = on; this.redraw(); }
+
   there({ kind, name }) { return !!this.payload[KINDS[kind]]?.[name]; }
 
   select(thing) { this.store.set({ selected: same(thing, this.store.state.selected) ? null : thing }); }
@@ -87,8 +90,8 @@ export class App {
       default: {
         const pair = payload[KINDS[thing.kind]][thing.name].bodies ?? [];
         const joint = Object.keys(payload.joints).find((name) => {
-          const { kind, bodies } = payload.joints[name];
-          return kind === "revolute" && pair.length > 1 && bodies.every((body) => pair.includes(body));
+          const { pair: how, bodies } = payload.joints[name];
+          return how === "pin" && pair.length > 1 && bodies.every((body) => pair.includes(body));
         });
         return joint ? motion.joint(joint) : null;
       }

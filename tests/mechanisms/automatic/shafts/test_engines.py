@@ -109,6 +109,12 @@ def test_a_flywheel_is_put_on_a_shaft_alone() -> None:
     before = made.span("crank")[0]
     made.flywheel("crank")
     assert made.span("crank")[0] < before
+    own = along_of(made)
+    own.refuse()
+    (shaft,), (cylinder,) = own.shafts, own.cylinders.values()
+    assert own.flywheel(shaft) > cylinder.low, "it would reach the liner,"
+    assert shaft.ends[0] < cylinder.piston.z - own.fins["piston_1"], "but turns below it"
+    assert all(math.hypot(x, y) > own.flywheel(shaft) for x, y in own.bearers[0].places)
     with pytest.raises(UserError, match="'rod_1' becomes no shaft"):
         made.flywheel("rod_1")
 

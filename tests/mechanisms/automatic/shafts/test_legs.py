@@ -30,9 +30,9 @@ def test_three_legs_on_a_shaft_are_built_and_nothing_touches() -> None:
 
 
 def test_plates_that_are_too_near_are_named_with_their_distance() -> None:
-    said = refusal(legs(beside=0.002))
+    said = refusal(legs(beside=0.001))
     assert "'leg_1' and 'rocker_1'" in said
-    assert "2 mm apart along z" in said
+    assert "1 mm apart along z" in said
     assert "move one of them along z" in said
 
 

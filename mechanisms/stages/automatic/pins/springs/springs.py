@@ -100,6 +100,7 @@ def _is_coil(force: Force | Joint) -> bool:
 @force_kind("gas")
 @force_kind("gas_cycle")
 @force_kind("gas_strut")
+@force_kind("hydraulic_cylinder")
 def gather(m: Mechanism, forces: list[Force], layout: Layout) -> list[Feature]:
     """Those of all kinds at the first of them, since they share studs."""
     return _all_at(forces[0], m, layout)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import cadquery as cq
 
     from mechanisms.stages.automatic.layout.sizes import Sizes
-    from mechanisms.stages.automatic.shafts.machine import Machine
+    from mechanisms.stages.automatic.shafts.bodies.kinds import Machine
     from mechanisms.stages.automatic.shafts.pins_along import Axle
 
 COLUMN = 8.5

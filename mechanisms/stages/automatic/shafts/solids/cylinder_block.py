@@ -6,34 +6,49 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from mechanisms.stages.automatic.shafts.banks import BESIDE, deck_half, deck_range
+from mechanisms.stages.automatic.shafts.banks import deck_half, deck_range, deck_top
+from mechanisms.stages.automatic.shafts.mounted.valve_solids import spring_seats
+from mechanisms.stages.automatic.shafts.mounted.valves import COIL
 from mechanisms.stages.automatic.shafts.solids.piston_solids import SEAT, along_x, head_shape, liner_shape
 from shared.shapes.build import eased, extruded
 from shared.shapes.genus import through_holes
 from shared.shapes.kernel import first_sound
 from shared.shapes.outline import circle
-from shared.shapes.solid import Solid, placed
+from shared.shapes.solid import Hold, Solid, placed
 
 if TYPE_CHECKING:
     import cadquery as cq
 
     from mechanisms.stages.automatic.shafts.cylinders import Cylinder
+    from mechanisms.stages.automatic.shafts.mounted.valves import ValvePlan
 
 SIDE = math.radians(38)
 """How far the windows of cylinders that stand in line look to their side, from along z."""
 
 
 def bank_solids(
-    bank: Sequence[Cylinder], others: Sequence[Sequence[Cylinder]], fin: Mapping[str, float], low: float
+    bank: Sequence[Cylinder],
+    others: Sequence[Sequence[Cylinder]],
+    fin: Mapping[str, float],
+    low: float,
+    valves: Sequence[ValvePlan] = (),
 ) -> list[Solid]:
-    """Liners, heads and the deck from the base plate (z = ``low``) up."""
+    """Liners, heads with the seats of valve springs, and the deck from the base plate (z = ``low``) up."""
     found = []
     for own in bank:
         name = own.piston.body
         shape = _in_place(own, liner_shape(own, fin[name], _window(own, bank, others)))
         found.append(Solid(f"liner_{name}", shape, "aluminium", through_holes(shape)))
-        radius = min(fin[name], 1.25 * own.outer)
-        found.append(Solid(f"head_{name}", _in_place(own, head_shape(own, radius)), "aluminium_black", 0))
+        if own.against is not None:
+            continue  # the other piston is its head
+        radius, above = min(fin[name], 1.25 * own.outer), [one for one in valves if one.cylinder is own]
+        shape = _in_place(own, head_shape(own, radius, above))
+        found.append(Solid(f"head_{name}", shape, "aluminium_black", through_holes(shape)))
+        for one in above:
+            for spring, washer in spring_seats(one):
+                shape = _turned(own, washer.translate((0, 0, one.valve.z)))
+                hold = Hold(spring, one.valve.z, COIL * one.bore)
+                found.append(Solid(f"seat_{spring}", shape, "steel", 1, holds=(hold,)))
     deck = _deck(bank, low)
     found.append(Solid(f"deck_{bank[0].piston.body}", deck, "aluminium_blue", through_holes(deck)))
     return found
@@ -44,7 +59,7 @@ def _deck(bank: Sequence[Cylinder], low: float) -> cq.Workplane:
 
     below, above = deck_range(bank)
     wide, last = deck_half(bank), bank[-1]
-    top = last.piston.z + last.outer + BESIDE * last.bore
+    top = deck_top(last)
     box = cq.Workplane().box(above - below, 2 * wide, top - low, centered=(False, True, False))
     box = box.translate((below, 0, low))
     edge = 0.06 * last.bore
@@ -74,4 +89,7 @@ def _window(own: Cylinder, bank: Sequence[Cylinder], others: Sequence[Sequence[C
     every = [one[0].piston.along for one in others]
     mean = sum(u for u, _ in every), sum(v for _, v in every)
     leans = mean[0] * own.piston.along[1] - mean[1] * own.piston.along[0]
+    if math.hypot(*mean) < 1e-6:  # banks against each other are both open upwards
+        u, v = own.piston.along
+        leans = u if abs(u) > 1e-6 else -v  # and those of one cylinder to one side
     return math.pi / 2 + (-SIDE if leans > 1e-6 else SIDE)

@@ -8,33 +8,47 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from mechanisms.stages.automatic.assembly.kernel_refusals import kernel_refusals
 from mechanisms.stages.automatic.assembly.looks import materials
+from mechanisms.stages.automatic.layout.planar import convex_hull
 from mechanisms.stages.automatic.shafts.banks import banks
 from mechanisms.stages.automatic.shafts.cylinders import WRIST_PIN
+from mechanisms.stages.automatic.shafts.knuckles import KNUCKLE_PIN, flange, is_carrier, knuckle_eyes, rod_foot
+from mechanisms.stages.automatic.shafts.mounted.valve_solids import cam_shape, valve_solids
+from mechanisms.stages.automatic.shafts.mounted.wheel_solids import wheel_solids
 from mechanisms.stages.automatic.shafts.pins_along import bore_of
 from mechanisms.stages.automatic.shafts.solids.axle_solids import axle_solids
 from mechanisms.stages.automatic.shafts.solids.bearer_solids import bearer_solids
+from mechanisms.stages.automatic.shafts.solids.built_up import built_up
+from mechanisms.stages.automatic.shafts.solids.carried import loads
+from mechanisms.stages.automatic.shafts.solids.carrier_solid import Fork, carrier_shape, knuckle_pin
+from mechanisms.stages.automatic.shafts.solids.counterweights import balanced_webs
 from mechanisms.stages.automatic.shafts.solids.cylinder_block import bank_solids
 from mechanisms.stages.automatic.shafts.solids.link_solids import plate_shape, rod_shape, split, splits_at
 from mechanisms.stages.automatic.shafts.solids.piston_solids import piston_shape, ring_shapes, wrist_pin_shape
+from mechanisms.stages.automatic.shafts.solids.ram_solids import guide_solids, ram_solids
 from mechanisms.stages.automatic.shafts.solids.shaft_solid import shaft_solid
+from mechanisms.stages.automatic.standing.back_plate import BackPlate, Upright
+from shared.contract.materials import MATERIALS
 from shared.shapes.base import base_plate
-from shared.shapes.build import extruded
+from shared.shapes.build import eased, extruded
 from shared.shapes.genus import through_holes
 from shared.shapes.link import Eye
-from shared.shapes.outline import circle
+from shared.shapes.outline import circle, hull
 from shared.shapes.solid import Solid, placed
 
 if TYPE_CHECKING:
     import cadquery as cq
 
     from mechanisms.stages.automatic.shafts.along import Along
-    from mechanisms.stages.automatic.shafts.machine import Link, LinkEye
+    from mechanisms.stages.automatic.shafts.bodies.kinds import Link, LinkEye
+    from shared.contract import Mount
 
-PLATE, FOOT, MARGIN, INSET = 10.0, 3.0, 14.0, 11.0
-"""Of the base plate: thickness, height of its feet, what it reaches beyond all that stands on it, place of its feet
-(rmm).
+PLATE, FOOT, MARGIN, INSET, ROUND = 10.0, 3.0, 14.0, 11.0, 8.0
+"""Of the base plate: thickness, height of its feet, what it reaches beyond all that stands on it, place of its feet,
+radius of its corners (rmm).
 """
 SEAT = 0.02
 ROD = "aluminium_gold"
@@ -42,17 +56,19 @@ ROD = "aluminium_gold"
 
 
 def solids(
-    own: Along, wished: Mapping[str, str], base_under: Sequence[tuple[float, float]] = ()
+    own: Along, wished: Mapping[str, str], mount: Mount, base_under: Sequence[tuple[float, float]] = ()
 ) -> dict[str, list[Solid]]:
     """Every piece by body; ``wished`` are materials. The base plate reaches ``base_under`` (mm)."""
     own.refuse()
     named = materials(own.m) | dict(wished)
-    made: dict[str, list[Solid]] = {"ground": [*_base(own, [*own.feet, *base_under])]}
+    made: dict[str, list[Solid]] = {"ground": [*_base(plate_of(own, mount, base_under), mount)]}
     with kernel_refusals(own.m.name, "the parts on ground"):
         made["ground"] += _on_ground(own)
-    for body in [name for name in own.m.bodies if name != "ground" and name not in own.left_out]:
+    bodies = [name for name in own.m.bodies if name != "ground" and name not in own.left_out]
+    made |= {body: [] for body in bodies}
+    for body in sorted(bodies, key=lambda body: body in own.machine.shafts):  # shafts balance what they carry
         with kernel_refusals(own.m.name, f"the parts of '{body}'"):
-            made[body] = _of_body(own, body, named[body], body in wished)
+            made[body] = _of_body(own, body, named[body], body in wished, made)
     for axle in own.axles:
         made[axle.holder] += axle_solids(axle, own.machine, own.thickness, own.sizes, own.low)
     return _named(made, own.sizes.tolerance)
@@ -82,49 +98,88 @@ def _named(made: dict[str, list[Solid]], tolerance: float | None) -> dict[str, l
     }
 
 
-def _base(own: Along, feet: Sequence[tuple[float, float]]) -> list[Solid]:
-    """The base plate and its rubber feet."""
-    unit = own.measures.unit
-    xs, ys = [x for x, _ in feet], [y for _, y in feet]
+def plate_of(own: Along, mount: Mount, base_under: Sequence[tuple[float, float]] = ()) -> BackPlate:
+    """The base plate, below all that moves and round all that stands on it: a rectangle, or on a stand its hull."""
+    unit, upright = own.measures.unit, Upright.of(mount)
+    places = np.array([upright.seen_place(x, y) for x, y in (*own.feet, *base_under)])
     more = MARGIN * unit
-    corners = min(xs) - more, min(ys) - more, max(xs) + more, max(ys) + more
-    plate = base_plate(corners, PLATE * unit, 8.0 * unit, edge=0.8 * unit)
-    found = [Solid("base_plate", placed(plate, z=own.low), "aluminium_black", 0)]
-    inset = INSET * unit
-    places = [
-        (x, y) for x in (corners[0] + inset, corners[2] - inset) for y in (corners[1] + inset, corners[3] - inset)
-    ]
+    (x0, y0), (x1, y1) = places.min(axis=0) - more, places.max(axis=0) + more
+    corners = float(x0), float(y0), float(x1), float(y1)
+    if mount.kind in ("desk", "wall"):
+        return BackPlate(corners, own.low, PLATE * unit, unit, SEAT)
+    ends = [-1.0, 1.0]
+    inner = more - ROUND * unit
+    squares = np.concatenate([places + inner * np.array([right, up]) for right in ends for up in ends])
+    centres = tuple((float(x), float(y)) for x, y in convex_hull(squares, 1e-6))
+    return BackPlate(corners, own.low, PLATE * unit, unit, SEAT, (), centres, ROUND * unit)
+
+
+def _base(own: BackPlate, mount: Mount) -> list[Solid]:
+    """The base plate, and its rubber feet where it is on no stand."""
+    unit, upright, (x0, y0, x1, y1) = own.unit, Upright.of(mount), own.corners
+    if own.hull:
+        rim = hull([(x, y, own.corner) for x, y in own.hull])
+        plate = eased(extruded(rim, own.thickness, -own.thickness), 0.8 * unit, ">Z", chamfer=True)
+    else:
+        plate = base_plate(own.corners, own.thickness, ROUND * unit, edge=0.8 * unit)
+    found = [Solid("base_plate", placed(plate, z=own.top), "aluminium_black", 0)]
+    inset, low = INSET * unit, own.back - FOOT * unit - SEAT
+    rests = mount.kind in ("desk", "wall")
+    places = [(x, y) for x in (x0 + inset, x1 - inset) for y in (y0 + inset, y1 - inset)] if rests else []
     for k, (x, y) in enumerate(places, start=1):
-        low = own.low - (PLATE + FOOT) * unit - SEAT
         found.append(Solid(f"foot_{k}", extruded(circle(x, y, 8.0 * unit), FOOT * unit, low), "rubber", 0))
-    return found
+    return [replace(solid, shape=upright.in_model(solid.shape)) for solid in found]
 
 
 def _on_ground(own: Along) -> list[Solid]:
     """Liners with what holds them, and what carries shafts."""
     every = banks(own.cylinders)
     start = own.low + SEAT
-    found = [solid for bank in every for solid in bank_solids(bank, every, own.fins, start)]
+    found = [solid for bank in every for solid in bank_solids(bank, every, own.fins, start, [*own.valves.values()])]
+    found += [solid for one in own.rams.values() for solid in guide_solids(one, start)]
     for k, one in enumerate(own.bearers):
         found += bearer_solids(one, start, "" if len(own.bearers) == 1 else f"_{k + 1}")
     return found
 
 
-def _of_body(own: Along, body: str, material: str, is_wished: bool) -> list[Solid]:
-    """All pieces of a body that moves, its main one first."""
+def _of_body(own: Along, body: str, material: str, is_wished: bool, made: Mapping[str, Sequence[Solid]]) -> list[Solid]:
+    """All pieces of a body that moves, its main one first; ``made`` has what a shaft carries."""
     if body in own.machine.links:
         return _link(own, own.machine.links[body], material, is_wished)
     if body in own.cylinders:
         return _piston(own, body, material if is_wished else "aluminium")
+    if body in own.rams:
+        return ram_solids(own.rams[body], _ram_pin(own), material if is_wished else "steel")
+    if body in own.valves:
+        return valve_solids(own.valves[body])
     plan = next(plan for plan in own.shafts if plan.shaft.body == body)
-    shape = shaft_solid(plan, own.flywheel(plan))
-    return [Solid(body, shape, material if is_wished else "steel", through_holes(shape))]
+    material = material if is_wished else "steel"
+    webs = balanced_webs(plan, loads(own.machine, plan.shaft, made), MATERIALS[material].density)
+    shape = shaft_solid(plan, webs, own.flywheel(plan))
+    for valve in own.valves.values():
+        shape = shape.union(cam_shape(valve)) if valve.valve.shaft == body else shape
+    pieces = built_up(shape, plan, [pin for pin in plan.pins if any(_is_closed(own, link) for link in pin.links)])
+    names = [body, *(f"rear_{body}" for _ in pieces[1:])]
+    found = [Solid(name, one, material, through_holes(one)) for name, one in zip(names, pieces, strict=True)]
+    for wheel in own.wheels.of(body):
+        found += wheel_solids(wheel, plan.through(wheel.mounted), own.sizes.pivot.fit.seat)
+    return found
+
+
+def _is_closed(own: Along, body: str) -> bool:
+    """Whether a rod that carries others has a big end of one piece."""
+    link = own.machine.links.get(body)
+    main = None if link is None else rod_foot(own.machine, link)
+    if link is None or main is None or not is_carrier(own.machine, link):
+        return False
+    return splits_at(link, main.x, main.y) is None
 
 
 def _piston(own: Along, body: str, material: str) -> list[Solid]:
     cylinder = own.cylinders[body]
     piston, link = cylinder.piston, cylinder.piston.link
-    thickness = own.thickness[link] if link in own.thickness else 0.3 * cylinder.bore
+    rod = own.machine.links.get(link or "")
+    thickness = own.measures.shank(rod, own.thickness) if rod is not None else 0.3 * cylinder.bore
     gap = max(own.measures.axial, 0.012 * cylinder.bore)
     c, s = math.cos(piston.turn), math.sin(piston.turn)
     x, y = piston.wrist[0] + s * piston.aside, piston.wrist[1] - c * piston.aside
@@ -145,9 +200,20 @@ def _link(own: Along, link: Link, material: str, is_wished: bool) -> list[Solid]
     thickness, bore = own.thickness[link.body], own.measures.of_rod(link)
     eyes = _eyes(own, link)
     cranked = [k for k, eye in enumerate(link.eyes) if eye.on in own.machine.shafts]
-    bottom = link.z - thickness / 2
-    if bore is not None and len(eyes) == 2 and cranked:
-        shape, _ = rod_shape([eyes[cranked[0]], eyes[1 - cranked[0]]], thickness, bore)
+    bottom, found = link.z - thickness / 2, list[Solid]()
+    main = rod_foot(own.machine, link)
+    big = next((k for k, eye in enumerate(eyes) if main is not None and math.dist(eye[:2], (main.x, main.y)) < 0.01), 0)
+    if bore is not None and main is not None and is_carrier(own.machine, link):
+        gap, knuckled = own.measures.axial, knuckle_eyes(own.machine, link)
+        fork = Fork(thickness, flange(thickness, gap), own.measures.shank(link, own.thickness), bore)
+        small = next(eye for eye, of in zip(eyes, _distinct(link), strict=True) if of.on in own.cylinders)
+        pins = [(eye.x, eye.y) for eye in knuckled]
+        shape = carrier_shape((main.x, main.y), eyes[big][2].bore, small, pins, fork)
+        for eye in knuckled:
+            pin = placed(knuckle_pin((eye.x, eye.y), thickness, bore), z=bottom)
+            found.append(Solid(f"pin_{eye.joint}", pin, "brass", 1))
+    elif bore is not None and len(eyes) == 2 and main is not None:
+        shape, _ = rod_shape([eyes[big], eyes[1 - big]], thickness, bore)
     else:
         shape, _ = plate_shape(
             link, eyes or [(0.0, 0.0, Eye(own.sizes.eye * own.measures.unit, 0.0))], thickness, own.measures.unit
@@ -155,7 +221,6 @@ def _link(own: Along, link: Link, material: str, is_wished: bool) -> list[Solid]
     shape = placed(shape, z=bottom)
     if bore is not None and not is_wished:
         material = ROD
-    found: list[Solid] = []
     for k in cranked:
         x, y, eye = eyes[k]
         towards = splits_at(link, x, y)
@@ -189,6 +254,10 @@ def _bore(own: Along, link: Link, eye: LinkEye) -> float:
         return 2 * (plan.pin + max(0.12, 0.1 * own.measures.unit))
     if eye.on in own.cylinders:
         return 2 * (WRIST_PIN * own.cylinders[eye.on].bore + max(0.12, 0.1 * own.measures.unit))
+    if eye.on in own.rams:
+        return 2 * _ram_pin(own) + own.sizes.pivot.fit.running * own.measures.unit
+    if eye in knuckle_eyes(own.machine, link):
+        return 2 * (KNUCKLE_PIN * (own.measures.of_rod(link) or 0.0) + max(0.12, 0.1 * own.measures.unit))
     axle = next(
         (
             one
@@ -198,3 +267,8 @@ def _bore(own: Along, link: Link, eye: LinkEye) -> float:
         None,
     )
     return bore_of(axle, link.body, own.sizes) * 1.0 if axle else 0.0
+
+
+def _ram_pin(own: Along) -> float:
+    """Radius of the pins of rams."""
+    return own.sizes.pivot.pin * own.measures.unit / 2

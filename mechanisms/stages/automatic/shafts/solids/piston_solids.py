@@ -6,14 +6,18 @@ import math
 from typing import TYPE_CHECKING
 
 from mechanisms.stages.automatic.shafts.banks import DECK
-from mechanisms.stages.automatic.shafts.cylinders import SMALL_END, SQUISH, WRIST_PIN
+from mechanisms.stages.automatic.shafts.cylinders import HEAD, SMALL_END, SQUISH, WRIST_PIN
+from mechanisms.stages.automatic.shafts.mounted.valve_solids import port_shape
 from shared.shapes.build import extruded, turned
 from shared.shapes.outline import circle
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import cadquery as cq
 
     from mechanisms.stages.automatic.shafts.cylinders import Cylinder
+    from mechanisms.stages.automatic.shafts.mounted.valves import ValvePlan
 
 RINGS = (0.10, 0.19, 0.28)
 """Middles of the grooves below the crown, in bores."""
@@ -22,15 +26,16 @@ RING, DEEP = 0.035, 0.055
 RING_GAP = 0.7
 """Of a ring in its liner, in that of the piston."""
 SEAT = 0.02
-HOLLOW = 0.4
-"""Radius of the room inside a piston."""
+HOLLOW, ROOF = 0.41, 0.1
+"""Radius of the room inside a piston, and thickness of its crown above."""
+BOSS = 1.6
+"""Radius of what holds a wrist pin, in the pin's."""
 WINDOW = 0.27
 """So far below its upper end a liner is cut open."""
 OPENING = math.radians(78)
 """Half of the angle that is cut out of a liner."""
 FINS, FIN = 7, 0.025
 """How many, and their thickness."""
-HEAD = 0.16
 
 
 def along_x(shape: cq.Workplane) -> cq.Workplane:
@@ -51,11 +56,10 @@ def piston_shape(own: Cylinder, thickness: float, gap: float) -> cq.Workplane:
     profile += [(r, top - c), (r - c, top), (0.0, top)]
     shape = along_x(turned(profile))
     inside, roof = HOLLOW * b, (SMALL_END + 0.04) * b
+    room = along_x(extruded(circle(0, 0, inside), top - ROOF * b - low + 1, low - 1))
+    shape = shape.cut(room.cut(extruded(circle(0, own.piston.aside, BOSS * WRIST_PIN * b), 2 * b, -b)))
     slot = cq.Workplane().box(roof - low + 1, 2 * inside, thickness + 2 * gap)
     shape = shape.cut(slot.translate(((roof + low - 1) / 2, own.piston.aside, 0)))
-    bosses = -1.6 * WRIST_PIN * b
-    if bosses > low + 0.02 * b:
-        shape = shape.cut(along_x(extruded(circle(0, 0, inside), bosses - low + 1, low - 1)))
     pin = extruded(circle(0, own.piston.aside, WRIST_PIN * b + SEAT), 2 * b, -b)
     return shape.cut(pin)
 
@@ -105,16 +109,23 @@ def liner_shape(own: Cylinder, fin: float, window: float) -> cq.Workplane:
     return shape.cut(wedge)
 
 
-def head_shape(own: Cylinder, radius: float) -> cq.Workplane:
-    """A round head with fins on the liner's upper end, and a plug in its middle."""
+def head_shape(own: Cylinder, radius: float, valves: Sequence[ValvePlan] = ()) -> cq.Workplane:
+    """A round head with fins on the liner's upper end, and a plug in its middle; with valves their ports and guides in
+    its place.
+    """
     b, low = own.bore, own.top + SEAT
     high, plug = low + HEAD * b, 0.08 * b
     step = HEAD * b / 5
     profile: list[tuple[float, float]] = [(0, low), (radius, low), (radius, low + step)]
     for k in (1, 3):
-        inner = 0.8 * radius
+        inner = (0.94 if valves else 0.8) * radius
         profile += [(inner, low + k * step), (inner, low + (k + 1) * step)]
         profile += [(radius, low + (k + 1) * step), (radius, low + (k + 2) * step)]
+    if valves:
+        shape = along_x(turned([*profile, (0, high)]))
+        for valve in valves:
+            shape = shape.cut(port_shape(valve, high).translate((0, 0, valve.valve.z - own.piston.z)))
+        return shape
     profile += [(2 * plug, high), (2 * plug, high + 0.03 * b), (plug, high + 0.03 * b), (plug, high + 0.18 * b)]
     profile += [(0.4 * plug, high + 0.2 * b), (0.4 * plug, high + 0.3 * b), (0, high + 0.3 * b)]
     return along_x(turned(profile))

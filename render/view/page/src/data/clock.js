@@ -1,3 +1,5 @@
+import { figures } from "./numbers.js";
+
 /**
  * How the motion is shown (render/film/clock.py): one with a period turns on without a seam; one without plays
  * forwards, holds at its end and begins anew.
@@ -35,13 +37,22 @@ export class Clock {
     return Math.min(Math.max(next, this.start), this.end);
   }
 
-  /** "in real time", "slowed 20 times". */
+  /** A speed (1: as the film) beside the machine's own: "1/4 speed", "real time". */
   said(speed) {
-    const rate = this.rate * speed;
+    const rate = this.rate * speed, parts = 1 / rate, whole = Number(Math.round(parts).toPrecision(2));
     if (Math.abs(rate - 1) < 0.02) return "real time";
-    return rate < 1 ? `slowed ${figures(1 / rate)}×` : `${figures(rate)}× faster`;
+    if (rate > 1) return `${figures(rate, 2)}× speed`;
+    return parts >= 10 || Math.abs(parts - whole) < 0.02 * parts ? `1/${whole} speed` : `${figures(rate, 2)} speed`;
+  }
+
+  /** Speeds to choose from, in rising order: the film's, 1, and round ones of the machine around it. */
+  speeds() {
+    const round = [];
+    for (let decade = Math.floor(Math.log10(this.rate)) - 2; decade <= Math.log10(this.rate) + 2; decade++) {
+      for (const step of [1, 2, 5]) round.push((step * 10 ** decade) / this.rate);
+    }
+    return [...round.filter((speed) => speed > 1 / 25 && speed < 12 && Math.abs(Math.log(speed)) > 0.15), 1].sort((a, b) => a - b);
   }
 }
 
-const figures = (x) => String(Number(x.toPrecision(3)));
 const mod = (a, b) => ((a % b) + b) % b;

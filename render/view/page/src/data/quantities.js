@@ -1,13 +1,15 @@
 /**
  * What there is to plot of a thing: charts with a unit, curves with values at the payload's times.
  *
- * @typedef {{name: string, values: Float32Array}} Line
+ * @typedef {{name: string, values: Float32Array, body?: string}} Line  of a body, whose colour it has
  * @typedef {{title: string, unit: string, lines: Line[]}} Chart
  */
 import { KINDS } from "../app.js";
 
 /** Parts of the largest below which a curve is rounding; and what is rounding by itself, in SI units. */
 const NOTHING = 1e-9, TINY = 1e-12;
+/** Curves in one chart. */
+const MOST = 6;
 
 /** @param {import("./decode.js").Payload} payload  @param {import("../state.js").Thing | null} thing  @returns {Chart[]} */
 export function chartsOf(payload, thing) {
@@ -21,7 +23,9 @@ export function thingsOf(payload) {
   return Object.entries(KINDS).flatMap(([kind, key]) => Object.keys(payload[key]).map((name) => ({ kind, name })));
 }
 
-const chart = (title, unit, ...lines) => ({ title, unit, lines: lines.map(([name, values]) => ({ name, values })) });
+const chart = (title, unit, ...lines) => ({ title, unit, lines: lines.map(([name, values, body]) => ({ name, values, body })) });
+/** The body that something acts on. */
+const acted = ({ bodies = [] }) => bodies.findLast((body) => body !== "ground");
 
 const OF = {
   joint: (one) => [
@@ -54,26 +58,34 @@ const OF = {
     ...some([one.potential]) ? [chart("Potential energy", "J", ["energy", one.potential])] : [],
   ],
   contact: (one) => [
-    chart("Normal force", "N", ["normal", one.normal], ["friction", one.friction]),
-    chart("Gap", "m", ["gap", one.gap]),
+    chart(one.unit === "rad" ? "Torque" : "Normal force", one.effort_unit, ["normal", one.normal], ["friction", one.friction]),
+    chart("Gap", one.unit, ["gap", one.gap]),
   ],
 };
 
 /** Of the whole machine. */
 function overview(payload) {
-  const { drivers, points, energy, bodies, couple } = payload, charts = [];
+  const { drivers, points, energy, bodies, couple, frame } = payload, charts = [];
   for (const unit of ["N m", "N"]) {
     const lines = Object.entries(drivers).filter(([, one]) => one.effort_unit === unit && some([one.effort]));
-    if (lines.length) charts.push(chart(unit === "N m" ? "Driving torque" : "Driving force", unit, ...lines.map(([name, one]) => [name, one.effort])));
+    if (lines.length) charts.push(chart(unit === "N m" ? "Driving torque" : "Driving force", unit, ...lines.map(([name, one]) => [name, one.effort, acted(one)])));
   }
-  const speeds = Object.entries(points).map(([name, one]) => [name, size(one.vx, one.vy)]);
-  if (speeds.length) charts.push(chart("Speed of traced points", "m/s", ...speeds.slice(0, 6)));
-  const spins = Object.entries(bodies).filter(([, one]) => some([one.omega])).map(([name, one]) => [name, one.omega]);
-  if (spins.length) charts.push(chart("Angular velocities", "rad/s", ...spins.slice(0, 6)));
+  const speeds = Object.entries(points).map(([name, one]) => [name, size(one.vx, one.vy), one.body]);
+  charts.push(...several("Speed of traced points", "m/s", speeds));
+  const spins = Object.entries(bodies).filter(([, one]) => some([one.omega])).map(([name, one]) => [name, one.omega, name]);
+  charts.push(...several("Angular velocities", "rad/s", spins));
   if (couple && some([couple.mx, couple.my])) charts.push(chart("Couple on the frame", "N m", ["about x", couple.mx], ["about y", couple.my]));
+  if (frame && some([frame.fx, frame.fy])) charts.push(chart("Force of inertia on the frame", "N", ["x", frame.fx], ["y", frame.fy]));
+  if (frame && (varies(frame.x) || varies(frame.y))) charts.push(chart("Centre of mass", "m", ["x", frame.x], ["y", frame.y]));
   if (some([energy.kinetic], energy.potential)) charts.push(chart("Energy", "J", ["kinetic", energy.kinetic], ["potential", energy.potential]));
   if (varies(payload.margin)) charts.push(chart("Distance from singular poses", "1", ["margin", payload.margin]));
   return charts;
+}
+
+/** All curves, in charts of a few each. */
+function several(title, unit, lines) {
+  const count = Math.ceil(lines.length / MOST), each = Math.ceil(lines.length / count);
+  return Array.from({ length: count }, (_, k) => chart(count > 1 ? `${title} ${k + 1}/${count}` : title, unit, ...lines.slice(k * each, (k + 1) * each)));
 }
 
 function size(u, v) {

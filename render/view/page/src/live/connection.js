@@ -40,11 +40,21 @@ export class Connection {
   }
 }
 
-/** Calls `f` with the newest value alone, once a frame at most. */
+/** Calls `f` at once, and then with the newest value alone, once a frame at most; `drop` forgets one that waits. */
 export function newest(f) {
-  let waiting = null;
-  return (value) => {
-    if (waiting === null) requestAnimationFrame(() => { const [now] = waiting; waiting = null; f(now); });
-    waiting = [value];
+  let waiting = null, busy = false;
+  const next = () => {
+    busy = waiting !== null;
+    if (!busy) return;
+    const [now] = waiting;
+    waiting = null;
+    requestAnimationFrame(next);
+    f(now);
   };
+  const call = (value) => {
+    waiting = [value];
+    if (!busy) next();
+  };
+  call.drop = () => { waiting = null; };
+  return call;
 }

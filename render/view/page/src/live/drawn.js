@@ -25,7 +25,17 @@ export class Drawn {
       this.stop();
       this.done();
     });
-    const frame = () => { this.draw(); requestAnimationFrame(frame); };
+  }
+
+  /** Follow the view as long as there is something to see. */
+  follow() {
+    if (this.following) return;
+    const frame = () => {
+      this.draw();
+      this.following = !this.canvas.hidden;
+      if (this.following) requestAnimationFrame(frame);
+    };
+    this.following = true;
     requestAnimationFrame(frame);
   }
 
@@ -36,6 +46,7 @@ export class Drawn {
     this.drawing = true;
     this.canvas.hidden = false;
     this.canvas.dataset.drawing = "";
+    this.follow();
   }
 
   stop() {

@@ -3,11 +3,13 @@
  *
  *   connection.js   the socket          sliders.js   the numbers of Params
  *   fit.js          fit to a path       drawn.js     the path over the 2D view
+ *   stretched.js    parts of the numbers before, as far as they can serve
  */
 import { el } from "../ui/dom.js";
 import { Connection, newest } from "./connection.js";
 import { Fit, button } from "./fit.js";
 import { Sliders } from "./sliders.js";
+import { anchors, raised, stretches } from "./stretched.js";
 
 const LINES = 40;
 /** Of what was printed, that are shown. */
@@ -21,12 +23,15 @@ export class Live {
     this.queue = Promise.resolve();
     this.values = {};
     this.frames = 0;
+    /** Where the parts have their pins, and whether the file has other numbers by now. */
+    this.design = null;
+    this.outdated = false;
   }
 
   /** @param {import("../app.js").App} app */
   mounted(app) {
     this.app = app;
-    this.sliders = new Sliders((values, final) => this.say({ do: "set", values, final, arrows: this.arrows }));
+    this.sliders = new Sliders((values, final) => this.say({ do: "set", values, final, arrows: this.arrows }), (held) => app.hold(held));
     this.fit = new Fit(app, (wish) => this.say(wish));
     this.state = el("span", { class: "state", role: "status" });
     this.undo = button("Undo", () => this.say({ do: "undo" }), { title: "Undo (Ctrl Z)" });
@@ -64,6 +69,7 @@ export class Live {
       }
     }
     if (this.late) return;
+    this.app.hold(phase !== "end");
     this.moving = phase !== "end"; // a move that waits for its frame is not sent after the end
     const wish = { do: "drag", thing, time: store.state.time, to, final: phase === "end", arrows: this.arrows };
     if (phase === "end") this.say(wish);
@@ -90,14 +96,16 @@ export class Live {
         this.says(header.solving ? "solving" : this.error === undefined ? this.idle : this.state.textContent, this.state.dataset.kind);
         break;
       case "solving": if (!header.again) this.printed([], true); this.says("solving"); break;
+      case "numbers": this.numbers(header); break;
       case "solved": this.numbers(header); this.failed(null); break;
       case "motion": await this.motion(header, payload); break;
-      case "solid": app.update(payload.length ? await this.decode(payload) : { solid: null }); break;
+      case "solid": await this.solid(payload); break;
       case "values": this.history(header); break;
       case "error": this.failed(header.text); break;
       case "refused": this.refused(header.text); break;
       case "parts":
         this.making = header.state === "making";
+        if (header.state === "failed" && this.outdated) this.without();
         if (this.error === undefined) this.says(header.state === "failed" ? "no parts" : this.idle);
         break;
       case "line": this.printed([header.text]); break;
@@ -110,15 +118,47 @@ export class Live {
     if (values) { this.values = values; this.sliders.show(values); }
     if (!payload.length) return;
     const patch = await this.decode(payload);
-    if (!Object.keys(this.values).length) { delete patch.solid; delete patch.clearance; }
+    delete patch.solid; // the parts come by themselves; until then those that are there serve
+    delete patch.clearance;
+    patch.other = null;
+    if (this.design && this.app.payload.solid) {
+      raised(patch, this.app.payload);
+      if (this.outdated || Object.keys(this.values).length) patch.other = stretches(this.design, anchors({ ...this.app.payload, ...patch }));
+    }
     this.app.update(patch);
+    if (patch.other && !this.serves) this.without();
     this.fit.update();
     this.frames++;
     if (this.error === undefined) this.says(this.idle);
   }
 
+  /** Parts; none where the file's numbers have others by now: then those that are there serve until they are made. */
+  async solid(payload) {
+    const { app } = this;
+    this.outdated = !payload.length;
+    if (payload.length) {
+      const patch = await this.decode(payload);
+      if (same(payload, this.bytes) && app.payload.solid) patch.solid = app.payload.solid;
+      this.bytes = payload.slice();
+      app.update({ ...patch, other: null });
+      this.design = anchors(app.payload);
+    } else if (app.payload.solid && this.design) app.update({ other: stretches(this.design, anchors(app.payload)) });
+    if (this.error === undefined) this.says(this.idle);
+  }
+
+  /** Whether the parts have the bodies of the motion. */
+  get serves() {
+    const { bodies, solid } = this.app.payload, there = new Set(solid.pieces.map(({ body }) => body));
+    return Object.keys(this.design).every((body) => body === "ground" || body in bodies || !there.has(body));
+  }
+
+  without() {
+    this.design = null;
+    this.app.update({ solid: null, clearance: null, other: null });
+  }
+
   /** What is said while nothing is solved. */
-  get idle() { return this.making ? "making parts" : ""; }
+  get idle() { return this.making ? "making parts" : this.app.payload.other ? "parts stretched" : ""; }
 
   numbers(header) {
     this.file = header.numbers;
@@ -168,3 +208,5 @@ export class Live {
     this.lines.scrollTop = this.lines.scrollHeight;
   }
 }
+
+const same = (a, b) => a.length === b?.length && a.every((byte, k) => byte === b[k]);

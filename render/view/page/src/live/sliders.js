@@ -3,15 +3,19 @@ import { el } from "../ui/dom.js";
 import { newest } from "./connection.js";
 
 export class Sliders {
-  /** @param {(values: Record<string, number>, final: boolean) => void} moved */
-  constructor(moved) {
+  /**
+   * @param {(values: Record<string, number>, final: boolean) => void} moved
+   * @param {(held: boolean) => void} hold while a finger or the mouse is on a slider
+   */
+  constructor(moved, hold) {
     this.moved = moved;
+    this.hold = hold;
     this.element = el("div", { class: "sliders" });
     this.rows = new Map();
     this.quick = newest(([name, value]) => this.moved({ [name]: value }, false));
   }
 
-  /** @param {{name: string, value: number, low: number, high: number, step: number, whole: boolean}[]} numbers */
+  /** @param {{name: string, value: number, low: number, high: number, step: number, whole: boolean, label: string, unit: string}[]} numbers */
   take(numbers, values) {
     const same = numbers.length === this.rows.size && numbers.every(({ name }) => this.rows.has(name));
     if (!same) {
@@ -21,6 +25,10 @@ export class Sliders {
     for (const number of numbers) {
       const row = this.rows.get(number.name);
       row.number = number;
+      row.words.textContent = number.label;
+      row.words.title = number.name;
+      row.unit.textContent = number.unit;
+      row.range.setAttribute("aria-label", number.label);
       Object.assign(row.range, { min: number.low, max: number.high, step: number.whole ? 1 : "any" });
       row.field.step = number.whole ? 1 : "any";
     }
@@ -29,16 +37,19 @@ export class Sliders {
 
   row(number) {
     const { name } = number, id = `live-${name}`;
-    const range = el("input", { type: "range", id, class: "scrub", "aria-label": name });
-    const field = el("input", { type: "number", class: "number", "aria-label": `${name}, as a number` });
-    const back = el("button", { type: "button", class: "back", title: "As the file has it", "aria-label": `${name} as the file has it` }, "↺");
-    const row = { number, range, field, back, typed: false };
+    const words = el("label", { for: id }), unit = el("span", { class: "unit" });
+    const range = el("input", { type: "range", id, class: "scrub" });
+    const field = el("input", { type: "number", class: "number", "aria-label": `${number.label}, as a number` });
+    const back = el("button", { type: "button", class: "back", title: "As the file has it", "aria-label": `${number.label} as the file has it` }, "↺");
+    const row = { number, words, unit, range, field, back, typed: false };
     this.rows.set(name, row);
     const send = (value, final) => {
       if (!Number.isFinite(value)) return void this.put(row, this.values?.[name]);
       this.put(row, value);
-      if (final) this.moved({ [name]: value }, true);
-      else this.quick([name, value]);
+      if (final) {
+        this.quick.drop();
+        this.moved({ [name]: value }, true);
+      } else this.quick([name, value]);
     };
     range.addEventListener("input", () => send(rounded(range.valueAsNumber, row.number), false));
     range.addEventListener("change", () => send(rounded(range.valueAsNumber, row.number), true));
@@ -46,9 +57,9 @@ export class Sliders {
     field.addEventListener("change", () => { row.typed = false; send(field.valueAsNumber, true); });
     field.addEventListener("blur", () => { row.typed = false; this.put(row, this.values?.[name]); });
     back.addEventListener("click", () => send(row.number.value, true));
-    range.addEventListener("pointerdown", () => { this.held = name; });
-    for (const end of ["pointerup", "pointercancel", "blur"]) range.addEventListener(end, () => { this.held = null; });
-    return el("div", { class: "slide" }, el("label", { for: id }, name), range, field, back);
+    range.addEventListener("pointerdown", () => { this.held = name; this.hold(true); });
+    for (const end of ["pointerup", "pointercancel", "blur"]) range.addEventListener(end, () => { this.held = null; this.hold(false); });
+    return el("div", { class: "slide" }, words, range, field, unit, back);
   }
 
   /** Show the numbers that differ from the file; the one that is being dragged or typed is left alone. */

@@ -2,44 +2,64 @@
 import "./language.js";
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
-import { writer } from "../data/numbers.js";
+import { clipped } from "../data/clipped.js";
+import { angleStep, figures, live, prefixed, written } from "../data/numbers.js";
 import { el } from "../ui/dom.js";
 
 export const HEIGHT = 148;
+/** SI: less is rounding. */
+const NOTHING = 1e-12;
 const AXIS = "12px system-ui, sans-serif";
 
 export class Chart {
   /**
    * @param {HTMLElement} parent  @param {import("../app.js").App} app  @param {import("../data/quantities.js").Chart} chart
-   * @param {{ink: string, quiet: string, grid: string, driver: string, body: (k: number) => string}} colours
+   * @param {{ink: string, quiet: string, grid: string, driver: string, line: (line: object, k: number) => string}} colours
    */
   constructor(parent, app, chart, colours) {
     this.app = app;
-    this.chart = chart;
-    this.write = writer(chart.lines.map((line) => line.values));
-    this.values = chart.lines.map((_, k) => el("b", { style: `color:${colours.body(k)}` }));
+    this.unit = el("small");
+    this.clipping = el("small", { class: "cut" });
+    this.of(chart);
+    const own = chart.lines.map((line, k) => colours.line(line, k));
+    this.values = own.map((ink) => el("b", { style: `color:${ink}` }));
     const names = chart.lines.length > 1 ? chart.lines.map((line) => line.name.replaceAll("_", " ")) : [""];
-    const legend = el("div", { class: "values" }, ...names.map((name, k) => el("span", {}, el("i", { style: `background:${colours.body(k)}` }), name ? `${name} ` : "", this.values[k])));
+    const legend = el("div", { class: "values" }, ...names.map((name, k) => el("span", {}, el("i", { style: `background:${own[k]}` }), name ? `${name} ` : "", this.values[k])));
     this.line = el("div", { class: "moment" });
-    const head = el("h3", {}, chart.title, " ", el("small", {}, chart.unit === "1" ? "" : chart.unit));
+    const head = el("h3", {}, chart.title, " ", this.unit, this.clipping);
     this.box = el("figure", { class: "chart" }, el("figcaption", {}, head, legend));
     parent.append(this.box);
-    const { payload } = app;
     this.plot = new uPlot({
       width: Math.max(parent.clientWidth - 28, 200), height: HEIGHT, legend: { show: false }, cursor: { show: false },
       padding: [6, 12, 0, 0],
-      scales: { x: { time: false, range: [app.clock.start, app.clock.end] }, y: { range: room } },
+      scales: { x: { time: false, range: () => [app.clock.start, app.clock.end] }, y: { range: (u, low, high) => this.cut ? [this.cut.low, this.cut.high] : room(u, low, high) } },
       axes: [
-        { font: AXIS, stroke: colours.quiet, grid: { stroke: colours.grid, width: 1 }, ticks: { show: false }, size: 24, gap: 4, space: 60, values: (_, ticks) => shortest(ticks) },
-        { font: AXIS, stroke: colours.quiet, grid: { stroke: colours.grid, width: 1 }, ticks: { show: false }, size: 54, gap: 4, space: 30, values: (_, ticks) => shortest(ticks) },
+        { font: AXIS, stroke: colours.quiet, grid: { stroke: colours.grid, width: 1 }, ticks: { show: false }, size: 24, gap: 4, space: 60, values: (_, ticks) => ticks.map((tick) => figures(tick)) },
+        { font: AXIS, stroke: colours.quiet, grid: { stroke: colours.grid, width: 1 }, ticks: { show: false }, size: 54, gap: 4, space: 30, ...this.shown.axis, values: (u, ticks) => this.shown.axis.values(u, ticks) },
       ],
-      series: [{}, ...chart.lines.map((line, k) => ({ label: line.name, stroke: colours.body(k), width: 2, points: { show: false } }))],
-      hooks: { draw: [(u) => marks(u, payload.marks, colours)] },
-    }, [payload.time, ...chart.lines.map((line) => line.values)], this.box);
+      series: [{}, ...chart.lines.map((line, k) => ({ label: line.name, stroke: own[k], width: 2, dash: dashOf(own, k), points: { show: false } }))],
+      hooks: { draw: [(u) => marks(u, app.payload.marks, colours)] },
+    }, [app.payload.time, ...chart.lines.map((line) => line.values)], this.box);
     this.plot.over.append(this.line);
     this.plot.over.style.cursor = "ew-resize";
     this.drag();
     this.cursor();
+  }
+
+  of(chart) {
+    const curves = chart.lines.map((line) => line.values);
+    this.chart = chart;
+    this.shown = measure(chart.unit, curves);
+    this.cut = chart.unit === "rad" ? null : clipped(curves, this.app.payload.margin);
+    this.write = this.shown.write;
+    this.unit.textContent = this.shown.unit ? `/ ${this.shown.unit}` : "";
+    this.clipping.textContent = this.cut ? ` clipped: up to ${written(this.cut.top, chart.unit)} near a singular pose` : "";
+  }
+
+  /** The same curves of another motion. @param {import("../data/quantities.js").Chart} chart */
+  take(chart) {
+    this.of(chart);
+    this.plot.setData([this.app.payload.time, ...chart.lines.map((line) => line.values)]);
   }
 
   /** A drag moves the machine. */
@@ -61,11 +81,15 @@ export class Chart {
   cursor() {
     const { motion } = this.app;
     this.line.style.transform = `translateX(${this.plot.valToPos(motion.t, "x").toFixed(1)}px)`;
-    this.chart.lines.forEach((line, k) => { this.values[k].textContent = `${this.write(motion.linear(line.values))}${this.chart.unit === "1" ? "" : ` ${this.chart.unit}`}`; });
+    this.chart.lines.forEach((line, k) => { this.values[k].textContent = this.write(motion.linear(line.values)); });
   }
 
   remove() { this.plot.destroy(); this.box.remove(); }
 }
+
+/** Lines of one body differ by their dashes. */
+const DASHES = [undefined, [7, 4], [2, 3], [9, 3, 2, 3]];
+const dashOf = (own, k) => DASHES[own.slice(0, k).filter((ink) => ink === own[k]).length % DASHES.length];
 
 /** Room above and below; a curve that is constant but for rounding is a straight line. */
 function room(_, low, high) {
@@ -74,10 +98,20 @@ function room(_, low, high) {
   return half === least ? [middle - Math.max(Math.abs(middle), 1e-6), middle + Math.max(Math.abs(middle), 1e-6)] : [middle - 1.1 * half, middle + 1.1 * half];
 }
 
-function shortest(ticks) {
-  const top = Math.max(...ticks.map(Math.abs));
-  if (top && (top < 1e-3 || top >= 1e5)) return ticks.map((tick) => (tick ? Number(tick.toPrecision(3)).toExponential().replace("e+", "e") : "0").replaceAll("-", "−"));
-  return ticks.map((tick) => String(Number(tick.toPrecision(6))).replace("-", "−"));
+/** How a chart's numbers are written: with one prefix, angles in degrees with ticks by parts of a right angle. */
+function measure(unit, curves) {
+  if (unit === "rad") {
+    const turn = 180 / Math.PI, write = live(curves.map((values) => values.map((value) => value * turn)), "°");
+    const splits = (u, axis, low, high) => {
+      const step = angleStep((high - low) * turn, 5), out = [];
+      for (let k = Math.ceil((low * turn) / step); k * step <= high * turn + 1e-9; k++) out.push((k * step) / turn);
+      return out;
+    };
+    return { unit: "°", write: (value) => write(value * turn), axis: { splits, values: (_, ticks) => ticks.map((tick) => figures(tick * turn)) } };
+  }
+  const top = curves.reduce((most, values) => values.reduce((a, b) => Math.max(a, Math.abs(b)), most), 0), plain = unit === "1" ? "" : unit;
+  const [factor, named] = top < NOTHING ? [1, plain] : prefixed(top, plain);
+  return { unit: named, write: top < NOTHING ? () => `0 ${plain}`.trim() : live(curves, plain), axis: { values: (_, ticks) => ticks.map((tick) => figures(tick * factor)) } };
 }
 
 /** Events and dead points. */

@@ -1,4 +1,5 @@
 /** The side panel: which thing is chosen, and its curves under the same cursor. */
+import { figures } from "../data/numbers.js";
 import { chartsOf, thingsOf } from "../data/quantities.js";
 import { same } from "../state.js";
 import { el } from "../ui/dom.js";
@@ -8,6 +9,9 @@ import { Chart } from "./chart.js";
 import { csv, download } from "./csv.js";
 
 const WORDS = { joint: "Joints", body: "Bodies", driver: "Drivers", point: "Points", force: "Forces", contact: "Contacts" };
+
+const FEW = 8;
+/** Marks that are shown without being asked for. */
 
 export class Plots {
   /** @param {import("../app.js").App} app */
@@ -28,18 +32,35 @@ export class Plots {
   update() {
     const { payload, store } = this.app, { selected } = store.state, colours = inks(this.app.dark, payload.bodies);
     this.options();
-    for (const chart of this.made) chart.remove();
     this.charts = chartsOf(payload, selected);
-    this.made = this.charts.map((chart) => new Chart(this.list, this.app, chart, colours));
-    this.marks.replaceChildren(...payload.marks.slice(0, 8).map(({ time, words, kind }) => el("button", {
+    const inked = Object.values(payload.bodies).map((body) => body.inks);
+    const key = JSON.stringify([this.app.dark, selected, inked, this.charts.map(({ title, unit, lines }) => [title, unit, lines.map(({ name, body }) => [name, body])])]);
+    if (key === this.key) this.made.forEach((chart, k) => chart.take(this.charts[k]));
+    else {
+      for (const chart of this.made) chart.remove();
+      this.made = this.charts.map((chart) => new Chart(this.list, this.app, chart, colours));
+    }
+    this.key = key;
+    this.happens(this.all);
+  }
+
+  /** What happens when, as buttons that go there; of many the first ones, until all are asked for. */
+  happens(all = false) {
+    const { payload, store } = this.app, list = all ? payload.marks : payload.marks.slice(0, FEW), more = payload.marks.length - list.length;
+    this.all = all;
+    this.marks.replaceChildren(...list.map(({ time, words, kind }) => el("button", {
       type: "button", class: "mark", "data-kind": kind, onclick: () => store.set({ playing: false, time }),
-    }, `${words.replaceAll("_", " ")} `, el("b", {}, `${Number(time.toPrecision(4))} s`))));
+    }, `${words.replaceAll("_", " ")} `, el("b", {}, `${figures(time)} s`))));
+    if (more) this.marks.append(el("button", { type: "button", class: "mark", onclick: () => this.happens(true) }, `${more} more`));
     this.marks.hidden = !payload.marks.length;
   }
 
   options() {
     const { payload, store } = this.app;
     this.things = thingsOf(payload);
+    const key = JSON.stringify([this.things, store.state.selected]);
+    if (key === this.offered) return;
+    this.offered = key;
     const groups = Object.entries(WORDS).map(([kind, words]) => {
       const ours = this.things.map((thing, k) => [thing, k]).filter(([thing]) => thing.kind === kind);
       return ours.length ? el("optgroup", { label: words }, ...ours.map(([thing, k]) => el("option", { value: k }, thing.name.replaceAll("_", " ")))) : null;

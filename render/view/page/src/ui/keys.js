@@ -1,14 +1,14 @@
 /** Keys; help.js lists them. */
 import { showHelp } from "./help.js";
 import { SHOWN } from "./shown.js";
-import { SPEEDS } from "./transport.js";
+import { nearest } from "./transport.js";
 
 /** @param {import("../app.js").App} app */
 export function keys(app) {
   const { store } = app;
   const speed = (way) => {
-    const at = SPEEDS.indexOf(store.state.speed);
-    store.set({ speed: SPEEDS[Math.min(Math.max(at + way, 0), SPEEDS.length - 1)] });
+    const speeds = app.clock.speeds(), at = speeds.indexOf(nearest(speeds, store.state.speed));
+    store.set({ speed: speeds[Math.min(Math.max(at + way, 0), speeds.length - 1)] });
   };
   const act = {
     " ": () => app.play(),

@@ -15,7 +15,7 @@ export function layout(root, app) {
   const segmented = el("div", { class: "segmented", role: "group", "aria-label": "View" }, ...views);
   const themeButton = el("button", { type: "button", class: "round" });
   const helpButton = el("button", { type: "button", class: "round", title: "Keys and licences (?)", "aria-label": "Keys and licences", onclick: () => showHelp() }, icon("help"));
-  const homeButton = el("button", { type: "button", class: "round", title: "Whole machine (0)", "aria-label": "Show the whole machine", onclick: () => app.stage.home() }, icon("home"));
+  const homeButton = el("button", { type: "button", class: "round", title: "Whole machine (0)", "aria-label": "Show the whole machine", onclick: () => app.stage.home() }, icon("whole"));
   const header = el("header", { class: "top" }, el("div", { class: "name" }, title, about),
     el("div", { class: "tools" }, segmented, homeButton, themeButton, helpButton));
   const chips = el("div", { class: "chips", role: "group", "aria-label": "What is shown" });
@@ -31,9 +31,11 @@ export function layout(root, app) {
   root.replaceChildren(header, el("main", { class: "stage" }, chips, stage), side, bar);
 
   const words = {};
+  let offered = null;
   const parts = {
     root, header, stage, side, bar, slot, chips, legend, labels, themeButton, canvases: views2,
     notice(text, kind) {
+      if (!text && kind === "coming" && noticeLine.dataset.kind !== kind) return; // another word is being said
       noticeLine.hidden = !text;
       noticeLine.textContent = text ?? "";
       noticeLine.dataset.kind = kind;
@@ -43,7 +45,9 @@ export function layout(root, app) {
       title.textContent = payload.title;
       about.textContent = said(payload);
       segmented.hidden = !payload.solid;
-      const there = SHOWN.filter((one) => one.there(payload));
+      const there = SHOWN.filter((one) => one.there(payload)), key = there.map(({ word }) => word).join();
+      if (key === offered) return void pressed();
+      offered = key;
       chips.replaceChildren(...there.map(({ word, label, key }) => (words[word] = el("button", {
         type: "button", class: "chip", "data-word": word, title: `${label} (${key})`, onclick: () => store.show(word),
       }, el("span", { class: "dot" }), label))));
@@ -63,9 +67,9 @@ export function layout(root, app) {
 
 function said({ bodies, joints, period, clock, analysis, clearance }) {
   const count = (n, one, many) => `${n} ${n === 1 ? one : many}`;
-  const seconds = (x) => `${Number(x.toPrecision(3))} s`;
+  const seconds = (x) => `${Number(x.toPrecision(3))}\u00a0s`;
   const words = [count(Object.keys(bodies).length, "body", "bodies"), count(Object.keys(joints).length, "joint", "joints")];
   words.push(period === null ? `${analysis === "sweep" ? "driven" : "simulated"} ${seconds(clock.end - clock.start)}` : `repeats every ${seconds(period)}`);
   if (clearance) words.push("clearances proven");
-  return words.join(" · ");
+  return words.map((word) => word.replace(" ", "\u00a0")).join(" · ");
 }

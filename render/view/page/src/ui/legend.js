@@ -1,5 +1,6 @@
 /** The scale of arrows and arcs, as long as those in the picture; one for the whole motion. */
-import { QUANTITIES } from "../view2d/inks.js";
+import { arcOutlines, arrowOutlines } from "../view2d/arrows.js";
+import { HEADS, QUANTITIES } from "../view2d/inks.js";
 import { el } from "./dom.js";
 
 export class Legend {
@@ -13,38 +14,31 @@ export class Legend {
     const { payload, store, stage } = this.app, { shown } = store.state, { arrows, arcs } = payload;
     const scale = stage.shown.pixelsPerMetre?.() ?? this.app.stage.plane.paper.scale;
     const colours = QUANTITIES[this.app.dark ? "dark" : "light"], rows = [];
-    const quantities = [...new Set([...arrows.list, ...arcs.list].map((one) => one.quantity))].filter((one) => shown[one]);
-    for (const quantity of quantities) {
-      const units = new Set(arrows.list.filter((one) => one.quantity === quantity).map((one) => one.unit));
-      for (const unit of units) {
-        const one = arrows.scales[unit];
-        if (one) rows.push({ quantity, words: one.words, length: (arrows.full * one.reference / one.largest) * scale, cut: one.cut });
-      }
-      if (arcs.scale && arcs.list.some((one) => one.quantity === quantity)) {
-        rows.push({ quantity, words: arcs.scale.words, sweep: arcs.full * arcs.scale.reference / arcs.scale.largest, cut: arcs.scale.cut });
-      }
+    for (const { row, unit } of unique(arrows.list.filter((one) => shown[one.quantity]), (one) => `${one.row} ${one.unit}`)) {
+      const one = arrows.scales[unit];
+      if (one) rows.push({ row, name: row, words: one.words, length: (arrows.full * one.reference / one.largest) * scale, cut: one.cut });
+    }
+    for (const { row, quantity } of arcs.scale ? unique(arcs.list.filter((one) => shown[one.quantity]), (one) => one.quantity) : []) {
+      const { words, cut } = arcs.scale, name = quantity === "forces" ? "torques" : "torques of joints";
+      rows.push({ row, name, words, sweep: (arcs.full * arcs.scale.reference) / arcs.scale.largest, cut });
     }
     const key = JSON.stringify([rows.map((row) => [row, Math.round(row.length ?? 0)]), this.app.dark]);
     if (key === this.key) return;
     this.key = key;
-    this.app.parts.legend.replaceChildren(...rows.map((row) => {
-      const name = row.sweep ? (row.quantity === "forces" ? "torques" : "torques of joints") : row.quantity;
-      return el("div", { class: "row", style: `color:${colours[row.quantity]}` },
-        row.sweep ? arc(row.sweep) : arrow(Math.min(Math.max(row.length, 12), 150)),
-        el("b", {}, row.words), el("span", {}, row.cut ? `${name}, peaks cut` : name));
-    }));
+    this.app.parts.legend.replaceChildren(...rows.map(({ row, name, words, length, sweep, cut }) => el("div", { class: "row", style: `color:${colours[row]}` },
+      sweep ? arc(sweep) : arrow(Math.min(Math.max(length, 16), 150), HEADS[row]), el("b", {}, words), el("span", {}, cut ? `${name}, peaks cut` : name))));
   }
 }
 
-function arrow(length) {
-  return el("svg:svg", { width: length, height: 12, viewBox: `0 0 ${length} 12` },
-    el("svg:path", { d: `M0 6H${length - 9}`, stroke: "currentColor", "stroke-width": 2.6 }),
-    el("svg:path", { d: `M${length} 6l-11-4.4v8.8z`, fill: "currentColor" }));
+const unique = (list, key) => [...new Map(list.map((one) => [key(one), one])).values()];
+const path = (corners, x, y) => `M${corners.map(([u, v]) => `${(x + u).toFixed(2)} ${(y - v).toFixed(2)}`).join("L")}z`;
+
+function arrow(length, head) {
+  const d = arrowOutlines(length, head).map((corners) => path(corners, 0, 7));
+  return el("svg:svg", { width: length, height: 14, viewBox: `0 0 ${length} 14` }, ...d.map((one) => el("svg:path", { d: one, fill: "currentColor" })));
 }
 
 function arc(sweep) {
-  const r = 8, x = 11 + r * Math.cos(sweep), y = 11 - r * Math.sin(sweep);
-  return el("svg:svg", { width: 22, height: 22, viewBox: "0 0 22 22" },
-    el("svg:path", { d: `M${11 + r} 11A${r} ${r} 0 ${sweep > Math.PI ? 1 : 0} 0 ${x} ${y}`, stroke: "currentColor", "stroke-width": 2.6, fill: "none" }),
-    el("svg:circle", { cx: x, cy: y, r: 3.2, fill: "currentColor" }));
+  const d = arcOutlines(11, sweep).map((corners) => path(corners, 15, 15));
+  return el("svg:svg", { width: 30, height: 24, viewBox: "0 2 30 26" }, ...d.map((one) => el("svg:path", { d: one, fill: "currentColor" })));
 }

@@ -7,7 +7,7 @@ export const SHOWN = [
   { word: "accelerations", label: "Accelerations", key: "a", there: (p) => has(p, "accelerations") },
   { word: "trails", label: "Trails", key: "t", there: (p) => p.trails.length > 0 },
   { word: "names", label: "Names", key: "n", there: () => true },
-  { word: "centres", label: "Centres of mass", key: "c", there: (p) => !!p.solid && Object.values(p.bodies).some((b) => b.mass > 0) },
+  { word: "centres", label: "Centres of mass", key: "c", there: (p) => Object.values(p.bodies).some((b) => b.mass > 0) },
   { word: "ghosts", label: "Poses", key: "g", there: (p) => Object.keys(p.bodies).length > 0 },
   { word: "glass", label: "Transparent", key: "x", there: (p) => !!p.solid },
   { word: "clearance", label: "Clearances", key: "k", there: (p) => !!p.clearance && !!p.solid },
@@ -18,5 +18,5 @@ const has = (payload, quantity) =>
 
 /** @param {import("../data/decode.js").Payload} payload */
 export function initiallyShown(payload) {
-  return { trails: true, names: !payload.solid };
+  return { trails: true, names: !payload.solid, centres: !payload.solid };
 }

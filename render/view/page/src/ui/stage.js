@@ -26,36 +26,73 @@ export class Stage {
     this.plane.update();
     const { app } = this, { solid } = app.payload;
     if (solid && this.solid) this.solid.update();
-    else if (solid && !this.missing) {
-      try {
-        this.solid = new Solid(app.parts.canvases.solid, app);
-        this.resize();
-        this.solid.home();
-      } catch (error) {
-        this.missing = true;
-        app.parts.root.dataset.flat = "";
-        app.store.set({ shown: { ...app.store.state.shown, names: true } });
-        app.notice("This browser has no WebGL: here are the skeleton and the curves, without the parts.", "plain");
-        console.info(`no WebGL: ${error.message}`);
-      }
+    else if (this.waits && !this.coming) {
+      this.coming = true;
+      app.notice("The parts are being drawn …", "coming");
+      afterPaint(() => this.build());
     }
   }
 
+  /** Whether the parts are still to come: meanwhile the skeleton is shown. */
+  get waits() { return !!this.app.payload.solid && !this.solid && !this.missing; }
+
+  /** The 3D view with a first picture, which takes its time where WebGL is in software. */
+  build() {
+    const { app } = this;
+    this.coming = false;
+    if (!this.waits) return;
+    try {
+      const made = new Solid(app.parts.canvases.solid, app);
+      this.place(made);
+      made.home();
+      made.draw();
+      this.solid = made;
+      app.notice(null, "coming");
+    } catch (error) {
+      this.missing = true;
+      app.parts.root.dataset.flat = "";
+      app.store.set({ shown: { ...app.store.state.shown, names: true, centres: true } });
+      app.notice("This browser has no WebGL: here are the skeleton and the curves, without the parts.", "plain");
+      console.info(`no WebGL: ${error.message}`);
+    }
+    app.redraw();
+  }
+
   resize() {
+    this.place(this.plane);
+    if (this.solid) this.place(this.solid);
+  }
+
+  place(view) {
     const { width, height } = this.app.parts.stage.getBoundingClientRect();
-    if (!width || !height) return;
-    const ratio = Math.min(window.devicePixelRatio || 1, 2);
-    this.plane.resize(width, height, ratio);
-    this.solid?.resize(width, height, ratio);
+    if (width && height) view.resize(width, height, Math.min(window.devicePixelRatio || 1, 2));
   }
 
   zoom(factor) { this.shown.zoom(factor); this.app.redraw(); }
   turn(right, up) { this.shown.turn(right, up); this.app.redraw(); }
   home() { this.shown.home(); this.app.redraw(); }
 
+  /** While numbers are dragged WebGL in software would come too late: its last picture stays as a ghost, under the skeleton. */
+  get ghost() { return !this.flat && this.app.held && this.solid.soft; }
+
   draw() {
-    this.app.parts.root.dataset.view = this.flat ? "2d" : "3d";
-    this.shown.draw();
+    this.app.parts.root.dataset.view = this.flat ? "2d" : this.ghost ? "ghost" : "3d";
+    if (this.ghost) this.plane.over(this.solid.paper);
+    else this.shown.draw();
     this.legend.draw();
   }
+}
+
+const PATIENCE = 2000;
+/** Milliseconds in which a browser that tells of its first paint has painted. */
+
+/** Once what is drawn now has been seen: two frames later, and where the browser tells of paints, after the first one. */
+function afterPaint(f) {
+  const ends = performance.now() + PATIENCE, tells = PerformanceObserver.supportedEntryTypes?.includes("paint");
+  const look = () => {
+    const seen = !tells || performance.getEntriesByName("first-contentful-paint").length || performance.now() > ends;
+    if (seen) f();
+    else setTimeout(look, 20);
+  };
+  requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(look)));
 }

@@ -2,7 +2,6 @@
 import { el } from "./dom.js";
 import { icon } from "./icons.js";
 
-export const SPEEDS = [0.05, 0.1, 0.2, 0.5, 1, 2, 5];
 const STEPS = 10000;
 /** Of the scrub bar. */
 
@@ -20,22 +19,17 @@ export class Transport {
     });
     this.marks = el("div", { class: "marks", "aria-hidden": "true" });
     this.time = el("output", { class: "time" });
-    this.speed = el("select", { class: "speed", "aria-label": "Speed", title: "Speed ([ and ])", onchange: () => store.set({ speed: Number(this.speed.value) }) },
-      ...SPEEDS.map((speed) => el("option", { value: speed }, `${speed}×`)));
-    this.rate = el("span", { class: "rate" });
+    this.speed = el("select", { class: "speed", "aria-label": "Speed", title: "Speed ([ and ])", onchange: () => store.set({ speed: this.speeds[this.speed.selectedIndex] }) });
     app.parts.bar.replaceChildren(
       button("back", "One frame back (←)", () => app.step(-1)), this.playButton, button("forth", "One frame on (→)", () => app.step(1)),
-      el("div", { class: "track" }, this.marks, this.bar), this.time, this.speed, this.rate,
+      el("div", { class: "track" }, this.marks, this.bar), this.time, this.speed,
     );
     store.on(["playing"], ({ playing }) => {
       this.playButton.replaceChildren(icon(playing ? "pause" : "play"));
       this.playButton.title = playing ? "Pause (space)" : "Play (space)";
       this.playButton.setAttribute("aria-label", this.playButton.title);
     }, true);
-    store.on(["speed"], ({ speed }) => {
-      this.speed.value = String(speed);
-      this.rate.textContent = app.clock.said(speed);
-    }, true);
+    store.on(["speed"], () => this.chosen());
     this.update();
   }
 
@@ -46,13 +40,24 @@ export class Transport {
 
   update() {
     const { clock, payload } = this.app, span = clock.end - clock.start;
-    this.rate.textContent = clock.said(this.app.store.state.speed);
+    this.offer();
     this.digits = Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(span || 1))));
     this.marks.replaceChildren(...payload.marks.map(({ time, words, kind }) => el("i", {
       style: `left:${(100 * (time - clock.start)) / span}%`, title: words, "data-kind": kind,
     })));
     this.cursor();
   }
+
+  /** The speeds that this clock offers. */
+  offer() {
+    const { clock } = this.app, words = clock.speeds().map((speed) => clock.said(speed));
+    this.speeds = clock.speeds();
+    if (words.join() !== this.words) this.speed.replaceChildren(...words.map((word) => el("option", {}, word)));
+    this.words = words.join();
+    this.chosen();
+  }
+
+  chosen() { this.speed.selectedIndex = this.speeds.indexOf(nearest(this.speeds, this.app.store.state.speed)); }
 
   cursor() {
     const { clock, motion } = this.app;
@@ -65,3 +70,6 @@ export class Transport {
     this.time.textContent = `${motion.t.toFixed(this.digits)} s`;
   }
 }
+
+/** @param {number[]} speeds  @param {number} speed */
+export const nearest = (speeds, speed) => speeds.reduce((a, b) => (Math.abs(Math.log(b / speed)) < Math.abs(Math.log(a / speed)) ? b : a));

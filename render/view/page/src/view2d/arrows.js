@@ -1,10 +1,12 @@
 /** Arrows and arcs of the moment in the plane: lengths and sweeps of all views, and the drawing of the 2D one. */
+import { HEADS } from "./inks.js";
+
 
 /**
  * @param {import("../data/decode.js").Payload} payload
  * @param {import("../data/motion.js").Motion} motion
  * @param {Record<string, boolean>} shown
- * @returns {{index: number, quantity: string, tail: [number, number], tip: [number, number], z: number}[]} (m)
+ * @returns {{index: number, row: string, tail: [number, number], tip: [number, number], z: number}[]} (m)
  */
 export function arrowsAt({ arrows }, motion, shown) {
   const out = [];
@@ -16,12 +18,12 @@ export function arrowsAt({ arrows }, motion, shown) {
     if (!size || length < arrows.tiny * arrows.full) return;
     const x = motion.linear(one.place, 2), y = motion.linear(one.place, 2, 1);
     const tip = [x + u / size * length, y + v / size * length];
-    out.push({ index, quantity: one.quantity, tail: [x, y], tip, z: one.z });
+    out.push({ index, row: one.row, tail: [x, y], tip, z: one.z });
   });
   return out;
 }
 
-/** @returns {{index: number, quantity: string, centre: [number, number], sweep: number, radius: number, z: number}[]} */
+/** @returns {{index: number, row: string, centre: [number, number], sweep: number, radius: number, z: number}[]} */
 export function arcsAt({ arcs, arrows }, motion, shown) {
   const out = [];
   arcs.list.forEach((one, index) => {
@@ -30,50 +32,58 @@ export function arcsAt({ arcs, arrows }, motion, shown) {
     const sweep = arcs.full * Math.max(-arrows.longest, Math.min(arrows.longest, value));
     if (Math.abs(sweep) < arrows.tiny * arcs.full) return;
     const centre = [motion.linear(one.place, 2), motion.linear(one.place, 2, 1)];
-    out.push({ index, quantity: one.quantity, centre, sweep, radius: one.radius, z: one.z });
+    out.push({ index, row: one.row, centre, sweep, radius: one.radius, z: one.z });
   });
   return out;
 }
 
-/** @param {CanvasRenderingContext2D} g  @param {import("./paper.js").Paper} paper */
-export function drawArrows(g, paper, arrows, arcs, colours) {
-  g.lineCap = "butt";
-  for (const { quantity, tail, tip } of arrows) {
-    const a = paper.pixel(...tail), b = paper.pixel(...tip);
-    const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
+/** @param {CanvasRenderingContext2D} g  @param {import("./paper.js").Paper} paper  @param {string} halo round every arrow */
+export function drawArrows(g, paper, arrows, arcs, colours, halo) {
+  const shapes = [];
+  for (const { row, tail, tip } of arrows) {
+    const a = paper.pixel(...tail), b = paper.pixel(...tip), length = Math.hypot(b[0] - a[0], b[1] - a[1]);
     if (length < 2) continue;
-    const u = (b[0] - a[0]) / length, v = (b[1] - a[1]) / length, head = Math.min(13, 0.6 * length);
-    g.strokeStyle = g.fillStyle = colours[quantity];
-    g.lineWidth = 2.6;
-    line(g, a, [b[0] - u * head * 0.8, b[1] - v * head * 0.8]);
-    triangle(g, b, u, v, head);
+    const u = (b[0] - a[0]) / length, v = (b[1] - a[1]) / length;
+    for (const corners of arrowOutlines(length, HEADS[row])) {
+      shapes.push([colours[row], corners.map(([x, y]) => [a[0] + u * x - v * y, a[1] + v * x + u * y])]);
+    }
   }
-  for (const { quantity, centre, sweep, radius } of arcs) {
+  for (const { row, centre, sweep, radius } of arcs) {
     const [x, y] = paper.pixel(...centre), r = Math.max(radius * paper.scale, 14);
-    g.strokeStyle = g.fillStyle = colours[quantity];
-    g.lineWidth = 2.6;
-    const head = Math.min(12, 0.6 * r * Math.abs(sweep)), end = -sweep + Math.sign(sweep) * 0.8 * head / r;
-    g.beginPath();
-    g.arc(x, y, r, 0, end, sweep > 0);
-    g.stroke();
-    const way = -Math.sign(sweep), at = [x + r * Math.cos(-sweep), y + r * Math.sin(-sweep)];
-    triangle(g, at, way * -Math.sin(-sweep), way * Math.cos(-sweep), head);
+    for (const corners of arcOutlines(r, sweep)) shapes.push([colours[row], corners.map(([u, v]) => [x + u, y - v])]);
   }
+  g.setLineDash([]);
+  g.lineJoin = "round";
+  g.strokeStyle = halo;
+  g.lineWidth = 3;
+  for (const [, corners] of shapes) { trace(g, corners); g.stroke(); }
+  for (const [colour, corners] of shapes) { g.fillStyle = colour; trace(g, corners); g.fill(); }
 }
 
-function line(g, a, b) {
-  g.beginPath();
-  g.moveTo(...a);
-  g.lineTo(...b);
-  g.stroke();
+/** Shaft and points of an arrow along x, each as corners, in pixels. */
+export function arrowOutlines(length, head) {
+  const double = head.endsWith("double"), solid = head.startsWith("solid"), half = 1.4;
+  const point = Math.min(13, (double ? 0.42 : 0.6) * length), neck = length - (solid ? 0.9 * point : 1.4 * half);
+  const out = [[[0, half], [neck, half], [neck, -half], [0, -half]]];
+  for (const back of double ? [0, 0.72 * point] : [0]) {
+    const tip = length - back, far = tip - point, w = 0.4 * point, barb = 2.2 * half;
+    out.push(solid ? [[tip, 0], [far, w], [far, -w]]
+      : [[tip, 0], [far, 1.25 * w], [far - barb, 1.25 * w], [tip - 1.5 * barb, 0], [far - barb, -1.25 * w], [far, -1.25 * w]]);
+  }
+  return out;
 }
 
-function triangle(g, tip, u, v, head) {
-  const w = 0.38 * head;
+/** Tube and point of an arc about the origin from the x axis on, y up, in pixels. */
+export function arcOutlines(r, sweep) {
+  const half = Math.min(1.8, 0.2 * r), head = Math.min(14, 0.8 * r, 0.6 * r * Math.abs(sweep)), way = Math.sign(sweep), w = 0.42 * head;
+  const end = sweep - (way * 0.8 * head) / r, turn = Array.from({ length: 33 }, (_, k) => (end * k) / 32);
+  const at = (angle, radius) => [radius * Math.cos(angle), radius * Math.sin(angle)];
+  const neck = sweep - (way * head) / r;
+  return [[...turn.map((angle) => at(angle, r + half)), ...turn.reverse().map((angle) => at(angle, r - half))], [at(sweep, r), at(neck, r + w), at(neck, r - w)]];
+}
+
+function trace(g, corners) {
   g.beginPath();
-  g.moveTo(...tip);
-  g.lineTo(tip[0] - u * head - v * w, tip[1] - v * head + u * w);
-  g.lineTo(tip[0] - u * head + v * w, tip[1] - v * head - u * w);
+  for (const corner of corners) g.lineTo(...corner);
   g.closePath();
-  g.fill();
 }

@@ -1,7 +1,10 @@
 /** A quiet grid with a scale, so that the plane has a size. */
+import { written } from "../data/numbers.js";
 
 const APART = 76;
 /** Pixels between two lines, at least. */
+const NARROW = 480;
+/** Pixels of a plane whose scale stands above, where the legend of arrows is not. */
 
 /** @param {CanvasRenderingContext2D} g  @param {import("./paper.js").Paper} paper */
 export function drawGrid(g, paper, colours) {
@@ -21,7 +24,7 @@ export function drawGrid(g, paper, colours) {
     g.lineTo(paper.width, y);
   }
   g.stroke();
-  const x = paper.width - paper.free[1] - 18, y = paper.height - paper.free[2] - 18, length = step * paper.scale;
+  const x = paper.width - paper.free[1] - 18, y = paper.width < NARROW ? paper.free[0] + 30 : paper.height - paper.free[2] - 18, length = step * paper.scale;
   g.strokeStyle = g.fillStyle = colours.quiet;
   g.lineWidth = 1.5;
   g.beginPath();
@@ -33,16 +36,11 @@ export function drawGrid(g, paper, colours) {
   g.font = "12px system-ui, sans-serif";
   g.textAlign = "center";
   g.textBaseline = "bottom";
-  g.fillText(metres(step), x - length / 2, y - 4);
+  g.fillText(written(step, "m"), x - length / 2, y - 4);
   g.textAlign = "left";
 }
 
 function roundAbove(value) {
   const power = 10 ** Math.floor(Math.log10(value));
   return [1, 2, 5, 10].find((step) => step * power >= value * (1 - 1e-9)) * power;
-}
-
-function metres(x) {
-  const say = (value) => String(Number(value.toPrecision(3)));
-  return x >= 1000 ? `${say(x / 1000)} km` : x >= 1 ? `${say(x)} m` : x >= 0.001 ? `${say(x * 1000)} mm` : `${say(x * 1e6)} µm`;
 }

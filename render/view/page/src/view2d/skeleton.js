@@ -4,7 +4,7 @@ import { same } from "../state.js";
 import { arcsAt, arrowsAt, drawArrows } from "./arrows.js";
 import { moved } from "./carriers.js";
 import { drawGrid } from "./grid.js";
-import { inks } from "./inks.js";
+import { inks, showsArrows } from "./inks.js";
 import { writeNames } from "./names.js";
 import { Paper } from "./paper.js";
 import { thingAt } from "./pick.js";
@@ -15,6 +15,9 @@ import { drawTrails } from "./trails.js";
 const DOT = 5;
 /** Pixels of a step by the keyboard. */
 const PAN = 40;
+/** Of what is seen: by so much a machine with other numbers may be larger, so large it is at least; and in each frame the
+ * view glides on by a part of the way. */
+const SPARE = 0.06, LEAST = 0.55, GLIDE = 0.2;
 
 export class Skeleton {
   /**
@@ -68,14 +71,12 @@ export class Skeleton {
 
   zoom(factor) { this.paper.zoomAt(this.size[0] / 2, this.size[1] / 2, factor); }
   turn(right, up) { this.paper.pan = [this.paper.pan[0] - PAN * right, this.paper.pan[1] + PAN * up]; }
-  home() { this.paper.reset(); }
+  home() { this.paper.reset(); this.corners = null; }
 
   draw() {
     const { payload, motion, store } = this.app, { shown, selected } = store.state;
-    const { skeleton } = payload, g = this.canvas.getContext("2d"), colours = inks(this.app.dark, payload.bodies);
-    const pad = 2.4 * skeleton.unit;
-    const low = [skeleton.low[0] - pad, skeleton.low[1] - pad], high = [skeleton.high[0] + pad, skeleton.high[1] + pad];
-    this.paper.fit(...this.size, low, high, this.free);
+    const { skeleton } = payload, g = this.canvas.getContext("2d"), colours = inks(this.app.dark, payload.bodies, showsArrows(shown));
+    this.paper.fit(...this.size, ...this.box(skeleton), this.free);
     g.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
     g.fillStyle = colours.paper;
     g.fillRect(0, 0, ...this.size);
@@ -83,11 +84,39 @@ export class Skeleton {
     if (shown.trails) drawTrails(g, this.paper, payload, motion, colours.trail);
     if (shown.ghosts) this.ghosts(g, colours);
     g.globalAlpha = 1;
-    for (const one of skeleton.strokes) this.stroke(g, one, colours, 1);
+    for (const one of skeleton.strokes) if (!one.sign || shown.centres) this.stroke(g, one, colours, 1);
     this.mark(g, this.hovered, colours, 0.5);
     this.mark(g, selected, colours, 1);
-    drawArrows(g, this.paper, arrowsAt(payload, motion, shown), arcsAt(payload, motion, shown), colours.arrows);
+    drawArrows(g, this.paper, arrowsAt(payload, motion, shown), arcsAt(payload, motion, shown), colours.arrows, colours.paper);
     if (shown.names) this.names(g, colours);
+  }
+
+  /** The skeleton alone over another view, whose paper it is drawn on. */
+  over(paper) {
+    const { payload, motion, store } = this.app, { shown } = store.state, own = this.paper, g = this.canvas.getContext("2d");
+    const colours = inks(this.app.dark, payload.bodies, showsArrows(shown));
+    this.paper = paper;
+    g.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    g.clearRect(0, 0, ...this.size);
+    if (shown.trails) drawTrails(g, paper, payload, motion, colours.trail);
+    for (const one of payload.skeleton.strokes) if (!one.sign || shown.centres) this.stroke(g, one, colours, 1);
+    drawArrows(g, paper, arrowsAt(payload, motion, shown), arcsAt(payload, motion, shown), colours.arrows);
+    this.paper = own;
+  }
+
+  /** Corners (m) of what is seen: the machine's, but they stay while numbers are dragged and where it still fits. */
+  box({ low, high, unit }) {
+    const pad = 2.4 * unit, wanted = [low[0] - pad, low[1] - pad, high[0] + pad, high[1] + pad], seen = this.corners ?? wanted;
+    const [across, up] = [seen[2] - seen[0], seen[3] - seen[1]], room = SPARE * Math.max(across, up);
+    const fits = wanted.every((at, k) => (k < 2 ? at >= seen[k] - room : at <= seen[k] + room));
+    const fills = Math.max((wanted[2] - wanted[0]) / across, (wanted[3] - wanted[1]) / up) > LEAST;
+    this.corners = seen;
+    if (!this.held && !(fits && fills)) {
+      const near = seen.map((at, k) => at + GLIDE * (wanted[k] - at)), done = near.every((at, k) => Math.abs(at - wanted[k]) < 0.002 * Math.max(across, up));
+      this.corners = done ? wanted : near;
+      if (!done) this.app.redraw();
+    }
+    return [this.corners.slice(0, 2), this.corners.slice(2)];
   }
 
   stroke(g, one, colours, strength) {

@@ -1,10 +1,15 @@
 /** Arrows and arcs over the parts, as in the film: thin shafts with cones, drawn over everything. */
-import { ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, TubeGeometry, Vector3, Curve } from "three";
+import { CylinderGeometry, Curve, ExtrudeGeometry, Group, LatheGeometry, Mesh, MeshBasicMaterial, Shape, TubeGeometry, Vector2, Vector3 } from "three";
 import { arcsAt, arrowsAt } from "../view2d/arrows.js";
+import { HEADS } from "../view2d/inks.js";
 
 const SHAFT = 0.0042, HEAD = 0.0125, POINT = 0.037;
 /** Parts of the size, render/film/arrows/arrows.py. */
 const SEGMENTS = 64;
+/** The halo round an arrow, in radii of its shaft; arcs, which stand on parts, are stouter. */
+const HALO = 0.55, STOUT = 1.3;
+/** Second points of heads, and open ones, as in the film (render/blender/scene/arrows.py). */
+const BACK = 0.72, NECK = 0.3, WIDE = 1.45, BARB = 0.3;
 
 export class Arrows {
   constructor() {
@@ -13,7 +18,8 @@ export class Arrows {
     this.straight = new Map();
     this.curved = new Map();
     this.shaft = new CylinderGeometry(1, 1, 1, 12).rotateZ(-Math.PI / 2).translate(0.5, 0, 0);
-    this.head = new ConeGeometry(1, 1, 20).rotateZ(-Math.PI / 2).translate(-0.5, 0, 0);
+    this.heads = Object.fromEntries(["solid", "solid double", "open", "open double"].map((head) => [head, headOf(head)]));
+    this.halo = new MeshBasicMaterial({ color: "#05070a", toneMapped: false, depthTest: false, transparent: true, opacity: 0.85 });
   }
 
   clear() {
@@ -22,49 +28,62 @@ export class Arrows {
     this.curved.clear();
   }
 
-  material(quantity, colours) {
-    const known = (this.materials[quantity] ??= new MeshBasicMaterial({ toneMapped: false, depthTest: false, transparent: true }));
-    known.color.set(colours[quantity]);
+  material(row, colours) {
+    const known = (this.materials[row] ??= new MeshBasicMaterial({ toneMapped: false, depthTest: false, transparent: true }));
+    known.color.set(colours[row]);
     return known;
   }
 
-  mesh(geometry, material) {
-    const mesh = new Mesh(geometry, material);
-    mesh.renderOrder = 10;
-    return mesh;
+  /** A thing, and behind it its halo. */
+  pair(geometry, material) {
+    return [this.halo, material].map((one, k) => {
+      const mesh = new Mesh(geometry, one);
+      mesh.renderOrder = 9 + k;
+      return mesh;
+    });
   }
 
   draw(payload, motion, shown, colours) {
     const size = payload.solid.size;
     for (const one of [...this.straight.values(), ...this.curved.values()]) one.visible = false;
-    for (const { index, quantity, tail, tip, z } of arrowsAt(payload, motion, shown)) {
-      const one = this.arrow(index, this.material(quantity, colours)), dx = tip[0] - tail[0], dy = tip[1] - tail[1];
-      const length = Math.hypot(dx, dy), point = Math.min(POINT * size, 0.7 * length), thin = Math.min(1, length / (1.4 * POINT * size));
+    for (const { index, row, tail, tip, z } of arrowsAt(payload, motion, shown)) {
+      const one = this.arrow(index, row, this.material(row, colours)), dx = tip[0] - tail[0], dy = tip[1] - tail[1];
+      const length = Math.hypot(dx, dy), point = Math.min(POINT * size, (HEADS[row].endsWith("double") ? 0.5 : 0.7) * length);
+      const thin = Math.min(1, length / (1.4 * POINT * size)), thick = SHAFT * size * thin, halo = HALO * thick;
       one.visible = true;
       one.position.set(tail[0], tail[1], z);
       one.rotation.z = Math.atan2(dy, dx);
-      one.children[0].scale.set(length - 0.8 * point, SHAFT * size * thin, SHAFT * size * thin);
-      one.children[1].position.x = length;
-      one.children[1].scale.set(point, HEAD * size * thin, HEAD * size * thin);
+      one.children.forEach((mesh, k) => {
+        const more = k % 2 ? 0 : halo, head = HEAD * size * thin;
+        if (k < 2) mesh.scale.set(length - 0.8 * point, thick + more, thick + more);
+        else {
+          mesh.position.x = length + 1.6 * more;
+          mesh.scale.set(point + 3 * more, head + 1.6 * more, head + 1.6 * more);
+        }
+      });
     }
-    for (const { index, quantity, centre, sweep, radius, z } of arcsAt(payload, motion, shown)) {
-      const one = this.arc(index, radius, size, payload, this.material(quantity, colours)), part = Math.abs(sweep) / one.userData.full;
+    for (const { index, row, centre, sweep, radius, z } of arcsAt(payload, motion, shown)) {
+      const one = this.arc(index, radius, size, payload, this.material(row, colours)), part = Math.abs(sweep) / one.userData.full;
       one.visible = true;
       one.position.set(...centre, z);
       one.scale.y = Math.sign(sweep);
-      const [tube, head] = one.children;
-      tube.geometry.setDrawRange(0, Math.round(part * SEGMENTS) * one.userData.indices);
       const angle = Math.abs(sweep);
-      head.position.set(radius * Math.cos(angle), radius * Math.sin(angle), 0);
-      head.rotation.z = angle + Math.PI / 2;
+      const thin = Math.min(1, (0.55 * radius * angle) / (STOUT * POINT * size)), neck = Math.max(part - (0.8 * thin * STOUT * POINT * size) / (radius * one.userData.full), 0);
+      for (const mesh of one.children.slice(0, 2)) mesh.geometry.setDrawRange(0, Math.round(neck * SEGMENTS) * one.userData.indices);
+      one.children.slice(2).forEach((head, k) => {
+        const more = k ? 0 : HALO * STOUT * SHAFT * size, wide = thin * STOUT * HEAD * size + 1.6 * more;
+        head.position.set(radius * Math.cos(angle), radius * Math.sin(angle), 0);
+        head.rotation.z = angle + Math.PI / 2;
+        head.scale.set(thin * STOUT * POINT * size + 3 * more, wide, wide);
+      });
     }
   }
 
-  arrow(index, material) {
+  arrow(index, row, material) {
     let one = this.straight.get(index);
     if (!one) {
       one = new Group();
-      one.add(this.mesh(this.shaft, material), this.mesh(this.head, material));
+      one.add(...this.pair(this.shaft, material), ...this.pair(this.heads[HEADS[row]], material));
       this.straight.set(index, one);
       this.group.add(one);
     }
@@ -74,18 +93,34 @@ export class Arrows {
   arc(index, radius, size, { arcs, arrows }, material) {
     let one = this.curved.get(index);
     if (!one) {
-      const full = arcs.full * arrows.longest;
-      const tube = this.mesh(new TubeGeometry(new Arc(radius, full), SEGMENTS, SHAFT * size, 8), material);
-      const head = this.mesh(this.head, material);
-      head.scale.set(POINT * size, HEAD * size, HEAD * size);
+      const full = arcs.full * arrows.longest, thick = STOUT * SHAFT * size, halo = HALO * thick;
+      const tubes = [this.halo, material].map((of, k) => {
+        const mesh = new Mesh(new TubeGeometry(new Arc(radius, full), SEGMENTS, thick + (k ? 0 : halo), 8), of);
+        mesh.renderOrder = 9 + k;
+        return mesh;
+      });
       one = new Group();
-      one.add(tube, head);
+      one.add(...tubes, ...this.pair(this.heads.solid, material));
       one.userData = { full, indices: 8 * 6 };
       this.curved.set(index, one);
       this.group.add(one);
     }
     return one;
   }
+}
+
+/** A head whose tip is the origin, its neck at x = -1, its half width 1. */
+function headOf(head) {
+  if (head.startsWith("solid")) {
+    const profile = head === "solid" ? [[1, -1], [0, 0]] : [[1, -1 - BACK], [NECK, BACK * NECK - 1], [1, BACK * NECK - 1], [0, 0]];
+    return new LatheGeometry([[0, profile[0][1]], ...profile].map(([r, y]) => new Vector2(r, y)), 20).rotateZ(-Math.PI / 2);
+  }
+  const thick = SHAFT / HEAD, shapes = [[[-1, -thick], [-0.1, -thick], [-0.1, thick], [-1, thick]]];
+  for (const back of head === "open" ? [0] : [0, BACK]) {
+    shapes.push([[0, 0], [-1, WIDE], [-1 - BARB, WIDE], [-1.6 * BARB, 0], [-1 - BARB, -WIDE], [-1, -WIDE]].map(([x, y]) => [x - back, y]));
+  }
+  const made = shapes.map((corners) => new Shape(corners.map(([x, y]) => new Vector2(x, y))));
+  return new ExtrudeGeometry(made, { depth: 2 * thick, bevelEnabled: false }).translate(0, 0, -thick);
 }
 
 class Arc extends Curve {

@@ -1,7 +1,7 @@
 /** The parts: a group for each body, a mesh for each piece, moved by the motion; springs and belts as recorded. */
-import { AnimationMixer, Group, Mesh } from "three";
+import { AnimationMixer, Group, Matrix4, Mesh } from "three";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
-import { materialOf, setGlass } from "./materials.js";
+import { materialOf, setLook } from "./materials.js";
 import { geometryOf } from "./meshes.js";
 
 export class Parts {
@@ -55,6 +55,7 @@ export class Parts {
     scene.rotation.set(0, 0, 0);
     for (const root of scene.children) root.quaternion.identity(); // its y is up, ours z
     scene.traverse((one) => { one.castShadow = one.receiveShadow = !!one.isMesh; });
+    this.tubes = scene;
     this.group.add(scene);
     this.mixer = new AnimationMixer(scene);
     for (const clip of animations) this.mixer.clipAction(clip).play();
@@ -65,13 +66,23 @@ export class Parts {
 
   /** @param {import("../data/motion.js").Motion} motion */
   move(motion) {
+    const { bodies, other } = motion.payload, count = motion.time.length;
     for (const [name, group] of this.bodies) {
-      if (!(name in motion.payload.bodies)) continue;
-      const { x, y, theta } = motion.body(name);
-      group.position.set(x, y, 0);
-      group.rotation.z = theta;
+      const { x, y, theta } = motion.body(name), map = other?.[name];
+      group.visible = !other || name in bodies || name === "ground";
+      group.matrixAutoUpdate = !map;
+      if (name in bodies) {
+        group.position.set(x, y, 0);
+        group.rotation.z = theta;
+      }
+      if (!map) continue;
+      const [a, b, c, d, e, f] = map;
+      group.updateMatrix();
+      group.matrix.multiply(new Matrix4().set(a, b, 0, c, d, e, 0, f, 0, 0, 1, 0, 0, 0, 0, 1));
+      group.matrixWorldNeedsUpdate = true;
     }
-    for (const [axis, angle] of this.rollers) axis.rotation.z = motion.linear(angle);
+    for (const [axis, angle] of this.rollers) if (angle.length === count) axis.rotation.z = motion.linear(angle);
+    if (this.tubes) this.tubes.visible = !other;
     this.mixer?.setTime(Math.min(motion.t - motion.start, this.length * (1 - 1e-7)));
   }
 
@@ -82,5 +93,6 @@ export class Parts {
     for (const material of this.materials) material.dispose();
   }
 
-  glass(on) { for (const material of this.materials) setGlass(material, on); }
+  /** @param {"" | "glass" | "dim"} look  @param {boolean} neutral whether no part has a colour */
+  dress(look, neutral) { for (const material of this.materials) setLook(material, look, neutral); }
 }

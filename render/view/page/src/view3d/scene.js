@@ -1,13 +1,14 @@
-/** The 3D view. The machine is scaled so that the radius of its swept motion is 1; z is up. */
-import { NeutralToneMapping, Group, PCFShadowMap, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from "three";
+/** The 3D view. The machine is scaled so that the radius of its swept motion is 1, and turned so that z is up. */
+import { NeutralToneMapping, Group, Matrix4, PCFShadowMap, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { inks } from "../view2d/inks.js";
+import { inks, showsArrows } from "../view2d/inks.js";
 import { Arrows } from "./arrows.js";
 import { Ghosts } from "./ghosts.js";
 import { Labels } from "./labels.js";
+import { drawn } from "./looks/drawn.js";
+import { Studio } from "./looks/studio.js";
 import { Marks } from "./marks.js";
 import { Parts } from "./parts.js";
-import { Studio } from "./studio.js";
 import { Trails } from "./trails.js";
 import { wantedLabels, wantedMarks } from "./wanted.js";
 
@@ -55,13 +56,21 @@ export class Solid {
   update() {
     const { payload, motion } = this.app, { solid } = payload;
     if (this.parts?.solid !== solid) {
+      const seen = this.parts && [this.camera.position, this.controls.target].map((one) => this.machine.worldToLocal(one.clone()));
       this.parts?.dispose();
       this.parts = new Parts(solid, this.soft, () => this.app.redraw());
       this.machine.add(this.parts.group);
       this.radius = solid.size / 2;
       this.machine.scale.setScalar(1 / this.radius);
-      this.machine.position.set(...solid.middle).multiplyScalar(-1 / this.radius);
-      this.glass = null;
+      this.machine.quaternion.setFromRotationMatrix(turnOf(solid.axes));
+      this.machine.position.set(...solid.middle).applyQuaternion(this.machine.quaternion).multiplyScalar(-1 / this.radius);
+      this.machine.updateMatrixWorld(true);
+      if (seen) { // the view stays, in metres
+        this.camera.position.copy(this.machine.localToWorld(seen[0]));
+        this.controls.target.copy(this.machine.localToWorld(seen[1]));
+        this.controls.update();
+      }
+      this.dress = null;
       this.look = null;
     }
     this.machine.add(this.arrows.group, this.trails.group, this.marks.group, this.ghosts.group);
@@ -72,7 +81,7 @@ export class Solid {
   }
 
   /** World of the picture from places (m). @returns {Vector3} */
-  world(x, y, z) { return new Vector3(x, y, z).divideScalar(this.radius).add(this.machine.position); }
+  world(x, y, z) { return new Vector3(x, y, z).applyMatrix4(this.machine.matrixWorld); }
 
   home() {
     const { camera } = this.app.payload.solid;
@@ -115,8 +124,14 @@ export class Solid {
 
   /** Pixels of a place (m) given as a vector, which is changed. @returns {[number, number]} */
   pixel(vector) {
-    vector.divideScalar(this.radius).add(this.machine.position).project(this.camera);
+    vector.applyMatrix4(this.machine.matrixWorld).project(this.camera);
     return [((vector.x + 1) / 2) * this.size[0], ((1 - vector.y) / 2) * this.size[1]];
+  }
+
+  /** The plane of the machine as it is seen, for who draws on paper: at the mean height of the joints. */
+  get paper() {
+    const heights = Object.values(this.app.payload.solid.heights.joints), z = heights.reduce((sum, one) => sum + one, 0) / (heights.length || 1), place = new Vector3();
+    return { pixel: (x, y) => this.pixel(place.set(x, y, z)), scale: this.pixelsPerMetre() };
   }
 
   pixelsPerMetre() {
@@ -125,13 +140,17 @@ export class Solid {
 
   draw() {
     const { payload, motion, store, dark } = this.app, { shown } = store.state, { solid } = payload;
-    const look = dark ? "studio" : "daylight", ratio = this.soft && store.state.playing ? COARSE : this.ratio;
+    const look = solid.looks[dark ? "dark" : "light"], ratio = this.soft && store.state.playing ? COARSE : this.ratio;
     if (this.renderer.getPixelRatio() !== ratio) this.renderer.setPixelRatio(ratio);
     if (this.look !== look) {
-      this.studio.set(look, solid.camera.azimuth, (solid.floor - solid.middle[2]) / this.radius);
+      const [x, y, z] = solid.axes[2], [u, v, w] = solid.middle;
+      this.studio.set(look, solid.camera.azimuth, (solid.floor - (x * u + y * v + z * w)) / this.radius, solid.reach / this.radius);
+      drawn(this.parts, look.drawing);
       this.look = look;
     }
-    if (this.glass !== !!shown.glass) this.parts.glass((this.glass = !!shown.glass));
+    const dress = payload.other ? "dim" : shown.glass ? "glass" : "";
+    const neutral = showsArrows(shown);
+    if (this.dress !== dress || this.neutral !== neutral) this.parts.dress((this.dress = dress), (this.neutral = neutral));
     this.parts.move(motion);
     this.machine.updateMatrixWorld(true);
     this.ghosts.group.visible = !!shown.ghosts;
@@ -139,7 +158,7 @@ export class Solid {
       this.ghosts.update(this.parts, motion);
       this.ghosted = this.parts;
     }
-    const colours = inks(dark, payload.bodies);
+    const colours = inks(look.dark, payload.bodies);
     this.trails.group.visible = !!shown.trails;
     if (shown.trails) this.trails.draw(payload, motion);
     this.arrows.draw(payload, motion, shown, colours.arrows);
@@ -176,6 +195,9 @@ export class Solid {
     return name && name in payload.bodies ? { kind: "body", name } : null;
   }
 }
+
+/** Turns places of the model into those of the picture. @param {number[][]} axes right, away, up */
+function turnOf([a, b, c]) { return new Matrix4().set(...a, 0, ...b, 0, ...c, 0, 0, 0, 0, 1); }
 
 /** Whether WebGL draws without a graphics card. Throws where there is none at all. */
 function inSoftware() {

@@ -1,4 +1,5 @@
 /** Which words and signs the 3D view shows at the moment. */
+import { figures, written } from "../data/numbers.js";
 
 /** @param {import("../app.js").App} app */
 export function wantedLabels(app) {
@@ -16,9 +17,9 @@ export function wantedLabels(app) {
     for (const { at, gap, time, bodies, layers } of gaps(payload, motion)) {
       const act = time === null ? undefined : () => store.set({ playing: false, time });
       const now = time === null || Math.abs(time - motion.t) < NOW * (motion.end - motion.start);
-      const moment = now ? "" : `, at ${Number(time.toPrecision(3))} s`;
-      const between = layers < gap ? `, ${millimetres(layers)} between layers` : "";
-      out.push({ key: `gap ${bodies}`, text: `${millimetres(gap)} ${bodies.join(" – ")}${moment}${between}`.replaceAll("_", " "), at, kind: "gap", act });
+      const moment = now ? "" : `, at ${figures(time, 3)} s`;
+      const between = layers < gap ? `, ${written(layers, "m")} between layers` : "";
+      out.push({ key: `gap ${bodies}`, text: `${written(gap, "m")} ${bodies.join(" – ")}${moment}${between}`.replaceAll("_", " "), at, kind: "gap", act });
     }
   }
   return out;
@@ -56,7 +57,6 @@ function gaps(payload, motion) {
   return [...seen.values()].slice(0, MOST);
 }
 
-const millimetres = (gap) => `${(1000 * gap).toFixed(gap < 0.01 ? 2 : 1)} mm`;
 
 function heightOf({ payload }, { kind, name }) {
   const { joints, points, bodies } = payload.solid.heights;

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from shared.shapes.units import mm
+from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
@@ -59,3 +60,11 @@ def planes(m: Mechanism, body: str) -> list[float]:
             if z is not None and all(abs(z - other) > SAME for other in found):
                 found.append(z)
     return sorted(found)
+
+
+def no_plane(m: Mechanism, joint: str, body: str) -> UserError:
+    """What is raised where a joint lies in no plane."""
+    return UserError(
+        f"{m.name}: joint '{joint}' of '{body}' has no place z along the normal, and others have; give the body or the "
+        f"marker one, such as m.body('{body}', z=0.02)"
+    )

@@ -1,0 +1,74 @@
+"""Hydraulic cylinder between two points: its force and how its pressures change; the law is in
+forces/hydraulic_cylinder.py, and once more on arrays in oil_cylinder.py."""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.compiling.jit import internal
+from mbsd.equations.interactions.law import FX, FY, LAW, OWN, OWN_STATE, RATE, SIDE, SWITCH, TORQUE, interaction
+from mbsd.equations.interactions.way import measure
+
+(
+    ONE, OPENING, AREA_A, AREA_B, RETRACTED, STROKE, DEAD_A, DEAD_B, COMPRESSIBILITY, AIR, LEAST, SUPPLY, TANK,
+    CONDUCTANCE, TRANSITION, LEAK, OUTSIDE, FRICTION, SLIP_SPEED, STOP, STOP_DAMPING,
+) = range(OWN, OWN + 21)  # fmt: skip
+"""ONE: pressure (Pa) of a state of 1. COMPRESSIBILITY: 1 / bulk modulus (1/Pa). AIR: part of air by its pressure (Pa).
+LEAST: pressure (Pa) below which the bulk modulus is the one there while oil is compressed."""
+SWITCHES = True
+LITTLE = 1e-3
+"""Part of its dead volume that a chamber keeps at least while a step is tried."""
+
+
+@internal
+def orifice(drop, transition):
+    """The root of the pressure drop (Pa) with its sign, linear where that is below ``transition``."""
+    return drop / math.sqrt(math.sqrt(drop * drop + transition * transition))
+
+
+@internal
+def bulk(pressure, flow, compressibility, air, least):
+    """Bulk modulus (Pa) of oil with air at an absolute pressure (Pa), where ``flow`` (m^3/s) compresses it."""
+    p = max(pressure, least if flow > 0.0 or air == 0.0 else 0.0)
+    return (p + air) * p / (p * p * compressibility + air)
+
+
+@interaction
+def force(numbers, state, out):
+    """Own numbers by the names above."""
+    length, rate, ux, uy = measure(False, state)
+    a = numbers[ONE] * state[OWN_STATE]
+    b = numbers[ONE] * state[OWN_STATE + 1]
+    opening = min(max(numbers[OPENING] + state[LAW], -1.0), 1.0)
+    if opening > 0.0:
+        at_a = numbers[SUPPLY]
+        at_b = numbers[TANK]
+    else:
+        at_a = numbers[TANK]
+        at_b = numbers[SUPPLY]
+    flow = numbers[CONDUCTANCE] * abs(opening)
+    through = numbers[LEAK] * (a - b)
+    into_a = flow * orifice(at_a - a, numbers[TRANSITION]) - through
+    into_b = flow * orifice(at_b - b, numbers[TRANSITION]) + through
+    out_by = length - numbers[RETRACTED]
+    volume_a = max(numbers[DEAD_A] + numbers[AREA_A] * out_by, LITTLE * numbers[DEAD_A])
+    volume_b = max(numbers[DEAD_B] + numbers[AREA_B] * (numbers[STROKE] - out_by), LITTLE * numbers[DEAD_B])
+    into_a -= numbers[AREA_A] * rate
+    into_b += numbers[AREA_B] * rate
+    bulk_a = bulk(a, into_a, numbers[COMPRESSIBILITY], numbers[AIR], numbers[LEAST])
+    bulk_b = bulk(b, into_b, numbers[COMPRESSIBILITY], numbers[AIR], numbers[LEAST])
+    out[RATE] = bulk_a / volume_a * into_a / numbers[ONE]
+    out[RATE + 1] = bulk_b / volume_b * into_b / numbers[ONE]
+    size = a * numbers[AREA_A] - b * numbers[AREA_B] - numbers[OUTSIDE] * (numbers[AREA_A] - numbers[AREA_B])
+    size -= numbers[FRICTION] * math.tanh(rate / numbers[SLIP_SPEED])
+    inwards = 1.0
+    depth = out_by - numbers[STROKE]
+    if -out_by > depth:
+        inwards = -1.0
+        depth = -out_by
+    out[SWITCH] = depth
+    if state[SIDE] > 0.0 or (state[SIDE] == 0.0 and depth > 0.0):
+        size -= inwards * numbers[STOP] * depth * max(1.0 + inwards * numbers[STOP_DAMPING] * rate, 0.0)
+    out[FX] = ux * size
+    out[FY] = uy * size
+    out[TORQUE] = 0.0

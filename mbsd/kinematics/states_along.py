@@ -1,0 +1,118 @@
+"""States of forces, such as pressures, along a driven motion: equations of first order along known poses.
+
+    s' = f(t, q(t), v(t), s)     q, v: quintics through the outputs;  LSODA, stiff or not, from jump to jump of laws
+
+They begin as a kind of force says, with an effort of 0 where that decides: what is to be carried, the drivers carry.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from mbsd.arrays.law_jumps import jump_times
+from mbsd.arrays.laws import compiled_laws, law_values
+from mbsd.arrays.loads import pack_loads
+from mbsd.arrays.packing import Packed
+from mbsd.arrays.states import columns_of, ones_of, with_states
+from mbsd.base.errors import SimulationError
+from mbsd.equations.laws import Laws
+from mbsd.equations.loads import tabulate_loads
+from mbsd.model.cams.profile import hermite
+from mbsd.results.measured import measured, measured_rate
+
+TOLERANCE = 1e-9
+"""Relative, and of a state of ``States.one``."""
+
+
+def states_along(packed: Packed, t: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray | None:
+    """(T, n) states (SI) along a motion q, v, a (T, 3 nb) at rising times (T,); None where no force has any.
+
+    Raises SimulationError where they grow without bound.
+    """
+    wide = with_states(packed)
+    if not wide.states:
+        return None
+    out = np.zeros((len(t), wide.states))
+    laws = compiled_laws(packed, float(t[0]), float(t[-1]))
+    out[0] = _start(packed, laws, t, q, v) / ones_of(wide)
+    flow = _Flow(wide, laws, t, q, v, a)
+    for first, last in _stretches(packed, laws, t):
+        flow.follow(first, last, out)
+    return out * ones_of(wide)
+
+
+def _start(packed: Packed, laws: Laws, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """(n,) SI."""
+    out: list[float] = []
+    for force, (i, j) in zip(packed.forces, packed.force_markers, strict=True):
+        if force.kind.states is not None:
+            assert force.kind.along is not None
+            element = force.kind.along(force)
+            value = float(measured(packed, element, i, j, q[:1])[0])
+            rate = float(measured_rate(packed, element, i, j, q[:1], v[:1])[0])
+            own = {name: float(known[0]) for name, known in law_values(packed, laws, force, t[:1]).items()}
+            out += force.kind.states.start(packed.name, force, own, value, rate, 0.0)
+    return np.array(out)
+
+
+def _stretches(packed: Packed, laws: Laws, t: np.ndarray) -> list[tuple[float, float]]:
+    """From jump to jump of the laws (s)."""
+    start, end = float(t[0]), float(t[-1])
+    if not end > start:
+        return []
+    edges = [start, *jump_times(packed, laws, start, end), end]
+    return list(pairwise(edges))
+
+
+class _Flow:
+    """s' along a motion, in sizes a second."""
+
+    def __init__(self, wide: Packed, laws: Laws, t: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> None:
+        self.wide, self.t = wide, t
+        self.loads, self.laws = pack_loads(wide), laws
+        samples = np.stack([q, v, a], axis=-1)
+        self.quintics = hermite(np.diff(t), samples[:-1], samples[1:])
+        self.columns, self.width = columns_of(wide), q.shape[1]
+        self.q, self.v, self.load = (np.zeros((1, len(wide.body_names) * 3)) for _ in range(3))
+        self.time, self.power = np.zeros(1), np.zeros(1)
+
+    def follow(self, first: float, last: float, out: np.ndarray) -> None:
+        """Fill the rows of ``out`` (T, n) after ``first`` (s) up to ``last``; that before or at ``first`` is known."""
+        from scipy.integrate import solve_ivp
+
+        k = int(np.searchsorted(self.t, first, side="right"))
+        end = int(np.searchsorted(self.t, last, side="right"))
+        begun = out[k - 1] if self.t[k - 1] == first else self.state
+        inner = self.t[k:end]
+        times = inner if len(inner) and inner[-1] == last else np.append(inner, last)
+        size = self.wide.size
+        found = solve_ivp(
+            self, (first, last), begun, "LSODA", times, rtol=TOLERANCE, atol=TOLERANCE * size,
+            max_step=float(np.diff(self.t).max()),
+        )  # fmt: skip
+        self.wide.specials.check()
+        if not found.success:
+            at = float(found.t[-1]) if len(found.t) else first
+            raise SimulationError(
+                f"{self.wide.name}: the states of its forces ({', '.join(self.wide.body_names[-self.wide.states :])}) "
+                f"cannot be followed beyond t = {at:.6g} s of this motion: {found.message} Look at what lets them grow "
+                "without bound there, such as a closed valve of a cylinder that a driver moves"
+            )
+        out[k:end] = found.y.T[: end - k]
+        self.state = found.y[:, -1]
+
+    def __call__(self, time: float, state: np.ndarray) -> np.ndarray:
+        step = min(max(int(np.searchsorted(self.t, time, side="right")) - 1, 0), len(self.t) - 2)
+        ahead = (time - self.t[step]) ** np.arange(6)
+        quintic = self.quintics[step]
+        self.time[0] = time
+        self.q[0, : self.width] = quintic @ ahead
+        self.v[0, : self.width] = (quintic[:, 1:] * np.arange(1, 6)) @ ahead[:5]
+        self.v[0, self.columns] = state
+        self.load[:] = 0.0
+        tabulate_loads(
+            self.wide.system, self.loads, self.laws, self.time, self.q, self.v, self.wide.ws, self.load, self.power
+        )
+        return self.load[0, self.columns].copy()

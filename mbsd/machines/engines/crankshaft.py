@@ -1,0 +1,89 @@
+"""The shaft of an engine as one body: its throws, counterweights and flywheel.
+
+U_k = r [m_throw + m_ring + N_k (m_r (1 - s) + f (m_p + m_r s))]         what balances throw k, see engine.py
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from mbsd.base.arguments import not_negative_number
+from mbsd.base.errors import ModelError
+from mbsd.machines.engines.layout import Layout
+from mbsd.machines.engines.throws import throws
+from mbsd.mechanism import Mechanism
+from mbsd.model.body import Body
+
+UPRIGHT = 0.5 * math.pi
+
+
+class ShaftMasses(NamedTuple):
+    """What turns and swings on each throw (kg)."""
+
+    piston: float | None
+    rod: float | None
+    end: float
+    """Place of a rod's centre of mass from the crank pin, in parts of its length."""
+    throw: float
+    ring: float
+    """Of a master rod, more than a rod has."""
+
+
+def crankshaft(
+    m: Mechanism,
+    of: Layout,
+    z: np.ndarray,
+    throw: float,
+    share: float | None,
+    masses: ShaftMasses,
+    flywheel: float,
+    body: str = "crank",
+) -> Body:
+    """The shaft ``body``; ``share`` None: without counterweights. Raises ModelError for masses that are negative."""
+    piston, rod, end, throw_mass, ring = masses
+    spin = not_negative_number(f"engine '{m.name}': flywheel", flywheel)
+    heavy = not_negative_number(f"engine '{m.name}': throw_mass", throw_mass)
+    if piston is None or rod is None:
+        return m.body(body)
+    piston = not_negative_number(f"engine '{m.name}': piston_mass", piston, "kg")
+    rod = not_negative_number(f"engine '{m.name}': rod_mass", rod, "kg")
+    points: list[tuple[float, float, float, float]] = []
+    for direction, place, count in _throws(of, z):
+        outward = np.array([math.cos(UPRIGHT + direction), math.sin(UPRIGHT + direction)]) * throw
+        opposite = 0.0
+        if share is not None:
+            opposite = heavy + (ring if count > 1 else 0.0) + count * (rod * (1 - end) + share * (piston + rod * end))
+        points += [(heavy, *outward, place), (opposite, *-outward, place)]
+    return _of_points(m, body, np.array(points), spin)
+
+
+def _of_points(m: Mechanism, name: str, points: np.ndarray, spin: float) -> Body:
+    """The body of point masses (n, 4) of m, x, y, z, and an inertia that turns about the origin beside them."""
+    mass, at, z = points[:, 0], points[:, 1:3], points[:, 3]
+    total = float(mass.sum())
+    if total == 0.0:
+        return m.body(name, mass=0.0, inertia=spin)
+    com, middle = mass @ at / total, float(mass @ z) / total
+    inertia = spin + float(mass @ ((at - com) ** 2).sum(axis=1))
+    products = (mass * (z - middle)) @ (at - com)
+    return m.body(name, total, com.tolist(), inertia, z=middle, products=products.tolist())
+
+
+def _throws(of: Layout, z: np.ndarray) -> list[tuple[float, float, int]]:
+    """Direction (rad), place (m) and number of rods of each throw."""
+    return [(of.cylinders[ks[0]].throw, float(z[ks].mean()), len(ks)) for ks in throws(of)]
+
+
+def share_of(name: str, counterweight: str | float) -> float | None:
+    """Part of the oscillating masses that counterweights balance; None: there are none."""
+    words = {"auto": 0.5, "rotating": 0.0, "none": None}
+    if isinstance(counterweight, str):
+        if counterweight not in words:
+            raise ModelError(
+                f"engine '{name}': counterweight '{counterweight}'; it is 'auto', 'rotating', 'none' or a number"
+            )
+        return words[counterweight]
+    return not_negative_number(f"engine '{name}': counterweight", counterweight)

@@ -1,0 +1,19 @@
+"""Which cylinders share a throw: those whose throws have one direction and one place along the shaft."""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.machines.engines.layout import Layout
+
+SAME = 1e-6
+"""Of two angles (rad) or places (spacings)."""
+
+
+def throws(of: Layout) -> list[list[int]]:
+    """Indices of the cylinders on each throw; pins that are split are throws of their own."""
+    found: dict[tuple[int, int], list[int]] = {}
+    for k, cylinder in enumerate(of.cylinders):
+        turned = round(math.remainder(cylinder.throw, 2 * math.pi) / SAME)
+        found.setdefault((turned, round(cylinder.z / SAME)), []).append(k)
+    return list(found.values())

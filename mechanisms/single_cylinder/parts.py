@@ -1,0 +1,12 @@
+"""All by itself, with a flywheel that carries the shaft from one stroke of work to the next."""
+
+from mechanisms.automatic import automatic
+from mechanisms.single_cylinder.mechanism import Params, build
+from shared.shapes.bodies import Bodies
+
+
+def parts(p: Params) -> Bodies:
+    """What :func:`automatic` makes, and the flywheel."""
+    made = automatic(build(p))
+    made.flywheel("crank")
+    return made.solids()

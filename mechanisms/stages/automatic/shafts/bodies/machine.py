@@ -1,0 +1,209 @@
+"""What each body of a machine with places along the normal becomes: a shaft, a link in one plane, what slides (mm)."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from mechanisms.stages.automatic.shafts.bodies.kinds import NEAR, Link, LinkEye, Machine, Shaft, Throw
+from mechanisms.stages.automatic.shafts.bodies.planes import SAME, marker_on, no_plane, other_on, place, plane, planes
+from mechanisms.stages.automatic.shafts.bodies.sliding import piston, ram, valve
+from shared.shapes.units import mm
+from shared.stage.errors import UserError
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping
+
+    import numpy as np
+
+    from mbsd import Mechanism
+    from mbsd.model.joint import Joint
+    from mechanisms.stages.automatic.shafts.bodies.kinds import Point
+
+WHEELS = ("gear_pair", "belt")
+CAM = "cam_flat"
+JOINTS = ("revolute", "prismatic", *WHEELS, CAM)
+"""Kinds of joints that have parts where bodies have places along the normal."""
+SHAPELESS = ("angle_lock", "constraint")
+
+
+def machine(
+    m: Mechanism,
+    poses: Mapping[str, np.ndarray],
+    times: np.ndarray,
+    left_out: Collection[str],
+    chosen: Mapping[str, float] | None = None,
+) -> Machine:
+    """Tell bodies apart; ``chosen`` are places (mm) of links that the model gives none.
+
+    Raises UserError, with the body and the remedy, for what has no parts here.
+    """
+    found = Machine(m, poses, times, left_out=frozenset(left_out))
+    bodies = [name for name in m.bodies if name != "ground" and name not in left_out]
+    joints = [
+        joint
+        for joint in m.joints.values()
+        if not found.left_out.intersection(joint.bodies) and joint.kind.name not in SHAPELESS
+    ]
+    for joint in joints:
+        if joint.kind.name not in JOINTS:
+            raise UserError(
+                f"{m.name}: joint '{joint.name}' is a {joint.kind.name.replace('_', ' ')}, and where bodies have "
+                f"places z only {', '.join(JOINTS)} joints have parts; leave one of its bodies out "
+                f"(automatic(m).leave_out), take the places away, or write mechanisms/{m.name}/parts.py"
+            )
+    sliding = {joint.bodies[k]: joint for joint in joints for k in (0, 1) if _slides(joint, joint.bodies[k])}
+    cams = _cams(m, joints, sliding)
+    for body in bodies:
+        own = [joint for joint in joints if body in joint.bodies]
+        pins = [joint for joint in own if joint.kind.name == "revolute"]
+        if body in sliding:
+            continue
+        mains = [joint for joint in pins if "ground" in joint.bodies]
+        if mains and (body in _wheeled(joints) or _is_shaft(m, body, pins)):
+            found.shafts[body] = _shaft(m, body, mains[0], pins)
+        else:
+            found.links[body] = _link(m, body, own, pins, _pistons(sliding, joints), chosen or {})
+    for body, joint in sliding.items():
+        if body in cams:
+            found.valves[body] = valve(found, body, joint, cams[body])
+        elif body in bodies and body in _pistons(sliding, joints):
+            found.pistons[body] = piston(found, body, joint, joints)
+        elif body in bodies:
+            found.rams[body] = ram(found, body, joint, _pins_of(body, joints))
+    return found
+
+
+def _cams(m: Mechanism, joints: Collection[Joint], sliding: Collection[str]) -> dict[str, Joint]:
+    """Joints with cams by the body that is pushed. Raises UserError where that does not slide on ground."""
+    found = {}
+    for joint in joints:
+        if joint.kind.name != CAM:
+            continue
+        body = joint.j.body.name
+        if body not in sliding:
+            raise UserError(
+                f"{m.name}: the cam of '{joint.name}' pushes '{body}', which does not slide on ground; where bodies "
+                f"have places z cams push valves on ground alone; leave '{body}' out (automatic(m).leave_out), or "
+                f"write mechanisms/{m.name}/parts.py"
+            )
+        found[body] = joint
+    return found
+
+
+def _wheeled(joints: Collection[Joint]) -> set[str]:
+    """Bodies with wheels and cams."""
+    found = {body for joint in joints if joint.kind.name in WHEELS for body in joint.bodies}
+    return found | {joint.i.body.name for joint in joints if joint.kind.name == CAM}
+
+
+def _pins_of(body: str, joints: Collection[Joint]) -> list[Joint]:
+    return [joint for joint in joints if joint.kind.name == "revolute" and body in joint.bodies]
+
+
+def _pistons(sliding: Collection[str], joints: Collection[Joint]) -> set[str]:
+    """Of bodies that slide on ground, those with one pin at most; what has more is a ram, and tells links no plane."""
+    return {body for body in sliding if len(_pins_of(body, joints)) < 2}
+
+
+def _slides(joint: Joint, body: str) -> bool:
+    """Whether ``body`` slides in a joint on ground."""
+    return joint.kind.name == "prismatic" and body != "ground" and "ground" in joint.bodies
+
+
+def _is_shaft(m: Mechanism, body: str, pins: list[Joint]) -> bool:
+    """Whether its markers have places, its links lie in several planes, or it is driven and has no other place than
+    they have.
+    """
+    ends = [(marker_on(joint, body), other_on(joint, body)) for joint in pins if "ground" not in joint.bodies]
+    if any(own.z is not None for own, _ in ends) or len(planes(m, body)) > 1:
+        return True
+    z = m.bodies[body].z
+    known = [mm(other.plane) for _, other in ends if other.plane is not None]
+    driven = any(driver.kind.angular and set(driver.bodies) == {"ground", body} for driver in m.drivers.values())
+    return driven and any(z is None or abs(own - mm(z)) < SAME for own in known)
+
+
+def _shaft(m: Mechanism, body: str, main: Joint, pins: list[Joint]) -> Shaft:
+    throws = []
+    for joint in pins:
+        if "ground" in joint.bodies:
+            continue
+        z = plane(joint, body)
+        if z is None:
+            raise no_plane(m, joint.name, body)
+        throws.append(Throw(joint.name, other_on(joint, body).body.name, *place(marker_on(joint, body)), z))
+    throws.sort(key=lambda throw: throw.z)
+    return Shaft(body, main.name, place(marker_on(main, body)), place(other_on(main, body)), tuple(throws))
+
+
+def free_links(m: Mechanism, left_out: Collection[str]) -> list[str]:
+    """Links whose plane neither the model nor what they are pinned to tells."""
+    joints = [joint for joint in m.joints.values() if not set(left_out).intersection(joint.bodies)]
+    sliding = {body for joint in joints for body in joint.bodies if _slides(joint, body)}
+    found = []
+    for body in m.bodies:
+        if body == "ground" or body in left_out or body in sliding or m.bodies[body].z is not None:
+            continue
+        pins = [joint for joint in joints if body in joint.bodies and joint.kind.name == "revolute"]
+        is_shaft = any("ground" in joint.bodies for joint in pins) and (
+            body in _wheeled(joints) or _is_shaft(m, body, pins)
+        )
+        if not is_shaft and not _told(body, pins, _pistons(sliding, joints)):
+            found.append(body)
+    return found
+
+
+def _told(body: str, pins: list[Joint], sliding: Collection[str]) -> list[float]:
+    """Planes (mm) that markers tell, and the places of pistons."""
+    found: list[float] = []
+    for joint in pins:
+        own, other = marker_on(joint, body), other_on(joint, body)
+        z = own.z if own.z is not None else other.plane if other.body.name in sliding else other.z
+        if z is not None and other.body.name != "ground" and all(abs(mm(z) - known) > SAME for known in found):
+            found.append(mm(z))
+    return found
+
+
+def _link(
+    m: Mechanism,
+    body: str,
+    own: list[Joint],
+    pins: list[Joint],
+    sliding: Collection[str],
+    chosen: Mapping[str, float],
+) -> Link:
+    given = m.bodies[body].z
+    slides = [joint.name for joint in own if joint.kind.name == "prismatic"]
+    if slides:
+        raise UserError(
+            f"{m.name}: joint '{slides[0]}' lets '{body}' slide on a body that moves; where bodies have places z there "
+            f"are guides on ground alone; leave '{body}' out (automatic(m).leave_out), or write "
+            f"mechanisms/{m.name}/parts.py"
+        )
+    found = _told(body, pins, sliding)
+    z = mm(given) if given is not None else found[0] if found else chosen.get(body)
+    if z is None:
+        raise UserError(
+            f"{m.name}: '{body}' has no place z along the normal, and other bodies have; give it one, such as "
+            f"m.body('{body}', z=0.02)"
+        )
+    apart = [other for other in found if abs(other - z) > SAME and given is None]
+    if apart:
+        raise UserError(
+            f"{m.name}: joints of '{body}' lie in planes at z = {z:g} and {apart[0]:g} mm; only a body that turns on "
+            f"ground can be a shaft through several planes; give '{body}' a z of its own, then it is a plate there and "
+            "its pins reach to the others"
+        )
+    eyes = [LinkEye(joint.name, other_on(joint, body).body.name, *place(marker_on(joint, body))) for joint in pins]
+    for x, y in _reached(m, body):
+        if all(math.hypot(eye.x - x, eye.y - y) > NEAR for eye in eyes):
+            eyes.append(LinkEye("", "", x, y))
+    return Link(body, z, tuple(eyes))
+
+
+def _reached(m: Mechanism, body: str) -> list[Point]:
+    """Places that a link reaches without a joint there: both ends of a bar, and traced points."""
+    length = m.bodies[body].length
+    ends = [] if length is None else [(0.0, 0.0), (mm(length), 0.0)]
+    return [*ends, *(place(marker) for marker in m.traces.values() if marker.body.name == body)]

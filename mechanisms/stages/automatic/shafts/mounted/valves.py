@@ -1,0 +1,215 @@
+"""Valves over cylinders, and the cams of the shafts that push them (mm).
+
+Along the middle of a bore, s is counted from abreast of the crankshaft, as in cylinders.py; all proportions are parts
+of the bore. A closed valve lies in a recess of its head.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechanisms.stages.automatic.layout.planar import around
+from mechanisms.stages.automatic.layout.sizes import CLEAR
+from mechanisms.stages.automatic.shafts.bodies.mounted import Mounted
+from mechanisms.stages.automatic.shafts.bodies.planes import marker_on, place
+from mechanisms.stages.automatic.shafts.cylinders import HEAD
+from mechanisms.stages.automatic.shafts.passing import Takes, box
+from shared.shapes.cam import evenly
+from shared.shapes.units import mm
+from shared.stage.errors import UserError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from mbsd.model.force import Force
+    from mechanisms.stages.automatic.shafts.bodies.kinds import Machine, Valve
+    from mechanisms.stages.automatic.shafts.cylinders import Cylinder
+    from mechanisms.stages.automatic.shafts.thickness import Measures
+
+WIDEST, LEAST = 0.2, 0.08
+"""Radius of a valve's head, wished and least."""
+BESIDE = 0.02
+"""Of a valve's head, from the wall of the bore and from the middle between two valves."""
+RECESS, RIM, CONE, TULIP = 0.012, 0.02, 0.035, 0.1
+"""Of a closed valve above the head's face: its lower face; above that its rim, its cone and its stem begin."""
+STEM = 0.04
+"""Radius."""
+TAPPET, EDGE = 0.06, 0.03
+"""Thickness of a tappet, and what it reaches beyond where the cam touches it."""
+CAM = 0.17
+"""Thickness of a cam."""
+RETAINER, COIL = 0.105, 0.08
+"""Radii of what a spring pushes against, and of its middle line."""
+HULL = 60
+"""Points of a cam's outline in the plane."""
+ON_LINE = 0.01
+"""How far the line of a valve may be beside that of its bore."""
+
+
+@dataclass(frozen=True, eq=False)
+class ValvePlan:
+    """A valve with its sizes, its cam, and the cylinder that it opens."""
+
+    valve: Valve
+    cylinder: Cylinder
+    radius: float
+    """Of its head."""
+    cam: np.ndarray
+    """(n, 2): outline of the cam in the frame of its shaft."""
+    centre: tuple[float, float]
+    """Of the cam, in that frame."""
+    base: float
+    """The least radius of the cam."""
+    reach: float
+    """How far from the stem's axis the cam touches the tappet."""
+    clear: float
+    """Between cam and tappet, along the stem."""
+    springs: tuple[tuple[str, float, float], ...]
+    """Each by its name, with s of the seat on ground and of the retainer while the valve is closed."""
+
+    @property
+    def bore(self) -> float:
+        """What all proportions are parts of."""
+        return self.cylinder.bore
+
+    @property
+    def face(self) -> float:
+        """s of the tappet's face while the valve is closed."""
+        (x, y), (u, v) = self.cylinder.origin, self.cylinder.piston.along
+        return (self.valve.closed[0] - x) * u + (self.valve.closed[1] - y) * v - self.clear
+
+    @property
+    def low(self) -> float:
+        """s of its lower face while it is closed."""
+        return self.cylinder.top + RECESS * self.bore
+
+    @property
+    def running(self) -> float:
+        """Gap round its head and its stem."""
+        return max(0.15, 0.004 * self.bore)
+
+    @property
+    def tappet(self) -> float:
+        """Radius of its tappet."""
+        return self.reach + EDGE * self.bore
+
+    @property
+    def mounted(self) -> Mounted:
+        """Its cam, as the plan of the shaft sees it."""
+        far = float(np.hypot(*(self.cam - self.centre).T).max())
+        return Mounted(f"the cam of '{self.valve.body}'", self.valve.z, CAM * self.bore, far, 0.95 * self.base, False)
+
+    def takes(self) -> Iterable[Takes]:
+        """Head, stem and tappet, and the cam."""
+        valve, z, on = self.valve, self.valve.z, frozenset(["ground", self.valve.shaft])
+        (x, y), turn = valve.face, valve.turn
+        u = (math.cos(turn), math.sin(turn))
+        start, end = self.clear, self.clear + self.face - self.low
+        for what, low, high, half in (
+            ("the head of the valve", end - TULIP * self.bore, end, self.radius),
+            ("the stem of", start, end, STEM * self.bore),
+            ("the tappet of", start, start + TAPPET * self.bore, self.tappet),
+        ):
+            shape = box((x, y), u, low, high, half)
+            yield Takes(f"{what} '{valve.body}'", valve.body, shape, z - half, z + half, on)
+        hull = around([(float(p), float(q)) for p, q in evenly(self.cam, HULL)], 0.3)
+        mounted = self.mounted
+        yield Takes(mounted.what, valve.shaft, hull, mounted.low, mounted.high, frozenset([valve.body]))
+
+
+def valve_plans(machine: Machine, measures: Measures, cylinders: Mapping[str, Cylinder]) -> dict[str, ValvePlan]:
+    """By body. Raises UserError naming a valve that is over no cylinder, has no room in one, or stands too low."""
+    over = {name: _cylinder(machine, valve, cylinders) for name, valve in machine.valves.items()}
+    found = {}
+    for name, valve in machine.valves.items():
+        own = over[name]
+        bore, away = own.bore, abs(valve.z - own.piston.z)
+        others = [machine.valves[other].z for other, one in over.items() if one is own and other != name]
+        halves = [abs(z - valve.z) / 2 for z in others]
+        radius = min([WIDEST * bore, (0.5 - BESIDE) * bore - away, *(half - BESIDE * bore for half in halves)])
+        if radius < LEAST * bore:
+            raise UserError(
+                f"{machine.m.name}: valve '{name}' is {away:.4g} mm along z from the middle of its cylinder with a "
+                f"bore of {bore:.4g} mm, which leaves a head of {2 * radius:.3g} mm; two valves of a cylinder are best "
+                f"{0.47 * bore:.3g} mm apart"
+            )
+        cam, centre, base = _cam(machine, valve)
+        clear = CLEAR * measures.sizes.pivot.fit.running * measures.unit
+        plan = ValvePlan(
+            valve, own, radius, cam, centre, base, _reach(machine, valve), clear, _springs(machine, valve, own)
+        )
+        least = plan.low + (TULIP + TAPPET) * bore + valve.lift + HEAD * bore
+        if plan.face < least:
+            raise UserError(
+                f"{machine.m.name}: the tappet of '{name}' is {plan.face:.4g} mm from the crankshaft, and between it "
+                f"and the head of its cylinder it needs {least:.4g} mm; move the camshaft away by "
+                f"{least - plan.face:.4g} mm"
+            )
+        found[name] = plan
+    return found
+
+
+def _cylinder(machine: Machine, valve: Valve, cylinders: Mapping[str, Cylinder]) -> Cylinder:
+    for own in cylinders.values():
+        (x, y), (u, v) = own.origin, own.piston.along
+        aside = abs((valve.closed[0] - x) * v - (valve.closed[1] - y) * u)
+        faces = valve.along[0] * u + valve.along[1] * v < -1 + 1e-6
+        if faces and aside < ON_LINE * own.bore and abs(valve.z - own.piston.z) < own.bore / 2:
+            return own
+    raise UserError(
+        f"{machine.m.name}: '{valve.body}' is pushed by the cam of '{valve.cam}' and slides over no cylinder; where "
+        "bodies have places z cams push valves alone, along the bore of a piston within half a bore of its place; "
+        f"leave it out (automatic(m).leave_out), or write mechanisms/{machine.m.name}/parts.py"
+    )
+
+
+def _cam(machine: Machine, valve: Valve) -> tuple[np.ndarray, tuple[float, float], float]:
+    """Outline and centre in the frame of its shaft, least radius. Raises UserError for what cannot be cut."""
+    from mbsd.cams import cam_from
+
+    joint = machine.m.joints[valve.cam]
+    profile = cam_from(joint.params["profile"])
+    if profile.undercut:
+        raise UserError(f"{machine.m.name}: cam of joint '{joint.name}' cannot be cut: {profile.problems[0]}")
+    marker = marker_on(joint, valve.shaft)
+    c, s = math.cos(marker.angle), math.sin(marker.angle)
+    centre = place(marker)
+    outline = mm(1.0) * profile.outline @ np.array([[c, s], [-s, c]])
+    return outline + np.array(centre), centre, float(np.hypot(*outline.T).min())
+
+
+def _reach(machine: Machine, valve: Valve) -> float:
+    """A cam touches a flat face ds / dphi beside its own axis, phi its angle."""
+    pushed = machine.path(valve.body, *valve.face) @ np.array(valve.along)
+    turned = machine.poses[valve.shaft][:, 2]
+    steps = np.abs(np.diff(turned))
+    moving = steps > 1e-9
+    return float((np.abs(np.diff(pushed))[moving] / steps[moving]).max(initial=0.0))
+
+
+def _springs(machine: Machine, valve: Valve, own: Cylinder) -> tuple[tuple[str, float, float], ...]:
+    """Springs between the valve and ground on the line of its stem."""
+    found = []
+    for force in machine.m.forces.values():
+        if force.kind.name == "spring" and set(force.bodies) == {"ground", valve.body}:
+            ends = _ends(machine, force, valve, own)
+            if ends is not None:
+                found.append((force.name, *ends))
+    return tuple(found)
+
+
+def _ends(machine: Machine, force: Force, valve: Valve, own: Cylinder) -> tuple[float, float] | None:
+    on_ground, on_valve = (force.i, force.j) if force.i.body.name == "ground" else (force.j, force.i)
+    (x, y), (u, v) = own.origin, own.piston.along
+    fixed = np.array(place(on_ground)) - [x, y]
+    away = np.array(place(on_valve)) - np.array(valve.face)
+    c, s = math.cos(valve.turn), math.sin(valve.turn)
+    below, aside = away @ [c, s], abs(away @ [-s, c])
+    if abs(fixed @ [-v, u]) > ON_LINE * own.bore or aside > ON_LINE * own.bore:
+        return None
+    face = (valve.closed[0] - x) * u + (valve.closed[1] - y) * v
+    return float(fixed @ [u, v]), face - float(below)

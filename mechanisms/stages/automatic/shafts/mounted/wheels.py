@@ -1,0 +1,179 @@
+"""Gears and pulleys on shafts, each in the plane of its joint: in phase, and with the room of their belts (mm).
+
+Teeth, modules and seats of chains are those of wheels in layers (mechanisms/stages/automatic/wheels), in reference
+millimetres; here they get a place along the normal.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from mbsd.model.teeth import with_radii
+from mechanisms.stages.automatic.layout.layout import Layout
+from mechanisms.stages.automatic.layout.planar import Rounded, disc
+from mechanisms.stages.automatic.shafts.bodies.mounted import Mounted
+from mechanisms.stages.automatic.shafts.bodies.planes import SAME, place, plane
+from mechanisms.stages.automatic.shafts.passing import Takes
+from mechanisms.stages.automatic.wheels.belts import belt_of
+from mechanisms.stages.automatic.wheels.gears import refuse_apart, wheel_at
+from mechanisms.stages.automatic.wheels.pulleys import BELT
+from mechanisms.stages.automatic.wheels.trains import Mesh, in_phase
+from shared.stage.errors import UserError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from mbsd.model.joint import Joint
+    from mechanisms.stages.automatic.shafts.bodies.kinds import Machine
+    from mechanisms.stages.automatic.shafts.thickness import Measures
+    from mechanisms.stages.automatic.wheels.pulleys import Belt
+    from mechanisms.stages.automatic.wheels.wheels import Wheel
+
+GEARS, BELTS = "gear_pair", "belt"
+
+
+@dataclass(frozen=True, eq=False)
+class ShaftWheel:
+    """A wheel (rmm) and the plane of its middle (mm)."""
+
+    wheel: Wheel
+    z: float
+    thickness: float
+    unit: float
+    """Millimetres in a reference millimetre."""
+
+    @property
+    def outside(self) -> float:
+        """Its outer radius."""
+        return self.wheel.outside * self.unit
+
+    @property
+    def mounted(self) -> Mounted:
+        """As its shaft's plan sees it."""
+        inner = (self.wheel.root - 2.0) * self.unit
+        return Mounted(self.wheel.what, self.z, self.thickness, self.outside, inner, True)
+
+
+@dataclass(frozen=True, eq=False)
+class ShaftBelt:
+    """A belt (rmm) and the plane of its middle (mm)."""
+
+    belt: Belt
+    z: float
+
+
+@dataclass(frozen=True, eq=False)
+class Wheels:
+    """All wheels and belts of a machine."""
+
+    machine: Machine
+    measures: Measures
+    every: list[ShaftWheel] = field(default_factory=list)
+    belts: list[ShaftBelt] = field(default_factory=list)
+
+    def of(self, body: str) -> list[ShaftWheel]:
+        """Those of a shaft, each once."""
+        return [one for one in self.every if one.wheel.body == body]
+
+    def takes(self) -> Iterable[Takes]:
+        """Discs, and the strands of the belts at rest on ground."""
+        unit = self.measures.unit
+        for one in self.every:
+            wheel = one.wheel
+            mates = frozenset(mate.body for mate in wheel.mates if hasattr(mate, "body"))
+            shape = disc(wheel.x * unit, wheel.y * unit, one.outside)
+            yield Takes(wheel.what, wheel.body, shape, one.mounted.low, one.mounted.high, mates)
+        for one in self.belts:
+            on = frozenset(pulley.body for pulley in one.belt.pulleys)
+            for item in one.belt.items(self.layout):
+                shape = Rounded(item.shape.core * unit, item.shape.radius * unit)
+                half = 2 * BELT * unit
+                yield Takes(item.what, item.body, shape, one.z - half, one.z + half, on)
+
+    @cached_property
+    def layout(self) -> Layout:
+        """The machine in reference millimetres, of which wheels ask poses and places."""
+        poses = {
+            name: pose / [self.measures.unit, self.measures.unit, 1.0] for name, pose in self.machine.poses.items()
+        }
+        return Layout(self.machine.m, self.measures.sizes, poses, self.machine.times)
+
+
+def wheels(machine: Machine, measures: Measures) -> Wheels:
+    """Find them. Raises UserError naming a joint whose wheels are on no shaft, in no plane or in two, or apart."""
+    made = Wheels(machine, measures)
+    layout, thickness = made.layout, measures.sizes.thickness * measures.unit
+    planes: list[tuple[float, list[Wheel]]] = []
+    meshes: list[Mesh] = []
+    for joint in _joints(machine):
+        z = _plane(machine, joint)
+        found = next((wheels for at, wheels in planes if abs(at - z) < SAME), None)
+        if found is None:
+            planes.append((z, found := []))
+        if joint.kind.name == BELTS:
+            belt = belt_of(machine.m, joint, layout)
+            found += belt.pulleys
+            made.belts.append(ShaftBelt(belt, z))
+            continue
+        sized = with_radii(joint.params)
+        first, second = (
+            wheel_at(found, joint.name, marker, sized[key], False, layout)
+            for marker, key in ((joint.i, "radius_i"), (joint.j, "radius_j"))
+        )
+        refuse_apart(machine.m, joint, first, second, layout)
+        first.mates.append(second)
+        second.mates.append(first)
+        meshes.append(Mesh(first, second, joint))
+    in_phase(machine.m, [mesh_end for mesh in meshes for mesh_end in (mesh.first, mesh.second)], meshes, layout)
+    made.every.extend(ShaftWheel(wheel, z, thickness, measures.unit) for z, found in planes for wheel in found)
+    return made
+
+
+def _joints(machine: Machine) -> list[Joint]:
+    """Gears and belts. Raises UserError for a ring gear, and for a wheel whose centre is no shaft's axis."""
+    found = []
+    for joint in machine.m.joints.values():
+        if joint.kind.name not in (GEARS, BELTS) or machine.left_out.intersection(joint.bodies):
+            continue
+        what = f"{machine.m.name}: {joint.kind.name} '{joint.name}'"
+        if joint.params.get("internal"):
+            raise UserError(
+                f"{what} has a ring gear; where bodies have places z there are external gears alone; leave one of its "
+                f"bodies out (automatic(m).leave_out), or write mechanisms/{machine.m.name}/parts.py"
+            )
+        for marker in (joint.i, joint.j):
+            shaft = machine.shafts.get(marker.body.name)
+            if shaft is None:
+                raise UserError(
+                    f"{what} has a wheel on '{marker.body.name}', which is no shaft that turns on ground; where bodies "
+                    f"have places z wheels are on shafts; write mechanisms/{machine.m.name}/parts.py"
+                )
+            at = place(marker)
+            if math.dist(at, shaft.axis) > SAME:
+                raise UserError(
+                    f"{what} has its centre on '{marker.body.name}' {math.dist(at, shaft.axis):.4g} mm beside the axis "
+                    "of the shaft; put it on the axis"
+                )
+        found.append(joint)
+    return found
+
+
+def _plane(machine: Machine, joint: Joint) -> float:
+    """Where both wheels are (mm)."""
+    given = [plane(joint, body) for body in joint.bodies]
+    known = [z for z in given if z is not None]
+    if not known:
+        body = joint.bodies[0]
+        raise UserError(
+            f"{machine.m.name}: the wheels of '{joint.name}' have no place z along the normal, and other bodies have; "
+            f"give a marker one, such as m.bodies['{body}'].at(0, 0, z=0.1)"
+        )
+    if max(known) - min(known) > SAME:
+        raise UserError(
+            f"{machine.m.name}: the wheels of '{joint.name}' are at z = {known[0]:g} and {known[-1]:g} mm; wheels that "
+            "mesh or have one belt are in one plane: give both markers the same z"
+        )
+    return known[0]

@@ -1,0 +1,51 @@
+"""How the author of shot.py has a mechanism stand: the one field of shot.py that parts follow from."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+
+from mechanisms.stages.loading.loading import has, load
+from shared.contract.mount import Kind
+from shared.contract.shot import Shot, refuse_unsound
+from shared.stage.paths import owner_of
+
+_WISHED: ContextVar[Kind | None] = ContextVar("wished", default=None)
+"""Of the mechanism whose parts are being made."""
+
+
+def of_shot(name: str) -> Kind | None:
+    """``mount`` of a mechanism's shot.py; None where there is none, or none is said.
+
+    Modules that shot.py loads are forgotten again, so that whatever runs next loads and records what it reads by
+    itself. Raises UserError where shot.py cannot be imported or its shot is unsound.
+    """
+    if not has(name, "shot"):
+        return None
+    before = dict(sys.modules)
+    try:
+        shot = load(name, "shot").shot
+    finally:
+        for module in [one for one in sys.modules if one.startswith("mechanisms.") and one not in before]:
+            if not module.startswith("mechanisms.stages"):
+                del sys.modules[module]
+    if not isinstance(shot, Shot):
+        return None  # the shot stage refuses it
+    return refuse_unsound(shot, f"mechanisms/{owner_of(name)}/shot.py").mount
+
+
+@contextmanager
+def wishing(kind: Kind | None) -> Iterator[None]:
+    """Have parts that are made in this block stand as their author wishes."""
+    token = _WISHED.set(kind)
+    try:
+        yield
+    finally:
+        _WISHED.reset(token)
+
+
+def wished() -> Kind | None:
+    """How the mechanism whose parts are being made is to stand; None where nobody says."""
+    return _WISHED.get()

@@ -1,0 +1,5 @@
+"""How the shaken machine is filmed: as a drawing."""
+
+from shared.shot import Shot
+
+shot = Shot(look="blueprint")

@@ -1,0 +1,5 @@
+"""How the wiper is filmed: out on the road."""
+
+from shared.shot import Shot
+
+shot = Shot(look="road")

@@ -1,0 +1,180 @@
+"""Grounds: paint, boards of wood, concrete, asphalt with its marks, rippled sand. Textures are in radii."""
+
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from render.blender.scene.nodes import Graph
+from render.looks.look import Colour, Ground
+
+BOARD, BOARD_LENGTH, GAP = 0.62, 6.4, 0.006
+HAZE_FROM, HAZE_TO = 5.5, 34.0
+"""Between these distances from the camera an open ground fades into the horizon."""
+LANE = 1.55
+"""From the machine to the line at the edge of its lane."""
+
+
+def paint(ground: Ground, radius: float, haze: Colour | None = None) -> Any:
+    """The material of a ground around the origin of its object; it fades into ``haze`` far away."""
+    import bpy
+
+    made = bpy.data.materials.new(ground.texture)
+    made.use_nodes = True
+    graph = Graph(made.node_tree).clear()
+    place = graph.add("Mapping", Vector=graph.add("TexCoord").outputs["Object"], Scale=(1 / radius,) * 3).outputs[0]
+    shader = TEXTURES[ground.texture](graph, ground, place)
+    if ground.texture != "paint":
+        shader = _seen_only(graph, shader, ground)
+    if haze is not None:
+        shader = _hazed(graph, shader, haze, radius)
+    graph.add("OutputMaterial", Surface=shader)
+    return made
+
+
+def _seen_only(graph: Graph, shader: Any, ground: Ground) -> Any:
+    """The texture for the eye; light that bounces meets the colour between its two: half the time of a frame."""
+    middle: Colour = tuple((a + b) / 2 for a, b in zip(ground.colour, ground.other, strict=True))  # pyright: ignore[reportAssignmentType]
+    mix = graph.add("MixShader")
+    seen = graph.add("LightPath").outputs["Is Camera Ray"]
+    for index, value in enumerate((seen, graph.add("BsdfDiffuse", Color=middle).outputs[0], shader)):
+        graph.set(mix, index, value)
+    return mix.outputs[0]
+
+
+def _hazed(graph: Graph, shader: Any, haze: Colour, radius: float) -> Any:
+    """As the eye sees it from far; light that falls on it and what it reflects stay as they are."""
+    away = graph.math("DIVIDE", graph.add("CameraData").outputs["View Distance"], radius)
+    part = graph.add(
+        "MapRange", {"interpolation_type": "SMOOTHERSTEP"}, Value=away, From_Min=HAZE_FROM, From_Max=HAZE_TO
+    )
+    seen = graph.math("MULTIPLY", part.outputs[0], graph.add("LightPath").outputs["Is Camera Ray"])
+    mix = graph.add("MixShader")
+    glow = graph.add("Emission", Color=haze, Strength=1.0).outputs[0]
+    for index, value in enumerate((seen, shader, glow)):
+        graph.set(mix, index, value)
+    return mix.outputs[0]
+
+
+def _noise(graph: Graph, place: Any, scale: float | tuple[float, float, float], detail: float = 2.0) -> Any:
+    if isinstance(scale, tuple):
+        place, scale = graph.add("Mapping", Vector=place, Scale=scale).outputs[0], 1.0
+    return graph.add(
+        "TexNoise", {"noise_dimensions": "2D"}, Vector=place, Scale=scale, Detail=detail, Roughness=0.55
+    ).outputs[0]
+
+
+def _principled(graph: Graph, **inputs: Any) -> Any:
+    return graph.add("BsdfPrincipled", Specular_IOR_Level=0.5, **inputs).outputs[0]
+
+
+def _bump(graph: Graph, height: Any, strength: float, distance: float) -> Any:
+    return graph.add("Bump", Height=height, Strength=strength, Distance=distance).outputs[0]
+
+
+def _painted(graph: Graph, ground: Ground, place: Any) -> Any:
+    return _principled(graph, Base_Color=ground.colour, Roughness=ground.roughness)
+
+
+def _wood(graph: Graph, ground: Ground, place: Any) -> Any:
+    """Boards across the picture, each of another tone, with the fibres of its own piece of the tree."""
+    split = graph.add("SeparateXYZ", Vector=place)
+    across = graph.math("DIVIDE", graph.math("ADD", split.outputs["Y"], 0.23), BOARD)
+    row = graph.math("FLOOR", across)
+    shift = graph.math("MULTIPLY", graph.math("FRACT", graph.math("MULTIPLY", row, 0.377)), BOARD_LENGTH)
+    along = graph.math("DIVIDE", graph.math("ADD", graph.math("ADD", split.outputs["X"], shift), 2.1), BOARD_LENGTH)
+    column = graph.math("FLOOR", along)
+    number = graph.math("ADD", graph.math("MULTIPLY", row, 7.31), graph.math("MULTIPLY", column, 3.17))
+    chance = graph.add("TexWhiteNoise", {"noise_dimensions": "1D"}, W=number).outputs["Value"]
+    own = graph.add("CombineXYZ", X=graph.math("MULTIPLY", chance, 31.0), Y=graph.math("MULTIPLY", chance, 17.0))
+    moved = graph.add("VectorMath", {"operation": "ADD"})
+    graph.set(moved, 0, place)
+    graph.set(moved, 1, own.outputs[0])
+    rings = _noise(graph, moved.outputs[0], (0.55, 4.2, 4.2), 0.0)
+    bands = graph.math("FRACT", graph.math("MULTIPLY", rings, 9.0))
+    bands = graph.math("PINGPONG", bands, 0.5)
+    fibres = _noise(graph, moved.outputs[0], (3.0, 120.0, 120.0), 0.0)
+    part = graph.math("ADD", graph.math("MULTIPLY", bands, 0.85), graph.math("MULTIPLY", fibres, 0.45))
+    part = graph.math("ADD", part, graph.math("MULTIPLY", graph.math("SUBTRACT", chance, 0.5), 0.42))
+    dark, light = ground.other, ground.colour
+    colour = graph.ramp(part, [(0.05, light), (0.95, dark)])
+    edge = graph.math("PINGPONG", graph.math("FRACT", across), 0.5)
+    end = graph.math("PINGPONG", graph.math("FRACT", along), 0.5)
+    gap = graph.math(
+        "MINIMUM",
+        graph.math("DIVIDE", edge, GAP / BOARD),
+        graph.math("DIVIDE", end, GAP / BOARD_LENGTH),
+    )
+    gap = graph.math("MINIMUM", gap, 1.0)
+    shade = graph.add(
+        "VectorMath", {"operation": "SCALE"}, Scale=graph.math("ADD", 0.12, graph.math("MULTIPLY", gap, 0.88))
+    )
+    graph.set(shade, 0, colour)
+    rough = graph.math("ADD", ground.roughness - 0.06, graph.math("MULTIPLY", fibres, 0.18))
+    return _principled(graph, Base_Color=shade.outputs[0], Roughness=rough)
+
+
+def _concrete(graph: Graph, ground: Ground, place: Any) -> Any:
+    """Trowelled: slow clouds and a fine grain."""
+    clouds = _noise(graph, place, 1.1, 2.0)
+    grain = _noise(graph, place, 38.0, 1.0)
+    part = graph.math("ADD", graph.math("MULTIPLY", clouds, 0.75), graph.math("MULTIPLY", grain, 0.25))
+    colour = graph.ramp(part, [(0.36, ground.other), (0.62, ground.colour)])
+    return _principled(graph, Base_Color=colour, Roughness=ground.roughness)
+
+
+def _asphalt(graph: Graph, ground: Ground, place: Any) -> Any:
+    """Stones in tar, and the lines of a lane along x."""
+    stones = graph.add("TexVoronoi", {"voronoi_dimensions": "2D"}, Vector=place, Scale=90.0).outputs["Distance"]
+    clouds = _noise(graph, place, 0.7, 1.0)
+    part = graph.math("ADD", graph.math("MULTIPLY", stones, 0.9), graph.math("MULTIPLY", clouds, 0.45))
+    colour = graph.ramp(part, [(0.30, ground.colour), (0.95, ground.other)])
+    if ground.lines is not None:
+        colour = _lined(graph, colour, ground.lines, place, stones)
+    return _principled(graph, Base_Color=colour, Roughness=ground.roughness)
+
+
+def _lined(graph: Graph, colour: Any, line: Colour, place: Any, worn: Any) -> Any:
+    """A dashed line behind the machine and a whole one before it; tyres have worn them."""
+    split = graph.add("SeparateXYZ", Vector=place)
+    y = split.outputs["Y"]
+    behind = graph.math("COMPARE", y, LANE, 0.055)
+    dash = graph.math("LESS_THAN", graph.math("FRACT", graph.math("DIVIDE", split.outputs["X"], 2.6)), 0.55)
+    before = graph.math("COMPARE", y, -LANE, 0.055)
+    there = graph.math("MAXIMUM", graph.math("MULTIPLY", behind, dash), before)
+    kept = graph.math("MULTIPLY", there, graph.math("SUBTRACT", 1.0, graph.math("MULTIPLY", worn, 0.75)))
+    mix = graph.add("Mix", {"data_type": "RGBA"})
+    graph.set(mix, 0, kept)
+    graph.set(mix, 6, colour)
+    graph.set(mix, 7, line)
+    return mix.outputs[2]
+
+
+def _sand(graph: Graph, ground: Ground, place: Any) -> Any:
+    """Ripples of the wind, and grains."""
+    bent = _noise(graph, place, 0.8, 1.0)
+    split = graph.add("SeparateXYZ", Vector=place)
+    phase = graph.math(
+        "ADD", graph.math("MULTIPLY", split.outputs["Y"], 21.0), graph.math("MULTIPLY", split.outputs["X"], 5.0)
+    )
+    phase = graph.math("ADD", phase, graph.math("MULTIPLY", bent, 26.0))
+    ripple = graph.math("POWER", graph.math("ADD", 0.5, graph.math("MULTIPLY", graph.math("SINE", phase), 0.5)), 0.8)
+    fades = _noise(graph, place, 0.9, 0.0)
+    ripple = graph.math("MULTIPLY", ripple, fades)
+    grain = _noise(graph, place, 150.0, 0.0)
+    height = graph.math("ADD", ripple, graph.math("MULTIPLY", grain, 0.16))
+    part = graph.math("ADD", graph.math("MULTIPLY", ripple, 0.7), graph.math("MULTIPLY", grain, 0.4))
+    colour = graph.ramp(part, [(0.15, ground.other), (0.75, ground.colour)])
+    normal = _bump(graph, height, 0.75, 0.05)
+    return _principled(graph, Base_Color=colour, Roughness=ground.roughness, Normal=normal)
+
+
+TEXTURES: dict[str, Callable[[Graph, Ground, Any], Any]] = {
+    "paint": _painted,
+    "wood": _wood,
+    "concrete": _concrete,
+    "asphalt": _asphalt,
+    "sand": _sand,
+}

@@ -1,0 +1,126 @@
+"""A wall of pegboard with tools on it: screwdrivers, spanners, a try square, a hammer, a rule."""
+
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from render.blender.scene.materials import material
+from render.blender.scene.nodes import Graph
+from render.blender.scene.world.shapes import Thing
+from render.film.scene import SurfaceSpec
+from render.looks.look import Colour
+
+PITCH, HOLE = 0.135, 0.026
+WIDE, HIGH = 9.0, 6.0
+BESIDE = 0.2
+"""From the machine to the first tool on each side."""
+STEEL = SurfaceSpec(colour=(0.48, 0.49, 0.50), finish="brushed", roughness=0.32)
+BLACK = SurfaceSpec(colour=(0.03, 0.03, 0.032), finish="rubber", roughness=0.5)
+RED = SurfaceSpec(colour=(0.40, 0.035, 0.02), finish="plastic", roughness=0.32)
+AMBER = SurfaceSpec(colour=(0.62, 0.30, 0.03), finish="plastic", roughness=0.3)
+ASH = SurfaceSpec(colour=(0.50, 0.33, 0.17), finish="wood", roughness=0.45)
+
+
+def build(thing: Thing, colour: Colour, away: float, clear: float) -> None:
+    """The wall at y = ``away`` from the floor up, the origin of ``thing`` at the floor; tools hang beside ``clear``."""
+    board = _board(colour, thing.radius)
+    thing.box((-WIDE, away, 0.10), (WIDE, away + 0.05, HIGH), board, 0.0)
+    thing.box((-WIDE, away - 0.03, 0.0), (WIDE, away + 0.05, 0.13), material(ASH, "batten"), 0.006)
+    front = away - 0.05
+    steel, black = material(STEEL, "tool"), material(BLACK, "grip")
+    grips = [material(RED, "red grip"), material(AMBER, "amber grip")]
+    left, right = -clear - BESIDE, clear + BESIDE
+    for k in range(4):
+        _screwdriver(thing, left - 0.22 * k, front, 1.56 + 0.02 * k, 0.335 + 0.055 * k, steel, grips[k % 2])
+    _square(thing, left - 1.5, front, 1.02, steel, material(ASH, "stock"))
+    for k, x in enumerate((0.0, 0.20, 0.38, 0.54, 0.68)):
+        _spanner(thing, right + x, front, 1.66, 0.78 - 0.09 * k, 0.072 - 0.008 * k, steel)
+    _hammer(thing, right + 1.23, front, 1.55, steel, material(ASH, "shaft"), black)
+
+
+def _board(colour: Colour, radius: float) -> Any:
+    """Painted hardboard; its holes are black."""
+    import bpy
+
+    made = bpy.data.materials.new("pegboard")
+    made.use_nodes = True
+    graph = Graph(made.node_tree).clear()
+    place = graph.add("TexCoord").outputs["Object"]
+    split = graph.add("SeparateXYZ", Vector=place)
+    offsets = []
+    for axis in ("X", "Z"):
+        part = graph.math("FRACT", graph.math("DIVIDE", split.outputs[axis], PITCH * radius))
+        offsets.append(graph.math("POWER", graph.math("SUBTRACT", part, 0.5), 2.0))
+    apart = graph.math("MULTIPLY", graph.math("SQRT", graph.math("ADD", *offsets)), PITCH)
+    solid = graph.add(
+        "MapRange", {"interpolation_type": "SMOOTHSTEP"}, Value=apart, From_Min=HOLE * 0.9, From_Max=HOLE * 1.1
+    )
+    shade = graph.add(
+        "VectorMath",
+        {"operation": "SCALE"},
+        Scale=graph.math("ADD", 0.16, graph.math("MULTIPLY", solid.outputs[0], 0.84)),
+    )
+    graph.set(shade, 0, colour)
+    shader = graph.add("BsdfDiffuse", Color=shade.outputs[0])
+    graph.add("OutputMaterial", Surface=shader.outputs[0])
+    return made
+
+
+def _screwdriver(thing: Thing, x: float, y: float, top: float, length: float, steel: Any, grip: Any) -> None:
+    handle = 0.30
+    thing.rod(
+        (x, y, top),
+        (x, y, top - handle),
+        [(0, 0.03), (0.05, 0.048), (0.2, 0.056), (0.6, 0.05), (0.8, 0.036), (0.9, 0.046), (1, 0.03)],
+        grip,
+    )
+    thing.rod((x, y, top - handle), (x, y, top - handle - length), [(0, 0.016), (0.9, 0.016), (1, 0.010)], steel)
+
+
+def _spanner(thing: Thing, x: float, y: float, top: float, length: float, head: float, steel: Any) -> None:
+    """Open at the lower end, a ring at the upper."""
+    neck = 0.42 * head
+    low = top - length
+    shank = [(x - neck, low + head), (x + neck, low + head), (x + neck, top - head), (x - neck, top - head)]
+    thing.hung(shank, y - 0.012, y + 0.012, steel, 0.006)
+    around = [(x + head * math.cos(a), top - head + head * math.sin(a)) for a in _angles(0.0, math.tau, 24)[:-1]]
+    thing.hung(around, y - 0.02, y + 0.02, steel, 0.006)
+    jaw = [(x + 1.1 * head * math.cos(a), low + 1.1 * head * math.sin(a)) for a in _angles(-0.9, math.pi + 0.9, 20)]
+    mouth = [
+        (x - 0.5 * head, low - 0.35 * head),
+        (x - 0.5 * head, low + 0.2 * head),
+        (x + 0.5 * head, low + 0.2 * head),
+    ]
+    thing.hung([*jaw, *mouth, (x + 0.5 * head, low - 0.35 * head)], y - 0.02, y + 0.02, steel, 0.004)
+
+
+def _square(thing: Thing, x: float, y: float, low: float, steel: Any, wood: Any) -> None:
+    thing.hung([(x, low), (x + 0.09, low), (x + 0.09, low + 0.55), (x, low + 0.55)], y - 0.006, y + 0.006, steel, 0.002)
+    thing.hung(
+        [(x, low + 0.53), (x + 0.46, low + 0.53), (x + 0.46, low + 0.66), (x, low + 0.66)],
+        y - 0.035,
+        y + 0.035,
+        wood,
+        0.01,
+    )
+
+
+def _hammer(thing: Thing, x: float, y: float, top: float, steel: Any, wood: Any, black: Any) -> None:
+    thing.rod((x, y, top), (x, y, top - 1.05), [(0, 0.03), (0.3, 0.028), (0.6, 0.038), (0.95, 0.042), (1, 0.034)], wood)
+    thing.rod(
+        (x - 0.21, y, top),
+        (x + 0.03, y, top),
+        [(0, 0.075), (0.06, 0.082), (0.3, 0.082), (0.42, 0.055), (1, 0.06)],
+        steel,
+    )
+    peen = [(x, top - 0.062), (x + 0.20, top - 0.03), (x + 0.20, top + 0.035), (x, top + 0.062)]
+    thing.hung(peen, y - 0.055, y + 0.055, steel, 0.012)
+    for side in (-0.1, 0.1):
+        thing.rod((x + side, y + 0.06, top - 0.1), (x + side, y - 0.07, top - 0.1), [(0, 0.012), (1, 0.012)], black)
+
+
+def _angles(start: float, end: float, count: int) -> list[float]:
+    return [start + (end - start) * k / (count - 1) for k in range(count)]

@@ -1,0 +1,1 @@
+"""Looks as data: light, ground, background and exposure of a picture; Blender and the page translate them."""

@@ -1,0 +1,19 @@
+"""Which colour a curve has: that of the body it belongs to, as in every other picture (data.json)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from render.plots.style import INK
+from shared.contract import Motion
+
+
+def ink_of(motion: Motion, bodies: Sequence[str]) -> str:
+    """The colour of the last of these bodies that moves: the one that a joint, driver or force acts on."""
+    moving = [body for body in bodies if body in motion.bodies]
+    return motion.bodies[moving[-1]].colour if moving else INK
+
+
+def acting_on(motion: Motion, name: str) -> str:
+    """The colour of the body that the force ``name`` acts on."""
+    return ink_of(motion, [action.body for action in motion.forces[name].actions])

@@ -1,0 +1,85 @@
+"""What an axis measures: its words with the unit, its numbers with the prefix that they need, ticks of angles, cuts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
+
+from render.plots.style import QUIET
+from shared.contract.quantity import angle_step, figures, labelled, prefixed, written
+
+TICKS = 5
+"""On an axis at most, about; of angles one more."""
+PEAK, KEPT = 12.0, 3.0
+"""A curve is cut where it is so many times higher than usual, at so many times that."""
+USUAL = 90.0
+"""Percentile of the largest at each time."""
+NEAR = 0.05
+"""Of the median of the margin: poses below are near a singular one."""
+
+
+def dress_axis(axis: Axis, words: str, unit: str, ticks: int = TICKS) -> None:
+    """Label an axis whose limits (SI, or degrees) are final, and write its numbers with one prefix."""
+    low, high = axis.get_view_interval()
+    factor, named = prefixed(max(abs(float(low)), abs(float(high))), unit)
+    axis.set_label_text(labelled(words, named))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: figures(value * factor)))
+    if unit == "°":
+        axis.set_major_locator(MultipleLocator(angle_step(abs(float(high - low)), ticks + 1)))
+    else:
+        axis.set_major_locator(MaxNLocator(nbins=ticks, steps=[1, 2, 2.5, 5, 10]))
+
+
+def dress_plane(
+    axes: Axes, words: tuple[str, str] = ("x", "y"), unit: str = "m", ticks: tuple[int, int] = (15, 9)
+) -> None:
+    """Label both axes of a plane (places in m, forces in N) with one prefix; what is drawn on them is final."""
+    axes.apply_aspect()
+    largest = max(float(np.abs(axis.get_view_interval()).max()) for axis in (axes.xaxis, axes.yaxis))
+    factor, named = prefixed(largest, unit)
+    for axis, said, count in zip((axes.xaxis, axes.yaxis), words, ticks, strict=True):
+        axis.set_label_text(labelled(said, named))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: figures(value * factor)))
+        axis.set_major_locator(MaxNLocator(nbins=count, steps=[1, 2, 5, 10]))
+
+
+def turned(x: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Curve of an angle (T,) in degrees over x (T,): within one turn, broken where the next one begins.
+
+    What makes no whole turn is moved by whole turns alone, so that its middle is within half a turn of zero.
+    """
+    if np.ptp(angle) < 360.0 - 1e-6:
+        return x, angle - 360.0 * round(float(angle.max() + angle.min()) / 720.0)
+    turn = np.floor((angle[:-1] + angle[1:]) / 720.0)
+    out_x, out_y = [], []
+    for piece in np.split(np.arange(len(turn)), np.flatnonzero(np.diff(turn)) + 1):
+        rows = np.append(piece, piece[-1] + 1)
+        out_x += [*x[rows], np.nan]
+        out_y += [*np.clip(angle[rows] - 360.0 * turn[piece[0]], 0.0, 360.0), np.nan]
+    return np.array(out_x[:-1]), np.array(out_y[:-1])
+
+
+def cut(axes: Axes, curves: Sequence[np.ndarray], margin: np.ndarray | None, unit: str) -> bool:
+    """Limit the vertical axis where curves (T,) go far beyond their usual near a singular pose, and say so.
+
+    ``margin`` (T,): how far each pose is from a singular one. Returns whether it was cut.
+    """
+    if margin is None or not len(curves):
+        return False
+    sizes = np.max([np.abs(values) for values in curves], axis=0)
+    usual, top = float(np.percentile(sizes, USUAL)), int(sizes.argmax())
+    if not sizes[top] > PEAK * usual > 0.0 or not margin[top] < NEAR * float(np.median(margin)):
+        return False
+    kept = np.concatenate([values[np.abs(values) <= KEPT * usual] for values in curves])
+    low, high = min(float(kept.min()), 0.0), max(float(kept.max()), 0.0)
+    axes.set_ylim(low - 0.08 * (high - low), high + 0.08 * (high - low))
+    axes.text(
+        0.995, 0.97, f"clipped: up to {written(float(sizes[top]), unit)} near a singular pose",
+        transform=axes.transAxes, ha="right", va="top", color=QUIET, fontsize=8.5, zorder=6,
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5, "alpha": 0.85},
+    )  # fmt: skip
+    return True

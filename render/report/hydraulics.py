@@ -1,0 +1,30 @@
+"""Hydraulic cylinders: highest pressures, oil and energy taken from the supply, and where that goes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from render.report.written import first_peak, moment, table, written
+from shared.contract import Motion
+
+
+def hydraulics_section(motion: Motion) -> list[str]:
+    """A row for each hydraulic cylinder."""
+    rows, time = [], np.array(motion.time)
+    for name, force in motion.forces.items():
+        one = force.hydraulics
+        if one is None:
+            continue
+        cells = [name]
+        for pressure in (np.array(one.pressure_a), np.array(one.pressure_b)):
+            k = first_peak(pressure)
+            cells.append(f"{written(float(pressure.min()), 'Pa')} to {written(float(pressure[k]), 'Pa')}")
+            cells.append(moment(time[k]))
+        taken = 1e3 * float(np.trapezoid(np.maximum(one.supply_flow, 0.0), time))
+        energies = [float(np.trapezoid(part, time)) for part in (one.supply_power, one.valve_loss, one.piston_power)]
+        rows.append([*cells, written(taken, "l"), *(written(energy, "J") for energy in energies)])
+    if not rows:
+        return []
+    head = ["hydraulic cylinder", "chamber A", "at", "chamber B", "at", "oil taken", "supplied", "lost in the valve",
+            "given to the piston"]  # fmt: skip
+    return ["### Hydraulics", "", *table(head, rows), ""]

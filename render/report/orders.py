@@ -1,0 +1,78 @@
+"""Orders of the report: how large the harmonics against the crank are of what shakes the frame and turns the shaft."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from render.report.written import table, written
+from render.shaking import couple_floor, force_floor, moment_floor
+from shared.contract import Motion
+from shared.contract.vibration import Harmonics
+
+LEAST = 2e-3
+"""Orders of less than this part of the largest are left out."""
+MOST = 12
+"""Rows of the table."""
+STILL = 1e-9
+"""A centre of mass that moves by less (m) is at rest."""
+VECTORS = {"shaking force": force_floor, "shaking couple": couple_floor}
+
+
+def orders_section(motion: Motion) -> list[str]:
+    """A table with a row for each order that counts."""
+    found = motion.vibration
+    if found is None:
+        return []
+    shown: list[tuple[str, Harmonics, np.ndarray]] = []
+    for name, one in found.harmonics.items():
+        if name not in (*VECTORS, "shaking moment", *motion.drivers):
+            continue
+        floor = VECTORS.get(name, moment_floor if one.unit == "N m" else force_floor)(motion)
+        size = np.array(one.forward) + np.array(one.backward)
+        if size.max(initial=0.0) > floor:
+            shown.append((name, one, np.where(size > floor, size, 0.0)))
+    if not shown:
+        return []
+    counts = np.max(np.array([size / size.max() for _, _, size in shown]), axis=0)
+    kept = np.sort(np.argsort(counts, kind="stable")[::-1][:MOST])
+    rows = [
+        [f"{found.order[k]:g}", *(cell for name, one, size in shown for cell in _cells(name, one, size, int(k)))]
+        for k in kept
+        if counts[k] > LEAST
+    ]
+    heads = [head for name, _, _ in shown for head in _heads(name)]
+    cycle = "turn" if found.turns == 1 else f"cycle of {found.turns} turns"
+    lines = [
+        f"Largest size of each harmonic on the turn; an order counts periods in a turn of {found.crank}. With is the "
+        f"part that turns with it, which a counterweight cancels where the order is 1; against is the part that turns "
+        f"against it. All repeats after a {cycle}.",
+        "",
+    ]
+    return [*lines, *table(["order", *heads], rows), "", _mean(motion)]
+
+
+def _heads(name: str) -> list[str]:
+    return [name, "with", "against"] if name in VECTORS else [name]
+
+
+def _cells(name: str, one: Harmonics, size: np.ndarray, k: int) -> list[str]:
+    if size[k] == 0.0:
+        return ["0"] * len(_heads(name))
+    found = [written(float(size[k]), one.unit)]
+    if name in VECTORS:
+        tiny = 1e-9 * float(size.max())
+        found += [written(value, one.unit) if value > tiny else "0" for value in (one.forward[k], one.backward[k])]
+    return found
+
+
+def _mean(motion: Motion) -> str:
+    """Root mean squares, and how far the centre of mass goes."""
+    found = motion.vibration
+    assert found is not None
+    force = float(np.sqrt(np.mean(np.square(found.fx) + np.square(found.fy))))
+    x, y = (way if way > STILL else 0.0 for way in (float(np.ptp(found.x)), float(np.ptp(found.y))))
+    shown = 0.0 if force < force_floor(motion) else force
+    return (
+        f"The shaking force is {written(shown, 'N')} by root mean square; the centre of mass of all that moves goes "
+        f"{written(x, 'm')} along x and {written(y, 'm')} along y."
+    )

@@ -1,0 +1,94 @@
+"""Numbers with units as people write them: engineering prefixes, few digits, a true minus sign, no exponents.
+
+mbsd/base/quantity.py, which may not import this, and render/view/page/src/data/numbers.js follow the same rules; the
+cases in tests/shared/quantities.json hold all three to the same answers.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+
+PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+DOWN = ("m", "m/s", "s")
+"""Units that have prefixes for small numbers alone."""
+PLAIN = ("m/s²", "rad", "rad/s", "rad/s²", "°", "%", "cm³", "km/h", "rpm", "bar", "l/min", "g", "kg", "kg m²", "1", "")
+"""Units without prefixes; kilograms below one are grams."""
+MINUS = "\N{MINUS SIGN}"
+DIGITS = 4
+"""Significant digits, at most."""
+LIVE = 6
+"""Decimals at most of a number that changes while one looks at it."""
+ANGLES = (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0, 180.0, 360.0)
+"""Steps of ticks in degrees."""
+
+
+def written(value: float, unit: str, digits: int = 3) -> str:
+    """``value`` (SI) with an engineering prefix: ``12.3 mN``, ``0 N``, ``1.29 kN m``, ``−40 µm``, ``250 g``."""
+    if not math.isfinite(value):
+        return f"no number of {unit}" if math.isnan(value) else f"{MINUS if value < 0 else ''}∞ {unit}".rstrip()
+    if unit == "kg" and 0 < abs(value) < 1.0:
+        value, unit = 1000.0 * value, "g"
+    factor, named = prefixed(float(f"{abs(value):.{digits}g}"), unit)  # rounded first: 999.9996 is 1 k
+    digits = digits if abs(value * factor) < 1000.0 else max(digits, DIGITS)
+    return f"{figures(value * factor, digits)}{'' if named in ('°', '%') else ' '}{named}".rstrip()
+
+
+def prefixed(largest: float, unit: str) -> tuple[float, str]:
+    """The factor from SI, and the unit with its prefix, for numbers up to ``largest``: 1290 N are 0.001, ``kN``."""
+    if unit in PLAIN or not largest or not math.isfinite(largest):
+        return 1.0, unit
+    power = min(max(3 * math.floor(math.log10(abs(largest)) / 3 + 1e-9), -12), 12)
+    power = min(power, 0) if unit in DOWN else power
+    return 10.0**-power, f"{PREFIXES[power]}{unit}"
+
+
+def figures(value: float, digits: int = DIGITS) -> str:
+    """A number with so many significant digits and without an exponent: ``1230``, ``−0.02``, ``2.5 × 10¹⁸``."""
+    number = float(f"{value:.{digits}g}")
+    if number == 0.0:
+        return "0"
+    digits_of, _, exponent = f"{number:.{digits - 1}e}".partition("e")
+    power = int(exponent)
+    if not -7 <= power < 7:
+        mantissa = f"{float(digits_of):.{digits}g}"
+        raised = str(power).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+        return f"{mantissa} × 10{raised}".replace("-", MINUS)
+    text = f"{number:.{max(digits - 1 - power, 0)}f}"
+    return (text.rstrip("0").rstrip(".") if "." in text else text).replace("-", MINUS)
+
+
+def live(values: Iterable[float], unit: str, digits: int = DIGITS) -> Callable[[float], str]:
+    """Writes numbers of a series with one prefix and as many decimals as its largest needs: they stand still."""
+    top = max((abs(float(value)) for value in values), default=0.0)
+    top = float(f"{top:.{digits}g}")
+    factor, named = prefixed(top, unit)
+    if not top or not math.isfinite(top):
+        return lambda value: f"0 {named}".rstrip()
+    decimals = min(max(digits - 1 - math.floor(math.log10(top * factor) + 1e-12), 0), LIVE)
+
+    def write(value: float) -> str:
+        if abs(top * factor) >= 1e7:
+            return f"{figures(value * factor, digits)} {named}".rstrip()
+        number = round(value * factor, decimals) + 0.0
+        return f"{number:.{decimals}f} {named}".rstrip().replace("-", MINUS)
+
+    return write
+
+
+def labelled(words: str, unit: str) -> str:
+    """What an axis says: ``force / kN``, ``velocity / (m/s)``, ``order`` of numbers without a unit (ISO 80000-1)."""
+    if unit in ("", "1"):
+        return words
+    return f"{words} / ({unit})" if set(unit) & set("/ ") else f"{words} / {unit}"
+
+
+def angle_step(span: float, most: int = 9) -> float:
+    """Step of ticks (degrees) over a ``span`` of angle: parts and multiples of a right angle, ``most`` ticks at most.
+
+    From 180 degrees on they are 45, 90 or whole multiples of 90.
+    """
+    for step in ANGLES:
+        if span / step <= most and (span < 180.0 or step >= 45.0):
+            return step
+    return 360.0 * math.ceil(span / 360.0 / most)

@@ -1,0 +1,59 @@
+"""The loop at the top of README.md: its story has no seam, its lines are the four-bar's, its file is small."""
+
+from __future__ import annotations
+
+import ast
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from mechanisms.four_bar.mechanism import Params, build
+from shared.stage.paths import ROOT
+from tools.readme_loop.lines import CRANK, LINES, run
+from tools.readme_loop.story import RATE, TURNS, frames
+
+LOOP = ROOT / "docs" / "readme_loop.webp"
+
+
+def test_the_lines_are_twelve_and_make_the_four_bar_of_the_gallery() -> None:
+    assert len(LINES.splitlines()) == 12
+    made, wanted = run(CRANK)["sol"], build(Params()).sweep()
+    for name in ("x", "y"):
+        np.testing.assert_allclose(getattr(made.point("P"), name), getattr(wanted.point("P"), name), atol=1e-12)
+
+
+def test_the_readme_has_the_same_calls() -> None:
+    shown = {node.func.attr for node in ast.walk(ast.parse(LINES.format(crank=CRANK))) if _calls(node)}
+    file = ast.parse((ROOT / "mechanisms" / "four_bar" / "mechanism.py").read_text())
+    assert shown == {node.func.attr for node in ast.walk(file) if _calls(node)} | {"sweep"}
+
+
+def _calls(node: ast.AST) -> bool:
+    return isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)
+
+
+def test_the_story_ends_where_it_begins_and_shows_reactions_once() -> None:
+    told = frames()
+    assert 5.0 <= len(told) / RATE <= 8.0
+    step = TURNS / len(told)
+    turned = [one.part for one in told] + [told[0].part]
+    assert np.diff(np.unwrap(turned, period=1.0)) == pytest.approx(step, abs=1e-9)
+    assert (told[0].crank, told[0].solid, told[0].tilt) == (CRANK, 0.0, 0.0)
+    assert told[-1].crank == CRANK
+    assert max(abs(a.solid - b.solid) for a, b in zip(told, told[1:] + told[:1], strict=True)) < 0.3
+    assert len({one.crank for one in told}) > 20, "the number glides"
+    for one in told:
+        assert one.crank == CRANK or one.solid == 0, "parts are shown with the numbers that they were made for"
+        assert not one.reactions or one.solid == 1
+    on = np.array([one.reactions > 0 for one in told])
+    assert np.count_nonzero(np.diff(on.astype(int)) == 1) == 1
+    assert max(one.tilt for one in told) == 1
+
+
+def test_the_file_is_small_and_what_the_story_says() -> None:
+    assert LOOP.stat().st_size < 2_000_000
+    with Image.open(LOOP) as picture:
+        assert picture.n_frames == len(frames())  # pyright: ignore[reportAttributeAccessIssue]
+        assert picture.size == (960, 420)
+    assert "docs/readme_loop.webp" in (ROOT / "README.md").read_text()

@@ -1,0 +1,89 @@
+"""Pictures know no kinds of joints, forces and contacts: where these act and how they look is in data.json."""
+
+from __future__ import annotations
+
+import ast
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import msgspec
+import numpy as np
+
+from mbsd import Mechanism, constant_rate
+from mbsd.model.adding.joints import join
+from mbsd.model.contact import CONTACT_KINDS
+from mbsd.model.force import FORCE_KINDS
+from mbsd.model.joint import KINDS, JointKind
+from mechanisms.stages.solve.motion_file import to_motion
+from mechanisms.stages.solve.skeleton_file import moving_of
+from render.crank import crank_of
+from render.film.arrows.torques import torques
+from render.film.arrows.vectors import vectors
+from render.report.transmission import loops
+from render.view.payload import payload
+from shared.contract import Motion
+from shared.contract.shot import Quantity
+
+RENDER = Path(__file__).parents[2] / "render"
+SHOWN: tuple[Quantity, ...] = ("velocities", "accelerations", "forces", "reactions")
+NAMES = {name.removeprefix("drive_") for name in (*KINDS, *FORCE_KINDS, *CONTACT_KINDS)}
+
+
+def test_no_file_of_render_asks_for_the_kind_of_a_joint_force_or_contact() -> None:
+    for path in RENDER.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if not isinstance(node, ast.Compare):
+                continue
+            sides = [node.left, *node.comparators]
+            asks = any(isinstance(side, ast.Attribute) and side.attr == "kind" for side in sides)
+            words = {leaf.value for side in sides for leaf in ast.walk(side) if isinstance(leaf, ast.Constant)}
+            assert not (asks and any(word in NAMES for word in words)), f"{path}:{node.lineno}"
+            assert not (asks and any(isinstance(side, ast.Name) and side.id.isupper() for side in sides)), (
+                f"{path}:{node.lineno} compares a kind with a list"
+            )
+            assert not any(
+                isinstance(side, ast.Attribute) and side.attr == "kind" and isinstance(op, ast.In | ast.NotIn)
+                for op, side in zip(node.ops, node.comparators, strict=True)
+            ), f"{path}:{node.lineno} looks for a word in a kind"
+    asked = re.compile(r"kind\s*(?:===?|!==?)\s*[\"'](\w+)[\"']")
+    for path in RENDER.rglob("*.js"):
+        assert not NAMES & (set(asked.findall(path.read_text())) - {"force", "contact"}), path  # these two are things
+
+
+def four_bar(pin: JointKind) -> Mechanism:
+    """A four-bar whose pins are of this kind."""
+    m = Mechanism("four_bar", gravity=(0.0, -9.81))
+    crank, coupler, rocker = (m.bar(n, length, mass=0.1) for n, length in (("a", 0.04), ("b", 0.12), ("c", 0.09)))
+    join(m, pin, "A", m.ground.at(0.0, 0.0), crank.start, None)
+    join(m, pin, "B", crank.end, coupler.start, None)
+    join(m, pin, "C", coupler.end, rocker.end, None)
+    join(m, pin, "D", m.ground.at(0.12, 0.0), rocker.start, None)
+    m.drive_angle("motor", crank, constant_rate(6.0))
+    m.trace("P", coupler.at(0.06, 0.03))
+    return m
+
+
+def test_a_kind_that_nobody_knows_is_drawn_and_reported_as_what_it_says_it_is() -> None:
+    known, hinge = KINDS["revolute"], replace(KINDS["revolute"], name="hinge", sign="revolute")
+    motions: list[Motion] = []
+    pages = []
+    for kind in (known, hinge):
+        solution = four_bar(kind).sweep(steps=24)
+        motions.append(to_motion(solution, None, "key", {}))
+        pages.append(payload(motions[-1], moving_of(solution)))
+    was, new = motions
+    assert {joint.kind for joint in new.joints.values()} == {"hinge"}
+    for made in (vectors, torques):
+        for one, other in zip(made(was, SHOWN), made(new, SHOWN), strict=True):
+            assert one.name == other.name
+            assert np.array_equal(one.place, other.place)
+            assert np.array_equal(one.value, other.value)
+    assert crank_of(new) is not None
+    assert [loop.follower for loop in loops(new)] == [loop.follower for loop in loops(was)] == ["c"]
+    for page in pages:
+        for joint in page["joints"].values():
+            del joint["kind"]
+    assert msgspec.json.encode(pages[0], enc_hook=np.ndarray.tolist) == msgspec.json.encode(
+        pages[1], enc_hook=np.ndarray.tolist
+    )

@@ -1,0 +1,138 @@
+"""Looks: one of each name, the one that a machine gets by itself, a gallery of many, drawings, filled engraving."""
+
+from __future__ import annotations
+
+import importlib
+from collections import Counter
+from typing import get_args
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from render.blender.scene.worked import sunk
+from render.blender.worker.drawing import drawn
+from render.looks.chosen import Family, chosen
+from render.looks.looks import LOOKS
+from render.presets import PRESETS
+from render.view.looks import looks_of
+from shared.contract.mount import Kind, mounted
+from shared.contract.shot import LookName
+from shared.stage.paths import ROOT, mechanism_names
+
+MOST = 1 / 3
+"""Of the gallery, with one look."""
+
+
+def test_each_name_has_its_look_and_no_other():
+    assert tuple(LOOKS) == get_args(LookName)
+    assert all(look.name == name for name, look in LOOKS.items())
+
+
+@pytest.mark.parametrize("name", LOOKS)
+def test_a_look_has_light_or_is_drawn_and_its_page_follows_the_theme(name: str):
+    look = LOOKS[name]
+    for light in (look.lying, look.standing):
+        assert look.drawing is not None or light.softboxes
+    for stands in (False, True):
+        shown = looks_of(look, stands)
+        assert shown["dark" if look.dark else "light"]["name"] == name
+        if look.other is not None:
+            assert shown["dark"]["dark"]
+            assert not shown["light"]["dark"]
+
+
+@pytest.mark.parametrize(
+    ("mount", "engine", "driven", "size", "look"),
+    [
+        ("ground", False, True, 2.0, "road"),
+        ("stand", True, True, 0.3, "studio"),
+        ("stand", False, False, 0.3, "cyclorama"),
+        ("desk", False, False, 0.3, "cyclorama"),
+        ("desk", False, True, 0.2, "studio"),
+        ("stand", False, True, 0.2, "bench"),
+        ("stand", False, True, 1.5, "daylight"),
+        ("wall", False, True, 0.2, "daylight"),
+    ],
+)
+def test_what_files_say_chooses_the_look(mount: Kind, engine: bool, driven: bool, size: float, look: str):
+    assert chosen(Family(mount, engine, driven, size)) == look
+
+
+def test_no_look_has_more_than_a_third_of_the_gallery():
+    looks: Counter[str] = Counter()
+    names = mechanism_names()
+    for name in names:
+        looks.update(_possible(name))
+    assert len(looks) == len(LOOKS)
+    assert max(looks.values()) <= MOST * len(names), looks
+
+
+def _possible(name: str) -> set[str]:
+    """The looks that a mechanism can have: its shot.py's, or what its model chooses at any size."""
+    shot = None
+    if (ROOT / "mechanisms" / name / "shot.py").is_file():
+        shot = importlib.import_module(f"mechanisms.{name}.shot").shot
+        if shot.look is not None:
+            return {shot.look}
+    module = importlib.import_module(f"mechanisms.{name}.mechanism")
+    m = module.build(module.Params())
+    mount = mounted(m.gravity or (0.0, 0.0), shot.mount if shot else None)
+    engine = any("gas" in type(force).__name__.lower() for force in m.forces.values())
+    return {chosen(Family(mount.kind, engine, bool(m.drivers), size)) for size in (0.1, 10.0)}
+
+
+def test_posters_have_more_samples_than_the_film_of_their_preset():
+    for preset in PRESETS.values():
+        assert preset.of_poster.samples >= max(4 * 4, preset.samples)
+        assert (preset.of_poster.width, preset.of_poster.height) == (preset.width, preset.height)
+    assert all(PRESETS[name].of_poster.samples == 128 for name in ("preview", "production", "final"))
+
+
+def codes(number: np.ndarray, times: int = 2) -> np.ndarray:
+    """Codes of solids by number that all face the camera, at a distance of one radius."""
+    large = number.repeat(times, axis=0).repeat(times, axis=1)
+    return np.stack([large + 0.25, np.full(large.shape, 0.5), np.ones(large.shape)], axis=-1)
+
+
+@given(st.integers(1, 40), st.integers(41, 90))
+def test_a_drawing_has_lines_where_solids_meet_and_nowhere_else(first: int, second: int):
+    number = np.full((72, 128), first)
+    number[:, 64:] = second
+    drawing = LOOKS["blueprint"].drawing
+    assert drawing is not None
+    picture = drawn(codes(number), drawing, 128, 72)
+    bright = picture[36].sum(axis=-1)
+    assert bright[63:65].max() > bright[:60].max() + 0.5
+    assert np.ptp(picture[10:60, 10:55], axis=(0, 1)).max() < 1e-6
+    whole = drawn(codes(np.full((72, 128), first)), drawing, 128, 72)
+    assert np.ptp(whole, axis=(0, 1)).max() < 1e-6
+
+
+def test_paper_without_solids_is_squared_and_has_a_frame():
+    drawing = LOOKS["blueprint"].drawing
+    assert drawing is not None
+    paper = drawn(np.zeros((360, 640, 3)), drawing, 640, 360)
+    assert abs(paper[5:300, 5:300].mean(axis=(0, 1)) - drawing.paper).max() < 0.05
+    assert paper.max() > 0.5
+
+
+def test_only_what_is_cut_a_little_into_the_upper_face_is_filled():
+    def face(heights: tuple[float, float, float], up: float, area: float) -> tuple:
+        return [h / 1000 for h in heights], up, area
+
+    faces = [
+        face((10, 10, 10), 1.0, 500.0),  # the upper face
+        face((9.6, 9.6, 9.6), 1.0, 3.0),  # the floor of a letter
+        face((10, 9.6, 9.6), 0.0, 1.0),  # its wall
+        face((7, 7, 7), 1.0, 80.0),  # a pocket
+        face((10, 7, 7), 0.0, 20.0),  # its wall
+        face((10, 9.6, 10), 0.7, 9.0),  # a chamfer
+        face((0, 0, 10), 0.0, 60.0),  # the rim
+        face((0, 0, 0), -1.0, 500.0),  # the back
+    ]
+    heights, up, areas = (np.array(part) for part in zip(*faces, strict=True))
+    assert sunk(heights, up, areas).tolist() == [False, True, True, False, False, False, False, False]
+    assert not sunk(heights[[0, 3, 4, 6, 7]], up[[0, 3, 4, 6, 7]], areas[[0, 3, 4, 6, 7]]).any()
+    assert not sunk(heights[[6]], up[[6]], areas[[6]]).any()

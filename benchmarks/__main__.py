@@ -3,6 +3,7 @@
 python -m benchmarks                  all of it
 python -m benchmarks calls            the calls as users make them alone, only shown
 python -m benchmarks dynamics         the dynamics problems alone, only shown
+python -m benchmarks engines          sweeps of engines beside a four-bar's, the map of bank angles, only shown
 python -m benchmarks machines         gears, a Geneva, a cam and a stiff contact alone, only shown
 python -m benchmarks film [--help]     what a film costs (make bench-film)
 python -m benchmarks live [--help]     from a slider of the live page to the picture (make bench-live)
@@ -26,6 +27,7 @@ from benchmarks.calls import measure as calls
 from benchmarks.dynamics import measure as dynamics
 from benchmarks.dynamics import scaling
 from benchmarks.dynamics.settings import tune_all
+from benchmarks.engines import measure as engines
 from benchmarks.film import measure as film
 from benchmarks.film import timing
 from benchmarks.four_bar import STEPS
@@ -49,10 +51,15 @@ def main() -> int:
     match sys.argv[1:]:
         case []:
             return _all()
-        case ["calls" | "dynamics" | "machines" | "synthesis" as part]:
-            found, bars = {"calls": calls, "dynamics": dynamics, "machines": machines, "synthesis": synthesis}[
-                part
-            ].measured()
+        case ["calls" | "dynamics" | "engines" | "machines" | "synthesis" as part]:
+            parts = {
+                "calls": calls,
+                "dynamics": dynamics,
+                "engines": engines,
+                "machines": machines,
+                "synthesis": synthesis,
+            }
+            found, bars = parts[part].measured()
             rows.show_all(found)
             return _tell(bars)
         case ["film", *words]:
@@ -73,7 +80,7 @@ def main() -> int:
             tune_all(names)
         case other:
             raise UserError(
-                f"bench: {' '.join(other)}? There is: calls, cluster, dynamics, film, live, machines, start, "
+                f"bench: {' '.join(other)}? There is: calls, cluster, dynamics, engines, film, live, machines, start, "
                 "synthesis, table, tune [names], or nothing for all"
             )
     return 0
@@ -99,6 +106,7 @@ def _all() -> int:
         batch.measured,
         synthesis.measured,
         machines.measured,
+        engines.measured,
         dynamics.measured,
         scaling.measured,
     ):

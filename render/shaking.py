@@ -65,3 +65,9 @@ def moment_floor(motion: Motion) -> float:
 def couple_floor(motion: Motion) -> float:
     """What is rounding in the couples (N m)."""
     return max(moment_floor(motion), NOISE * force_scale(motion) * motion.couple.reach if motion.couple else 0.0)
+
+
+def floor_of(motion: Motion, name: str, unit: str) -> float:
+    """What is rounding in the harmonics of a quantity of data.json's ``vibration``, in its unit."""
+    floors = {"shaking force": force_floor, "shaking couple": couple_floor}
+    return floors.get(name, moment_floor if unit == "N m" else force_floor)(motion)

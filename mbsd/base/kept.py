@@ -24,10 +24,10 @@ class Kept(Generic[T]):
 
     def get(self, key: Hashable, find: Callable[[], T]) -> T:
         """What ``find`` returned for this key before, or returns now; what it raises is not kept."""
-        try:
-            return self._results[key]
-        except KeyError:
-            found = find()
+        with self._changing:
+            if key in self._results:
+                return self._results[key]
+        found = find()
         with self._changing:
             while len(self._results) >= MOST:
                 del self._results[next(iter(self._results))]

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -23,11 +24,15 @@ from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import wrenches
+from mbsd.base.errors import SingularPoseError
 from mbsd.equations.assembly import tabulate
 from mbsd.kinematics.prepared import Prepared
+from mbsd.kinematics.transposed import ALL_SOLVED, multipliers_along
 
 JACOBIAN_NUMBERS = 4_000_000
 """How many numbers of Jacobians are held at once."""
+DENSE = 36
+"""Up to so many unknowns a dense solve is as fast as one that follows the zeros of J."""
 JUMPED = 1e-6
 """Part of the largest acceleration that is open where an output is taken for one on a jump."""
 BESIDE = 1e-9
@@ -80,11 +85,13 @@ def inverse_dynamics(
         jac = packed.spread(compact)
         lam = out.lam[at]
         if packed_loads is None:
-            lam[:] = _multipliers(ready, jac, loads[at])
+            lam[:] = _multipliers(ready, times[at], compact, jac, loads[at])
         else:
-            applied, motion = loads[at].copy(), (times[at], q[at], v[at])
+            motion = times[at], q[at], v[at]
+            solved = partial(_multipliers, ready, times[at], compact, jac)
+            applied = loads[at].copy()
             [found], friction = with_friction(
-                packed, packed_loads, motion, compact, lambda f, j=jac, q=applied: (_multipliers(ready, j, q + f),)
+                packed, packed_loads, motion, compact, lambda f, solve=solved, q=applied: (solve(q + f),)
             )
             lam[:] = found
             loads[at] += friction
@@ -146,8 +153,27 @@ def _take_nearer_side(
                 bend[k] = side
 
 
-def _multipliers(ready: Prepared, jac: np.ndarray, loads: np.ndarray) -> np.ndarray:
-    """(T, m) of J (T, m, n) and loads (T, 3 nb)."""
+def _multipliers(
+    ready: Prepared, times: np.ndarray, compact: np.ndarray, jac: np.ndarray, loads: np.ndarray
+) -> np.ndarray:
+    """(T, m) of J, compact (T, m, 6) and spread (T, m, n), and loads (T, 3 nb)."""
     if ready.mobility.redundant_rows:
         return np.array([np.linalg.lstsq(one.T, load[3:], rcond=1e-9)[0] for one, load in zip(jac, loads, strict=True)])
-    return np.linalg.solve(jac.transpose(0, 2, 1), loads[:, 3:, None])[..., 0]
+    if jac.shape[1] <= DENSE:
+        try:
+            return np.linalg.solve(jac.transpose(0, 2, 1), loads[:, 3:, None])[..., 0]
+        except np.linalg.LinAlgError:
+            singular = int(np.argmin(np.abs(np.linalg.det(jac))))
+            raise _undetermined(ready, times[singular]) from None
+    lam = np.zeros(jac.shape[:2])
+    singular = multipliers_along(ready.sequence, ready.factors, compact, np.ascontiguousarray(loads), lam)
+    if singular != ALL_SOLVED:
+        raise _undetermined(ready, times[singular])
+    return lam
+
+
+def _undetermined(ready: Prepared, time: float) -> SingularPoseError:
+    return SingularPoseError(
+        f"{ready.packed.name}: the pose at t = {time:.9g} s is singular, so that nothing determines the reactions "
+        "there. Choose times that do not fall on it, or add a link that decides how the motion goes on."
+    )

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from math import cos, pi, radians, sin
 
 from mbsd import Mechanism, constant_rate
-from mbsd.machines.body.segments import FOOT_AND_LEG, WINTER
+from mbsd.machines.body.figure import Figure
 
 SPECTRA = ("bicycle",)
 VARIANTS = {"no_muscles": {"strength": 0.0}}
@@ -16,7 +16,8 @@ VARIANTS = {"no_muscles": {"strength": 0.0}}
 
 @dataclass(frozen=True)
 class Params:
-    """Lengths between the axes (m), the seat tube's slope (degrees), cadence (turns a minute), the rider's mass (kg).
+    """Lengths between the axes (m), slope of the seat tube and angle between shank and sole (degrees), cadence (turns a
+    minute), mass (kg) and height (m) of the rider, from which the leg's lengths and masses follow.
 
     Muscles: peak (N m) of a pulse of torque between two places of the crank (degrees from the top of its turn). They do
     the work that M. O. Ericson et al. measured (Eur. J. Appl. Physiol. 55, 1986: 120 W, 60 turns a minute); that of the
@@ -24,13 +25,13 @@ class Params:
     """
 
     crank: float = 0.170
-    shank: float = 0.440
-    thigh: float = 0.400
     hip: float = 0.618
     calf: tuple[float, float] = (0.220, 0.073)
     slope: float = 73.0
     cadence: float = 60.0
     rider: float = 75.0
+    height: float = 1.62
+    ankle: float = 72.0
     crank_mass: float = 0.7
     hip_extensors: tuple[float, float, float] = (28.6, 20.0, 190.0)
     hip_flexors: tuple[float, float, float] = (6.1, 250.0, 365.0)
@@ -38,17 +39,30 @@ class Params:
     knee_flexors: tuple[float, float, float] = (7.66, 165.0, 340.0)
     strength: float = 1.0  # of all muscles together
 
+    @property
+    def figure(self) -> Figure:
+        """The rider."""
+        return Figure(self.height, self.rider)
+
+    @property
+    def thigh(self) -> float:
+        """From the hip to the knee (m)."""
+        return self.figure.length("thigh")
+
+    @property
+    def shank(self) -> float:
+        """From the knee to the ball of the foot, which is on the pedal (m)."""
+        return self.figure.lower_leg(radians(self.ankle))[0]
+
 
 def build(p: Params) -> Mechanism:
     """The rider faces right and pedals clockwise; the foot is stiff on the shank."""
     m = Mechanism("bicycle_leg", gravity=(0.0, -9.81))
     crank = m.bar("crank", p.crank, mass=p.crank_mass)
-    femur, leg = WINTER.thigh[0], FOOT_AND_LEG
-    thigh_mass, shank_mass = femur.mass * p.rider, leg.mass * p.rider
-    thigh = m.bar("thigh", p.thigh, thigh_mass, (femur.com * p.thigh, 0), thigh_mass * (femur.gyration * p.thigh) ** 2)
-    shank = m.bar(
-        "shank", p.shank, shank_mass, (leg.from_distal * p.shank, 0), shank_mass * (leg.gyration * p.shank) ** 2
-    )
+    _, lower = p.figure.lower_leg(radians(p.ankle))
+    upper = p.figure.limb("thigh").times(0.5)  # of one side
+    thigh = m.bar("thigh", p.thigh, upper.mass, upper.com, upper.inertia)
+    shank = m.bar("shank", p.shank, lower.mass, lower.com, lower.inertia)
     hip = m.ground.at(-p.hip * cos(radians(p.slope)), p.hip * sin(radians(p.slope)))
     m.revolute("bracket", m.ground.at(0, 0), crank.start)
     m.revolute("pedal", crank.end, shank.start)

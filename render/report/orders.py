@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from render.report.written import table, written
-from render.shaking import couple_floor, force_floor, moment_floor
+from render.shaking import floor_of, force_floor
 from shared.contract import Motion
 from shared.contract.vibration import Harmonics
 
@@ -15,7 +15,7 @@ MOST = 12
 """Rows of the table."""
 STILL = 1e-9
 """A centre of mass that moves by less (m) is at rest."""
-VECTORS = {"shaking force": force_floor, "shaking couple": couple_floor}
+VECTORS = ("shaking force", "shaking couple")
 
 
 def orders_section(motion: Motion) -> list[str]:
@@ -27,7 +27,7 @@ def orders_section(motion: Motion) -> list[str]:
     for name, one in found.harmonics.items():
         if name not in (*VECTORS, "shaking moment", *motion.drivers):
             continue
-        floor = VECTORS.get(name, moment_floor if one.unit == "N m" else force_floor)(motion)
+        floor = floor_of(motion, name, one.unit)
         size = np.array(one.forward) + np.array(one.backward)
         if size.max(initial=0.0) > floor:
             shown.append((name, one, np.where(size > floor, size, 0.0)))

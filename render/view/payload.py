@@ -16,7 +16,8 @@ SI units and radians; names are those of data.json. Arrays are float32 unless sa
     forces[name]            kind; value, rate, effort (T,) or null; power potential (T,); unit, effort_unit
     contacts[name]          kind, bodies; unit, effort_unit; x y fx fy torque gap normal friction (T,)
     frame                   null, or of a motion with couples that repeats with a crank: fx fy x y (T,), force of
-                            inertia and centre of mass; order (K,), harmonics[name]: unit, size (K,)
+                            inertia and centre of mass; crank; order (K,), harmonics[name]: unit, size (K,), rounding
+                            left out
     couple                  null, or mx my (T,) of bodies in different places along the normal of the plane
     energy                  kinetic potential (T,), work audit (T,) or null
     margin                  (T,) smallest over largest singular value of the scaled Jacobian
@@ -42,7 +43,7 @@ from render.film.clock import Clock
 from render.film.markers import local_place
 from render.film.tubes.trails import trails_of
 from render.report.moments import marks
-from render.shaking import shaking
+from render.shaking import floor_of, shaking
 from render.view.loads import arcs_of, arrows_of
 from shared.contract import JointMotion, Motion
 from shared.contract.shot import Shot
@@ -159,12 +160,13 @@ def frame_of(motion: Motion) -> dict[str, Any] | None:
     if found is None or motion.couple is None:
         return None
     shaken = shaking(motion)
-    harmonics = {
-        name: {"unit": one.unit, "size": floats(np.add(one.forward, one.backward))}
-        for name, one in found.harmonics.items()
-    }
+    harmonics = {}
+    for name, one in found.harmonics.items():
+        size, floor = np.add(one.forward, one.backward), floor_of(motion, name, one.unit)
+        if size.max(initial=0.0) > floor:
+            harmonics[name] = {"unit": one.unit, "size": floats(np.where(size > floor, size, 0.0))}
     series = _series(shaken, "fx", "fy") | _series(found, "x", "y")
-    return series | {"order": floats(found.order), "harmonics": harmonics}
+    return series | {"crank": found.crank, "order": floats(found.order), "harmonics": harmonics}
 
 
 def _body(body: Any) -> dict[str, Any]:

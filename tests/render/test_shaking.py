@@ -71,6 +71,8 @@ def test_orders_are_in_the_file_the_report_and_the_page_as_the_solution_has_them
     assert "goes 0 m along x" in text
     page = frame_of(motion)
     assert page is not None
+    assert page["crank"] == "crank"
+    assert all(one["size"].any() for one in page["harmonics"].values())  # what is rounding is no bar
     assert page["harmonics"]["motor"]["size"][1] == pytest.approx(torque.largest[torque.index(2)], rel=1e-6)
     assert "frame" in plots_of(motion)
     with house_style():

@@ -8,6 +8,7 @@ forward.
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import dataclass
 
@@ -80,6 +81,26 @@ class Figure:
             start, end = (0.0, 0.0), (BALL * foot, -ankle)
         angle = math.atan2(end[1] - start[1], end[0] - start[0])
         return self._along(self.table.foot).placed(*start, angle).times(2)
+
+    def lower_leg(self, ankle: float) -> tuple[float, MassProperties]:
+        """Shank and foot of one side as one rigid body, with an ankle that does not move.
+
+        ``ankle`` is the angle between shank and sole (rad), a right angle where one stands. Returns the length from the
+        ball of the foot to the knee (m), and the mass properties in the frame whose origin is the ball and whose x axis
+        leads to the knee. Raises ModelError for an angle that is not between 0 and pi.
+        """
+        if not 0.0 < ankle < math.pi:
+            raise ModelError(
+                f"figure: an ankle of {math.degrees(ankle):.4g} degrees is none; the angle between shank and sole is "
+                "between 0 and 180 degrees, and 90 where one stands"
+            )
+        shank = self.length("shank")
+        ball = complex(BALL * self.length("foot"), -self.length("ankle"))
+        knee = cmath.rect(shank, ankle)  # from the ankle, toes forward and the sole level
+        way = knee - ball
+        both = combined((self.limb("shank").placed(knee.real, knee.imag, ankle + math.pi), self.foot()))
+        whole = both.placed(-ball.real, -ball.imag).placed(0.0, 0.0, -cmath.phase(way))
+        return abs(way), whole.times(0.5)
 
     def arms(self, shoulder: tuple[float, float], hand: tuple[float, float], bend: int = 1) -> MassProperties:
         """Both arms between two places of one frame (m), as one rigid body.

@@ -21,8 +21,8 @@ class MassProperties:
         u, v = self.com
         return MassProperties(self.mass, (x + c * u - s * v, y + s * u + c * v), self.inertia)
 
-    def times(self, count: int) -> MassProperties:
-        """So many of them side by side, across the plane."""
+    def times(self, count: float) -> MassProperties:
+        """So many of them side by side, across the plane; half of what is the same on either side."""
         return MassProperties(count * self.mass, self.com, count * self.inertia)
 
 

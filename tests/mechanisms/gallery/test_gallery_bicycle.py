@@ -30,6 +30,24 @@ def sol() -> Solution:
     return leg.build(leg.Params()).sweep(steps=720)
 
 
+def lower_leg(p: leg.Params) -> tuple[float, tuple[float, float], float]:
+    """Winter's shank and foot, stiff: mass (kg), centre (m) from the ball towards the knee, inertia (kg m^2)."""
+    calf, sole = 0.246 * p.height, (0.48 * 0.152 * p.height, 0.039 * p.height)  # the ankle above and behind the ball
+    foot = math.hypot(*sole)
+    at_ankle = math.radians(p.ankle) + math.atan2(sole[1], sole[0])
+    to_knee = math.sqrt(calf**2 + foot**2 - 2 * calf * foot * math.cos(at_ankle))
+    at_ball = math.asin(calf * math.sin(at_ankle) / to_knee)  # between the foot and the way to the knee
+    ankle = np.array([foot * math.cos(at_ball), foot * math.sin(at_ball)])  # behind that way, where the heel is
+    knee = np.array([to_knee, 0.0])
+    weights = 0.0145 * p.rider, 0.0465 * p.rider
+    centres = 0.5 * ankle, ankle + 0.567 * (knee - ankle)
+    mass = sum(weights)
+    com = (weights[0] * centres[0] + weights[1] * centres[1]) / mass
+    own = weights[0] * (0.475 * foot) ** 2 + weights[1] * (0.302 * calf) ** 2
+    moved = sum(w * ((c - com) ** 2).sum() for w, c in zip(weights, centres, strict=True))
+    return mass, (float(com[0]), float(com[1])), float(own + moved)
+
+
 def places(p: leg.Params, crank: np.ndarray) -> dict[str, np.ndarray]:
     """Centres of mass (x, y) and angles of crank, shank and thigh for angles of the crank, by circles."""
     slope = math.radians(p.slope)
@@ -41,10 +59,13 @@ def places(p: leg.Params, crank: np.ndarray) -> dict[str, np.ndarray]:
     thigh = np.arctan2(way[1], way[0]) + at_hip  # the knee is in front
     to_knee = np.stack([np.cos(thigh), np.sin(thigh)])
     shank_way = hip + p.thigh * to_knee - pedal
+    along = shank_way / p.shank
+    across = np.stack([-along[1], along[0]])
+    x, y = lower_leg(p)[1]
     return {
         "crank": np.stack([*(0.5 * pedal), crank]),
         "thigh": np.stack([*(hip + 0.433 * p.thigh * to_knee), thigh]),
-        "shank": np.stack([*(pedal + 0.394 * shank_way), np.arctan2(shank_way[1], shank_way[0])]),
+        "shank": np.stack([*(pedal + x * along + y * across), np.arctan2(shank_way[1], shank_way[0])]),
     }
 
 
@@ -57,7 +78,7 @@ def test_the_torque_at_the_crank_is_that_of_virtual_work(sol: Solution) -> None:
     masses = {
         "crank": (p.crank_mass, p.crank_mass * p.crank**2 / 12),
         "thigh": (0.100 * p.rider, 0.100 * p.rider * (0.323 * p.thigh) ** 2),
-        "shank": (0.061 * p.rider, 0.061 * p.rider * (0.416 * p.shank) ** 2),
+        "shank": lower_leg(p)[::2],
     }
     slopes = {}
     wanted = np.zeros(len(sol.t))

@@ -54,8 +54,10 @@ def split(
     """What lies ahead of a line through ``at``, in the direction ``towards`` (rad), and what lies behind it."""
     import cadquery as cq
 
+    along = shape.val().BoundingBox().center.z  # a plate may be far along its shaft
+
     def half(side: float, wide: float) -> cq.Workplane:
-        box = cq.Workplane().box(2 * reach, wide * reach, wide * reach).translate((side * (reach + KERF), 0, 0))
+        box = cq.Workplane().box(2 * reach, wide * reach, wide * reach).translate((side * (reach + KERF), 0, along))
         return shape.intersect(placed(box, *at, turn=math.degrees(towards)))
 
     cuts = ((half(1.0, wide), half(-1.0, wide)) for wide in WIDTHS)

@@ -3,6 +3,7 @@
  *
  * @typedef {{name: string, values: Float32Array, body?: string}} Line  of a body, whose colour it has
  * @typedef {{title: string, unit: string, lines: Line[]}} Chart
+ * @typedef {{title: string, unit: string, crank: string, orders: Float32Array, sizes: Float32Array, body?: string}} Spectrum
  */
 import { KINDS } from "../app.js";
 
@@ -16,6 +17,22 @@ export function chartsOf(payload, thing) {
   const one = thing && payload[KINDS[thing.kind]]?.[thing.name];
   const charts = one ? OF[thing.kind](one) : overview(payload);
   return charts.map((chart) => ({ ...chart, lines: chart.lines.filter((line) => line.values) })).filter((chart) => chart.lines.length);
+}
+
+/**
+ * Harmonics against the crank: of the frame and the drivers for the whole machine, else of a driver or a joint with ground.
+ *
+ * @param {import("./decode.js").Payload} payload  @param {import("../state.js").Thing | null} thing  @returns {Spectrum[]}
+ */
+export function spectraOf(payload, thing) {
+  const { frame, drivers } = payload;
+  if (!frame?.harmonics) return [];
+  const wanted = thing ? [thing.name] : ["shaking force", "shaking moment", "shaking couple", ...Object.keys(drivers)];
+  if (thing && !["driver", "joint"].includes(thing.kind)) return [];
+  return wanted.filter((name) => frame.harmonics[name]).map((name) => {
+    const { unit, size } = frame.harmonics[name], words = thing ? (thing.kind === "joint" ? "the reaction" : "the effort") : name.startsWith("shaking") ? `the ${name}` : name;
+    return { title: `Orders of ${words}`, unit, crank: frame.crank, orders: frame.order, sizes: size, body: thing || !drivers[name] ? undefined : acted(drivers[name]) };
+  });
 }
 
 /** All things that have curves, by kind. @returns {import("../state.js").Thing[]} */

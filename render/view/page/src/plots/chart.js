@@ -9,7 +9,7 @@ import { el } from "../ui/dom.js";
 export const HEIGHT = 148;
 /** SI: less is rounding. */
 const NOTHING = 1e-12;
-const AXIS = "12px system-ui, sans-serif";
+export const AXIS = "12px system-ui, sans-serif";
 
 export class Chart {
   /**

@@ -1,12 +1,13 @@
 /** The side panel: which thing is chosen, and its curves under the same cursor. */
 import { figures } from "../data/numbers.js";
-import { chartsOf, thingsOf } from "../data/quantities.js";
+import { chartsOf, spectraOf, thingsOf } from "../data/quantities.js";
 import { same } from "../state.js";
 import { el } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { inks } from "../view2d/inks.js";
 import { Chart } from "./chart.js";
 import { csv, download } from "./csv.js";
+import { Spectrum } from "./spectrum.js";
 
 const WORDS = { joint: "Joints", body: "Bodies", driver: "Drivers", point: "Points", force: "Forces", contact: "Contacts" };
 
@@ -18,6 +19,7 @@ export class Plots {
   constructor(app) {
     this.app = app;
     this.made = [];
+    this.spectra = [];
     this.choice = el("select", { class: "choice", "aria-label": "Curves of", onchange: () => app.store.set({ selected: this.choice.value ? this.things[Number(this.choice.value)] : null }) });
     const save = el("button", { type: "button", class: "round", title: "Save these curves as CSV (s)", "aria-label": "Save these curves as CSV", onclick: () => this.save() }, icon("save"));
     this.marks = el("p", { class: "happens" });
@@ -33,12 +35,16 @@ export class Plots {
     const { payload, store } = this.app, { selected } = store.state, colours = inks(this.app.dark, payload.bodies);
     this.options();
     this.charts = chartsOf(payload, selected);
+    const spectra = spectraOf(payload, selected);
     const inked = Object.values(payload.bodies).map((body) => body.inks);
-    const key = JSON.stringify([this.app.dark, selected, inked, this.charts.map(({ title, unit, lines }) => [title, unit, lines.map(({ name, body }) => [name, body])])]);
-    if (key === this.key) this.made.forEach((chart, k) => chart.take(this.charts[k]));
-    else {
-      for (const chart of this.made) chart.remove();
+    const key = JSON.stringify([this.app.dark, selected, inked, this.charts.map(({ title, unit, lines }) => [title, unit, lines.map(({ name, body }) => [name, body])]), spectra.map(({ title, unit, body }) => [title, unit, body])]);
+    if (key === this.key) {
+      this.made.forEach((chart, k) => chart.take(this.charts[k]));
+      this.spectra.forEach((spectrum, k) => spectrum.take(spectra[k]));
+    } else {
+      for (const chart of [...this.made, ...this.spectra]) chart.remove();
       this.made = this.charts.map((chart) => new Chart(this.list, this.app, chart, colours));
+      this.spectra = spectra.map((spectrum) => new Spectrum(this.list, spectrum, colours));
     }
     this.key = key;
     this.happens(this.all);
@@ -74,7 +80,7 @@ export class Plots {
     const width = Math.max(this.list.clientWidth - 28, 200);
     if (width === this.width) return;
     this.width = width;
-    for (const chart of this.made) chart.resize(width);
+    for (const chart of [...this.made, ...this.spectra]) chart.resize(width);
   }
 
   cursor() { for (const chart of this.made) chart.cursor(); }

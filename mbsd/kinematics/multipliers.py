@@ -164,11 +164,11 @@ def _multipliers(
             return np.linalg.solve(jac.transpose(0, 2, 1), loads[:, 3:, None])[..., 0]
         except np.linalg.LinAlgError:
             singular = int(np.argmin(np.abs(np.linalg.det(jac))))
-            raise _undetermined(ready, times[singular]) from None
+            raise _undetermined(ready, float(times[singular])) from None
     lam = np.zeros(jac.shape[:2])
     singular = multipliers_along(ready.sequence, ready.factors, compact, np.ascontiguousarray(loads), lam)
     if singular != ALL_SOLVED:
-        raise _undetermined(ready, times[singular])
+        raise _undetermined(ready, float(times[singular]))
     return lam
 
 

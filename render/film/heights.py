@@ -50,10 +50,6 @@ PASSING = 24
 Array = NDArray[np.float64]
 
 
-def _cos(eighths: int) -> float:
-    return math.cos(math.tau * eighths / 8)
-
-
 class Heights:
     """Of what floats over the bodies of one film."""
 
@@ -89,10 +85,10 @@ class Heights:
         found = []
         for body in bodies:
             theta = self.poses.body(body, at)[2]
-            for k in range(DIRECTIONS):
-                angle = math.tau * k / DIRECTIONS
-                x, y = u + radius * math.cos(theta + angle), v + radius * math.sin(theta + angle)
-                found += [(top, body != "ground", -k, body, angle) for top in self.space.tops_at(body, x, y, at)]
+            angles = math.tau * np.arange(DIRECTIONS) / DIRECTIONS
+            round_it = np.stack([u + radius * np.cos(theta + angles), v + radius * np.sin(theta + angles)], axis=1)
+            for k, under in enumerate(self.space.tops_under(body, round_it, at)):
+                found += [(top, body != "ground", -k, body, float(angles[k])) for top in under]
         if not found:
             return None
         base, _, _, outer, direction = max(found)
@@ -102,13 +98,14 @@ class Heights:
     def _passing(self, places: Array, radius: float) -> float:
         """The highest piece that is ever over a disc that is at these places (T, 2) of the motion."""
         time = self.poses.time
-        over = []
+        turns = math.tau * np.arange(8) / 8
+        disc = radius * np.concatenate([[(0.0, 0.0)], np.stack([np.cos(turns), np.sin(turns)], axis=1)])
+        over = [0.0]
         for k in np.linspace(0, len(time) - 1, PASSING).round().astype(int):
             at = Moment(float(time[k]), 0)
-            for turn in (None, *range(8)):
-                x, y = places[k] if turn is None else places[k] + radius * np.array([_cos(turn), _cos(turn - 2)])
-                over += [top for body in self.parts.bodies for top in self.space.tops_at(body, x, y, at)]
-        return max(over, default=0.0)
+            for body in self.parts.bodies:
+                over += [max(under) for under in self.space.tops_under(body, places[k] + disc, at) if under]
+        return max(over)
 
     def label(self, name: str, at: Moment) -> Point:
         """Just over the highest piece that a joint or traced point goes through."""

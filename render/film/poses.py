@@ -23,20 +23,51 @@ def hermite(time: Array, value: Array, rate: Array, acceleration: Array, t: Arra
     Samples right before and after an event share a time; at that time the later counts. ``t`` outside ``time`` is
     held at the nearest end.
     """
-    t = np.clip(np.atleast_1d(np.asarray(t, dtype=float)), time[0], time[-1])
-    starts = np.flatnonzero(np.diff(time) > 0)
-    i = starts[np.clip(np.searchsorted(time[starts], t, side="right") - 1, 0, len(starts) - 1)]
-    h = time[i + 1] - time[i]
-    s = (t - time[i]) / h
-    s3, s4, s5 = s**3, s**4, s**5
-    return (
-        value[i] * (1 - 10 * s3 + 15 * s4 - 6 * s5)
-        + rate[i] * h * (s - 6 * s3 + 8 * s4 - 3 * s5)
-        + acceleration[i] * h**2 * (0.5 * s**2 - 1.5 * s3 + 1.5 * s4 - 0.5 * s5)
-        + value[i + 1] * (10 * s3 - 15 * s4 + 6 * s5)
-        + rate[i + 1] * h * (-4 * s3 + 7 * s4 - 3 * s5)
-        + acceleration[i + 1] * h**2 * (0.5 * s3 - s4 + 0.5 * s5)
-    )
+    return Quintic(time).at(t).of(value, rate, acceleration)
+
+
+class Quintic:
+    """Where times lie between samples at ``time`` (n,), and how much each sample counts there."""
+
+    def __init__(self, time: Array) -> None:
+        self._time, self._starts = time, np.flatnonzero(np.diff(time) > 0)
+
+    def at(self, t: Array | float) -> Quintic.Weights:
+        """Of times ``t`` (m,)."""
+        time, starts = self._time, self._starts
+        t = np.clip(np.atleast_1d(np.asarray(t, dtype=float)), time[0], time[-1])
+        i = starts[np.clip(np.searchsorted(time[starts], t, side="right") - 1, 0, len(starts) - 1)]
+        h = time[i + 1] - time[i]
+        s = (t - time[i]) / h
+        s3, s4, s5 = s**3, s**4, s**5
+        first = (
+            1 - 10 * s3 + 15 * s4 - 6 * s5,
+            s - 6 * s3 + 8 * s4 - 3 * s5,
+            0.5 * s**2 - 1.5 * s3 + 1.5 * s4 - 0.5 * s5,
+        )
+        second = 10 * s3 - 15 * s4 + 6 * s5, -4 * s3 + 7 * s4 - 3 * s5, 0.5 * s3 - s4 + 0.5 * s5
+        return Quintic.Weights(i, h, first, second)
+
+    @dataclass(frozen=True)
+    class Weights:
+        """Of value, rate and acceleration at both ends of the interval ``i`` (m,) of length ``h``."""
+
+        i: NDArray[np.intp]
+        h: Array
+        first: tuple[Array, Array, Array]
+        second: tuple[Array, Array, Array]
+
+        def of(self, value: Array, rate: Array, acceleration: Array) -> Array:
+            """A series (n,) at these times (m,)."""
+            i, h, (a, b, c), (d, e, f) = self.i, self.h, self.first, self.second
+            return (
+                value[i] * a
+                + rate[i] * h * b
+                + acceleration[i] * h**2 * c
+                + value[i + 1] * d
+                + rate[i + 1] * h * e
+                + acceleration[i + 1] * h**2 * f
+            )
 
 
 @dataclass(frozen=True)
@@ -53,6 +84,8 @@ class Poses:
     def __init__(self, motion: Motion) -> None:
         self.motion = motion
         self.time = np.asarray(motion.time)
+        self._quintic = Quintic(self.time)
+        self._last = math.nan, self._quintic.at(self.time[0])
         self._series: dict[tuple[str, str], tuple[Array, Array, Array]] = {}
         for name, body in motion.bodies.items():
             self._series[name, "x"] = _arrays(body.x, body.vx, body.ax)
@@ -67,7 +100,10 @@ class Poses:
         """x, y (m) and the unwrapped theta (rad) of a body's frame; a body that never moves is at the origin."""
         if name not in self.motion.bodies:
             return 0.0, 0.0, 0.0
-        x, y, theta = (float(hermite(self.time, *self._series[name, k], at.time)[0]) for k in ("x", "y", "theta"))
+        if self._last[0] != at.time:  # all bodies are asked for one moment after another
+            self._last = at.time, self._quintic.at(at.time)
+        weights = self._last[1]
+        x, y, theta = (float(weights.of(*self._series[name, k])[0]) for k in ("x", "y", "theta"))
         angles = self.motion.bodies[name].theta
         whole = round((angles[-1] - angles[0]) / math.tau) if self.motion.period is not None else 0
         return x, y, theta + math.tau * whole * at.turns
@@ -76,11 +112,13 @@ class Poses:
         """Poses (n, 3) of a body at times (n,) of the motion's first period."""
         if name not in self.motion.bodies:
             return np.zeros((len(times), 3))
-        return np.stack([hermite(self.time, *self._series[name, k], times) for k in ("x", "y", "theta")], axis=1)
+        weights = self._quintic.at(times)
+        return np.stack([weights.of(*self._series[name, k]) for k in ("x", "y", "theta")], axis=1)
 
     def point(self, name: str, times: Array) -> Array:
         """Positions (n, 2) of a traced point at mechanism times (n,)."""
-        return np.stack([hermite(self.time, *self._points[name, k], times) for k in ("x", "y")], axis=1)
+        weights = self._quintic.at(times)
+        return np.stack([weights.of(*self._points[name, k]) for k in ("x", "y")], axis=1)
 
     def joint(self, name: str, at: Moment) -> tuple[float, float]:
         """x, y (m) of a joint: a marker fixed to its second body, carried along by that body's pose."""

@@ -14,6 +14,8 @@ MILLIMETRE = 0.001
 """STL files are in millimetres, everything else here is in metres."""
 DIRECTIONS, LEANS = 72, (-2.0, -1.0, -0.4, 0.0, 0.4, 1.0, 2.0)
 """In the plane, and how steeply up, in which points are looked for that are outermost."""
+SIDES = 16
+"""Of the polygon within which no corner of a hull is looked for."""
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
@@ -26,9 +28,9 @@ def read_triangles(path: Path) -> Array:
     return np.frombuffer(content, _TRIANGLE, count, 84)["corners"].astype(float) * MILLIMETRE
 
 
-def read_vertices(path: Path) -> Array:
-    """Corners (n, 3) in m of a binary STL, each once; raises UserError if the file is not whole."""
-    return np.unique(read_triangles(path).reshape(-1, 3), axis=0)
+def read_corners(path: Path) -> Array:
+    """Corners (3 n, 3) in m of all triangles of a binary STL; raises UserError if the file is not whole."""
+    return read_triangles(path).reshape(-1, 3)
 
 
 def prism(vertices: Array) -> Array:
@@ -45,7 +47,7 @@ def outermost(points: Array) -> Array:
     angles = np.linspace(0.0, 2 * np.pi, DIRECTIONS, endpoint=False)
     ways = np.array([(np.cos(angle), np.sin(angle), lean) for angle in angles for lean in LEANS])
     ways = np.concatenate([ways, [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0)]])
-    return points[np.unique((points @ ways.T).argmax(axis=0))]
+    return points[np.unique((ways @ points.T).argmax(axis=1))]
 
 
 def swept(outline: Array, poses: Array) -> Array:
@@ -59,7 +61,7 @@ def swept(outline: Array, poses: Array) -> Array:
 
 def _convex_outline(points: Array) -> Array:
     """Corners of the convex hull of points (n, 2), by Andrew's monotone chain."""
-    ordered = np.unique(points, axis=0)
+    ordered = np.unique(_not_inside(points), axis=0)
     if len(ordered) < 3:
         return ordered
 
@@ -75,3 +77,21 @@ def _convex_outline(points: Array) -> Array:
         return kept[:-1]
 
     return np.array(chain(ordered) + chain(ordered[::-1]))
+
+
+def _not_inside(points: Array) -> Array:
+    """Those of points (n, 2) that are not inside a polygon of outermost ones (Akl, Toussaint 1978): most are."""
+    ways = _around(SIDES)
+    corners = points[(ways @ points.T).argmax(axis=1)]
+    inside = np.full(len(points), bool((corners != corners[0]).any()))
+    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        if (a != b).any():
+            x, y = b - a
+            inside &= x * (points[:, 1] - a[1]) - y * (points[:, 0] - a[0]) > 0
+    return points[~inside]
+
+
+def _around(count: int) -> Array:
+    """So many directions (n, 2) in the plane."""
+    angles = np.linspace(0.0, 2 * np.pi, count, endpoint=False)
+    return np.stack([np.cos(angles), np.sin(angles)], axis=1)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from render.film.clock import turns_of
 from render.film.poses import Moment, Poses
-from render.film.solids import outermost, prism, read_vertices, swept
+from render.film.solids import outermost, prism, read_corners, swept
 from shared.contract import Parts
 
 Array = NDArray[np.float64]
@@ -57,9 +57,8 @@ class SweptSpace:
     def places(self, times: Array) -> Array:
         """The outermost points (T, n, 3) of all that moves at ``times`` (T,); none if nothing moves."""
         found: list[Array] = [np.zeros((len(times), 0, 3))]
-        for body, outlines in self._outlines.items():
-            if body in self._poses.motion.bodies and outlines:
-                points = outermost(np.concatenate(outlines))
+        for body, points in self._farthest.items():
+            if body in self._poses.motion.bodies:
                 found.append(swept(points, self._poses.over(body, times)).reshape(len(times), -1, 3))
         return np.concatenate(found, axis=1)
 
@@ -85,19 +84,39 @@ class SweptSpace:
 
     def tops_at(self, body: str, x: float, y: float, at: Moment) -> list[float]:
         """Heights of the body's pieces whose box, in the body's frame, holds the point (x, y) at that moment."""
+        return self.tops_under(body, np.array([[x, y]]), at)[0]
+
+    def tops_under(self, body: str, points: Array, at: Moment) -> list[list[float]]:
+        """The same of each of points (n, 2)."""
+        if body not in self._boxes:
+            return [[] for _ in points]
+        low, high, top = self._boxes[body]
         x0, y0, theta = self._poses.body(body, at)
-        turned = cmath.exp(-1j * theta) * complex(x - x0, y - y0)
-        local = np.array([turned.real, turned.imag])
-        return [
-            float(box[:, 2].max())
-            for box in self._outlines.get(body, [])
-            if (box[:, :2].min(axis=0) <= local).all() and (local <= box[:, :2].max(axis=0)).all()
-        ]
+        turned = cmath.exp(-1j * theta) * (points[:, 0] - x0 + 1j * (points[:, 1] - y0))
+        local = np.stack([turned.real, turned.imag], axis=1)[:, None]
+        holds = ((low <= local) & (local <= high)).all(axis=2)
+        return [top[held].tolist() for held in holds]
+
+    @cached_property
+    def _boxes(self) -> dict[str, tuple[Array, Array, Array]]:
+        """Lowest and highest x, y (n, 2) and the top (n,) of the pieces of each body, in its frame."""
+        found = {}
+        for body, outlines in self._outlines.items():
+            low, high = (
+                np.array([side(piece, axis=0) for piece in outlines]).reshape(-1, 3) for side in (np.min, np.max)
+            )
+            found[body] = low[:, :2], high[:, :2], high[:, 2]
+        return found
 
     @cached_property
     def _outlines(self) -> dict[str, list[Array]]:
         """The upright prism around each piece, in its body's frame."""
-        return {body: [prism(read_vertices(file)) for file in files] for body, files in self._files.items()}
+        return {body: [prism(read_corners(file)) for file in files] for body, files in self._files.items()}
+
+    @cached_property
+    def _farthest(self) -> dict[str, Array]:
+        """The outermost points of each body that has solids, in its frame."""
+        return {body: outermost(np.concatenate(outlines)) for body, outlines in self._outlines.items() if outlines}
 
     @cached_property
     def _moments(self) -> list[Moment]:
@@ -114,13 +133,12 @@ class SweptSpace:
         """The swept points of each body."""
         clouds: dict[str, Array] = {}
         times = np.array([at.time for at in self._moments])
-        points = {body: np.concatenate(outlines) for body, outlines in self._outlines.items() if outlines}
-        for body, outline in points.items():
+        for body, farthest in self._farthest.items():
             poses = self._poses.over(body, times)
             if np.ptp(poses, axis=0).max() < 1e-12:
-                clouds[body] = swept(outline, poses[:1])
+                clouds[body] = swept(np.concatenate(self._outlines[body]), poses[:1])
             else:  # a chain of a hundred links would have forty million points
-                clouds[body] = swept(outermost(outline), poses)
+                clouds[body] = swept(farthest, poses)
         return clouds
 
     @cached_property

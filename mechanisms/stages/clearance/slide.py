@@ -8,6 +8,7 @@ which outlines in the plane of the motion do not.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +16,8 @@ import numpy as np
 from mechanisms.stages.clearance.path import BodyPath, relative
 
 if TYPE_CHECKING:
+    from manifold3d import Manifold
+
     from mechanisms.stages.clearance.pieces import MeshPiece
     from shared.contract import Motion
 
@@ -23,10 +26,23 @@ ROUNDING = 1e-3
 STRAIGHT = 1e-4
 """A slide may leave its line by so much (mm), or turn by so much per mm of reach."""
 
-type Slides = dict[frozenset[str], dict[str, tuple[float, np.ndarray]]]
-"""By pair of bodies: in the frame of either the direction of the line (rad), and the place (2,) of a point of the pair
-that is on one line along it (mm).
-"""
+BESIDE = (1.0, 0.3, 0.1)
+"""Parts of the reach: so far ahead and behind of what slides the other piece is looked at."""
+
+
+@dataclass(frozen=True)
+class Slide:
+    """The line of a prismatic joint."""
+
+    lines: dict[str, tuple[float, np.ndarray]]
+    """In the frame of either body: its direction (rad), and a point (2,) of it (mm)."""
+    mover: str
+    way: tuple[float, float]
+    """Least and largest way (mm) of the mover's point along the line from the point of the other body."""
+
+
+type Slides = dict[frozenset[str], Slide]
+"""By pair of bodies."""
 
 
 def slides_of(motion: Motion, where: Mapping[str, BodyPath]) -> Slides:
@@ -43,34 +59,57 @@ def slides_of(motion: Motion, where: Mapping[str, BodyPath]) -> Slides:
         if np.ptp(aside) > STRAIGHT or np.ptp(seen[:, 2]) > 1e-2 * STRAIGHT:
             continue
         angle = float(np.arctan2(along[1], along[0]))
-        found[frozenset(joint.bodies)] = {
-            mover: (angle - float(middle[2]), np.zeros(2)),
-            still: (angle, middle[:2]),
-        }
+        way = (seen[:, :2] - middle[:2]) @ along
+        between = float(np.abs(np.diff(way)).max(initial=0.0))  # it may turn back between two samples
+        found[frozenset(joint.bodies)] = Slide(
+            {mover: (angle - float(middle[2]), np.zeros(2)), still: (angle, middle[:2])},
+            mover,
+            (float(way.min()) - between, float(way.max()) + between),
+        )
     return found
 
 
-def slide_gap(first: MeshPiece, second: MeshPiece, slides: Slides) -> tuple[float, float] | None:
+def slide_gap(first: MeshPiece, second: MeshPiece, slides: Slides, reach: float = np.inf) -> tuple[float, float] | None:
     """The gap (mm) of the two outlines along the line of their bodies, and what of it is proven; None where there is no
     such line, or where the outlines overlap.
+
+    What the other never comes within ``reach`` (mm) of along the line, as the closed end of a cylinder, is left out;
+    None as well where the gap is more than what is left out is away.
     """
-    line = slides.get(frozenset((first.body, second.body)))
-    if line is None:
+    slide = slides.get(frozenset((first.body, second.body)))
+    if slide is None:
         return None
-    outlines = [_outline(piece, *line[piece.body]) for piece in (first, second)]
-    if (outlines[0] ^ outlines[1]).area() > 0.0:
-        return None
-    a, b = ([np.asarray(loop) for loop in one.to_polygons()] for one in outlines)
-    gap = min(_distance(p, q) for p in a for q in b)
-    return gap, max(gap - ROUNDING, 0.0)
+    turned = [piece.manifold.transform(_along(*slide.lines[piece.body])) for piece in (first, second)]
+    low, high = slide.way if first.body == slide.mover else (-slide.way[1], -slide.way[0])  # of the first
+    (near, far), (start, end) = (one.bounding_box()[2::3] for one in turned)
+    whole = np.inf, *(part * reach for part in BESIDE)
+    for away in whole if np.isfinite(reach) else whole[:1]:
+        a = _between(turned[0], start - high - away, end - low + away)
+        b = _between(turned[1], near + low - away, far + high + away)
+        if a.is_empty() or b.is_empty():
+            return None
+        outlines = a.project(), b.project()
+        if (outlines[0] ^ outlines[1]).area() > 0.0:
+            continue
+        loops = [[np.asarray(loop) for loop in one.to_polygons()] for one in outlines]
+        gap = min(_distance(p, q) for p in loops[0] for q in loops[1])
+        if gap <= away:
+            return gap, max(gap - ROUNDING, 0.0)
+    return None
 
 
-def _outline(piece: MeshPiece, angle: float, through: np.ndarray):
-    """A ``manifold3d.CrossSection``: the piece seen along a direction, across it and in height (mm)."""
+def _along(angle: float, through: np.ndarray) -> np.ndarray:
+    """(3, 4) that gives, of a point of a piece, its place across the line, its height and its place along it (mm)."""
     c, s = np.cos(angle), np.sin(angle)
     x, y = through
-    turned = np.array([[-s, c, 0.0, s * x - c * y], [0.0, 0.0, 1.0, 0.0], [c, s, 0.0, 0.0]])
-    return piece.manifold.transform(turned).project()
+    return np.array([[-s, c, 0.0, s * x - c * y], [0.0, 0.0, 1.0, 0.0], [c, s, 0.0, -c * x - s * y]])
+
+
+def _between(piece: Manifold, low: float, high: float) -> Manifold:
+    """What of a piece lies between two places along the line."""
+    if np.isfinite(low):
+        piece = piece.trim_by_plane((0.0, 0.0, 1.0), low)
+    return piece.trim_by_plane((0.0, 0.0, -1.0), -high) if np.isfinite(high) else piece
 
 
 def _distance(p: np.ndarray, q: np.ndarray) -> float:

@@ -137,7 +137,7 @@ def check(
         if height >= limit:
             pairs.append(_pair(first, second, height, height, None, "layers", 0))
             continue
-        found = _turn(first, second, axes, sweep, limit, reach) or _slide(first, second, slides, limit)
+        found = _turn(first, second, axes, sweep, limit, reach) or _slide(first, second, slides, limit, reach)
         if found is None:
             least = least_in_mesh(sweep, in_mesh, where) or least_gap(sweep, reach)
             if least.gap < limit or least.proven < limit / 2:
@@ -181,11 +181,11 @@ def _turn(
     return _pair(first, second, gap, proven, None, "turn", 1)
 
 
-def _slide(first: MeshPiece, second: MeshPiece, slides: Slides, limit: float) -> PairClearance | None:
+def _slide(first: MeshPiece, second: MeshPiece, slides: Slides, limit: float, reach: float) -> PairClearance | None:
     """The gap at every place along the line of a prismatic joint between two bodies; None if that is not enough."""
     from mechanisms.stages.clearance.slide import slide_gap
 
-    found = slide_gap(first, second, slides)
+    found = slide_gap(first, second, slides, reach)
     if found is None or found[1] < limit:
         return None
     return _pair(first, second, *found, None, "slide", 1)

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from mbsd import Solution
     from mechanisms.stages.solve.masses import Source
 
+NOISE = 1e-9
+"""An effort below this part of the largest reaction is rounding."""
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite")
 _MOTION = ("solving", "refined_times", "masses", "estimated_masses")
 _STAGE = ("stage", *_MOTION, "motion_file", "body_colours", "shapes", "skeleton_file")
@@ -122,10 +124,12 @@ def _summary(solution: Solution) -> str:
     idle = [name for name, (effort, _) in efforts.items() if not effort.any()]
     if idle:  # their place is taken by forces that were asked for, or nothing has mass
         efforts = {name: one for name, one in (efforts | acting).items() if name not in idle}
-    peaks = [
-        f"{name} up to {written(float(abs(effort).max()), 'N m' if angular else 'N')}"
-        for name, (effort, angular) in efforts.items()
-    ]
+    loads = [float(solution.joint(joint).magnitude.max()) for joint in solution.mechanism.joints]
+    rounding = NOISE * max(loads, default=0.0)
+    peaks = []
+    for name, (effort, angular) in efforts.items():
+        peak, least = float(abs(effort).max()), rounding * (solution.packed.size if angular else 1.0)
+        peaks.append(f"{name} up to {written(peak if peak > least else 0.0, 'N m' if angular else 'N')}")
     return ", ".join(
         [
             f"{len(solution.t)} times over {solution.t[-1] - solution.t[0]:.4g} s",

@@ -81,13 +81,14 @@ def outermost(points: Array) -> Array:
     k = np.arange(WAYS) + 0.5
     up, turn = 1 - 2 * k / WAYS, np.pi * (1 + 5**0.5) * k
     flat = np.sqrt(1 - up**2)
-    ways = np.stack([flat * np.cos(turn), flat * np.sin(turn), up])
+    ways = np.stack([flat * np.cos(turn), flat * np.sin(turn), up], axis=1)
     best = np.full(WAYS, -np.inf)
     chosen = np.zeros(WAYS, int)
     for first in range(0, len(points), 100_000):  # of a chain there are millions
-        reach = points[first : first + 100_000] @ ways
-        top = reach.max(axis=0)
+        reach = ways @ points[first : first + 100_000].T
+        at = reach.argmax(axis=1)
+        top = reach[np.arange(WAYS), at]
         better = top > best
-        chosen[better] = first + reach.argmax(axis=0)[better]
+        chosen[better] = first + at[better]
         best = np.maximum(best, top)
     return points[np.unique(chosen)]

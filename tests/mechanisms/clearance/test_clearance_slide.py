@@ -80,6 +80,19 @@ def test_what_stands_in_the_way_is_left_to_the_motion() -> None:
     assert pair.gap == pytest.approx(3e-3, abs=1e-5)
 
 
+@pytest.mark.parametrize(("end", "proof", "gap"), [(17.0, "slide", 0.12), (3.0, "slide", 0.12), (0.08, "motion", 0.08)])
+@pytest.mark.parametrize("angle", [0.0, 0.7])
+def test_what_is_out_of_reach_along_the_line_is_left_out(end: float, proof: str, gap: float, angle: float) -> None:
+    """A cylinder with a closed end, ``end`` mm from where the block turns back."""
+    block, wall, _ = walls(0.12, angle)
+    stop = turned(box("ground", "end", 108.0 + end + 2.5, 0.0, -5.0, (5.0, 18.0, 20.0)), angle)
+    closed = MeshPiece("ground", "left", np.concatenate([wall.triangles, stop.triangles]))
+    (pair,) = checked([block, closed], slider(angle)).pairs
+    assert pair.proof == proof
+    assert pair.gap == pytest.approx(gap * 1e-3, abs=2e-6)
+    assert pair.proven <= pair.gap
+
+
 def test_bodies_without_such_a_joint_have_no_line() -> None:
     motion = slider(0.0)
     assert set(slides_of(motion, paths(motion))) == {frozenset(("ground", "block"))}

@@ -14,7 +14,7 @@ from hypothesis.extra.numpy import arrays
 from render.film.composing import room
 from render.film.film import Film
 from render.film.framing import NEAREST, SENSOR, CameraPose, axes, depth_of_field, fit, project
-from render.film.solids import prism, read_vertices, swept
+from render.film.solids import prism, read_corners, swept
 from render.presets import ASPECTS
 from shared.contract import Mount, mounted, read_motion, read_parts
 from shared.contract.shot import Camera, Shot, Title
@@ -68,7 +68,7 @@ def test_every_body_that_moves_stays_in_the_frame_over_the_whole_film_and_fills_
         state = film.state(frame)
         for body in film.motion.bodies:
             for piece in film.parts.bodies[body].pieces.values():
-                corners = swept(read_vertices(out.parts_folder / piece.stl), np.array([state.bodies[body]]))
+                corners = swept(read_corners(out.parts_folder / piece.stl), np.array([state.bodies[body]]))
                 extremes.append(project(state.camera, corners, *shape) / shape)
     pixels = np.concatenate(extremes)
     assert pixels.min() >= 0.08 - 2e-3
@@ -161,6 +161,6 @@ def test_a_truncated_stl_is_refused(out_root: Path):
     path = out.parts_folder / "crank-crank.stl"
     path.write_bytes(path.read_bytes()[:-20])
     with pytest.raises(UserError, match=r"crank-crank\.stl is not a whole binary STL"):
-        read_vertices(path)
+        read_corners(path)
     with pytest.raises(UserError, match=r"crank-crank\.stl is not the file parts.json describes"):
         Film(read_motion(out.motion), read_parts(out.parts), Shot(), out.parts_folder)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from mechanisms.stages.automatic.assembly.body_shape import body_shape, first_made
 from mechanisms.stages.automatic.shafts.cylinders import SHANK
 from shared.shapes.link import Eye, link
+from shared.shapes.rough_box import rough_box
 from shared.shapes.solid import placed
 
 if TYPE_CHECKING:
@@ -54,7 +55,8 @@ def split(
     """What lies ahead of a line through ``at``, in the direction ``towards`` (rad), and what lies behind it."""
     import cadquery as cq
 
-    along = shape.val().BoundingBox().center.z  # a plate may be far along its shaft
+    low, high = rough_box(shape)
+    along = float(low[2] + high[2]) / 2  # a plate may be far along its shaft
 
     def half(side: float, wide: float) -> cq.Workplane:
         box = cq.Workplane().box(2 * reach, wide * reach, wide * reach).translate((side * (reach + KERF), 0, along))

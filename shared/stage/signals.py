@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import _thread
 import ctypes
 import signal
 import sys
@@ -79,7 +78,8 @@ def _coming_again(
         else:
             otherwise(unraisable)
             return
-        timer = threading.Timer(AGAIN, _thread.interrupt_main, (number,))
+        main = threading.main_thread().ident
+        timer = threading.Timer(AGAIN, signal.pthread_kill, (main, number))  # a real one: it ends what waits
         timer.daemon = True
         timer.start()
 

@@ -8,7 +8,8 @@ which outlines in the plane of the motion do not.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,6 +27,8 @@ ROUNDING = 1e-3
 STRAIGHT = 1e-4
 """A slide may leave its line by so much (mm), or turn by so much per mm of reach."""
 
+SLICES = 24
+"""In which what slides is cut, where it is not proven as a whole."""
 BESIDE = (1.0, 0.3, 0.1)
 """Parts of the reach: so far ahead and behind of what slides the other piece is looked at."""
 
@@ -96,6 +99,58 @@ def slide_gap(first: MeshPiece, second: MeshPiece, slides: Slides, reach: float 
         if gap <= away:
             return gap, max(gap - ROUNDING, 0.0)
     return None
+
+
+@dataclass(frozen=True)
+class Sliced:
+    """Slices of the mover are proven along the line, the rest is not: a valve's stem, but not its disc at the seat."""
+
+    gap: float
+    """Of these slices, mm; infinite where they stay farther than ``away``."""
+    away: float
+    rest: list[tuple[MeshPiece, MeshPiece]]
+    """What is left: parts of the mover, and what of the other piece they come near to."""
+
+
+def sliced(first: MeshPiece, second: MeshPiece, slides: Slides, reach: float) -> Sliced | None:
+    """The mover cut across its line; None where there is no line or where that is of no use.
+
+    All gaps below ``away`` are those of slices that are proven or of the rest.
+    """
+    slide = slides.get(frozenset((first.body, second.body)))
+    if slide is None:
+        return None
+    mover, other = (first, second) if first.body == slide.mover else (second, first)
+    ways = [_along(*slide.lines[piece.body]) for piece in (mover, other)]
+    moving, still = (piece.manifold.transform(way) for piece, way in zip((mover, other), ways, strict=True))
+    (low, high), away = slide.way, BESIDE[1] * reach
+    bottom, top = moving.bounding_box()[2::3]
+    edges = np.linspace(bottom, top, SLICES + 1)
+    gap, left = np.inf, list[tuple[float, float]]()
+    for start, end in pairwise(edges):
+        a, b = _between(moving, start, end).project(), _between(still, start + low - away, end + high + away).project()
+        if a.is_empty() or b.is_empty():
+            continue
+        if (a ^ b).area() > 0.0:
+            touches = bool(left) and left[-1][1] == start
+            left[-1:] = [(left[-1][0], end)] if touches else [*left[-1:], (start, end)]
+            continue
+        loops = [[np.asarray(loop) for loop in one.to_polygons()] for one in (a, b)]
+        gap = min(gap, *(_distance(p, q) for p in loops[0] for q in loops[1]))
+    if left == [(edges[0], edges[-1])]:
+        return None
+    rest = []
+    for start, end in left:
+        near = _between(still, start + low - reach, end + high + reach)
+        rest.append((_in_body(mover, _between(moving, start, end), ways[0]), _in_body(other, near, ways[1])))
+    return Sliced(gap if gap <= away else np.inf, away, rest)
+
+
+def _in_body(piece: MeshPiece, part: Manifold, way: np.ndarray) -> MeshPiece:
+    """A part of a piece that is seen along a line, in the frame of its body."""
+    mesh = part.to_mesh()
+    corners = (np.asarray(mesh.vert_properties, float)[:, :3] - way[:, 3]) @ way[:, :3]
+    return replace(piece, triangles=corners[np.asarray(mesh.tri_verts)])
 
 
 def _along(angle: float, through: np.ndarray) -> np.ndarray:

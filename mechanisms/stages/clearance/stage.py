@@ -8,7 +8,8 @@ Every pair of pieces of two bodies is settled by the first of these that suffice
    once (turn.py).
    This also covers a pin in its hole with 0.1 mm of room.
 4. Slide. Bodies with a prismatic joint between them slide along one line: the gap of pieces seen along it, at every
-   place at once (slide.py). This covers a piston in its liner.
+   place at once (slide.py). This covers a piston in its liner. Of a pair of which slices alone are proven so, as of a
+   valve in its guide, the rest is left to the motion.
 5. Motion. The gap of the two meshes over the whole motion, found and proven by branch and bound: of their outlines in
    the plane (outline_search.py), and where these do not tell it, of their facets (search.py). Of gears, over one pitch
    of their teeth (meshing.py).
@@ -36,7 +37,10 @@ from shared.stage.paths import ROOT, Out
 from shared.stage.stages import Stage, contract_sources, key_of, versions
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from mechanisms.stages.clearance.axes import Axes
+    from mechanisms.stages.clearance.path import BodyPath
     from mechanisms.stages.clearance.pieces import MeshPiece
     from mechanisms.stages.clearance.search.search import Least
     from mechanisms.stages.clearance.search.sweep import Sweep
@@ -138,6 +142,7 @@ def check(
             pairs.append(_pair(first, second, height, height, None, "layers", 0))
             continue
         found = _turn(first, second, axes, sweep, limit, reach) or _slide(first, second, slides, limit, reach)
+        found = found or _sliced(first, second, slides, where, limit, reach)
         if found is None:
             least = least_in_mesh(sweep, in_mesh, where) or least_gap(sweep, reach)
             if least.gap < limit or least.proven < limit / 2:
@@ -189,6 +194,31 @@ def _slide(first: MeshPiece, second: MeshPiece, slides: Slides, limit: float, re
     if found is None or found[1] < limit:
         return None
     return _pair(first, second, *found, None, "slide", 1)
+
+
+def _sliced(
+    first: MeshPiece, second: MeshPiece, slides: Slides, where: Mapping[str, BodyPath], limit: float, reach: float
+) -> PairClearance | None:
+    """The gap of a pair of which most is proven along a line and the rest by the motion; None if that is not enough."""
+    from mechanisms.stages.clearance.search.least import least_gap
+    from mechanisms.stages.clearance.search.sweep import Sweep
+    from mechanisms.stages.clearance.slide import ROUNDING, sliced
+
+    found = sliced(first, second, slides, reach)
+    if found is None or found.gap < limit:
+        return None
+    gap, proven, time, poses = found.gap, min(found.gap, found.away) - ROUNDING, None, 1
+    for mover, other in found.rest:
+        least = least_gap(Sweep(mover, other, where[mover.body], where[other.body]), reach)
+        if least.gap < limit or least.proven < limit / 2:
+            return None
+        poses += least.poses
+        proven = min(proven, least.proven)
+        if least.gap < gap:
+            gap, time = least.gap, least.time
+    if gap > found.away:
+        return None
+    return _pair(first, second, gap, proven, time, "slide" if time is None else "motion", poses)
 
 
 def _height_gap(first: MeshPiece, second: MeshPiece) -> float:

@@ -10,7 +10,9 @@ import pytest
 from mbsd import Mechanism, constant_rate
 from mechanisms.stages.clearance.path import paths
 from mechanisms.stages.clearance.pieces import MeshPiece
-from mechanisms.stages.clearance.slide import slide_gap, slides_of
+from mechanisms.stages.clearance.search.least import least_gap
+from mechanisms.stages.clearance.search.sweep import Sweep
+from mechanisms.stages.clearance.slide import sliced, slide_gap, slides_of
 from mechanisms.stages.clearance.stage import check
 from mechanisms.stages.solve.motion_file import to_motion
 from shared.contract import Motion
@@ -90,6 +92,25 @@ def test_what_is_out_of_reach_along_the_line_is_left_out(end: float, proof: str,
     (pair,) = checked([block, closed], slider(angle)).pairs
     assert pair.proof == proof
     assert pair.gap == pytest.approx(gap * 1e-3, abs=2e-6)
+    assert pair.proven <= pair.gap
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7])
+def test_a_stem_is_proven_along_its_line_and_its_disc_by_the_motion(angle: float) -> None:
+    """A block with a collar that comes as near as 0.3 mm to the end of the wall along which the block runs."""
+    block = walls(0.12, angle)[0]
+    collar = box("block", "block", -11.1, 8.0, 0.0, (6.0, 16.0, 10.0))  # behind the block, and wider
+    piece = MeshPiece("block", "block", np.concatenate([block.triangles, collar.triangles]))
+    guide = turned(box("ground", "left", 116.1, 12.62, -5.0, (47.8, 5.0, 20.0)), angle)
+    motion = slider(angle)
+    assert slide_gap(piece, guide, slides_of(motion, paths(motion)), 5.0) is None
+    found = sliced(piece, guide, slides_of(motion, paths(motion)), 5.0)
+    assert found is not None
+    assert found.gap == pytest.approx(0.12, abs=2e-3)
+    assert found.rest
+    (pair,) = checked([piece, guide], motion).pairs
+    whole = least_gap(Sweep(piece, guide, paths(motion)["block"], paths(motion)["ground"]), 5.0)
+    assert pair.gap == pytest.approx(whole.gap * 1e-3, abs=2e-6)
     assert pair.proven <= pair.gap
 
 

@@ -68,7 +68,7 @@ class Film:
             mechanism=self.motion.mechanism,
             fps=self.shot.fps,
             pieces=piece_specs(self.parts, self.shot, self.folder),
-            trails=self.trails.specs(),
+            trails=self.trails.specs(self.look.dark),
             labels=[LabelSpec(text=s.text, size=s.size * self.size, colour=s.colour) for s in self.shot.labels],
             studio=self.studio,
             tubes=[spec for one in self.drawn for spec in one.specs],

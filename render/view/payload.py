@@ -24,7 +24,7 @@ SI units and radians; names are those of data.json. Arrays are float32 unless sa
     marks                   [{time, words, kind: "event" or "dead point"}]
     skeleton                unit, low, high (m); strokes, names, times: see skeleton()
     arrows, arcs            see loads.py
-    trails                  [{point, colour (linear), tail (turns), radius, z}]
+    trails                  [{point, colour (linear) or null: as the theme has it, tail (turns), radius, z}]
     clearance               null, or limit and pairs: see loads.py
     solid                   null, or the parts: see solid.py
 
@@ -97,7 +97,13 @@ def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bo
         "skeleton": skeleton(moving),
         **({"arrows": arrows_of(motion, size), "arcs": arcs_of(motion, size)} if arrows else {}),
         "trails": [
-            {"point": one.point, "colour": list(one.colour), "tail": one.tail, "radius": one.radius * size, "z": 0.0}
+            {
+                "point": one.point,
+                "colour": one.colour and list(one.colour),
+                "tail": one.tail,
+                "radius": one.radius * size,
+                "z": 0.0,
+            }
             for one in trails_of(motion, shot)
         ],
         "clearance": None,

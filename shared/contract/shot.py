@@ -16,7 +16,6 @@ import msgspec
 from shared.contract import Motion, Parts
 from shared.contract.materials import MATERIALS
 from shared.contract.mount import Kind
-from shared.contract.signals import SIGNALS, linear
 from shared.stage import jsonfile
 from shared.stage.errors import UserError
 from shared.stage.suggestions import did_you_mean
@@ -60,8 +59,8 @@ class Trail(_Strict, frozen=True):
     """The path of a traced point, a thin light that fades behind it."""
 
     point: str
-    colour: Colour = linear(SIGNALS["trails"].dark)
-    """Linear RGB; by default that of trails in every picture."""
+    colour: Colour | None = None
+    """Linear RGB; null is the colour of trails in every picture, darker where what is behind them is bright."""
     tail: Annotated[float, msgspec.Meta(gt=0, le=1)] = 0.92
     """Length behind the point, in turns; of a motion without a period in parts of it."""
     radius: Annotated[float, msgspec.Meta(gt=0, le=0.1)] = 0.0046

@@ -78,7 +78,7 @@ def test_drawings_and_the_page_have_the_same_table() -> None:
             assert (quantity.colour, quantity.head) == (SIGNALS[name].light, SIGNALS[name].head)
     assert QUANTITIES["forces"].arcs == SIGNALS["torques"].light
     assert (SIGNALS["weights"].light, SIGNALS["trails"].light) == (WEIGHTS, TRAIL)
-    assert Trail(point="P").colour == linear(SIGNALS["trails"].dark)
+    assert Trail(point="P").colour is None  # as the look asks for
     inks = (PAGE / "src" / "view2d" / "inks.js").as_uri()
     script = f"import * as inks from {json.dumps(inks)}; console.log(JSON.stringify([inks.QUANTITIES, inks.HEADS]))"
     done = subprocess.run(

@@ -14,7 +14,6 @@ from render.film.scene import Point, TrailSpec
 SIDES = 10
 CAP = 4
 """Rings of the round end at the point."""
-BRIGHTNESS = 2.9
 
 
 def build(scene: Any, trail: TrailSpec) -> Any:
@@ -84,7 +83,7 @@ def _light(trail: TrailSpec) -> Any:
     made.cycles.emission_sampling = "NONE"  # a thin light sampled at random is all noise
     graph = Graph(made.node_tree).clear()
     fade = graph.add("Attribute", {"attribute_name": "fade"}).outputs["Fac"]
-    strength = graph.math("MULTIPLY", graph.math("ADD", 0.25, graph.math("MULTIPLY", fade, 0.75)), BRIGHTNESS)
+    strength = graph.math("MULTIPLY", graph.math("ADD", 0.25, graph.math("MULTIPLY", fade, 0.75)), trail.strength)
     light = graph.add("Emission", Color=trail.colour, Strength=strength).outputs[0]
     gone = graph.add("BsdfTransparent").outputs[0]
     mix = graph.add("MixShader", Fac=graph.math("MINIMUM", 1.0, graph.math("MULTIPLY", fade, 4.0)))

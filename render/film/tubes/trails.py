@@ -12,11 +12,14 @@ from render.film.poses import Poses
 from render.film.scene import Point, TrailSpec
 from shared.contract import Motion
 from shared.contract.shot import Shot, Trail
+from shared.contract.signals import SIGNALS, linear
 
 RINGS, MOST_RINGS = 160, 3000
 """Of a trail: the fewest and the most."""
 STRAY = 0.15
 """How far a trail may stray from its point's way between two rings, in its own radii."""
+LIGHT, INK = 2.9, 1.2
+"""How bright a trail is: one that shines, and one on what is bright itself."""
 BENT = 0.995
 """Part of the motion over which that holds; stiff contacts accelerate a point at will for a moment."""
 
@@ -33,10 +36,17 @@ class Trails:
         self.poses, self.clock, self.heights, self.size = poses, clock, heights, size
         self.trails = trails_of(poses.motion, shot)
 
-    def specs(self) -> list[TrailSpec]:
-        """Their looks."""
+    def specs(self, dark: bool) -> list[TrailSpec]:
+        """Their looks: lights where what is behind them is ``dark``, else as deep as ink."""
+        ink = linear(SIGNALS["trails"].dark if dark else SIGNALS["trails"].light)
         return [
-            TrailSpec(name=trail.point, colour=trail.colour, radius=trail.radius * self.size, rings=rings)
+            TrailSpec(
+                name=trail.point,
+                colour=trail.colour or ink,
+                strength=LIGHT if trail.colour or dark else INK,
+                radius=trail.radius * self.size,
+                rings=rings,
+            )
             for trail, rings in zip(self.trails, self._rings, strict=True)
         ]
 

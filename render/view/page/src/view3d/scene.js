@@ -75,7 +75,7 @@ export class Solid {
     }
     this.machine.add(this.arrows.group, this.trails.group, this.marks.group, this.ghosts.group);
     this.arrows.clear();
-    this.trails.update(payload);
+    this.trails.update(payload, this.trails.ink);
     this.ghosted = null;
     this.parts.move(motion);
   }
@@ -160,7 +160,7 @@ export class Solid {
     }
     const colours = inks(look.dark, payload.bodies);
     this.trails.group.visible = !!shown.trails;
-    if (shown.trails) this.trails.draw(payload, motion);
+    if (shown.trails) this.trails.draw(payload, motion, colours.trail);
     this.arrows.draw(payload, motion, shown, colours.arrows);
     this.marks.show(wantedMarks(this.app), colours, this.size[1], this.tangent * this.radius);
     this.renderer.render(this.scene, this.camera);

@@ -10,11 +10,13 @@ export class Trails {
     this.made = [];
   }
 
-  update(payload) {
+  /** @param {string} ink  where the shot says no colour */
+  update(payload, ink) {
+    this.ink = ink;
     for (const { mesh } of this.made) mesh.geometry.dispose();
     this.group.clear();
     this.made = payload.trails.map((trail) => {
-      const mesh = new Mesh(tube(trail.colour), new MeshBasicMaterial({ vertexColors: true, transparent: true, side: DoubleSide, depthWrite: false, toneMapped: false }));
+      const mesh = new Mesh(tube(trail.colour, ink), new MeshBasicMaterial({ vertexColors: true, transparent: true, side: DoubleSide, depthWrite: false, toneMapped: false }));
       mesh.frustumCulled = false;
       mesh.renderOrder = 5;
       this.group.add(mesh);
@@ -22,7 +24,9 @@ export class Trails {
     });
   }
 
-  draw(payload, motion) {
+  /** @param {string} ink  as {@link update} */
+  draw(payload, motion, ink) {
+    if (ink !== this.ink) this.update(payload, ink);
     for (const { trail, mesh } of this.made) {
       const places = tailOf(payload, motion, trail.point, trail.tail, RINGS), { array } = mesh.geometry.attributes.position;
       for (let k = 0; k < RINGS; k++) {
@@ -41,9 +45,9 @@ export class Trails {
   }
 }
 
-function tube(colour) {
+function tube(colour, ink) {
   const geometry = new BufferGeometry(), colours = new Float32Array(4 * RINGS * SIDES), corners = [];
-  const bright = new Color().setRGB(...colour).multiplyScalar(1.12);
+  const bright = (colour ? new Color().setRGB(...colour) : new Color(ink)).multiplyScalar(1.12);
   for (let k = 0; k < RINGS; k++) {
     for (let n = 0; n < SIDES; n++) {
       colours.set([bright.r, bright.g, bright.b, 0.95 * (1 - k / (RINGS - 1)) ** 1.6], 4 * (k * SIDES + n));

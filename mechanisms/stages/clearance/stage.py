@@ -50,6 +50,8 @@ LIMIT = 0.05
 """Smaller gaps between two bodies are refused (mm)."""
 REACH = 5.0
 """Larger gaps are not measured (mm)."""
+LOOKS = 4
+"""Moments at which is looked whether what slides stays near."""
 PACKAGES = ("manifold3d", "numpy")
 SOURCES = [
     *(ROOT / "mechanisms" / "stages" / name for name in ("clearance", "parts_files.py")),
@@ -142,7 +144,7 @@ def check(
             pairs.append(_pair(first, second, height, height, None, "layers", 0))
             continue
         found = _turn(first, second, axes, sweep, limit, reach) or _slide(first, second, slides, limit, reach)
-        found = found or _sliced(first, second, slides, where, limit, reach)
+        found = found or _sliced(first, second, slides, sweep, where, limit, reach)
         if found is None:
             least = least_in_mesh(sweep, in_mesh, where) or least_gap(sweep, reach)
             if least.gap < limit or least.proven < limit / 2:
@@ -197,13 +199,27 @@ def _slide(first: MeshPiece, second: MeshPiece, slides: Slides, limit: float, re
 
 
 def _sliced(
-    first: MeshPiece, second: MeshPiece, slides: Slides, where: Mapping[str, BodyPath], limit: float, reach: float
+    first: MeshPiece,
+    second: MeshPiece,
+    slides: Slides,
+    sweep: Sweep,
+    where: Mapping[str, BodyPath],
+    limit: float,
+    reach: float,
 ) -> PairClearance | None:
-    """The gap of a pair of which most is proven along a line and the rest by the motion; None if that is not enough."""
+    """The gap of a pair of which most is proven along a line and the rest by the motion; None if that is not enough.
+
+    Only of one that stays near: else the motion alone tells it sooner.
+    """
     from mechanisms.stages.clearance.search.least import least_gap
     from mechanisms.stages.clearance.search.sweep import Sweep
-    from mechanisms.stages.clearance.slide import ROUNDING, sliced
+    from mechanisms.stages.clearance.slide import BESIDE, ROUNDING, sliced
 
+    near = BESIDE[1] * reach
+    if frozenset((first.body, second.body)) not in slides:
+        return None
+    if any(sweep.gap_at(float(time), near) >= near for time in sweep.times[:: max(1, len(sweep.times) // LOOKS)]):
+        return None
     found = sliced(first, second, slides, reach)
     if found is None or found.gap < limit:
         return None

@@ -92,6 +92,7 @@ async function main() {
   await picture("fitting");
   await page.getByRole("button", { name: "Cancel" }).click();
   await until(() => document.querySelector(".fit .words").textContent === "Cancelled.");
+  await until(() => Math.abs(Math.hypot(mbsd.app.payload.joints.B.x[0], mbsd.app.payload.joints.B.y[0]) - 0.04) < 1e-7); // as before the fit
 
   await ask("break");
   await until(() => /error in the file/.test(document.querySelector(".live .state").textContent));

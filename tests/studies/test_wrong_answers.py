@@ -185,7 +185,7 @@ def test_a_scheduler_that_goes_is_a_sentence_and_what_is_computed_is_kept(tmp_pa
     client = FakeClient({})
 
     def goes(order: Order, points: Sequence[Any], chunk: str) -> bytes:
-        if len(client.asked) > 3:
+        if len(client.asked) > 4:  # two are under way at a time, so three have come
             client.status = "connecting"
             threading.Event().wait(60.0)
         return answer_of(order, points, chunk)

@@ -119,6 +119,23 @@ def knuckle_press() -> Mechanism:
     return m
 
 
+def triplex_pump(throw: float = 0.02, rod: float = 0.1, pitch: float = 0.08) -> Mechanism:
+    """Three plungers side by side, a third of a turn apart, so that the flow is nearly even."""
+    m = Mechanism("triplex_pump")
+    crank = m.body("crank")
+    m.revolute("main", m.ground.at(0, 0), crank.origin)
+    for k in range(3):
+        z, at = (k - 1) * pitch, 2 * pi * k / 3
+        con, plunger = m.bar(f"rod_{k + 1}", rod, z=z), m.body(f"plunger_{k + 1}", z=z)
+        m.revolute(f"pin_{k + 1}", crank.at(throw * cos(at), throw * sin(at), z=z), con.start)
+        m.revolute(f"wrist_{k + 1}", con.end, plunger.origin)
+        m.prismatic(f"guide_{k + 1}", m.ground.at(0, 0, z=z), plunger.origin)
+        m.start_near(**{f"rod_{k + 1}": 0, f"plunger_{k + 1}": (rod, 0, 0)})
+    m.drive_angle("motor", crank, constant_rate(2 * pi))
+    m.start_near(crank=0)
+    return m
+
+
 def geared_shafts(z: float = 0.05, teeth: tuple[int, int, int] = (20, 30, 25)) -> Mechanism:
     """Three shafts with a gear each in one plane; the last has a belt to a fourth in another plane."""
     m = Mechanism("shafts")

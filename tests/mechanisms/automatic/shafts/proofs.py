@@ -10,8 +10,11 @@ from tests.models import machines_along as models
 from tools.hunt_parts import case
 
 if TYPE_CHECKING:
+    from cadquery import BoundBox
+
     from mbsd import Mechanism
     from shared.shapes.bodies import Bodies
+    from shared.shapes.solid import Solid
 
 
 def model(of: str) -> Mechanism:
@@ -34,6 +37,13 @@ def checked(m: Mechanism) -> tuple[Automatic, Bodies]:
     assert not case.overlapping(pieces)
     case.proven(m, solution, bodies, pieces)
     return made, bodies
+
+
+def box(solid: Solid) -> BoundBox:
+    """Of the mesh of a solid: that of its curved faces is wider."""
+    shape = solid.shape.val()
+    shape.mesh(0.05)
+    return shape.BoundingBox()
 
 
 def plan(of: str) -> Automatic:

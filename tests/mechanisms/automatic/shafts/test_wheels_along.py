@@ -41,9 +41,25 @@ def test_gears_of_a_train_stand_tooth_in_space() -> None:
         assert (tooth + space) % 1.0 == pytest.approx(0.5, abs=1e-6)
 
 
-@pytest.mark.parametrize("name", ["loom", "sewing_machine", "knuckle_press"])
-def test_machines_with_a_shaft_get_parts(name: str) -> None:
-    along(getattr(models, name)()).refuse()
+@pytest.mark.parametrize(
+    ("name", "moved"),
+    [
+        ("loom", {"sley", "heald_1", "heald_2", "arm_1", "lift_2"}),
+        ("sewing_machine", {"needle_bar", "take_up", "feed_rocker"}),
+        ("knuckle_press", {"ram", "con_1", "lower_2"}),
+        ("triplex_pump", {"plunger_1", "plunger_2", "plunger_3"}),
+    ],
+)
+def test_machines_with_a_shaft_are_built_and_nothing_touches(name: str, moved: set[str]) -> None:
+    _, bodies = checked(getattr(models, name)())
+    assert moved < set(bodies)
+    assert all(solids and solids[0].name == body for body, solids in bodies.items() if body != "ground")
+
+
+def test_a_pair_of_legs_is_built_and_nothing_touches() -> None:
+    """Those of all six pairs are alike; each pair more takes its 30 s."""
+    _, bodies = checked(models.walker(1))
+    assert len(bodies) == 2 + 12, "ground, crank, and two legs of six links"
 
 
 def test_twelve_legs_walk_on_thinner_pins() -> None:

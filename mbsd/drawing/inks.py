@@ -95,20 +95,20 @@ def apart(inks: Mapping[str, str]) -> dict[str, str]:
 
 def on_dark(ink: str) -> str:
     """The same colour on dark paper: as far from it as the ink is from white, its hue kept."""
-    light, chroma, hue = _lch(ink)
-    return _hex(1.16 - 0.8 * light, 0.9 * chroma, hue)
+    light, chroma, hue = lch_of(ink)
+    return hex_of(1.16 - 0.8 * light, 0.9 * chroma, hue)
 
 
 def _shade(ink: str, k: int) -> str:
-    light, chroma, hue = _lch(ink)
+    light, chroma, hue = lch_of(ink)
     if chroma < GREY:
         chroma, hue = GREY, TINTS[(k - 1) % len(TINTS)]
     else:
         hue += TURNED * (0, 1, -1)[k % 3]
-    return _hex(min(light + DARKER[k % len(DARKER)], 0.56), chroma, hue)
+    return hex_of(min(light + DARKER[k % len(DARKER)], 0.56), chroma, hue)
 
 
-def _lch(ink: str) -> tuple[float, float, float]:
+def lch_of(ink: str) -> tuple[float, float, float]:
     """Lightness, chroma and hue (degrees) of ``#rrggbb`` in OKLab."""
     rgb = np.array([int(ink[k : k + 2], 16) for k in (1, 3, 5)]) / 255
     linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
@@ -116,7 +116,7 @@ def _lch(ink: str) -> tuple[float, float, float]:
     return float(light), float(np.hypot(a, b)), float(np.degrees(np.arctan2(b, a)))
 
 
-def _hex(light: float, chroma: float, hue: float) -> str:
+def hex_of(light: float, chroma: float, hue: float) -> str:
     """``#rrggbb``, with less chroma where the screen has no such colour."""
     turn = np.radians(hue)
     for part in np.linspace(1.0, 0.0, 21):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shared.shapes.rough_box import rough_box
+from shared.shapes.rough_box import rough_size
 
 if TYPE_CHECKING:
     import cadquery as cq
@@ -20,7 +20,7 @@ SAME = 1e-7
 def through_holes(shape: cq.Workplane) -> int:
     """Of one closed solid: V - E + F of its mesh is 2 - 2 n."""
     solid = shape.solids().vals()[0]
-    size = float(np.linalg.norm(np.subtract(*rough_box(shape.solids()))))
+    size = rough_size(shape.solids())
     corners, triangles = solid.tessellate(COARSE * size, ANGLE)
     places = np.round(np.array([corner.toTuple() for corner in corners]) / (SAME * size)).astype(np.int64)
     _, which = np.unique(places, axis=0, return_inverse=True)

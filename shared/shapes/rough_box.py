@@ -22,3 +22,9 @@ def rough_box(shape: cq.Workplane) -> tuple[np.ndarray, np.ndarray]:
     BRepBndLib.Add_s(shape.val().wrapped, box, False)
     numbers = np.array(box.Get())
     return numbers[:3], numbers[3:]
+
+
+def rough_size(shape: cq.Workplane) -> float:
+    """Diagonal of the :func:`rough_box` (mm)."""
+    low, high = rough_box(shape)
+    return float(np.linalg.norm(high - low))

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import io
 import re
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image, ImageSequence
 
 from mbsd.drawing.look import FAINT, INK, QUIET
 from shared.stage.paths import ROOT
 from tools.figures.__main__ import PAGES, drawn
 from tools.figures.dark import COLOUR, NEUTRAL, PAPER, dark, data_colours, name_of
+from tools.figures.dark_gif import dark_gif
 
 LARGEST = 300_000
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e-?\d+)?")
@@ -48,11 +51,45 @@ def parts(svg: str) -> tuple[str, np.ndarray, np.ndarray]:
 def test_pictures_are_what_their_pages_compute(page: str) -> None:
     """Up to the last digits of other machines, a tenth of a point."""
     for name, content in once(page).items():
+        if name.endswith(".gif"):
+            refuse_other_films(name, content)
+            continue
         words, numbers, boxes = parts(content.decode())
         kept_words, kept_numbers, kept_boxes = parts((ROOT / "docs" / name).read_text())
         assert words == kept_words, f"docs/{name} shows something else: make docs"
         np.testing.assert_allclose(numbers, kept_numbers, atol=0.1, err_msg=f"docs/{name} has moved: make docs")
         np.testing.assert_allclose(boxes, kept_boxes, atol=0.1, err_msg=f"docs/{name} has moved: make docs")
+
+
+def refuse_other_films(name: str, content: bytes) -> None:
+    """As many pictures, each with few pixels that differ: edges may be soft in another way on other machines."""
+    made, kept = films(content), films((ROOT / "docs" / name).read_bytes())
+    assert made.shape == kept.shape, f"docs/{name} shows something else: make docs"
+    differ = (abs(made.astype(int) - kept) > 24).any(axis=3)
+    assert differ.mean() < 1e-3, f"docs/{name} shows something else: make docs"
+
+
+def films(gif: bytes) -> np.ndarray:
+    """(pictures, height, width, 3)"""
+    with Image.open(io.BytesIO(gif)) as film:
+        return np.stack([np.asarray(picture.convert("RGB")) for picture in ImageSequence.Iterator(film)])
+
+
+def test_a_film_on_dark_paper_moves_as_the_other_one_and_is_small() -> None:
+    light, dark_one = ((ROOT / "docs" / name).read_bytes() for name in ("animation.gif", "animation_dark.gif"))
+    assert dark_gif(light) == dark_one, "make docs"
+    assert max(len(light), len(dark_one)) < LARGEST
+    bright, dim = films(light), films(dark_one)
+    moves = [(np.abs(np.diff(film.astype(int), axis=0)) > 8).any(axis=3).mean() for film in (bright, dim)]
+    assert moves[1] == pytest.approx(moves[0], rel=0.05)
+    assert np.median(bright) > 230
+    assert np.median(dim) < 40
+    assert dim.max() > 220, "words are read"
+
+
+def test_what_is_no_film_is_refused() -> None:
+    with pytest.raises(ValueError, match="no GIF"):
+        dark_gif(b"no picture")
 
 
 def test_a_picture_has_the_same_bytes_each_time() -> None:

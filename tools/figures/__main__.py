@@ -29,6 +29,7 @@ from matplotlib.transforms import Bbox
 import tools.figures.pages
 from mbsd.drawing.picture import Picture, Svg
 from tools.figures.dark import dark, name_of
+from tools.figures.dark_gif import dark_gif
 from tools.figures.look import STYLE
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -43,7 +44,7 @@ def drawn(page: str) -> dict[str, bytes]:
         out = {}
         for name, picture in importlib.import_module(f"tools.figures.pages.{page}").pictures(variables).items():
             out[name] = _bytes(picture)
-            out[name_of(name)] = dark(out[name])
+            out[name_of(name)] = (dark_gif if name.endswith(".gif") else dark)(out[name])
         pyplot.close("all")
     return out
 
@@ -57,8 +58,10 @@ def _run(page: str) -> SimpleNamespace:
     return SimpleNamespace(**variables)
 
 
-def _bytes(picture: Figure | Picture | Svg) -> bytes:
-    """SVG without a date, the same each time."""
+def _bytes(picture: Figure | Picture | Svg | bytes) -> bytes:
+    """SVG without a date, the same each time; a file's bytes as they are."""
+    if isinstance(picture, bytes):
+        return picture
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "picture.svg"
         if isinstance(picture, Figure):

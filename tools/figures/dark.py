@@ -33,7 +33,8 @@ def dark(svg: bytes) -> bytes:
 
 def name_of(name: str) -> str:
     """``cams.svg`` is ``cams_dark.svg`` on dark paper."""
-    return f"{name.removesuffix('.svg')}_dark.svg"
+    stem, suffix = name.rsplit(".", 1)
+    return f"{stem}_dark.{suffix}"
 
 
 @cache

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 
 from mechanisms.stages.automatic.layout.planar import convex_hull
 from shared.contract.materials import MATERIALS
+from shared.shapes.rough_box import rough_size
 
 CHORD, ANGLE = 0.002, 0.4
 """Of coarse meshes: largest distance from the surface, in sizes of a solid, and largest angle (rad)."""
@@ -33,9 +33,8 @@ class Hull:
     @classmethod
     def of(cls, solid: Solid, shape: cq.Workplane | None = None) -> Hull:
         """Of its ``shape`` or one that is turned; a coarse mesh of a copy, as a shape carries its mesh along."""
-        found = (solid.shape if shape is None else shape).solids().vals()[0].copy()
-        size = _size(found)
-        points, triples = found.tessellate(CHORD * size, ANGLE)
+        whole = (solid.shape if shape is None else shape).solids()
+        points, triples = whole.vals()[0].copy().tessellate(CHORD * rough_size(whole), ANGLE)
         places = np.array([point.toTuple() for point in points])
         faces = places[np.array(triples)]
         parts = np.einsum("ij,ij->i", faces[:, 0], np.cross(faces[:, 1], faces[:, 2])) / 6
@@ -43,16 +42,6 @@ class Hull:
         mass = MATERIALS[solid.material].density * 1e-9 * float(parts.sum())
         heights = float(places[:, 2].min()), float(places[:, 2].max())
         return cls(convex_hull(places[:, :2]), heights, mass, centre)
-
-
-def _size(shape: Any) -> float:
-    """Diagonal (mm) of a box round a shape, which need not be the least one."""
-    from OCP.Bnd import Bnd_Box
-    from OCP.BRepBndLib import BRepBndLib
-
-    box = Bnd_Box()
-    BRepBndLib.Add_s(shape.wrapped, box, False)
-    return math.sqrt(box.SquareExtent())
 
 
 @dataclass(frozen=True)

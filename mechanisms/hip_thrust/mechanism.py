@@ -17,7 +17,7 @@ VARIANTS = {
     "squat": {"exercise": "squat", "up": 1.5},
     "deadlift": {"exercise": "deadlift", "up": 1.5},
     "feet_near": {"distance": 0.75},
-    "low_bench": {"bench": 0.30},
+    "low_bench": {"bench": 0.30, "nod": 15.0},
 }
 
 
@@ -35,6 +35,7 @@ class Params:
     bar: tuple[float, float] = (0.10, 0.14)  # along the trunk from the hip, and in front of it
     grip: float = 0.15  # friction of the pad, of its normal force
     pressure: float = 0.03  # where the floor pushes, in front of the ankle
+    nod: float = 0.0  # of the head of the mannequin, degrees: at the top it is below the shoulders on a low bench
     line: float = 0.10  # of the bar in front of the ankle, of a deadlift
     up: float = 1.0  # seconds; 1.5 of the variants, whose bar goes farther
 

@@ -36,7 +36,7 @@ def parts(p: Params) -> Bodies:
         foot=mannequin.both_sides(mannequin.foot(scale, mm(who.length("ankle"))), MIDDLE, leg),
         shank=mannequin.both_sides(mannequin.shank(shank, scale), MIDDLE, leg),
         thigh=mannequin.both_sides(mannequin.thigh(thigh, scale), MIDDLE, leg),
-        trunk=[_raised(solid) for solid in mannequin.torso(trunk, scale)],
+        trunk=[_raised(solid) for solid in mannequin.torso(trunk, scale, p.nod)],
         barbell=_barbell(p),
     )
     upper, lower = mm(who.length("upper_arm")), mm(who.reach)

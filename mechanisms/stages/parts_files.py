@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-import shutil
 import tempfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from shared.shapes.facets import HEAD, TRIANGLE, cut_short, facets
 from shared.stage.errors import UserError
 
 TOLERANCE = 0.018
@@ -22,7 +22,6 @@ and asking for 1e-6 takes eighty times as long."""
 VOLUME_GOAL = 4.5e-3
 """Relative difference to the solid's volume at which a mesh is fine enough."""
 
-_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _PRODUCT = re.compile(rb"= PRODUCT\('[^']*',\s*'[^']*'")
 _TIMESTAMP = re.compile(rb"(FILE_NAME\('[^']*',)'[^']*'")
 
@@ -38,10 +37,10 @@ def stl_bytes(solid: Any, tolerance: float | None = None) -> bytes:
     volume, tolerance = volume_of(solid), tolerance or TOLERANCE
     solid = ruled(solid)
     for finer in (1, 2, 4):
-        triangles = _mesh(solid, tolerance / finer, ANGLE / finer)
-        if abs(_volume(triangles["corners"].astype(float)) / volume - 1) < VOLUME_GOAL:
+        triangles = facets(solid, tolerance / finer, ANGLE / finer)
+        if abs(_volume(triangles.astype(float)) / volume - 1) < VOLUME_GOAL:
             break
-    corners = _with_three_corners(triangles["corners"] + np.float32(0))  # -0 becomes 0
+    corners = _with_three_corners(triangles + np.float32(0))  # -0 becomes 0
     lowest = np.where(_before(corners[:, 1], corners[:, 0]), 1, 0)
     lowest = np.where(_before(corners[:, 2], corners[np.arange(len(corners)), lowest]), 2, lowest)
     turn = (lowest[:, None] + np.arange(3)) % 3  # same winding, lowest corner first
@@ -52,7 +51,7 @@ def stl_bytes(solid: Any, tolerance: float | None = None) -> bytes:
 
 def binary_stl(corners: np.ndarray) -> bytes:
     """Binary STL of triangles, (n, 3, 3) as float32, in their order."""
-    triangles = np.zeros(len(corners), dtype=_TRIANGLE)
+    triangles = np.zeros(len(corners), dtype=TRIANGLE)
     triangles["corners"] = corners
     triangles["normal"] = _normals(corners.astype(float))
     return b"mbsd".ljust(80) + len(triangles).to_bytes(4, "little") + triangles.tobytes()
@@ -92,28 +91,6 @@ def volume_of(solid: Any) -> float:
     return solid.Volume() if smooth is solid else smooth.Volume(SHARP)
 
 
-def _mesh(solid: Any, tolerance: float, angle: float) -> np.ndarray:
-    from OCP.BRepTools import BRepTools
-
-    BRepTools.Clean_s(solid.wrapped)  # a mesh that is there already would be kept
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "solid.stl"
-        solid.exportStl(str(path), tolerance, angle, ascii=False, relative=False, parallel=False)
-        content = path.read_bytes() if path.exists() else b""
-        if len(content) < 84 or len(content) != 84 + _TRIANGLE.itemsize * int.from_bytes(content[80:84], "little"):
-            raise UserError(_cut(path, content))
-        return np.frombuffer(content, dtype=_TRIANGLE, offset=84).copy()
-
-
-def _cut(path: Path, content: bytes) -> str:
-    """Words for a file that the CAD kernel cut short; it reports no error when a disk is full."""
-    free = shutil.disk_usage(path.parent).free / 1e6
-    return (
-        f"the CAD kernel wrote {len(content)} bytes of {path.name} and no more; {free:.1f} MB are free at "
-        f"{path.parent.parent}: free some disk space or set TMPDIR to another folder"
-    )
-
-
 def _volume(corners: np.ndarray) -> float:
     return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
 
@@ -134,7 +111,7 @@ def step_bytes(solid: Any, name: str) -> bytes:
         solid.exportStep(str(path))
         content = path.read_bytes() if path.exists() else b""
         if not content.rstrip().endswith(b"END-ISO-10303-21;"):
-            raise UserError(_cut(path, content))
+            raise UserError(cut_short(path, content))
     content = _TIMESTAMP.sub(rb"\1'1970-01-01T00:00:00'", content, count=1)
     # by itself the kernel numbers the products of a process
     return _PRODUCT.sub(f"= PRODUCT('{name}','{name}'".encode(), content, count=1)
@@ -142,7 +119,7 @@ def step_bytes(solid: Any, name: str) -> bytes:
 
 def read_triangles(stl: bytes) -> np.ndarray:
     """(n, 3, 3): the corners (mm) of the triangles of a binary STL, as float64."""
-    return np.frombuffer(stl, dtype=_TRIANGLE, offset=84)["corners"].astype(float)
+    return np.frombuffer(stl, dtype=TRIANGLE, offset=HEAD)["corners"].astype(float)
 
 
 def read_mesh(stl: bytes) -> Any:

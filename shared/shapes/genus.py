@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shared.shapes.facets import facets
 from shared.shapes.rough_box import rough_size
 
 if TYPE_CHECKING:
@@ -21,10 +22,10 @@ def through_holes(shape: cq.Workplane) -> int:
     """Of one closed solid: V - E + F of its mesh is 2 - 2 n."""
     solid = shape.solids().vals()[0]
     size = rough_size(shape.solids())
-    corners, triangles = solid.tessellate(COARSE * size, ANGLE)
-    places = np.round(np.array([corner.toTuple() for corner in corners]) / (SAME * size)).astype(np.int64)
+    corners = facets(solid, COARSE * size, ANGLE).reshape(-1, 3).astype(float)
+    places = np.round(corners / (SAME * size)).astype(np.int64)
     _, which = np.unique(places, axis=0, return_inverse=True)
-    facets = which.reshape(-1)[np.array(triangles)]
-    edges = np.sort(np.concatenate([facets[:, [0, 1]], facets[:, [1, 2]], facets[:, [2, 0]]]), axis=1)
-    count = len(np.unique(facets)) - len(np.unique(edges, axis=0)) + len(facets)
+    triples = which.reshape(-1, 3)
+    edges = np.sort(np.concatenate([triples[:, [0, 1]], triples[:, [1, 2]], triples[:, [2, 0]]]), axis=1)
+    count = len(np.unique(triples)) - len(np.unique(edges, axis=0)) + len(triples)
     return (2 - count) // 2

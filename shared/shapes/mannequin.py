@@ -35,6 +35,8 @@ TORSO: tuple[Section, ...] = (
 """Of a trunk of 513 mm from hip to shoulder."""
 HEAD: tuple[Section, ...] = ((655, -14, 88, 66), (700, -12, 94, 74), (748, -9, 96, 76))
 NECK: tuple[Section, ...] = ((488, 6, 50, 54), (550, 2, 46, 48), (650, -2, 46, 46))
+NAPE = 7.0
+"""Where a neck bends, beyond the shoulder."""
 FOOT: tuple[Section, ...] = (
     (-50, -38, 31, 29), (-12, -27, 42, 37), (38, -37, 32, 41), (95, -47, 22, 44), (158, -54, 15, 43),
 )  # fmt: skip
@@ -65,8 +67,8 @@ def foot(scale: float, height: float) -> list[Solid]:
     return [_solid("foot", shape), _solid("ankle_ball", joint_ball(ANKLE * scale), JOINT)]
 
 
-def torso(length: float, scale: float) -> list[Solid]:
-    """Trunk, neck and head, with sockets round both hips."""
+def torso(length: float, scale: float, nod: float = 0.0) -> list[Solid]:
+    """Trunk, neck and head, with sockets round both hips; head and neck nod by so many degrees, chin to chest."""
     along = length / 513.0
     body = limb(
         [(x * along, y * scale, high * scale, wide * scale) for x, y, high, wide in TORSO], 34 * scale, 22 * scale
@@ -76,6 +78,9 @@ def torso(length: float, scale: float) -> list[Solid]:
     beyond = length - 513.0 * scale
     head = limb(_shifted(_scaled(HEAD, scale), beyond), 48 * scale, 87 * scale)
     neck = limb(_shifted(_scaled(NECK, scale), beyond))
+    if nod:
+        base = (length + NAPE * scale, 0.0, 0.0)
+        head, neck = (shape.rotate(base, (*base[:2], 1.0), -nod) for shape in (head, neck))
     return [_solid("torso", body), _solid("head", head), _solid("neck", neck, JOINT)]
 
 

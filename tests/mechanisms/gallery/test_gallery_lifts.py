@@ -8,6 +8,10 @@ import pytest
 from mbsd.machines.body.lift import Lift
 from mbsd.results.solution import Solution
 from mechanisms.hip_thrust import mechanism as thrust
+from mechanisms.hip_thrust.parts import GAP
+from shared.shapes.facets import facets
+from shared.shapes.mannequin import torso
+from shared.shapes.units import mm
 
 
 def solved(**changes: object) -> Solution:
@@ -44,3 +48,16 @@ def test_arms_reach_the_bar() -> None:
         bar = thrust.build(p).joints["bar"].i
         assert hand == pytest.approx(complex(bar.x, bar.y), abs=1e-12)
     assert thrust.arm_angles(thrust.Params(exercise="deadlift")) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("changes", [{}, thrust.VARIANTS["feet_near"], thrust.VARIANTS["low_bench"]])
+def test_the_head_stays_above_the_bench(changes: dict[str, float]) -> None:
+    """On a low bench the shoulders are lower than the hips at the top, and the chin goes to the chest."""
+    p, sol = thrust.Params(**changes), solved(**changes)
+    head = torso(mm(thrust.figure(p).length("trunk")), p.height / 1.78, p.nod)[1]
+    assert head.name == "head"
+    corners = facets(head.shape.val(), 1.0, 0.5).reshape(-1, 3)[:, :2] / 1000.0
+    trunk = sol.body("trunk")
+    up = np.sin(trunk.theta)[:, None] * corners[:, 0] + np.cos(trunk.theta)[:, None] * corners[:, 1]
+    pad = sol.mechanism.joints["pad"].j.y - GAP / 1000.0
+    assert (trunk.y[:, None] + up).min() > pad

@@ -11,6 +11,7 @@ import numpy as np
 
 from mechanisms.stages.automatic.layout.planar import convex_hull
 from shared.contract.materials import MATERIALS
+from shared.shapes.facets import facets
 from shared.shapes.rough_box import rough_size
 
 CHORD, ANGLE = 0.002, 0.4
@@ -32,11 +33,10 @@ class Hull:
 
     @classmethod
     def of(cls, solid: Solid, shape: cq.Workplane | None = None) -> Hull:
-        """Of its ``shape`` or one that is turned; a coarse mesh of a copy, as a shape carries its mesh along."""
+        """Of its ``shape`` or one that is turned, by a coarse mesh."""
         whole = (solid.shape if shape is None else shape).solids()
-        points, triples = whole.vals()[0].copy().tessellate(CHORD * rough_size(whole), ANGLE)
-        places = np.array([point.toTuple() for point in points])
-        faces = places[np.array(triples)]
+        faces = facets(whole.vals()[0], CHORD * rough_size(whole), ANGLE).astype(float)
+        places = faces.reshape(-1, 3)
         parts = np.einsum("ij,ij->i", faces[:, 0], np.cross(faces[:, 1], faces[:, 2])) / 6
         centre = (parts[:, None] * faces.sum(axis=1)).sum(axis=0) / 4 / parts.sum()
         mass = MATERIALS[solid.material].density * 1e-9 * float(parts.sum())

@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING
 from mechanisms.stages.automatic.shafts.banks import deck_half, deck_range, deck_top
 from mechanisms.stages.automatic.shafts.mounted.valve_solids import spring_seats
 from mechanisms.stages.automatic.shafts.mounted.valves import COIL
-from mechanisms.stages.automatic.shafts.solids.piston_solids import SEAT, along_x, head_shape, liner_shape
+from mechanisms.stages.automatic.shafts.solids.piston_solids import (
+    SEAT,
+    LinerSize,
+    along_x,
+    head_shape,
+    liner_shape,
+    rounded,
+)
 from shared.shapes.build import eased, extruded
 from shared.shapes.genus import through_holes
 from shared.shapes.kernel import first_sound
@@ -37,7 +44,7 @@ def bank_solids(
     found = []
     for own in bank:
         name = own.piston.body
-        shape = _in_place(own, liner_shape(own, fin[name], _window(own, bank, others)))
+        shape = _in_place(own, liner_shape(LinerSize.of(own), rounded(fin[name]), _window(own, bank, others)))
         found.append(Solid(f"liner_{name}", shape, "aluminium", through_holes(shape)))
         if own.against is not None:
             continue  # the other piston is its head

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Callable, Sequence
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING
 
 from mechanisms.stages.automatic.assembly.body_shape import body_shape, first_made
 from mechanisms.stages.automatic.shafts.cylinders import SHANK
+from shared.shapes.genus import through_holes
 from shared.shapes.link import Eye, link
 from shared.shapes.rough_box import rough_box
 from shared.shapes.solid import placed
@@ -47,6 +48,29 @@ def rod_shape(eyes: list[tuple[float, float, Eye]], thickness: float, bore: floa
     ways.append(lambda: body_shape([(0.0, 0.0, start), (length, 0.0, end)], thick)[0])
     shape = first_made(ways)
     return placed(shape.newObject([shape.val().scale(unit)]), x0, y0, turn=math.degrees(turn)), 2
+
+
+type Cut = tuple[tuple[float, float], float, float]
+"""Where a link is split, the direction (rad) in which its body lies ahead of that, and how far it reaches."""
+type Piece = tuple[cq.Workplane, int]
+"""A shape and its number of through holes."""
+
+
+@lru_cache(maxsize=64)
+def rod_pieces(
+    eyes: tuple[tuple[float, float, Eye], ...], thickness: float, bore: float, cuts: tuple[Cut, ...]
+) -> list[Piece]:
+    """A connecting rod and its caps, once for all rods of an engine that are alike; from z = 0 up."""
+    return cut_up(rod_shape([*eyes], thickness, bore)[0], cuts)
+
+
+def cut_up(shape: cq.Workplane, cuts: Sequence[Cut]) -> list[Piece]:
+    """What is left of a link, and the cap of each cut."""
+    caps = []
+    for at, towards, reach in cuts:
+        shape, cap = split(shape, at, towards, reach)
+        caps.append(cap)
+    return [(piece, through_holes(piece)) for piece in (shape, *caps)]
 
 
 def split(

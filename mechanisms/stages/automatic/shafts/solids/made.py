@@ -26,8 +26,13 @@ from mechanisms.stages.automatic.shafts.solids.carried import loads
 from mechanisms.stages.automatic.shafts.solids.carrier_solid import Fork, carrier_shape, knuckle_pin
 from mechanisms.stages.automatic.shafts.solids.counterweights import balanced_webs
 from mechanisms.stages.automatic.shafts.solids.cylinder_block import bank_solids
-from mechanisms.stages.automatic.shafts.solids.link_solids import plate_shape, rod_shape, split, splits_at
-from mechanisms.stages.automatic.shafts.solids.piston_solids import piston_shape, ring_shapes, wrist_pin_shape
+from mechanisms.stages.automatic.shafts.solids.link_solids import Cut, cut_up, plate_shape, rod_pieces, splits_at
+from mechanisms.stages.automatic.shafts.solids.piston_solids import (
+    PistonSize,
+    piston_shape,
+    ring_shapes,
+    wrist_pin_shape,
+)
 from mechanisms.stages.automatic.shafts.solids.ram_solids import guide_solids, ram_solids
 from mechanisms.stages.automatic.shafts.solids.shaft_solid import shaft_solid
 from mechanisms.stages.automatic.standing.back_plate import BackPlate, Upright
@@ -187,48 +192,53 @@ def _piston(own: Along, body: str, material: str) -> list[Solid]:
     def at(shape: cq.Workplane) -> cq.Workplane:
         return placed(shape, x, y, piston.z, math.degrees(piston.turn))
 
-    shape = at(piston_shape(cylinder, thickness, gap))
+    size = PistonSize.of(cylinder)
+    shape = at(piston_shape(size, thickness, gap))
     found = [Solid(body, shape, material, through_holes(shape))]
-    for k, ring in enumerate(ring_shapes(cylinder), start=1):
+    for k, ring in enumerate(ring_shapes(size), start=1):
         found.append(Solid(f"ring_{body}_{k}", at(ring), "steel", 1))
-    found.append(Solid(f"wrist_pin_{body}", at(wrist_pin_shape(cylinder)), "brass", 1))
+    found.append(Solid(f"wrist_pin_{body}", at(wrist_pin_shape(size)), "brass", 1))
     return found
 
 
 def _link(own: Along, link: Link, material: str, is_wished: bool) -> list[Solid]:
     """A rod where it has two eyes and drives a piston, else a plate; split at its crank pin where it can be."""
     thickness, bore = own.thickness[link.body], own.measures.of_rod(link)
-    eyes = _eyes(own, link)
-    cranked = [k for k, eye in enumerate(link.eyes) if eye.on in own.machine.shafts]
-    bottom, found = link.z - thickness / 2, list[Solid]()
-    main = rod_foot(own.machine, link)
+    eyes, bottom, found = _eyes(own, link), link.z - thickness / 2, list[Solid]()
+    cuts, main = _cuts(own, link, eyes), rod_foot(own.machine, link)
     big = next((k for k, eye in enumerate(eyes) if main is not None and math.dist(eye[:2], (main.x, main.y)) < 0.01), 0)
     if bore is not None and main is not None and is_carrier(own.machine, link):
         gap, knuckled = own.measures.axial, knuckle_eyes(own.machine, link)
         fork = Fork(thickness, flange(thickness, gap), own.measures.shank(link, own.thickness), bore)
         small = next(eye for eye, of in zip(eyes, _distinct(link), strict=True) if of.on in own.cylinders)
         pins = [(eye.x, eye.y) for eye in knuckled]
-        shape = carrier_shape((main.x, main.y), eyes[big][2].bore, small, pins, fork)
+        pieces = cut_up(carrier_shape((main.x, main.y), eyes[big][2].bore, small, pins, fork), cuts)
         for eye in knuckled:
             pin = placed(knuckle_pin((eye.x, eye.y), thickness, bore), z=bottom)
             found.append(Solid(f"pin_{eye.joint}", pin, "brass", 1))
     elif bore is not None and len(eyes) == 2 and main is not None:
-        shape, _ = rod_shape([eyes[big], eyes[1 - big]], thickness, bore)
+        pieces = rod_pieces((eyes[big], eyes[1 - big]), thickness, bore, cuts)
     else:
-        shape, _ = plate_shape(
-            link, eyes or [(0.0, 0.0, Eye(own.sizes.eye * own.measures.unit, 0.0))], thickness, own.measures.unit
-        )
-    shape = placed(shape, z=bottom)
+        there = eyes or [(0.0, 0.0, Eye(own.sizes.eye * own.measures.unit, 0.0))]
+        pieces = cut_up(plate_shape(link, there, thickness, own.measures.unit)[0], cuts)
     if bore is not None and not is_wished:
         material = ROD
-    for k in cranked:
+    names = [link.body, *(f"cap_{link.body}" for _ in cuts)]
+    made = [Solid(name, placed(it, z=bottom), material, n) for name, (it, n) in zip(names, pieces, strict=True)]
+    return [made[0], *found, *made[1:]]
+
+
+def _cuts(own: Along, link: Link, eyes: Sequence[tuple[float, float, Eye]]) -> tuple[Cut, ...]:
+    """Where a link is split: at crank pins, where all else of it lies on one side."""
+    found = list[Cut]()
+    for k, on in enumerate(link.eyes):
+        if on.on not in own.machine.shafts:
+            continue
         x, y, eye = eyes[k]
         towards = splits_at(link, x, y)
-        if towards is None:
-            continue
-        shape, cap = split(shape, (x, y), towards, _reach(link) + 2 * eye.radius)
-        found.append(Solid(f"cap_{link.body}", cap, material, through_holes(cap)))
-    return [Solid(link.body, shape, material, through_holes(shape)), *found]
+        if towards is not None:
+            found.append(((x, y), towards, _reach(link) + 2 * eye.radius))
+    return tuple(found)
 
 
 def _reach(link: Link) -> float:

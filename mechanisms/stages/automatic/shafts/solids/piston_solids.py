@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from mechanisms.stages.automatic.shafts.banks import DECK
 from mechanisms.stages.automatic.shafts.cylinders import HEAD, SMALL_END, SQUISH, WRIST_PIN
 from mechanisms.stages.automatic.shafts.mounted.valve_solids import port_shape
 from shared.shapes.build import extruded, turned
+from shared.shapes.once import built_once
 from shared.shapes.outline import circle
 
 if TYPE_CHECKING:
@@ -43,7 +44,31 @@ def along_x(shape: cq.Workplane) -> cq.Workplane:
     return shape.rotate((0, 0, 0), (0, 1, 0), 90)
 
 
-def piston_shape(own: Cylinder, thickness: float, gap: float) -> cq.Workplane:
+class PistonSize(NamedTuple):
+    """All that a piston follows from (mm): pistons of one size are built once."""
+
+    bore: float
+    running: float
+    """Gap in the liner."""
+    crown: float
+    skirt: float
+    """Heights above and below the wrist pin."""
+    aside: float
+    """Of the wrist pin, from the middle."""
+
+    @classmethod
+    def of(cls, own: Cylinder) -> PistonSize:
+        """Of a cylinder, its sizes rounded: what follows from the motion differs from bore to bore in its last bits."""
+        return cls(*(rounded(size) for size in (own.bore, own.running, own.crown, own.skirt, own.piston.aside)))
+
+
+def rounded(size: float) -> float:
+    """A length to a millionth of a micrometre."""
+    return round(size, 9) + 0.0  # -0 becomes 0
+
+
+@built_once
+def piston_shape(own: PistonSize, thickness: float, gap: float) -> cq.Workplane:
     """From its wrist pin along x; ``thickness`` of the rod in it, ``gap`` beside that."""
     import cadquery as cq
 
@@ -57,14 +82,14 @@ def piston_shape(own: Cylinder, thickness: float, gap: float) -> cq.Workplane:
     shape = along_x(turned(profile))
     inside, roof = HOLLOW * b, (SMALL_END + 0.04) * b
     room = along_x(extruded(circle(0, 0, inside), top - ROOF * b - low + 1, low - 1))
-    shape = shape.cut(room.cut(extruded(circle(0, own.piston.aside, BOSS * WRIST_PIN * b), 2 * b, -b)))
+    shape = shape.cut(room.cut(extruded(circle(0, own.aside, BOSS * WRIST_PIN * b), 2 * b, -b)))
     slot = cq.Workplane().box(roof - low + 1, 2 * inside, thickness + 2 * gap)
-    shape = shape.cut(slot.translate(((roof + low - 1) / 2, own.piston.aside, 0)))
-    pin = extruded(circle(0, own.piston.aside, WRIST_PIN * b + SEAT), 2 * b, -b)
+    shape = shape.cut(slot.translate(((roof + low - 1) / 2, own.aside, 0)))
+    pin = extruded(circle(0, own.aside, WRIST_PIN * b + SEAT), 2 * b, -b)
     return shape.cut(pin)
 
 
-def ring_shapes(own: Cylinder) -> list[cq.Workplane]:
+def ring_shapes(own: PistonSize) -> list[cq.Workplane]:
     """The rings, where they are on the piston."""
     b, r = own.bore, own.bore / 2 - own.running
     outer, inner, half = own.bore / 2 - RING_GAP * own.running, r - DEEP * b, RING * b / 2
@@ -74,17 +99,32 @@ def ring_shapes(own: Cylinder) -> list[cq.Workplane]:
     ]
 
 
-def wrist_pin_shape(own: Cylinder) -> cq.Workplane:
+def wrist_pin_shape(own: PistonSize) -> cq.Workplane:
     """A tube along z through the piston."""
     b, r = own.bore, own.bore / 2 - own.running
     wide = WRIST_PIN * b
-    reach = abs(own.piston.aside) + wide
+    reach = abs(own.aside) + wide
     half = math.sqrt(r**2 - reach**2) - 0.02 * b
-    at = (0.0, own.piston.aside)
+    at = (0.0, own.aside)
     return extruded(circle(*at, wide), 2 * half, -half, [circle(*at, 0.5 * wide)])
 
 
-def liner_shape(own: Cylinder, fin: float, window: float) -> cq.Workplane:
+class LinerSize(NamedTuple):
+    """All that a liner follows from beside its fins and its window (mm)."""
+
+    bore: float
+    outer: float
+    low: float
+    top: float
+
+    @classmethod
+    def of(cls, own: Cylinder) -> LinerSize:
+        """Of a cylinder, rounded as those of its piston."""
+        return cls(*(rounded(size) for size in (own.bore, own.outer, own.low, own.top)))
+
+
+@built_once
+def liner_shape(own: LinerSize, fin: float, window: float) -> cq.Workplane:
     """From its lower end (x = own.low) up; ``fin`` is the radius of its fins, ``window`` the direction about x, from
     y towards z (rad), to which it is open.
     """

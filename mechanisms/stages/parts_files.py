@@ -30,9 +30,7 @@ def stl_bytes(solid: Any, tolerance: float | None = None) -> bytes:
     """Binary STL of a ``cadquery.Solid``, in mm, its triangles in an order of their own.
 
     ``tolerance`` (mm) is :data:`TOLERANCE` by default. Small parts get a finer mesh until it holds their
-    volume to :data:`VOLUME_GOAL`.
-    The kernel gives the same triangles each time, but those of a face with many holes in another order, and
-    normals that differ in their last bits. Raises UserError if the kernel cannot write its file.
+    volume to :data:`VOLUME_GOAL`. Raises UserError if the kernel cannot write its file.
     """
     volume, tolerance = volume_of(solid), tolerance or TOLERANCE
     solid = ruled(solid)
@@ -40,13 +38,7 @@ def stl_bytes(solid: Any, tolerance: float | None = None) -> bytes:
         triangles = facets(solid, tolerance / finer, ANGLE / finer)
         if abs(_volume(triangles.astype(float)) / volume - 1) < VOLUME_GOAL:
             break
-    corners = _with_three_corners(triangles + np.float32(0))  # -0 becomes 0
-    lowest = np.where(_before(corners[:, 1], corners[:, 0]), 1, 0)
-    lowest = np.where(_before(corners[:, 2], corners[np.arange(len(corners)), lowest]), 2, lowest)
-    turn = (lowest[:, None] + np.arange(3)) % 3  # same winding, lowest corner first
-    corners = np.take_along_axis(corners, turn[:, :, None], axis=1)
-    corners = corners[np.lexsort(corners.reshape(-1, 9).T[::-1])]
-    return binary_stl(corners)
+    return binary_stl(_with_three_corners(triangles))
 
 
 def binary_stl(corners: np.ndarray) -> bytes:
@@ -64,12 +56,6 @@ def _with_three_corners(corners: np.ndarray) -> np.ndarray:
     """
     equal = (corners == np.roll(corners, -1, axis=1)).all(axis=2)
     return corners[~equal.any(axis=1)]
-
-
-def _before(p: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """(n,): whether points p (n, 3) come before q: by x, of equal ones by y, then by z."""
-    (px, py, pz), (qx, qy, qz) = p.T, q.T
-    return (px < qx) | ((px == qx) & ((py < qy) | ((py == qy) & (pz < qz))))
 
 
 def ruled(solid: Any) -> Any:

@@ -19,9 +19,10 @@ HEAD = 84
 TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
-def facets(shape: cq.Shape, tolerance: float, angle: float) -> np.ndarray:
-    """(n, 3, 3) float32: corners (mm) of triangles that are ``tolerance`` (mm) from the surface at most, with ``angle``
-    (rad) between neighbours; counter-clockwise seen from outside. The shape carries no mesh along afterwards.
+def facets(shape: cq.Shape, tolerance: float, angle: float, relative: bool = False) -> np.ndarray:
+    """(n, 3, 3) float32: corners (mm) of triangles that are ``tolerance`` (mm, or ``relative`` to the length of each
+    edge) from the surface at most, with ``angle`` (rad) between neighbours; counter-clockwise seen from outside, in an
+    order of their own. The shape carries no mesh along afterwards.
 
     Raises UserError where there is no room for the kernel's file.
     """
@@ -30,12 +31,30 @@ def facets(shape: cq.Shape, tolerance: float, angle: float) -> np.ndarray:
     BRepTools.Clean_s(shape.wrapped)  # a mesh that is there already would be kept
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "solid.stl"
-        shape.exportStl(str(path), tolerance, angle, ascii=False, relative=False, parallel=False)
+        shape.exportStl(str(path), tolerance, angle, ascii=False, relative=relative, parallel=False)
         content = path.read_bytes() if path.exists() else b""
         BRepTools.Clean_s(shape.wrapped)
         if len(content) < HEAD or len(content) != HEAD + TRIANGLE.itemsize * int.from_bytes(content[80:HEAD], "little"):
             raise UserError(cut_short(path, content))
-        return np.frombuffer(content, dtype=TRIANGLE, offset=HEAD)["corners"].copy()
+        return _ordered(np.frombuffer(content, dtype=TRIANGLE, offset=HEAD)["corners"])
+
+
+def _ordered(corners: np.ndarray) -> np.ndarray:
+    """Triangles sorted, the lowest corner of each first, since the kernel gives the same ones each time, but those of a
+    face with many holes in another order.
+    """
+    corners = corners + np.float32(0)  # -0 becomes 0
+    lowest = np.where(_before(corners[:, 1], corners[:, 0]), 1, 0)
+    lowest = np.where(_before(corners[:, 2], corners[np.arange(len(corners)), lowest]), 2, lowest)
+    turn = (lowest[:, None] + np.arange(3)) % 3  # same winding
+    corners = np.take_along_axis(corners, turn[:, :, None], axis=1)
+    return corners[np.lexsort(corners.reshape(-1, 9).T[::-1])]
+
+
+def _before(p: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """(n,): whether points p (n, 3) come before q: by x, of equal ones by y, then by z."""
+    (px, py, pz), (qx, qy, qz) = p.T, q.T
+    return (px < qx) | ((px == qx) & ((py < qy) | ((py == qy) & (pz < qz))))
 
 
 def cut_short(path: Path, content: bytes) -> str:

@@ -15,7 +15,7 @@ from shared.shapes.facets import facets
 from shared.shapes.rough_box import rough_size
 
 CHORD, ANGLE = 0.002, 0.4
-"""Of coarse meshes: largest distance from the surface, in sizes of a solid, and largest angle (rad)."""
+"""Of coarse meshes: largest distance from the surface, in edges, for each mm of the solid; largest angle (rad)."""
 
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.standing.back_plate import Upright
@@ -35,7 +35,7 @@ class Hull:
     def of(cls, solid: Solid, shape: cq.Workplane | None = None) -> Hull:
         """Of its ``shape`` or one that is turned, by a coarse mesh."""
         whole = (solid.shape if shape is None else shape).solids()
-        faces = facets(whole.vals()[0], CHORD * rough_size(whole), ANGLE).astype(float)
+        faces = facets(whole.vals()[0], CHORD * rough_size(whole), ANGLE, relative=True).astype(float)
         places = faces.reshape(-1, 3)
         parts = np.einsum("ij,ij->i", faces[:, 0], np.cross(faces[:, 1], faces[:, 2])) / 6
         centre = (parts[:, None] * faces.sum(axis=1)).sum(axis=0) / 4 / parts.sum()

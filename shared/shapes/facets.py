@@ -5,24 +5,21 @@ from __future__ import annotations
 import shutil
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
 from shared.stage.errors import UserError
-
-if TYPE_CHECKING:
-    import cadquery as cq
 
 HEAD = 84
 """Bytes of a binary STL before its triangles; the last four are their number."""
 TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
-def facets(shape: cq.Shape, tolerance: float, angle: float, relative: bool = False) -> np.ndarray:
-    """(n, 3, 3) float32: corners (mm) of triangles that are ``tolerance`` (mm, or ``relative`` to the length of each
-    edge) from the surface at most, with ``angle`` (rad) between neighbours; counter-clockwise seen from outside, in an
-    order of their own. The shape carries no mesh along afterwards.
+def facets(shape: Any, tolerance: float, angle: float, relative: bool = False) -> np.ndarray:
+    """The triangles of a ``cadquery.Shape``, (n, 3, 3) float32: their corners (mm), counter-clockwise seen from
+    outside, in an order of their own. They are ``tolerance`` from the surface at most (mm, or ``relative`` to the
+    length of each edge), with ``angle`` (rad) between neighbours. The shape carries no mesh along afterwards.
 
     Raises UserError where there is no room for the kernel's file.
     """

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import cadquery as cq
 
 COARSE, ANGLE = 0.05, 0.6
-"""Of the mesh: tolerance in the size of the solid's box, largest angle between facets (rad)."""
+"""Of the mesh: distance from the surface, in edges, for each mm of the size; largest angle between facets (rad)."""
 SAME = 1e-7
 """Corners that are nearer than this part of the size are one."""
 
@@ -22,7 +22,7 @@ def through_holes(shape: cq.Workplane) -> int:
     """Of one closed solid: V - E + F of its mesh is 2 - 2 n."""
     solid = shape.solids().vals()[0]
     size = rough_size(shape.solids())
-    corners = facets(solid, COARSE * size, ANGLE).reshape(-1, 3).astype(float)
+    corners = facets(solid, COARSE * size, ANGLE, relative=True).reshape(-1, 3).astype(float)
     places = np.round(corners / (SAME * size)).astype(np.int64)
     _, which = np.unique(places, axis=0, return_inverse=True)
     triples = which.reshape(-1, 3)

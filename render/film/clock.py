@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from render.film.poses import Moment
 from shared.contract import Motion
+from shared.contract.quantity import figures
 from shared.contract.shot import Shot
 
 Array = NDArray[np.float64]
@@ -126,4 +127,4 @@ def speed(rate: float) -> str:
     """``in real time``, ``slowed 20 times``, ``5 times faster``."""
     if abs(rate - 1) < 0.02:
         return "in real time"
-    return f"slowed {1 / rate:.3g} times" if rate < 1 else f"{rate:.3g} times faster"
+    return f"slowed {figures(1 / rate, 3)} times" if rate < 1 else f"{figures(rate, 3)} times faster"

@@ -9,6 +9,7 @@ from render.report.written import counted, first_peak, listed, moment, speed, ta
 from render.shaking import shaking
 from shared.contract import Motion, Parts
 from shared.contract.clearance import Clearance
+from shared.contract.quantity import figures
 
 G = 9.80665
 ROUNDING = 1e-9
@@ -83,7 +84,8 @@ def _last_turn(motion: Motion) -> list[str]:
     return [
         "",
         f"In its last turn the {crank.body} has {turning(mean)} on average, at least {written(least, 'rad/s')} and at "
-        f"most {written(most, 'rad/s')}: its speed fluctuates by {100 * (most - least) / mean:.2g} % of the mean.",
+        f"most {written(most, 'rad/s')}: its speed fluctuates by "
+        f"{figures(100 * (most - least) / mean, 2)} % of the mean.",
     ]
 
 
@@ -181,7 +183,7 @@ def _nearest(clearance: Clearance) -> str:
 
 def _acceleration(a: np.ndarray) -> str:
     most = float(a.max())
-    return f"{written(most, 'm/s²')} ({most / G:.2g} g)" if most > 1e-9 else "0"
+    return f"{written(most, 'm/s²')} ({figures(most / G, 2)} g)" if most > 1e-9 else "0"
 
 
 def _place(at: tuple[float, float]) -> str:

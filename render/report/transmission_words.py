@@ -9,6 +9,7 @@ import numpy as np
 from render.report.transmission import LEAST, Loop, loops
 from render.report.written import degrees, listed, moment, written
 from shared.contract import Motion
+from shared.contract.quantity import figures
 
 ALIKE = 1.005
 """Ways whose times have a smaller ratio take equally long."""
@@ -56,7 +57,7 @@ def _loop_lines(loop: Loop, time: np.ndarray) -> list[str]:
         if len(passed) == 2 and np.ptp(loop.angle) > 1.9 * math.pi:
             way = (dead[1][0] - dead[0][0]) / (time[-1] - time[0])
             ratio = max(way, 1 - way) / min(way, 1 - way)
-            ways = f"One way takes {ratio:.3g} times as long as the other."
+            ways = f"One way takes {figures(ratio, 3)} times as long as the other."
             lines[-1] += f" {ways if ratio > ALIKE else 'Both ways take equally long.'}"
     else:
         lines.append(f"There is no dead point in this motion: {loop.crank} and {loop.coupler} are never in line.")

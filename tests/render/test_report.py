@@ -26,7 +26,12 @@ MOTION = four_bar_motion()
 
 
 def slider_crank(
-    crank: float = 0.05, rod: float = 0.15, mass: float = 0.5, start: float = 0.3, steps: int = 360
+    crank: float = 0.05,
+    rod: float = 0.15,
+    mass: float = 0.5,
+    start: float = 0.3,
+    steps: int = 360,
+    rate: float = 100.0,
 ) -> Motion:
     m = Mechanism("slider_crank")
     one, two, three = m.bar("crank", crank), m.bar("rod", rod), m.body("slider", mass)
@@ -34,7 +39,7 @@ def slider_crank(
     m.revolute("A", one.end, two.start)
     m.revolute("B", two.end, three.origin)
     m.prismatic("guide", m.ground.at(0, 0), three.origin)
-    m.drive_angle("motor", one, constant_rate(100.0, start))
+    m.drive_angle("motor", one, constant_rate(rate, start))
     m.start_near(crank=math.degrees(start), rod=-math.degrees(math.asin(crank / rod * math.sin(start))))
     return to_motion(m.sweep(steps=steps), None, "0" * 64, {}, dict.fromkeys(("crank", "rod", "slider"), "mechanism"))
 
@@ -121,6 +126,12 @@ def test_peaks_are_told_with_their_time() -> None:
     assert "1 degree of freedom and is driven by motor" in text
     assert "weighs 270 g" in text
     assert "It was not checked" in text
+
+
+def test_peaks_of_fast_machines_are_written_without_exponents() -> None:
+    text = report.report(slider_crank(rate=400.0), None, None)
+    assert re.search(r"\| slider \| .* m/s² \(\d{3,4} g\)", text), text
+    assert not re.search(r"\de[+-]?\d+ g\b", text)
 
 
 def test_a_sweeps_work_over_a_period_is_nothing() -> None:

@@ -47,7 +47,13 @@ def test_the_natural_rate_is_real_time_or_a_round_factor(seconds: float) -> None
 
 @pytest.mark.parametrize(
     ("seconds", "said"),
-    [(4.0, "in real time"), (0.02, "slowed 50 times"), (90.0, "5 times faster"), (0.7, "slowed 2 times")],
+    [
+        (4.0, "in real time"),
+        (0.02, "slowed 50 times"),
+        (90.0, "5 times faster"),
+        (0.7, "slowed 2 times"),
+        (0.0008, "slowed 2000 times"),
+    ],
 )
 def test_the_rate_is_said(seconds: float, said: str) -> None:
     clock = Clock(once(seconds), Shot())

@@ -55,7 +55,7 @@ def carrier_shape(
     shape = shape.union(extruded(outline.circle(x, y, HUB * bore), height))
     root = extruded(outline.hull([(x, y, SHANK * bore), (small[0], small[1], 0.8 * SHANK * bore)]), height)
     shape = shape.union(root.intersect(_flange(main, pins, height, bore, edge=0.0)))
-    shank, _ = rod_shape([(x, y, Eye(HUB * bore, hole)), small], fork.middle, bore)
+    shank = rod_shape([(x, y, Eye(HUB * bore, hole)), small], fork.middle, bore)
     shape = shape.union(placed(shank, z=(height - fork.middle) / 2))
     for u, v, radius in [(x, y, hole / 2), *((u, v, KNUCKLE_PIN * bore + SEAT) for u, v in pins)]:
         shape = shape.cut(extruded(outline.circle(u, v, radius), height + 2, -1))

@@ -25,16 +25,14 @@ WIDTHS = (4.0, 5.1, 4.4, 6.2)
 """Of the box that cuts a rod in two, in its reach: at some of them the kernel fails for no reason of the shape."""
 
 
-def plate_shape(
-    own: Link, eyes: list[tuple[float, float, Eye]], thickness: float, unit: float
-) -> tuple[cq.Workplane, int]:
-    """The plate from z = 0 up and its number of through holes; ``unit`` millimetres are one rmm."""
+def plate_shape(own: Link, eyes: list[tuple[float, float, Eye]], thickness: float, unit: float) -> cq.Workplane:
+    """The plate from z = 0 up; ``unit`` millimetres are one rmm."""
     scaled = [(x / unit, y / unit, Eye(eye.radius / unit, eye.bore / unit)) for x, y, eye in eyes]
-    shape, holes = body_shape(scaled, thickness / unit)
-    return shape.newObject([shape.val().scale(unit)]), holes
+    shape, _ = body_shape(scaled, thickness / unit)
+    return shape.newObject([shape.val().scale(unit)])
 
 
-def rod_shape(eyes: list[tuple[float, float, Eye]], thickness: float, bore: float) -> tuple[cq.Workplane, int]:
+def rod_shape(eyes: list[tuple[float, float, Eye]], thickness: float, bore: float) -> cq.Workplane:
     """A connecting rod from z = 0 up, its big end first in ``eyes``."""
     unit = bore / 100
     (x0, y0, big), (x1, y1, small) = eyes
@@ -47,7 +45,7 @@ def rod_shape(eyes: list[tuple[float, float, Eye]], thickness: float, bore: floa
     ]
     ways.append(lambda: body_shape([(0.0, 0.0, start), (length, 0.0, end)], thick)[0])
     shape = first_made(ways)
-    return placed(shape.newObject([shape.val().scale(unit)]), x0, y0, turn=math.degrees(turn)), 2
+    return placed(shape.newObject([shape.val().scale(unit)]), x0, y0, turn=math.degrees(turn))
 
 
 type Cut = tuple[tuple[float, float], float, float]
@@ -61,7 +59,7 @@ def rod_pieces(
     eyes: tuple[tuple[float, float, Eye], ...], thickness: float, bore: float, cuts: tuple[Cut, ...]
 ) -> list[Piece]:
     """A connecting rod and its caps, once for all rods of an engine that are alike; from z = 0 up."""
-    return cut_up(rod_shape([*eyes], thickness, bore)[0], cuts)
+    return cut_up(rod_shape([*eyes], thickness, bore), cuts)
 
 
 def cut_up(shape: cq.Workplane, cuts: Sequence[Cut]) -> list[Piece]:

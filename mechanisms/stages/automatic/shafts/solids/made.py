@@ -220,7 +220,7 @@ def _link(own: Along, link: Link, material: str, is_wished: bool) -> list[Solid]
         pieces = rod_pieces((eyes[big], eyes[1 - big]), thickness, bore, cuts)
     else:
         there = eyes or [(0.0, 0.0, Eye(own.sizes.eye * own.measures.unit, 0.0))]
-        pieces = cut_up(plate_shape(link, there, thickness, own.measures.unit)[0], cuts)
+        pieces = cut_up(plate_shape(link, there, thickness, own.measures.unit), cuts)
     if bore is not None and not is_wished:
         material = ROD
     names = [link.body, *(f"cap_{link.body}" for _ in cuts)]

@@ -94,7 +94,7 @@ def content_of(file: Path) -> bytes:
         return b""
 
 
-@lru_cache(maxsize=1024)
+@lru_cache(maxsize=8192)  # fewer than a project has modules would keep none: they come in the same order each time
 def _named(source: bytes, package: str) -> list[str]:
     names: set[str] = set()
     try:

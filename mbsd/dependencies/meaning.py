@@ -21,7 +21,7 @@ REFLECTIVE = (
 _DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=8192)
 def meaning(source: bytes) -> str:
     """SHA-256 of what the source means; of its bytes where it is no Python."""
     try:

@@ -73,6 +73,7 @@ NIGHT = $(PYTHON) -m studio.night
 OF_NIGHT = --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} --only="$$ONLY" --show="$$SHOW" --spectra="$$SPECTRA" --watts="$$WATTS" --anyway="$$ANYWAY" --python="$(PYTHON)"
 # install compiles the kernels in the background; these want all of them, and nothing else running.
 ALL_KERNELS = @$(PYTHON) -m tools.compiling wait
+PROGRAMS_OF_TESTS = @$(PYTHON) -m shared.system --for-tests || case "$${STRICT:-$$CI}" in ""|0) ;; *) false ;; esac
 
 # pyright comes whole in its wheel; without this it asks the network whether it is the newest.
 export PYRIGHT_PYTHON_IGNORE_WARNINGS := 1
@@ -83,7 +84,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new test lint format bench bench-start bench-live bench-film hunt hunt-parts torture check-numbers record-numbers schema docs study-engines study-run-up readme-loop integrators wheel lock clean clean-all always
+.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new test-fast test test-slow lint format bench bench-start bench-live bench-film hunt hunt-parts torture check-numbers record-numbers schema docs study-engines study-run-up readme-loop integrators wheel lock clean clean-all always
 
 # A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
 define upto_motion
@@ -251,10 +252,20 @@ install: ## uv, Python 3.13, every package at its locked version; kernels compil
 libraries: install ## whether the system has what parts and pictures load; their targets ask before they begin
 	@test ! -d .venv || test -f .venv/libraries-found || { echo "error: parts and pictures need these libraries; nothing was made" >&2; exit 1; }
 
-test: install ## the tests; PYTEST="-k name" picks some; STRICT=1: none is skipped for want of a program
-	@$(PYTHON) -m shared.system --for-tests || case "$${STRICT:-$$CI}" in ""|0) ;; *) false ;; esac
+test-fast: install ## the quick tests, in minutes: no Blender, no browser, no mechanism of the gallery
+	$(PROGRAMS_OF_TESTS)
 	$(ALL_KERNELS)
-	@$(PYTHON) -m pytest $(PYTEST)
+	@$(PYTHON) -m pytest -m fast $(PYTEST)
+
+test: install ## the tests but for the slow ones; PYTEST="-k name" picks some; STRICT=1: none is skipped for want of a program
+	$(PROGRAMS_OF_TESTS)
+	$(ALL_KERNELS)
+	@$(PYTHON) -m pytest -m "not slow" $(PYTEST)
+
+test-slow: install ## the slow tests: every mechanism of the gallery through all its stages, large machines, random ones
+	$(PROGRAMS_OF_TESTS)
+	$(ALL_KERNELS)
+	@$(PYTHON) -m pytest -m slow $(PYTEST)
 
 lint: install ## formatting, ruff, pyright, import rules
 	@.venv/bin/ruff format --check .

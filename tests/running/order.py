@@ -1,4 +1,7 @@
-"""The order of the tests: quick files, so that a fault shows in the first minute, then the long ones, longest first."""
+"""The order of the tests: quick files, so that a fault shows in the first minute, then the long ones, longest first.
+
+A quick file is marked ``fast`` as well, if it is in a room that starts no program (``make test-fast``).
+"""
 
 from __future__ import annotations
 
@@ -13,6 +16,8 @@ SECONDS = Path(__file__).with_name("seconds.json")
 """Seconds that each long group took; `make test PYTEST="... --record-seconds"` writes it anew."""
 LONG = 4.0
 """Seconds from which a group is long. Groups that are not in the file are quick: a new file runs early."""
+HEAVY = ("render", "studio", "mechanisms/gallery")
+"""Folders of tests whose files load Blender, a browser or the gallery."""
 UNKNOWN = 15.0
 """Seconds that are taken for a folder of mechanisms/ that is not in the file."""
 FOLDERS = "test_mechanisms.py"
@@ -39,12 +44,22 @@ def place_of(group: str, seconds: dict[str, float]) -> float:
     return 1.0 / length if length else 0.0
 
 
-class Order:
-    """Sorts what is collected and spreads groups over the processes in that order."""
+def is_fast(nodeid: str, seconds: dict[str, float]) -> bool:
+    """Whether a test belongs to ``make test-fast``."""
+    group = group_of(nodeid)
+    return group not in seconds and "[" not in group and not group.startswith(tuple(f"tests/{room}/" for room in HEAVY))
 
+
+class Order:
+    """Marks and sorts what is collected and spreads groups over the processes in that order."""
+
+    @pytest.hookimpl(tryfirst=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        """Sort by group; the order within a group stays."""
+        """Mark, before ``-m`` chooses, and sort by group; the order within a group stays."""
         seconds = recorded()
+        for item in items:
+            if is_fast(item.nodeid, seconds):
+                item.add_marker("fast")
         items.sort(key=lambda item: place_of(group_of(item.nodeid), seconds))
 
     @pytest.hookimpl(optionalhook=True)

@@ -252,17 +252,17 @@ install: ## uv, Python 3.13, every package at its locked version; kernels compil
 libraries: install ## whether the system has what parts and pictures load; their targets ask before they begin
 	@test ! -d .venv || test -f .venv/libraries-found || { echo "error: parts and pictures need these libraries; nothing was made" >&2; exit 1; }
 
-test-fast: install ## the quick tests, in minutes: no Blender, no browser, no mechanism of the gallery
-	$(PROGRAMS_OF_TESTS)
-	$(ALL_KERNELS)
-	@$(PYTHON) -m pytest -m fast $(PYTEST)
-
-test: install ## the tests but for the slow ones; PYTEST="-k name" picks some; STRICT=1: none is skipped for want of a program
+test: install ## all tests but the slow ones; PYTEST="-k name" picks some; STRICT=1 skips none
 	$(PROGRAMS_OF_TESTS)
 	$(ALL_KERNELS)
 	@$(PYTHON) -m pytest -m "not slow" $(PYTEST)
 
-test-slow: install ## the slow tests: every mechanism of the gallery through all its stages, large machines, random ones
+test-fast: install ## the quick ones among them: no Blender, no browser, no mechanism of the gallery
+	$(PROGRAMS_OF_TESTS)
+	$(ALL_KERNELS)
+	@$(PYTHON) -m pytest -m fast $(PYTEST)
+
+test-slow: install ## the slow ones: all stages of the rest of the gallery, large machines, random ones
 	$(PROGRAMS_OF_TESTS)
 	$(ALL_KERNELS)
 	@$(PYTHON) -m pytest -m slow $(PYTEST)

@@ -21,9 +21,19 @@ from tests.render.glb_file import GlbFile
 from tests.running.warm import Warm
 
 STAGES = ("parts", "solve", "clearance", "shot")
+SLOW = {
+    *("bicycle_leg", "four_bar_bicycle", "four_bar_motor", "jansen_leg", "pantograph", "peaucellier", "scissor_lift"),
+    *("inverse_slider_crank", "quick_return", "rotating_constraint", "slider_crank", "swing_table", "toggle_clamp"),
+    *("bending_stiffness", "cam_follower_angular", "planetary_gear", "rack_steering", "windshield_wiper"),
+    *("flat_four", "inline_four", "radial_five", "single_cylinder", "v6", "v8"),
+}
+"""Folders whose like is among the others, which are run each time as new ones are; these are slow tests."""
 
 
-@pytest.fixture(scope="module", params=mechanism_names())
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(name, marks=[pytest.mark.slow] if name in SLOW else []) for name in mechanism_names()],
+)
 def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, warm: Warm) -> tuple[str, Path]:
     """All stages before the pictures, run as a user runs them."""
     root = tmp_path_factory.mktemp(request.param)

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from shared.stage.paths import ROOT, mechanism_names
+from tests.mechanisms.test_mechanisms import SLOW
 from tests.running import order
 from tests.running.order import group_of, place_of
 
@@ -67,6 +68,28 @@ def test_seconds_of_long_groups_are_recorded(monkeypatch: pytest.MonkeyPatch, tm
         recording.pytest_runtest_logreport(report)
     recording.pytest_sessionfinish()
     assert json.loads(order.SECONDS.read_text()) == {"tests/old.py": 50.0, "tests/a.py": 30.0}
+
+
+def test_fast_are_quick_files_of_rooms_that_start_no_program() -> None:
+    seconds = {"tests/dynamics/test_long.py": 5.0}
+    assert order.is_fast("tests/dynamics/test_new.py::test_a[1]", seconds)
+    assert not order.is_fast("tests/dynamics/test_long.py::test_a", seconds)
+    assert not order.is_fast("tests/render/test_plots.py::test_a", seconds)
+    assert not order.is_fast("tests/mechanisms/test_mechanisms.py::test_a[four_bar]", seconds)
+
+
+def test_slow_folders_exist_and_each_target_has_its_tests() -> None:
+    """`make test` and `make test-slow` together run every test once."""
+    assert set(mechanism_names()) > SLOW
+    chosen: dict[str, set[str]] = {}
+    files = [str(TESTS / "mechanisms" / "test_mechanisms.py"), str(TESTS / "project" / "test_rooms.py")]
+    for words in ("", "not slow", "slow", "fast"):
+        seen = _Seen()
+        pytest.main(["--collect-only", "-q", "-p", "no:cacheprovider", "-m", words, *files], plugins=[seen])
+        chosen[words] = {item.nodeid for item in seen.items}
+    assert chosen["not slow"] | chosen["slow"] == chosen[""]
+    assert not chosen["not slow"] & chosen["slow"]
+    assert {group_of(test) for test in chosen["fast"]} == {"tests/project/test_rooms.py"}
 
 
 SHARED = """

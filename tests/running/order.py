@@ -58,7 +58,7 @@ class Order:
         """Mark, before ``-m`` chooses, and sort by group; the order within a group stays."""
         seconds = recorded()
         for item in items:
-            if is_fast(item.nodeid, seconds):
+            if is_fast(item.nodeid, seconds) and item.get_closest_marker("slow") is None:
                 item.add_marker("fast")
         items.sort(key=lambda item: place_of(group_of(item.nodeid), seconds))
 

@@ -13,19 +13,13 @@ from render.film.camera import angles
 from render.film.framing import axes
 from shared.contract import mounted
 from shared.contract.shot import Shot
-from shared.stage.paths import mechanism_folder, mechanism_names, variants_in
-
-
-def named(owner: str) -> list[str]:
-    """A mechanism and its variants."""
-    return [owner, *(f"{owner}-{variant}" for variant in variants_in(mechanism_folder(owner) / "mechanism.py"))]
-
+from tests.mechanisms.every_folder import folders_and_variants
 
 UPRIGHT = (5.0, 25.0)
 """Elevations (degrees) of the camera at eye level of what stands."""
 
 
-@pytest.mark.parametrize("name", [name for owner in mechanism_names() for name in named(owner)])
+@pytest.mark.parametrize("name", folders_and_variants())
 def test_gravity_is_down_in_the_picture(name: str) -> None:
     m = build(name, load(name, "mechanism"), params(name))
     shot = load(name, "shot").shot if has(name, "shot") else Shot()

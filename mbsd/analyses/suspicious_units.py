@@ -52,8 +52,9 @@ class Finding:
 def check(m: Model) -> list[Finding]:
     """Everything in ``m`` that looks like a mixed-up unit, in the order of the checks above."""
     sizes = body_sizes(m)
+    lengths = list(_lengths_and_gravity(m, sizes))
     return [
-        *_lengths_and_gravity(m, sizes),
+        *lengths,
         *_masses(m),
         *_mass_properties(m, sizes),
         *_trace_places(m, sizes),
@@ -61,7 +62,7 @@ def check(m: Model) -> list[Finding]:
         *_law_angles(m),
         *_start_angles(m),
         *_world_places(m),
-        *_assemblies(m),
+        *(() if lengths else _assemblies(m)),  # links of the wrong lengths close in no way that is meant
         *_planes(m),
         *_hydraulics(m),
     ]

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
@@ -166,6 +166,7 @@ def test_every_kind_of_force_can_be_drawn(kind: ForceKind, to_ground: bool) -> N
     assert "example" in {element.text for element in ET.fromstring(m.topology().text).iter()}
 
 
+@settings(max_examples=25)
 @given(
     teeth=st.tuples(st.integers(12, 30), st.integers(12, 30), st.integers(40, 70)),
     turned=st.floats(-3.0, 3.0),
@@ -288,6 +289,7 @@ def test_the_topology_names_all_and_marks_the_redundant() -> None:
     assert "stroke-dasharray" not in parallelogram(extra=False).topology().text
 
 
+@settings(max_examples=25)
 @given(extra=st.lists(st.tuples(st.integers(0, 7), st.integers(0, 7)), max_size=5), count=st.integers(1, 8))
 def test_boxes_of_bodies_do_not_overlap(extra: list[tuple[int, int]], count: int) -> None:
     m = Mechanism("random")

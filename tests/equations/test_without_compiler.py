@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[2]
 FILES = (
     "equations/test_joints.py",
@@ -19,6 +21,7 @@ FILES = (
 )
 
 
+@pytest.mark.slow
 def test_the_solver_passes_its_tests_without_numba() -> None:
     environment = os.environ | {"NUMBA_DISABLE_JIT": "1"}
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:xdist"]

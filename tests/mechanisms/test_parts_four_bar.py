@@ -182,6 +182,7 @@ def test_a_coupler_on_the_wrong_layer_collides(
 @pytest.mark.parametrize(
     "lengths", [{"crank": 0.036, "ground": 0.100}, {"crank": 0.050, "coupler": 0.140, "rocker": 0.110, "ground": 0.150}]
 )
+@pytest.mark.slow
 def test_other_lengths_give_sound_solids(lengths: dict[str, float]) -> None:
     for solids in four_bar.parts(Params(**lengths)).values():
         for solid in solids:

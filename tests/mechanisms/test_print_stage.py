@@ -132,6 +132,7 @@ def test_the_3mf_and_the_stl_are_the_same_plate(press: Press) -> None:
     assert both.sum(axis=0) == pytest.approx(of_stl.vertices.sum(axis=0), rel=1e-4)
 
 
+@pytest.mark.slow
 def test_two_processes_write_the_same_bytes(press: Press, tmp_path: Path) -> None:
     """From the same parts, in folders of other names, without and with a seed for hashes."""
     found = []

@@ -17,6 +17,7 @@ from tests.render import film_fixture
 TINY = Preset("tiny", 96, 54, 1)
 
 
+@pytest.mark.slow
 def test_a_film_in_scratch_and_a_plain_script(out_root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("PYTHONUNBUFFERED", raising=False)  # which orders Blender's words and the script's
     out = film_fixture.write(Shot(trails=(), labels=()))

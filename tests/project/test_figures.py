@@ -36,6 +36,9 @@ ANALYSES = (
     "forces",
 )
 
+SLOW = ("integrators", "forward_dynamics")
+"""Pages whose code takes ten seconds and more."""
+
 once = cache(drawn)
 
 
@@ -47,7 +50,9 @@ def parts(svg: str) -> tuple[str, np.ndarray, np.ndarray]:
     return NUMBER.sub("#", text), np.array(NUMBER.findall(text), float), boxes
 
 
-@pytest.mark.parametrize("page", PAGES)
+@pytest.mark.parametrize(
+    "page", [pytest.param(page, marks=[pytest.mark.slow] if page in SLOW else []) for page in PAGES]
+)
 def test_pictures_are_what_their_pages_compute(page: str) -> None:
     """Up to the last digits of other machines, a tenth of a point."""
     for name, content in once(page).items():

@@ -19,6 +19,7 @@ from tools.torture.faults import BACKGROUND, CLUSTER, DISK_OF_ONE, FAULTS, FETCH
 from tools.torture.rounds import Outcome
 
 
+@pytest.mark.slow
 def test_two_rounds(out_root: Path, tmp_path: Path) -> None:
     """Faults at random moments lose nothing; the seed is fixed, so that it is the same test each day.
 
@@ -50,6 +51,7 @@ time.sleep(600)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere nothing tells a process that its parent was killed")
+@pytest.mark.slow
 def test_a_cluster_ends_with_the_torture_that_is_killed(tmp_path: Path) -> None:
     """A scheduler and three workers stayed for minutes, beside what was done next."""
     command = [sys.executable, "-c", CLUSTER_ALONE, str(tmp_path)]

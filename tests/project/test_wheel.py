@@ -129,6 +129,7 @@ def _compiled_before(folder: Path, sources: Path) -> None:
         shutil.copytree(one, folder / Path(one).name, ignore=shutil.ignore_patterns(".lock", "*.tmp.*"))
 
 
+@pytest.mark.slow
 def test_a_wheel_with_kernels_compiles_nothing_and_writes_nothing(empty: Path, tmp_path: Path) -> None:
     wheel = build_with_kernels(ROOT, tmp_path / "dist", _compiled_before)
     version = f"cp{sys.version_info.major}{sys.version_info.minor}"
@@ -146,6 +147,7 @@ def test_a_wheel_with_kernels_compiles_nothing_and_writes_nothing(empty: Path, t
     assert not list((tmp_path / "cache").rglob("*.nb*"))
 
 
+@pytest.mark.slow
 def test_without_its_kernels_the_wheel_compiles_into_the_users_folder(tmp_path: Path) -> None:
     """A kernel of another file, so that this takes a second; the wheel's folder is one that lacks it."""
     (tmp_path / "kernels.py").write_text(

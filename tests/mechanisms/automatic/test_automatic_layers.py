@@ -221,6 +221,7 @@ def _random_linkage(rng: np.random.Generator) -> Mechanism:
 
 
 @pytest.mark.parametrize("seed", range(3))
+@pytest.mark.slow
 def test_random_linkages_get_layers_without_a_collision_or_a_refusal(seed: int) -> None:
     rng = np.random.default_rng(seed)
     laid = refused = tried = 0

@@ -93,6 +93,7 @@ def test_stepped_wheels_mesh_in_two_layers(small: int, large: int, bend: float) 
 
 
 @pytest.mark.parametrize("order", [(18, 54, 18, 54), (54, 18, 54, 18)])
+@pytest.mark.slow
 def test_second_wheel_stands_on_a_tube_that_leaves_the_pin_free(order: tuple[int, int, int, int]) -> None:
     m = two_stages(order)
     made = Automatic(m, m.sweep(1.0, steps=20))

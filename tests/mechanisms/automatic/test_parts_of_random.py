@@ -38,6 +38,7 @@ KINDS = (
 REASONS = ("no order of layers lets", "has no parts by itself", "bends with a radius")
 
 
+@pytest.mark.slow
 def test_a_hundred_random_mechanisms_get_layers_or_a_reason() -> None:
     came: Counter[str] = Counter()
     for k in range(100):
@@ -87,6 +88,7 @@ def test_a_short_hunt_for_parts_writes_its_report(out_root: Path) -> None:
     assert report["cases"][BUILT] == sum(report["cases"].values()) == 3
 
 
+@pytest.mark.slow
 def test_a_hunt_goes_on_where_it_was_stopped(out_root: Path) -> None:
     asked = {"seed": 4, "jobs": 1, "kind": "four-bar, crank turns", "solids": False}
     hunt(2, **asked)
@@ -107,6 +109,7 @@ def test_a_hunt_goes_on_where_it_was_stopped(out_root: Path) -> None:
     assert json.loads(line)["sources"] == kept.sources
 
 
+@pytest.mark.slow
 def test_one_is_built_and_proven() -> None:
     found = case.run(SEED, "slider-crank").outcomes[-1]
     assert found.state == BUILT, found
@@ -141,6 +144,7 @@ def test_results_name_their_kind() -> None:
     assert (result.family, result.outcomes[-1].state) == ("slider-crank", BUILT)
 
 
+@pytest.mark.slow
 def test_post_of_a_spring_stands_beside_a_rail_on_ground() -> None:
     """A chain on a slide: the post went through the rail."""
     [outcome] = case.run(23_000_139).outcomes

@@ -27,6 +27,9 @@ from tests.running.needs import needed
 SCRIPT = Path(__file__).with_name("phone.cjs")
 
 
+pytestmark = pytest.mark.slow
+
+
 @pytest.fixture(scope="module")
 def seen(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Out, dict[str, Any]]]:
     chromium = needed("chromium")

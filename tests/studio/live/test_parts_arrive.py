@@ -41,6 +41,7 @@ def long(length: float) -> str:
     return ARM.replace("length: float = 0.2 ", f"length: float = {length!r} ")
 
 
+@pytest.mark.slow
 def test_parts_follow_the_skeleton(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = tmp_path / "mechanisms"
     monkeypatch.setenv("MBSD_TEST_PARTS", str(folder))

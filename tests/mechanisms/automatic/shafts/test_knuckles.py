@@ -57,6 +57,7 @@ def test_all_liners_stay_clear_of_what_the_ring_of_knuckle_pins_sweeps(five: Alo
     assert all(1.0 < stroke / strokes[0] < 1.03 for stroke in strokes[1:])
 
 
+@pytest.mark.slow
 def test_a_radial_engine_is_built() -> None:
     """That nothing touches is proven of mechanisms/radial_five."""
     m = radial()

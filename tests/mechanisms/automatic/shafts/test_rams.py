@@ -49,6 +49,7 @@ def test_the_columns_hold_the_ram_at_its_nearest_and_at_its_farthest_place() -> 
     ("places", "given"),
     [((-0.03, 0.03), {"rod_z": False}), ((-0.04, 0.0, 0.04), {"ram_z": 0.0}), ((-0.01, 0.01), {"rod_z": False})],
 )
+@pytest.mark.slow
 def test_places_may_be_told_by_the_shaft_and_rods_stand_side_by_side(places: tuple, given: dict) -> None:
     _, bodies = checked(press(places, **given))
     for k, z in enumerate(places, start=1):

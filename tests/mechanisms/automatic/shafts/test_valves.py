@@ -30,6 +30,7 @@ def along(m: Mechanism) -> Along:
     return plan
 
 
+@pytest.mark.slow
 def test_a_single_with_valves_is_built_and_nothing_touches() -> None:
     made, bodies = checked(motor("I1"))
     assert made.along is not None

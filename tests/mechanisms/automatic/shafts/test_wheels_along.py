@@ -50,12 +50,14 @@ def test_gears_of_a_train_stand_tooth_in_space() -> None:
         ("triplex_pump", {"plunger_1", "plunger_2", "plunger_3"}),
     ],
 )
+@pytest.mark.slow
 def test_machines_with_a_shaft_are_built_and_nothing_touches(name: str, moved: set[str]) -> None:
     _, bodies = checked(getattr(models, name)())
     assert moved < set(bodies)
     assert all(solids and solids[0].name == body for body, solids in bodies.items() if body != "ground")
 
 
+@pytest.mark.slow
 def test_a_pair_of_legs_is_built_and_nothing_touches() -> None:
     """Those of all six pairs are alike; each pair more takes its 30 s."""
     _, bodies = checked(models.walker(1))

@@ -1,4 +1,4 @@
-"""Known linkages for tests of parts by themselves: bars and plates on pins, driven by a crank."""
+"""Known linkages for tests of automatic parts: bars and plates on pins, driven by a crank."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Outlines of a leg on a bicycle, and outlines that are joined to the plates of parts by themselves."""
+"""Outlines of a leg on a bicycle, and outlines that are joined to the plates of automatic parts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One case: a random mechanism of the hunt, its motion, its parts by themselves, and the proof that none touch."""
+"""One case: a random mechanism of the hunt, its motion, its automatic parts, and the proof that none touch."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Parts by themselves."""
+"""Automatic parts."""

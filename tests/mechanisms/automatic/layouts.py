@@ -1,4 +1,4 @@
-"""Whether the layout of parts by themselves keeps its own rules, seen anew."""
+"""Whether the layout of automatic parts keeps its own rules, seen anew."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Parts by themselves along open curves: slots and roads go on straight as the model does, keep out of their own way,
+"""Automatic parts along open curves: slots and roads go on straight as the model does, keep out of their own way,
 and what would run through itself is refused before anything is built.
 """
 

@@ -1,4 +1,4 @@
-"""Wheels of parts by themselves: whole teeth, standard modules, flanks that pass each other in phase."""
+"""Wheels of automatic parts: whole teeth, standard modules, flanks that pass each other in phase."""
 
 from __future__ import annotations
 

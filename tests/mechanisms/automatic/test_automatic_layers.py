@@ -1,4 +1,4 @@
-"""Parts by themselves before they are built: sizes, gaps in the plane, the order of layers. No CAD."""
+"""Automatic parts before they are built: sizes, gaps in the plane, the order of layers. No CAD."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rods with parts by themselves, and linear drivers and ropes between two points."""
+"""Rods with automatic parts, and linear drivers and ropes between two points."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Parts by themselves of slots on ground and along curves, of pins on ground, and of welds."""
+"""Automatic parts of slots on ground and along curves, of pins on ground, and of welds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Springs with parts by themselves: studs where their ends are, and a layer in which nothing meets them."""
+"""Springs with automatic parts: studs where their ends are, and a layer in which nothing meets them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Words, fits and pins of parts by themselves: what one may want otherwise."""
+"""Words, fits and pins of automatic parts: what one may want otherwise."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Discs of cams with any closed outline, and what the CAD kernel cannot make of parts by themselves."""
+"""Discs of cams with any closed outline, and what the CAD kernel cannot make of automatic parts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Parts by themselves for a hundred random mechanisms: an order of layers in which nothing meets, or a reason."""
+"""Automatic parts for a hundred random mechanisms: an order of layers in which nothing meets, or a reason."""
 
 from __future__ import annotations
 

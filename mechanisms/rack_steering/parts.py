@@ -15,7 +15,7 @@ from shared.shapes.outline import circle
 from shared.shapes.solid import Solid, placed
 
 LAYER = 4
-"""Of the knuckles: the axles lie as high as the road wheels need."""
+"""Layer of the knuckles: the axles lie as high as the road wheels need."""
 TYRE, RIM, HALF = 46.0, 31.0, 16.0
 """Radii of a tyre and its rim, and half of their width."""
 OUT = 58.0

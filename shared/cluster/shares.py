@@ -9,7 +9,7 @@ from collections.abc import Collection, Mapping
 from shared.cluster.hand import Hand
 
 COPIES = 2
-"""Of an order at most."""
+"""Copies of an order at most."""
 UNKNOWN = 5.0
 """Seconds an order that are assumed of a worker whose pace is not known."""
 WORTH = 1.5

@@ -56,7 +56,7 @@ class BeltPath:
 
     @property
     def length(self) -> float:
-        """Of the whole belt."""
+        """Length of the whole belt."""
         return sum(self.parts)
 
     def places(self, along: Array) -> tuple[Array, Array]:

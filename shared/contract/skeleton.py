@@ -36,7 +36,7 @@ class Stroke(_Strict, kw_only=True, omit_defaults=True):
     alpha: Unit
     """Opacity of the filling, or of an open line."""
     width: NonNegative
-    """Of the line (points)."""
+    """Width of the line (points)."""
     order: float
     """Higher ones cover lower ones."""
     dash: list[Positive]
@@ -87,7 +87,7 @@ class Carried(_Strict, kw_only=True):
     stroke: Stroke
     carrier: Carrier
     shapes: list[list[float]] = []
-    """Of what nothing carries: its points (x and y in turn, m) at the times of the shapes; they correspond."""
+    """Outline of what nothing carries: its points (x and y in turn, m) at the times of the shapes; they correspond."""
 
 
 class CarriedName(_Strict, kw_only=True):
@@ -108,7 +108,7 @@ class Moving(_Strict, kw_only=True):
     strokes: list[Carried]
     names: list[CarriedName]
     times: list[float]
-    """Of the shapes (s)."""
+    """Times of the shapes (s)."""
 
 
 class Skeleton(_Strict, kw_only=True):

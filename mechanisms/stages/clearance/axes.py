@@ -15,7 +15,7 @@ type Axes = dict[frozenset[str], dict[str, np.ndarray]]
 
 
 def axes_of(motion: Motion, parts: Parts, where: Mapping[str, BodyPath]) -> Axes:
-    """Of bodies that a revolute joint or a rod's end connects, and of those that turn on a common pin."""
+    """Axes of bodies that a revolute joint or a rod's end connects, and of those that turn on a common pin."""
     found: Axes = {}
     for joint in motion.joints.values():
         if joint.kind != "revolute":

@@ -37,7 +37,7 @@ class Band:
 
 
 def bands(parts: Parts, motion: Motion, where: Mapping[str, BodyPath]) -> Iterator[Band]:
-    """Of all belts that pieces hold, as far as their pulleys leave room for a path."""
+    """Bands of all belts that pieces hold, as far as their pulleys leave room for a path."""
     for name, joint in motion.joints.items():
         own, held = _holding(parts, name)
         if joint.look != "band" or held is None or joint.shape is None:

@@ -45,7 +45,7 @@ class MeshPiece:
 
     @cached_property
     def radius(self) -> float:
-        """Of the circle round ``centre`` that holds the piece."""
+        """Radius of the circle round ``centre`` that holds the piece."""
         return float(np.linalg.norm(self.triangles[:, :, :2].reshape(-1, 2) - self.centre, axis=1).max())
 
     def is_around(self, place: np.ndarray) -> bool:

@@ -49,7 +49,7 @@ type Slides = dict[frozenset[str], Slide]
 
 
 def slides_of(motion: Motion, where: Mapping[str, BodyPath]) -> Slides:
-    """Of bodies that a prismatic joint connects."""
+    """Slides of bodies that a prismatic joint connects."""
     found: Slides = {}
     for joint in motion.joints.values():
         if joint.kind != "prismatic":
@@ -106,7 +106,7 @@ class Sliced:
     """Slices of the mover are proven along the line, the rest is not: a valve's stem, but not its disc at the seat."""
 
     gap: float
-    """Of these slices, mm; infinite where they stay farther than ``away``."""
+    """Gap of these slices, mm; infinite where they stay farther than ``away``."""
     away: float
     rest: list[tuple[MeshPiece, MeshPiece]]
     """What is left: parts of the mover, and what of the other piece they come near to."""
@@ -168,7 +168,7 @@ def _between(piece: Manifold, low: float, high: float) -> Manifold:
 
 
 def _distance(p: np.ndarray, q: np.ndarray) -> float:
-    """Of two closed polygons (n, 2) that do not cross."""
+    """Distance of two closed polygons (n, 2) that do not cross."""
     return min(_to_sides(p, q), _to_sides(q, p))
 
 

@@ -61,7 +61,7 @@ class _Project(Places):
         return file_hash(path)
 
     def module_state(self, name: str) -> str:
-        """Of the author's modules what they mean; those of the program count by their bytes, as in the stages' keys."""
+        """The author's modules count by what they mean; those of the program by their bytes, as in the stages' keys."""
         if os.path.dirname(name) == "mechanisms" or name.startswith(OURS):
             return self.file_state(name)
         return recalled(("module", self.path_of(name)), lambda: super(_Project, self).module_state(name))

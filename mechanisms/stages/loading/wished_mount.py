@@ -13,7 +13,7 @@ from shared.contract.shot import Shot, refuse_unsound
 from shared.stage.paths import owner_of
 
 _WISHED: ContextVar[Kind | None] = ContextVar("wished", default=None)
-"""Of the mechanism whose parts are being made."""
+"""Mount of the mechanism whose parts are being made."""
 
 
 def of_shot(name: str) -> Kind | None:

@@ -79,7 +79,7 @@ class _Wish(NamedTuple):
     by_itself: bool
     """There is no parts.py."""
     mount: Kind | None
-    """Of shot.py."""
+    """Mount that shot.py wishes."""
 
 
 class _Found(NamedTuple):

@@ -65,7 +65,7 @@ def _falls_on(first: np.ndarray, second: np.ndarray, tree: KDTree) -> bool:
 
 
 def volume_of(piece: Laid) -> float:
-    """Of the closed mesh (mm^3)."""
+    """Volume of the closed mesh (mm^3)."""
     corners = piece.triangles
     return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
 

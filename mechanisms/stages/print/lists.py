@@ -24,7 +24,7 @@ class Made:
     names: tuple[str, ...]
     material: str
     mass: float
-    """Of one (kg)."""
+    """Mass of a single piece (kg)."""
     piece: Laid
     sheet: Sheet | None = None
     outline: str = ""
@@ -36,7 +36,7 @@ class Made:
 
     @property
     def name(self) -> str:
-        """Of the first."""
+        """Name of the first piece."""
         return self.names[0]
 
 

@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     from mbsd import Marker, Mechanism
 
 HALF_WIDTH, THICKNESS = 0.06, 0.05
-"""Of a bar, as parts of L."""
+"""Half width and thickness of a bar, as parts of L."""
 LEAST_SIZE = 0.1
 """L (m) where no body has two markers apart."""
 CORNERS = 96
-"""Of the polygon that stands for a disc."""
+"""Corners of the polygon that stands for a disc."""
 
 
 @dataclass(frozen=True)

@@ -177,7 +177,7 @@ def _look(look: str, holds_energy: bool) -> Look:
 
 
 def _gas(force: Force, view: ForceView) -> contract.GasMotion | None:
-    """Of a force that comes from gas behind a piston."""
+    """Gas motion of a force that comes from gas behind a piston, else None."""
     from mbsd.results.gas import GasView
 
     if not isinstance(view, GasView):
@@ -207,7 +207,7 @@ def _hydraulics(view: ForceView) -> contract.HydraulicMotion | None:
 
 
 def _contact(solution: Solution, name: str, row: int) -> contract.ContactMotion:
-    """Of the contact whose gap is ``row`` of J; the way on which it slides is the next one."""
+    """Motion of the contact whose gap is ``row`` of J; the way on which it slides is the next one."""
     from mbsd.model.contact import ContactKind
     from mbsd.results.acting import acting
 

@@ -29,7 +29,7 @@ PROVABLE = 5e-4
 """What the proof of clearance may doubt of a step, in the same sizes: a third of the gap by which a block clears its
 rail in parts by themselves."""
 DOUBT = 3.0 * 0.625
-"""Of that difference of control points, as the proof has it."""
+"""Factor on that difference of control points, as in the proof."""
 PARTS = 4
 """Into which a step is divided at once."""
 ROUNDS = 4

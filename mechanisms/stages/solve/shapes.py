@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from mbsd import Force, Joint
 
 POINTS = 240
-"""Of an outline at most, about."""
+"""Points of an outline at most, about."""
 
 
 def shape_of(one: Joint | Force) -> Shape:

@@ -52,7 +52,7 @@ class Cam:
     outline: np.ndarray
     """(n, 2) in the frame of the cam's body."""
     centre: tuple[float, float]
-    """Of the cam."""
+    """Centre of the cam."""
     base: float
     """Radius of its base circle."""
     at: tuple[float, float, float]

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.layout import Layout
 
 WALL = 4.0
-"""Of the wheel's tips beside the slots (rmm), at least."""
+"""Wall of the wheel's tips beside the slots (rmm), at least."""
 HUB, PIN_CIRCLE, NEAR = 25.0, 28.0, 14.5
 """Least distances (rmm): the bottom of the slots from the wheel's axis, pin from crank, wheel from the crank's axis."""
 LOOSE = 1.5
@@ -51,7 +51,7 @@ class GenevaDrive:
         return self.wheel
 
     def face_of(self, body: str, layout: Layout) -> Face | None:
-        """Of the wheel: within its slots."""
+        """Face of the wheel: within its slots."""
         bottom = self.shape.bottom
         return Face(*self.wheel_at[:2], bottom - 1.0) if body == self.wheel else None
 

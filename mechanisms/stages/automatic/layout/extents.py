@@ -40,7 +40,7 @@ class Extent:
 
 
 type ExtentOf = Callable[[Any, Solution], Extent]
-"""Of a joint, a contact or a force."""
+"""Extent of a joint, a contact or a force."""
 
 EXTENTS: dict[str, ExtentOf] = {}
 
@@ -121,7 +121,7 @@ def _swept(solution: Solution, body: str, at: np.ndarray) -> np.ndarray:
 
 
 def distance(joint: Joint, solution: Solution) -> float:
-    """Of a joint's two markers at the start (m)."""
+    """Distance of a joint's two markers at the start (m)."""
     first, second = (_swept(solution, k.body.name, np.array([[k.x, k.y]]))[0] for k in (joint.i, joint.j))
     return float(np.hypot(*(second - first)))
 

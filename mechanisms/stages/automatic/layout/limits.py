@@ -17,7 +17,7 @@ type Limits = tuple[float | None, float | None]
 
 
 def turning(joint: Joint, m: Mechanism) -> Limits:
-    """Of a revolute joint (rad), as the angle of its second body against its first."""
+    """Limits of a revolute joint (rad), as the angle of its second body against its first."""
     own, found = joint.j.angle - joint.i.angle, []
     lower, upper = joint.params.get("limits") or (None, None)
     found += [(lower - own, False)] if lower is not None else []
@@ -31,7 +31,7 @@ def turning(joint: Joint, m: Mechanism) -> Limits:
 
 
 def sliding(joint: Joint, m: Mechanism) -> Limits:
-    """Of a prismatic joint or a pin in a slot (m), along the x axis of its first marker."""
+    """Limits of a prismatic joint or a pin in a slot (m), along the x axis of its first marker."""
     lower, upper = joint.params.get("limits") or (None, None)
     found = [(end, is_upper) for end, is_upper in ((lower, False), (upper, True)) if end is not None]
     for stop in m.contacts.values():

@@ -50,7 +50,7 @@ class Bridge:
 
     @property
     def name(self) -> str:
-        """Of its pivots."""
+        """Names of its pivots."""
         return "_".join(pin.name for pin in self.pins)
 
     @property

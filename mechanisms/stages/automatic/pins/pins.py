@@ -37,7 +37,7 @@ class Pin:
     """One axis: the place on each body that turns about it (rmm)."""
 
     name: str
-    """Of its first joint; of a rod alone its name and that of the end, 1 or 2."""
+    """Name of its first joint; a rod alone gives its name and that of the end, 1 or 2."""
     m: Mechanism
     places: dict[str, tuple[float, float]]
     webs: tuple[str, str] | None = None
@@ -157,7 +157,7 @@ def _rod_ends(layout: Layout) -> list[tuple[str, dict[str, tuple[float, float]]]
 
 
 def _pins(m: Mechanism, found: list[tuple[str, dict[str, tuple[float, float]]]]) -> list[Feature]:
-    """Of named joints with a place on two bodies each: those with a common place are one pin."""
+    """Pins of named joints with a place on two bodies each: those with a common place are one pin."""
     ends = [at for _, at in found]
     group = list(range(len(found)))
     for j in range(len(found)):

@@ -54,9 +54,9 @@ class Stop:
     first: str
     second: str
     ends: tuple[tuple[str, Place], ...]
-    """Of the first body: "lower" or "upper", and where."""
+    """Stop pins of the first body: "lower" or "upper", and where."""
     nose: Place
-    """Of the second body."""
+    """Stop pin of the second body."""
 
     @property
     def whats(self) -> tuple[str, str]:
@@ -117,7 +117,7 @@ class Stop:
 
 
 def stops(m: Mechanism, features: list[Feature], layout: Layout) -> list[Feature]:
-    """Of all revolute joints with limits or stops; ``features`` are those of the joints."""
+    """Stops of all revolute joints with limits or stops; ``features`` are those of the joints."""
     taken = [anchor for feature in features for anchor in feature.anchors(layout)]
     found: list[Feature] = []
     for joint in m.joints.values():

@@ -18,11 +18,11 @@ from shared.shapes.build import extruded
 from shared.shapes.polyline import distances, simplified
 
 THICK = 10.0
-"""Of a road under its surface, of a band, and of a wall (rmm)."""
+"""Thickness of a road under its surface, of a band, and of a wall (rmm)."""
 CHORD = 0.006
 """How far the facets of a surface may stray from it (rmm)."""
 PIECES = 48
-"""Of a road in the plane."""
+"""Pieces of a road in the plane."""
 LONGEST = 2.0
 """Mitre at a sharp corner, in the thickness."""
 SAME = 1e-6

@@ -188,7 +188,7 @@ def _round(m: Mechanism, touch: Touch, layout: Layout, gap: float) -> tuple[Roun
 
 
 def _look(m: Mechanism, body: str, turned: bool) -> Look:
-    """Of what touches without being a tyre."""
+    """Look of what touches without being a tyre."""
     if _is_held(m, body) or _feet(m, body) > 1:
         return "disc"
     return "wheel" if turned else "ball"

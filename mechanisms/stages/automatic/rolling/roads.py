@@ -134,7 +134,7 @@ class Road:
         return along(self.name, self.rounds, np.vstack([ends[0], self.path, ends[1]]))
 
     def _wall(self, low: float, high: float) -> cq.Workplane:
-        """Of flat facets as long as its bends allow: of a spline's many short ones the proof of clearance is long."""
+        """Wall of flat facets as long as its bends allow: a spline's many short ones make the clearance proof slow."""
         if self.band is not None:
             return self.band.wall(low, high)
         return extruded(polygon(np.vstack([simplified(self.path, CHORD), self.feet])), high - low, low)

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 BELOW = 8.0
 """From the lowest part that moves to the base plate, at least (rmm)."""
 THINNEST_ALONG = 0.35
-"""Of the pins that are tried, in the first ones: where places are given, thinner pins are all that can be tried."""
+"""Thinnest of the pins that are tried, in the first ones: with given places only thinner pins can be tried."""
 FAR = 1e4
 """Where links are, far from each other, that have no place yet (mm)."""
 SMALLER = (1.0, 0.92, 0.84, 0.76, 0.68, 0.6)
@@ -97,7 +97,7 @@ class Along:
         return poses_of(self.solution, mm(1.0))
 
     def _places(self, free: Sequence[str]) -> dict[str, float]:
-        """Of links that the model gives none, beside all that it gives a place."""
+        """Places of links that the model gives none, beside all that it gives a place."""
         given = replace(self, left_out=self.left_out.union(free))
         if not given.machine.links:
             raise UserError(
@@ -134,7 +134,7 @@ class Along:
 
     @property
     def sizes(self) -> Sizes:
-        """Of the pins."""
+        """Sizes of the pins."""
         return self.measures.sizes
 
     @property
@@ -221,7 +221,7 @@ class Along:
 
     @cached_property
     def bearers(self) -> list[Bearers]:
-        """Of each shaft."""
+        """Bearers of each shaft."""
         running = max(0.12, self.sizes.pivot.fit.running * self.measures.unit / 2)
         return [bearers(self.machine, plan, self._others(plan), running, self.flywheel(plan)) for plan in self.shafts]
 

@@ -53,7 +53,7 @@ def banks(all_of: Mapping[str, Cylinder]) -> list[list[Cylinder]]:
 
 
 def deck_corners(bank: Sequence[Cylinder]) -> list[tuple[float, float]]:
-    """Of its foot on the base plate."""
+    """Corners of its foot on the base plate."""
     first, wide, low, high = bank[0], deck_half(bank), deck_range(bank)[0], deck_range(bank)[1]
     (x, y), (u, v) = first.origin, first.piston.along
     return [(x + s * u - q * v, y + s * v + q * u) for s in (low, high) for q in (-wide, wide)]

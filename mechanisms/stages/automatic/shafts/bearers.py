@@ -30,7 +30,7 @@ WIDER = (1.0, 1.15, 1.35, 1.6, 2.0, 2.5)
 """Distances from the axis that are tried, in the nearest one."""
 STEP = 5
 EVERY = 4
-"""Of the poses, those at which places for pillars are looked at."""
+"""Step between the poses at which places for pillars are looked at."""
 ROOM = 0.5
 """Gap (mm) that is left there."""
 
@@ -123,7 +123,7 @@ def _at(plan: ShaftPlan, away: float, turn: float) -> tuple[float, float]:
 
 
 def _arm(plan: ShaftPlan, place: tuple[float, float], radius: float, tapered: bool) -> Rounded:
-    """Of a bearing, from the axis to a pillar."""
+    """Arm of a bearing, from the axis to a pillar."""
     wide, end = 0.8 * HUB * plan.journal, BOSS * radius
     if tapered and wide > end:
         (x, y), turns = plan.shaft.at, [k * math.pi / 8 for k in range(16)]

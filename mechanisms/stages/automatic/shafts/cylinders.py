@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 SQUARE = 0.95
 """Bore over stroke, where there is room and no gas says otherwise."""
 WALL = 0.065
-"""Of a liner."""
+"""Wall of a liner."""
 CROWN, SKIRT, LEAST_SKIRT = 0.5, 0.36, 0.16
-"""Of a piston, above and below its wrist pin."""
+"""Heights of a piston, above and below its wrist pin."""
 SQUISH = 0.07
 """From the piston to the head at the top dead centre."""
 CRANK_PIN, BIG_END, SMALL_END, WRIST_PIN = 0.26, 0.39, 0.22, 0.125
@@ -51,7 +51,7 @@ ROD = 0.24
 LATEST = 0.15
 """How far above the lowest place of the wrist pin a liner may begin."""
 EVERY = 3
-"""Of the poses, those at which rods and liners are looked at."""
+"""Step between the poses at which rods and liners are looked at."""
 SMALLEST = 0.4
 """Bores are tried down to this part of the wished one."""
 STEP = 0.96
@@ -246,7 +246,7 @@ def rod_shapes(machine: Machine, link: Link, bore: float) -> list[Rounded]:
 
 
 def shank_shapes(machine: Machine, link: Link, bore: float) -> list[Rounded]:
-    """Of a carrier or of a rod on one: shank and small end, and the eye on the knuckle pin or the hub on the crank."""
+    """Shapes of a carrier or of a rod on one: shank, small end, and eye on the knuckle pin or hub on the crank."""
     main = rod_foot(machine, link)
     ends = [eye for eye in link.eyes if eye.on in machine.pistons or eye is main]
     shank = around([(eye.x, eye.y) for eye in ends], (SHANK + ROOM / 2) * bore)

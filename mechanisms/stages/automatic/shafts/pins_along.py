@@ -29,7 +29,7 @@ class Axle:
 
     joint: str
     places: Mapping[str, tuple[float, float]]
-    """Of each body, ground included where it holds the pin, in its frame."""
+    """Place on each body, ground included where it holds the pin, in its frame."""
     stack: tuple[str, ...]
 
     @property

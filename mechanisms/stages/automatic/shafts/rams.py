@@ -75,7 +75,7 @@ class RamPlan:
 
     @property
     def span(self) -> tuple[float, float]:
-        """Of the beam along z."""
+        """Span of the beam along z."""
         first, last = self.columns
         return first - HUB * self.unit, last + HUB * self.unit
 
@@ -92,7 +92,7 @@ class RamPlan:
 
     @property
     def corners(self) -> list[tuple[float, float]]:
-        """Of the deck's foot on the base plate."""
+        """Corners of the deck's foot on the base plate."""
         (x, y), (u, v) = self.ram.line, self.ram.along
         wide = [self.middle + side * (self.half + HUB * self.unit) for side in (-1, 1)]
         return [(x + s * u - q * v, y + s * v + q * u) for s in self.deck for q in wide]

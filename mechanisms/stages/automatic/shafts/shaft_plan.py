@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 WEB, LEAST_WEB = 0.22, 0.09
 """Thickness of a web, wished and least, in bores."""
 SHARE = 0.27
-"""Of the space between two crank pins, what each of two webs gets."""
+"""Share of the space between two crank pins that each of two webs gets."""
 LEAST_BEARING = 0.16
 END = 0.34
 """Lengths of journals, in bores: between two throws at least, and at either end."""
@@ -145,7 +145,7 @@ class ShaftPlan:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Of all journals along z."""
+        """Ends of all journals along z."""
         return self.journals[0].low, self.journals[-1].high
 
     @property

@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 WEB = 0.1
 """Between two links on crank pins at different places, in bores of their shaft."""
 SIDE = 0.12
-"""Of two rods side by side on one crank pin, the gap in their thickness."""
+"""Gap between two rods side by side on one crank pin, in their thickness."""
 THINNEST = 0.3
-"""Of what is wished."""
+"""Least thickness of a link, as a part of what is wished."""
 WASHER = 2.4
 """Between two links on one pin (rmm)."""
 FREE = 0.6
@@ -100,7 +100,7 @@ class Measures:
         return around([(eye.x, eye.y) for eye in link.eyes] or [(0.0, 0.0)], self.radius(link))
 
     def radius(self, link: Link) -> float:
-        """Of its largest eye."""
+        """Radius of its largest eye."""
         return max((self.eye(link, eye) for eye in link.eyes), default=self.sizes.eye * self.unit)
 
     @property

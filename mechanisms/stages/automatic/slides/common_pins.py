@@ -25,7 +25,7 @@ class InSlot(Protocol):
 
     @property
     def name(self) -> str:
-        """Of the joint."""
+        """Name of the joint."""
         ...
 
     @property

@@ -29,9 +29,9 @@ TONGUE, TONGUE_DEPTH = 11.0, 6.5
 TONGUE_HALF = 22.0
 """Half of its length: twice as long as the grooves that it passes are wide."""
 FLOOR = 3.5
-"""Of the plate below its grooves, at least."""
+"""Thickness of the plate below its grooves, at least."""
 WALL = 8.0
-"""Of the plate beside its grooves."""
+"""Width of the plate beside its grooves."""
 CORE = 30.0
 """Radius of the plate about the crossing."""
 SMALLEST = math.radians(30.0)
@@ -48,12 +48,12 @@ class Crossing:
 
     @property
     def name(self) -> str:
-        """Of its joints."""
+        """Names of its joints."""
         return "_".join(slide.name for slide in self.slides)
 
     @property
     def what(self) -> str:
-        """Of the plate."""
+        """Name of the plate."""
         return f"the grooved plate of {' and '.join(slide.name for slide in self.slides)}"
 
     @property

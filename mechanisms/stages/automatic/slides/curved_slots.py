@@ -61,7 +61,7 @@ class CurvedSlot(Slot):
         return None if self.closed else self
 
     def posts(self, layout: Layout) -> list[tuple[float, float]]:
-        """Of a plate on ground: beyond the two places that are farthest from each other."""
+        """Posts of a plate on ground: beyond the two places that are farthest from each other."""
         hull = convex_hull(self.path)
         apart = np.linalg.norm(hull[:, None] - hull[None], axis=2)
         a, b = np.unravel_index(int(np.argmax(apart)), apart.shape)

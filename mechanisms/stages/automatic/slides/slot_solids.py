@@ -33,7 +33,7 @@ RIM = 1.0
 SEEN = 2.0
 """How far the face of a large roller reaches beyond the head of its pin (rmm)."""
 SMALL = Head(10.4, 3.2, 1.0)
-"""Of the pin of a small roller, whose face shows round it (rmm)."""
+"""Head of the pin of a small roller, whose face shows round it (rmm)."""
 SMALL_GROOVE = 1.7
 """Width of the grooves of a small roller (rmm)."""
 PIECES = 24

@@ -22,11 +22,11 @@ class Upright:
     """The turn from the axes of the model to right and up of a mount; of a desk it is none."""
 
     angle: float = 0.0
-    """Of ``up`` from y, counter-clockwise (rad)."""
+    """Angle of ``up`` from y, counter-clockwise (rad)."""
 
     @classmethod
     def of(cls, mount: Mount) -> Upright:
-        """Of a mount."""
+        """Upright of a mount."""
         x, y, _ = mount.up
         return cls() if mount.kind == "desk" else cls(math.atan2(-x, y) + 0.0)
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from shared.shapes.link import Eye
 
 EDGE, FLOOR = 0.7, 1.3
-"""Of a groove: what stays beside it, and half of the width of its floor."""
+"""What stays beside a groove, and half the width of the groove's floor."""
 MARKS, LEAST_MARK, LARGEST_MARK = 3, 1.0, 2.5
 """Small holes between hub and rim, and their radii."""
 SPROCKET = 0.45

@@ -85,7 +85,7 @@ class Rack:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Of the bar along the pitch line: in the middle of spaces."""
+        """Ends of the bar along the pitch line: in the middle of spaces."""
         first, last = self.teeth
         return (self.phase or 0.0) + (first - 0.5) * self.pitch, (self.phase or 0.0) + (last + 0.5) * self.pitch
 

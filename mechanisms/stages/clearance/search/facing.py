@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from mechanisms.stages.clearance.search.sweep import Sweep
 
 BESIDE = 0.2
-"""Of the gap: shadows that stay half of this apart in the plane are told not to meet."""
+"""Part of the gap: shadows that stay half of this apart in the plane are known not to meet."""
 
 
 def never_over(sweep: Sweep, gap: float) -> bool:

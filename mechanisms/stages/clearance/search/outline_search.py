@@ -125,7 +125,7 @@ def _measured(sweep: Sweep, found: Least, gap: float, time: float) -> tuple[floa
 
 
 def _outlines(sweep: Sweep, beyond: float) -> tuple[Outline, Outline] | None:
-    """Of both pieces within ``beyond`` (mm) of their common heights; None without any, or if one covers the other."""
+    """Outlines of both pieces within ``beyond`` (mm) of their common heights; None if none, or one covers the other."""
     low = max(sweep.still.z_range[0], sweep.mover.z_range[0]) - beyond
     high = min(sweep.still.z_range[1], sweep.mover.z_range[1]) + beyond
     still, mover = (outline(piece, low, high) if low < high else None for piece in (sweep.still, sweep.mover))

@@ -1,6 +1,6 @@
 """What authors have written in ``mechanisms/``, as contents by their hash, and as files again on a worker.
 
-Of the mechanism whose parts are made every file travels, because parts.py may read any of them; of the others the
+Every file of the mechanism whose parts are made travels, because parts.py may read any of them; of the others the
 Python files, which it may import. The program itself does not travel: a worker has the same.
 """
 

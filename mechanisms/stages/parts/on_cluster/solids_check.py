@@ -26,7 +26,7 @@ from shared.stage.errors import UserError
 MEMORY = 16_000_000_000
 """Bytes of addresses that reading may take."""
 RELATIVE = 2e-3
-"""Of masses: a solid read from STEP is that solid but for the last digits, and integrals of splines are not exact."""
+"""Tolerance of masses: a solid read from STEP differs in the last digits, and integrals of splines are not exact."""
 APART = 0.05
 """Largest distance (mm) between the box about a mesh and the box about its solid, with 1 % of its size."""
 START, END = b"ISO-10303-21;", b"END-ISO-10303-21;"

@@ -27,7 +27,7 @@ from shared.shapes.pin import pin
 from shared.shapes.solid import placed
 
 HEIGHT, TIP = 1.4, 0.5
-"""Of a pointer, and radius of its tip (rmm)."""
+"""Height of a pointer, and radius of its tip (rmm)."""
 SHANK, LEAST = 2.0, 0.5
 """Most and least radius of its pin (rmm)."""
 WALL, BASE = 0.8, 0.8
@@ -39,8 +39,8 @@ SEEN = 0.05
 
 
 class Face(NamedTuple):
-    """Of a wheel, in its body's frame (rmm): what lies within ``inner`` is solid and touches nothing; beyond ``outer``
-    the body may have an arm.
+    """Face of a wheel, in its body's frame (rmm): what lies within ``inner`` is solid and touches nothing; beyond
+    ``outer`` the body may have an arm.
     """
 
     x: float

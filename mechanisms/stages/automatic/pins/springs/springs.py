@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.layout import Layout
 
 RADIUS, BROAD = 9.0, 0.17
-"""Of a coil's middle line: at most (rmm), and at most as a part of its least length."""
+"""Radius of a coil's middle line: at most (rmm), and at most as a part of its least length."""
 WIRE, CYLINDER = 0.2, 0.6
 """Radius of the wire, and of a cylinder, in radii of a coil."""
 ASIDE = 0.05

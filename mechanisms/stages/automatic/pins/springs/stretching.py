@@ -37,9 +37,9 @@ class Stretching:
 
     force: str
     radius: float
-    """Of the coil that the film draws, or from which it draws a cylinder."""
+    """Radius of the coil that the film draws, or from which it draws a cylinder."""
     outer: float
-    """Of all that it draws."""
+    """Outer radius of all that it draws."""
     ends: tuple[tuple[str, float, float], tuple[str, float, float]]
     path: np.ndarray
     """(T, 2, 2): both ends at every pose."""
@@ -53,7 +53,7 @@ class Stretching:
 
     @property
     def names(self) -> tuple[str, str]:
-        """Of its barrel and of its whole length on the axis."""
+        """Names of its barrel and of its whole length on the axis."""
         return f"the spring {self.force}", f"the ends of spring {self.force}"
 
     def z(self, heights: Heights) -> float:
@@ -129,7 +129,7 @@ class Stud:
 
     @property
     def name(self) -> str:
-        """Of its first end."""
+        """Name of its first end."""
         one, end = self.ends[0]
         return f"{one.force}_{end + 1}"
 
@@ -140,7 +140,7 @@ class Stud:
 
     @property
     def layers(self) -> tuple[str, ...]:
-        """Of all that it holds."""
+        """Layers of all that it holds."""
         return tuple(dict.fromkeys(one.layer for one, _ in self.ends))
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:

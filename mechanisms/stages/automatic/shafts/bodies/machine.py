@@ -102,7 +102,7 @@ def _pins_of(body: str, joints: Collection[Joint]) -> list[Joint]:
 
 
 def _pistons(sliding: Collection[str], joints: Collection[Joint]) -> set[str]:
-    """Of bodies that slide on ground, those with one pin at most; what has more is a ram, and tells links no plane."""
+    """Bodies that slide on ground with one pin at most; what has more is a ram, and gives links no plane."""
     return {body for body in sliding if len(_pins_of(body, joints)) < 2}
 
 

@@ -162,7 +162,7 @@ def _driven_from(found: Machine, link: str | None, line: np.ndarray) -> np.ndarr
 
 
 def _area(m: Mechanism, body: str) -> float | None:
-    """Of the bore (mm^2), from a force of gas on the piston."""
+    """Area of the bore (mm^2), from a force of gas on the piston."""
     for force in m.forces.values():
         if body in force.bodies and "ground" in force.bodies:
             area = force.params.get("area")

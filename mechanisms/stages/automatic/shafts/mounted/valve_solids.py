@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 THROAT = 0.74
 """Radius of a port in that of its valve."""
 THICK = 0.025
-"""Of a retainer, in bores."""
+"""Thickness of a retainer, in bores."""
 SEAT = 0.02
 
 

@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 WIDEST, LEAST = 0.2, 0.08
 """Radius of a valve's head, wished and least."""
 BESIDE = 0.02
-"""Of a valve's head, from the wall of the bore and from the middle between two valves."""
+"""Gap of a valve's head, from the wall of the bore and from the middle between two valves."""
 RECESS, RIM, CONE, TULIP = 0.012, 0.02, 0.035, 0.1
-"""Of a closed valve above the head's face: its lower face; above that its rim, its cone and its stem begin."""
+"""Heights of a closed valve above the head's face: its lower face; above that its rim, cone and stem begin."""
 STEM = 0.04
 """Radius."""
 TAPPET, EDGE = 0.06, 0.03
@@ -57,11 +57,11 @@ class ValvePlan:
     valve: Valve
     cylinder: Cylinder
     radius: float
-    """Of its head."""
+    """Radius of its head."""
     cam: np.ndarray
     """(n, 2): outline of the cam in the frame of its shaft."""
     centre: tuple[float, float]
-    """Of the cam, in that frame."""
+    """Centre of the cam, in that frame."""
     base: float
     """The least radius of the cam."""
     reach: float

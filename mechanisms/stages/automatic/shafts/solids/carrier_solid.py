@@ -29,7 +29,7 @@ WAIST = 1.1
 """Radius of a flange between two pins, in their distance from the crank pin."""
 EDGE = 0.02
 HOLLOW = 0.45
-"""Of a knuckle pin."""
+"""Radius of the hole in a knuckle pin, in that of the pin."""
 SEAT = 0.02
 END = 0.1
 """How far a knuckle pin ends below the face of a flange."""

@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from shared.contract import Mount
 
 PLATE, FOOT, MARGIN, INSET, ROUND = 10.0, 3.0, 14.0, 11.0, 8.0
-"""Of the base plate: thickness, height of its feet, what it reaches beyond all that stands on it, place of its feet,
+"""Base plate: thickness, height of its feet, what it reaches beyond all that stands on it, place of its feet,
 radius of its corners (rmm).
 """
 SEAT = 0.02

@@ -60,15 +60,15 @@ def _road_wheel(made: Automatic, side: str, out: int) -> list[Solid]:
     for k in range(5):
         hub = hub.cut(placed(extruded(circle((rim + 13) / 2, 0, 6.0), 60, -30), turn=72.0 * k))
     axle = extruded(circle(0, 0, AXLE), OUT + bevel - 1.0 - start, start - OUT)
-    found = []
+    solids = []
     for name, shape, material, holes in (
         ("axle", axle, "steel", 0),
         ("rim", hub, "aluminium", 6),
         ("tyre", tyre, "rubber", 1),
     ):
         lying = shape.rotate((0, 0, 0), (0, 1, 0), 90.0 * out).translate((out * OUT, 0, (low + high) / 2 / scale))
-        found.append(Solid(f"{name}_{side}", _scaled(lying, scale), material, holes))
-    return found
+        solids.append(Solid(f"{name}_{side}", _scaled(lying, scale), material, holes))
+    return solids
 
 
 def _steering_wheel(made: Automatic) -> list[Solid]:

@@ -55,12 +55,12 @@ def slope(p: Params, x: float) -> float:
 
 def corners(p: Params) -> list[tuple[float, float]]:
     """Where planks begin, and where the last one ends (m); the lowest are level with y = 0."""
-    found = [(0.0, 0.0)]
+    points = [(0.0, 0.0)]
     for length, angle in p.planks:
-        x, y = found[-1]
-        found.append((x + length * cos(radians(angle)), y + length * sin(radians(angle))))
-    middle, lowest = found[-1][0] / 2, min(y for _, y in found)
-    return [(x - middle, y - lowest) for x, y in found]
+        x, y = points[-1]
+        points.append((x + length * cos(radians(angle)), y + length * sin(radians(angle))))
+    middle, lowest = points[-1][0] / 2, min(y for _, y in points)
+    return [(x - middle, y - lowest) for x, y in points]
 
 
 def first_place(p: Params) -> tuple[float, float]:

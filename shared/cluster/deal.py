@@ -259,7 +259,9 @@ class Deal:
         tried.add(hand.name)
         self._blame(hand, reason)
         proven = [name for name in tried if name in self.hands and self.hands[name].made]
-        others = [one.name for one in self.hands.values() if one.fit and not one.stalled and one.name not in tried]
+        others = [
+            other.name for other in self.hands.values() if other.fit and not other.stalled and other.name not in tried
+        ]
         if len(proven) >= ATTEMPTS or (self._attempts[key] >= ATTEMPTS and not others):
             raise UserError(f"{printable(reason)} (on {', '.join(sorted(tried))}); what is finished is kept")
 

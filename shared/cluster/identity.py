@@ -24,13 +24,13 @@ def identity(rooms: Iterable[str], packages: Iterable[str] = PACKAGES) -> dict[s
 
     It is found once in a process, so a worker tells what it was started with.
     """
-    found = {"Python": platform.python_version()}
+    versions = {"Python": platform.python_version()}
     for package in packages:
         try:
-            found[package] = metadata.version(package)
+            versions[package] = metadata.version(package)
         except metadata.PackageNotFoundError:
-            found[package] = "none"
-    return found | {f"sources of {room}": sources_of(room) for room in rooms}
+            versions[package] = "none"
+    return versions | {f"sources of {room}": sources_of(room) for room in rooms}
 
 
 def sources_of(room: str, root: Path = ROOT) -> str:

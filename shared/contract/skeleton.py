@@ -152,10 +152,12 @@ def write_skeleton(path: Path, skeleton: Skeleton) -> None:
 def _refuse_inconsistent(moving: Moving, path: Path) -> None:
     """Raise UserError unless each carrier has its ends, and each recorded stroke a shape for every time."""
     ends = {"ground": 0, "shapes": 0, "body": 1, "place": 1, "line": 2}
-    for number, one in enumerate(moving.strokes):
+    for number, stroke in enumerate(moving.strokes):
         where = f"{path}: moving.strokes[{number}]"
-        if len(one.carrier.ends) != ends[one.carrier.kind]:
-            raise UserError(f"{where}.carrier is a {one.carrier.kind} with {len(one.carrier.ends)} ends; make it again")
-        wanted = len(moving.times) if one.carrier.kind == "shapes" else 0
-        if len(one.shapes) != wanted or len({len(shape) for shape in one.shapes}) > 1:
-            raise UserError(f"{where}.shapes are {len(one.shapes)}, not {wanted} of one length; make it again")
+        if len(stroke.carrier.ends) != ends[stroke.carrier.kind]:
+            raise UserError(
+                f"{where}.carrier is a {stroke.carrier.kind} with {len(stroke.carrier.ends)} ends; make it again"
+            )
+        wanted = len(moving.times) if stroke.carrier.kind == "shapes" else 0
+        if len(stroke.shapes) != wanted or len({len(shape) for shape in stroke.shapes}) > 1:
+            raise UserError(f"{where}.shapes are {len(stroke.shapes)}, not {wanted} of one length; make it again")

@@ -24,9 +24,9 @@ def program(name: str) -> str | None:
         return os.environ[known.variable]
     for word in (known and known.names) or (name,):
         for place in (None, SBIN):
-            found = shutil.which(word, path=place)
-            if found:
-                return found
+            path = shutil.which(word, path=place)
+            if path:
+                return path
     return None
 
 

@@ -47,8 +47,8 @@ def _kept(layout: Layout, fixed: Mapping[str, int]) -> list[tuple[int, int]]:
 
 
 def _bodies(layout: Layout, kept: Sequence[tuple[int, int]]) -> list[str]:
-    found = {body for rule in kept for k in rule for body in layout.items[k].reach.bodies}
-    return sorted(found, key=layout.layered.index)
+    bodies = {body for rule in kept for k in rule for body in layout.items[k].reach.bodies}
+    return sorted(bodies, key=layout.layered.index)
 
 
 def _pair(layout: Layout, rule: tuple[int, int]) -> frozenset[str]:
@@ -56,10 +56,10 @@ def _pair(layout: Layout, rule: tuple[int, int]) -> frozenset[str]:
 
 
 def _first_of_each(layout: Layout, rules: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
-    found: dict[frozenset[str], tuple[int, int]] = {}
+    firsts: dict[frozenset[str], tuple[int, int]] = {}
     for rule in rules:
-        found.setdefault(_pair(layout, rule), rule)
-    return list(found.values())
+        firsts.setdefault(_pair(layout, rule), rule)
+    return list(firsts.values())
 
 
 def _meeting(layout: Layout, rule: tuple[int, int]) -> str:

@@ -80,13 +80,13 @@ def band(way: BeltPath, wide: float, high: float) -> np.ndarray:
 
 
 def _holding(parts: Parts, name: str) -> tuple[frozenset[tuple[str, str]], Held | None]:
-    found = {
+    held = {
         (body, piece_name): piece.holds[name]
         for body, solids in parts.bodies.items()
         for piece_name, piece in solids.pieces.items()
         if name in piece.holds
     }
-    return frozenset(found), next(iter(found.values()), None)
+    return frozenset(held), next(iter(held.values()), None)
 
 
 def _path(joint: JointMotion, where: Mapping[str, BodyPath]) -> tuple[BodyPath, float]:

@@ -28,7 +28,7 @@ def of_shot(name: str) -> Kind | None:
     try:
         shot = load(name, "shot").shot
     finally:
-        for module in [one for one in sys.modules if one.startswith("mechanisms.") and one not in before]:
+        for module in [loaded for loaded in sys.modules if loaded.startswith("mechanisms.") and loaded not in before]:
             if not module.startswith("mechanisms.stages"):
                 del sys.modules[module]
     if not isinstance(shot, Shot):

@@ -64,13 +64,13 @@ def run(name: str) -> None:
     if _is_fresh(out, given, wish):
         say("parts", f"{out.name}: nothing to do")
         return
-    found = _of_cluster(out.name, given, wish) if address() else None
-    found = found or _made_here(out.name, given, wish, before, recorder)
-    written = _write(out, found.files, found.document)
-    outputs = [out.parts, *(out.parts_folder / file for file in found.files)]
-    notes = {"parameters": found.reads, "inputs": found.inputs.names()}
-    Stage(out, "parts", found.document.provenance.inputs, outputs).done(**notes)
-    say("parts", _summary(out.name, found.document, written))
+    made = _of_cluster(out.name, given, wish) if address() else None
+    made = made or _made_here(out.name, given, wish, before, recorder)
+    written = _write(out, made.files, made.document)
+    outputs = [out.parts, *(out.parts_folder / file for file in made.files)]
+    notes = {"parameters": made.reads, "inputs": made.inputs.names()}
+    Stage(out, "parts", made.document.provenance.inputs, outputs).done(**notes)
+    say("parts", _summary(out.name, made.document, written))
 
 
 class _Wish(NamedTuple):

@@ -22,19 +22,19 @@ ALIKE = 1e-4
 
 def groups(pieces: Sequence[tuple[str, Laid]]) -> list[list[int]]:
     """Indices of equal pieces of one material, each given as (material, mesh); in the order of their first."""
-    found: list[list[int]] = []
+    kinds: list[list[int]] = []
     marks: list[tuple[str, float]] = []
     for index, (material, piece) in enumerate(pieces):
         volume = volume_of(piece)
-        for group, (other, theirs) in zip(found, marks, strict=True):
+        for group, (other, theirs) in zip(kinds, marks, strict=True):
             near = abs(volume - theirs) <= ALIKE * theirs
             if material == other and near and is_equal(piece, pieces[group[0]][1]):
                 group.append(index)
                 break
         else:
-            found.append([index])
+            kinds.append([index])
             marks.append((material, volume))
-    return found
+    return kinds
 
 
 def is_equal(piece: Laid, other: Laid) -> bool:

@@ -56,5 +56,5 @@ def _fullest(sizes: np.ndarray, room: np.ndarray) -> tuple[np.ndarray, np.ndarra
         if best[1].all():
             break
         other = rectangles_single(sizes, size=room, shuffle=True, random=random)
-        best = max(best, other, key=lambda found: float(areas[found[1]].sum()))
+        best = max(best, other, key=lambda choice: float(areas[choice[1]].sum()))
     return best

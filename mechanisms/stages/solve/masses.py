@@ -48,7 +48,7 @@ def give_masses(m: Mechanism, parts: Parts | None) -> tuple[dict[str, Source], l
     ]
     if differing:
         sentences.append(f"masses of mechanism.py count, not those of the parts: {_some(differing)}")
-    rods = [f"{name} {written(one.mass.mass, 'kg', 4)}" for name, one in parts.bodies.items() if name not in solids]
+    rods = [f"{name} {written(rod.mass.mass, 'kg', 4)}" for name, rod in parts.bodies.items() if name not in solids]
     if rods:
         sentences.append(f"rods have no mass in the motion, because distance joints have none: {_some(rods)}")
     return source, sentences
@@ -56,7 +56,7 @@ def give_masses(m: Mechanism, parts: Parts | None) -> tuple[dict[str, Source], l
 
 def bodies_of(parts: Parts) -> dict[str, BodyParts]:
     """The bodies of parts.json without its rods, which are none of mechanism.py."""
-    return {name: one for name, one in parts.bodies.items() if one.spans is None}
+    return {name: body for name, body in parts.bodies.items() if body.spans is None}
 
 
 def _estimate(m: Mechanism, names: list[str], left_out: bool) -> list[str]:
@@ -79,8 +79,8 @@ def _some(told: list[str]) -> str:
     return ", ".join(told) if more <= 1 else f"{', '.join(told[:TOLD])} and {more} others"
 
 
-def _differ(one: float, other: float) -> bool:
-    return abs(one - other) > ALIKE * max(one, other)
+def _differ(first: float, second: float) -> bool:
+    return abs(first - second) > ALIKE * max(first, second)
 
 
 def _refuse_other_bodies(m: Mechanism, parts: Parts) -> None:

@@ -165,8 +165,8 @@ def _actions(solution: Solution, driver: Joint) -> list[contract.Action]:
     from mbsd.results.acting import actions
 
     number = solution.packed.joints.index(driver)
-    found = actions(solution.packed, solution.q, solution.wrench, number)
-    return [contract.Action(body=one.body, **_lists(one, PLACED)) for one in found]
+    acting = actions(solution.packed, solution.q, solution.wrench, number)
+    return [contract.Action(body=action.body, **_lists(action, PLACED)) for action in acting]
 
 
 def _look(look: str, holds_energy: bool) -> Look:

@@ -39,11 +39,11 @@ def base(plan: Plan, engraved_too: bool = True) -> list[Solid]:
     """The plate, the ground's main piece, ``engraved_too`` unless nobody is to see it; screws and feet, or spacers to a
     wall, where it is on no stand. Nothing where the ground itself is all that one needs.
     """
-    found = back_plate(plan)
-    if found is None:
+    back = back_plate(plan)
+    if back is None:
         return []
-    upright, (x0, y0, x1, y1) = Upright.of(plan.mount), found.corners
-    bolts = [(x, y, 2 * radius, BOLT_HOLE) for x, y, radius in found.holes]
+    upright, (x0, y0, x1, y1) = Upright.of(plan.mount), back.corners
+    bolts = [(x, y, 2 * radius, BOLT_HOLE) for x, y, radius in back.holes]
     rests = plan.mount.kind in ("desk", "wall")
     corners = [(x, y) for x in (x0 + INSET, x1 - INSET) for y in (y0 + INSET, y1 - INSET)] if rests else []
     screw = _corner_screw(plan.layout.sizes)

@@ -69,9 +69,9 @@ def is_free(path: np.ndarray, feet: np.ndarray, centres: np.ndarray, radius: flo
     return is_simple(path, feet) and bool(distances(centres, others).min() >= radius)
 
 
-def is_clear(found: Band, path: np.ndarray, centres: np.ndarray, radius: float) -> bool:
+def is_clear(backing: Band, path: np.ndarray, centres: np.ndarray, radius: float) -> bool:
     """Whether a disc about ``centres`` (T, 2) that runs on a surface is clear of the other sides of the band there."""
-    return bool(distances(centres, np.vstack([path[-1:], found.back[::-1], path[:1]])).min() >= radius)
+    return bool(distances(centres, np.vstack([path[-1:], backing.back[::-1], path[:1]])).min() >= radius)
 
 
 def band(path: np.ndarray, thick: float = THICK) -> Band | None:

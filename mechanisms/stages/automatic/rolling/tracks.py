@@ -129,7 +129,7 @@ class Track:
 
     def _pins(self, layout: Layout) -> list[tuple[float, float]]:
         """Places of pins that go through what lies within the curve. Raises UserError where one breaks its edge."""
-        pins = [one for one in layout.features if isinstance(one, Pin) and self.body in one.places]
+        pins = [pin for pin in layout.features if isinstance(pin, Pin) and self.body in pin.places]
         pins = [pin for pin in pins if _holds(self.path, pin.places[self.body])]
         for pin in pins:
             near = float(distances(np.array([pin.places[self.body]]), self.path)[0])

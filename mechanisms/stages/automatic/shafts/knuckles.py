@@ -61,7 +61,7 @@ def throw_of(machine: Machine, link: Link) -> tuple[Shaft, Throw] | None:
     """The crank pin that a link turns on, or its carrier."""
     body = (carrier(machine, link) or link).body
     every = [(shaft, throw) for shaft in machine.shafts.values() for throw in shaft.throws]
-    return next((found for found in every if found[1].link == body), None)
+    return next((pair for pair in every if pair[1].link == body), None)
 
 
 def rod_foot(machine: Machine, link: Link) -> LinkEye | None:

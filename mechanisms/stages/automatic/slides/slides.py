@@ -102,10 +102,10 @@ class Slide:
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """The block's plate, and a plate under the rail."""
         eye = layout.sizes.eye
-        found = [Anchor(self.block, x, y, eye) for x, y in self.block_ends(eye)]
+        anchors = [Anchor(self.block, x, y, eye) for x, y in self.block_ends(eye)]
         if self.rail != "ground":
-            found += [Anchor(self.rail, x, y, RAIL / 2 + WALL) for x, y in self.rail_ends()]
-        return found
+            anchors += [Anchor(self.rail, x, y, RAIL / 2 + WALL) for x, y in self.rail_ends()]
+        return anchors
 
     def items(self, layout: Layout) -> Iterable[Item]:
         """Rail, its posts, and the gibs of the block."""
@@ -113,7 +113,7 @@ class Slide:
         block = Rounded(np.array(self.block_ends(layout.sizes.eye)), layout.sizes.eye)
         what, gibs = f"the rail of {self.host or self.name}", f"the block of {self.name}"
         on_it = (self, *self.guests)  # nothing else of these bodies passes through the rail
-        sliding = frozenset(name for one in on_it for name in (one.block, f"the block of {one.name}"))
+        sliding = frozenset(name for slide in on_it for name in (slide.block, f"the block of {slide.name}"))
         if self.host:
             reach = Reach((self.block,), -1, -1) if self.rail == "ground" else Reach((self.rail, self.block), 1, -1)
             meshes = frozenset((what,) if self.rail == "ground" else (what, self.rail))

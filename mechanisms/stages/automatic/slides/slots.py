@@ -68,12 +68,12 @@ class Slot:
 
     def posts(self, layout: Layout) -> list[tuple[float, float]]:
         """Posts of a plate on ground: middles, beyond the two ends of the slot."""
-        found = []
+        middles = []
         for end, other in ((self.path[0], self.path[-1]), (self.path[-1], self.path[0])):
             way = (end - other) / max(float(np.hypot(*(end - other))), 1e-9)
             x, y = end + (layout.sizes.roller / 2 + WALL + POST / 2 + FARTHER * layout.far_posts) * way
-            found.append((float(x), float(y)))
-        return found
+            middles.append((float(x), float(y)))
+        return middles
 
     def outline(self, layout: Layout) -> list[tuple[float, float, float]]:
         """Circles that a plate on ground goes round."""
@@ -126,14 +126,14 @@ class Slot:
 @kind("pin_in_slot")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
     """One for each joint."""
-    found: list[Feature] = []
+    features: list[Feature] = []
     for joint in joints:
         slot, pin = joint.i.body.name, joint.j.body.name
         (x, y), way = layout.place(joint.i), np.array([math.cos(joint.i.angle), math.sin(joint.i.angle)])
         place = (layout.seen(pin, layout.place(joint.j), slot) - np.array([x, y])) @ way
         ends = np.array([x, y]) + np.outer(_ends(joint, m, (place.min(), place.max()), layout), way)
-        found.append(entered(Slot(joint.name, slot, pin, ends, layout.place(joint.j)), layout))
-    return found
+        features.append(entered(Slot(joint.name, slot, pin, ends, layout.place(joint.j)), layout))
+    return features
 
 
 def _ends(joint: Joint, m: Mechanism, travel: tuple[float, float], layout: Layout) -> tuple[float, float]:

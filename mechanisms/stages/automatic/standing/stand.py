@@ -68,7 +68,7 @@ class Stand:
         for k, (x, y, z) in enumerate(feet, start=1):
             made.append(_screw(f"foot_screw_{k}", below, (x, y + below.sunk - plate.seat / 2, z), "y"))
         made += self._pads(own)
-        turned = [replace(one, shape=self.upright.in_model(one.shape), tolerance=self.tolerance) for one in made]
+        turned = [replace(solid, shape=self.upright.in_model(solid.shape), tolerance=self.tolerance) for solid in made]
         return [replace(main, shape=self.upright.in_model(held)), *others, *named(turned, bodies)]
 
     def _column(

@@ -138,7 +138,7 @@ class Wheel:
 
     def _pins(self, layout: Layout) -> frozenset[str]:
         """Names of the pins that its tube goes round."""
-        pins = (one for one in layout.features if isinstance(one, Pin) and self.body in one.places)
+        pins = (pin for pin in layout.features if isinstance(pin, Pin) and self.body in pin.places)
         return frozenset(pin.what for pin in pins if math.dist(pin.places[self.body], (self.x, self.y)) < SAME)
 
     def posts(self, layout: Layout) -> list[tuple[float, float]]:

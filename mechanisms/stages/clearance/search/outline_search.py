@@ -80,22 +80,22 @@ def least_by_outlines(sweep: Sweep, gap: float, time: float, poses: int) -> Leas
     ``gap`` (mm) of the pieces was measured at ``time``, after ``poses`` measurements. What is near in height depends on
     the least gap, so that is looked for in the common heights alone before.
     """
-    found, before = None, _outlines(sweep, 0.0)
+    least, before = None, _outlines(sweep, 0.0)
     if before is not None:
-        found = OutlineSearch(*before, sweep.path, sweep.still.centre).run(gap, time, poses)
-        gap, time, poses = _measured(sweep, found, gap, time)
-        if found.gap < gap - ALIKE:
+        least = OutlineSearch(*before, sweep.path, sweep.still.centre).run(gap, time, poses)
+        gap, time, poses = _measured(sweep, least, gap, time)
+        if least.gap < gap - ALIKE:
             return None
     beyond = max(gap - OutlineSearch.resolution, 0.0)
     both = _outlines(sweep, beyond)
     if both is None:
         return None
-    if found is None or before is None or not _same(before, both):
-        found = OutlineSearch(*both, sweep.path, sweep.still.centre).run(gap, time, poses)
-        gap, time, poses = _measured(sweep, found, gap, time)
-        if found.gap < gap - ALIKE:
+    if least is None or before is None or not _same(before, both):
+        least = OutlineSearch(*both, sweep.path, sweep.still.centre).run(gap, time, poses)
+        gap, time, poses = _measured(sweep, least, gap, time)
+        if least.gap < gap - ALIKE:
             return None
-    return Least(gap, time, min(max(found.proven - slack(sweep), 0.0), beyond, gap), poses, found.error, found.given_up)
+    return Least(gap, time, min(max(least.proven - slack(sweep), 0.0), beyond, gap), poses, least.error, least.given_up)
 
 
 def proven_by_outlines(sweep: Sweep, gap: float, time: float) -> float:
@@ -106,8 +106,8 @@ def proven_by_outlines(sweep: Sweep, gap: float, time: float) -> float:
     both = _outlines(sweep, gap)
     if both is None:
         return 0.0
-    found = OutlineSearch(*both, sweep.path, sweep.still.centre).run(gap, time, 0)
-    return min(max(found.proven - slack(sweep), 0.0), gap)
+    least = OutlineSearch(*both, sweep.path, sweep.still.centre).run(gap, time, 0)
+    return min(max(least.proven - slack(sweep), 0.0), gap)
 
 
 def slack(sweep: Sweep) -> float:
@@ -115,13 +115,13 @@ def slack(sweep: Sweep) -> float:
     return 4 * ROUNDING * (sweep.still.radius + sweep.mover.radius)
 
 
-def _measured(sweep: Sweep, found: Least, gap: float, time: float) -> tuple[float, float, int]:
+def _measured(sweep: Sweep, least: Least, gap: float, time: float) -> tuple[float, float, int]:
     """The least gap that is known of the pieces, its time, and how many poses were measured."""
-    if found.gap < gap:
-        measured = sweep.gap_at(found.time, gap)
+    if least.gap < gap:
+        measured = sweep.gap_at(least.time, gap)
         if measured < gap:
-            return measured, found.time, found.poses + 1
-    return gap, time, found.poses
+            return measured, least.time, least.poses + 1
+    return gap, time, least.poses
 
 
 def _outlines(sweep: Sweep, beyond: float) -> tuple[Outline, Outline] | None:
@@ -144,5 +144,5 @@ def are_over(sweep: Sweep, still: Outline, mover: Outline) -> bool:
     return covers(still, places[0]) or covers(mover, places[1])
 
 
-def _same(one: tuple[Outline, Outline], other: tuple[Outline, Outline]) -> bool:
-    return all(np.array_equal(x.edges, y.edges) for x, y in zip(one, other, strict=True))
+def _same(pair: tuple[Outline, Outline], other: tuple[Outline, Outline]) -> bool:
+    return all(np.array_equal(x.edges, y.edges) for x, y in zip(pair, other, strict=True))

@@ -109,22 +109,22 @@ def _refuse_other_files(name: str, document: Parts, files: Mapping[str, bytes]) 
             _refuse(name, f"{piece.stl} has another hash than parts.json tells")
 
 
-def _refuse_other_notes(name: str, told: Mapping[str, Any], own_file: str) -> None:
+def _refuse_other_notes(name: str, fields: Mapping[str, Any], own_file: str) -> None:
     """Names of inputs of all kinds, few enough to be looked at, the author's own file among them."""
     try:
-        notes = msgspec.convert(told, Notes)
+        notes = msgspec.convert(fields, Notes)
     except msgspec.ValidationError as error:
         _refuse(name, f"it tells what they were made from in another form ({error})")
     if set(notes.inputs) != set(Inputs().names()):
         _refuse(name, "it does not tell what they were made from")
-    names = [one for kind in notes.inputs.values() for one in kind] + notes.parameters
-    if len(names) > NAMES or any(not one or len(one) > LONGEST_NAME or "\0" in one for one in names):
+    names = [entry for kind in notes.inputs.values() for entry in kind] + notes.parameters
+    if len(names) > NAMES or any(not entry or len(entry) > LONGEST_NAME or "\0" in entry for entry in names):
         _refuse(name, "what they were made from has names that are none")
     if own_file not in notes.inputs["modules"]:
         _refuse(name, f"they do not follow from {own_file}")
-    for one in notes.inputs["sources"]:
-        if PurePosixPath(one).is_absolute() or ".." in PurePosixPath(one).parts:
-            _refuse(name, f"they follow from sources outside the project ('{one}')")
+    for source in notes.inputs["sources"]:
+        if PurePosixPath(source).is_absolute() or ".." in PurePosixPath(source).parts:
+            _refuse(name, f"they follow from sources outside the project ('{source}')")
 
 
 def _refuse_other_solids(name: str, made: Made) -> None:

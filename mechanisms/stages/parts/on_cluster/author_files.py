@@ -35,11 +35,11 @@ def collected(name: str) -> dict[str, bytes]:
 
     One that cannot be read, or goes meanwhile, stays here; its want is reported from here.
     """
-    found: dict[str, bytes] = {}
+    contents: dict[str, bytes] = {}
     for path in sorted(_paths(paths.owner_of(name))):
         with suppress(OSError):
-            found[path.relative_to(paths.ROOT).as_posix()] = path.read_bytes()
-    return found
+            contents[path.relative_to(paths.ROOT).as_posix()] = path.read_bytes()
+    return contents
 
 
 def by_content(files: Mapping[str, bytes]) -> dict[str, bytes]:

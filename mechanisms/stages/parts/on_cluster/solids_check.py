@@ -100,18 +100,18 @@ def _refuse_wrong_sums(body: str, solids: BodyParts) -> None:
         raise UserError(f"{body}: its middle is not that of a piece")
 
 
-def _alike(one: Mass, other: Mass, size: float, relative: float) -> bool:
+def _alike(first: Mass, second: Mass, size: float, relative: float) -> bool:
     """Whether two masses agree, ``size`` (m) being how large the solid is."""
-    near = np.isclose([one.mass, one.volume], [other.mass, other.volume], rtol=relative, atol=1e-15).all()
-    at = np.allclose(one.com, other.com, rtol=0.0, atol=relative * size + 1e-9)
-    close = relative * (one.inertia + one.mass * size**2)
-    if (one.z is None) != (other.z is None) or (one.products is None) != (other.products is None):
+    near = np.isclose([first.mass, first.volume], [second.mass, second.volume], rtol=relative, atol=1e-15).all()
+    at = np.allclose(first.com, second.com, rtol=0.0, atol=relative * size + 1e-9)
+    close = relative * (first.inertia + first.mass * size**2)
+    if (first.z is None) != (second.z is None) or (first.products is None) != (second.products is None):
         return False
-    if one.z is not None and other.z is not None:
-        at = at and abs(one.z - other.z) <= relative * size + 1e-9
-    if one.products is not None and other.products is not None:
-        at = at and np.allclose(one.products, other.products, rtol=0.0, atol=close + 1e-15)
-    return bool(near and at and abs(one.inertia - other.inertia) <= close)
+    if first.z is not None and second.z is not None:
+        at = at and abs(first.z - second.z) <= relative * size + 1e-9
+    if first.products is not None and second.products is not None:
+        at = at and np.allclose(first.products, second.products, rtol=0.0, atol=close + 1e-15)
+    return bool(near and at and abs(first.inertia - second.inertia) <= close)
 
 
 if __name__ == "__main__":

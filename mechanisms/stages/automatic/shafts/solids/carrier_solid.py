@@ -85,7 +85,7 @@ def _flange(main: Point, pins: Sequence[Point], height: float, bore: float, edge
         arms = arms.union(extruded(outline.hull([(x, y, hub), (u, v, own)]), height))
     ways.append(lambda: arms)
     rounded = [partial(_eased, way, edge * bore) for way in ways]
-    made = first_sound([one for pair in zip(rounded, ways, strict=True) for one in pair])
+    made = first_sound([shape for pair in zip(rounded, ways, strict=True) for shape in pair])
     return arms if made is None else made
 
 

@@ -85,7 +85,7 @@ def split(
         return shape.intersect(placed(box, *at, turn=math.degrees(towards)))
 
     cuts = ((half(1.0, wide), half(-1.0, wide)) for wide in WIDTHS)
-    sound = (cut for cut in cuts if all(one.solids().size() == 1 for one in cut))
+    sound = (cut for cut in cuts if all(piece.solids().size() == 1 for piece in cut))
     return next(sound, (half(1.0, WIDTHS[0]), half(-1.0, WIDTHS[0])))
 
 

@@ -19,7 +19,7 @@ ROAD = (60.0, 14.0, 70.0)
 
 
 def parts(p: Params) -> Bodies:
-    """Outlines of a leg round pins and bushings that come by themselves."""
+    """Outlines of a leg round automatic pins and bushings."""
     made = automatic(build(p), pin=PIN)
     dress(made, mm(p.thigh), mm(p.shank), (mm(p.calf[0]), mm(p.calf[1])))
     low, radius = REAR[1] - WHEEL[0], WHEEL[0]

@@ -17,7 +17,7 @@ CRATE = (62.0, 96.0, 52.0)
 
 
 def parts(p: Params) -> Bodies:
-    """All but the top of the table and the crate comes by itself; the crate weighs nothing in the motion."""
+    """All but the top of the table and the crate is automatic; the crate weighs nothing in the motion."""
     made = automatic(build(p))
     long = mm(p.mean + p.amplitude) + BEYOND
     made.material("platform", "aluminium_red")

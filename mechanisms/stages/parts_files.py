@@ -99,7 +99,7 @@ def step_bytes(solid: Any, name: str) -> bytes:
         if not content.rstrip().endswith(b"END-ISO-10303-21;"):
             raise UserError(cut_short(path, content))
     content = _TIMESTAMP.sub(rb"\1'1970-01-01T00:00:00'", content, count=1)
-    # by itself the kernel numbers the products of a process
+    # the kernel numbers the products of a process
     return _PRODUCT.sub(f"= PRODUCT('{name}','{name}'".encode(), content, count=1)
 
 

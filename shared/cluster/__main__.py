@@ -63,7 +63,7 @@ def main() -> None:
 
 
 def scheduler_command(host: str, port: int) -> list[str]:
-    """Dask's scheduler. Of its HTTP server, which has no password, nothing is left (preload.py)."""
+    """Dask's scheduler. Nothing is left of its HTTP server, which has no password (preload.py)."""
     scheme = "tls" if address.certificates() else "tcp"
     program = [
         sys.executable,

@@ -106,7 +106,7 @@ def tasks_of(client: Client) -> dict[str, int]:
 
 
 def size_of(client: Client, key: str) -> int:
-    """Bytes of a result, as its worker told the scheduler; 0 where there is none or the scheduler does not answer."""
+    """Bytes of a result, as its worker reported; 0 where there is none or the scheduler does not answer."""
     try:
         answer: Any = client.nbytes(keys=[key], summary=False)
     except (OSError, KeyError, RuntimeError):

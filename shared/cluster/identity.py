@@ -22,7 +22,7 @@ SHOWN = 3
 def identity(rooms: Iterable[str], packages: Iterable[str] = PACKAGES) -> dict[str, str]:
     """Python, packages, and the sources of these rooms, by name.
 
-    It is found once in a process, so a worker tells what it was started with.
+    It is found once in a process, so a worker reports what it was started with.
     """
     versions = {"Python": platform.python_version()}
     for package in packages:

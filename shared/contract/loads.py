@@ -39,7 +39,7 @@ class Shape(Strict, kw_only=True):
     crossed: bool = False
     """Whether the belt is crossed."""
     slots: int | None = None
-    """Slots of a Geneva wheel, about the second marker; the pin is ``pin_radius`` from the first along its x axis."""
+    """Slots of a Geneva wheel about the second marker; the pin is ``pin_radius`` from the first along its x axis."""
     pin_radius: Positive | None = None
     length: NonNegative | None = None
     """Length of a rope or rod; of a spring where it is free, unless that is a law of time (m)."""

@@ -146,7 +146,7 @@ def seat(hip: Point, z: float = 0.05) -> list[Solid]:
 
 
 class Shaped(Protocol):
-    """Parts by themselves, which take outlines and materials for their bodies."""
+    """Automatic parts, which take outlines and materials for their bodies."""
 
     def join(
         self, body: str, outline: cq.Wire, at: Point = ..., holes: Sequence[cq.Wire] = ..., sharp: bool = ...

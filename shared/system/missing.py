@@ -31,7 +31,7 @@ def program(name: str) -> str | None:
 
 
 def missing_programs(names: Iterable[str] | None = None) -> list[str]:
-    """Those of the programs that are missing; without names: of those that the tests want."""
+    """Those of the programs that are missing; without names: of those that the tests need."""
     wanted = [name for name in PROGRAMS if PROGRAMS[name].for_tests] if names is None else names
     return [name for name in wanted if program(name) is None]
 

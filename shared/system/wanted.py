@@ -31,7 +31,7 @@ class Program:
     variable: str = ""
     """Environment variable with a path that takes precedence."""
     for_tests: bool = True
-    """Whether `make test` wants it."""
+    """Whether `make test` needs it."""
 
 
 PROGRAMS = {

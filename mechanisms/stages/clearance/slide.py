@@ -168,7 +168,7 @@ def _between(piece: Manifold, low: float, high: float) -> Manifold:
 
 
 def _distance(p: np.ndarray, q: np.ndarray) -> float:
-    """Distance of two closed polygons (n, 2) that do not cross."""
+    """Distance between two closed polygons (n, 2) that do not cross."""
     return min(_to_sides(p, q), _to_sides(q, p))
 
 

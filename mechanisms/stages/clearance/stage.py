@@ -8,10 +8,10 @@ Every pair of pieces of two bodies is settled by the first of these that suffice
    once (turn.py).
    This also covers a pin in its hole with 0.1 mm of room.
 4. Slide. Bodies with a prismatic joint between them slide along one line: the gap of pieces seen along it, at every
-   place at once (slide.py). This covers a piston in its liner. Of a pair of which slices alone are proven so, as of a
+   place at once (slide.py). This covers a piston in its liner. Where slices alone are proven so, as for a
    valve in its guide, the rest is left to the motion.
 5. Motion. The gap of the two meshes over the whole motion, found and proven by branch and bound: of their outlines in
-   the plane (outline_search.py), and where these do not tell it, of their facets (search.py). Of gears, over one pitch
+   the plane (outline_search.py), and where these do not suffice, of their facets (search.py). For gears, over one pitch
    of their teeth (meshing.py).
 
 What is proven: at every moment of the motion, which between the samples of data.json is the quintic that the film
@@ -178,7 +178,7 @@ def _turn(
 
     axis = axes.get(frozenset((first.body, second.body)))
     if axis is None or not all(piece.is_around(axis[piece.body]) for piece in (first, second)):
-        return None  # of a post beside the axis the motion tells more than all angles do
+        return None  # for a post beside the axis the motion shows more than all angles do
     about = [piece.triangles - [axis[piece.body][0], axis[piece.body][1], 0.0] for piece in (first, second)]
     if sweep.gap_at(float(sweep.times[0]), reach) < limit:
         return None
@@ -209,7 +209,7 @@ def _sliced(
 ) -> PairClearance | None:
     """The gap of a pair of which most is proven along a line and the rest by the motion; None if that is not enough.
 
-    Only of one that stays near: else the motion alone tells it sooner.
+    Only for a pair that stays near: else the motion alone proves it sooner.
     """
     from mechanisms.stages.clearance.search.least import least_gap
     from mechanisms.stages.clearance.search.sweep import Sweep

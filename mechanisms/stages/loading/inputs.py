@@ -54,7 +54,7 @@ class _Project(Places):
         return file.startswith(PROGRAM)
 
     def acts_for_itself(self, file: str) -> bool:
-        """The stages, but for parts by themselves, which act for the author."""
+        """The stages, except automatic parts, which act for the author."""
         return file.startswith(STAGES) or os.path.dirname(file) == DOORS
 
     def hash_of(self, path: Path) -> str:

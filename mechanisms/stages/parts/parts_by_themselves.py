@@ -21,7 +21,7 @@ ALIKE = 1e-9
 
 
 def solids_of(name: str) -> dict[str, list[Solid]]:
-    """Every piece by body. Raises UserError where the model cannot move, or has no parts by itself."""
+    """Every piece by body. Raises UserError where the model cannot move, or has no automatic parts."""
     from mechanisms.stages.automatic.automatic import automatic
 
     solution = bare_solution(name)

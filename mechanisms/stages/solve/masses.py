@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from shared.contract import BodyParts, Parts
 
 Source = Literal["mechanism", "parts", "estimate"]
-TOLD = 8
+LISTED = 8
 """At most so many masses are listed in a line."""
 ALIKE = 1e-9
 """Masses of mechanism.py and of the parts that differ by less, relatively, are one."""
@@ -73,10 +73,10 @@ def _estimate(m: Mechanism, names: list[str], left_out: bool) -> list[str]:
     return [f"{why} are estimated as aluminium bars and plates through the markers: {masses}"]
 
 
-def _some(told: list[str]) -> str:
+def _some(masses: list[str]) -> str:
     """The first of them, and how many others there are."""
-    more = len(told) - TOLD
-    return ", ".join(told) if more <= 1 else f"{', '.join(told[:TOLD])} and {more} others"
+    more = len(masses) - LISTED
+    return ", ".join(masses) if more <= 1 else f"{', '.join(masses[:LISTED])} and {more} others"
 
 
 def _differ(first: float, second: float) -> bool:

@@ -32,7 +32,7 @@ def to_motion(
 ) -> contract.Motion:
     """The solution as the contract has it; bodies without solids have no height.
 
-    ``sources`` tells where the mass of each body is from; if it is not given, from the parts.
+    ``sources`` says where the mass of each body is from; if it is not given, from the parts.
     """
     import mbsd
     from mbsd.drawing.inks import on_dark
@@ -217,11 +217,11 @@ def _contact(solution: Solution, name: str, row: int) -> contract.ContactMotion:
     number = packed.joints.index(joint)
     fx, fy, torque = solution.wrench[:, number].T
     assert solution.held is not None, "simulations tell which rows held"
-    rubs = joint.params.get("friction", 0.0) > 0.0
+    has_friction = joint.params.get("friction", 0.0) > 0.0
     closed = solution.held[:, row]
-    sticks = solution.held[:, row + 1] if rubs else closed
+    sticks = solution.held[:, row + 1] if has_friction else closed
     states: list[contract.State] = [
-        "open" if not touches else "sticks" if rubs and still else "slides" if rubs else "closed"
+        "open" if not touches else "sticks" if has_friction and still else "slides" if has_friction else "closed"
         for touches, still in zip(closed.tolist(), sticks.tolist(), strict=True)
     ]
     return contract.ContactMotion(

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from mbsd import Force, Joint
 
 POINTS = 240
-"""Points of an outline at most, about."""
+"""Points of an outline, about and at most."""
 
 
 def shape_of(element: Joint | Force) -> Shape:

@@ -51,7 +51,7 @@ def build(name: str, module: Any, p: Any) -> Mechanism:
 
 
 def motion_of(name: str, module: Any, m: Mechanism, p: Any) -> Solution:
-    """The motion of ``m`` as mechanism.py wants it. Raises UserError; warnings of the solver become lines."""
+    """The motion of ``m`` as mechanism.py asks for it. Raises UserError; warnings of the solver become lines."""
     from mbsd import MechanismError
     from mbsd.results.solution import Solution
 

@@ -121,7 +121,7 @@ def _swept(solution: Solution, body: str, at: np.ndarray) -> np.ndarray:
 
 
 def distance(joint: Joint, solution: Solution) -> float:
-    """Distance of a joint's two markers at the start (m)."""
+    """Distance between a joint's two markers at the start (m)."""
     first, second = (_swept(solution, k.body.name, np.array([[k.x, k.y]]))[0] for k in (joint.i, joint.j))
     return float(np.hypot(*(second - first)))
 

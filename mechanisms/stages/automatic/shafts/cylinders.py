@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 SQUARE = 0.95
 """Bore over stroke, where there is room and no gas says otherwise."""
 WALL = 0.065
-"""Wall of a liner."""
+"""Thickness of a liner's wall."""
 CROWN, SKIRT, LEAST_SKIRT = 0.5, 0.36, 0.16
 """Heights of a piston, above and below its wrist pin."""
 SQUISH = 0.07

@@ -1,4 +1,4 @@
-"""Whether bodies pass each other in the plane where they share heights: told before anything is built (mm)."""
+"""Whether bodies pass each other in the plane where they share heights: known before anything is built (mm)."""
 
 from __future__ import annotations
 

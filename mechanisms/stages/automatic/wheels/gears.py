@@ -114,7 +114,7 @@ def _meet(first: Wheel, second: Wheel, tip: float, layout: Layout) -> bool:
 
 
 def refuse_apart(m: Mechanism, joint: Joint, first: Wheel, second: Wheel, layout: Layout) -> None:
-    """Raises UserError unless the centres of two wheels stay as far apart as their radii want."""
+    """Raises UserError unless the centres of two wheels stay as far apart as their radii require."""
     wanted = abs(first.radius - second.radius) if first.ring else first.radius + second.radius
     way = layout.seen(second.body, (second.x, second.y), first.body) - (first.x, first.y)
     apart = np.hypot(*way.T)

@@ -35,7 +35,7 @@ def least_gap(sweep: Sweep, reach: float) -> Least:
     if height >= least.gap - RESOLUTION:
         least = replace(least, proven=min(least.proven, height))
     elif least.gap > 0 and never_over(sweep, least.gap):
-        pass  # the sides tell it
+        pass  # the sides suffice
     elif not least.given_up:
         least = _search(sweep, sweep.still.tree, sweep.mover.tree, least.gap, least.time, least.poses)
     else:  # more facets would be given up, too

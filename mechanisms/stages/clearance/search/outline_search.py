@@ -2,7 +2,7 @@
 
 Points of two pieces that are nearer than g are less than g apart in height, too. So pieces are g apart if the outlines
 of what either has within g of the heights that both have are g apart in the plane over the whole motion, and neither is
-inside the other at one time, and so at all times. Of plates, pins and teeth, whose walls are upright, this is the gap
+inside the other at one time, and so at all times. For plates, pins and teeth, whose walls are upright, it is the gap
 itself; and there are fewer segments than facets, and they are simpler.
 """
 
@@ -75,7 +75,7 @@ def _side(segment: np.ndarray, point: np.ndarray) -> np.ndarray:
 
 
 def least_by_outlines(sweep: Sweep, gap: float, time: float, poses: int) -> Least | None:
-    """The least gap over the motion with its proof; None where outlines do not tell it.
+    """The least gap over the motion with its proof; None where outlines do not suffice.
 
     ``gap`` (mm) of the pieces was measured at ``time``, after ``poses`` measurements. What is near in height depends on
     the least gap, so that is looked for in the common heights alone before.

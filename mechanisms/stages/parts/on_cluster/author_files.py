@@ -27,13 +27,13 @@ class Order(msgspec.Struct, frozen=True, kw_only=True):
     files: dict[str, str]
     """By name below the project, the hash of the content of each of the authors' files."""
     program: dict[str, str]
-    """Versions and sources of who asks, as ``identity`` tells them."""
+    """Versions and sources of who asks, as ``identity`` gives them."""
 
 
 def collected(name: str) -> dict[str, bytes]:
     """The files of all authors, by name below the project, that go along for the mechanism or variant ``name``.
 
-    One that cannot be read, or goes meanwhile, stays here; its want is reported from here.
+    One that cannot be read, or goes meanwhile, stays here; that it is missing is reported from here.
     """
     contents: dict[str, bytes] = {}
     for path in sorted(_paths(paths.owner_of(name))):

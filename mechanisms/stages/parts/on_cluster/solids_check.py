@@ -1,7 +1,7 @@
 """``python -m mechanisms.stages.parts.on_cluster.solids_check FOLDER``: reads solids that another machine has made.
 
 It ends with code 1 and a sentence on stderr unless every mesh and every STEP file beside parts.json is whole, is the
-same closed solid, and has the mass that parts.json tells.
+same closed solid, and has the mass that parts.json states.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ RECORD, HEAD = 50, 84
 
 
 def refuse_wrong(folder: Path) -> None:
-    """Raise UserError naming the first solid that is not what parts.json tells of it."""
+    """Raise UserError naming the first solid that is not what parts.json says of it."""
     document = parts_from((folder / "parts.json").read_bytes(), "parts.json")
     for body, solids in document.bodies.items():
         for name, piece in solids.pieces.items():
@@ -53,7 +53,7 @@ def _refuse_wrong_piece(folder: Path, where: str, piece: Piece) -> None:
     mesh = read_mesh(stl)
     if len(mesh.faces) != piece.triangles or not mesh.is_watertight:
         raise UserError(
-            f"{where}: {piece.stl} has {len(mesh.faces)} triangles that do not close, or not as many as told"
+            f"{where}: {piece.stl} has {len(mesh.faces)} triangles that do not close, or not as many as parts.json says"
         )
     heights = tuple(metres(float(height)) for height in mesh.bounds[:, 2])
     if not np.allclose(heights, piece.z_range, rtol=0.0, atol=1e-9):

@@ -156,7 +156,7 @@ class Clauses:
         return list(total.rhs)
 
     def solved(self, assumed: Sequence[int] = (), budget: int | None = None) -> bool | None:
-        """Whether there is a model under assumptions; None if ``budget`` conflicts of the solver do not tell."""
+        """Whether there is a model under assumptions; None if ``budget`` conflicts of the solver do not decide."""
         if budget is None:
             answer = self.solver.solve(assumptions=assumed)
         else:

@@ -62,8 +62,8 @@ class Problem:
         fixed = max((level + step for level in self.fixed.values()), default=0)
         return 1 + step * (len(set(self.heads.values())) - 1) + fixed
 
-    def clauses(self, count: int, told: Sequence[Hashable] = ()) -> Clauses:
-        """All rules with ``count`` layers; ``told`` gives each conflict a key, and only those assumed by it count."""
+    def clauses(self, count: int, keys: Sequence[Hashable] = ()) -> Clauses:
+        """All rules with ``count`` layers; ``keys`` gives each conflict one, and only those assumed by it count."""
         made = Clauses(self.heads, choices_of(self.items), count)
         for body, level in self.fixed.items():
             made.add(made.at_least(body, level))
@@ -74,7 +74,7 @@ class Problem:
         for low, high, runners in self.between:
             made.between(low, high, runners)
         for k, (i, j) in enumerate(self.conflicts):
-            made.apart(self.items[i].reach, self.items[j].reach, told[k] if told else None)
+            made.apart(self.items[i].reach, self.items[j].reach, keys[k] if keys else None)
         return made
 
     @property
@@ -193,10 +193,10 @@ def _highest_first(steps: Mapping[str, Sequence[int]]) -> list[int]:
     return [step for own in steps.values() for step in reversed(own)]
 
 
-def blocking[Key: Hashable](problem: Problem, told: Sequence[Key]) -> list[Key]:
-    """Keys of conflicts that leave no order; without any one of them there would be one. ``told``: one per conflict."""
-    clauses = problem.clauses(problem.most, told)
-    kept = list(dict.fromkeys(told))
+def blocking[Key: Hashable](problem: Problem, keys: Sequence[Key]) -> list[Key]:
+    """Keys of conflicts that leave no order; without any one of them there would be one. ``keys``: one per conflict."""
+    clauses = problem.clauses(problem.most, keys)
+    kept = list(dict.fromkeys(keys))
     literals = {key: clauses.keys[key] for key in kept}
     if clauses.solved(list(literals.values())):
         raise ValueError("there is an order of layers")

@@ -138,7 +138,7 @@ def _shaft(m: Mechanism, body: str, main: Joint, pins: list[Joint]) -> Shaft:
 
 
 def free_links(m: Mechanism, left_out: Collection[str]) -> list[str]:
-    """Links whose plane neither the model nor what they are pinned to tells."""
+    """Links whose plane neither the model nor what they are pinned to gives."""
     joints = [joint for joint in m.joints.values() if not set(left_out).intersection(joint.bodies)]
     sliding = {body for joint in joints for body in joint.bodies if _slides(joint, body)}
     free = []
@@ -149,13 +149,13 @@ def free_links(m: Mechanism, left_out: Collection[str]) -> list[str]:
         is_shaft = any("ground" in joint.bodies for joint in pins) and (
             body in _wheeled(joints) or _is_shaft(m, body, pins)
         )
-        if not is_shaft and not _told(body, pins, _pistons(sliding, joints)):
+        if not is_shaft and not _known_planes(body, pins, _pistons(sliding, joints)):
             free.append(body)
     return free
 
 
-def _told(body: str, pins: list[Joint], sliding: Collection[str]) -> list[float]:
-    """Planes (mm) that markers tell, and the places of pistons."""
+def _known_planes(body: str, pins: list[Joint], sliding: Collection[str]) -> list[float]:
+    """Planes (mm) that markers give, and the places of pistons."""
     places: list[float] = []
     for joint in pins:
         own, other = marker_on(joint, body), other_on(joint, body)
@@ -181,7 +181,7 @@ def _link(
             f"are guides on ground alone; leave '{body}' out (automatic(m).leave_out), or write "
             f"mechanisms/{m.name}/parts.py"
         )
-    places = _told(body, pins, sliding)
+    places = _known_planes(body, pins, sliding)
     z = mm(given) if given is not None else places[0] if places else chosen.get(body)
     if z is None:
         raise UserError(

@@ -49,7 +49,7 @@ def loads(machine: Machine, shaft: Shaft, made: Mapping[str, Sequence[Solid]]) -
 
 
 def _on_pin(machine: Machine, link: Link, on: LinkEye, made: Mapping[str, Sequence[Solid]]) -> float:
-    """Mass on a crank pin (kg): of a link, of the piston that it drives, and of rods on it that drive others."""
+    """Mass on a pin (kg): of a link, of the piston that it drives, and of rods on it that drive others."""
     mass, com = _mass(machine, link.body, made)
     others = [eye for eye in link.eyes if eye is not on and math.hypot(eye.x - on.x, eye.y - on.y) > 0]
     far = next((eye for eye in others if eye.on in machine.pistons), None) or max(

@@ -103,11 +103,11 @@ def least_gap(
     for chosen in (near[::COARSE], near):
         a = placed(first.core_at(chosen), poses[0][chosen])
         b = placed(second.core_at(chosen), poses[1][chosen])
-        cores = core_gaps(a, b) - first.radius - second.radius
-        at = int(np.argmin(cores))
-        if cores[at] <= enough:
+        exact = core_gaps(a, b) - first.radius - second.radius
+        at = int(np.argmin(exact))
+        if exact[at] <= enough:
             break
-    return float(cores[at]), int(chosen[at])
+    return float(exact[at]), int(chosen[at])
 
 
 def core_gaps(a: np.ndarray, b: np.ndarray) -> np.ndarray:

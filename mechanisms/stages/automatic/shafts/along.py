@@ -153,7 +153,7 @@ class Along:
         ]
         bare = [replace(plan, counterweight=0.0) for plan in every]
         return [
-            self._lightened(plan, [shaft for k, shaft in enumerate(bare) if k != own]) for own, plan in enumerate(every)
+            self._lightened(plan, [other for k, other in enumerate(bare) if k != own]) for own, plan in enumerate(every)
         ]
 
     @cached_property
@@ -163,8 +163,8 @@ class Along:
 
     def _mounted(self, shaft: str) -> list[Mounted]:
         """What sits on a shaft beside its throws."""
-        cams = [part.mounted for part in self.valves.values() if part.valve.shaft == shaft]
-        return [*(part.mounted for part in self.wheels.of(shaft)), *cams]
+        cams = [valve.mounted for valve in self.valves.values() if valve.valve.shaft == shaft]
+        return [*(wheel.mounted for wheel in self.wheels.of(shaft)), *cams]
 
     @cached_property
     def valves(self) -> dict[str, ValvePlan]:

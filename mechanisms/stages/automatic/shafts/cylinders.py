@@ -170,8 +170,8 @@ def _stroke(machine: Machine, piston: Piston) -> tuple[float, float, np.ndarray]
 
 def _shaft(machine: Machine, piston: Piston) -> Shaft | None:
     link = machine.links.get(piston.link or "")
-    crank = throw_of(machine, link) if link else None
-    return crank[0] if crank else None
+    driven = throw_of(machine, link) if link else None
+    return driven[0] if driven else None
 
 
 def _wish(machine: Machine, piston: Piston) -> float:

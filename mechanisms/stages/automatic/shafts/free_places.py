@@ -60,13 +60,13 @@ def free_places(
         if _asks(a, b, {*free}) and _meet(machine, a, b, measures)
     ]
     problem = Problem([*machine.links, *slots], items, conflicts, fixed | slots)
-    order = find_layers(problem)
-    if order is None:
+    levels = find_layers(problem)
+    if levels is None:
         raise UserError(
             f"{machine.m.name}: no layer beside the places that are given lets {', '.join(free)} pass; give them "
             "places z, or others more room along z"
         )
-    return {name: _height(layers, order[name], pitch) for name in free}
+    return {name: _height(layers, levels[name], pitch) for name in free}
 
 
 def _layers(given: Sequence[float], pitch: float, count: int) -> list[float]:

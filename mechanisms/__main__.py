@@ -31,7 +31,7 @@ def main() -> int | None:
             sub.add_argument("--bed", default="", help="size of a plate in mm, 220x220 if not given")
             sub.add_argument("--gap", default="", help="what pieces keep apart in mm, 5 if not given")
         if command == "parts":
-            sub.add_argument("--or-none", action="store_true", help="go on where there are no parts by themselves")
+            sub.add_argument("--or-none", action="store_true", help="go on where there are no automatic parts")
     fresh = commands.add_parser("new", help="a new mechanism that already runs")
     fresh.add_argument("name", help="folder to make")
     fresh.add_argument("--kind", default="driven", help="driven or simulated")

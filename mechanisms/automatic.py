@@ -1,4 +1,4 @@
-"""The door of ``parts.py`` to parts by themselves: what it may import of them."""
+"""The door of ``parts.py`` to automatic parts: what it may import of them."""
 
 from mechanisms.stages.automatic.automatic import Automatic, automatic
 from mechanisms.stages.automatic.wheels.wheels import TUBE

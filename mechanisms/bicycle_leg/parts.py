@@ -30,7 +30,7 @@ MUSCLES: dict[str, tuple[str, tuple[Point, ...]]] = {
 
 
 def parts(p: Params) -> Bodies:
-    """Bones are bars on pins and bushings that come by themselves; their masses are those of mechanism.py."""
+    """Bones are bars on automatic pins and bushings; their masses are those of mechanism.py."""
     made = automatic(build(p), pin=PIN)
     made.join("shank", foot(mm(p.shank)))
     ring, windows = chainring(*RING)

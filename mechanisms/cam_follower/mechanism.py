@@ -54,7 +54,7 @@ def lift_law(p: Params) -> Lift:
 
 
 def float_speed(p: Params) -> float:
-    """Of the cam (rad/s), at which the spring and its weight no longer keep the valve on it."""
+    """Speed of the cam (rad/s), at which the spring and its weight no longer keep the valve on it."""
     lift = lift_law(p)(np.linspace(0, 2 * pi, 14401))
     falls = lift[:, 2] < 0
     push = p.stiffness * (p.preload + lift[falls, 0]) + p.valve * p.gravity

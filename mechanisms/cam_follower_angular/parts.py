@@ -20,7 +20,7 @@ SCALE = (9.0, 30.0)
 BEYOND, STEP = 5, 2
 """Degrees beyond the swing, and from stroke to stroke."""
 POINTER = (2.0, 3.5)
-"""Of the arm: how near it comes to the scale, and half its width (mm)."""
+"""How near the arm comes to the scale, and half the arm's width (mm)."""
 
 
 def parts(p: Params) -> Bodies:

@@ -1,4 +1,4 @@
-"""Slender links: with thinner pins than parts have by themselves, every other link can share a layer."""
+"""Slender links: with pins thinner than those of automatic parts, every other link can share a layer."""
 
 from mechanisms.automatic import automatic
 from mechanisms.chain.mechanism import Params, build
@@ -11,5 +11,5 @@ MANY = 50
 
 
 def parts(p: Params) -> dict[str, list[Solid]]:
-    """All by itself, but for the pins."""
+    """All is automatic but the pins."""
     return automatic(build(p), pin=(THICK if p.links > MANY else PIN) * mm(p.length)).solids()

@@ -15,11 +15,11 @@ PIN = 20.0
 WIDE, TALL = 3.9, 4.0
 """Thickness of the wheels, and of the frame before them, on which the saddle lies (mm)."""
 ROAD = (60.0, 14.0, 70.0)
-"""Of the road beyond the wheels, under them, and out from the base (mm)."""
+"""How far the road reaches beyond the wheels, under them, and out from the base (mm)."""
 
 
 def parts(p: Params) -> Bodies:
-    """Outlines of a leg round pins and bushings that come by themselves."""
+    """Outlines of a leg round automatic pins and bushings."""
     made = automatic(build(p), pin=PIN)
     dress(made, mm(p.thigh), mm(p.shank), (mm(p.calf[0]), mm(p.calf[1])))
     low, radius = REAR[1] - WHEEL[0], WHEEL[0]

@@ -18,7 +18,7 @@ from shared.shapes.workpieces import block, prism
 RIM = (0.42, 0.60)
 """Radii of the table's rim, in that of the wheel."""
 THICK, SPOKE, PIECE = 4.0, 7.0, (5.0, 9.0)
-"""Of the table (mm); half the width of a spoke; radius and height of a piece."""
+"""Thickness of the table (mm); half the width of a spoke; radius and height of a piece."""
 
 
 def parts(p: Params) -> Bodies:

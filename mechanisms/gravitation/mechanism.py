@@ -15,7 +15,7 @@ VARIANTS = {
     "eight": {"masses": (0.2, 0.2, 0.2), "eight": True, "period": 6.0, "DURATION": 12.0},
 }
 EIGHT_PLACE, EIGHT_SPEED, EIGHT_PERIOD = (0.97000436, -0.24308753), (-0.93240737, -0.86473146), 6.32591398
-"""Of the first of three unit masses, twice the first one's rate, period (Chenciner, Montgomery 2000; G = 1)."""
+"""Place of the first of three unit masses, velocity of the third, and period (Chenciner, Montgomery 2000; G = 1)."""
 
 
 @dataclass(frozen=True)

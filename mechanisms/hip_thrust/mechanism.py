@@ -23,7 +23,7 @@ VARIANTS = {
 
 @dataclass(frozen=True)
 class Params:
-    """Of the lifter height (m) and mass (kg); the barbell (kg); the bench (m); how long the way up takes (s)."""
+    """Height (m) and mass (kg) of the lifter; the barbell (kg); the bench (m); how long the way up takes (s)."""
 
     exercise: str = "hip_thrust"
     height: float = 1.78
@@ -71,7 +71,7 @@ def figure(p: Params) -> Figure:
 
 
 def arm_angles(p: Params) -> tuple[float, float]:
-    """Of upper arm and forearm against the trunk, or against a straight arm that hangs (degrees)."""
+    """Angles of upper arm and forearm against the trunk, or against a straight arm that hangs (degrees)."""
     who = figure(p)
     shoulder = (who.length("trunk"), 0.0)
     if p.exercise == "deadlift":

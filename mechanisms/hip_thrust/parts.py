@@ -15,7 +15,7 @@ from shared.shapes.units import mm
 MIDDLE = 340.0
 """Height of the lifter's middle over the base."""
 DEEP = 620.0
-"""Of the floor."""
+"""Depth of the floor."""
 GAP = 5.5
 """Between the sole and the floor, the back and the pad."""
 PAD = (140.0, 480.0, 80.0)

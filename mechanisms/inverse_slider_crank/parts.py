@@ -7,7 +7,7 @@ from shared.shapes.solid import Solid
 from shared.shapes.workpieces import CUP, TEA, block, standing
 
 RADIUS = 11.0
-"""Of the cup (mm)."""
+"""Radius of the cup (mm)."""
 TRAY = (2.4, 34.0)
 """Thickness and depth of the tray (mm)."""
 

@@ -8,7 +8,7 @@ from shared.shapes.units import mm
 from shared.shapes.workpieces import block
 
 BEYOND, THICK = 38.0, 9.0
-"""Of the ground beyond the step, and under it (mm)."""
+"""Length of the ground beyond the step, and its thickness under the step (mm)."""
 GAP = 0.4
 """Between the foot and the ground (mm)."""
 

@@ -49,6 +49,6 @@ def build(p: Params) -> Mechanism:
 
 
 def small_period(p: Params) -> float:
-    """Of small swings (s)."""
+    """Period of small swings (s)."""
     cart, bob = p.masses
     return 2 * pi * (p.length * cart / (p.gravity * (cart + bob))) ** 0.5

@@ -1,4 +1,4 @@
-"""A slender rod: with thinner pins than parts have by themselves."""
+"""A slender rod: its pins are thinner than those of automatic parts."""
 
 from mechanisms.automatic import automatic
 from mechanisms.moving_pendulum.mechanism import Params, build
@@ -10,5 +10,5 @@ PIN = 0.04
 
 
 def parts(p: Params) -> dict[str, list[Solid]]:
-    """All by itself, but for the pins."""
+    """All is automatic but the pins."""
     return automatic(build(p), pin=PIN * mm(p.length)).solids()

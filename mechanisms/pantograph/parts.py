@@ -10,7 +10,7 @@ from shared.shapes.units import mm
 from shared.shapes.workpieces import pen, sheet
 
 AROUND = 22.0
-"""Of the paper beyond both hearts (mm)."""
+"""Margin of the paper beyond both hearts (mm)."""
 PAPER, GAP = 0.6, 0.4
 """Thickness of the paper, and between it and the pen (mm)."""
 

@@ -8,7 +8,7 @@ from shared.shapes.units import mm
 from shared.shapes.workpieces import sheet
 
 AROUND = (34.0, 22.0)
-"""Of the paper beside and beyond the line (mm)."""
+"""Margins of the paper beside and beyond the line (mm)."""
 
 
 def parts(p: Params) -> Bodies:

@@ -1,4 +1,4 @@
-"""The planetary's parts by themselves, its carrier under the wheels, so that all that meshes is seen."""
+"""The planetary's automatic parts, its carrier under the wheels, so that all that meshes is seen."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The steering's parts by themselves, and what makes it a car's: road wheels on stub axles, a steering wheel.
+"""The steering's automatic parts, and what makes it a car's: road wheels on stub axles, a steering wheel.
 
 Lengths in this file are reference millimetres (rmm, sizes.py), scaled when all is made. A road wheel is one with its
 knuckle: how it rolls is not part of the motion.
@@ -15,7 +15,7 @@ from shared.shapes.outline import circle
 from shared.shapes.solid import Solid, placed
 
 LAYER = 4
-"""Of the knuckles: the axles lie as high as the road wheels need."""
+"""Layer of the knuckles: the axles lie as high as the road wheels need."""
 TYRE, RIM, HALF = 46.0, 31.0, 16.0
 """Radii of a tyre and its rim, and half of their width."""
 OUT = 58.0
@@ -60,15 +60,15 @@ def _road_wheel(made: Automatic, side: str, out: int) -> list[Solid]:
     for k in range(5):
         hub = hub.cut(placed(extruded(circle((rim + 13) / 2, 0, 6.0), 60, -30), turn=72.0 * k))
     axle = extruded(circle(0, 0, AXLE), OUT + bevel - 1.0 - start, start - OUT)
-    found = []
+    solids = []
     for name, shape, material, holes in (
         ("axle", axle, "steel", 0),
         ("rim", hub, "aluminium", 6),
         ("tyre", tyre, "rubber", 1),
     ):
         lying = shape.rotate((0, 0, 0), (0, 1, 0), 90.0 * out).translate((out * OUT, 0, (low + high) / 2 / scale))
-        found.append(Solid(f"{name}_{side}", _scaled(lying, scale), material, holes))
-    return found
+        solids.append(Solid(f"{name}_{side}", _scaled(lying, scale), material, holes))
+    return solids
 
 
 def _steering_wheel(made: Automatic) -> list[Solid]:

@@ -36,7 +36,7 @@ class Params:
 
 
 def speed(p: Params) -> float:
-    """Of the throw (m/s), at which the figure closes."""
+    """Speed of the throw (m/s), at which the figure closes."""
     bounces, journeys = p.rhythm
     fall = sqrt(2 * p.height / p.gravity)
     return (p.width - 2 * p.radius) * journeys / (bounces * fall)

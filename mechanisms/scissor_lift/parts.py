@@ -9,7 +9,7 @@ from shared.shapes.units import mm
 from shared.shapes.workpieces import crate
 
 BEYOND = 45.0
-"""Of the table beyond the hinge, and beyond where the shoe comes (mm)."""
+"""Length of the table beyond the hinge, and beyond where the shoe comes (mm)."""
 TOP = (14.0, 42.0)
 """Its lower and upper side over the line of the hinges (mm)."""
 CRATE = (62.0, 96.0, 52.0)
@@ -17,7 +17,7 @@ CRATE = (62.0, 96.0, 52.0)
 
 
 def parts(p: Params) -> Bodies:
-    """All but the top of the table and the crate comes by itself; the crate weighs nothing in the motion."""
+    """All but the top of the table and the crate is automatic; the crate weighs nothing in the motion."""
     made = automatic(build(p))
     long = mm(p.mean + p.amplitude) + BEYOND
     made.material("platform", "aluminium_red")

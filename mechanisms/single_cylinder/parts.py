@@ -1,4 +1,4 @@
-"""All by itself, with a flywheel that carries the shaft from one stroke of work to the next."""
+"""Automatic parts, with a flywheel that carries the shaft from one stroke of work to the next."""
 
 from mechanisms.automatic import automatic
 from mechanisms.single_cylinder.mechanism import Params, build

@@ -52,7 +52,7 @@ def binary_stl(corners: np.ndarray) -> bytes:
 def _with_three_corners(corners: np.ndarray) -> np.ndarray:
     """Those of the triangles (n, 3, 3) that have three corners.
 
-    Of an edge shorter than float32 can tell the file has one end; a triangle on it would be an open edge.
+    An edge shorter than float32 can tell has one end in the file; a triangle on it would be an open edge.
     """
     equal = (corners == np.roll(corners, -1, axis=1)).all(axis=2)
     return corners[~equal.any(axis=1)]
@@ -61,7 +61,7 @@ def _with_three_corners(corners: np.ndarray) -> np.ndarray:
 def ruled(solid: Any) -> Any:
     """The solid with its extruded curves as B-spline surfaces, which are the same surfaces.
 
-    Of an extruded spline the kernel divides the height as finely as the curve and makes a hundred times the triangles,
+    The kernel divides the height of an extruded spline as finely as the curve and makes a hundred times the triangles,
     whose corners stand out from the chords of the wall's edges; of a B-spline surface it knows the straight direction.
     """
     if all(face.geomType() != "EXTRUSION" for face in solid.Faces()):
@@ -99,7 +99,7 @@ def step_bytes(solid: Any, name: str) -> bytes:
         if not content.rstrip().endswith(b"END-ISO-10303-21;"):
             raise UserError(cut_short(path, content))
     content = _TIMESTAMP.sub(rb"\1'1970-01-01T00:00:00'", content, count=1)
-    # by itself the kernel numbers the products of a process
+    # the kernel numbers the products of a process
     return _PRODUCT.sub(f"= PRODUCT('{name}','{name}'".encode(), content, count=1)
 
 

@@ -8,7 +8,7 @@ from shared.shapes.units import mm
 from shared.shapes.workpieces import CUP, TEA, block, standing
 
 RADIUS = 26.0
-"""Of the cup (mm)."""
+"""Radius of the cup (mm)."""
 TRAY = (44.0, 4.0, 62.0)
 """Half the width of the tray, its thickness and its depth (mm)."""
 

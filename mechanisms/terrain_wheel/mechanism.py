@@ -43,28 +43,28 @@ class Params:
 
 
 def height(p: Params, x: np.ndarray) -> np.ndarray:
-    """Of the hills (m): two dales at half of their distance on either side."""
+    """Height of the hills (m): two dales at half of their distance on either side."""
     return p.hill * ((2 * x / p.dales) ** 2 - 1) ** 2
 
 
 def slope(p: Params, x: float) -> float:
-    """Of the hills."""
+    """Slope of the hills."""
     u = 2 * x / p.dales
     return 8 * p.hill / p.dales * u * (u**2 - 1)
 
 
 def corners(p: Params) -> list[tuple[float, float]]:
     """Where planks begin, and where the last one ends (m); the lowest are level with y = 0."""
-    found = [(0.0, 0.0)]
+    points = [(0.0, 0.0)]
     for length, angle in p.planks:
-        x, y = found[-1]
-        found.append((x + length * cos(radians(angle)), y + length * sin(radians(angle))))
-    middle, lowest = found[-1][0] / 2, min(y for _, y in found)
-    return [(x - middle, y - lowest) for x, y in found]
+        x, y = points[-1]
+        points.append((x + length * cos(radians(angle)), y + length * sin(radians(angle))))
+    middle, lowest = points[-1][0] / 2, min(y for _, y in points)
+    return [(x - middle, y - lowest) for x, y in points]
 
 
 def first_place(p: Params) -> tuple[float, float]:
-    """Of the wheel's centre (m): its tyre touches the ground at ``start``, or is ``drop`` above it."""
+    """Place of the wheel's centre (m): its tyre touches the ground at ``start``, or is ``drop`` above it."""
     if p.terrain == "polygonal":
         (x, y), angle = corners(p)[0], radians(p.planks[0][1])
         return x + p.edge * cos(angle) - p.radius * sin(angle), y + p.edge * sin(angle) + p.radius * cos(angle)

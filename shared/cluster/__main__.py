@@ -27,9 +27,11 @@ def main() -> None:
     worker = commands.add_parser("worker", help="takes work; one for each machine, as Blender uses all its cores")
     worker.add_argument("address", help="of the scheduler: tcp://name:8786 or tls://name:8786")
     worker.add_argument("--name", default="", help="what it is called; the host's name and a number if not given")
-    for one in (scheduler, worker):
-        one.add_argument("--host", default="", help="address of this machine that others reach; 127.0.0.1 if not given")
-        one.add_argument("--plain", action="store_true", help="without certificates though others reach it")
+    for command in (scheduler, worker):
+        command.add_argument(
+            "--host", default="", help="address of this machine that others reach; 127.0.0.1 if not given"
+        )
+        command.add_argument("--plain", action="store_true", help="without certificates though others reach it")
     made = commands.add_parser("certificates", help="an authority, a certificate and its key, for all machines")
     made.add_argument("folder")
     arguments = parser.parse_args()
@@ -61,7 +63,7 @@ def main() -> None:
 
 
 def scheduler_command(host: str, port: int) -> list[str]:
-    """Dask's scheduler. Of its HTTP server, which has no password, nothing is left (preload.py)."""
+    """Dask's scheduler. Nothing is left of its HTTP server, which has no password (preload.py)."""
     scheme = "tls" if address.certificates() else "tcp"
     program = [
         sys.executable,
@@ -105,11 +107,11 @@ def is_loopback(host: str) -> bool:
 
 
 def _tls() -> list[str]:
-    found = address.certificates()
-    if found is None:
+    files = address.certificates()
+    if files is None:
         return []
     return [
-        part for name, path in zip(("ca-file", "cert", "key"), found, strict=True) for part in (f"--tls-{name}", path)
+        part for name, path in zip(("ca-file", "cert", "key"), files, strict=True) for part in (f"--tls-{name}", path)
     ]
 
 

@@ -54,12 +54,12 @@ def certificates() -> tuple[str, str, str] | None:
 
 def security() -> Security | None:
     """What a client needs to speak TLS; None where no certificates are given."""
-    found = certificates()
-    if found is None:
+    files = certificates()
+    if files is None:
         return None
     from distributed import Security
 
-    ca, cert, key = found
+    ca, cert, key = files
     return Security(tls_ca_file=ca, tls_client_cert=cert, tls_client_key=key, require_encryption=True)
 
 
@@ -89,29 +89,29 @@ def workers_of(client: Client) -> dict[str, Any] | None:
     """
     scheduler: Any = client.scheduler
     try:
-        found: Any = client.sync(scheduler.identity, n_workers=-1, callback_timeout=TIMEOUT)
+        answer: Any = client.sync(scheduler.identity, n_workers=-1, callback_timeout=TIMEOUT)
     except OSError:
         return None
-    return {name: worker for name, worker in found["workers"].items() if _is_fit_to_print(name)}
+    return {name: worker for name, worker in answer["workers"].items() if _is_fit_to_print(name)}
 
 
 def tasks_of(client: Client) -> dict[str, int]:
     """Tasks that each worker has, of all clients, by address; none where the scheduler does not answer."""
     scheduler: Any = client.scheduler
     try:
-        found: Any = client.sync(scheduler.processing, workers=None, callback_timeout=TIMEOUT)
+        answer: Any = client.sync(scheduler.processing, workers=None, callback_timeout=TIMEOUT)
     except OSError:
         return {}
-    return {worker: len(tasks) for worker, tasks in found.items()}
+    return {worker: len(tasks) for worker, tasks in answer.items()}
 
 
 def size_of(client: Client, key: str) -> int:
-    """Bytes of a result, as its worker told the scheduler; 0 where there is none or the scheduler does not answer."""
+    """Bytes of a result, as its worker reported; 0 where there is none or the scheduler does not answer."""
     try:
-        found: Any = client.nbytes(keys=[key], summary=False)
+        answer: Any = client.nbytes(keys=[key], summary=False)
     except (OSError, KeyError, RuntimeError):
         return 0
-    return int(found.get(key, 0) or 0)
+    return int(answer.get(key, 0) or 0)
 
 
 def _is_fit_to_print(name: str) -> bool:

@@ -64,13 +64,13 @@ class Contents:
                 write_bytes(self.folder / name, content)
 
     def _make_room(self, size: int, needed: Collection[str]) -> None:
-        found = []
+        files = []
         for path in self.folder.glob("[0-9a-f]*"):
             with suppress(OSError):
                 stat = path.stat()
-                found.append((stat.st_mtime, stat.st_size, path))
-        much = size + sum(one[1] for one in found)
-        for _, bytes_, path in sorted(found):
+                files.append((stat.st_mtime, stat.st_size, path))
+        much = size + sum(entry[1] for entry in files)
+        for _, bytes_, path in sorted(files):
             if much <= self.limit:
                 return
             if path.name not in needed:

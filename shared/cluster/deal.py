@@ -77,7 +77,7 @@ class Deal:
         self._answered = self._without = time.monotonic()
         self._lost_one = False
         """Whether a worker that was fit has gone; whoever keeps it may start it again."""
-        self._told = ""
+        self._reported = ""
         """What was said of the waiting."""
 
     def results(self) -> Iterator[tuple[str, Any, str]]:
@@ -132,12 +132,12 @@ class Deal:
         if silent > WAIT:
             raise UserError(f"the scheduler has been silent for {duration(silent)}; nothing was lost, start it again "
                             "(make scheduler), and then the same command")  # fmt: skip
-        self._tell(f"the scheduler does not answer; it is given {WAIT:.0f} s")
+        self._report(f"the scheduler does not answer; it is given {WAIT:.0f} s")
 
     def _refuse_none(self) -> None:
         """Raise UserError where no worker has been fit for long, and say soon what is waited for."""
         if any(hand.fit and not hand.stalled for hand in self.hands.values()):
-            self._without, self._told = time.monotonic(), ""
+            self._without, self._reported = time.monotonic(), ""
             return
         stalled = any(hand.stalled for hand in self.hands.values())
         asked = [hand.name for hand in self.hands.values() if not hand.fit and not hand.aside]
@@ -154,11 +154,11 @@ class Deal:
             )
         if without >= SOON:
             what = "all workers are silent" if stalled else "there is no worker that can do this"
-            self._tell(f"{what}{shown}; one is given {duration(longest)} to come (make worker)")
+            self._report(f"{what}{shown}; one is given {duration(longest)} to come (make worker)")
 
-    def _tell(self, text: str) -> None:
-        if text != self._told:
-            self._told = text
+    def _report(self, text: str) -> None:
+        if text != self._reported:
+            self._reported = text
             warn("cluster", text)
 
     def _hand_out(self) -> None:
@@ -259,7 +259,9 @@ class Deal:
         tried.add(hand.name)
         self._blame(hand, reason)
         proven = [name for name in tried if name in self.hands and self.hands[name].made]
-        others = [one.name for one in self.hands.values() if one.fit and not one.stalled and one.name not in tried]
+        others = [
+            other.name for other in self.hands.values() if other.fit and not other.stalled and other.name not in tried
+        ]
         if len(proven) >= ATTEMPTS or (self._attempts[key] >= ATTEMPTS and not others):
             raise UserError(f"{printable(reason)} (on {', '.join(sorted(tried))}); what is finished is kept")
 

@@ -14,7 +14,7 @@ TARGET = 4.0
 LARGEST = 64
 """Orders in a group."""
 TIMES = 10.0
-"""Of what was expected: a worker that is silent for longer counts as stalled."""
+"""Multiple of what was expected: a worker that is silent for longer counts as stalled."""
 FAILURES = 3
 """In a row, after which a worker is left out."""
 REST = 5.0

@@ -22,15 +22,15 @@ SHOWN = 3
 def identity(rooms: Iterable[str], packages: Iterable[str] = PACKAGES) -> dict[str, str]:
     """Python, packages, and the sources of these rooms, by name.
 
-    It is found once in a process, so a worker tells what it was started with.
+    It is found once in a process, so a worker reports what it was started with.
     """
-    found = {"Python": platform.python_version()}
+    versions = {"Python": platform.python_version()}
     for package in packages:
         try:
-            found[package] = metadata.version(package)
+            versions[package] = metadata.version(package)
         except metadata.PackageNotFoundError:
-            found[package] = "none"
-    return found | {f"sources of {room}": sources_of(room) for room in rooms}
+            versions[package] = "none"
+    return versions | {f"sources of {room}": sources_of(room) for room in rooms}
 
 
 def sources_of(room: str, root: Path = ROOT) -> str:

@@ -9,7 +9,7 @@ from collections.abc import Collection, Mapping
 from shared.cluster.hand import Hand
 
 COPIES = 2
-"""Of an order at most."""
+"""Copies of an order at most."""
 UNKNOWN = 5.0
 """Seconds an order that are assumed of a worker whose pace is not known."""
 WORTH = 1.5
@@ -24,7 +24,7 @@ def unclaimed(
     failed_on: Mapping[str, Collection[str]],
 ) -> list[str]:
     """Orders taken from ``pending``, those that failed on this worker only if there is no other that answers."""
-    answering = {one.name for one in hands if one.fit and not one.aside and not one.stalled}
+    answering = {worker.name for worker in hands if worker.fit and not worker.aside and not worker.stalled}
     able = len(answering)
     size = hand.size(math.ceil(len(pending) / (2 * max(able, 1))))
     keys: list[str] = []
@@ -44,15 +44,15 @@ def stolen(hand: Hand, hands: Collection[Hand], left: Collection[str]) -> list[s
 
     For a worker that has answered before, copies with those that never have do not count: these may never answer.
     """
-    counted = [one for one in hands if one.made or not hand.made]
-    copies = Counter(key for one in counted for group in one.groups for key in group.keys)
+    counted = [worker for worker in hands if worker.made or not hand.made]
+    copies = Counter(key for worker in counted for group in worker.groups for key in group.keys)
     best: list[tuple[float, str]] = []
     for other in hands:
         if other is hand:
             continue
-        found = [(at, key) for key, at in other.remaining().items() if key in left and copies[key] < COPIES]
-        if found and (not best or found[-1][0] > best[-1][0]):
-            best = found
+        orders = [(at, key) for key, at in other.remaining().items() if key in left and copies[key] < COPIES]
+        if orders and (not best or orders[-1][0] > best[-1][0]):
+            best = orders
     own = hand.each if math.isfinite(hand.each) else UNKNOWN
     worth = [key for seconds, key in best if seconds > WORTH * own + 0.1]
     return worth[-hand.size(math.ceil(len(worth) / 2)) :] if worth else []

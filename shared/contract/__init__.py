@@ -105,10 +105,10 @@ def write_parts(path: Path, parts: Parts) -> None:
     jsonfile.write(path, parts)
 
 
-def _refuse_other_mechanism(found: str, expected: str | None, path: Path) -> None:
-    if expected is not None and found != expected:
+def _refuse_other_mechanism(mechanism: str, expected: str | None, path: Path) -> None:
+    if expected is not None and mechanism != expected:
         raise UserError(
-            f"{path} is of the mechanism '{found}', but stands among the results of '{expected}'; make it again"
+            f"{path} is of the mechanism '{mechanism}', but stands among the results of '{expected}'; make it again"
         )
 
 

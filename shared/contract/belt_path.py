@@ -56,7 +56,7 @@ class BeltPath:
 
     @property
     def length(self) -> float:
-        """Of the whole belt."""
+        """Length of the whole belt."""
         return sum(self.parts)
 
     def places(self, along: Array) -> tuple[Array, Array]:
@@ -64,17 +64,22 @@ class BeltPath:
         its strand: 0 .. 1, below zero on the strand back, 0 on pulleys.
         """
         s = np.mod(along, self.length)
-        one, two, three, _ = np.cumsum(self.parts)
+        off_first, onto_second, off_second, _ = np.cumsum(self.parts)
         beta, sense = self.beta, -1.0 if self.crossed else 1.0
         start = math.pi - beta if self.crossed else -beta
         out, centre = np.empty((len(s), 2)), np.array([self.distance, 0.0])
         rest = np.zeros(len(s))
-        on_first, on_second = s < one, (s >= two) & (s < three)
+        on_first, on_second = s < off_first, (s >= onto_second) & (s < off_second)
         out[on_first] = self.first * _ray(beta + s[on_first] / self.first)
-        out[on_second] = centre + self.second * _ray(start + sense * (s[on_second] - two) / self.second)
+        out[on_second] = centre + self.second * _ray(start + sense * (s[on_second] - onto_second) / self.second)
         for begins, inside, ends, sign in (
-            (one, (s >= one) & (s < two), (self.first * _ray(-beta), centre + self.second * _ray(start)), 1.0),
-            (three, s >= three, (centre + self.second * _ray(-start), self.first * _ray(beta)), -1.0),
+            (
+                off_first,
+                (s >= off_first) & (s < onto_second),
+                (self.first * _ray(-beta), centre + self.second * _ray(start)),
+                1.0,
+            ),
+            (off_second, s >= off_second, (centre + self.second * _ray(-start), self.first * _ray(beta)), -1.0),
         ):
             part = ((s[inside] - begins) / self.strand)[:, None]
             out[inside] = (1 - part) * ends[0] + part * ends[1]
@@ -83,9 +88,9 @@ class BeltPath:
 
     def on_second(self, along: float) -> float:
         """The angle (rad) on the second pulley, from the line of centres, of a place on its arc."""
-        one, two, _, _ = self.parts
+        arc, strand, _, _ = self.parts
         start, sense = (math.pi - self.beta, -1.0) if self.crossed else (-self.beta, 1.0)
-        return start + sense * (along - one - two) / self.second
+        return start + sense * (along - arc - strand) / self.second
 
 
 def _ray(angle: Array | float) -> Array:

@@ -1,4 +1,4 @@
-"""How thick a belt or chain is where the film draws it and the clearance is proven, in the radius that its rim tells.
+"""How thick a belt or chain is where the film draws it and the clearance is proven, in the radius that its rim gives.
 
 A round belt carries marks that stand out a little. A chain has rollers on pins between two rows of plates.
 """

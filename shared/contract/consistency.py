@@ -23,18 +23,18 @@ SPAN_TOLERANCE = 1e-9
 RETURN_TOLERANCE = 1e-5
 """Largest difference between the poses at both ends of a period (m or rad, relative above 1)."""
 UNIT_TOLERANCE = 1e-9
-"""Of the length of a unit vector."""
+"""Tolerance of the length of a unit vector."""
 _NO_SERIES = {"redundant", "events", "start_changes", "shape", "indicated_work", "order", "harmonics"}
 """Fields with lists that are not of time."""
 _UNFIT = re.compile(r"[/\\\x00-\x1f\x7f]")
 """What the name of a body, joint, driver or point cannot hold, because files are named after it."""
 
 
-def refuse_other_words(field: str, found: Mapping[str, str], expected: Mapping[str, str], path: Path | str) -> None:
+def refuse_other_words(field: str, words: Mapping[str, str], expected: Mapping[str, str], path: Path | str) -> None:
     """Refuse units (or conventions) unlike those that this program reads."""
-    for key in sorted(expected.keys() | found.keys()):
-        if found.get(key) != expected.get(key):
-            said = repr(found[key]) if key in found else "missing"
+    for key in sorted(expected.keys() | words.keys()):
+        if words.get(key) != expected.get(key):
+            said = repr(words[key]) if key in words else "missing"
             reads = repr(expected[key]) if key in expected else "nothing of that name"
             raise UserError(f"{path}: {field}.{key} is {said}, this program reads {reads}; make the file again")
 
@@ -118,7 +118,7 @@ def refuse_wrong_mount(mount: Mount, where: str) -> None:
 
 def _bodies_of_loads(motion: Motion) -> list[tuple[str, str]]:
     """Fields of forces, contacts and shapes that name a body, with that name."""
-    used = [(f"contacts.{name}.bodies", body) for name, one in motion.contacts.items() for body in one.bodies]
+    used = [(f"contacts.{name}.bodies", body) for name, contact in motion.contacts.items() for body in contact.bodies]
     used += [
         (f"drivers.{name}.bodies", body) for name, driver in motion.drivers.items() for body in driver.bodies or ()
     ]
@@ -132,9 +132,9 @@ def _bodies_of_loads(motion: Motion) -> list[tuple[str, str]]:
         if force.gas is not None and force.gas.crank is not None:
             used.append((f"forces.{name}.gas.crank", force.gas.crank))
     for field in ("joints", "drivers", "forces", "contacts"):
-        for name, one in getattr(motion, field).items():
-            if one.shape is not None:
-                used += [(f"{field}.{name}.shape.bodies", body) for body in one.shape.bodies]
+        for name, load in getattr(motion, field).items():
+            if load.shape is not None:
+                used += [(f"{field}.{name}.shape.bodies", body) for body in load.shape.bodies]
     return used
 
 

@@ -29,20 +29,20 @@ class Shape(Strict, kw_only=True):
     markers: tuple[tuple[float, float, float], tuple[float, float, float]]
     """x, y (m) and angle (rad) of both in the frames of these bodies."""
     radius_first: Positive | None = None
-    """Of the wheel about the first marker: pitch radius of a gear or pulley (m); of a ring its inner pitch radius."""
+    """Radius of the wheel about the first marker (m): pitch radius of a gear or pulley; of a ring the inner one."""
     radius_second: Positive | None = None
     """The same about the second marker: also of pinions, rolling discs, rollers of cams, tyres, discs that touch."""
     teeth: list[int] = []
-    """Of the first and second wheel, or of the pinion alone."""
+    """Teeth of the first and second wheel, or of the pinion alone."""
     ring: bool = False
     """Whether the first wheel lies around the second."""
     crossed: bool = False
-    """Of a belt."""
+    """Whether the belt is crossed."""
     slots: int | None = None
-    """Of a Geneva wheel, about the second marker; the pin is ``pin_radius`` from the first along its x axis."""
+    """Slots of a Geneva wheel about the second marker; the pin is ``pin_radius`` from the first along its x axis."""
     pin_radius: Positive | None = None
     length: NonNegative | None = None
-    """Of a rope or rod; of a spring where it is free, unless that is a law of time (m)."""
+    """Length of a rope or rod; of a spring where it is free, unless that is a law of time (m)."""
     outline: list[tuple[float, float]] = []
     """Curve, terrain or cam in the axes of the first marker (m)."""
     outline_closed: bool = False
@@ -87,7 +87,7 @@ class GasMotion(Strict, kw_only=True):
     displaced: Positive | None = None
     """Volume between the dead centres (m^3)."""
     indicated_work: list[float] | None = None
-    """Of each whole cycle (J)."""
+    """Work of each whole cycle (J)."""
 
 
 class HydraulicMotion(Strict, kw_only=True):
@@ -126,19 +126,19 @@ class ForceMotion(Strict, kw_only=True):
     (m), gap (m, negative where pressed in); null: there is no one such value."""
     value: Series | None
     rate: Series | None
-    """Of the value; of a load in one direction the speed of its point that way; of friction that of its joint."""
+    """Rate of the value; of a load in one direction the speed of its point that way; of friction that of its joint."""
     effort: Series | None
     """Its size with a sign (N or N m): positive where it makes the value grow, or acts in its direction."""
     normal: Series | None
-    """Of friction: what presses the joint, without preload (N)."""
+    """What presses the joint of friction, without preload (N)."""
     power: Series
     """What it gives to the motion (W); negative where it takes."""
     potential: Series
     """Potential energy it holds (J); 0 of a force without."""
     unit: ValueUnit | None = None
-    """Of its value."""
+    """Unit of its value."""
     effort_unit: EffortUnit = "N"
-    """Of its effort."""
+    """Unit of its effort."""
     drives: bool = False
     """Whether it may move the mechanism in place of drivers: a given torque or push, a motor."""
     look: Look = ""
@@ -171,11 +171,11 @@ class ContactMotion(Strict, kw_only=True):
     friction: Series
     """Force along the sliding way (N)."""
     state: list[State]
-    """Of a contact with friction slides or sticks instead of closed."""
+    """A contact with friction slides or sticks instead of being closed."""
     unit: ValueUnit = "m"
-    """Of its gap."""
+    """Unit of its gap."""
     effort_unit: EffortUnit = "N"
-    """Of what pushes the gap open."""
+    """Unit of what pushes the gap open."""
     look: Look = ""
     acts: Acts | None = None
     """Null where it acts at (x, y)."""

@@ -20,7 +20,7 @@ class Material:
     """One of: anodised, brushed, polished, satin, plastic, printed, rubber, cast, wood, glass."""
     roughness: float = 0.3
     ink: str = "#66717b"
-    """Of drawn things of this material on light paper, dark enough for text (sRGB)."""
+    """Ink of drawn things of this material on light paper, dark enough for text (sRGB)."""
 
 
 MATERIALS: dict[str, Material] = {

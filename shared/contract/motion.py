@@ -100,7 +100,7 @@ class DriverMotion(Strict, kw_only=True):
     shape: Shape | None = None
     """Its two markers."""
     unit: ValueUnit = "rad"
-    """Of its value."""
+    """Unit of its value."""
     effort_unit: EffortUnit = "N m"
     look: Look = ""
     actions: list[Action] = []
@@ -127,9 +127,9 @@ class Energy(Strict, kw_only=True):
 
     kinetic: Series
     potential: Series
-    """Of weight, counted from the origin, and of all forces that hold some."""
+    """Potential energy of weight, counted from the origin, and of all forces that hold some."""
     work: Series | None = None
-    """Of forces and drivers since the start, weight left out; null of a sweep."""
+    """Work of forces and drivers since the start, weight left out; null of a sweep."""
     audit: Series | None = None
     """Kinetic and potential energy less the work of what holds none: in a simulation constant but for the
     integrator's error and what impacts take; null of a sweep."""
@@ -158,7 +158,7 @@ class EventMark(Strict, kw_only=True):
     energy: float
     """Kinetic energy after less before (J), of all that happens at this time; given with the first event."""
     impulse: float = 0.0
-    """Of an impact, normal (N s; N m s of stops of angles)."""
+    """Normal impulse of an impact (N s; N m s of stops of angles)."""
 
 
 class Diagnostics(Strict, kw_only=True):

@@ -19,7 +19,7 @@ Y: Vector = (0.0, 1.0, 0.0)
 class Mount(msgspec.Struct, forbid_unknown_fields=True, kw_only=True, frozen=True):
     """What holds the ground of a machine, and what points up in every picture of it.
 
-    ``desk``: its base lies on a desk, and ``up`` is the normal of the plane, (0, 0, 1). Of the others ``up`` is in the
+    ``desk``: its base lies on a desk, and ``up`` is the normal of the plane, (0, 0, 1). For the others ``up`` is in the
     plane, against gravity. ``stand``: its base is a back plate on a foot. ``wall``: the back plate hangs at a wall.
     ``ground``: the road, terrain or floor of the model is the ground on which it stands.
     """

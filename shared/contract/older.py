@@ -18,19 +18,19 @@ def completed(motion: Motion) -> Motion:
     replace = msgspec.structs.replace
     return replace(
         motion,
-        joints={name: replace(one, pair=PAIRS.get(one.kind)) for name, one in motion.joints.items()},
+        joints={name: replace(joint, pair=PAIRS.get(joint.kind)) for name, joint in motion.joints.items()},
         drivers={
-            name: replace(one, **dict(zip(("unit", "effort_unit"), _units("angle" in one.kind), strict=True)))
-            for name, one in motion.drivers.items()
+            name: replace(driver, **dict(zip(("unit", "effort_unit"), _units("angle" in driver.kind), strict=True)))
+            for name, driver in motion.drivers.items()
         },
         forces={
             name: replace(
-                one,
-                unit=None if one.measures is None else _units(one.measures == "angle")[0],
-                effort_unit=_units(one.measures == "angle")[1],
-                drives=one.kind in DRIVING,
+                force,
+                unit=None if force.measures is None else _units(force.measures == "angle")[0],
+                effort_unit=_units(force.measures == "angle")[1],
+                drives=force.kind in DRIVING,
             )
-            for name, one in motion.forces.items()
+            for name, force in motion.forces.items()
         },
     )
 

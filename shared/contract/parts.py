@@ -23,7 +23,7 @@ class Mass(Strict, kw_only=True, omit_defaults=True):
     inertia: NonNegative
     volume: NonNegative
     z: float | None = None
-    """Of the centre of mass, along the normal of the plane (m)."""
+    """Height of the centre of mass, along the normal of the plane (m)."""
     products: tuple[float, float] | None = None
     """Integrals of x z dm and y z dm about the centre of mass, in the body's frame (kg m^2)."""
 
@@ -83,7 +83,7 @@ class BodyParts(Strict, kw_only=True):
     z: float
     """Middle height of the body's main piece (m)."""
     spans: tuple[End, End] | None = None
-    """Of a rod, which is no body of data.json: the places of two bodies that it joins. Its frame is at the first, its x
+    """Ends of a rod, which is no body of data.json: places of the bodies it joins. Its frame is at the first, its x
     axis goes to the second (shared/contract/spanning.py). Null of bodies."""
 
 

@@ -36,7 +36,7 @@ class Stroke(_Strict, kw_only=True, omit_defaults=True):
     alpha: Unit
     """Opacity of the filling, or of an open line."""
     width: NonNegative
-    """Of the line (points)."""
+    """Width of the line (points)."""
     order: float
     """Higher ones cover lower ones."""
     dash: list[Positive]
@@ -87,7 +87,7 @@ class Carried(_Strict, kw_only=True):
     stroke: Stroke
     carrier: Carrier
     shapes: list[list[float]] = []
-    """Of what nothing carries: its points (x and y in turn, m) at the times of the shapes; they correspond."""
+    """Outline of what nothing carries: its points (x and y in turn, m) at the times of the shapes; they correspond."""
 
 
 class CarriedName(_Strict, kw_only=True):
@@ -108,7 +108,7 @@ class Moving(_Strict, kw_only=True):
     strokes: list[Carried]
     names: list[CarriedName]
     times: list[float]
-    """Of the shapes (s)."""
+    """Times of the shapes (s)."""
 
 
 class Skeleton(_Strict, kw_only=True):
@@ -152,10 +152,12 @@ def write_skeleton(path: Path, skeleton: Skeleton) -> None:
 def _refuse_inconsistent(moving: Moving, path: Path) -> None:
     """Raise UserError unless each carrier has its ends, and each recorded stroke a shape for every time."""
     ends = {"ground": 0, "shapes": 0, "body": 1, "place": 1, "line": 2}
-    for number, one in enumerate(moving.strokes):
+    for number, stroke in enumerate(moving.strokes):
         where = f"{path}: moving.strokes[{number}]"
-        if len(one.carrier.ends) != ends[one.carrier.kind]:
-            raise UserError(f"{where}.carrier is a {one.carrier.kind} with {len(one.carrier.ends)} ends; make it again")
-        wanted = len(moving.times) if one.carrier.kind == "shapes" else 0
-        if len(one.shapes) != wanted or len({len(shape) for shape in one.shapes}) > 1:
-            raise UserError(f"{where}.shapes are {len(one.shapes)}, not {wanted} of one length; make it again")
+        if len(stroke.carrier.ends) != ends[stroke.carrier.kind]:
+            raise UserError(
+                f"{where}.carrier is a {stroke.carrier.kind} with {len(stroke.carrier.ends)} ends; make it again"
+            )
+        wanted = len(moving.times) if stroke.carrier.kind == "shapes" else 0
+        if len(stroke.shapes) != wanted or len({len(shape) for shape in stroke.shapes}) > 1:
+            raise UserError(f"{where}.shapes are {len(stroke.shapes)}, not {wanted} of one length; make it again")

@@ -17,7 +17,7 @@ from shared.stage.errors import UserError
 
 def with_rods(motion: Motion, parts: Parts) -> Motion:
     """The motion with a body for each rod of the parts. Raises UserError where a rod ends on no body, or on itself."""
-    rods = {name: one.spans for name, one in parts.bodies.items() if one.spans is not None}
+    rods = {name: body.spans for name, body in parts.bodies.items() if body.spans is not None}
     if not rods:
         return motion
     made = {name: _moved(name, ends, parts.bodies[name].z, motion) for name, ends in rods.items()}
@@ -48,7 +48,7 @@ def _moved(name: str, ends: tuple[End, End], z: float, motion: Motion) -> BodyMo
         )
     series = (*place.T, theta, *rate.T, omega, *change.T, alpha)
     names = ("x", "y", "theta", "vx", "vy", "omega", "ax", "ay", "alpha")
-    values = {key: one.tolist() for key, one in zip(names, series, strict=True)}
+    values = {key: column.tolist() for key, column in zip(names, series, strict=True)}
     return BodyMotion(**values, z=z, mass=0.0, com=(0.0, 0.0), inertia=0.0)
 
 
@@ -63,7 +63,7 @@ def _place(name: str, end: End, motion: Motion) -> tuple[np.ndarray, np.ndarray,
             f"there is: ground, {', '.join(motion.bodies)}"
         )
     body = motion.bodies[end.body]
-    theta, omega, alpha = (np.asarray(one)[:, None] for one in (body.theta, body.omega, body.alpha))
+    theta, omega, alpha = (np.asarray(column)[:, None] for column in (body.theta, body.omega, body.alpha))
     arm = np.hstack([np.cos(theta) * end.x - np.sin(theta) * end.y, np.sin(theta) * end.x + np.cos(theta) * end.y])
     side = np.stack([-arm[:, 1], arm[:, 0]], axis=1)
     place = np.column_stack([body.x, body.y]) + arm

@@ -24,7 +24,7 @@ class Harmonics(Strict, kw_only=True):
 
 
 class Vibration(Strict, kw_only=True):
-    """Of a motion that repeats with a crank."""
+    """Vibration of a motion that repeats with a crank."""
 
     about: tuple[float, float]
     """Place of ground about which the moment is (m): the axis of the crank."""
@@ -38,7 +38,7 @@ class Vibration(Strict, kw_only=True):
     y: Series
     crank: str
     turns: int
-    """Of the crank in a cycle."""
+    """Turns of the crank in a cycle."""
     order: Series
     harmonics: dict[str, Harmonics]
     """By quantity: the shaking force, moment and couple, efforts of drivers, reactions of joints with ground."""

@@ -112,15 +112,15 @@ class Bodies(dict[str, list[Solid]]):
     def __or__(self, other: Mapping[str, list[Solid]]) -> Bodies:  # pyright: ignore[reportIncompatibleMethodOverride]
         joined = Bodies(self)
         joined.update(other)
-        for one in (self, other):
-            if isinstance(one, Bodies):
-                joined._touching |= one.touching
-                joined._pieces_touching |= one.pieces_touching
-                joined._left_out |= one.left_out
-                joined._rods |= one.rods
-                joined.along |= one.along
-                joined.mount = joined.mount or one.mount
-                joined.stand = joined.stand or one.stand
+        for operand in (self, other):
+            if isinstance(operand, Bodies):
+                joined._touching |= operand.touching
+                joined._pieces_touching |= operand.pieces_touching
+                joined._left_out |= operand.left_out
+                joined._rods |= operand.rods
+                joined.along |= operand.along
+                joined.mount = joined.mount or operand.mount
+                joined.stand = joined.stand or operand.stand
         return joined
 
     def __ror__(self, other: Mapping[str, list[Solid]]) -> Bodies:  # pyright: ignore[reportIncompatibleMethodOverride]

@@ -12,7 +12,7 @@ from shared.shapes.kernel import first_sound
 from shared.shapes.polyline import distances, simplified
 
 KNOTS = 240
-"""Of the spline round a smooth disc."""
+"""Knots of the spline round a smooth disc."""
 STRAY = 0.02
 """A spline that strays farther from the outline (mm) is none of it: the disc is a polygon then."""
 CHORD = 0.005

@@ -100,14 +100,14 @@ class Geneva:
         cut = d * np.cos(off) - np.sqrt(np.maximum(inside, 0.0))
         reach = np.where((inside > 0) & (cut < self.rim), cut, self.rim)
         points = reach[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-        found = []
+        outlines = []
         half, away = math.pi / 2 - pitch / 2, np.array([d, 0.0])
         for turn in np.linspace(-half, half, 361):
             pin = self.radius * np.array([math.cos(turn), math.sin(turn)]) - away
             for k in (-1, 0):
                 world = _turned(points, math.atan2(pin[1], pin[0]) + k * pitch) + away
-                found.append(_turned(world, -turn))
-        return np.concatenate(found)
+                outlines.append(_turned(world, -turn))
+        return np.concatenate(outlines)
 
 
 def _turned(points: np.ndarray, angle: float) -> np.ndarray:

@@ -13,13 +13,13 @@ if TYPE_CHECKING:
     import cadquery as cq
 
 COARSE, ANGLE = 0.05, 0.6
-"""Of the mesh: distance from the surface, in edges, for each mm of the size; largest angle between facets (rad)."""
+"""Mesh: distance from the surface, in edges, for each mm of the size; largest angle between facets (rad)."""
 SAME = 1e-7
 """Corners that are nearer than this part of the size are one."""
 
 
 def through_holes(shape: cq.Workplane) -> int:
-    """Of one closed solid: V - E + F of its mesh is 2 - 2 n."""
+    """Through holes n of one closed solid: V - E + F of its mesh is 2 - 2 n."""
     solid = shape.solids().vals()[0]
     size = rough_size(shape.solids())
     corners = facets(solid, COARSE * size, ANGLE, relative=True).reshape(-1, 3).astype(float)

@@ -21,7 +21,7 @@ THIGH = (
     (-78, 18), (-40, 74), (60, 84), (180, 79), (300, 65), (375, 53), (422, 36), (442, 2), (428, -34), (375, -47),
     (280, -60), (170, -78), (80, -96), (0, -104), (-62, -78), (-88, -28),
 )  # fmt: skip
-"""Of a thigh of 400 mm."""
+"""Outline of a thigh of 400 mm."""
 CALF = (
     (-36, 2), (-26, -40), (18, -54), (85, -44), (180, -38), (290, -32), (370, -34), (418, -30), (440, 2), (422, 34),
     (370, 36), (300, 48), (215, 70), (140, 78), (75, 68), (20, 48), (-22, 36),
@@ -33,7 +33,7 @@ FOOT = (
 )  # fmt: skip
 """With a shoe, on the pedal at the origin."""
 ANKLE = (110.0, 112.0)
-"""Of the foot."""
+"""Ankle of the foot."""
 TOOTH = ((-0.32, 0.0), (-0.12, 1.0), (0.12, 1.0), (0.32, 0.0))
 """Corners of a tooth: pitches, and heights."""
 RING = (95.0, 44, 5, 36.0)
@@ -146,7 +146,7 @@ def seat(hip: Point, z: float = 0.05) -> list[Solid]:
 
 
 class Shaped(Protocol):
-    """Parts by themselves, which take outlines and materials for their bodies."""
+    """Automatic parts, which take outlines and materials for their bodies."""
 
     def join(
         self, body: str, outline: cq.Wire, at: Point = ..., holes: Sequence[cq.Wire] = ..., sharp: bool = ...

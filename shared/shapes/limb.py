@@ -13,7 +13,7 @@ from shared.shapes.build import turned
 from shared.shapes.stud import ball
 
 type Section = tuple[float, float, float, float]
-"""Of a limb: x, y of its middle, half its height along y, half its width along z."""
+"""Section of a limb: x, y of its middle, half its height along y, half its width along z."""
 
 AROUND, STATIONS = 24, 9
 """Corners of a section, sections from one end of a limb to the other. Neighbouring facets turn by less than what a

@@ -27,12 +27,12 @@ ROOM = 11.0
 LEG, ARM = 88.0, 200.0
 """Middle of a leg and of an arm from that of the body, along z."""
 TOLERANCE = 0.4
-"""Of the meshes."""
+"""Tolerance of the meshes."""
 TORSO: tuple[Section, ...] = (
     (0, 22, 60, 116), (60, 17, 60, 130), (110, 10, 78, 136), (185, 9, 85, 128), (300, 0, 103, 140), (400, 1, 103, 149),
     (468, 8, 82, 140), (503, 8, 58, 104),
 )  # fmt: skip
-"""Of a trunk of 513 mm from hip to shoulder."""
+"""Sections of a trunk of 513 mm from hip to shoulder."""
 HEAD: tuple[Section, ...] = ((655, -14, 88, 66), (700, -12, 94, 74), (748, -9, 96, 76))
 NECK: tuple[Section, ...] = ((488, 6, 50, 54), (550, 2, 46, 48), (650, -2, 46, 46))
 NAPE = 7.0
@@ -40,7 +40,7 @@ NAPE = 7.0
 FOOT: tuple[Section, ...] = (
     (-50, -38, 31, 29), (-12, -27, 42, 37), (38, -37, 32, 41), (95, -47, 22, 44), (158, -54, 15, 43),
 )  # fmt: skip
-"""Of a foot of 271 mm whose sole is 69 mm below the ankle."""
+"""Sections of a foot of 271 mm whose sole is 69 mm below the ankle."""
 
 
 def thigh(length: float, scale: float) -> list[Solid]:

@@ -16,7 +16,7 @@ class Hold:
     z: float
     """Height of its axis."""
     radius: float
-    """Of its coil's middle line; a cylinder is somewhat thinner."""
+    """Radius of its coil's middle line; a cylinder is somewhat thinner."""
 
 
 @dataclass(frozen=True)

@@ -79,7 +79,7 @@ SHORTEST = {1.6: 2.5, 2: 3, 2.5: 4, 3: 5, 4: 6, 5: 8, 6: 10, 8: 12, 10: 16, 12: 
 LONGEST = {1.6: 16, 2: 20, 2.5: 25, 3: 30, 4: 40, 5: 50, 6: 60, 8: 80, 10: 100, 12: 120, 16: 160, 20: 200, 24: 200}
 LENGTHS = (2.5, 3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 80, 90, 100, 110, 120, 130)
 LENGTHS += (140, 150, 160, 180, 200)
-"""Of socket head cap screws, ISO 4762; the range of each thread is in :data:`SHORTEST` and :data:`LONGEST`."""
+"""Lengths of socket head cap screws, ISO 4762; the range of each thread is in :data:`SHORTEST` and :data:`LONGEST`."""
 
 
 def shim_ring(shaft: float, thickness: float) -> ShimRing | None:

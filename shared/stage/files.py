@@ -89,7 +89,7 @@ def _locked_file(path: Path) -> tuple[int, Path]:
 
 
 def _remove_leftovers(path: Path) -> None:
-    """Remove temporary files of ``path`` whose writer was killed, which the lock tells."""
+    """Remove temporary files of ``path`` whose writer was killed, as the lock shows."""
     for left in path.parent.glob(f".{glob.escape(path.stem)}-*{glob.escape(path.suffix)}"):
         if locks.is_abandoned(left):
             left.unlink(missing_ok=True)

@@ -86,11 +86,11 @@ def _refuse_doubled(content: bytes, path: Path | str) -> None:
     """Raise UserError naming the first field that an object has twice; a decoder would take the last in silence."""
 
     def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        found = dict(pairs)
-        if len(found) < len(pairs):
-            doubled = next(name for name in found if sum(name == other for other, _ in pairs) > 1)
+        fields = dict(pairs)
+        if len(fields) < len(pairs):
+            doubled = next(name for name in fields if sum(name == other for other, _ in pairs) > 1)
             raise UserError(f"{path}: it has the field '{doubled}' more than once in one object; keep one of them")
-        return found
+        return fields
 
     json.loads(content, object_pairs_hook=unique)
 
@@ -99,10 +99,10 @@ def _refuse_other_version(header: _Header, kind: type[msgspec.Struct], path: Pat
     for field in msgspec.structs.fields(kind):
         if field.name not in _Header.__struct_fields__:
             continue
-        found, read = getattr(header, field.name), typing.get_args(field.type)
-        if type(found) is bool or found not in read:
-            said = "missing" if found is None else repr(found)
-            reads = " or ".join(repr(one) for one in read)
+        version, read = getattr(header, field.name), typing.get_args(field.type)
+        if type(version) is bool or version not in read:
+            said = "missing" if version is None else repr(version)
+            reads = " or ".join(repr(known) for known in read)
             raise UserError(f"{path}: {field.name} is {said}, this program reads {reads}; make the file again")
 
 
@@ -148,7 +148,7 @@ def _literals(kind: Any) -> list[str]:
     inner = typing.get_args(kind)
     if typing.get_origin(kind) is typing.Literal:
         return list(map(str, inner))
-    return [word for one in inner for word in _literals(one)]
+    return [word for member in inner for word in _literals(member)]
 
 
 def _placed(message: str, field: str) -> str:

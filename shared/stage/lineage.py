@@ -39,7 +39,7 @@ def _watch(make: int, parent: int) -> None:
 def is_ending(make: int) -> bool:
     """Whether make only waits for its commands after a fatal signal: it blocks that signal and handles it no more.
 
-    Linux alone tells; elsewhere this is False, and the stage goes on until make has ended. A process that is about to
+    Only Linux shows it; elsewhere this is False, and the stage goes on until make has ended. A process that is about to
     start another one blocks all signals for a moment (posix_spawn and vfork do), and is not ending.
     """
     try:

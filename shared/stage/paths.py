@@ -58,23 +58,23 @@ def mechanism_name(name: str) -> str:
 
     Raises UserError if it is none, so that no path or command is made of it, and if it may mean two variants.
     """
-    found = canonical_name(name)
-    if not NAME.fullmatch(found):
+    canonical = canonical_name(name)
+    if not NAME.fullmatch(canonical):
         raise UserError(
             f"{name!r} is not the name of a mechanism: {NAME_RULE}; there is: {', '.join(mechanism_names()) or 'none'}"
         )
-    if (MECHANISMS / found / "mechanism.py").is_file():
-        return found
+    if (MECHANISMS / canonical / "mechanism.py").is_file():
+        return canonical
     meant = [
         f"{owner}-{variant}"
         for owner in mechanism_names()
-        if found.startswith(f"{owner}_")
+        if canonical.startswith(f"{owner}_")
         for variant in variants_in(MECHANISMS / owner / "mechanism.py")
-        if found == f"{owner}_{variant}"
+        if canonical == f"{owner}_{variant}"
     ]
     if len(meant) > 1:
         raise UserError(f"'{name}' may be {' or '.join(meant)}; give one of these variants another name in VARIANTS")
-    return meant[0] if meant else found
+    return meant[0] if meant else canonical
 
 
 def owner_of(name: str) -> str:

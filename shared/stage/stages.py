@@ -111,7 +111,9 @@ def key_of(*values: Any) -> str:
 
 def versions(*packages: str) -> dict[str, str]:
     """Installed versions by package name, without importing the packages; part of a key, and of the provenance."""
-    return {package: recalled(("version", package), lambda one=package: metadata.version(one)) for package in packages}
+    return {
+        package: recalled(("version", package), lambda name=package: metadata.version(name)) for package in packages
+    }
 
 
 def contract_sources(*more: str) -> list[Path]:

@@ -12,5 +12,5 @@ ALIKE = 0.6
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """``; did you mean 'crank'?`` to put behind an error, or nothing if no known name is alike; case is ignored."""
     by_lower = {other.lower(): other for other in known}
-    found = get_close_matches(name.lower(), by_lower, n=1, cutoff=ALIKE)
-    return f"; did you mean '{by_lower[found[0]]}'?" if found else ""
+    matches = get_close_matches(name.lower(), by_lower, n=1, cutoff=ALIKE)
+    return f"; did you mean '{by_lower[matches[0]]}'?" if matches else ""

@@ -1,4 +1,4 @@
-"""``python -m shared.system``: tells what is missing; libraries alone, or with ``--for-tests`` programs as well."""
+"""``python -m shared.system``: reports what is missing; libraries alone, or with ``--for-tests`` programs as well."""
 
 from __future__ import annotations
 

@@ -24,14 +24,14 @@ def program(name: str) -> str | None:
         return os.environ[known.variable]
     for word in (known and known.names) or (name,):
         for place in (None, SBIN):
-            found = shutil.which(word, path=place)
-            if found:
-                return found
+            path = shutil.which(word, path=place)
+            if path:
+                return path
     return None
 
 
 def missing_programs(names: Iterable[str] | None = None) -> list[str]:
-    """Those of the programs that are missing; without names: of those that the tests want."""
+    """Those of the programs that are missing; without names: of those that the tests need."""
     wanted = [name for name in PROGRAMS if PROGRAMS[name].for_tests] if names is None else names
     return [name for name in wanted if program(name) is None]
 

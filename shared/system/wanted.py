@@ -29,9 +29,9 @@ class Program:
     names: tuple[str, ...] = ()
     """Names in PATH, the first that is there; empty if it has one name alone."""
     variable: str = ""
-    """Of the environment: a path that takes precedence."""
+    """Environment variable with a path that takes precedence."""
     for_tests: bool = True
-    """Whether `make test` wants it."""
+    """Whether `make test` needs it."""
 
 
 PROGRAMS = {

@@ -119,7 +119,9 @@ def test_parameters_that_cannot_be_made_are_told(folder: Path) -> None:
 
 
 def test_a_missing_file_is_told(folder: Path) -> None:
-    with pytest.raises(UserError, match=r"parts\.py is missing; a mechanism has mechanism\.py, and where it wants to"):
+    with pytest.raises(
+        UserError, match=r"parts\.py is missing; a mechanism has mechanism\.py, and where it needs them"
+    ):
         loading.load(folder.name, "parts")
 
 

@@ -1,4 +1,4 @@
-"""Parts by themselves: from the model and its motion to solids, without a parts.py.
+"""Automatic parts: from the model and its motion to solids, without a parts.py.
 
 In this order, a file each:
 

@@ -52,7 +52,7 @@ if TYPE_CHECKING:
 
 
 class Automatic:
-    """Parts by themselves, and what one may want otherwise. Lengths that are given are mm."""
+    """Automatic parts, and what an author may wish otherwise. Lengths that are given are mm."""
 
     def __init__(self, m: Mechanism, solution: Solution, pin: float | None = None, fit: Fit | None = None) -> None:
         self.m = m

@@ -43,26 +43,26 @@ class LayoutOf(Protocol):
         ...
 
 
-type Found = tuple[Layout, dict[str, int]]
+type Outcome = tuple[Layout, dict[str, int]]
 
 
-def decided(layout_of: LayoutOf, wishes: Sequence[Sizes], fixed: Mapping[str, int]) -> Found:
+def decided(layout_of: LayoutOf, wishes: Sequence[Sizes], fixed: Mapping[str, int]) -> Outcome:
     """The layout, and the layers and choices. ``wishes`` are sizes, the most wanted first; ``fixed`` are layers that
     are asked for. Raises UserError that names what cannot pass each other if there is no order with any of them.
     """
     tried = _Tried(layout_of, fixed)
-    found = tried.with_devices(wishes)
-    if found is None and any(tried.layout(sizes, Springs(), True).tubes for sizes in wishes):
-        found = tried.with_devices(wishes, True)
-    found = found or tried.with_far_posts(wishes) or tried.with_webs(wishes)
-    if found is not None:
-        return found
+    outcome = tried.with_devices(wishes)
+    if outcome is None and any(tried.layout(sizes, Springs(), True).tubes for sizes in wishes):
+        outcome = tried.with_devices(wishes, True)
+    outcome = outcome or tried.with_far_posts(wishes) or tried.with_webs(wishes)
+    if outcome is not None:
+        return outcome
     last = tried.layout(wishes[-1], Springs(False)).with_flush_pivots()
-    if last.springs.found:
+    if last.springs.names:
         for bridges in (False, True):
-            found = tried.with_some_springs(wishes[0], last.springs.found, bridges)
-            if found is not None:
-                return found
+            outcome = tried.with_some_springs(wishes[0], last.springs.names, bridges)
+            if outcome is not None:
+                return outcome
     raise UserError(refusal(last, fixed))
 
 
@@ -79,22 +79,24 @@ class _Tried:
             self.known[key] = self.layout_of(sizes, springs, tubes)
         return self.known[key]
 
-    def with_devices(self, wishes: Sequence[Sizes], tubes: bool = False) -> Found | None:
+    def with_devices(self, wishes: Sequence[Sizes], tubes: bool = False) -> Outcome | None:
         """With the fewest devices, and then the thickest pins, that leave an order."""
         for (flush, bridges), sizes, above in product(DEVICES, wishes, (True, False)):
-            found = self.found(sizes, Springs(above), flush, bridges, tubes)
-            if found is not None:
-                return self.with_styluses(found) if not bridges else found
+            outcome = self.attempt(sizes, Springs(above), flush, bridges, tubes)
+            if outcome is not None:
+                return self.with_styluses(outcome) if not bridges else outcome
         return None
 
-    def found(self, sizes: Sizes, springs: Springs, flush: bool, bridges: bool, tubes: bool = False) -> Found | None:
+    def attempt(
+        self, sizes: Sizes, springs: Springs, flush: bool, bridges: bool, tubes: bool = False
+    ) -> Outcome | None:
         """None where there is no order of layers."""
         layout = self.layout(sizes, springs, tubes)
-        if not springs.above and not springs.left_out and not layout.springs.found:
+        if not springs.above and not springs.left_out and not layout.springs.names:
             return None  # without springs it was tried before
         return self.ordered(layout.with_flush_pivots() if flush else layout, bridges)
 
-    def ordered(self, layout: Layout, bridges: bool) -> Found | None:
+    def ordered(self, layout: Layout, bridges: bool) -> Outcome | None:
         """A layout with its layers, and with the bridges that these need."""
         levels = find_layers(layout.problem(self.fixed, may_hang(layout) if bridges else frozenset()))
         if levels is None:
@@ -102,18 +104,18 @@ class _Tried:
         layout.features += bridges_over(layout, levels)
         return layout, levels
 
-    def with_far_posts(self, wishes: Sequence[Sizes]) -> Found | None:
+    def with_far_posts(self, wishes: Sequence[Sizes]) -> Outcome | None:
         """Where there are curved slots on ground, with the thickest pins that leave an order."""
         for bridges, sizes in product((False, True), wishes):
             layout = self.layout(sizes, Springs())
-            if not any(isinstance(one, CurvedSlot) and one.slot == "ground" for one in layout.features):
+            if not any(isinstance(feature, CurvedSlot) and feature.slot == "ground" for feature in layout.features):
                 return None
-            found = self.ordered(layout.with_far_posts(), bridges)
-            if found is not None:
-                return found
+            outcome = self.ordered(layout.with_far_posts(), bridges)
+            if outcome is not None:
+                return outcome
         return None
 
-    def with_webs(self, wishes: Sequence[Sizes]) -> Found | None:
+    def with_webs(self, wishes: Sequence[Sizes]) -> Outcome | None:
         """With one body of two webs, the thickest and then the thinnest pins: the fewest bridges, then layers.
 
         One of the bodies that leave no order must be the one; none is tried where there are too many ways.
@@ -124,19 +126,19 @@ class _Tried:
             ways = list(islice(webbed(layout, bodies), MOST_WEBS + 1))
             if len(ways) > MOST_WEBS:
                 return None
-            found = [one for one in (self.ordered(way, True) for way in ways) if one is not None]
-            if found:
-                return min(found, key=_cost)
+            outcomes = [outcome for outcome in (self.ordered(way, True) for way in ways) if outcome is not None]
+            if outcomes:
+                return min(outcomes, key=_cost)
         return None
 
-    def with_some_springs(self, sizes: Sizes, names: Sequence[str], bridges: bool) -> Found | None:
+    def with_some_springs(self, sizes: Sizes, names: Sequence[str], bridges: bool) -> Outcome | None:
         """Those springs, one after the other, that leave an order of layers; the others are reported."""
         left_out = frozenset(names)
-        best = self.found(sizes, Springs(False, left_out), True, bridges)
+        best = self.attempt(sizes, Springs(False, left_out), True, bridges)
         if best is None:
             return None
         for name in names:
-            more = self.found(sizes, Springs(False, left_out - {name}), True, bridges)
+            more = self.attempt(sizes, Springs(False, left_out - {name}), True, bridges)
             if more is not None:
                 best, left_out = more, left_out - {name}
         warn(
@@ -146,7 +148,7 @@ class _Tried:
         )
         return best if bridges else self.with_styluses(best)
 
-    def with_styluses(self, low: Found) -> Found:
+    def with_styluses(self, low: Outcome) -> Outcome:
         """Styluses as tall as layers allow without a layer more; else pointers alone, if there is room for them."""
         layout, least = low
         if not layout.m.traces:
@@ -162,6 +164,6 @@ class _Tried:
         return low
 
 
-def _cost(found: Found) -> tuple[int, int]:
-    layout, levels = found
-    return sum(isinstance(one, Bridge) for one in layout.features), max(levels[body] for body in layout.layered)
+def _cost(outcome: Outcome) -> tuple[int, int]:
+    layout, levels = outcome
+    return sum(isinstance(feature, Bridge) for feature in layout.features), max(levels[body] for body in layout.layered)

@@ -96,7 +96,7 @@ def gathered(layout: Layout) -> list[Feature]:
 def _of[Thing: (Force, Joint)](
     kinds: Mapping[str, Gather[Thing]], m: Mechanism, things: Iterable[Thing], layout: Layout
 ) -> list[Feature]:
-    """Of forces, contacts or drivers whose kinds have parts; the others need none."""
+    """Features of forces, contacts or drivers whose kinds have parts; the others need none."""
     by_kind: dict[str, list[Thing]] = {}
     for thing in things:
         if thing.kind.name in kinds and not layout.apart.intersection(thing.bodies):

@@ -1,4 +1,4 @@
-"""Every kind of joint, force and contact that has parts by itself: importing a line's module enters it."""
+"""Every kind of joint, force and contact that has automatic parts: importing a line's module enters it."""
 
 from mechanisms.stages.automatic.cams import (  # noqa: F401
     cam_solids,

@@ -11,7 +11,7 @@ from mechanisms.stages.automatic.pins.bridges import may_hang
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.layout import Layout
 
-TOLD = 4
+REPORTED = 4
 """So many meetings are reported."""
 SLOTTED = "the slotted plate of "
 CROSSED = (
@@ -26,7 +26,7 @@ def refusal(layout: Layout, fixed: Mapping[str, int]) -> str:
     bodies = _bodies(layout, kept)
     pins = [rule for rule in kept if any(items[k].source is not None for k in rule)] or kept
     crossed = any(all(items[k].what.startswith(SLOTTED) for k in rule) for rule in pins)
-    meetings = [_meeting(layout, rule) for rule in _first_of_each(layout, pins)[:TOLD]]
+    meetings = [_meeting(layout, rule) for rule in _first_of_each(layout, pins)[:REPORTED]]
     return (
         f"{layout.m.name}: no order of layers lets {_listed(bodies)} pass each other with pins of "
         f"{layout.sizes.pin:g} mm, on the base or on bridges, with one of them built up of "
@@ -47,8 +47,8 @@ def _kept(layout: Layout, fixed: Mapping[str, int]) -> list[tuple[int, int]]:
 
 
 def _bodies(layout: Layout, kept: Sequence[tuple[int, int]]) -> list[str]:
-    found = {body for rule in kept for k in rule for body in layout.items[k].reach.bodies}
-    return sorted(found, key=layout.layered.index)
+    bodies = {body for rule in kept for k in rule for body in layout.items[k].reach.bodies}
+    return sorted(bodies, key=layout.layered.index)
 
 
 def _pair(layout: Layout, rule: tuple[int, int]) -> frozenset[str]:
@@ -56,10 +56,10 @@ def _pair(layout: Layout, rule: tuple[int, int]) -> frozenset[str]:
 
 
 def _first_of_each(layout: Layout, rules: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
-    found: dict[frozenset[str], tuple[int, int]] = {}
+    firsts: dict[frozenset[str], tuple[int, int]] = {}
     for rule in rules:
-        found.setdefault(_pair(layout, rule), rule)
-    return list(found.values())
+        firsts.setdefault(_pair(layout, rule), rule)
+    return list(firsts.values())
 
 
 def _meeting(layout: Layout, rule: tuple[int, int]) -> str:

@@ -15,23 +15,23 @@ type Axes = dict[frozenset[str], dict[str, np.ndarray]]
 
 
 def axes_of(motion: Motion, parts: Parts, where: Mapping[str, BodyPath]) -> Axes:
-    """Of bodies that a revolute joint or a rod's end connects, and of those that turn on a common pin."""
-    found: Axes = {}
+    """Axes of bodies that a revolute joint or a rod's end connects, and of those that turn on a common pin."""
+    axes: Axes = {}
     for joint in motion.joints.values():
         if joint.kind != "revolute":
             continue
         at = np.column_stack([np.array(joint.x) * mm(1), np.array(joint.y) * mm(1), np.zeros(len(joint.x))])
         seen = {body: relative(at, where[body].pose)[:, :2] for body in joint.bodies}
         if all(np.ptp(point, axis=0).max() < 1e-4 for point in seen.values()):
-            found[frozenset(joint.bodies)] = {body: point.mean(axis=0) for body, point in seen.items()}
+            axes[frozenset(joint.bodies)] = {body: point.mean(axis=0) for body, point in seen.items()}
     for rod, described in parts.bodies.items():
         for end in described.spans or ():
             own = np.array([end.x, end.y]) * mm(1)
             at = points(where[end.body].pose, own)
             point = relative(np.column_stack([at, np.zeros(len(at))]), where[rod].pose)[:, :2]
             if np.ptp(point, axis=0).max() < 1e-4:
-                found[frozenset((rod, end.body))] = {rod: point.mean(axis=0), end.body: own}
-    return _with_common_pins(found)
+                axes[frozenset((rod, end.body))] = {rod: point.mean(axis=0), end.body: own}
+    return _with_common_pins(axes)
 
 
 def _with_common_pins(axes: Axes) -> Axes:

@@ -37,7 +37,7 @@ class Band:
 
 
 def bands(parts: Parts, motion: Motion, where: Mapping[str, BodyPath]) -> Iterator[Band]:
-    """Of all belts that pieces hold, as far as their pulleys leave room for a path."""
+    """Bands of all belts that pieces hold, as far as their pulleys leave room for a path."""
     for name, joint in motion.joints.items():
         own, held = _holding(parts, name)
         if joint.look != "band" or held is None or joint.shape is None:
@@ -80,13 +80,13 @@ def band(way: BeltPath, wide: float, high: float) -> np.ndarray:
 
 
 def _holding(parts: Parts, name: str) -> tuple[frozenset[tuple[str, str]], Held | None]:
-    found = {
+    held = {
         (body, piece_name): piece.holds[name]
         for body, solids in parts.bodies.items()
         for piece_name, piece in solids.pieces.items()
         if name in piece.holds
     }
-    return frozenset(found), next(iter(found.values()), None)
+    return frozenset(held), next(iter(held.values()), None)
 
 
 def _path(joint: JointMotion, where: Mapping[str, BodyPath]) -> tuple[BodyPath, float]:

@@ -9,7 +9,7 @@ _FACTORS = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9,
 
 
 def distinct(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Of rows (n, k) of float64, k up to 4: one number of each that differs, and (n,) which of these each is.
+    """Distinct rows of (n, k) float64, k up to 4: one number of each, and (n,) which of these each row is.
 
     Their order follows from the rows alone. -0.0 and 0.0 are alike; no row is like another that is not.
     """

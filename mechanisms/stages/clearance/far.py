@@ -25,13 +25,13 @@ def far_bodies(pieces: Sequence[MeshPiece], where: Mapping[str, BodyPath], reach
     places = {body: where[body].control[:, :, :2] for body in radius}
     boxes = {body: (place.min(axis=1), place.max(axis=1)) for body, place in places.items()}
     room = {body: r + where[body].interpolation_error(r) for body, r in radius.items()}
-    found = set()
+    pairs = set()
     for a, b in combinations(radius, 2):
         (low_a, high_a), (low_b, high_b) = boxes[a], boxes[b]
         gap = np.maximum(np.maximum(low_b - high_a, low_a - high_b), 0.0)
         if (np.hypot(gap[:, 0], gap[:, 1]) - room[a] - room[b] >= reach).all():
-            found.add(frozenset((a, b)))
-    return found
+            pairs.add(frozenset((a, b)))
+    return pairs
 
 
 def error_of(first: MeshPiece, second: MeshPiece, where: Mapping[str, BodyPath]) -> float:

@@ -61,7 +61,7 @@ type Meshes = dict[frozenset[str], list[Gears]]
 
 def meshes(motion: Motion, pieces: list[MeshPiece]) -> Meshes:
     """The gear pairs of a motion, with the numbers of teeth that data.json has, else those of the meshes."""
-    found: Meshes = {}
+    by_bodies: Meshes = {}
     for joint in motion.joints.values():
         shape = joint.shape
         if joint.kind != "gear_pair" or shape is None or not shape.radius_first or not shape.radius_second:
@@ -73,8 +73,8 @@ def meshes(motion: Motion, pieces: list[MeshPiece]) -> Meshes:
             teeth = [order(pieces, body, centre, mm(radius)) for body, centre, radius in wheels]
         if min(teeth) > 1 and abs(teeth[0] * shape.radius_second / (teeth[1] * shape.radius_first) - 1) < 1e-9:
             gears = Gears(shape.bodies, (centres[0], centres[1]), (teeth[0], teeth[1]), shape.ring)
-            found.setdefault(frozenset(shape.bodies), []).append(gears)
-    return found
+            by_bodies.setdefault(frozenset(shape.bodies), []).append(gears)
+    return by_bodies
 
 
 def least_in_mesh(sweep: Sweep, known: Meshes, where: dict[str, BodyPath]) -> Least | None:
@@ -110,21 +110,21 @@ def _least(sweep: Sweep, gears: Gears, first: MeshPiece, second: MeshPiece, wher
     if still is None or mover is None:
         return None
     off = ideal.off + float(sweep.error.max()) + still.spread + mover.spread
-    found = Search(
+    least = Search(
         FacetTree(still.triangles, gears.centres[0], first.radius),
         FacetTree(mover.triangles - np.append(gears.centres[1], 0.0), np.zeros(2), second.radius),
         _one_pitch(ideal, gears, pitch, off),
         gears.centres[0],
     ).run(best, 0.0, len(gaps))
-    if height_between(first, second) < found.gap - RESOLUTION:
+    if height_between(first, second) < least.gap - RESOLUTION:
         return None
     time = (
-        ideal.time_of(ideal.start + pitch * found.time, pitch) if found.gap < best else min(gaps, key=gaps.__getitem__)
+        ideal.time_of(ideal.start + pitch * least.time, pitch) if least.gap < best else min(gaps, key=gaps.__getitem__)
     )
     gap = sweep.gap_at(time, reach)
-    if gap > found.gap + RESOLUTION + off or found.proven <= 0:
+    if gap > least.gap + RESOLUTION + off or least.proven <= 0:
         return None
-    return Least(gap, time, min(found.proven, gap), found.poses, off)
+    return Least(gap, time, min(least.proven, gap), least.poses, off)
 
 
 def _one_pitch(ideal: Rolling, gears: Gears, pitch: float, off: float) -> RelativePath:

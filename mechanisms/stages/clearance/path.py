@@ -102,12 +102,12 @@ def paths(motion: Motion) -> dict[str, BodyPath]:
     """The path of every body, ``ground`` included."""
     time = np.array(motion.time)
     still = np.zeros((len(time), 3))
-    found = {"ground": BodyPath(time, still, still, still)}
+    by_body = {"ground": BodyPath(time, still, still, still)}
     for name, body in motion.bodies.items():
         series = ((body.x, body.y, body.theta), (body.vx, body.vy, body.omega), (body.ax, body.ay, body.alpha))
         columns = [np.column_stack([np.array(x) * mm(1), np.array(y) * mm(1), turn]) for x, y, turn in series]
-        found[name] = BodyPath(time, *columns)
-    return found
+        by_body[name] = BodyPath(time, *columns)
+    return by_body
 
 
 def relative(pose: np.ndarray, reference: np.ndarray) -> np.ndarray:

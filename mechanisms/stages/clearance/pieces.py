@@ -45,7 +45,7 @@ class MeshPiece:
 
     @cached_property
     def radius(self) -> float:
-        """Of the circle round ``centre`` that holds the piece."""
+        """Radius of the circle round ``centre`` that holds the piece."""
         return float(np.linalg.norm(self.triangles[:, :, :2].reshape(-1, 2) - self.centre, axis=1).max())
 
     def is_around(self, place: np.ndarray) -> bool:
@@ -122,8 +122,8 @@ def height_between(first: MeshPiece, second: MeshPiece) -> float:
             lying, facets = facing(a, b, sign)
             faces, above = np.unique(sign * lying[:, 0, 2]), np.unique(sign * facets[:, :, 2])
             at = np.searchsorted(above, faces - LEVEL)
-            found = at < len(above)
-            least = min(least, float((above[at[found]] - faces[found]).min(initial=np.inf)))
+            inside = at < len(above)
+            least = min(least, float((above[at[inside]] - faces[inside]).min(initial=np.inf)))
     return max(least, 0.0)
 
 

@@ -49,8 +49,8 @@ type Slides = dict[frozenset[str], Slide]
 
 
 def slides_of(motion: Motion, where: Mapping[str, BodyPath]) -> Slides:
-    """Of bodies that a prismatic joint connects."""
-    found: Slides = {}
+    """Slides of bodies that a prismatic joint connects."""
+    slides: Slides = {}
     for joint in motion.joints.values():
         if joint.kind != "prismatic":
             continue
@@ -64,12 +64,12 @@ def slides_of(motion: Motion, where: Mapping[str, BodyPath]) -> Slides:
         angle = float(np.arctan2(along[1], along[0]))
         way = (seen[:, :2] - middle[:2]) @ along
         between = float(np.abs(np.diff(way)).max(initial=0.0))  # it may turn back between two samples
-        found[frozenset(joint.bodies)] = Slide(
+        slides[frozenset(joint.bodies)] = Slide(
             {mover: (angle - float(middle[2]), np.zeros(2)), still: (angle, middle[:2])},
             mover,
             (float(way.min()) - between, float(way.max()) + between),
         )
-    return found
+    return slides
 
 
 def slide_gap(first: MeshPiece, second: MeshPiece, slides: Slides, reach: float = np.inf) -> tuple[float, float] | None:
@@ -84,7 +84,7 @@ def slide_gap(first: MeshPiece, second: MeshPiece, slides: Slides, reach: float 
         return None
     turned = [piece.manifold.transform(_along(*slide.lines[piece.body])) for piece in (first, second)]
     low, high = slide.way if first.body == slide.mover else (-slide.way[1], -slide.way[0])  # of the first
-    (near, far), (start, end) = (one.bounding_box()[2::3] for one in turned)
+    (near, far), (start, end) = (piece.bounding_box()[2::3] for piece in turned)
     whole = np.inf, *(part * reach for part in BESIDE)
     for away in whole if np.isfinite(reach) else whole[:1]:
         a = _between(turned[0], start - high - away, end - low + away)
@@ -94,7 +94,7 @@ def slide_gap(first: MeshPiece, second: MeshPiece, slides: Slides, reach: float 
         outlines = a.project(), b.project()
         if (outlines[0] ^ outlines[1]).area() > 0.0:
             continue
-        loops = [[np.asarray(loop) for loop in one.to_polygons()] for one in outlines]
+        loops = [[np.asarray(loop) for loop in outline.to_polygons()] for outline in outlines]
         gap = min(_distance(p, q) for p in loops[0] for q in loops[1])
         if gap <= away:
             return gap, max(gap - ROUNDING, 0.0)
@@ -106,7 +106,7 @@ class Sliced:
     """Slices of the mover are proven along the line, the rest is not: a valve's stem, but not its disc at the seat."""
 
     gap: float
-    """Of these slices, mm; infinite where they stay farther than ``away``."""
+    """Gap of these slices, mm; infinite where they stay farther than ``away``."""
     away: float
     rest: list[tuple[MeshPiece, MeshPiece]]
     """What is left: parts of the mover, and what of the other piece they come near to."""
@@ -135,7 +135,7 @@ def sliced(first: MeshPiece, second: MeshPiece, slides: Slides, reach: float) ->
             touches = bool(left) and left[-1][1] == start
             left[-1:] = [(left[-1][0], end)] if touches else [*left[-1:], (start, end)]
             continue
-        loops = [[np.asarray(loop) for loop in one.to_polygons()] for one in (a, b)]
+        loops = [[np.asarray(loop) for loop in section.to_polygons()] for section in (a, b)]
         gap = min(gap, *(_distance(p, q) for p in loops[0] for q in loops[1]))
     if left == [(edges[0], edges[-1])]:
         return None
@@ -168,7 +168,7 @@ def _between(piece: Manifold, low: float, high: float) -> Manifold:
 
 
 def _distance(p: np.ndarray, q: np.ndarray) -> float:
-    """Of two closed polygons (n, 2) that do not cross."""
+    """Distance between two closed polygons (n, 2) that do not cross."""
     return min(_to_sides(p, q), _to_sides(q, p))
 
 

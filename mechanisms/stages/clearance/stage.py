@@ -8,10 +8,10 @@ Every pair of pieces of two bodies is settled by the first of these that suffice
    once (turn.py).
    This also covers a pin in its hole with 0.1 mm of room.
 4. Slide. Bodies with a prismatic joint between them slide along one line: the gap of pieces seen along it, at every
-   place at once (slide.py). This covers a piston in its liner. Of a pair of which slices alone are proven so, as of a
+   place at once (slide.py). This covers a piston in its liner. Where slices alone are proven so, as for a
    valve in its guide, the rest is left to the motion.
 5. Motion. The gap of the two meshes over the whole motion, found and proven by branch and bound: of their outlines in
-   the plane (outline_search.py), and where these do not tell it, of their facets (search.py). Of gears, over one pitch
+   the plane (outline_search.py), and where these do not suffice, of their facets (search.py). For gears, over one pitch
    of their teeth (meshing.py).
 
 What is proven: at every moment of the motion, which between the samples of data.json is the quintic that the film
@@ -72,10 +72,10 @@ def run(name: str) -> None:
         return
     from mechanisms.stages.clearance.pieces import read_pieces
 
-    found = check(parts, motion, read_pieces(parts, out.parts_folder), stage.key)
-    write_clearance(out.clearance, found)
+    checked = check(parts, motion, read_pieces(parts, out.parts_folder), stage.key)
+    write_clearance(out.clearance, checked)
     stage.done()
-    say("clearance", _summary(found))
+    say("clearance", _summary(checked))
 
 
 def is_fresh(name: str) -> bool:
@@ -143,16 +143,16 @@ def check(
         if height >= limit:
             pairs.append(_pair(first, second, height, height, None, "layers", 0))
             continue
-        found = _turn(first, second, axes, sweep, limit, reach) or _slide(first, second, slides, limit, reach)
-        found = found or _sliced(first, second, slides, sweep, where, limit, reach)
-        if found is None:
+        compared = _turn(first, second, axes, sweep, limit, reach) or _slide(first, second, slides, limit, reach)
+        compared = compared or _sliced(first, second, slides, sweep, where, limit, reach)
+        if compared is None:
             least = least_in_mesh(sweep, in_mesh, where) or least_gap(sweep, reach)
             if least.gap < limit or least.proven < limit / 2:
                 refused.append((sweep, least))
                 continue
-            found = _pair(first, second, least.gap, least.proven, least.time, "motion", least.poses)
-        if min(found.gap, found.proven + metres(RESOLUTION)) < metres(reach):
-            pairs.append(found)
+            compared = _pair(first, second, least.gap, least.proven, least.time, "motion", least.poses)
+        if min(compared.gap, compared.proven + metres(RESOLUTION)) < metres(reach):
+            pairs.append(compared)
         else:
             apart += 1
     if refused:
@@ -178,7 +178,7 @@ def _turn(
 
     axis = axes.get(frozenset((first.body, second.body)))
     if axis is None or not all(piece.is_around(axis[piece.body]) for piece in (first, second)):
-        return None  # of a post beside the axis the motion tells more than all angles do
+        return None  # for a post beside the axis the motion shows more than all angles do
     about = [piece.triangles - [axis[piece.body][0], axis[piece.body][1], 0.0] for piece in (first, second)]
     if sweep.gap_at(float(sweep.times[0]), reach) < limit:
         return None
@@ -192,10 +192,10 @@ def _slide(first: MeshPiece, second: MeshPiece, slides: Slides, limit: float, re
     """The gap at every place along the line of a prismatic joint between two bodies; None if that is not enough."""
     from mechanisms.stages.clearance.slide import slide_gap
 
-    found = slide_gap(first, second, slides, reach)
-    if found is None or found[1] < limit:
+    slid = slide_gap(first, second, slides, reach)
+    if slid is None or slid[1] < limit:
         return None
-    return _pair(first, second, *found, None, "slide", 1)
+    return _pair(first, second, *slid, None, "slide", 1)
 
 
 def _sliced(
@@ -209,7 +209,7 @@ def _sliced(
 ) -> PairClearance | None:
     """The gap of a pair of which most is proven along a line and the rest by the motion; None if that is not enough.
 
-    Only of one that stays near: else the motion alone tells it sooner.
+    Only for a pair that stays near: else the motion alone proves it sooner.
     """
     from mechanisms.stages.clearance.search.least import least_gap
     from mechanisms.stages.clearance.search.sweep import Sweep
@@ -220,11 +220,11 @@ def _sliced(
         return None
     if any(sweep.gap_at(float(time), near) >= near for time in sweep.times[:: max(1, len(sweep.times) // LOOKS)]):
         return None
-    found = sliced(first, second, slides, reach)
-    if found is None or found.gap < limit:
+    cut = sliced(first, second, slides, reach)
+    if cut is None or cut.gap < limit:
         return None
-    gap, proven, time, poses = found.gap, min(found.gap, found.away) - ROUNDING, None, 1
-    for mover, other in found.rest:
+    gap, proven, time, poses = cut.gap, min(cut.gap, cut.away) - ROUNDING, None, 1
+    for mover, other in cut.rest:
         least = least_gap(Sweep(mover, other, where[mover.body], where[other.body]), reach)
         if least.gap < limit or least.proven < limit / 2:
             return None
@@ -232,7 +232,7 @@ def _sliced(
         proven = min(proven, least.proven)
         if least.gap < gap:
             gap, time = least.gap, least.time
-    if gap > found.away:
+    if gap > cut.away:
         return None
     return _pair(first, second, gap, proven, time, "slide" if time is None else "motion", poses)
 
@@ -294,14 +294,14 @@ def _refusal(name: str, refused: list[tuple[Sweep, Least]], limit: float) -> str
     return text
 
 
-def _summary(found: Clearance) -> str:
-    count = len(found.pairs) + found.apart
-    text = f"{found.mechanism}: {count} pairs of pieces, none touch"
-    if found.pairs:
-        nearest = found.pairs[0]
+def _summary(clearance: Clearance) -> str:
+    count = len(clearance.pairs) + clearance.apart
+    text = f"{clearance.mechanism}: {count} pairs of pieces, none touch"
+    if clearance.pairs:
+        nearest = clearance.pairs[0]
         when = "at every angle" if nearest.time is None else f"at t={nearest.time:.3g} s"
         text += f"; nearest {nearest.pieces[0]} and {nearest.pieces[1]}: {mm(nearest.gap):.3f} mm {when}"
-    touching = [*found.may_touch, *found.pieces_may_touch]
+    touching = [*clearance.may_touch, *clearance.pieces_may_touch]
     if touching:
         text += f"; not compared, as they may touch: {', '.join(' and '.join(pair) for pair in touching)}"
     return text

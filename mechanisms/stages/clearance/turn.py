@@ -161,7 +161,7 @@ def _reached(a: np.ndarray, b: np.ndarray) -> float:
 def _samples(t: np.ndarray) -> np.ndarray:
     """(n, 2) in (r, z): the corners of the triangles, and the points of their edges nearest to the axis.
 
-    Of those within :data:`ROUNDING` of each other, as corners of a turned part are, one stands for all.
+    One point stands for all within :data:`ROUNDING` of each other, as corners of a turned part are.
     """
     corners = np.column_stack([np.hypot(t[:, :, 0], t[:, :, 1]).ravel(), t[:, :, 2].ravel()])
     points = np.concatenate([corners, _least_radius(t)[1]])

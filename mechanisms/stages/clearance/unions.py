@@ -51,7 +51,7 @@ def extent(triangles: np.ndarray, centre: np.ndarray) -> tuple[float, float]:
 def order(pieces: list[MeshPiece], body: str, centre: np.ndarray, radius: float) -> int:
     """How many equal turns about ``centre`` leave the upright facets next to a pitch radius (mm) as they are.
 
-    Of the body's piece with most of them; 1 where there is none.
+    The body's piece with most of these facets counts; 1 where there is none.
     """
     best: list[np.ndarray] = []
     for piece in pieces:

@@ -63,5 +63,5 @@ def _arguments(frame: FrameType) -> str:
     code = frame.f_code
     names = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
     plain = [(name, frame.f_locals.get(name)) for name in names]
-    told = [f"{name}={value:g}" for name, value in plain if isinstance(value, int | float) and value is not True]
-    return ", ".join(told[:SHOWN])
+    values = [f"{name}={value:g}" for name, value in plain if isinstance(value, int | float) and value is not True]
+    return ", ".join(values[:SHOWN])

@@ -54,14 +54,14 @@ class _Project(Places):
         return file.startswith(PROGRAM)
 
     def acts_for_itself(self, file: str) -> bool:
-        """The stages, but for parts by themselves, which act for the author."""
+        """The stages, except automatic parts, which act for the author."""
         return file.startswith(STAGES) or os.path.dirname(file) == DOORS
 
     def hash_of(self, path: Path) -> str:
         return file_hash(path)
 
     def module_state(self, name: str) -> str:
-        """Of the author's modules what they mean; those of the program count by their bytes, as in the stages' keys."""
+        """The author's modules count by what they mean; those of the program by their bytes, as in the stages' keys."""
         if os.path.dirname(name) == "mechanisms" or name.startswith(OURS):
             return self.file_state(name)
         return recalled(("module", self.path_of(name)), lambda: super(_Project, self).module_state(name))

@@ -1,7 +1,7 @@
 """Finds the files that the author's code consists of: the modules it imports, and what those import in turn.
 
-Of the program's own rooms, a module that the author's code imports counts with those that it imports itself; the solver
-counts as a whole, without its drawing. Of installed packages the version counts.
+In the program's own rooms, a module that the author's code imports counts with those that it imports itself; the solver
+counts as a whole, without its drawing. Installed packages count by their version.
 """
 
 from __future__ import annotations

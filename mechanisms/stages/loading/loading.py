@@ -42,7 +42,7 @@ def load(name: str, file: File) -> ModuleType:
     if not path.is_file():
         raise UserError(
             f"{folder.name}: {_shown(path)} is missing; a mechanism has mechanism.py, and where it "
-            "wants to, parts.py and shot.py"
+            "needs them, parts.py and shot.py"
         )
     importlib.invalidate_caches()
     with author_code(name):
@@ -114,7 +114,7 @@ def running(folder: str) -> str:
 
 
 INSTEAD: dict[str, bytes] = {}
-"""Sources that are loaded in place of a file's, by its real path, where one wants to know what they would be."""
+"""Sources that are loaded in place of a file's, by its real path, to learn what they would be."""
 
 
 class _SourceOnly(SourceFileLoader):

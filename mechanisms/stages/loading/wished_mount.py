@@ -13,7 +13,7 @@ from shared.contract.shot import Shot, refuse_unsound
 from shared.stage.paths import owner_of
 
 _WISHED: ContextVar[Kind | None] = ContextVar("wished", default=None)
-"""Of the mechanism whose parts are being made."""
+"""Mount of the mechanism whose parts are being made."""
 
 
 def of_shot(name: str) -> Kind | None:
@@ -28,7 +28,7 @@ def of_shot(name: str) -> Kind | None:
     try:
         shot = load(name, "shot").shot
     finally:
-        for module in [one for one in sys.modules if one.startswith("mechanisms.") and one not in before]:
+        for module in [loaded for loaded in sys.modules if loaded.startswith("mechanisms.") and loaded not in before]:
             if not module.startswith("mechanisms.stages"):
                 del sys.modules[module]
     if not isinstance(shot, Shot):

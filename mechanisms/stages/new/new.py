@@ -33,7 +33,7 @@ def run(name: str, kind: str = "driven") -> None:
     """
     name = canonical_name(name)
     if kind not in KINDS:
-        known = "; ".join(f"{one}: {what}" for one, what in KINDS.items())
+        known = "; ".join(f"{word}: {what}" for word, what in KINDS.items())
         raise UserError(f"there is no kind '{kind}' of new mechanism; {known}{did_you_mean(kind, KINDS)}")
     refuse_unfit(name)
     target = name.replace("_", "-")

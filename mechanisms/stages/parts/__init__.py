@@ -1,1 +1,1 @@
-"""The solids of a mechanism: STL, STEP and parts.json, from parts.py or by themselves."""
+"""The solids of a mechanism: STL, STEP and parts.json, from parts.py or automatic."""

@@ -1,4 +1,4 @@
-"""Reports to a recorder the files that the CAD kernel opens by itself: STEP, IGES, BREP, STL and fonts.
+"""Reports to a recorder the files that the CAD kernel opens on its own: STEP, IGES, BREP, STL and fonts.
 
 The kernel is compiled, so Python does not notice these; its reading functions are replaced while parts.py runs.
 """
@@ -29,16 +29,16 @@ READERS = (
 
 
 @contextmanager
-def told_of_cad_files(recorder: Recorder) -> Iterator[None]:
+def reported_cad_files(recorder: Recorder) -> Iterator[None]:
     """Count as read every file whose name the kernel's reading functions get in this block."""
     replaced: list[tuple[Any, str, Any]] = []
     try:
         for module, kind, function in READERS:
             owner = getattr(importlib.import_module(f"OCP.{module}"), kind)
             plain = getattr(owner, function)
-            told = _told(plain, recorder)
+            reporting = _reporting(plain, recorder)
             replaced.append((owner, function, vars(owner).get(function)))
-            setattr(owner, function, staticmethod(told) if function.endswith("_s") else told)
+            setattr(owner, function, staticmethod(reporting) if function.endswith("_s") else reporting)
         yield
     finally:
         for owner, function, plain in replaced:
@@ -48,8 +48,8 @@ def told_of_cad_files(recorder: Recorder) -> Iterator[None]:
                 setattr(owner, function, plain)
 
 
-def _told(plain: Callable[..., Any], recorder: Recorder) -> Callable[..., Any]:
-    def told(*arguments: Any, **options: Any) -> Any:
+def _reporting(plain: Callable[..., Any], recorder: Recorder) -> Callable[..., Any]:
+    def reporting(*arguments: Any, **options: Any) -> Any:
         for value in (*arguments, *options.values()):
             if hasattr(value, "ToCString"):
                 value = value.ToCString()
@@ -57,4 +57,4 @@ def _told(plain: Callable[..., Any], recorder: Recorder) -> Callable[..., Any]:
                 recorder.read(value)
         return plain(*arguments, **options)
 
-    return told
+    return reporting

@@ -19,14 +19,14 @@ def mass_of(solid: Any, density: float, along: bool = False) -> Mass:
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps
 
-    found, smooth = GProp_GProps(), ruled(solid)
+    properties, smooth = GProp_GProps(), ruled(solid)
     if smooth is solid:
-        BRepGProp.VolumeProperties_s(solid.wrapped, found)
+        BRepGProp.VolumeProperties_s(solid.wrapped, properties)
     else:
-        BRepGProp.VolumeProperties_s(smooth.wrapped, found, SHARP)
-    centre = found.CentreOfMass()
-    volume = cubic_metres(found.Mass())
-    matrix = found.MatrixOfInertia()  # about the centre of mass
+        BRepGProp.VolumeProperties_s(smooth.wrapped, properties, SHARP)
+    centre = properties.CentreOfMass()
+    volume = cubic_metres(properties.Mass())
+    matrix = properties.MatrixOfInertia()  # about the centre of mass
     more = {}
     if along:
         products = tuple(-density * inertia_metres(matrix.Value(row, 3)) for row in (1, 2))

@@ -40,7 +40,7 @@ def _file_only_annotates(file: Path, package: str, module: str) -> bool:
                 local.update(alias.asname or alias.name for alias in node.names)
     uses = _Uses(local)
     uses.visit(tree)
-    return not uses.found
+    return not uses.used
 
 
 class _Uses(ast.NodeVisitor):
@@ -48,11 +48,11 @@ class _Uses(ast.NodeVisitor):
 
     def __init__(self, names: set[str]) -> None:
         self.names = names
-        self.found = False
+        self.used = False
 
     def visit_Name(self, node: ast.Name) -> None:
         """A name that is used."""
-        self.found |= node.id in self.names
+        self.used |= node.id in self.names
 
     def visit_arg(self, node: ast.arg) -> None:
         """A parameter of a function; its annotation is not looked into."""

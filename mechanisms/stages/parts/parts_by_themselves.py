@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from shared.shapes.solid import Solid
 
 ROUNDS = 3
-"""Of parts made for a motion with the masses of those before."""
+"""Rounds of parts made for a motion with the masses of those before."""
 ALIKE = 1e-9
 """Masses that differ by less, relatively, are those of the same parts."""
 
 
 def solids_of(name: str) -> dict[str, list[Solid]]:
-    """Every piece by body. Raises UserError where the model cannot move, or has no parts by itself."""
+    """Every piece by body. Raises UserError where the model cannot move, or has no automatic parts."""
     from mechanisms.stages.automatic.automatic import automatic
 
     solution = bare_solution(name)
@@ -39,7 +39,7 @@ def solids_of(name: str) -> dict[str, list[Solid]]:
 
 
 def _masses(solids: dict[str, list[Solid]]) -> dict[str, Mass]:
-    """Of all pieces of each moving body together."""
+    """Masses of all pieces of each moving body together."""
     from mechanisms.stages.parts.mass_properties import combined, mass_of
     from shared.contract.materials import MATERIALS
 

@@ -1,4 +1,4 @@
-"""The ``parts`` stage: mechanisms/<name>/parts.py, or the model by itself, becomes STL, STEP and parts.json.
+"""The ``parts`` stage: mechanisms/<name>/parts.py, or the model alone, becomes STL, STEP and parts.json.
 
 It runs again only if something changed that the solids follow from: parts.py and what it imports or reads, the part
 library, the densities, CadQuery, a parameter that ``parts()`` reads, or ``mount`` of shot.py, whose other fields count
@@ -64,13 +64,13 @@ def run(name: str) -> None:
     if _is_fresh(out, given, wish):
         say("parts", f"{out.name}: nothing to do")
         return
-    found = _of_cluster(out.name, given, wish) if address() else None
-    found = found or _made_here(out.name, given, wish, before, recorder)
-    written = _write(out, found.files, found.document)
-    outputs = [out.parts, *(out.parts_folder / file for file in found.files)]
-    notes = {"parameters": found.reads, "inputs": found.inputs.names()}
-    Stage(out, "parts", found.document.provenance.inputs, outputs).done(**notes)
-    say("parts", _summary(out.name, found.document, written))
+    made = _of_cluster(out.name, given, wish) if address() else None
+    made = made or _made_here(out.name, given, wish, before, recorder)
+    written = _write(out, made.files, made.document)
+    outputs = [out.parts, *(out.parts_folder / file for file in made.files)]
+    notes = {"parameters": made.reads, "inputs": made.inputs.names()}
+    Stage(out, "parts", made.document.provenance.inputs, outputs).done(**notes)
+    say("parts", _summary(out.name, made.document, written))
 
 
 class _Wish(NamedTuple):
@@ -79,7 +79,7 @@ class _Wish(NamedTuple):
     by_itself: bool
     """There is no parts.py."""
     mount: Kind | None
-    """Of shot.py."""
+    """Mount that shot.py wishes."""
 
 
 class _Found(NamedTuple):
@@ -179,8 +179,8 @@ def _key(given: Any, reads: list[str], inputs: Inputs, wish: _Wish) -> str:
 def _more_than_values(name: str, given: Any, reads: list[str]) -> bool:
     """Whether the parts follow from more of mechanism.py than from the values of parameters.
 
-    A property or method of Params can compute anything, a value may have no text that tells it, and parts.py or what it
-    imports may use other names of mechanism.py.
+    A property or method of Params can compute anything, a value may have no text that shows it, and parts.py or what
+    it imports may use other names of mechanism.py.
     """
     from mechanisms.stages.loading.loaded_files import author_files
     from mechanisms.stages.parts.params_use import only_annotates
@@ -196,7 +196,7 @@ def _more_than_values(name: str, given: Any, reads: list[str]) -> bool:
 def _build(name: str, given: Any) -> tuple[dict[str, list[Any]], list[str], Inputs]:
     """The solids by body, the names that parts() read from its parameters, and what parts.py was made of and read."""
     from mechanisms.stages.loading.loaded_files import loaded_inputs
-    from mechanisms.stages.parts.cad_reads import told_of_cad_files
+    from mechanisms.stages.parts.cad_reads import reported_cad_files
     from mechanisms.stages.parts.returned_parts import refuse_unfit
 
     if not has(name, "parts"):
@@ -205,7 +205,7 @@ def _build(name: str, given: Any) -> tuple[dict[str, list[Any]], list[str], Inpu
         return solids_of(name), [], Inputs()
     stand_in, seen = traced(given)
     folder, before = mechanism_folder(name), set(sys.modules)
-    with recording() as recorder, told_of_cad_files(recorder):
+    with recording() as recorder, reported_cad_files(recorder):
         module = load(name, "parts")
         with author_code(name):
             bodies = module.parts(stand_in)

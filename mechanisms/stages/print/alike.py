@@ -22,19 +22,19 @@ ALIKE = 1e-4
 
 def groups(pieces: Sequence[tuple[str, Laid]]) -> list[list[int]]:
     """Indices of equal pieces of one material, each given as (material, mesh); in the order of their first."""
-    found: list[list[int]] = []
+    kinds: list[list[int]] = []
     marks: list[tuple[str, float]] = []
     for index, (material, piece) in enumerate(pieces):
         volume = volume_of(piece)
-        for group, (other, theirs) in zip(found, marks, strict=True):
+        for group, (other, theirs) in zip(kinds, marks, strict=True):
             near = abs(volume - theirs) <= ALIKE * theirs
             if material == other and near and is_equal(piece, pieces[group[0]][1]):
                 group.append(index)
                 break
         else:
-            found.append([index])
+            kinds.append([index])
             marks.append((material, volume))
-    return found
+    return kinds
 
 
 def is_equal(piece: Laid, other: Laid) -> bool:
@@ -65,7 +65,7 @@ def _falls_on(first: np.ndarray, second: np.ndarray, tree: KDTree) -> bool:
 
 
 def volume_of(piece: Laid) -> float:
-    """Of the closed mesh (mm^3)."""
+    """Volume of the closed mesh (mm^3)."""
     corners = piece.triangles
     return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
 

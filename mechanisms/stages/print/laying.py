@@ -81,7 +81,7 @@ def best_face(corners: np.ndarray, faces: np.ndarray) -> np.ndarray:
     )
     twice = np.linalg.norm(across, axis=1)
     normals = across / np.where(twice > 0, twice, 1.0)[:, None]
-    found: list[tuple[float, bool, tuple[float, ...]]] = []
+    candidates: list[tuple[float, bool, tuple[float, ...]]] = []
     for normal in _resting(corners):
         heights = corners @ normal
         level = float(heights.max())
@@ -91,8 +91,8 @@ def best_face(corners: np.ndarray, faces: np.ndarray) -> np.ndarray:
             continue
         hanging = (towards > STEEP) & ~inside
         score = float(twice[inside].sum() - SUPPORT * (twice * towards)[hanging].sum())
-        found.append((-round(score / float(twice.sum()), 4), normal[2] != -1.0, tuple(float(n) for n in normal)))
-    return np.array(min(found)[2]) if found else np.array([0.0, 0.0, -1.0])
+        candidates.append((-round(score / float(twice.sum()), 4), normal[2] != -1.0, tuple(float(n) for n in normal)))
+    return np.array(min(candidates)[2]) if candidates else np.array([0.0, 0.0, -1.0])
 
 
 def _resting(corners: np.ndarray) -> list[np.ndarray]:

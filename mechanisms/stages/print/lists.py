@@ -24,7 +24,7 @@ class Made:
     names: tuple[str, ...]
     material: str
     mass: float
-    """Of one (kg)."""
+    """Mass of a single piece (kg)."""
     piece: Laid
     sheet: Sheet | None = None
     outline: str = ""
@@ -36,7 +36,7 @@ class Made:
 
     @property
     def name(self) -> str:
-        """Of the first."""
+        """Name of the first piece."""
         return self.names[0]
 
 
@@ -51,8 +51,8 @@ class Bought:
 
 def markdown(title: str, bed: str, made: Sequence[Made], bought: Sequence[Bought]) -> str:
     """The lists as a page."""
-    count = sum(len(one.names) for one in made)
-    mass = sum(len(one.names) * one.mass for one in made)
+    count = sum(len(part.names) for part in made)
+    mass = sum(len(part.names) * part.mass for part in made)
     lines = [f"# Pieces of {title}", "", f"## To make: {count}, {_grams(mass)} g", ""]
     lines += [
         "Sizes as it lies on the bed, masses in the material that is named. Plates are "
@@ -62,11 +62,11 @@ def markdown(title: str, bed: str, made: Sequence[Made], bought: Sequence[Bought
         "| piece | count | material | x x y x z (mm) | mass (g) | plate | outline |",
         "|---|--:|---|---|--:|---|---|",
     ]
-    lines += [f"| {' | '.join(_cells(one))} |" for one in made]
-    lines += ["", f"## To buy: {sum(len(one.names) for one in bought)}", ""]
+    lines += [f"| {' | '.join(_cells(part))} |" for part in made]
+    lines += ["", f"## To buy: {sum(len(item.names) for item in bought)}", ""]
     if bought:
         lines += ["| what | count | for |", "|---|--:|---|"]
-        lines += [f"| {one.what} | {len(one.names)} | {', '.join(one.names)} |" for one in bought]
+        lines += [f"| {item.what} | {len(item.names)} | {', '.join(item.names)} |" for item in bought]
     else:
         lines += ["Nothing: no piece has the sizes of a standard."]
     return "\n".join(lines) + "\n"
@@ -77,33 +77,43 @@ def table(made: Sequence[Made], bought: Sequence[Bought]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(HEADER)
-    for one in made:
-        size = [f"{length:.2f}" for length in one.piece.size]
-        sheet = (f"{one.sheet.thickness:g}", f"{one.sheet.above:.2f}") if one.sheet else ("", "")
-        plates = " ".join(str(plate) for plate in one.plates)
-        row = ["make", one.name, len(one.names), one.material, *size, _grams(one.mass), plates, one.bed, one.outline]
-        writer.writerow([*row, *sheet, " ".join(one.names)])
-    for one in bought:
-        row = ["buy", one.what, len(one.names), one.material]
-        writer.writerow([*row, *[""] * (len(HEADER) - len(row) - 1), " ".join(one.names)])
+    for part in made:
+        size = [f"{length:.2f}" for length in part.piece.size]
+        sheet = (f"{part.sheet.thickness:g}", f"{part.sheet.above:.2f}") if part.sheet else ("", "")
+        plates = " ".join(str(plate) for plate in part.plates)
+        row = [
+            "make",
+            part.name,
+            len(part.names),
+            part.material,
+            *size,
+            _grams(part.mass),
+            plates,
+            part.bed,
+            part.outline,
+        ]
+        writer.writerow([*row, *sheet, " ".join(part.names)])
+    for item in bought:
+        row = ["buy", item.what, len(item.names), item.material]
+        writer.writerow([*row, *[""] * (len(HEADER) - len(row) - 1), " ".join(item.names)])
     return text.getvalue()
 
 
-def _cells(one: Made) -> list[str]:
-    size = " x ".join(f"{length:.2f}" for length in one.piece.size)
+def _cells(part: Made) -> list[str]:
+    size = " x ".join(f"{length:.2f}" for length in part.piece.size)
     plates = ", ".join(
-        f"{plate} ({times})" if times > 1 and len(set(one.plates)) > 1 else f"{plate}"
-        for plate, times in sorted(Counter(one.plates).items())
+        f"{plate} ({times})" if times > 1 and len(set(part.plates)) > 1 else f"{plate}"
+        for plate, times in sorted(Counter(part.plates).items())
     )
-    where = plates or f"none: needs a bed of {one.bed} mm"
-    return [one.name, str(len(one.names)), one.material, size, _grams(one.mass), where, _outline(one)]
+    where = plates or f"none: needs a bed of {part.bed} mm"
+    return [part.name, str(len(part.names)), part.material, size, _grams(part.mass), where, _outline(part)]
 
 
-def _outline(one: Made) -> str:
-    if one.sheet is None:
+def _outline(part: Made) -> str:
+    if part.sheet is None:
         return ""
-    words = f"[{one.outline}]({one.outline})"
-    return f"{words}, without {one.sheet.above:.2f} mm above the sheet" if one.sheet.above else words
+    words = f"[{part.outline}]({part.outline})"
+    return f"{words}, without {part.sheet.above:.2f} mm above the sheet" if part.sheet.above else words
 
 
 def _grams(mass: float) -> str:

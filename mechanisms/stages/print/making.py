@@ -36,51 +36,51 @@ def made_of(pieces: Mapping[str, Piece], meshes: Sequence[MeshPiece], bed: Bed) 
     """What is to be made, equal pieces together, each as it lies on the bed."""
     down = [laid(mesh.triangles) for mesh in meshes]
     names = [mesh.name for mesh in meshes]
-    found = []
+    parts = []
     for group in groups([(pieces[name].material, piece) for name, piece in zip(names, down, strict=True)]):
         first, piece = pieces[names[group[0]]], down[group[0]]
         fits = fitting(piece, bed[:2]) if piece.size[2] <= bed[2] else None
-        one = Made(tuple(names[k] for k in group), first.material, first.mass.mass, fits or piece)
-        found.append(one if fits else replace(one, bed=_bed_for(one, bed)))
-    return found
+        part = Made(tuple(names[k] for k in group), first.material, first.mass.mass, fits or piece)
+        parts.append(part if fits else replace(part, bed=_bed_for(part, bed)))
+    return parts
 
 
-def _bed_for(one: Made, bed: Bed) -> str:
+def _bed_for(part: Made, bed: Bed) -> str:
     """The bed that a piece needs, in whole millimetres."""
-    x, y, z = (math.ceil(length - 1e-6) for length in one.piece.size)
+    x, y, z = (math.ceil(length - 1e-6) for length in part.piece.size)
     return f"{x} x {y}" + (f" x {z}" if math.isfinite(bed[2]) else "")
 
 
 def outlined(out: Out, pieces: Mapping[str, Piece], made: Iterable[Made]) -> tuple[list[Made], dict[str, bytes]]:
     """With the outlines of those that can be cut from a sheet, and the DXF files."""
-    found: list[Made] = []
+    parts: list[Made] = []
     files: dict[str, bytes] = {}
-    for one in made:
-        sheet = sheet_of(one.piece)
+    for part in made:
+        sheet = sheet_of(part.piece)
         if sheet is None:
-            found.append(one)
+            parts.append(part)
             continue
-        step = out.parts_folder / pieces[one.name].step
+        step = out.parts_folder / pieces[part.name].step
         if not step.is_file():
             raise UserError(f"{step} is missing; run make parts-{out.name.replace('_', '-')}")
-        file = file_of(one.name, sheet.thickness)
-        files[file] = dxf(section(step, one.piece, sheet.thickness / 2), sheet.thickness)
-        found.append(replace(one, sheet=sheet, outline=file))
-    return found, files
+        file = file_of(part.name, sheet.thickness)
+        files[file] = dxf(section(step, part.piece, sheet.thickness / 2), sheet.thickness)
+        parts.append(replace(part, sheet=sheet, outline=file))
+    return parts, files
 
 
 def plates_of(title: str, made: Sequence[Made], bed: Bed, gap: float) -> tuple[list[Made], dict[str, bytes]]:
     """With the plates that the pieces lie on, and the files of these."""
-    items = [(k, name) for k, one in enumerate(made) if not one.bed for name in one.names]
+    items = [(k, name) for k, part in enumerate(made) if not part.bed for name in part.names]
     places = packed([made[k].piece.size[:2] for k, _ in items], bed[:2], gap)
     plates: dict[int, list[Placed]] = {}
     for (k, name), at in zip(items, places, strict=True):
-        one = made[k]
-        placed = Placed(name, one.name, one.material, one.piece, at.x, at.y, at.turned)
+        part = made[k]
+        placed = Placed(name, part.name, part.material, part.piece, at.x, at.y, at.turned)
         plates.setdefault(at.plate, []).append(placed)
     files: dict[str, bytes] = {}
     for number, plate in sorted(plates.items()):
         files[f"plate_{number + 1}.3mf"] = three_mf(f"{title}: plate {number + 1}", plate)
         files[f"plate_{number + 1}.stl"] = stl(plate)
     on = [tuple(at.plate + 1 for (i, _), at in zip(items, places, strict=True) if i == k) for k in range(len(made))]
-    return [replace(one, plates=plates) for one, plates in zip(made, on, strict=True)], files
+    return [replace(part, plates=plates) for part, plates in zip(made, on, strict=True)], files

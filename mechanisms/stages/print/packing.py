@@ -47,7 +47,7 @@ def packed(rectangles: Sequence[tuple[float, float]], bed: tuple[float, float], 
 
 
 def _fullest(sizes: np.ndarray, room: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Of several orders the one that covers most of a plate: bounds (m, 2, 2) of those that it takes, and which."""
+    """Bounds (m, 2, 2) of the rectangles that the fullest of several orders puts on a plate, and which these are."""
     from trimesh.path.packing import rectangles_single
 
     random, areas = np.random.default_rng(0), np.prod(sizes, axis=1)
@@ -56,5 +56,5 @@ def _fullest(sizes: np.ndarray, room: np.ndarray) -> tuple[np.ndarray, np.ndarra
         if best[1].all():
             break
         other = rectangles_single(sizes, size=room, shuffle=True, random=random)
-        best = max(best, other, key=lambda found: float(areas[found[1]].sum()))
+        best = max(best, other, key=lambda choice: float(areas[choice[1]].sum()))
     return best

@@ -46,7 +46,7 @@ class Placed:
 
 def stl(plate: Sequence[Placed]) -> bytes:
     """All pieces of a plate in one binary STL (mm)."""
-    return binary_stl(np.concatenate([one.vertices[one.piece.faces] for one in plate]).astype(np.float32))
+    return binary_stl(np.concatenate([part.vertices[part.piece.faces] for part in plate]).astype(np.float32))
 
 
 def three_mf(title: str, plate: Sequence[Placed]) -> bytes:
@@ -58,18 +58,18 @@ def three_mf(title: str, plate: Sequence[Placed]) -> bytes:
     model.SetBuildUUID(_uuid(title, "build"))
     model.GetMetaDataGroup().AddMetaData("", "Title", title, "xs:string", True)
     palette = model.AddBaseMaterialGroup()
-    colours = {one: palette.AddMaterial(one, _colour(lib3mf, one)) for one in sorted({p.material for p in plate})}
+    colours = {name: palette.AddMaterial(name, _colour(lib3mf, name)) for name in sorted({p.material for p in plate})}
     objects: dict[str, Any] = {}
-    for one in plate:
-        if one.kind not in objects:
-            mesh = objects[one.kind] = model.AddMeshObject()
-            mesh.SetName(one.kind)
-            mesh.SetUUID(_uuid(title, f"object {one.kind}"))
-            mesh.SetGeometry(_positions(lib3mf, one.piece), _facets(lib3mf, one.piece))
-            mesh.SetObjectLevelProperty(palette.GetUniqueResourceID(), colours[one.material])
-        item = model.AddBuildItem(objects[one.kind], _transform(lib3mf, one.transform))
-        item.SetPartNumber(one.name)
-        item.SetUUID(_uuid(title, f"item {one.name}"))
+    for part in plate:
+        if part.kind not in objects:
+            mesh = objects[part.kind] = model.AddMeshObject()
+            mesh.SetName(part.kind)
+            mesh.SetUUID(_uuid(title, f"object {part.kind}"))
+            mesh.SetGeometry(_positions(lib3mf, part.piece), _facets(lib3mf, part.piece))
+            mesh.SetObjectLevelProperty(palette.GetUniqueResourceID(), colours[part.material])
+        item = model.AddBuildItem(objects[part.kind], _transform(lib3mf, part.transform))
+        item.SetPartNumber(part.name)
+        item.SetUUID(_uuid(title, f"item {part.name}"))
     return bytes(model.QueryWriter("3mf").WriteToBuffer())
 
 

@@ -59,9 +59,9 @@ def run(name: str, bed: str = "", gap: str = "") -> None:
             path.unlink()
     stage.outputs = [out.print_folder / file for file in files]
     stage.done()
-    for one in made:
-        if one.bed:
-            _tell_large(out.name, one, size)
+    for part in made:
+        if part.bed:
+            _tell_large(out.name, part, size)
     say("print", _summary(out.name, files, made, bought, size))
 
 
@@ -85,9 +85,9 @@ def laid_out(
 def bed_of(text: str) -> Bed:
     """A bed from words like 220x220 or 220x220x250; raises UserError if it is none."""
     lengths = text.lower().split("x")
-    if len(lengths) not in (2, 3) or not all(_LENGTH.fullmatch(one) and float(one) > 0 for one in lengths):
+    if len(lengths) not in (2, 3) or not all(_LENGTH.fullmatch(length) and float(length) > 0 for length in lengths):
         raise UserError(f"BED={text} is no size of a bed; write its length and width in mm, such as BED=220x220")
-    x, y, *z = (float(one) for one in lengths)
+    x, y, *z = (float(length) for length in lengths)
     return x, y, z[0] if z else math.inf
 
 
@@ -98,13 +98,13 @@ def gap_of(text: str) -> float:
     return float(text)
 
 
-def _tell_large(name: str, one: Made, bed: Bed) -> None:
-    several = f" ({len(one.names)} of them)" if len(one.names) > 1 else ""
+def _tell_large(name: str, part: Made, bed: Bed) -> None:
+    several = f" ({len(part.names)} of them)" if len(part.names) > 1 else ""
     size = " x ".join(f"{length:.0f}" for length in bed if math.isfinite(length))
     warn(
         "print",
-        f"{name}: {one.name}{several} needs a bed of {one.bed} mm, this one has {size} mm, so it is on no plate; give "
-        f"BED={one.bed.replace(' ', '')}, or make the mechanism smaller",
+        f"{name}: {part.name}{several} needs a bed of {part.bed} mm, this one has {size} mm, so it is on no plate; "
+        f"give BED={part.bed.replace(' ', '')}, or make the mechanism smaller",
     )
 
 
@@ -113,8 +113,8 @@ def _summary(name: str, files: dict[str, bytes], made: list[Made], bought: list[
         number = sum(file.endswith(suffix) for file in files)
         return f"{number} {word}{'' if number == 1 else 's'}"
 
-    laid = sum(len(one.plates) for one in made)
+    laid = sum(len(part.plates) for part in made)
     return (
         f"{name}: {laid} pieces on {count('.3mf', 'plate')} of {bed[0]:g} x {bed[1]:g} mm, "
-        f"{count('.dxf', 'outline')} to cut, {sum(len(one.names) for one in bought)} pieces to buy"
+        f"{count('.dxf', 'outline')} to cut, {sum(len(item.names) for item in bought)} pieces to buy"
     )

@@ -22,5 +22,5 @@ def body_colours(m: Mechanism, parts: Parts | None) -> dict[str, str]:
 
 
 def main_material(body: BodyParts) -> str:
-    """Of the piece with the largest volume."""
+    """Material of the piece with the largest volume."""
     return max(body.pieces.values(), key=lambda piece: piece.mass.volume).material

@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     from mbsd import Marker, Mechanism
 
 HALF_WIDTH, THICKNESS = 0.06, 0.05
-"""Of a bar, as parts of L."""
+"""Half width and thickness of a bar, as parts of L."""
 LEAST_SIZE = 0.1
 """L (m) where no body has two markers apart."""
 CORNERS = 96
-"""Of the polygon that stands for a disc."""
+"""Corners of the polygon that stands for a disc."""
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,8 @@ def estimated_masses(m: Mechanism) -> dict[str, Estimate]:
     for name, body in m.bodies.items():
         if body.length is not None:
             discs[name] += [(0.0, 0.0, 0.0), (body.length, 0.0, 0.0)]
-    size = max((_extent(found) for found in discs.values()), default=0.0) or LEAST_SIZE
-    return {name: _plate(found, size) for name, found in discs.items() if name != "ground"}
+    size = max((_extent(disc) for disc in discs.values()), default=0.0) or LEAST_SIZE
+    return {name: _plate(disc, size) for name, disc in discs.items() if name != "ground"}
 
 
 def _discs(m: Mechanism) -> Iterator[tuple[Marker, float]]:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from shared.contract import BodyParts, Parts
 
 Source = Literal["mechanism", "parts", "estimate"]
-TOLD = 8
+LISTED = 8
 """At most so many masses are listed in a line."""
 ALIKE = 1e-9
 """Masses of mechanism.py and of the parts that differ by less, relatively, are one."""
@@ -48,7 +48,7 @@ def give_masses(m: Mechanism, parts: Parts | None) -> tuple[dict[str, Source], l
     ]
     if differing:
         sentences.append(f"masses of mechanism.py count, not those of the parts: {_some(differing)}")
-    rods = [f"{name} {written(one.mass.mass, 'kg', 4)}" for name, one in parts.bodies.items() if name not in solids]
+    rods = [f"{name} {written(rod.mass.mass, 'kg', 4)}" for name, rod in parts.bodies.items() if name not in solids]
     if rods:
         sentences.append(f"rods have no mass in the motion, because distance joints have none: {_some(rods)}")
     return source, sentences
@@ -56,7 +56,7 @@ def give_masses(m: Mechanism, parts: Parts | None) -> tuple[dict[str, Source], l
 
 def bodies_of(parts: Parts) -> dict[str, BodyParts]:
     """The bodies of parts.json without its rods, which are none of mechanism.py."""
-    return {name: one for name, one in parts.bodies.items() if one.spans is None}
+    return {name: body for name, body in parts.bodies.items() if body.spans is None}
 
 
 def _estimate(m: Mechanism, names: list[str], left_out: bool) -> list[str]:
@@ -73,14 +73,14 @@ def _estimate(m: Mechanism, names: list[str], left_out: bool) -> list[str]:
     return [f"{why} are estimated as aluminium bars and plates through the markers: {masses}"]
 
 
-def _some(told: list[str]) -> str:
+def _some(masses: list[str]) -> str:
     """The first of them, and how many others there are."""
-    more = len(told) - TOLD
-    return ", ".join(told) if more <= 1 else f"{', '.join(told[:TOLD])} and {more} others"
+    more = len(masses) - LISTED
+    return ", ".join(masses) if more <= 1 else f"{', '.join(masses[:LISTED])} and {more} others"
 
 
-def _differ(one: float, other: float) -> bool:
-    return abs(one - other) > ALIKE * max(one, other)
+def _differ(first: float, second: float) -> bool:
+    return abs(first - second) > ALIKE * max(first, second)
 
 
 def _refuse_other_bodies(m: Mechanism, parts: Parts) -> None:

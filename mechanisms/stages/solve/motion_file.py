@@ -32,7 +32,7 @@ def to_motion(
 ) -> contract.Motion:
     """The solution as the contract has it; bodies without solids have no height.
 
-    ``sources`` tells where the mass of each body is from; if it is not given, from the parts.
+    ``sources`` says where the mass of each body is from; if it is not given, from the parts.
     """
     import mbsd
     from mbsd.drawing.inks import on_dark
@@ -165,8 +165,8 @@ def _actions(solution: Solution, driver: Joint) -> list[contract.Action]:
     from mbsd.results.acting import actions
 
     number = solution.packed.joints.index(driver)
-    found = actions(solution.packed, solution.q, solution.wrench, number)
-    return [contract.Action(body=one.body, **_lists(one, PLACED)) for one in found]
+    acting = actions(solution.packed, solution.q, solution.wrench, number)
+    return [contract.Action(body=action.body, **_lists(action, PLACED)) for action in acting]
 
 
 def _look(look: str, holds_energy: bool) -> Look:
@@ -177,7 +177,7 @@ def _look(look: str, holds_energy: bool) -> Look:
 
 
 def _gas(force: Force, view: ForceView) -> contract.GasMotion | None:
-    """Of a force that comes from gas behind a piston."""
+    """Gas motion of a force that comes from gas behind a piston, else None."""
     from mbsd.results.gas import GasView
 
     if not isinstance(view, GasView):
@@ -207,7 +207,7 @@ def _hydraulics(view: ForceView) -> contract.HydraulicMotion | None:
 
 
 def _contact(solution: Solution, name: str, row: int) -> contract.ContactMotion:
-    """Of the contact whose gap is ``row`` of J; the way on which it slides is the next one."""
+    """Motion of the contact whose gap is ``row`` of J; the way on which it slides is the next one."""
     from mbsd.model.contact import ContactKind
     from mbsd.results.acting import acting
 
@@ -217,11 +217,11 @@ def _contact(solution: Solution, name: str, row: int) -> contract.ContactMotion:
     number = packed.joints.index(joint)
     fx, fy, torque = solution.wrench[:, number].T
     assert solution.held is not None, "simulations tell which rows held"
-    rubs = joint.params.get("friction", 0.0) > 0.0
+    has_friction = joint.params.get("friction", 0.0) > 0.0
     closed = solution.held[:, row]
-    sticks = solution.held[:, row + 1] if rubs else closed
+    sticks = solution.held[:, row + 1] if has_friction else closed
     states: list[contract.State] = [
-        "open" if not touches else "sticks" if rubs and still else "slides" if rubs else "closed"
+        "open" if not touches else "sticks" if has_friction and still else "slides" if has_friction else "closed"
         for touches, still in zip(closed.tolist(), sticks.tolist(), strict=True)
     ]
     return contract.ContactMotion(

@@ -27,9 +27,9 @@ CLOSE = 2e-5
 """Largest difference, in sizes of the mechanism (turned bodies count by their angle times that size)."""
 PROVABLE = 5e-4
 """What the proof of clearance may doubt of a step, in the same sizes: a third of the gap by which a block clears its
-rail in parts by themselves."""
+rail in automatic parts."""
 DOUBT = 3.0 * 0.625
-"""Of that difference of control points, as the proof has it."""
+"""Factor on that difference of control points, as in the proof."""
 PARTS = 4
 """Into which a step is divided at once."""
 ROUNDS = 4
@@ -100,7 +100,7 @@ def coarse_steps(solution: Solution) -> tuple[np.ndarray, np.ndarray]:
 
 
 def doubted_steps(solution: Solution) -> np.ndarray:
-    """Rows after which the proof of clearance doubts the motion, as far as the rows themselves tell."""
+    """Rows after which the proof of clearance doubts the motion, as far as the rows themselves show."""
     steps = _steps(solution)
     return steps[_doubt(solution, steps, steps + 1) > 1.0]
 

@@ -10,16 +10,16 @@ if TYPE_CHECKING:
     from mbsd import Force, Joint
 
 POINTS = 240
-"""Of an outline at most, about."""
+"""Points of an outline, about and at most."""
 
 
-def shape_of(one: Joint | Force) -> Shape:
+def shape_of(element: Joint | Force) -> Shape:
     """The shape between the two markers of a joint, force or contact."""
     from mbsd.model.force import ForceKind
     from mbsd.model.teeth import with_radii
 
-    params = dict(with_radii(one.params))
-    profile, laws = params.get("profile"), getattr(one, "laws", {})
+    params = dict(with_radii(element.params))
+    profile, laws = params.get("profile"), getattr(element, "laws", {})
     outline: list[tuple[float, float]] = []
     if profile is not None:
         outline, sizes = _cam(profile)
@@ -30,10 +30,10 @@ def shape_of(one: Joint | Force) -> Shape:
         outline = _profile(laws["profile"])
     geneva = "slots" in params
     teeth = params.get("teeth")
-    of_pin = isinstance(one.kind, ForceKind) and one.kind.of_reactions
+    of_pin = isinstance(element.kind, ForceKind) and element.kind.of_reactions
     return Shape(
-        bodies=one.bodies,
-        markers=((one.i.x, one.i.y, one.i.angle), (one.j.x, one.j.y, one.j.angle)),
+        bodies=element.bodies,
+        markers=((element.i.x, element.i.y, element.i.angle), (element.j.x, element.j.y, element.j.angle)),
         radius_first=_positive(params.get("radius_i")),
         radius_second=None if geneva or of_pin else _positive(params.get("radius_j", params.get("radius"))),
         teeth=[] if teeth is None else [teeth] if isinstance(teeth, int) else list(teeth),

@@ -48,8 +48,8 @@ def moving_of(solution: Solution, drawn: Drawn | None = None) -> Moving:
     """The whole skeleton for any moment; ``drawn``, if it is drawn already."""
     from mbsd.drawing.view.carried import moving
 
-    found = moving(solution) if drawn is None else drawn
-    steady = found.steady
+    shown = moving(solution) if drawn is None else drawn
+    steady = shown.steady
     digits = max(0, math.ceil(-math.log10(FINENESS * steady.unit)))
     return Moving(
         unit=steady.unit,
@@ -57,14 +57,14 @@ def moving_of(solution: Solution, drawn: Drawn | None = None) -> Moving:
         high=_pair(steady.high),
         strokes=[
             Carried(
-                stroke=_stroke(one.stroke, digits),
-                carrier=_carrier(one.carrier),
-                shapes=[_flat(shape, digits) for shape in one.shapes],
+                stroke=_stroke(stroke.stroke, digits),
+                carrier=_carrier(stroke.carrier),
+                shapes=[_flat(shape, digits) for shape in stroke.shapes],
             )
-            for one in found.strokes
+            for stroke in shown.strokes
         ],
-        names=[CarriedName(name=_name(label, steady.unit), carrier=_carrier(by)) for label, by in found.names],
-        times=found.times.tolist(),
+        names=[CarriedName(name=_name(label, steady.unit), carrier=_carrier(by)) for label, by in shown.names],
+        times=shown.times.tolist(),
     )
 
 

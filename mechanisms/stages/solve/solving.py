@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
 
 SWEEP_STEPS = 360
-"""Of one turn of the drivers in a sweep whose mechanism.py has no STEPS; more where the motion needs them."""
+"""Steps of one turn of the drivers in a sweep whose mechanism.py has no STEPS; more where the motion needs them."""
 FEWEST, MOST, RATE = 360, 7200, 120.0
 """Steps of a simulation whose mechanism.py has no STEPS: so many a second, within these, more where it needs them."""
 
@@ -51,7 +51,7 @@ def build(name: str, module: Any, p: Any) -> Mechanism:
 
 
 def motion_of(name: str, module: Any, m: Mechanism, p: Any) -> Solution:
-    """The motion of ``m`` as mechanism.py wants it. Raises UserError; warnings of the solver become lines."""
+    """The motion of ``m`` as mechanism.py asks for it. Raises UserError; warnings of the solver become lines."""
     from mbsd import MechanismError
     from mbsd.results.solution import Solution
 

@@ -123,7 +123,7 @@ def _summary(solution: Solution) -> str:
     }
     idle = [name for name, (effort, _) in efforts.items() if not effort.any()]
     if idle:  # their place is taken by forces that were asked for, or nothing has mass
-        efforts = {name: one for name, one in (efforts | acting).items() if name not in idle}
+        efforts = {name: pair for name, pair in (efforts | acting).items() if name not in idle}
     loads = [float(solution.joint(joint).magnitude.max()) for joint in solution.mechanism.joints]
     rounding = NOISE * max(loads, default=0.0)
     peaks = []

@@ -43,7 +43,7 @@ def vibration(solution: Solution) -> contract.Vibration | None:
     for name, joint in m.joints.items():
         if "ground" in joint.bodies and name not in quantities:
             quantities[name] = ("N", solution.joint(name).reaction)
-    found = {name: _harmonics(solution, crank, turns, *one) for name, one in quantities.items()}
+    harmonics = {name: _harmonics(solution, crank, turns, *quantity) for name, quantity in quantities.items()}
     centre = solution.centre_of_mass()
     return contract.Vibration(
         about=axis,
@@ -55,7 +55,7 @@ def vibration(solution: Solution) -> contract.Vibration | None:
         crank=crank,
         turns=turns,
         order=[k / turns for k in range(1, HIGHEST * turns + 1)],
-        harmonics={name: one for name, one in found.items() if one is not None},
+        harmonics={name: orders for name, orders in harmonics.items() if orders is not None},
     )
 
 
@@ -79,16 +79,16 @@ def _axis(solution: Solution, crank: str) -> tuple[float, float]:
 
 def _harmonics(solution: Solution, crank: str, turns: int, unit: str, values: np.ndarray) -> contract.Harmonics | None:
     """None of what has too few rows for the orders."""
-    found = solution.orders(values, crank, turns)
+    orders = solution.orders(values, crank, turns)
     count = HIGHEST * turns
-    if len(found.order) < count:
+    if len(orders.order) < count:
         return None
-    amplitude, phase = (one[:count].reshape(count, -1).T for one in (found.amplitude, found.phase))
+    amplitude, phase = (series[:count].reshape(count, -1).T for series in (orders.amplitude, orders.phase))
     return contract.Harmonics(
         unit=unit,
-        mean=np.atleast_1d(found.mean).tolist(),
+        mean=np.atleast_1d(orders.mean).tolist(),
         amplitude=amplitude.tolist(),
         phase=phase.tolist(),
-        forward=np.abs(found.forward[:count]).tolist(),
-        backward=np.abs(found.backward[:count]).tolist(),
+        forward=np.abs(orders.forward[:count]).tolist(),
+        backward=np.abs(orders.backward[:count]).tolist(),
     )

@@ -40,7 +40,7 @@ def encoded(value: Any) -> bytes:
 def read_report(answer: Any, keys: Sequence[str], needed: Collection[str], most: int) -> Report:
     """The report on the orders ``keys``, none of whose results has more than ``most`` bytes.
 
-    ``needed`` are the contents that may be asked for. Raises WrongAnswer for one that is malformed or too large, tells
+    ``needed`` are the contents that may be asked for. Raises WrongAnswer for one that is malformed or too large, speaks
     of other orders or contents, or leaves an order out without a reason.
     """
     refuse_large(len(answer) if isinstance(answer, bytes) else 0, len(keys) * most + AROUND)

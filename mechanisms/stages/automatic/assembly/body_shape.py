@@ -56,7 +56,7 @@ def _outermost(corners: list[int], eyes: list[PlacedEye]) -> list[int]:
     """Those corners whose eyes neither another eye nor the hull round the others holds already, in their order."""
     circles = {k: (eyes[k][0], eyes[k][1], eyes[k][2].radius) for k in corners}
     for k in corners:
-        if any(hull_holds([one], circles[k]) for other, one in circles.items() if other != k):
+        if any(hull_holds([circle], circles[k]) for other, circle in circles.items() if other != k):
             del circles[k]
     for k in list(circles):  # a hull is one of circles of which none holds another
         others = [circle for other, circle in circles.items() if other != k]

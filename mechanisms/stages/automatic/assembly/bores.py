@@ -26,12 +26,12 @@ def refuse_meeting_bores(plan: Plan) -> None:
             apart = math.hypot(first[0] - second[0], first[1] - second[1])
             least = (first[2] + second[2]) / 2 + WALL
             if ONE < apart < least:
-                one, other = (_what(plan, body, *place[:2]) for place in (first, second))
+                this, other = (_what(plan, body, *place[:2]) for place in (first, second))
                 scale = layout.sizes.scale
                 raise UserError(
-                    f"{layout.m.name}: on '{body}' {one} and {other} are {apart * scale:.3g} mm apart, and their bores "
-                    f"of {first[2] * scale:.3g} and {second[2] * scale:.3g} mm need {least * scale:.3g} mm; move one "
-                    f"of them, or shape '{body}' by hand in mechanisms/{layout.m.name}/parts.py"
+                    f"{layout.m.name}: on '{body}' {this} and {other} are {apart * scale:.3g} mm apart, and their "
+                    f"bores of {first[2] * scale:.3g} and {second[2] * scale:.3g} mm need {least * scale:.3g} mm; move "
+                    f"one of them, or shape '{body}' by hand in mechanisms/{layout.m.name}/parts.py"
                 )
 
 

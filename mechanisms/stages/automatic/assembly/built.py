@@ -72,9 +72,9 @@ def _plate(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
 
 def _geared(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
     """The plate of a body with teeth: a wheel that carries its eyes, or a wheel and a plate round its eyes."""
-    eyes, one = plan.eyes.get(body, []), plan.wheels[body]
-    wheel, holes = shape_of(one, thickness, [(x - one.x, y - one.y, eye) for x, y, eye in eyes])
-    wheel = placed(wheel, one.x, one.y)
+    eyes, own_wheel = plan.eyes.get(body, []), plan.wheels[body]
+    wheel, holes = shape_of(own_wheel, thickness, [(x - own_wheel.x, y - own_wheel.y, eye) for x, y, eye in eyes])
+    wheel = placed(wheel, own_wheel.x, own_wheel.y)
     for plate in plan.plates.get(body, []):
         wheel, holes = wheel.union(plate.shape), holes + plate.through_holes
     if not plan.layout.anchors[body]:

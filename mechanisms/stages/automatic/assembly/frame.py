@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 PLATE, FOOT_HEIGHT = 12.0, 3.0
 MARGIN = (48.0, 40.0)
-"""Of the plate beyond the places where something stands (rmm)."""
+"""Margins of the plate beyond the places where something stands (rmm)."""
 SLIM = (42.0, 36.0)
-"""Of one on a stand, whose corners carry no screws."""
+"""Margins of a plate on a stand, whose corners carry no screws."""
 INSET = 12.0
-"""Of the screws at the corners."""
+"""Inset of the screws at the corners."""
 LONGEST_RULE = 420.0
 DIAL = 22.5
 MOST_LETTERS = 3
@@ -39,11 +39,11 @@ def base(plan: Plan, engraved_too: bool = True) -> list[Solid]:
     """The plate, the ground's main piece, ``engraved_too`` unless nobody is to see it; screws and feet, or spacers to a
     wall, where it is on no stand. Nothing where the ground itself is all that one needs.
     """
-    found = back_plate(plan)
-    if found is None:
+    back = back_plate(plan)
+    if back is None:
         return []
-    upright, (x0, y0, x1, y1) = Upright.of(plan.mount), found.corners
-    bolts = [(x, y, 2 * radius, BOLT_HOLE) for x, y, radius in found.holes]
+    upright, (x0, y0, x1, y1) = Upright.of(plan.mount), back.corners
+    bolts = [(x, y, 2 * radius, BOLT_HOLE) for x, y, radius in back.holes]
     rests = plan.mount.kind in ("desk", "wall")
     corners = [(x, y) for x in (x0 + INSET, x1 - INSET) for y in (y0 + INSET, y1 - INSET)] if rests else []
     screw = _corner_screw(plan.layout.sizes)
@@ -73,7 +73,7 @@ def back_plate(plan: Plan) -> BackPlate | None:
 
 @dataclass(frozen=True)
 class _Screw:
-    """Of a corner (rmm): it goes through the plate and its foot. ``room``: diameter and depth of its counterbore."""
+    """Screw of a corner (rmm), through the plate and its foot. ``room``: diameter and depth of its counterbore."""
 
     shape: cq.Workplane
     diameter: float
@@ -96,7 +96,7 @@ def _corner_screw(sizes: Sizes) -> _Screw:
 
 
 def _extent(plan: Plan, upright: Upright) -> tuple[float, float, float, float]:
-    """Of the plate: round all feet; without any, under what moves; and as far as one wishes."""
+    """Extent of the plate: round all feet; without any, under what moves; and as far as one wishes."""
     if plan.feet:
         places = np.array([[stand.x, stand.y] for stand in plan.feet])
     else:

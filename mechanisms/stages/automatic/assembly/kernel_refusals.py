@@ -1,4 +1,4 @@
-"""What the CAD kernel cannot make of parts by themselves is a refusal that names it, no traceback."""
+"""What the CAD kernel cannot make of automatic parts is a refusal that names it, no traceback."""
 
 from __future__ import annotations
 

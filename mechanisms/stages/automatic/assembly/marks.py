@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 DEPTH = 0.6
 WIDTH = 0.2
-"""Of a stroke, in heights of the letters."""
+"""Width of a stroke, in heights of the letters."""
 LEAST = 0.99
 """How much of a word must be on the plate."""
 

@@ -92,7 +92,7 @@ def yoke_shape(eyes: list[PlacedEye], ends: list[tuple[float, float]], thickness
     local = [
         (float(away @ across), float(away @ up), eye) for x, y, eye in others for away in [np.array([x, y]) - middle]
     ]
-    local.sort(key=lambda one: one[0])
+    local.sort(key=lambda place: place[0])
     wall = min(walls[0][2].radius, walls[1][2].radius)
     yoke = _Yoke(half, wall, [(x, y, eye.radius) for x, y, eye in local])
     if not yoke.has_room:

@@ -52,7 +52,7 @@ class Cam:
     outline: np.ndarray
     """(n, 2) in the frame of the cam's body."""
     centre: tuple[float, float]
-    """Of the cam."""
+    """Centre of the cam."""
     base: float
     """Radius of its base circle."""
     at: tuple[float, float, float]
@@ -89,10 +89,10 @@ class Cam:
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """The cam's hub; an eye that holds the roller's pin, or a plate behind the shoe."""
         eye = layout.sizes.eye
-        found = [Anchor(self.cam, *self.centre, eye)]
+        anchors = [Anchor(self.cam, *self.centre, eye)]
         if self.roller is not None:
-            return [*found, Anchor(self.follower, *self.at[:2], eye)]
-        return [*found, *(Anchor(self.follower, x, y, SHOE + 1.0) for x, y in self.shoe())]
+            return [*anchors, Anchor(self.follower, *self.at[:2], eye)]
+        return [*anchors, *(Anchor(self.follower, x, y, SHOE + 1.0) for x, y in self.shoe())]
 
     def items(self, layout: Layout) -> Iterable[Item]:
         """The cam, and what touches it at its height."""

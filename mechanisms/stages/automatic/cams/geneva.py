@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.layout import Layout
 
 WALL = 4.0
-"""Of the wheel's tips beside the slots (rmm), at least."""
+"""Wall of the wheel's tips beside the slots (rmm), at least."""
 HUB, PIN_CIRCLE, NEAR = 25.0, 28.0, 14.5
 """Least distances (rmm): the bottom of the slots from the wheel's axis, pin from crank, wheel from the crank's axis."""
 LOOSE = 1.5
@@ -51,7 +51,7 @@ class GenevaDrive:
         return self.wheel
 
     def face_of(self, body: str, layout: Layout) -> Face | None:
-        """Of the wheel: within its slots."""
+        """Face of the wheel: within its slots."""
         bottom = self.shape.bottom
         return Face(*self.wheel_at[:2], bottom - 1.0) if body == self.wheel else None
 
@@ -70,8 +70,8 @@ class GenevaDrive:
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """Eyes for the axes, and one that holds the pin."""
         eye = layout.sizes.eye
-        found = [Anchor(body, at[0], at[1], eye) for body, at in self._ends()]
-        return [*found, Anchor(self.crank, *self.pin.pin_at, eye)]
+        anchors = [Anchor(body, at[0], at[1], eye) for body, at in self._ends()]
+        return [*anchors, Anchor(self.crank, *self.pin.pin_at, eye)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
         """The wheel, the pin through it, the locking disc; and a rule: the crank, whose disc stands in the wheel's
@@ -99,7 +99,7 @@ class GenevaDrive:
 @kind("geneva")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
     """One for each joint."""
-    found: list[Feature] = []
+    drives: list[Feature] = []
     for joint in joints:
         refuse_ground(m, joint, joint.i.body.name, joint.j.body.name)
         sizes = layout.sizes
@@ -113,8 +113,8 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
             wall=WALL,
             gap=LOOSE * sizes.pivot.fit.running,
         )
-        found.append(GenevaDrive(joint.name, joint.i.body.name, joint.j.body.name, ends[0], ends[1], shape))
-    return found
+        drives.append(GenevaDrive(joint.name, joint.i.body.name, joint.j.body.name, ends[0], ends[1], shape))
+    return drives
 
 
 @extent("geneva")

@@ -40,7 +40,7 @@ class Extent:
 
 
 type ExtentOf = Callable[[Any, Solution], Extent]
-"""Of a joint, a contact or a force."""
+"""Extent of a joint, a contact or a force."""
 
 EXTENTS: dict[str, ExtentOf] = {}
 
@@ -78,8 +78,8 @@ def extents(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) ->
             for marker, radius in own.radii:
                 round_it = [(marker.x + radius * u, marker.y + radius * v) for u, v in _ROUND]
                 places.setdefault(marker.body.name, []).extend(round_it)
-    for one in stretching(m, left_out):
-        for marker in (one.i, one.j):
+    for element in stretching(m, left_out):
+        for marker in (element.i, element.j):
             places.setdefault(marker.body.name, []).append((marker.x, marker.y))
             studs.setdefault(marker.body.name, []).append((marker.x, marker.y))
     jointed = {name for joint in m.joints.values() for name in joint.bodies}
@@ -101,10 +101,10 @@ def extents(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) ->
 
 def stretching(m: Mechanism, left_out: Collection[str] = ()) -> list[Force | Joint]:
     """Forces, ropes and drivers between two points that have parts at both ends."""
-    found: list[Force | Joint] = [force for force in m.forces.values() if force.kind.name in STRETCHING]
-    found += [contact for contact in m.contacts.values() if contact.kind.name == ROPE]
-    found += [driver for driver in m.drivers.values() if driver.kind.name == LINEAR]
-    return [one for one in found if not any(body in left_out for body in one.bodies)]
+    elements: list[Force | Joint] = [force for force in m.forces.values() if force.kind.name in STRETCHING]
+    elements += [contact for contact in m.contacts.values() if contact.kind.name == ROPE]
+    elements += [driver for driver in m.drivers.values() if driver.kind.name == LINEAR]
+    return [element for element in elements if not any(body in left_out for body in element.bodies)]
 
 
 _ROUND = [(np.cos(a), np.sin(a)) for a in np.linspace(0.0, 2 * np.pi, 16, endpoint=False)]
@@ -121,16 +121,16 @@ def _swept(solution: Solution, body: str, at: np.ndarray) -> np.ndarray:
 
 
 def distance(joint: Joint, solution: Solution) -> float:
-    """Of a joint's two markers at the start (m)."""
+    """Distance between a joint's two markers at the start (m)."""
     first, second = (_swept(solution, k.body.name, np.array([[k.x, k.y]]))[0] for k in (joint.i, joint.j))
     return float(np.hypot(*(second - first)))
 
 
 def rods_of(m: Mechanism, left_out: Collection[str] = ()) -> dict[str, Joint]:
     """By name, which is that of the joint, but for joints whose name a body has; without those that lack an end."""
-    found: dict[str, Joint] = {}
+    rods: dict[str, Joint] = {}
     for name, joint in m.joints.items():
         rod = f"rod_{name}" if name in m.bodies else name
         if joint.kind.name == ROD and rod not in left_out and not any(body in left_out for body in joint.bodies):
-            found[rod] = joint
-    return found
+            rods[rod] = joint
+    return rods

@@ -19,7 +19,7 @@ type Gather[Thing] = Callable[[Mechanism, list[Thing], Layout], Sequence[Feature
 """The features of all joints (forces, contacts) of one kind."""
 
 KINDS: dict[str, Gather[Joint]] = {}
-"""By the name of a joint's kind. A joint whose kind is not here has no parts by itself."""
+"""By the name of a joint's kind. A joint whose kind is not here has no automatic parts."""
 FORCE_KINDS: dict[str, Gather[Force]] = {}
 """By the name of a force's kind. A force whose kind is not here needs no part."""
 CONTACT_KINDS: dict[str, Gather[Joint]] = {}

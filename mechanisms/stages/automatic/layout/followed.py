@@ -77,11 +77,11 @@ def _runs(numbers: np.ndarray) -> list[np.ndarray]:
 def _followed_from(start: int, path: np.ndarray, seen: np.ndarray, closed: bool, step: float) -> np.ndarray:
     count = len(path) - 1 if closed else len(path)
     moves = np.hypot(*np.diff(seen, axis=0, prepend=seen[:1]).T)
-    at, found = start, np.zeros(len(seen), dtype=int)
+    at, indices = start, np.zeros(len(seen), dtype=int)
     for k, (place, move) in enumerate(zip(seen, moves, strict=True)):
         reach = min(int(WINDOW * (move / step + 1.0)), count // 2)
         near = np.arange(at - reach, at + reach + 1)
         near = near if closed else near[(near >= 0) & (near < count)]
         at = int(near[np.argmin(((path[near % count] - place) ** 2).sum(axis=1))])
-        found[k] = at
-    return found
+        indices[k] = at
+    return indices

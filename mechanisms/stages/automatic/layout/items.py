@@ -85,7 +85,7 @@ class PinReach:
 class PivotReach:
     """A pin on ground that stands on the base (``choice`` 0), or hangs from a bridge above all layers (1).
 
-    Of pivots that may do either, one that is ``driven`` stands. One that is ``flush`` may end in its body's plate.
+    Among pivots that may do either, one that is ``driven`` stands. One that is ``flush`` may end in its body's plate.
     """
 
     bodies: tuple[str, ...]
@@ -124,7 +124,7 @@ class Item:
     spared: bool = True
     """Whether items that spare its body spare it, too."""
     stands: str = ""
-    """Of what stands on ground: a word; what has another such word must keep clear of it."""
+    """A word for what stands on ground; what has another such word must keep clear of it."""
 
 
 def choice_of(reach: AnyReach) -> str | None:

@@ -30,7 +30,7 @@ class Springs:
     above: bool = True
     """Whether they have to lie over both of their bodies."""
     left_out: frozenset[str] = frozenset()
-    found: list[str] = field(default_factory=list, compare=False)
+    names: list[str] = field(default_factory=list, compare=False)
     """Names of the others, once features are gathered."""
 
 
@@ -128,10 +128,10 @@ class Layout:
     @cached_property
     def anchors(self) -> dict[str, list[Anchor]]:
         """By moving body, without repeats; the largest radius where two are at one place."""
-        found: dict[str, list[Anchor]] = {name: [] for name in self.moving}
+        by_body: dict[str, list[Anchor]] = {name: [] for name in self.moving}
         for feature in self.features:
             for anchor in feature.anchors(self):
-                places = found.get(anchor.body)
+                places = by_body.get(anchor.body)
                 if places is None:
                     continue
                 same = [i for i, a in enumerate(places) if np.hypot(a.x - anchor.x, a.y - anchor.y) < 0.01]
@@ -139,7 +139,7 @@ class Layout:
                     places.append(anchor)
                 elif anchor.radius > places[same[0]].radius:
                     places[same[0]] = anchor
-        return {body: [a for a in places if not self._on_wheel(a)] for body, places in found.items()}
+        return {body: [a for a in places if not self._on_wheel(a)] for body, places in by_body.items()}
 
     def wheel_at(self, x: float, y: float) -> Carrier | None:
         """The wheel of ground about a place on it (rmm): what turns there stands on that wheel."""
@@ -188,7 +188,7 @@ class Layout:
     @cached_property
     def conflicts(self) -> list[tuple[int, int]]:
         """Pairs of items of different bodies that meet in the plane at some time: they need different heights."""
-        items, found = self.items, []
+        items, pairs = self.items, []
         circles = [item.shape.reach for item in items]
         radii = np.array([radius for _, radius in circles])
         middles = [placed(c, self.poses[item.body])[:, 0] for (c, _), item in zip(circles, items, strict=True)]
@@ -197,20 +197,20 @@ class Layout:
             for i in may:
                 apart = float(((middles[i] - middles[j]) ** 2).sum(axis=1).min()) ** 0.5
                 if apart - radii[i] - radii[j] < self.sizes.room and self.gap(items[i], second)[0] < self.sizes.room:
-                    found.append((i, j))
-        return found
+                    pairs.append((i, j))
+        return pairs
 
     def problem(self, fixed: Mapping[str, int] | None = None, hanging: frozenset[str] = frozenset()) -> Problem:
         """What the search for layers is asked."""
         between = [feature.order for feature in self.features if getattr(feature, "order", None)]
-        together = [*self.together, *((one.layer, mate.layer) for one, mate in self.meshing)]
+        together = [*self.together, *((wheel.layer, mate.layer) for wheel, mate in self.meshing)]
         return Problem(self.layered, self.items, self.conflicts, fixed or {}, together, hanging, between)
 
     def with_flush_pivots(self) -> Layout:
         """The same with other pivots, and as they meet the same in the plane, with all that was found of that."""
-        found = replace(self, flush=True, features=list(self.features))
-        found.__dict__["conflicts"] = self.conflicts
-        return found
+        flushed = replace(self, flush=True, features=list(self.features))
+        flushed.__dict__["conflicts"] = self.conflicts
+        return flushed
 
     def with_far_posts(self) -> Layout:
         """The same with posts of slotted plates out of the way of what carries their pins, and with flush pivots."""

@@ -17,27 +17,27 @@ type Limits = tuple[float | None, float | None]
 
 
 def turning(joint: Joint, m: Mechanism) -> Limits:
-    """Of a revolute joint (rad), as the angle of its second body against its first."""
-    own, found = joint.j.angle - joint.i.angle, []
+    """Limits of a revolute joint (rad), as the angle of its second body against its first."""
+    own, ends = joint.j.angle - joint.i.angle, []
     lower, upper = joint.params.get("limits") or (None, None)
-    found += [(lower - own, False)] if lower is not None else []
-    found += [(upper - own, True)] if upper is not None else []
+    ends += [(lower - own, False)] if lower is not None else []
+    ends += [(upper - own, True)] if upper is not None else []
     for stop in m.contacts.values():
         if stop.kind.name != "angle_stop" or set(stop.bodies) != set(joint.bodies):
             continue
         at, is_upper = stop.params["at"] - (stop.j.angle - stop.i.angle), stop.params["upper"]
-        found.append((at, is_upper) if stop.bodies == joint.bodies else (-at, not is_upper))
-    return _tightest(found)
+        ends.append((at, is_upper) if stop.bodies == joint.bodies else (-at, not is_upper))
+    return _tightest(ends)
 
 
 def sliding(joint: Joint, m: Mechanism) -> Limits:
-    """Of a prismatic joint or a pin in a slot (m), along the x axis of its first marker."""
+    """Limits of a prismatic joint or a pin in a slot (m), along the x axis of its first marker."""
     lower, upper = joint.params.get("limits") or (None, None)
-    found = [(end, is_upper) for end, is_upper in ((lower, False), (upper, True)) if end is not None]
+    ends = [(end, is_upper) for end, is_upper in ((lower, False), (upper, True)) if end is not None]
     for stop in m.contacts.values():
         if stop.kind.name == "coordinate_stop" and _is_same(stop, joint):
-            found.append((stop.params["at"], stop.params["upper"]))
-    return _tightest(found)
+            ends.append((stop.params["at"], stop.params["upper"]))
+    return _tightest(ends)
 
 
 def _tightest(ends: list[tuple[float, bool]]) -> Limits:

@@ -21,7 +21,7 @@ def poses_of(solution: Solution, to_length: float) -> dict[str, np.ndarray]:
     Between outputs they follow the cubic through places and velocities, except where a jump makes two times equal.
     """
     t, parts = solution.t, _parts(solution)
-    found = {}
+    poses = {}
     for name in solution.mechanism.bodies:
         if name == "ground":
             continue
@@ -30,10 +30,10 @@ def poses_of(solution: Solution, to_length: float) -> dict[str, np.ndarray]:
         rate = np.column_stack([body.vx, body.vy, body.omega])
         fine = _between(t, pose, rate, parts)
         fine[:, :2] *= to_length
-        found[name] = fine
-    count = len(next(iter(found.values()))) if found else 1
-    found["ground"] = np.zeros((count, 3))
-    return found
+        poses[name] = fine
+    count = len(next(iter(poses.values()))) if poses else 1
+    poses["ground"] = np.zeros((count, 3))
+    return poses
 
 
 def times_of(solution: Solution) -> np.ndarray:

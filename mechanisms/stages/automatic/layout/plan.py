@@ -130,9 +130,9 @@ class Plan:
         name = re.sub(r"\W", "_", wish, flags=re.ASCII)
         if not name[:1].isalpha():
             name = f"part_{name}"
-        found, number = name, 1
-        while found.lower() in self.names:
+        free, number = name, 1
+        while free.lower() in self.names:
             number += 1
-            found = f"{name}_{number}"
-        self.names.add(found.lower())
-        return found
+            free = f"{name}_{number}"
+        self.names.add(free.lower())
+        return free

@@ -79,7 +79,7 @@ def _plainer(chain: list[tuple[float, float]], area: float) -> list[tuple[float,
     for corner, after in pairwise(chain[1:]):
         least = min(math.dist(kept[-1], after) * FLAT, area)
         dropped.append(corner)
-        if any(_cross(kept[-1], one, after) > least for one in dropped):
+        if any(_cross(kept[-1], skipped, after) > least for skipped in dropped):
             kept.append(corner)
             dropped = []
     return [*kept, chain[-1]]
@@ -103,18 +103,18 @@ def least_gap(
     for chosen in (near[::COARSE], near):
         a = placed(first.core_at(chosen), poses[0][chosen])
         b = placed(second.core_at(chosen), poses[1][chosen])
-        found = core_gaps(a, b) - first.radius - second.radius
-        at = int(np.argmin(found))
-        if found[at] <= enough:
+        exact = core_gaps(a, b) - first.radius - second.radius
+        at = int(np.argmin(exact))
+        if exact[at] <= enough:
             break
-    return float(found[at]), int(chosen[at])
+    return float(exact[at]), int(chosen[at])
 
 
 def core_gaps(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """(T,): distances of two convex polygons of points (T, n, 2) and (T, m, 2); 0 where they overlap."""
-    found = np.minimum(_corners_to_edges(a, b), _corners_to_edges(b, a))
+    gaps = np.minimum(_corners_to_edges(a, b), _corners_to_edges(b, a))
     meet = _inside(a[:, 0], b) | _inside(b[:, 0], a) | _cross_each_other(a, b)
-    return np.where(meet, 0.0, found)
+    return np.where(meet, 0.0, gaps)
 
 
 def _edges(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -150,10 +150,10 @@ def _cross_each_other(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 def _parts(p: np.ndarray, q: np.ndarray, r: np.ndarray, s: np.ndarray) -> np.ndarray:
     """Whether the line through p and q has r and s on either side, and neither on it but for rounding."""
-    one, other = _turn(q - p, r - p), _turn(q - p, s - p)
+    to_r, to_s = _turn(q - p, r - p), _turn(q - p, s - p)
     reach = np.abs(r - p).sum(axis=-1) + np.abs(s - p).sum(axis=-1)
     noise = ON_A_LINE * np.abs(q - p).sum(axis=-1) * reach
-    return (one * other < 0) & (np.minimum(np.abs(one), np.abs(other)) > noise)
+    return (to_r * to_s < 0) & (np.minimum(np.abs(to_r), np.abs(to_s)) > noise)
 
 
 def _turn(u: np.ndarray, v: np.ndarray) -> np.ndarray:

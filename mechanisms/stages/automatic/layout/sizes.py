@@ -50,7 +50,7 @@ STANDARD = (
 )
 """Diameters of pins that there are (mm), after ISO 2338; a larger one is a whole number of 50 mm."""
 THICKEST_SCREW = 4.0
-"""Of a pedestal's flange (rmm)."""
+"""Largest screw of a pedestal's flange (rmm)."""
 LEAST_LINK = 2.75
 """The shortest distance of two pins of one body, in diameters of a pin."""
 OVERALL = 20.0
@@ -59,7 +59,7 @@ OVERALL = 20.0
 COARSEST = 0.13
 """Tolerance of meshes, at most so much of the clearance of pins."""
 THINNEST = 0.5
-"""Of the pins that are tried, in pins of the wished size."""
+"""Thinnest of the pins that are tried, in pins of the wished size."""
 CLEAR = 0.6
 """Between what touches by design, such as a cam and its roller, or stops, in running fits."""
 
@@ -71,7 +71,7 @@ class Sizes:
     scale: float
     pivot: Pivot
     thickness: float = 7.0
-    """Of links and plates."""
+    """Thickness of links and plates."""
     eye: float = 13.0
     """Outer radius of an eye."""
     stylus_eye: float = 7.0

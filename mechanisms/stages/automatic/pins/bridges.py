@@ -50,7 +50,7 @@ class Bridge:
 
     @property
     def name(self) -> str:
-        """Of its pivots."""
+        """Names of its pivots."""
         return "_".join(pin.name for pin in self.pins)
 
     @property
@@ -82,19 +82,19 @@ def bridges_over(layout: Layout, levels: Mapping[str, int]) -> list[Feature]:
     """For all pivots that hang by the choices in ``levels``. Raises UserError where a bridge has no place."""
     waiting = [pin for pin in layout.features if isinstance(pin, Pin) and pin.on_ground and levels[pin.choice] == 1]
     moving, still = _points(layout, waiting)
-    found: list[Bridge] = []
+    bridges: list[Bridge] = []
     while waiting:
         beams = _candidates(waiting, moving, still)
-        fitting = [beam for beam in beams if _has_room(beam, found, waiting)]
+        fitting = [beam for beam in beams if _has_room(beam, bridges, waiting)]
         if not fitting:
             raise UserError(
                 f"{layout.m.name}: the pivot '{waiting[0].name}' must hang from a bridge, because links sweep over it "
                 "from every side, and there is no place for one between the bridges of "
-                f"{', '.join(bridge.name for bridge in found)}; move pivots apart, or shape them by hand in parts.py"
+                f"{', '.join(bridge.name for bridge in bridges)}; move pivots apart, or shape them by hand in parts.py"
             )
-        found.append(min(fitting, key=_cost))
-        waiting = [pin for pin in waiting if pin not in found[-1].pins]
-    return list(found)
+        bridges.append(min(fitting, key=_cost))
+        waiting = [pin for pin in waiting if pin not in bridges[-1].pins]
+    return list(bridges)
 
 
 def _cost(bridge: Bridge) -> float:
@@ -131,15 +131,15 @@ def _candidates(waiting: Sequence[Pin], moving: np.ndarray, still: np.ndarray) -
     """Beams over the first of the pivots in all directions, and over it and another one."""
     first, *others = waiting
     at = np.array(first.places["ground"])
-    found = []
+    beams = []
     for k in range(WAYS):
         way = np.array([math.cos(math.pi * k / WAYS), math.sin(math.pi * k / WAYS)])
-        found.append(Bridge((_post(at, -way, moving, still), _post(at, way, moving, still)), (first,)))
+        beams.append(Bridge((_post(at, -way, moving, still), _post(at, way, moving, still)), (first,)))
     for other in others:
         there = np.array(other.places["ground"])
         way = (there - at) / max(float(np.hypot(*(there - at))), 1e-9)
-        found.append(Bridge((_post(at, -way, moving, still), _post(there, way, moving, still)), (first, other)))
-    return found
+        beams.append(Bridge((_post(at, -way, moving, still), _post(there, way, moving, still)), (first, other)))
+    return beams
 
 
 def _post(at: np.ndarray, way: np.ndarray, moving: np.ndarray, still: np.ndarray) -> tuple[float, float]:

@@ -37,7 +37,7 @@ class Pin:
     """One axis: the place on each body that turns about it (rmm)."""
 
     name: str
-    """Of its first joint; of a rod alone its name and that of the end, 1 or 2."""
+    """Name of its first joint; a rod alone gives its name and that of the end, 1 or 2."""
     m: Mechanism
     places: dict[str, tuple[float, float]]
     webs: tuple[str, str] | None = None
@@ -136,8 +136,8 @@ class Pin:
 @kind("revolute")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
     """Joints by their pins: those with a common place on a body are one."""
-    found = [(joint.name, {k.body.name: layout.place(k) for k in (joint.i, joint.j)}) for joint in joints]
-    return _pins(m, [*found, *_rod_ends(layout)])
+    named = [(joint.name, {k.body.name: layout.place(k) for k in (joint.i, joint.j)}) for joint in joints]
+    return _pins(m, [*named, *_rod_ends(layout)])
 
 
 @kind(ROD)
@@ -156,11 +156,11 @@ def _rod_ends(layout: Layout) -> list[tuple[str, dict[str, tuple[float, float]]]
     ]
 
 
-def _pins(m: Mechanism, found: list[tuple[str, dict[str, tuple[float, float]]]]) -> list[Feature]:
-    """Of named joints with a place on two bodies each: those with a common place are one pin."""
-    ends = [at for _, at in found]
-    group = list(range(len(found)))
-    for j in range(len(found)):
+def _pins(m: Mechanism, named: list[tuple[str, dict[str, tuple[float, float]]]]) -> list[Feature]:
+    """Pins of named joints with a place on two bodies each: those with a common place are one pin."""
+    ends = [at for _, at in named]
+    group = list(range(len(named)))
+    for j in range(len(named)):
         for i in range(j):
             shared = ends[i].keys() & ends[j].keys()
             if group[i] != group[j] and any(_same(ends[i][body], ends[j][body]) for body in shared):
@@ -168,9 +168,9 @@ def _pins(m: Mechanism, found: list[tuple[str, dict[str, tuple[float, float]]]])
                 group = [new if g == old else g for g in group]
     pins: list[Feature] = []
     for g in dict.fromkeys(group):
-        members = [k for k in range(len(found)) if group[k] == g]
+        members = [k for k in range(len(named)) if group[k] == g]
         places = {body: place for k in members for body, place in ends[k].items()}
-        pins.append(Pin(found[members[0]][0], m, places))
+        pins.append(Pin(named[members[0]][0], m, places))
     return pins
 
 

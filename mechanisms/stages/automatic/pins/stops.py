@@ -54,9 +54,9 @@ class Stop:
     first: str
     second: str
     ends: tuple[tuple[str, Place], ...]
-    """Of the first body: "lower" or "upper", and where."""
+    """Stop pins of the first body: "lower" or "upper", and where."""
     nose: Place
-    """Of the second body."""
+    """Stop pin of the second body."""
 
     @property
     def whats(self) -> tuple[str, str]:
@@ -117,9 +117,9 @@ class Stop:
 
 
 def stops(m: Mechanism, features: list[Feature], layout: Layout) -> list[Feature]:
-    """Of all revolute joints with limits or stops; ``features`` are those of the joints."""
+    """Stops of all revolute joints with limits or stops; ``features`` are those of the joints."""
     taken = [anchor for feature in features for anchor in feature.anchors(layout)]
-    found: list[Feature] = []
+    stop_pins: list[Feature] = []
     for joint in m.joints.values():
         if joint.kind.pair != "pin" or layout.apart.intersection(joint.bodies):
             continue
@@ -142,7 +142,7 @@ def stops(m: Mechanism, features: list[Feature], layout: Layout) -> list[Feature
             for word, end, side in zip(("lower", "upper"), ends, (-1, 1), strict=True)
             if end is not None
         ]
-        found.append(
+        stop_pins.append(
             Stop(
                 joint.name,
                 first,
@@ -151,8 +151,8 @@ def stops(m: Mechanism, features: list[Feature], layout: Layout) -> list[Feature
                 _polar(layout.place(j), way),
             )
         )
-        layout.springs.found.append(joint.name)
-    return found
+        layout.springs.names.append(joint.name)
+    return stop_pins
 
 
 def _given(ends: limits.Limits) -> list[float]:

@@ -115,12 +115,12 @@ class Weld:
 @kind("weld")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
     """One for each joint; bolts and plates of two welded bodies touch."""
-    found: list[Feature] = []
+    welds: list[Feature] = []
     for joint in joints:
         first, second = ((k.body.name, *layout.place(k), k.angle) for k in (joint.i, joint.j))
         layout.pressing.add(frozenset((first[0], second[0])))
-        found.append(Weld(joint.name, (first, second)))
-    return found
+        welds.append(Weld(joint.name, (first, second)))
+    return welds
 
 
 def with_free_bolts(features: Sequence[Feature], layout: Layout) -> list[Feature]:
@@ -128,9 +128,9 @@ def with_free_bolts(features: Sequence[Feature], layout: Layout) -> list[Feature
 
     Raises UserError for a weld without such a place.
     """
-    found = [feature for feature in features if not isinstance(feature, Weld)]
+    kept = [feature for feature in features if not isinstance(feature, Weld)]
     for weld in (feature for feature in features if isinstance(feature, Weld)):
-        taken = {body: _taken(body, found, layout) for body, *_ in weld.ends}
+        taken = {body: _taken(body, kept, layout) for body, *_ in weld.ends}
         free = next((moved for moved in _moved(weld) if _is_free(moved, taken, layout)), None)
         if free is None:
             m, (first, second) = layout.m, (body for body, *_ in weld.ends)
@@ -139,8 +139,8 @@ def with_free_bolts(features: Sequence[Feature], layout: Layout) -> list[Feature
                 f"within {FARTHEST * layout.sizes.scale:.3g} mm beside the pins of both; move joints apart, make pins "
                 f"thinner (automatic(m, pin=...)), or write mechanisms/{m.name}/parts.py"
             )
-        found.append(free)
-    order = {feature.name: feature for feature in found if isinstance(feature, Weld)}
+        kept.append(free)
+    order = {feature.name: feature for feature in kept if isinstance(feature, Weld)}
     return [order[feature.name] if isinstance(feature, Weld) else feature for feature in features]
 
 

@@ -18,11 +18,11 @@ from shared.shapes.build import extruded
 from shared.shapes.polyline import distances, simplified
 
 THICK = 10.0
-"""Of a road under its surface, of a band, and of a wall (rmm)."""
+"""Thickness of a road under its surface, of a band, and of a wall (rmm)."""
 CHORD = 0.006
 """How far the facets of a surface may stray from it (rmm)."""
 PIECES = 48
-"""Of a road in the plane."""
+"""Pieces of a road in the plane."""
 LONGEST = 2.0
 """Mitre at a sharp corner, in the thickness."""
 SAME = 1e-6
@@ -69,9 +69,9 @@ def is_free(path: np.ndarray, feet: np.ndarray, centres: np.ndarray, radius: flo
     return is_simple(path, feet) and bool(distances(centres, others).min() >= radius)
 
 
-def is_clear(found: Band, path: np.ndarray, centres: np.ndarray, radius: float) -> bool:
+def is_clear(backing: Band, path: np.ndarray, centres: np.ndarray, radius: float) -> bool:
     """Whether a disc about ``centres`` (T, 2) that runs on a surface is clear of the other sides of the band there."""
-    return bool(distances(centres, np.vstack([path[-1:], found.back[::-1], path[:1]])).min() >= radius)
+    return bool(distances(centres, np.vstack([path[-1:], backing.back[::-1], path[:1]])).min() >= radius)
 
 
 def band(path: np.ndarray, thick: float = THICK) -> Band | None:

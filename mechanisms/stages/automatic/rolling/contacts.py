@@ -52,48 +52,48 @@ def rigid_lines(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feat
 @force_kind("tyre")
 def yielding(m: Mechanism, touches: list[Force], layout: Layout) -> list[Feature]:
     """Walls and roads, and what presses on them."""
-    found = _on_lines(m, [touch for touch in touches if "profile" not in touch.laws], layout)
+    features = _on_lines(m, [touch for touch in touches if "profile" not in touch.laws], layout)
     for touch in touches:
         profile = touch.laws.get("profile")
         if isinstance(profile, Curve) and _is_on_ground(touch):
-            found += _on_profile(m, touch, profile, layout)
-    return found
+            features += _on_profile(m, touch, profile, layout)
+    return features
 
 
 @contact_kind("rigid_terrain")
 def terrains(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature]:
     """Roads and what touches them; a closed curve of a moving body is a cam that pushes a roller."""
-    found: list[Feature] = []
+    features: list[Feature] = []
     for touch in touches:
         closed = touch.params["closed"]
         if _pushes(touch) and (touch.params["radius"] > 0 or _is_held(m, touch.j.body.name)):
-            found += pushing_cam(touch, layout)
+            features += pushing_cam(touch, layout)
         elif touch.j.body.name != "ground":
             path = on_body(curve_path(touch.params["points"], True), touch.i, layout) if closed else None
-            found += _on_road(m, touch, path, layout, closed)
-    return found
+            features += _on_road(m, touch, path, layout, closed)
+    return features
 
 
 @contact_kind("rigid_discs")
 def discs(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature]:
     """Two balls or discs of moving bodies, on one layer; rings round discs, and discs on ground, are tracks."""
-    found: list[Feature] = []
+    features: list[Feature] = []
     for touch in touches:
         if touch.params["inside"] or "ground" in touch.bodies:
-            found += _in_ring(m, touch, layout)
+            features += _in_ring(m, touch, layout)
             continue
         for marker, other, radius in ((touch.i, touch.j, "radius_i"), (touch.j, touch.i, "radius_j")):
             body, long = marker.body.name, max(layout.sizes.of_metres(touch.params[radius]), NOSE)
             look = _look(m, body, touch.params["friction"] > 0.0)
             part, new = round_at(layout, touch.name, body, layout.place(marker), long, look)
             part.meets.add(other.body.name)
-            found += [part] if new else []
+            features += [part] if new else []
         layout.together.append(touch.bodies)
-    return found
+    return features
 
 
 def _on_lines(m: Mechanism, touches: Sequence[Touch], layout: Layout) -> list[Feature]:
-    found: list[Feature] = []
+    features: list[Feature] = []
     lines: list[Line] = []
     for touch in touches:
         if touch.j.body.name == "ground":
@@ -104,16 +104,16 @@ def _on_lines(m: Mechanism, touches: Sequence[Touch], layout: Layout) -> list[Fe
         gap = (places - line.start) @ line.free - layout.sizes.of_metres(touch.params["radius"])
         part, new = _round(m, touch, layout, float(gap.min()))
         line.start = line.start - _set_back(touch, layout) * line.free
-        found += [part] if new else []
+        features += [part] if new else []
         if not _is_on_ground(touch):
             line.carry(part, places)
             ends = np.array(line.travel[0])
-            found.append(track(touch.name, touch.i.body.name, part, line.start + ends[:, None] * way, False))
+            features.append(track(touch.name, touch.i.body.name, part, line.start + ends[:, None] * way, False))
             continue
         line = next((other for other in lines if other.is_same(line)), line)
         lines += [] if line in lines else [line]
         line.carry(part, places)
-    return [*found, *roads(lines)]
+    return [*features, *roads(lines)]
 
 
 def _on_profile(m: Mechanism, touch: Force, profile: Curve, layout: Layout) -> list[Feature]:
@@ -156,12 +156,12 @@ def _on_road(
     whole = np.vstack([path, path[:1]]) if closed else path
     gap = distances(places, whole) - radius
     part, new = _round(m, touch, layout, float(gap.min()))
-    found, back, body = [part] if new else [], _set_back(touch, layout), touch.i.body.name
+    features, back, body = [part] if new else [], _set_back(touch, layout), touch.i.body.name
     if closed:
         path = with_room(path, back, touch, layout) if back > 0 else path
-        return [*found, track(touch.name, body, part, path, True)]
+        return [*features, track(touch.name, body, part, path, True)]
     road = touched_road(touch, part, path - back * _normals(path), places, layout)
-    return [*found, road if _is_on_ground(touch) else track(touch.name, body, part, road.path, False, road)]
+    return [*features, road if _is_on_ground(touch) else track(touch.name, body, part, road.path, False, road)]
 
 
 def _pushes(touch: Touch) -> bool:
@@ -188,7 +188,7 @@ def _round(m: Mechanism, touch: Touch, layout: Layout, gap: float) -> tuple[Roun
 
 
 def _look(m: Mechanism, body: str, turned: bool) -> Look:
-    """Of what touches without being a tyre."""
+    """Look of what touches without being a tyre."""
     if _is_held(m, body) or _feet(m, body) > 1:
         return "disc"
     return "wheel" if turned else "ball"

@@ -134,7 +134,7 @@ class Road:
         return along(self.name, self.rounds, np.vstack([ends[0], self.path, ends[1]]))
 
     def _wall(self, low: float, high: float) -> cq.Workplane:
-        """Of flat facets as long as its bends allow: of a spline's many short ones the proof of clearance is long."""
+        """Wall of flat facets as long as its bends allow: a spline's many short ones make the clearance proof slow."""
         if self.band is not None:
             return self.band.wall(low, high)
         return extruded(polygon(np.vstack([simplified(self.path, CHORD), self.feet])), high - low, low)
@@ -152,14 +152,14 @@ def backed(name: str, part: Round, path: np.ndarray, centres: np.ndarray, radius
     road = along(name, [part], path)
     if is_free(path, road.feet, centres, radius):
         return road
-    found = banded(name, [part], path)
-    return found if found and found.band and is_clear(found.band, path, centres, radius) else None
+    even = banded(name, [part], path)
+    return even if even and even.band and is_clear(even.band, path, centres, radius) else None
 
 
 def banded(name: str, rounds: Sequence[Round], path: np.ndarray) -> Road | None:
     """A road of even thickness; None where that is in several parts."""
-    found = band(path)
-    return None if found is None else Road(name, rounds, path, found.back[[-1, 0]], found)
+    backing = band(path)
+    return None if backing is None else Road(name, rounds, path, backing.back[[-1, 0]], backing)
 
 
 def runs_on_ground(layout: Layout) -> bool:

@@ -35,7 +35,7 @@ LEAST = 17.0
 @kind("rolling_disc")
 def on_lines(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
     """A wheel and a road for each joint."""
-    found: list[Feature] = []
+    features: list[Feature] = []
     for joint in joints:
         _refuse(m, joint)
         start, angle = np.array(layout.place(joint.i)), joint.i.angle
@@ -43,33 +43,33 @@ def on_lines(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]
         travel = (layout.seen(joint.j.body.name, layout.place(joint.j), joint.i.body.name) - start) @ way
         beyond = BEYOND * layout.sizes.of_metres(joint.params["radius"])
         ends = np.array([travel.min() - beyond, travel.max() + beyond])
-        found += _rolling(joint, start + ends[:, None] * way, False, layout)
-    return found
+        features += _rolling(joint, start + ends[:, None] * way, False, layout)
+    return features
 
 
 @kind("rolling_on_curve")
 def on_curves(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
     """A wheel and a road for each joint."""
-    found: list[Feature] = []
+    features: list[Feature] = []
     for joint in joints:
         _refuse(m, joint)
         closed = bool(joint.params["closed"])
         path = on_body(curve_path(joint.params["points"], True), joint.i, layout) if closed else None
-        found += _rolling(joint, path, closed, layout)
-    return found
+        features += _rolling(joint, path, closed, layout)
+    return features
 
 
 def _rolling(joint: Joint, path: np.ndarray | None, closed: bool, layout: Layout) -> list[Feature]:
     """Wheel and road; without a ``path`` the road is along the joint's open curve."""
     radius = layout.sizes.of_metres(joint.params["radius"])
     wheel, new = round_at(layout, joint.name, joint.j.body.name, layout.place(joint.j), radius, "wheel")
-    body, found = joint.i.body.name, [wheel] if new else []
+    body, features = joint.i.body.name, [wheel] if new else []
     if path is not None and closed:
-        return [*found, track(joint.name, body, wheel, path, True)]
+        return [*features, track(joint.name, body, wheel, path, True)]
     road = rolled_road(joint, wheel, layout) if path is None else along(joint.name, [wheel], path)
     if body == "ground":
-        return [*found, road]
-    return [*found, track(joint.name, body, wheel, road.path, False, road)]
+        return [*features, road]
+    return [*features, track(joint.name, body, wheel, road.path, False, road)]
 
 
 def _refuse(m: Mechanism, joint: Joint) -> None:

@@ -29,7 +29,7 @@ HUB = 0.3
 WITHIN = 0.8
 """Radius of the end of a plate within a disc, in the disc's."""
 TYRE = 0.16
-"""Of the wheel's radius; 5 rmm at most, or as much as it is pressed in."""
+"""Thickness of a tyre as a part of the wheel's radius; 5 rmm at most, or as much as it is pressed in."""
 RIM = 1.0
 """What stays of the wheel between its hub and a tyre that is pressed in far (rmm)."""
 OVER = 0.4

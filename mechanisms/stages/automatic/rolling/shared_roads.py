@@ -16,16 +16,16 @@ SAME = 0.03
 
 def with_shared_roads(features: Sequence[Feature]) -> list[Feature]:
     """The features, the roads of one surface merged into the first of them."""
-    found: list[Feature] = []
+    shared: list[Feature] = []
     for feature in features:
-        for k, other in enumerate(found):
+        for k, other in enumerate(shared):
             both = _both(other, feature) if isinstance(other, Road) and isinstance(feature, Road) else None
             if both is not None:
-                found[k] = both
+                shared[k] = both
                 break
         else:
-            found.append(feature)
-    return found
+            shared.append(feature)
+    return shared
 
 
 def _both(first: Road, second: Road) -> Road | None:

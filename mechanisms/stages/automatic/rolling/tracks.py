@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 EVERYWHERE = 1e5
 """Radius of a disc that meets all (rmm)."""
 EDGE = 2.0
-"""Of the plate under a track beyond that (rmm)."""
+"""Edge of the plate under a track beyond that (rmm)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ class Track:
     feet: np.ndarray | None = None
     """(2, 2) of an open one: the other corners, behind the last place of the path and behind the first."""
     band: Band | None = None
-    """Of an open one: what lies behind the surface where that is no straight lower side."""
+    """Band of an open one: what lies behind the surface where that is no straight lower side."""
 
     @property
     def inside(self) -> bool:
@@ -129,7 +129,7 @@ class Track:
 
     def _pins(self, layout: Layout) -> list[tuple[float, float]]:
         """Places of pins that go through what lies within the curve. Raises UserError where one breaks its edge."""
-        pins = [one for one in layout.features if isinstance(one, Pin) and self.body in one.places]
+        pins = [pin for pin in layout.features if isinstance(pin, Pin) and self.body in pin.places]
         pins = [pin for pin in pins if _holds(self.path, pin.places[self.body])]
         for pin in pins:
             near = float(distances(np.array([pin.places[self.body]]), self.path)[0])

@@ -57,7 +57,7 @@ class Line:
 
 def roads(lines: Sequence[Line]) -> list[Road]:
     """A wall for each line."""
-    found = []
+    walls = []
     for line in lines:
         low, high = min(low for low, _ in line.travel), max(high for _, high in line.travel)
         shared = [other for other in lines if other is not line and {*other.rounds} & {*line.rounds}]
@@ -74,8 +74,8 @@ def roads(lines: Sequence[Line]) -> list[Road]:
             elif turn > 0 and at > first:
                 low, behind[1], first = at, _mitre(line, other), at
         path = np.array([line.start + low * line.way, line.start + high * line.way])
-        found.append(Road(line.name, line.rounds, path, np.array([path[1] + behind[0], path[0] + behind[1]])))
-    return found
+        walls.append(Road(line.name, line.rounds, path, np.array([path[1] + behind[0], path[0] + behind[1]])))
+    return walls
 
 
 def _mitre(line: Line, other: Line) -> np.ndarray:

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 BELOW = 8.0
 """From the lowest part that moves to the base plate, at least (rmm)."""
 THINNEST_ALONG = 0.35
-"""Of the pins that are tried, in the first ones: where places are given, thinner pins are all that can be tried."""
+"""Thinnest of the pins that are tried, in the first ones: with given places only thinner pins can be tried."""
 FAR = 1e4
 """Where links are, far from each other, that have no place yet (mm)."""
 SMALLER = (1.0, 0.92, 0.84, 0.76, 0.68, 0.6)
@@ -97,7 +97,7 @@ class Along:
         return poses_of(self.solution, mm(1.0))
 
     def _places(self, free: Sequence[str]) -> dict[str, float]:
-        """Of links that the model gives none, beside all that it gives a place."""
+        """Places of links that the model gives none, beside all that it gives a place."""
         given = replace(self, left_out=self.left_out.union(free))
         if not given.machine.links:
             raise UserError(
@@ -107,7 +107,7 @@ class Along:
         somewhere = max(link.z for link in given.machine.links.values()) + FAR
         every = self._machine(self.left_out, {name: somewhere + k * FAR for k, name in enumerate(free)})
         measures = Measures(every, given.sizes, given.cylinders)
-        taken = [one for plan in given.shafts for one in shaft_takes(plan)] + given._of_cylinders()
+        taken = [space for plan in given.shafts for space in shaft_takes(plan)] + given._of_cylinders()
         return free_places(measures, free, given.thickness, axles(every), taken)
 
     @cached_property
@@ -134,7 +134,7 @@ class Along:
 
     @property
     def sizes(self) -> Sizes:
-        """Of the pins."""
+        """Sizes of the pins."""
         return self.measures.sizes
 
     @property
@@ -146,12 +146,14 @@ class Along:
     def shafts(self) -> list[ShaftPlan]:
         """Their crank pins, webs and journals, with counterweights as large as what passes them leaves."""
         every = [
-            self._below_liners(shaft_plan(one, self.measures, self.thickness, self.cylinders, self._mounted(one.body)))
-            for one in self.machine.shafts.values()
+            self._below_liners(
+                shaft_plan(shaft, self.measures, self.thickness, self.cylinders, self._mounted(shaft.body))
+            )
+            for shaft in self.machine.shafts.values()
         ]
         bare = [replace(plan, counterweight=0.0) for plan in every]
         return [
-            self._lightened(plan, [one for k, one in enumerate(bare) if k != own]) for own, plan in enumerate(every)
+            self._lightened(plan, [other for k, other in enumerate(bare) if k != own]) for own, plan in enumerate(every)
         ]
 
     @cached_property
@@ -161,8 +163,8 @@ class Along:
 
     def _mounted(self, shaft: str) -> list[Mounted]:
         """What sits on a shaft beside its throws."""
-        cams = [one.mounted for one in self.valves.values() if one.valve.shaft == shaft]
-        return [*(one.mounted for one in self.wheels.of(shaft)), *cams]
+        cams = [valve.mounted for valve in self.valves.values() if valve.valve.shaft == shaft]
+        return [*(wheel.mounted for wheel in self.wheels.of(shaft)), *cams]
 
     @cached_property
     def valves(self) -> dict[str, ValvePlan]:
@@ -170,7 +172,7 @@ class Along:
         return valve_plans(self.machine, self.measures, self.cylinders)
 
     def _of_valves(self) -> list[Takes]:
-        return [one for own in self.valves.values() for one in own.takes()]
+        return [space for own in self.valves.values() for space in own.takes()]
 
     def _below_liners(self, plan: ShaftPlan) -> ShaftPlan:
         """With a first journal so long that a flywheel turns below all liners."""
@@ -184,10 +186,12 @@ class Along:
     def _lightened(self, plan: ShaftPlan, shafts: Sequence[ShaftPlan]) -> ShaftPlan:
         others = [*links_take(self.measures, self.thickness), *self._of_cylinders(), *self._of_axles(-math.inf)]
         others += [*self._of_rams(-math.inf), *self.wheels.takes()]
-        others += [one for other in shafts for one in shaft_takes(other)]
+        others += [space for other in shafts for space in shaft_takes(other)]
         for part in SMALLER if plan.has_weights else ():
             smaller = replace(plan, counterweight=part * plan.counterweight)
-            if not any(meeting(self.machine, one, other) is not None for one in weights(smaller) for other in others):
+            if not any(
+                meeting(self.machine, weight, other) is not None for weight in weights(smaller) for other in others
+            ):
                 return smaller
         return replace(plan, counterweight=0.0)
 
@@ -221,30 +225,32 @@ class Along:
 
     @cached_property
     def bearers(self) -> list[Bearers]:
-        """Of each shaft."""
+        """Bearers of each shaft."""
         running = max(0.12, self.sizes.pivot.fit.running * self.measures.unit / 2)
         return [bearers(self.machine, plan, self._others(plan), running, self.flywheel(plan)) for plan in self.shafts]
 
     def _others(self, own: ShaftPlan) -> list[Takes]:
-        found = [*links_take(self.measures, self.thickness), *self._of_cylinders(), *self._of_rams()]
-        found += self._of_decks()
-        found += [one for one in [*self.wheels.takes(), *self._of_valves()] if one.body != own.shaft.body]
+        spaces = [*links_take(self.measures, self.thickness), *self._of_cylinders(), *self._of_rams()]
+        spaces += self._of_decks()
+        spaces += [space for space in [*self.wheels.takes(), *self._of_valves()] if space.body != own.shaft.body]
         for plan in self.shafts:
-            found += [] if plan is own else shaft_takes(plan)
-        return found + self._of_axles()
+            spaces += [] if plan is own else shaft_takes(plan)
+        return spaces + self._of_axles()
 
     def _of_cylinders(self) -> list[Takes]:
-        return [one for name, own in self.cylinders.items() for one in cylinder_takes(own, self.fins[name])]
+        return [space for name, own in self.cylinders.items() for space in cylinder_takes(own, self.fins[name])]
 
     def _of_decks(self) -> list[Takes]:
         return [deck_takes(bank, self.low) for bank in banks(self.cylinders)]
 
     def _of_rams(self, low: float | None = None) -> list[Takes]:
-        return [one for own in self.rams.values() for one in own.takes(self.low if low is None else low)]
+        return [space for own in self.rams.values() for space in own.takes(self.low if low is None else low)]
 
     def _of_axles(self, low: float | None = None) -> list[Takes]:
         low = self.low if low is None else low
-        return [one for axle in self.axles for one in axle_takes(axle, self.machine, self.thickness, self.sizes, low)]
+        return [
+            space for axle in self.axles for space in axle_takes(axle, self.machine, self.thickness, self.sizes, low)
+        ]
 
     def refuse(self) -> None:
         """Raise UserError where things meet, a :class:`Meeting` where thinner pins may help."""
@@ -254,8 +260,8 @@ class Along:
     def _passes(self) -> None:
         taken = [*links_take(self.measures, self.thickness), *self._of_cylinders(), *self._of_axles()]
         taken += [*self._of_rams(), *self._of_decks(), *self._of_valves(), *self.wheels.takes()]
-        taken += [one for plan in self.shafts for one in shaft_takes(plan)]
-        taken += [one for own in self.bearers for one in own.takes(self.low)]
+        taken += [space for plan in self.shafts for space in shaft_takes(plan)]
+        taken += [space for own in self.bearers for space in own.takes(self.low)]
         taken += [self._flywheel(plan) for plan in self.shafts if self.flywheel(plan)]
         refuse_meetings(self.machine, taken)
 
@@ -285,14 +291,14 @@ class Along:
     @property
     def feet(self) -> list[tuple[float, float]]:
         """Corners of what stands on the base plate."""
-        found = [corner for bank in banks(self.cylinders) for corner in deck_corners(bank)]
-        found += [corner for own in self.rams.values() for corner in own.corners]
+        corners = [corner for bank in banks(self.cylinders) for corner in deck_corners(bank)]
+        corners += [corner for own in self.rams.values() for corner in own.corners]
         for own in self.bearers:
             r = BOSS * own.radius
-            found += [(x + u * r, y + v * r) for x, y in own.places for u in (-1, 1) for v in (-1, 1)]
+            corners += [(x + u * r, y + v * r) for x, y in own.places for u in (-1, 1) for v in (-1, 1)]
         r = FOOT * self.measures.unit
         for axle in self.axles:
             if axle.holder == "ground":
                 x, y = axle.places["ground"]
-                found += [(x + u * r, y + v * r) for u in (-1, 1) for v in (-1, 1)]
-        return found or [(0.0, 0.0)]
+                corners += [(x + u * r, y + v * r) for u in (-1, 1) for v in (-1, 1)]
+        return corners or [(0.0, 0.0)]

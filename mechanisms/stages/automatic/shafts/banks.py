@@ -21,7 +21,7 @@ BESIDE = 0.12
 
 def fins(all_of: Mapping[str, Cylinder]) -> dict[str, float]:
     """By piston: radius of the fins of its liner, as far as its neighbours leave room."""
-    found = {}
+    radii = {}
     for name, own in all_of.items():
         radius = own.outer + FIN * own.bore
         for other in all_of.values():
@@ -32,15 +32,15 @@ def fins(all_of: Mapping[str, Cylinder]) -> dict[str, float]:
             between = math.acos(max(-1.0, min(1.0, cosine)))
             room = apart / 2 - 0.01 * own.bore if between < 1e-6 else own.low * math.tan(between / 2)
             radius = min(radius, max(room, own.outer))
-        found[name] = radius
-    return found
+        radii[name] = radius
+    return radii
 
 
 def banks(all_of: Mapping[str, Cylinder]) -> list[list[Cylinder]]:
     """Cylinders on the same line of the plane, in the order of their places along z."""
-    found: list[list[Cylinder]] = []
+    rows: list[list[Cylinder]] = []
     for own in all_of.values():
-        for bank in found:
+        for bank in rows:
             if (
                 math.dist(bank[0].piston.along, own.piston.along) < 1e-6
                 and math.dist(bank[0].origin, own.origin) < 1e-3
@@ -48,12 +48,12 @@ def banks(all_of: Mapping[str, Cylinder]) -> list[list[Cylinder]]:
                 bank.append(own)
                 break
         else:
-            found.append([own])
-    return [sorted(bank, key=lambda one: one.piston.z) for bank in found]
+            rows.append([own])
+    return [sorted(bank, key=lambda cylinder: cylinder.piston.z) for bank in rows]
 
 
 def deck_corners(bank: Sequence[Cylinder]) -> list[tuple[float, float]]:
-    """Of its foot on the base plate."""
+    """Corners of its foot on the base plate."""
     first, wide, low, high = bank[0], deck_half(bank), deck_range(bank)[0], deck_range(bank)[1]
     (x, y), (u, v) = first.origin, first.piston.along
     return [(x + s * u - q * v, y + s * v + q * u) for s in (low, high) for q in (-wide, wide)]

@@ -30,7 +30,7 @@ WIDER = (1.0, 1.15, 1.35, 1.6, 2.0, 2.5)
 """Distances from the axis that are tried, in the nearest one."""
 STEP = 5
 EVERY = 4
-"""Of the poses, those at which places for pillars are looked at."""
+"""Step between the poses at which places for pillars are looked at."""
 ROOM = 0.5
 """Gap (mm) that is left there."""
 
@@ -58,14 +58,14 @@ class Bearers:
         """Pillars from ``low`` up, and bearings."""
         x, y = self.plan.shaft.at
         body, top = frozenset({self.plan.shaft.body}), self.top
-        found = [Takes("a pillar", "ground", disc(*place, self.radius), low, top) for place in self.places]
+        spaces = [Takes("a pillar", "ground", disc(*place, self.radius), low, top) for place in self.places]
         for journal in self.journals:
             a, b = heights_of(self.plan, journal)
-            found.append(Takes("a bearing", "ground", disc(x, y, self.hub), a, b, body))
+            spaces.append(Takes("a bearing", "ground", disc(x, y, self.hub), a, b, body))
             for place in self.places:
                 arm = _arm(self.plan, place, self.radius, self.tapered)
-                found.append(Takes("the arm of a bearing", "ground", arm, a, b, body))
-        return found
+                spaces.append(Takes("the arm of a bearing", "ground", arm, a, b, body))
+        return spaces
 
     @property
     def top(self) -> float:
@@ -123,7 +123,7 @@ def _at(plan: ShaftPlan, away: float, turn: float) -> tuple[float, float]:
 
 
 def _arm(plan: ShaftPlan, place: tuple[float, float], radius: float, tapered: bool) -> Rounded:
-    """Of a bearing, from the axis to a pillar."""
+    """Arm of a bearing, from the axis to a pillar."""
     wide, end = 0.8 * HUB * plan.journal, BOSS * radius
     if tapered and wide > end:
         (x, y), turns = plan.shaft.at, [k * math.pi / 8 for k in range(16)]
@@ -134,7 +134,7 @@ def _arm(plan: ShaftPlan, place: tuple[float, float], radius: float, tapered: bo
 def _beside(plan: ShaftPlan, journal: Journal, taken: Sequence[Takes]) -> list[Takes]:
     """What shares heights with a bearing."""
     low, high = heights_of(plan, journal)
-    return [one for one in taken if one.low < high and one.high > low]
+    return [space for space in taken if space.low < high and space.high > low]
 
 
 def heights_of(plan: ShaftPlan, journal: Journal) -> tuple[float, float]:
@@ -147,7 +147,9 @@ def heights_of(plan: ShaftPlan, journal: Journal) -> tuple[float, float]:
 def _is_free(machine: Machine, shape: Rounded, taken: Sequence[Takes]) -> bool:
     """Whether nothing comes near to a shape on ground."""
     still = machine.poses["ground"][::EVERY]
-    return all(least_gap(one.shape, shape, (machine.poses[one.body][::EVERY], still), ROOM)[0] >= ROOM for one in taken)
+    return all(
+        least_gap(space.shape, shape, (machine.poses[space.body][::EVERY], still), ROOM)[0] >= ROOM for space in taken
+    )
 
 
 def _spread(machine: Machine, plan: ShaftPlan, free: list[float]) -> list[float]:

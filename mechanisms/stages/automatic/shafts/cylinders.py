@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 SQUARE = 0.95
 """Bore over stroke, where there is room and no gas says otherwise."""
 WALL = 0.065
-"""Of a liner."""
+"""Thickness of a liner's wall."""
 CROWN, SKIRT, LEAST_SKIRT = 0.5, 0.36, 0.16
-"""Of a piston, above and below its wrist pin."""
+"""Heights of a piston, above and below its wrist pin."""
 SQUISH = 0.07
 """From the piston to the head at the top dead centre."""
 CRANK_PIN, BIG_END, SMALL_END, WRIST_PIN = 0.26, 0.39, 0.22, 0.125
@@ -51,7 +51,7 @@ ROD = 0.24
 LATEST = 0.15
 """How far above the lowest place of the wrist pin a liner may begin."""
 EVERY = 3
-"""Of the poses, those at which rods and liners are looked at."""
+"""Step between the poses at which rods and liners are looked at."""
 SMALLEST = 0.4
 """Bores are tried down to this part of the wished one."""
 STEP = 0.96
@@ -109,7 +109,7 @@ def cylinders(machine: Machine) -> dict[str, Cylinder]:
     """By piston. Raises UserError naming cylinders that have no room beside each other, or none for their rod."""
     wished = {name: _wish(machine, piston) for name, piston in machine.pistons.items()}
     _refuse_near(machine, wished)
-    found = {}
+    fitted = {}
     for name, piston in machine.pistons.items():
         own = wished[name]
         fixed = piston.area is not None
@@ -119,7 +119,7 @@ def cylinders(machine: Machine) -> dict[str, Cylinder]:
         while bore >= (own if fixed else SMALLEST * own):
             made = _fitted(machine, piston, bore, wished)
             if isinstance(made, Cylinder):
-                found[name] = made
+                fitted[name] = made
                 break
             bore *= STEP
         else:
@@ -129,7 +129,7 @@ def cylinders(machine: Machine) -> dict[str, Cylinder]:
                 f"{_fitted(machine, piston, bore / STEP, wished)}; make the rod longer, the throw shorter{wider}, "
                 f"or shape it by hand in mechanisms/{machine.m.name}/parts.py"
             )
-    return {name: _beside_its_mate(machine, own, found) for name, own in found.items()}
+    return {name: _beside_its_mate(machine, own, fitted) for name, own in fitted.items()}
 
 
 def _beside_its_mate(machine: Machine, own: Cylinder, every: Mapping[str, Cylinder]) -> Cylinder:
@@ -155,7 +155,7 @@ def _beside_its_mate(machine: Machine, own: Cylinder, every: Mapping[str, Cylind
 
 def _between(machine: Machine, own: Cylinder, other: Cylinder, along: np.ndarray) -> np.ndarray:
     """(T,): distance of the wrist pins of two pistons along their cylinder."""
-    ends = [machine.path(one.piston.body, *one.piston.wrist) @ along for one in (own, other)]
+    ends = [machine.path(cylinder.piston.body, *cylinder.piston.wrist) @ along for cylinder in (own, other)]
     return ends[1] - ends[0]
 
 
@@ -170,8 +170,8 @@ def _stroke(machine: Machine, piston: Piston) -> tuple[float, float, np.ndarray]
 
 def _shaft(machine: Machine, piston: Piston) -> Shaft | None:
     link = machine.links.get(piston.link or "")
-    found = throw_of(machine, link) if link else None
-    return found[0] if found else None
+    driven = throw_of(machine, link) if link else None
+    return driven[0] if driven else None
 
 
 def _wish(machine: Machine, piston: Piston) -> float:
@@ -185,7 +185,7 @@ def _wish(machine: Machine, piston: Piston) -> float:
 
 def _neighbours(machine: Machine, piston: Piston) -> dict[str, float]:
     """Pistons whose bores have the same line in the plane, or one beside it, and how far away along z they are."""
-    found = {}
+    distances = {}
     for name, other in machine.pistons.items():
         cross = piston.along[0] * other.along[1] - piston.along[1] * other.along[0]
         if (
@@ -194,8 +194,8 @@ def _neighbours(machine: Machine, piston: Piston) -> dict[str, float]:
             or piston.along[0] * other.along[0] + piston.along[1] * other.along[1] < 0
         ):
             continue
-        found[name] = abs(other.z - piston.z)
-    return {name: z for name, z in found.items() if z > 1e-6}
+        distances[name] = abs(other.z - piston.z)
+    return {name: z for name, z in distances.items() if z > 1e-6}
 
 
 def _refuse_near(machine: Machine, bores: Mapping[str, float]) -> None:
@@ -246,7 +246,7 @@ def rod_shapes(machine: Machine, link: Link, bore: float) -> list[Rounded]:
 
 
 def shank_shapes(machine: Machine, link: Link, bore: float) -> list[Rounded]:
-    """Of a carrier or of a rod on one: shank and small end, and the eye on the knuckle pin or the hub on the crank."""
+    """Shapes of a carrier or of a rod on one: shank, small end, and eye on the knuckle pin or hub on the crank."""
     main = rod_foot(machine, link)
     ends = [eye for eye in link.eyes if eye.on in machine.pistons or eye is main]
     shank = around([(eye.x, eye.y) for eye in ends], (SHANK + ROOM / 2) * bore)

@@ -50,33 +50,33 @@ def free_places(
         shape, on = pin_outline(axle, measures.sizes), frozenset(axle.places)
         reach = Reach(axle.stack, -1, 1, base=axle.holder == "ground")
         items.append(Item(f"the pin of '{axle.joint}'", axle.holder, shape, reach, on))
-    for one in taken:
+    for space in taken:
         for slot, k in slots.items():
-            if one.low < layers[k] + pitch / 2 and one.high > layers[k] - pitch / 2:
-                items.append(Item(one.what, one.body, one.shape, Reach((slot,)), one.spares))
+            if space.low < layers[k] + pitch / 2 and space.high > layers[k] - pitch / 2:
+                items.append(Item(space.what, space.body, space.shape, Reach((slot,)), space.spares))
     conflicts = [
         (i, j)
         for (i, a), (j, b) in combinations(enumerate(items), 2)
         if _asks(a, b, {*free}) and _meet(machine, a, b, measures)
     ]
     problem = Problem([*machine.links, *slots], items, conflicts, fixed | slots)
-    found = find_layers(problem)
-    if found is None:
+    levels = find_layers(problem)
+    if levels is None:
         raise UserError(
             f"{machine.m.name}: no layer beside the places that are given lets {', '.join(free)} pass; give them "
             "places z, or others more room along z"
         )
-    return {name: _height(layers, found[name], pitch) for name in free}
+    return {name: _height(layers, levels[name], pitch) for name in free}
 
 
 def _layers(given: Sequence[float], pitch: float, count: int) -> list[float]:
     """Heights of all layers, rising."""
     planes = [z for k, z in enumerate(given) if k == 0 or z - given[k - 1] > SAME] or [0.0]
-    found = [planes[0] - pitch * k for k in range(count, 0, -1)]
+    layers = [planes[0] - pitch * k for k in range(count, 0, -1)]
     for low, high in pairwise([*planes, planes[-1] + (count + 1) * pitch]):
         more = max(int((high - low) / pitch + 1e-6) - 1, 0)
-        found += [low, *(low + (high - low) * k / (more + 1) for k in range(1, more + 1))]
-    return found
+        layers += [low, *(low + (high - low) * k / (more + 1) for k in range(1, more + 1))]
+    return layers
 
 
 def _nearest(layers: Sequence[float], z: float) -> int:

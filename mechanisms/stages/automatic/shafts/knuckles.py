@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 KNUCKLE_PIN, KNUCKLE_EYE = 0.1, 0.17
 HUB = 0.34
-"""Of the carrier's big end between its flanges."""
+"""Radius of the carrier's big end between its flanges."""
 BESIDE = 0.02
 """Between that and the eye of a carried rod."""
 MIDDLE = 0.62
@@ -61,7 +61,7 @@ def throw_of(machine: Machine, link: Link) -> tuple[Shaft, Throw] | None:
     """The crank pin that a link turns on, or its carrier."""
     body = (carrier(machine, link) or link).body
     every = [(shaft, throw) for shaft in machine.shafts.values() for throw in shaft.throws]
-    return next((found for found in every if found[1].link == body), None)
+    return next((pair for pair in every if pair[1].link == body), None)
 
 
 def rod_foot(machine: Machine, link: Link) -> LinkEye | None:
@@ -114,7 +114,7 @@ def flange(height: float, gap: float) -> float:
 
 
 def height_for(thickness: float, gap: float) -> float:
-    """Of a carrier, for rods of that thickness."""
+    """Height of a carrier, for rods of that thickness."""
     return thickness / MIDDLE + 2 * gap
 
 

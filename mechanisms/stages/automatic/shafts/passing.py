@@ -1,4 +1,4 @@
-"""Whether bodies pass each other in the plane where they share heights: told before anything is built (mm)."""
+"""Whether bodies pass each other in the plane where they share heights: known before anything is built (mm)."""
 
 from __future__ import annotations
 
@@ -44,23 +44,23 @@ class Takes:
 
 def links_take(measures: Measures, thickness: Mapping[str, float]) -> list[Takes]:
     """The links."""
-    found = []
+    spaces = []
     for name, link in measures.machine.links.items():
         half, on = thickness[name] / 2, frozenset(eye.on for eye in link.eyes)
         sliding = on & {*measures.machine.pistons, *measures.machine.rams}
         bore = measures.of_rod(link)
         if bore is not None and is_carrier(measures.machine, link):
-            found += _carrier_takes(measures, link, thickness, bore, sliding)
+            spaces += _carrier_takes(measures, link, thickness, bore, sliding)
             continue
         if bore is not None and carrier(measures.machine, link) is not None:
             shapes = shank_shapes(measures.machine, link, bore)
-            found += [Takes(f"'{name}'", name, shape, link.z - half, link.z + half, sliding) for shape in shapes]
+            spaces += [Takes(f"'{name}'", name, shape, link.z - half, link.z + half, sliding) for shape in shapes]
             continue
         shapes = (
             [measures.outline(link)] if bore is None or len(link.eyes) > 2 else rod_shapes(measures.machine, link, bore)
         )
-        found += [Takes(f"'{name}'", name, shape, link.z - half, link.z + half, sliding) for shape in shapes]
-    return found
+        spaces += [Takes(f"'{name}'", name, shape, link.z - half, link.z + half, sliding) for shape in shapes]
+    return spaces
 
 
 def _carrier_takes(
@@ -70,40 +70,40 @@ def _carrier_takes(
     half, between = thickness[link.body] / 2, measures.shank(link, thickness) / 2
     thick = flange(2 * half, measures.axial)
     round_pins = flange_shape(measures.machine, link, bore)
-    found = [
+    spaces = [
         Takes(f"a flange of '{link.body}'", link.body, round_pins, link.z + low, link.z + low + thick, pistons)
         for low in (-half, half - thick)
     ]
     for shape in shank_shapes(measures.machine, link, bore):
-        found.append(Takes(f"'{link.body}'", link.body, shape, link.z - between, link.z + between, pistons))
-    return found
+        spaces.append(Takes(f"'{link.body}'", link.body, shape, link.z - between, link.z + between, pistons))
+    return spaces
 
 
 def shaft_takes(plan: ShaftPlan) -> list[Takes]:
     """Webs, crank pins and journals of a shaft."""
-    (x, y), body, found = plan.shaft.axis, plan.shaft.body, []
+    (x, y), body, spaces = plan.shaft.axis, plan.shaft.body, []
     for web in plan.webs:
         places = [(x, y), *((x + u, y + v) for u, v in web.pins)]
-        found.append(Takes(f"a web of '{body}'", body, around(places, plan.cheek), web.low, web.high))
+        spaces.append(Takes(f"a web of '{body}'", body, around(places, plan.cheek), web.low, web.high))
         if web.weight and plan.has_weights:
             weight = disc(x, y, plan.counterweight)
-            found.append(Takes(f"the counterweight of '{body}'", body, weight, web.low, web.high))
+            spaces.append(Takes(f"the counterweight of '{body}'", body, weight, web.low, web.high))
     for pin in plan.pins:
         held = frozenset(pin.links)
-        found.append(
+        spaces.append(
             Takes(f"a crank pin of '{body}'", body, disc(x + pin.x, y + pin.y, plan.pin), pin.low, pin.high, held)
         )
     if not plan.pins:
         rod = disc(x, y, plan.journal)
-        found.append(Takes(f"the shaft of '{body}'", body, rod, plan.bottom(0.0), plan.top))
-    for one in plan.journals:
-        found.append(Takes(f"a journal of '{body}'", body, disc(x, y, plan.journal), one.low, one.high))
-    return found
+        spaces.append(Takes(f"the shaft of '{body}'", body, rod, plan.bottom(0.0), plan.top))
+    for journal in plan.journals:
+        spaces.append(Takes(f"a journal of '{body}'", body, disc(x, y, plan.journal), journal.low, journal.high))
+    return spaces
 
 
 def weights(plan: ShaftPlan) -> list[Takes]:
     """The counterweights of a shaft."""
-    return [one for one in shaft_takes(plan) if one.what.startswith("the counterweight")]
+    return [space for space in shaft_takes(plan) if space.what.startswith("the counterweight")]
 
 
 def cylinder_takes(own: Cylinder, fin: float) -> list[Takes]:
@@ -149,7 +149,8 @@ def refuse_meetings(machine: Machine, taken: Sequence[Takes]) -> None:
         if at is not None:
             share = max(first.low, second.low), min(first.high, second.high)
             bored = [
-                one.body in machine.pistons or one.what.startswith(("the liner", "the head")) for one in (first, second)
+                space.body in machine.pistons or space.what.startswith(("the liner", "the head"))
+                for space in (first, second)
             ]
             remedy = (
                 "make rods longer, bores smaller, or the angle between the banks wider"

@@ -29,7 +29,7 @@ class Axle:
 
     joint: str
     places: Mapping[str, tuple[float, float]]
-    """Of each body, ground included where it holds the pin, in its frame."""
+    """Place on each body, ground included where it holds the pin, in its frame."""
     stack: tuple[str, ...]
 
     @property
@@ -54,7 +54,7 @@ def axles(machine: Machine) -> list[Axle]:
             name = near[0][0] if near else eye.joint
             groups = [group for group in groups if group not in near]
             groups.append((name, joined))
-    found = []
+    made = []
     for name, places in groups:
         stack = sorted((body for body in places if body != "ground"), key=lambda body: machine.links[body].z)
         for below, above in pairwise(stack):
@@ -64,8 +64,8 @@ def axles(machine: Machine) -> list[Axle]:
                     f"{machine.m.name}: '{below}' and '{above}' are both at z = {z:g} mm and turn about one axis in "
                     f"'{name}'; give them places z that differ by more than their thickness"
                 )
-        found.append(Axle(name, places, tuple(stack)))
-    return found
+        made.append(Axle(name, places, tuple(stack)))
+    return made
 
 
 def _place_of(machine: Machine, joint: str, body: str) -> tuple[float, float]:

@@ -75,7 +75,7 @@ class RamPlan:
 
     @property
     def span(self) -> tuple[float, float]:
-        """Of the beam along z."""
+        """Span of the beam along z."""
         first, last = self.columns
         return first - HUB * self.unit, last + HUB * self.unit
 
@@ -92,7 +92,7 @@ class RamPlan:
 
     @property
     def corners(self) -> list[tuple[float, float]]:
-        """Of the deck's foot on the base plate."""
+        """Corners of the deck's foot on the base plate."""
         (x, y), (u, v) = self.ram.line, self.ram.along
         wide = [self.middle + side * (self.half + HUB * self.unit) for side in (-1, 1)]
         return [(x + s * u - q * v, y + s * v + q * u) for s in self.deck for q in wide]
@@ -103,17 +103,17 @@ class RamPlan:
         links = frozenset(pin.link for pin in own.pins)
         u = math.cos(own.turn), math.sin(own.turn)
         beam = box(self.at(0.0, self.middle), u, self.low, self.high, self.half)
-        found = [Takes(f"the beam of '{body}'", body, beam, *self.span)]
+        spaces = [Takes(f"the beam of '{body}'", body, beam, *self.span)]
         for pin, _, bottom, top in self.clevises:
             cheek = around([self.at(pin.s, pin.q), self.at(self.low, pin.q)], self.eye)
-            found.append(Takes(f"the clevis of '{pin.joint}'", body, cheek, bottom, top, links))
+            spaces.append(Takes(f"the clevis of '{pin.joint}'", body, cheek, bottom, top, links))
         r, rams = COLUMN * self.unit, frozenset([body])
         for z in self.columns:
             shape = self._on_ground(self.begin, self.deck[0], r)
-            found.append(Takes(f"a column of '{body}'", "ground", shape, z - r, z + r, rams))
+            spaces.append(Takes(f"a column of '{body}'", "ground", shape, z - r, z + r, rams))
         deck = self._on_ground(*self.deck, self.half + HUB * self.unit)
-        found.append(Takes(f"the deck of '{body}'", "ground", deck, low, self.span[1]))
-        return found
+        spaces.append(Takes(f"the deck of '{body}'", "ground", deck, low, self.span[1]))
+        return spaces
 
     def _on_ground(self, low: float, high: float, half: float) -> Rounded:
         (x, y), (u, v) = self.ram.line, self.ram.along
@@ -127,7 +127,7 @@ class RamPlan:
 
 def ram_plans(machine: Machine, measures: Measures, thickness: Mapping[str, float]) -> dict[str, RamPlan]:
     """By body. Raises UserError naming two links that leave no room for a cheek between them."""
-    found = {}
+    plans = {}
     cheek = CHEEK * measures.sizes.thickness * measures.unit
     for name, own in machine.rams.items():
         clevises = []
@@ -144,5 +144,5 @@ def ram_plans(machine: Machine, measures: Measures, thickness: Mapping[str, floa
                 )
         eye = measures.sizes.eye * measures.unit
         reaches = tuple(max(eye, measures.radius(machine.links[pin.link])) for pin in own.pins)
-        found[name] = RamPlan(own, measures.unit, eye, tuple(clevises), reaches)
-    return found
+        plans[name] = RamPlan(own, measures.unit, eye, tuple(clevises), reaches)
+    return plans

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 WEB, LEAST_WEB = 0.22, 0.09
 """Thickness of a web, wished and least, in bores."""
 SHARE = 0.27
-"""Of the space between two crank pins, what each of two webs gets."""
+"""Share of the space between two crank pins that each of two webs gets."""
 LEAST_BEARING = 0.16
 END = 0.34
 """Lengths of journals, in bores: between two throws at least, and at either end."""
@@ -135,7 +135,7 @@ class ShaftPlan:
     def swept(self) -> float:
         """What its webs sweep about the axis, and a counterweight at most."""
         reach = max((math.hypot(pin.x, pin.y) for pin in self.pins), default=0.0) + self.cheek
-        on_it = max((one.radius for one in self.mounted), default=0.0)
+        on_it = max((part.radius for part in self.mounted), default=0.0)
         return max(reach, self.counterweight if self.has_weights else 0.0, self.journal, on_it)
 
     @property
@@ -145,29 +145,29 @@ class ShaftPlan:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Of all journals along z."""
+        """Ends of all journals along z."""
         return self.journals[0].low, self.journals[-1].high
 
     @property
     def top(self) -> float:
         """Highest z of the shaft."""
-        beyond = [one.high + PROUD * self.unit for one in self.mounted if one.low > self.ends[1]]
+        beyond = [part.high + PROUD * self.unit for part in self.mounted if part.low > self.ends[1]]
         return max([self.ends[1] + (SNOUT if self.pins else PROUD) * self.unit, *beyond])
 
     @property
     def has_flange(self) -> bool:
         """Whether its lower end is a flange: that of a crankshaft without a wheel there."""
-        return bool(self.pins) and not any(one.high < self.ends[0] for one in self.mounted)
+        return bool(self.pins) and not any(part.high < self.ends[0] for part in self.mounted)
 
     def bottom(self, flywheel: float) -> float:
         """Lowest z of the shaft; ``flywheel`` is the radius of its flywheel, 0 for none."""
-        beyond = [one.low - PROUD * self.unit for one in self.mounted if one.high < self.ends[0]]
+        beyond = [part.low - PROUD * self.unit for part in self.mounted if part.high < self.ends[0]]
         end = (2.2 if flywheel else 1.0) * FLANGE if self.pins else PROUD
         return min([self.ends[0] - end * self.unit, *beyond])
 
-    def through(self, one: Mounted) -> float:
+    def through(self, part: Mounted) -> float:
         """Radius of the shaft where a wheel or a cam sits."""
-        inside = self.ends[0] < one.z < self.ends[1]
+        inside = self.ends[0] < part.z < self.ends[1]
         return self.journal if inside or not self.pins else THIN * self.journal
 
 
@@ -181,10 +181,10 @@ def shaft_plan(
     """Plan a shaft. Raises UserError naming two links that are too near along z for a web between them, and wheels that
     have no room on it.
     """
-    on_it = tuple(sorted(mounted, key=lambda one: one.z))
+    on_it = tuple(sorted(mounted, key=lambda part: part.z))
     if not shaft.throws:
-        bores = [one.bore for one in cylinders.values()]
-        unit = min(bores) if bores and not all(one.is_wheel for one in on_it) else measures.of_shaft(shaft)
+        bores = [cylinder.bore for cylinder in cylinders.values()]
+        unit = min(bores) if bores and not all(part.is_wheel for part in on_it) else measures.of_shaft(shaft)
         return _plain(shaft, measures, on_it, unit)
     unit, gap = measures.of_shaft(shaft), measures.axial
     pins = _pins(shaft, thickness, gap, _both(unit))
@@ -194,7 +194,7 @@ def shaft_plan(
     webs = [Web(first, pins[0].low, ((pins[0].x, pins[0].y),), True), *webs[1:-1]]
     webs.append(Web(pins[-1].high, last, ((pins[-1].x, pins[-1].y),), True))
     journals = [Journal(first - END * unit, first), *journals, Journal(last, last + END * unit)]
-    own = [one.counterweight for one in cylinders.values() if one.shaft is shaft]
+    own = [cylinder.counterweight for cylinder in cylinders.values() if cylinder.shaft is shaft]
     reach = max(math.hypot(pin.x, pin.y) for pin in pins) + CHEEK * measures.crank_pin(shaft)
     weight = min([*own, WEIGHT * reach])
     radius = measures.crank_pin(shaft)
@@ -206,29 +206,29 @@ def shaft_plan(
 def _refuse_mounted(name: str, plan: ShaftPlan) -> None:
     """Raise UserError for a wheel among the throws, and for one that is too small for its shaft."""
     low, high = plan.ends
-    for one in plan.mounted:
-        if plan.pins and one.high > low - plan.gap and one.low < high + plan.gap:
+    for part in plan.mounted:
+        if plan.pins and part.high > low - plan.gap and part.low < high + plan.gap:
             raise UserError(
-                f"{name}: {one.what} is at z = {one.z:.4g} mm, where '{plan.shaft.body}' has its crank pins and "
+                f"{name}: {part.what} is at z = {part.z:.4g} mm, where '{plan.shaft.body}' has its crank pins and "
                 f"bearings, from {low:.4g} to {high:.4g} mm; give it a place beyond, below "
-                f"{low - plan.gap - one.thickness / 2:.4g} or above {high + plan.gap + one.thickness / 2:.4g} mm"
+                f"{low - plan.gap - part.thickness / 2:.4g} or above {high + plan.gap + part.thickness / 2:.4g} mm"
             )
-        if one.inner < plan.through(one):
+        if part.inner < plan.through(part):
             raise UserError(
-                f"{name}: {one.what} has no room for its shaft, whose radius is {plan.through(one):.4g} mm, and inside "
-                f"of its rim there are {one.inner:.4g} mm; make the wheel larger"
+                f"{name}: {part.what} has no room for its shaft, whose radius is {plan.through(part):.4g} mm, and "
+                f"inside of its rim there are {part.inner:.4g} mm; make the wheel larger"
             )
 
 
 def _plain(shaft: Shaft, measures: Measures, mounted: Sequence[Mounted], unit: float) -> ShaftPlan:
     """A shaft without throws: a rod with bearings between what sits on it; wheels at its ends are beyond the last."""
-    room = min(one.inner for one in mounted)
+    room = min(part.inner for part in mounted)
     pin = min(CRANK_PIN * unit, PLAIN * room / JOURNAL)
     journal, gap = JOURNAL * pin, measures.axial
     long = LEAST_BEARING * unit + 2 * gap
     first, last = mounted[0], mounted[-1]
-    hangs = [len(mounted) > 1 and one.is_wheel for one in (first, last)]
-    found = []
+    hangs = [len(mounted) > 1 and part.is_wheel for part in (first, last)]
+    rooms = []
     for k, (before, after) in enumerate(pairwise(mounted)):
         needed = (k == 0 and hangs[0]) or (k == len(mounted) - 2 and hangs[1])
         space = after.low - before.high
@@ -239,10 +239,10 @@ def _plain(shaft: Shaft, measures: Measures, mounted: Sequence[Mounted], unit: f
                 f"{after.z - before.z - space + long + 2 * gap:.4g} mm; move one of them along z"
             )
         if needed or space > BETWEEN * journal:
-            found.append((before.high, after.low, needed))
-    both = len(found) == 1 and all(hangs)
+            rooms.append((before.high, after.low, needed))
+    both = len(rooms) == 1 and all(hangs)
     journals = []
-    for low, high, _ in found:
+    for low, high, _ in rooms:
         most = END * unit
         if both and high - low > 2 * long + 2 * gap:
             size = min(most, (high - low) / 2 - 2 * gap)
@@ -269,13 +269,13 @@ def _pins(shaft: Shaft, thickness: Mapping[str, float], gap: float, most: float)
             groups[-1].append(throw)
         else:
             groups.append([throw])
-    found = []
+    pins = []
     for group in groups:
         first, last = group[0], group[-1]
         x, y = first.x - shaft.axis[0], first.y - shaft.axis[1]
         low, high = first.z - thickness[first.link] / 2 - gap, last.z + thickness[last.link] / 2 + gap
-        found.append(Pin(x, y, low, high, tuple(throw.link for throw in group)))
-    return found
+        pins.append(Pin(x, y, low, high, tuple(throw.link for throw in group)))
+    return pins
 
 
 def _between(measures: Measures, shaft: Shaft, pins: list[Pin], unit: float) -> tuple[list[Web], list[Journal]]:

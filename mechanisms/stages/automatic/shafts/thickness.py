@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 WEB = 0.1
 """Between two links on crank pins at different places, in bores of their shaft."""
 SIDE = 0.12
-"""Of two rods side by side on one crank pin, the gap in their thickness."""
+"""Gap between two rods side by side on one crank pin, in their thickness."""
 THINNEST = 0.3
-"""Of what is wished."""
+"""Least thickness of a link, as a part of what is wished."""
 WASHER = 2.4
 """Between two links on one pin (rmm)."""
 FREE = 0.6
@@ -100,7 +100,7 @@ class Measures:
         return around([(eye.x, eye.y) for eye in link.eyes] or [(0.0, 0.0)], self.radius(link))
 
     def radius(self, link: Link) -> float:
-        """Of its largest eye."""
+        """Radius of its largest eye."""
         return max((self.eye(link, eye) for eye in link.eyes), default=self.sizes.eye * self.unit)
 
     @property
@@ -112,8 +112,8 @@ class Measures:
 def thicknesses(measures: Measures) -> dict[str, float]:
     """By link. Raises UserError naming both bodies, their distance and what to do where plates do not fit."""
     machine = measures.machine
-    found = {name: measures.wished(link) for name, link in machine.links.items()}
-    for first, second in _near(measures, found):
+    thickness = {name: measures.wished(link) for name, link in machine.links.items()}
+    for first, second in _near(measures, thickness):
         a, b = machine.links[first], machine.links[second]
         apart = abs(a.z - b.z)
         if _shares_crank_pin(machine, a, b):
@@ -135,21 +135,21 @@ def thicknesses(measures: Measures) -> dict[str, float]:
                 f"plates of {least:.3g} mm and the gap between them need {least + apart - room:.3g} mm: move one of "
                 "them along z, make pins thinner (automatic(m, pin=...)), or leave one out (automatic(m).leave_out)"
             )
-        both = (found[first] + found[second]) / 2
+        both = (thickness[first] + thickness[second]) / 2
         if both > room:
-            found[first], found[second] = (found[name] * room / both for name in (first, second))
+            thickness[first], thickness[second] = (thickness[name] * room / both for name in (first, second))
     for name, link in machine.links.items():
         above, bore = carrier(machine, link), measures.of_rod(link)
         if above is not None:
-            found[name] = min(found[name], measures.shank(above, found))
+            thickness[name] = min(thickness[name], measures.shank(above, thickness))
         elif bore is not None and is_carrier(machine, link):
             refuse_near(machine, link, bore)
-    return found
+    return thickness
 
 
 def _near(measures: Measures, thickness: Mapping[str, float]) -> Sequence[tuple[str, str]]:
     """Pairs that are near along z and meet in the plane, or share a pin."""
-    machine, found = measures.machine, []
+    machine, pairs = measures.machine, []
     for a, b in combinations(machine.links.values(), 2):
         if carries(machine, a, b):
             continue
@@ -160,8 +160,8 @@ def _near(measures: Measures, thickness: Mapping[str, float]) -> Sequence[tuple[
         shared = _shares_pin(a, b) or _shares_crank_pin(machine, a, b) or _web_between(measures, a, b) is not None
         room = measures.unit * measures.sizes.room
         if shared or least_gap(measures.outline(a), measures.outline(b), poses, room)[0] < room:
-            found.append((a.body, b.body))
-    return found
+            pairs.append((a.body, b.body))
+    return pairs
 
 
 def _shares_pin(a: Link, b: Link) -> bool:

@@ -25,7 +25,7 @@ class InSlot(Protocol):
 
     @property
     def name(self) -> str:
-        """Of the joint."""
+        """Name of the joint."""
         ...
 
     @property
@@ -52,21 +52,24 @@ class InSlot(Protocol):
 def common(slot: InSlot, layout: Layout) -> list[InSlot]:
     """All through slots in which the pin of ``slot`` runs, this one among them."""
     through: list[InSlot] = [
-        s for s in (getattr(one, "runs_through", None) for one in layout.features) if s is not None
+        s for s in (getattr(feature, "runs_through", None) for feature in layout.features) if s is not None
     ]
-    return [one for one in through if one.pin == slot.pin and math.dist(one.pin_at, slot.pin_at) < SAME]
+    return [other for other in through if other.pin == slot.pin and math.dist(other.pin_at, slot.pin_at) < SAME]
 
 
 def passed(slot: InSlot, layout: Layout) -> frozenset[str]:
     """Names of the items that the pin passes through by design."""
-    names = [(one.slot, f"the slotted plate of {one.name}", f"the wheel of {one.name}") for one in common(slot, layout)]
+    names = [
+        (other.slot, f"the slotted plate of {other.name}", f"the wheel of {other.name}")
+        for other in common(slot, layout)
+    ]
     return frozenset(name for here in names for name in here)
 
 
 def refuse_pins_of_both_kinds(m: Mechanism, features: Sequence[Feature]) -> None:
     """Raise UserError where a pin that runs in a slot is at the place of a revolute joint's pin."""
-    pins = [one for one in features if isinstance(one, Pin)]
-    for slot in (getattr(one, "runs_through", None) for one in features):
+    pins = [feature for feature in features if isinstance(feature, Pin)]
+    for slot in (getattr(feature, "runs_through", None) for feature in features):
         if slot is None:
             continue
         for pin in pins:

@@ -83,7 +83,7 @@ def _laid(line: list[Slide], layout: Layout) -> list[Slide]:
             rails.append([slide])
         else:
             rail.append(slide)
-    found: list[Slide] = []
+    laid: list[Slide] = []
     taken: list[tuple[float, float]] = []
     beside = _beside(layout)
     for host, *guests in rails:
@@ -93,10 +93,10 @@ def _laid(line: list[Slide], layout: Layout) -> list[Slide]:
                 if low - beside < last and first < high + beside:
                     low, high = min(low, first - beside - POST), max(high, last + beside + POST)
             taken.append((low, high))
-        found.append(replace(_with_ends(host, line[0], low, high), guests=tuple(guests)))
-        found += [replace(guest, host=host.name) for guest in guests]
+        laid.append(replace(_with_ends(host, line[0], low, high), guests=tuple(guests)))
+        laid += [replace(guest, host=host.name) for guest in guests]
         layout.together += [(host.block, guest.block) for guest in guests]
-    return found
+    return laid
 
 
 def _beside(layout: Layout) -> float:

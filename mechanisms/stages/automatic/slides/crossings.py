@@ -29,9 +29,9 @@ TONGUE, TONGUE_DEPTH = 11.0, 6.5
 TONGUE_HALF = 22.0
 """Half of its length: twice as long as the grooves that it passes are wide."""
 FLOOR = 3.5
-"""Of the plate below its grooves, at least."""
+"""Thickness of the plate below its grooves, at least."""
 WALL = 8.0
-"""Of the plate beside its grooves."""
+"""Width of the plate beside its grooves."""
 CORE = 30.0
 """Radius of the plate about the crossing."""
 SMALLEST = math.radians(30.0)
@@ -48,12 +48,12 @@ class Crossing:
 
     @property
     def name(self) -> str:
-        """Of its joints."""
+        """Names of its joints."""
         return "_".join(slide.name for slide in self.slides)
 
     @property
     def what(self) -> str:
-        """Of the plate."""
+        """Name of the plate."""
         return f"the grooved plate of {' and '.join(slide.name for slide in self.slides)}"
 
     @property
@@ -81,8 +81,8 @@ class Crossing:
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """The plates of the shuttles; what the grooved plate is fixed by."""
         eye = layout.sizes.eye
-        found = [Anchor(slide.block, x, y, eye) for slide in self.slides for x, y in slide.block_ends(eye)]
-        return [*found, *(Anchor("ground", x, y, WALL) for slide in self.slides for x, y in self.groove(slide))]
+        anchors = [Anchor(slide.block, x, y, eye) for slide in self.slides for x, y in slide.block_ends(eye)]
+        return [*anchors, *(Anchor("ground", x, y, WALL) for slide in self.slides for x, y in self.groove(slide))]
 
     def items(self, layout: Layout) -> Iterable[Item]:
         """The plate below the shuttles, and their tongues in it."""
@@ -111,16 +111,16 @@ def with_crossings(slides: Sequence[Slide], layout: Layout) -> list[Feature]:
         if _crossing(first, second) is not None and group[first.name] != group[second.name]:
             old, new = group[second.name], group[first.name]
             group = {name: new if of == old else of for name, of in group.items()}
-    found: list[Feature] = []
+    features: list[Feature] = []
     for head in dict.fromkeys(group.values()):
         members = tuple(slide for slide in slides if group[slide.name] == head)
         if len(members) == 1:
-            found += members
+            features += members
             continue
         crossing = Crossing(members)
         layout.together += [(crossing.blocks[0], block) for block in crossing.blocks[1:]]
-        found.append(crossing)
-    return found
+        features.append(crossing)
+    return features
 
 
 def _crossing(first: Slide, second: Slide) -> np.ndarray | None:

@@ -61,7 +61,7 @@ class CurvedSlot(Slot):
         return None if self.closed else self
 
     def posts(self, layout: Layout) -> list[tuple[float, float]]:
-        """Of a plate on ground: beyond the two places that are farthest from each other."""
+        """Posts of a plate on ground: beyond the two places that are farthest from each other."""
         hull = convex_hull(self.path)
         apart = np.linalg.norm(hull[:, None] - hull[None], axis=2)
         a, b = np.unravel_index(int(np.argmax(apart)), apart.shape)
@@ -181,10 +181,10 @@ def _stepped(path: np.ndarray, clearance: float) -> np.ndarray:
     way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
     count = min(MOST, max(8, int(way[-1] / STEP)))
     while True:
-        found = evenly(path, count)
-        off = CubicSpline(np.linspace(0.0, way[-1], count), found)(way) - path
+        points = evenly(path, count)
+        off = CubicSpline(np.linspace(0.0, way[-1], count), points)(way) - path
         if count >= FINEST or np.abs((off * normals(path)).sum(axis=1)).max() < STRAY * clearance:
-            return found
+            return points
         count = min(2 * count, FINEST)
 
 

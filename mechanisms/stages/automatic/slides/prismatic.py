@@ -30,7 +30,7 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
     """One for each joint, but one for those on ground that cross, and for those of two bodies along one line; several
     blocks along one line have a common rail where they can.
     """
-    found: list[Slide] = []
+    slides: list[Slide] = []
     for joint in joints:
         rail_at, block_at = (*layout.place(joint.i), joint.i.angle), (*layout.place(joint.j), joint.j.angle)
         along = layout.seen(joint.j.body.name, block_at[:2], joint.i.body.name) - np.array(rail_at[:2])
@@ -42,9 +42,9 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
         travel = min(travel[0], *given, travel[1]), max(travel[1], *given, travel[0])
         slide = Slide(joint.name, joint.i.body.name, joint.j.body.name, rail_at, block_at, travel, ends)
         slide = replace(slide, shorter=_room_for_pins(slide, m, layout))
-        if given or not any(_repeats(slide, other) for other in found):
-            found.append(slide)
-    return with_crossings(with_common_rails(found, layout), layout)
+        if given or not any(_repeats(slide, other) for other in slides):
+            slides.append(slide)
+    return with_crossings(with_common_rails(slides, layout), layout)
 
 
 def _repeats(slide: Slide, other: Slide) -> bool:

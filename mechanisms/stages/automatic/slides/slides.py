@@ -31,7 +31,7 @@ RAIL_HEIGHT = 6.0
 BEAM = 8.0
 """Height of a rail that stands on posts."""
 HALF_LENGTH = 23.0
-"""Of a block."""
+"""Half the length of a block."""
 GIB = (28.0, 4.4)
 """Length and width of a gib."""
 POST = 6.0
@@ -39,7 +39,7 @@ POST = 6.0
 STOP = 8.0
 """Length of a stop beside the rail."""
 WALL = 3.0
-"""Of a rail's plate beside the rail (rmm)."""
+"""Width of a rail's plate beside the rail (rmm)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ class Slide:
     rail_at: tuple[float, float, float]
     block_at: tuple[float, float, float]
     travel: tuple[float, float]
-    """Of the block's middle along the rail, from its marker; as far as its stops where it has any."""
+    """Travel of the block's middle along the rail, from its marker; as far as its stops where it has any."""
     ends: limits.Limits = (None, None)
     """Where stops on the rail end that travel, before and behind."""
     shorter: tuple[float, float] = (0.0, 0.0)
@@ -84,7 +84,7 @@ class Slide:
         return _along(self.block_at, distance)
 
     def stops(self, layout: Layout) -> list[tuple[str, float]]:
-        """Of each stop on the rail: its name, and the distance of its middle from the rail's marker."""
+        """Each stop on the rail: its name, and the distance of its middle from the rail's marker."""
         beyond = GIB[0] / 2 + CLEAR * layout.sizes.pivot.fit.running + STOP / 2
         words = (("lower", -beyond), ("upper", beyond))
         return [(word, end + off) for (word, off), end in zip(words, self.ends, strict=True) if end is not None]
@@ -102,10 +102,10 @@ class Slide:
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """The block's plate, and a plate under the rail."""
         eye = layout.sizes.eye
-        found = [Anchor(self.block, x, y, eye) for x, y in self.block_ends(eye)]
+        anchors = [Anchor(self.block, x, y, eye) for x, y in self.block_ends(eye)]
         if self.rail != "ground":
-            found += [Anchor(self.rail, x, y, RAIL / 2 + WALL) for x, y in self.rail_ends()]
-        return found
+            anchors += [Anchor(self.rail, x, y, RAIL / 2 + WALL) for x, y in self.rail_ends()]
+        return anchors
 
     def items(self, layout: Layout) -> Iterable[Item]:
         """Rail, its posts, and the gibs of the block."""
@@ -113,7 +113,7 @@ class Slide:
         block = Rounded(np.array(self.block_ends(layout.sizes.eye)), layout.sizes.eye)
         what, gibs = f"the rail of {self.host or self.name}", f"the block of {self.name}"
         on_it = (self, *self.guests)  # nothing else of these bodies passes through the rail
-        sliding = frozenset(name for one in on_it for name in (one.block, f"the block of {one.name}"))
+        sliding = frozenset(name for slide in on_it for name in (slide.block, f"the block of {slide.name}"))
         if self.host:
             reach = Reach((self.block,), -1, -1) if self.rail == "ground" else Reach((self.rail, self.block), 1, -1)
             meshes = frozenset((what,) if self.rail == "ground" else (what, self.rail))

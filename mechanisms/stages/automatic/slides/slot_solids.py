@@ -33,7 +33,7 @@ RIM = 1.0
 SEEN = 2.0
 """How far the face of a large roller reaches beyond the head of its pin (rmm)."""
 SMALL = Head(10.4, 3.2, 1.0)
-"""Of the pin of a small roller, whose face shows round it (rmm)."""
+"""Head of the pin of a small roller, whose face shows round it (rmm)."""
 SMALL_GROOVE = 1.7
 """Width of the grooves of a small roller (rmm)."""
 PIECES = 24
@@ -138,8 +138,8 @@ def _pin(through: list[InSlot], large: bool, depth: float | None, plan: Plan, he
     sizes = plan.layout.sizes
     pivot, fit, first = sizes.pivot, sizes.pivot.fit, through[0]
     body, (x, y) = first.pin, first.pin_at
-    above = [(heights.bottom(one.layer), heights.top(one.layer)) for one in through if _is_below(one, heights)]
-    under = [(heights.bottom(one.layer), heights.top(one.layer)) for one in through if not _is_below(one, heights)]
+    above = [(heights.bottom(slot.layer), heights.top(slot.layer)) for slot in through if _is_below(slot, heights)]
+    under = [(heights.bottom(slot.layer), heights.top(slot.layer)) for slot in through if not _is_below(slot, heights)]
     head = None if depth is not None else SMALL if above and not large else sizes.head
     if above:
         end = max(high for _, high in above) + fit.axial if depth is None else above[0][0] + depth - 0.4

@@ -33,7 +33,7 @@ POST = 10.0
 FARTHER = 60.0
 """How much farther they may stand (rmm), so that a slide that carries the pin does not pass there."""
 WALL = 7.0
-"""Of the plate beside the slot (rmm)."""
+"""Width of the plate beside the slot (rmm)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,21 +59,21 @@ class Slot:
 
     @property
     def layers(self) -> tuple[str, ...]:
-        """Of slot and pin, as far as these have one."""
+        """Layers of slot and pin, as far as these have one."""
         return (self.layer,) if self.pin == "ground" else (self.pin, self.layer)
 
     def radius(self, layout: Layout) -> float:
-        """Of the plate round the slot's ends."""
+        """Radius of the plate round the slot's ends."""
         return layout.sizes.roller / 2 + WALL
 
     def posts(self, layout: Layout) -> list[tuple[float, float]]:
-        """Of a plate on ground: middles, beyond the two ends of the slot."""
-        found = []
+        """Posts of a plate on ground: middles, beyond the two ends of the slot."""
+        middles = []
         for end, other in ((self.path[0], self.path[-1]), (self.path[-1], self.path[0])):
             way = (end - other) / max(float(np.hypot(*(end - other))), 1e-9)
             x, y = end + (layout.sizes.roller / 2 + WALL + POST / 2 + FARTHER * layout.far_posts) * way
-            found.append((float(x), float(y)))
-        return found
+            middles.append((float(x), float(y)))
+        return middles
 
     def outline(self, layout: Layout) -> list[tuple[float, float, float]]:
         """Circles that a plate on ground goes round."""
@@ -126,18 +126,18 @@ class Slot:
 @kind("pin_in_slot")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
     """One for each joint."""
-    found: list[Feature] = []
+    features: list[Feature] = []
     for joint in joints:
         slot, pin = joint.i.body.name, joint.j.body.name
         (x, y), way = layout.place(joint.i), np.array([math.cos(joint.i.angle), math.sin(joint.i.angle)])
         place = (layout.seen(pin, layout.place(joint.j), slot) - np.array([x, y])) @ way
         ends = np.array([x, y]) + np.outer(_ends(joint, m, (place.min(), place.max()), layout), way)
-        found.append(entered(Slot(joint.name, slot, pin, ends, layout.place(joint.j)), layout))
-    return found
+        features.append(entered(Slot(joint.name, slot, pin, ends, layout.place(joint.j)), layout))
+    return features
 
 
 def _ends(joint: Joint, m: Mechanism, travel: tuple[float, float], layout: Layout) -> tuple[float, float]:
-    """Of the way of the roller's middle in the slot (rmm): limits that are near, for the slot ends there."""
+    """Ends of the way of the roller's middle in the slot (rmm): limits that are near, for the slot ends there."""
     lower, upper = (None if end is None else layout.sizes.of_metres(end) for end in limits.sliding(joint, m))
     lower, upper = limits.reached((lower, upper), travel, FAR * layout.sizes.roller)
     return travel[0] - 1.0 if lower is None else lower, travel[1] + 1.0 if upper is None else upper

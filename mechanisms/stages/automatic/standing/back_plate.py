@@ -22,11 +22,11 @@ class Upright:
     """The turn from the axes of the model to right and up of a mount; of a desk it is none."""
 
     angle: float = 0.0
-    """Of ``up`` from y, counter-clockwise (rad)."""
+    """Angle of ``up`` from y, counter-clockwise (rad)."""
 
     @classmethod
     def of(cls, mount: Mount) -> Upright:
-        """Of a mount."""
+        """Upright of a mount."""
         x, y, _ = mount.up
         return cls() if mount.kind == "desk" else cls(math.atan2(-x, y) + 0.0)
 
@@ -75,7 +75,7 @@ class BackPlate:
         x0, y0, x1, y1 = (scale * value for value in self.corners)
         holes = tuple((scale * x, scale * y, scale * radius) for x, y, radius in self.holes)
         hull = tuple((scale * x, scale * y) for x, y in self.hull)
-        top, thickness, unit, seat = (scale * one for one in (self.top, self.thickness, self.unit, self.seat))
+        top, thickness, unit, seat = (scale * length for length in (self.top, self.thickness, self.unit, self.seat))
         return BackPlate((x0, y0, x1, y1), top, thickness, unit, seat, holes, hull, scale * self.corner)
 
     def inside(self, x: float, y: float) -> float:

@@ -22,7 +22,7 @@ FOOT, FOOT_HEIGHT = 9.0, 0.04
 WIDE = 0.3
 """Half the width of a foot that a plate asks for by its looks, as a part of its own."""
 AROUND = 14.0
-"""Of the foot round what stands on it (units)."""
+"""Margin of the foot round what stands on it (units)."""
 EVEN = 0.3
 """Sides of a foot that differ by less are made equal."""
 COLUMN = (0.34, 26.0, 0.8, 0.10)
@@ -32,7 +32,7 @@ end, as a part of its free length.
 COLUMN_THICK = (10.0, 0.045)
 """Thickness of a column, at least (units), and as a part of its length."""
 OVERLAP = 0.66
-"""Of the height of a plate, what a column is screwed to."""
+"""Part of a plate's height to which a column is screwed."""
 SCREWS_OF_FOOT = 1.5
 """Height that they take in the lower end of a column, in thicknesses of the plate."""
 
@@ -45,13 +45,13 @@ class Dimensions:
     column: tuple[Span, Span]
     """Up, and towards the viewer."""
     middle: float
-    """Of the column, right."""
+    """Middle of the column, right."""
     widths: Span
-    """Of the column at its lower and upper end."""
+    """Widths of the column at its lower and upper end."""
 
 
 def dimensions(plate: BackPlate, load: Standing) -> Dimensions:
-    """Of the stand of a plate and all that it carries."""
+    """Dimensions of the stand of a plate and all that it carries."""
     unit, x0, y0, x1, y1 = plate.unit, *plate.corners
     top = max(float(load.high[1]), y1)
     clear = max(CLEAR * unit, CLEARANCE * (top - min(load.moving, y0)))

@@ -13,12 +13,12 @@ if TYPE_CHECKING:
 def named(made: Sequence[Solid], bodies: Mapping[str, Sequence[Solid]]) -> list[Solid]:
     """What is made, numbered where ``bodies`` have the name."""
     taken = {solid.name.lower() for solids in bodies.values() for solid in solids}
-    found: list[Solid] = []
+    renamed: list[Solid] = []
     for solid in made:
         name, number = solid.name, 1
         while name.lower() in taken:
             number += 1
             name = f"{solid.name}_{number}"
         taken.add(name.lower())
-        found.append(replace(solid, name=name))
-    return found
+        renamed.append(replace(solid, name=name))
+    return renamed

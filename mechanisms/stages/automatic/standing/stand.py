@@ -26,24 +26,24 @@ SCREW = 5.0
 INTO = 0.6
 """How far they go into a plate, as a part of its thickness."""
 BEYOND = 0.8
-"""Of a blind hole beyond the end of its screw (units)."""
+"""Length of a blind hole beyond the end of its screw (units)."""
 PAD = (7.0, 2.0)
 """Radius and height of the pads under a foot (units)."""
 CORNER, EDGE = 9.0, 1.2
-"""Of a foot (units)."""
+"""Radius of the corners of a foot, and of its rounded edges (units)."""
 LINKAGE, ENGINE = ("beech", "aluminium"), ("cast_iron", "cast_iron")
 """What foot and column are made of."""
 
 
 @dataclass(frozen=True)
 class Stand:
-    """Of a back plate; ``poses`` (T, 3) (mm, rad) say how bodies move."""
+    """Stand of a back plate; ``poses`` (T, 3) (mm, rad) say how bodies move."""
 
     plate: BackPlate
     upright: Upright
     poses: Mapping[str, np.ndarray]
     materials: tuple[str, str] = LINKAGE
-    """Of foot and column."""
+    """Materials of foot and column."""
     tolerance: float | None = None
 
     def __call__(self, bodies: Mapping[str, Sequence[Solid]]) -> list[Solid]:
@@ -68,7 +68,7 @@ class Stand:
         for k, (x, y, z) in enumerate(feet, start=1):
             made.append(_screw(f"foot_screw_{k}", below, (x, y + below.sunk - plate.seat / 2, z), "y"))
         made += self._pads(own)
-        turned = [replace(one, shape=self.upright.in_model(one.shape), tolerance=self.tolerance) for one in made]
+        turned = [replace(solid, shape=self.upright.in_model(solid.shape), tolerance=self.tolerance) for solid in made]
         return [replace(main, shape=self.upright.in_model(held)), *others, *named(turned, bodies)]
 
     def _column(

@@ -15,7 +15,7 @@ from shared.shapes.facets import facets
 from shared.shapes.rough_box import rough_size
 
 CHORD, ANGLE = 0.002, 0.4
-"""Of coarse meshes: largest distance from the surface, in edges, for each mm of the solid; largest angle (rad)."""
+"""Coarse meshes: largest distance from the surface, in edges, for each mm of the solid; largest angle (rad)."""
 
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.standing.back_plate import Upright
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Hull:
-    """Of one solid, in the frame of its body: corners (n, 2) round it in the plane, its heights, mass and centre."""
+    """Hull of one solid, in its body's frame: corners (n, 2) round it in the plane, its heights, mass and centre."""
 
     corners: np.ndarray
     heights: tuple[float, float]
@@ -33,7 +33,7 @@ class Hull:
 
     @classmethod
     def of(cls, solid: Solid, shape: cq.Workplane | None = None) -> Hull:
-        """Of its ``shape`` or one that is turned, by a coarse mesh."""
+        """Hull of its ``shape`` or one that is turned, by a coarse mesh."""
         whole = (solid.shape if shape is None else shape).solids()
         faces = facets(whole.vals()[0], CHORD * rough_size(whole), ANGLE, relative=True).astype(float)
         places = faces.reshape(-1, 3)

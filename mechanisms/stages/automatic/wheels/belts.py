@@ -38,8 +38,8 @@ def belt_of(m: Mechanism, joint: Joint, layout: Layout) -> Belt:
     """The belt of a joint, with its pulleys. Raises UserError where these overlap."""
     pair = _pulley(joint, 0, layout), _pulley(joint, 1, layout)
     _fit(m, joint, pair, layout)
-    for one, mate in (pair, pair[::-1]):
-        one.mates.append(mate)
+    for pulley, mate in (pair, pair[::-1]):
+        pulley.mates.append(mate)
     return Belt(joint.name, pair, bool(joint.params["crossed"]))
 
 
@@ -55,13 +55,13 @@ def _pulley(joint: Joint, end: int, layout: Layout) -> Pulley:
 
 def _fit(m: Mechanism, joint: Joint, pair: tuple[Pulley, Pulley], layout: Layout) -> None:
     """Seats of both sprockets where the chain's rollers are at the start. Raises UserError where pulleys overlap."""
-    places = [layout.seen(one.body, (one.x, one.y), "ground")[0] for one in pair]
+    places = [layout.seen(pulley.body, (pulley.x, pulley.y), "ground")[0] for pulley in pair]
     first, second = pair
     way = places[1] - places[0]
     path = BeltPath(first.radius, second.radius, math.hypot(*way), bool(joint.params["crossed"]))
     if not path.has_room or path.distance < first.lip + second.lip:
         scale = layout.sizes.scale
-        radii = " and ".join(f"{one.radius * scale:.4g}" for one in pair)
+        radii = " and ".join(f"{pulley.radius * scale:.4g}" for pulley in pair)
         raise UserError(
             f"{m.name}: belt '{joint.name}': its pulleys of {radii} mm overlap, because their centres are "
             f"{path.distance * scale:.4g} mm apart; move a centre or make one smaller, or write "
@@ -69,7 +69,7 @@ def _fit(m: Mechanism, joint: Joint, pair: tuple[Pulley, Pulley], layout: Layout
         )
     if not first.teeth:
         return
-    turns = [layout.poses[one.body][0][2] for one in pair]
+    turns = [layout.poses[pulley.body][0][2] for pulley in pair]
     line, pitch = math.atan2(way[1], way[0]), 2 * math.pi * first.radius / first.teeth
     spacing = path.length / max(round(path.length / pitch), 1)
     first.phase = 0.0

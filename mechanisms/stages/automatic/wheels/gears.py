@@ -61,48 +61,50 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
     """All wheels, racks and pulleys of the mechanism, in phase, when the first of these kinds is asked for."""
     if any(layout.wheels.values()):
         return []
-    found: list[Wheel] = []
+    known: list[Wheel] = []
     bars: list[Rack] = []
     meshes: list[Mesh] = []
     for joint in (joint for joint in m.joints.values() if joint.kind.name in (GEARS, RACKS)):
         sized = with_radii(joint.params)
         if joint.kind.name == RACKS:
             first = _rack(bars, joint.name, joint.i, layout)
-            second = wheel_at(found, joint.name, joint.j, sized["radius"], False, layout)
+            second = wheel_at(known, joint.name, joint.j, sized["radius"], False, layout)
             add_way(m, first, second, joint, layout)
         else:
             ring = bool(joint.params["internal"])
-            first = wheel_at(found, joint.name, joint.i, sized["radius_i"], ring, layout)
-            second = wheel_at(found, joint.name, joint.j, sized["radius_j"], False, layout)
+            first = wheel_at(known, joint.name, joint.i, sized["radius_i"], ring, layout)
+            second = wheel_at(known, joint.name, joint.j, sized["radius_j"], False, layout)
             tip = layout.sizes.of_metres(joint.params.get("module") or TIP * min(sized["radius_i"], sized["radius_j"]))
-            first, second = _apart(found, first, second, tip, layout), _apart(found, second, first, tip, layout)
+            first, second = _apart(known, first, second, tip, layout), _apart(known, second, first, tip, layout)
             refuse_apart(m, joint, first, second, layout)
         first.mates.append(second)
         second.mates.append(first)
         meshes.append(Mesh(first, second, joint))
-    in_phase(m, [*found, *bars], meshes, layout)
+    in_phase(m, [*known, *bars], meshes, layout)
     bands = belts(m, layout)
     pulleys = [pulley for belt in bands for pulley in belt.pulleys]
-    enter([*found, *pulleys], layout)
+    enter([*known, *pulleys], layout)
     for rack in bars:
         layout.extra.append(rack.layer)
     layout.meshing += [*(belt.pulleys for belt in bands), *((mesh.first, mesh.second) for mesh in meshes)]
-    return [*found, *bars, *pulleys, *bands]
+    return [*known, *bars, *pulleys, *bands]
 
 
-def _apart(found: list[Wheel], wheel: Wheel, mate: Wheel, tip: float, layout: Layout) -> Wheel:
+def _apart(known: list[Wheel], wheel: Wheel, mate: Wheel, tip: float, layout: Layout) -> Wheel:
     """The wheel, or an equal one in another layer where the mate would meet one that the wheel has already."""
     if wheel.ring or mate.ring or wheel.radius < wheels.LEAST_ON_TUBE:
         return wheel
-    for one in found:
-        same = math.hypot(one.x - wheel.x, one.y - wheel.y) < SAME and one.radius == wheel.radius
-        if one.body != wheel.body or one.ring or not same:
+    for candidate in known:
+        same = math.hypot(candidate.x - wheel.x, candidate.y - wheel.y) < SAME and candidate.radius == wheel.radius
+        if candidate.body != wheel.body or candidate.ring or not same:
             continue
-        others = [other for other in one.mates if isinstance(other, Wheel) and not other.ring and other is not mate]
+        others = [
+            other for other in candidate.mates if isinstance(other, Wheel) and not other.ring and other is not mate
+        ]
         if not any(_meet(mate, other, tip, layout) for other in others):
-            return one
-    found.append(Wheel(f"{wheel.name}_{mate.body}", wheel.body, wheel.x, wheel.y, wheel.radius))
-    return found[-1]
+            return candidate
+    known.append(Wheel(f"{wheel.name}_{mate.body}", wheel.body, wheel.x, wheel.y, wheel.radius))
+    return known[-1]
 
 
 def _meet(first: Wheel, second: Wheel, tip: float, layout: Layout) -> bool:
@@ -112,7 +114,7 @@ def _meet(first: Wheel, second: Wheel, tip: float, layout: Layout) -> bool:
 
 
 def refuse_apart(m: Mechanism, joint: Joint, first: Wheel, second: Wheel, layout: Layout) -> None:
-    """Raises UserError unless the centres of two wheels stay as far apart as their radii want."""
+    """Raises UserError unless the centres of two wheels stay as far apart as their radii require."""
     wanted = abs(first.radius - second.radius) if first.ring else first.radius + second.radius
     way = layout.seen(second.body, (second.x, second.y), first.body) - (first.x, first.y)
     apart = np.hypot(*way.T)
@@ -126,15 +128,15 @@ def refuse_apart(m: Mechanism, joint: Joint, first: Wheel, second: Wheel, layout
     )
 
 
-def wheel_at(found: list[Wheel], name: str, marker: Marker, radius: float, ring: bool, layout: Layout) -> Wheel:
-    """The wheel of that pitch radius (m) about a marker: one of ``found``, or a new one that joins them."""
+def wheel_at(known: list[Wheel], name: str, marker: Marker, radius: float, ring: bool, layout: Layout) -> Wheel:
+    """The wheel of that pitch radius (m) about a marker: one of ``known``, or a new one that joins them."""
     (x, y), body, size = layout.place(marker), marker.body.name, layout.sizes.of_metres(radius)
-    for wheel in found:
+    for wheel in known:
         same = wheel.body == body and math.hypot(wheel.x - x, wheel.y - y) < SAME and wheel.ring == ring
         if same and abs(wheel.radius - size) < 1e-6 * size:
             return wheel
-    found.append(Wheel(name, body, x, y, size, ring))
-    return found[-1]
+    known.append(Wheel(name, body, x, y, size, ring))
+    return known[-1]
 
 
 def _rack(bars: list[Rack], name: str, marker: Marker, layout: Layout) -> Rack:

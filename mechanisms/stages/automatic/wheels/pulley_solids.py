@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from shared.shapes.link import Eye
 
 EDGE, FLOOR = 0.7, 1.3
-"""Of a groove: what stays beside it, and half of the width of its floor."""
+"""What stays beside a groove, and half the width of the groove's floor."""
 MARKS, LEAST_MARK, LARGEST_MARK = 3, 1.0, 2.5
 """Small holes between hub and rim, and their radii."""
 SPROCKET = 0.45
@@ -86,6 +86,6 @@ def sprocket_outline(teeth: int, radius: float, tooth: float, phase: float) -> n
     bed = np.stack([radius + seat * np.cos(turn), seat * np.sin(turn)], axis=1)[::-1]
     tip, half = radius + tooth, 0.12 * pitch
     crest = [(tip * math.cos(a), tip * math.sin(a)) for a in (pitch / 2 - half, pitch / 2 + half)]
-    one = np.concatenate([bed, crest])
+    span = np.concatenate([bed, crest])
     angles = phase + pitch * np.arange(teeth)
-    return np.concatenate([one @ np.array([[math.cos(a), math.sin(a)], [-math.sin(a), math.cos(a)]]) for a in angles])
+    return np.concatenate([span @ np.array([[math.cos(a), math.sin(a)], [-math.sin(a), math.cos(a)]]) for a in angles])

@@ -76,14 +76,14 @@ class Belt:
         """Both strands, in a body in which they rest; none where there is no such body."""
         first, second = self.pulleys
         for body in layout.poses:
-            ends = [layout.seen(one.body, (one.x, one.y), body) for one in self.pulleys]
+            ends = [layout.seen(pulley.body, (pulley.x, pulley.y), body) for pulley in self.pulleys]
             if max(float(np.ptp(end, axis=0).max()) for end in ends) > STAYS:
                 continue
             a, b = ends[0][0], ends[1][0]
             away = float(np.hypot(*(b - a)))
             turn, radius = math.atan2(b[1] - a[1], b[0] - a[0]), second.radius
             lean = math.acos(min(max((first.radius + (radius if self.crossed else -radius)) / away, -1.0), 1.0))
-            names = frozenset(one.what for one in self.pulleys)
+            names = frozenset(pulley.what for pulley in self.pulleys)
             for side in (1.0, -1.0):
                 u = np.array([math.cos(turn + side * lean), math.sin(turn + side * lean)])
                 core = np.array([a + first.radius * u, b + (-radius if self.crossed else radius) * u])

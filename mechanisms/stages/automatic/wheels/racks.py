@@ -85,7 +85,7 @@ class Rack:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Of the bar along the pitch line: in the middle of spaces."""
+        """Ends of the bar along the pitch line: in the middle of spaces."""
         first, last = self.teeth
         return (self.phase or 0.0) + (first - 0.5) * self.pitch, (self.phase or 0.0) + (last + 0.5) * self.pitch
 
@@ -148,7 +148,7 @@ def add_way(m: Mechanism, rack: Rack, pinion: Wheel, joint: Joint, layout: Layou
         raise UserError(
             f"{m.name}: {joint.kind.name} '{joint.name}': at t={layout.times[at]:.3g} s the pinion's centre is "
             f"{path[at, 1] * scale:.4g} mm above the rack's x axis, its pitch line, and teeth of a pitch radius of "
-            f"{pinion.radius * scale:.4g} mm want that; move the rack's marker or the pinion, or write "
+            f"{pinion.radius * scale:.4g} mm need that; move the rack's marker or the pinion, or write "
             f"mechanisms/{m.name}/parts.py"
         )
 

@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.layout import Layout
 
 
-def enter(found: Sequence[Wheel], layout: Layout) -> None:
+def enter(wheels: Sequence[Wheel], layout: Layout) -> None:
     """Enter the wheels by their bodies; of each the largest lies in its layer, unless a ring's bottom or, of pulleys,
     an arm does: a belt would run through that.
     """
     by_body: dict[str, list[Wheel]] = {}
-    for wheel in found:
+    for wheel in wheels:
         by_body.setdefault(wheel.body, []).append(wheel)
     for body, here in by_body.items():
         layout.wheels[body] = [*here]
@@ -39,7 +39,9 @@ def with_own_layers(layout: Layout, beside_arms: bool) -> Layout:
     """The layout, all of whose features are known, with wheels on tubes where their body's layer has no room;
     ``beside_arms``: also where an arm is in the way of their mates.
     """
-    wheels = [one for one in layout.features if isinstance(one, Wheel) and one.body != "ground" and one.shares]
+    wheels = [
+        wheel for wheel in layout.features if isinstance(wheel, Wheel) and wheel.body != "ground" and wheel.shares
+    ]
     wide = [wheel for wheel in wheels if wheel.radius >= LEAST_ON_TUBE]
     filled = {getattr(feature, "fills", "") for feature in layout.features}
     beside = [wheel for wheel in wide if wheel.body not in filled and beside_arms and _meets_an_arm(wheel, layout)]
@@ -52,7 +54,7 @@ def with_own_layers(layout: Layout, beside_arms: bool) -> Layout:
 def _meets_an_arm(wheel: Wheel, layout: Layout) -> bool:
     """Whether its mates, or its belt, meet what else its body has in its layer."""
     mates: list[object] = [*wheel.mates]
-    mates += [one for one in layout.features if isinstance(one, Belt) and wheel in one.pulleys]
+    mates += [belt for belt in layout.features if isinstance(belt, Belt) and wheel in belt.pulleys]
     near = [item for item in layout.items if item.source in mates and item.body != wheel.body]
     own = [item for item in layout.items if item.body == wheel.body and item.source is not wheel]
     own = [item for item in own if _is_always_in(item, wheel.body)]
@@ -70,7 +72,7 @@ def _has_arm(wheel: Wheel, layout: Layout) -> bool:
         return False
     m, body = layout.m, layout.m.bodies[wheel.body]
     forces = [force for force in m.forces.values() if force.kind.name in FORCE_KINDS]
-    markers = [end for one in (*m.joints.values(), *forces) for end in (one.i, one.j)]
+    markers = [end for element in (*m.joints.values(), *forces) for end in (element.i, element.j)]
     markers += m.traces.values()
     places = [layout.place(marker) for marker in markers if marker.body.name == wheel.body] or [(wheel.x, wheel.y)]
     if body.length is not None:

@@ -47,26 +47,26 @@ def in_phase(m: Mechanism, toothed: Sequence[Toothed], meshes: Sequence[Mesh], l
 
 def _trains(toothed: Sequence[Toothed]) -> list[list[Toothed]]:
     """Those that mesh with each other, directly or through others; a wheel comes first."""
-    found: list[list[Toothed]] = []
+    trains: list[list[Toothed]] = []
     seen: set[int] = set()
-    for start in sorted(toothed, key=lambda one: isinstance(one, Rack)):
+    for start in sorted(toothed, key=lambda gear: isinstance(gear, Rack)):
         train: list[Toothed] = []
         waiting: list[Toothed] = [start]
         while waiting:
-            one = waiting.pop(0)
-            if id(one) not in seen:
-                seen.add(id(one))
-                train.append(one)
-                waiting += [mate for mate in one.mates if isinstance(mate, Wheel | Rack)]
+            gear = waiting.pop(0)
+            if id(gear) not in seen:
+                seen.add(id(gear))
+                train.append(gear)
+                waiting += [mate for mate in gear.mates if isinstance(mate, Wheel | Rack)]
         if train:
-            found.append(train)
-    return found
+            trains.append(train)
+    return trains
 
 
 def _count(m: Mechanism, train: list[Toothed], meshes: Sequence[Mesh], layout: Layout) -> None:
     """Module, teeth, play and tips of a train."""
     scale = layout.sizes.scale
-    wheels = [one for one in train if isinstance(one, Wheel)]
+    wheels = [wheel for wheel in train if isinstance(wheel, Wheel)]
     given = [mesh.joint.params["module"] for mesh in meshes if mesh.joint.params.get("teeth") is not None]
     module = mm(given[0]) if given else module_of([wheel.radius * scale for wheel in wheels])
     if module is None:
@@ -76,12 +76,12 @@ def _count(m: Mechanism, train: list[Toothed], meshes: Sequence[Mesh], layout: L
             "a ratio of small whole numbers, or give teeth= and module="
         )
     play = max(0.22, 0.06 * module)
-    for one in train:
-        one.module, one.play = module / scale, play / scale
+    for gear in train:
+        gear.module, gear.play = module / scale, play / scale
     for wheel in wheels:
         wheel.teeth = round(2 * wheel.radius / wheel.module)
-    for one in train:
-        one.tip = _tip(one)
+    for gear in train:
+        gear.tip = _tip(gear)
     for mesh in meshes:
         _refuse_foul(m, mesh)
 
@@ -97,15 +97,15 @@ def _refuse_foul(m: Mechanism, mesh: Mesh) -> None:
         )
 
 
-def _tip(one: Toothed) -> float:
+def _tip(gear: Toothed) -> float:
     """Tip radius of a wheel, tip height of a rack: teeth are shorter where they would reach below a base circle."""
-    if isinstance(one, Rack):
-        return min(ADDENDUM * one.module, *(longest_rack_tip(pinion.radius) for pinion in one.mates))
-    wheels = [mate for mate in one.mates if isinstance(mate, Wheel)]
-    if one.ring:
-        return max(one.radius - RING_TIP * one.module, *(shortest_tip(one.radius, mate.radius) for mate in wheels))
-    longest = [longest_tip(one.radius, mate.radius) for mate in wheels if not mate.ring]
-    return min([one.radius + ADDENDUM * one.module, *longest])
+    if isinstance(gear, Rack):
+        return min(ADDENDUM * gear.module, *(longest_rack_tip(pinion.radius) for pinion in gear.mates))
+    wheels = [mate for mate in gear.mates if isinstance(mate, Wheel)]
+    if gear.ring:
+        return max(gear.radius - RING_TIP * gear.module, *(shortest_tip(gear.radius, mate.radius) for mate in wheels))
+    longest = [longest_tip(gear.radius, mate.radius) for mate in wheels if not mate.ring]
+    return min([gear.radius + ADDENDUM * gear.module, *longest])
 
 
 def _mesh(m: Mechanism, train: list[Toothed], meshes: Sequence[Mesh], layout: Layout) -> None:
@@ -113,12 +113,12 @@ def _mesh(m: Mechanism, train: list[Toothed], meshes: Sequence[Mesh], layout: La
     train[0].phase = 0.0
     waiting = [train[0]]
     while waiting:
-        one = waiting.pop(0)
+        gear = waiting.pop(0)
         for mesh in meshes:
-            if one is not mesh.first and one is not mesh.second:
+            if gear is not mesh.first and gear is not mesh.second:
                 continue
-            mate = mesh.second if one is mesh.first else mesh.first
-            phase = _phase_of(one, mate, layout)
+            mate = mesh.second if gear is mesh.first else mesh.first
+            phase = _phase_of(gear, mate, layout)
             if mate.phase is None:
                 mate.phase = phase
                 waiting.append(mate)
@@ -127,32 +127,32 @@ def _mesh(m: Mechanism, train: list[Toothed], meshes: Sequence[Mesh], layout: La
             off = abs((mate.phase - phase + pitch / 2) % pitch - pitch / 2)
             if off > MISS * pitch:
                 raise UserError(
-                    f"{m.name}: {mesh.joint.kind.name} '{mesh.joint.name}': the teeth of {mate.body} and {one.body} "
+                    f"{m.name}: {mesh.joint.kind.name} '{mesh.joint.name}': the teeth of {mate.body} and {gear.body} "
                     f"miss each other by {100 * off / pitch:.0f} % of a pitch where the others mesh; space equal "
                     "planets so that the teeth of sun and ring together divide by their number, or change the numbers "
                     "of teeth"
                 )
 
 
-def _phase_of(one: Toothed, mate: Toothed, layout: Layout) -> float:
+def _phase_of(gear: Toothed, mate: Toothed, layout: Layout) -> float:
     """Angle of a tooth of ``mate`` in its body's frame (place along a rack), from that of the other."""
-    if isinstance(mate, Rack) and isinstance(one, Wheel):
-        along, turn = mate.sees(one, layout)
-        return along + one.radius * ((one.phase or 0.0) + turn + math.pi / 2) + math.pi * one.module / 2
-    if isinstance(one, Rack) and isinstance(mate, Wheel):
-        along, turn = one.sees(mate, layout)
-        return ((one.phase or 0.0) - math.pi * one.module / 2 - along) / mate.radius - math.pi / 2 - turn
-    if isinstance(one, Rack) or isinstance(mate, Rack):
+    if isinstance(mate, Rack) and isinstance(gear, Wheel):
+        along, turn = mate.sees(gear, layout)
+        return along + gear.radius * ((gear.phase or 0.0) + turn + math.pi / 2) + math.pi * gear.module / 2
+    if isinstance(gear, Rack) and isinstance(mate, Wheel):
+        along, turn = gear.sees(mate, layout)
+        return ((gear.phase or 0.0) - math.pi * gear.module / 2 - along) / mate.radius - math.pi / 2 - turn
+    if isinstance(gear, Rack) or isinstance(mate, Rack):
         raise TypeError("racks mesh with wheels")
-    return _phase_of_wheel(one, mate, layout)
+    return _phase_of_wheel(gear, mate, layout)
 
 
 def _phase_of_wheel(wheel: Wheel, mate: Wheel, layout: Layout) -> float:
     centres, turns = [], []
-    for one in (wheel, mate):
-        x, y, turn = layout.poses[one.body][0]
+    for gear in (wheel, mate):
+        x, y, turn = layout.poses[gear.body][0]
         c, s = math.cos(turn), math.sin(turn)
-        centres.append((x + c * one.x - s * one.y, y + s * one.x + c * one.y))
+        centres.append((x + c * gear.x - s * gear.y, y + s * gear.x + c * gear.y))
         turns.append(turn)
     to_mate = math.atan2(centres[1][1] - centres[0][1], centres[1][0] - centres[0][0])
     # direction of the point of contact from either centre

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 SECTORS = 36
 """Pieces of an annulus in the plane."""
 RIM = 7.0
-"""Of a ring gear outside its teeth (rmm)."""
+"""Width of a ring gear outside its teeth (rmm)."""
 TUBE = (10.2, 13.2)
 """Inner and outer radius of what carries a wheel in a layer of its own: inside is room for a pin's hardware."""
 CROSSES = (45, 60, 30, 75, 15, 0)
@@ -138,11 +138,11 @@ class Wheel:
 
     def _pins(self, layout: Layout) -> frozenset[str]:
         """Names of the pins that its tube goes round."""
-        pins = (one for one in layout.features if isinstance(one, Pin) and self.body in one.places)
+        pins = (pin for pin in layout.features if isinstance(pin, Pin) and self.body in pin.places)
         return frozenset(pin.what for pin in pins if math.dist(pin.places[self.body], (self.x, self.y)) < SAME)
 
     def posts(self, layout: Layout) -> list[tuple[float, float]]:
-        """Of a ring that is fixed to ground, under its rim: a cross turned so that the fewest bodies come near it."""
+        """Posts under the rim of a ring fixed to ground: a cross turned so that the fewest bodies come near it."""
         return min((self._cross(degrees) for degrees in CROSSES), key=lambda cross: _near(cross, layout))
 
     def _cross(self, degrees: float) -> list[tuple[float, float]]:

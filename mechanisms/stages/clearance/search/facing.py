@@ -2,7 +2,7 @@
 
 The way from a horizontal face to the nearest point of another solid is vertical, unless a facet beside it is on that
 way too. So where no horizontal face is ever over or under a facet that faces it, within the gap that is sought in
-height, the facets that are not horizontal tell the least gap by themselves.
+height, the facets that are not horizontal suffice for the least gap.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from mechanisms.stages.clearance.search.sweep import Sweep
 
 BESIDE = 0.2
-"""Of the gap: shadows that stay half of this apart in the plane are told not to meet."""
+"""Part of the gap: shadows that stay half of this apart in the plane are known not to meet."""
 
 
 def never_over(sweep: Sweep, gap: float) -> bool:
     """Whether it is proven that no horizontal face of one piece is within ``gap`` (mm) straight over or under a facet
-    of the other that faces it, at any time. False tells nothing.
+    of the other that faces it, at any time. False proves nothing.
     """
     for sign in (1.0, -1.0):
         under, over = _near(sweep.still, sweep.mover, sign, gap)

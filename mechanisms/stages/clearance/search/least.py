@@ -27,22 +27,22 @@ def least_gap(sweep: Sweep, reach: float) -> Least:
     best = min(gaps, key=gaps.__getitem__)
     if gaps[best] <= 0:
         return Least(0.0, best, 0.0, len(gaps))
-    told = least_by_outlines(sweep, gaps[best], best, len(gaps))
-    if told is not None:
-        return told
-    found = _search(sweep, sweep.still.sides, sweep.mover.sides, gaps[best], best, len(gaps))
+    outlined = least_by_outlines(sweep, gaps[best], best, len(gaps))
+    if outlined is not None:
+        return outlined
+    least = _search(sweep, sweep.still.sides, sweep.mover.sides, gaps[best], best, len(gaps))
     height = height_between(sweep.still, sweep.mover)
-    if height >= found.gap - RESOLUTION:
-        found = replace(found, proven=min(found.proven, height))
-    elif found.gap > 0 and never_over(sweep, found.gap):
-        pass  # the sides tell it
-    elif not found.given_up:
-        found = _search(sweep, sweep.still.tree, sweep.mover.tree, found.gap, found.time, found.poses)
+    if height >= least.gap - RESOLUTION:
+        least = replace(least, proven=min(least.proven, height))
+    elif least.gap > 0 and never_over(sweep, least.gap):
+        pass  # the sides suffice
+    elif not least.given_up:
+        least = _search(sweep, sweep.still.tree, sweep.mover.tree, least.gap, least.time, least.poses)
     else:  # more facets would be given up, too
-        found = replace(found, proven=0.0)
-    if found.given_up and found.gap > 0:
-        return replace(found, proven=max(found.proven, proven_by_outlines(sweep, found.gap, found.time)))
-    return found
+        least = replace(least, proven=0.0)
+    if least.given_up and least.gap > 0:
+        return replace(least, proven=max(least.proven, proven_by_outlines(sweep, least.gap, least.time)))
+    return least
 
 
 def _search(sweep: Sweep, still: Tree, mover: Tree, gap: float, time: float, poses: int) -> Least:

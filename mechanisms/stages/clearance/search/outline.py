@@ -34,7 +34,7 @@ class Outline(Tree):
 
 
 def outline(piece: MeshPiece, low: float, high: float) -> Outline | None:
-    """Of what ``piece`` has between two heights (mm); None if that is nothing. It is kept with the piece, since many
+    """Outline of what ``piece`` has between two heights (mm); None if that is nothing. It is kept with the piece: many
     others have the same heights in common with it.
     """
     span = max(low, piece.z_range[0]), min(high, piece.z_range[1])
@@ -54,7 +54,7 @@ def _outline(piece: MeshPiece, low: float, high: float) -> Outline | None:
 
 
 def edge_of(facets: np.ndarray, piece: MeshPiece) -> Outline | None:
-    """Of the shadow of ``facets`` (n, 3, 3) of a piece that all look up or all look down; None if that is nothing."""
+    """Edge of the shadow of ``facets`` (n, 3, 3) of a piece, which all look up or all look down; None without any."""
     index = np.arange(3 * len(facets)).reshape(-1, 3)
     (x, y), (u, v) = (facets[0, k, :2] - facets[0, 0, :2] for k in (1, 2))
     return _edge(piece, facets.reshape(-1, 3), index if x * v > y * u else index[:, ::-1])

@@ -2,7 +2,7 @@
 
 Points of two pieces that are nearer than g are less than g apart in height, too. So pieces are g apart if the outlines
 of what either has within g of the heights that both have are g apart in the plane over the whole motion, and neither is
-inside the other at one time, and so at all times. Of plates, pins and teeth, whose walls are upright, this is the gap
+inside the other at one time, and so at all times. For plates, pins and teeth, whose walls are upright, it is the gap
 itself; and there are fewer segments than facets, and they are simpler.
 """
 
@@ -75,27 +75,27 @@ def _side(segment: np.ndarray, point: np.ndarray) -> np.ndarray:
 
 
 def least_by_outlines(sweep: Sweep, gap: float, time: float, poses: int) -> Least | None:
-    """The least gap over the motion with its proof; None where outlines do not tell it.
+    """The least gap over the motion with its proof; None where outlines do not suffice.
 
     ``gap`` (mm) of the pieces was measured at ``time``, after ``poses`` measurements. What is near in height depends on
     the least gap, so that is looked for in the common heights alone before.
     """
-    found, before = None, _outlines(sweep, 0.0)
+    least, before = None, _outlines(sweep, 0.0)
     if before is not None:
-        found = OutlineSearch(*before, sweep.path, sweep.still.centre).run(gap, time, poses)
-        gap, time, poses = _measured(sweep, found, gap, time)
-        if found.gap < gap - ALIKE:
+        least = OutlineSearch(*before, sweep.path, sweep.still.centre).run(gap, time, poses)
+        gap, time, poses = _measured(sweep, least, gap, time)
+        if least.gap < gap - ALIKE:
             return None
     beyond = max(gap - OutlineSearch.resolution, 0.0)
     both = _outlines(sweep, beyond)
     if both is None:
         return None
-    if found is None or before is None or not _same(before, both):
-        found = OutlineSearch(*both, sweep.path, sweep.still.centre).run(gap, time, poses)
-        gap, time, poses = _measured(sweep, found, gap, time)
-        if found.gap < gap - ALIKE:
+    if least is None or before is None or not _same(before, both):
+        least = OutlineSearch(*both, sweep.path, sweep.still.centre).run(gap, time, poses)
+        gap, time, poses = _measured(sweep, least, gap, time)
+        if least.gap < gap - ALIKE:
             return None
-    return Least(gap, time, min(max(found.proven - slack(sweep), 0.0), beyond, gap), poses, found.error, found.given_up)
+    return Least(gap, time, min(max(least.proven - slack(sweep), 0.0), beyond, gap), poses, least.error, least.given_up)
 
 
 def proven_by_outlines(sweep: Sweep, gap: float, time: float) -> float:
@@ -106,8 +106,8 @@ def proven_by_outlines(sweep: Sweep, gap: float, time: float) -> float:
     both = _outlines(sweep, gap)
     if both is None:
         return 0.0
-    found = OutlineSearch(*both, sweep.path, sweep.still.centre).run(gap, time, 0)
-    return min(max(found.proven - slack(sweep), 0.0), gap)
+    least = OutlineSearch(*both, sweep.path, sweep.still.centre).run(gap, time, 0)
+    return min(max(least.proven - slack(sweep), 0.0), gap)
 
 
 def slack(sweep: Sweep) -> float:
@@ -115,17 +115,17 @@ def slack(sweep: Sweep) -> float:
     return 4 * ROUNDING * (sweep.still.radius + sweep.mover.radius)
 
 
-def _measured(sweep: Sweep, found: Least, gap: float, time: float) -> tuple[float, float, int]:
+def _measured(sweep: Sweep, least: Least, gap: float, time: float) -> tuple[float, float, int]:
     """The least gap that is known of the pieces, its time, and how many poses were measured."""
-    if found.gap < gap:
-        measured = sweep.gap_at(found.time, gap)
+    if least.gap < gap:
+        measured = sweep.gap_at(least.time, gap)
         if measured < gap:
-            return measured, found.time, found.poses + 1
-    return gap, time, found.poses
+            return measured, least.time, least.poses + 1
+    return gap, time, least.poses
 
 
 def _outlines(sweep: Sweep, beyond: float) -> tuple[Outline, Outline] | None:
-    """Of both pieces within ``beyond`` (mm) of their common heights; None without any, or if one covers the other."""
+    """Outlines of both pieces within ``beyond`` (mm) of their common heights; None if none, or one covers the other."""
     low = max(sweep.still.z_range[0], sweep.mover.z_range[0]) - beyond
     high = min(sweep.still.z_range[1], sweep.mover.z_range[1]) + beyond
     still, mover = (outline(piece, low, high) if low < high else None for piece in (sweep.still, sweep.mover))
@@ -144,5 +144,5 @@ def are_over(sweep: Sweep, still: Outline, mover: Outline) -> bool:
     return covers(still, places[0]) or covers(mover, places[1])
 
 
-def _same(one: tuple[Outline, Outline], other: tuple[Outline, Outline]) -> bool:
-    return all(np.array_equal(x.edges, y.edges) for x, y in zip(one, other, strict=True))
+def _same(pair: tuple[Outline, Outline], other: tuple[Outline, Outline]) -> bool:
+    return all(np.array_equal(x.edges, y.edges) for x, y in zip(pair, other, strict=True))

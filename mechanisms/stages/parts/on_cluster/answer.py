@@ -1,6 +1,6 @@
 """What a worker sends of the parts of a mechanism, and whether it can be believed.
 
-Nothing here runs what came, and no file is written under a name that came: names are those that parts.json tells, each
+Nothing here runs what came, and no file is written under a name that came: names are those that parts.json gives, each
 a plain name beside it. The solids themselves are read by a process of their own (solids_check.py).
 """
 
@@ -35,7 +35,7 @@ PROJECT = Path(__file__).parents[4]
 
 
 class Notes(msgspec.Struct, forbid_unknown_fields=True):
-    """What the stamp of the stage tells of its inputs."""
+    """What the stamp of the stage says of its inputs."""
 
     parameters: list[str]
     inputs: dict[str, list[str]]
@@ -74,8 +74,8 @@ def read(name: str, content: bytes, own_file: str, program: Mapping[str, str]) -
         raise WrongAnswer(printable(str(error))) from error
     if document.mechanism != name:
         _refuse(name, f"they are those of '{document.mechanism}'")
-    told = document.provenance.versions
-    if not told or any(program.get(package) != version for package, version in told.items()):
+    versions = document.provenance.versions
+    if not versions or any(program.get(package) != version for package, version in versions.items()):
         _refuse(name, "parts.json tells of other packages")
     _refuse_other_files(name, document, made.files)
     _refuse_other_notes(name, made.notes, own_file)
@@ -96,7 +96,7 @@ def _refuse(name: str, what: str) -> NoReturn:
 
 
 def _refuse_other_files(name: str, document: Parts, files: Mapping[str, bytes]) -> None:
-    """Exactly the files that parts.json names, and the meshes with the hashes that it tells."""
+    """Exactly the files that parts.json names, and the meshes with the hashes that it gives."""
     pieces = [piece for body in document.bodies.values() for piece in body.pieces.values()]
     named = {file for piece in pieces for file in (piece.stl, piece.step)}
     if named != set(files):
@@ -109,22 +109,22 @@ def _refuse_other_files(name: str, document: Parts, files: Mapping[str, bytes]) 
             _refuse(name, f"{piece.stl} has another hash than parts.json tells")
 
 
-def _refuse_other_notes(name: str, told: Mapping[str, Any], own_file: str) -> None:
+def _refuse_other_notes(name: str, fields: Mapping[str, Any], own_file: str) -> None:
     """Names of inputs of all kinds, few enough to be looked at, the author's own file among them."""
     try:
-        notes = msgspec.convert(told, Notes)
+        notes = msgspec.convert(fields, Notes)
     except msgspec.ValidationError as error:
         _refuse(name, f"it tells what they were made from in another form ({error})")
     if set(notes.inputs) != set(Inputs().names()):
         _refuse(name, "it does not tell what they were made from")
-    names = [one for kind in notes.inputs.values() for one in kind] + notes.parameters
-    if len(names) > NAMES or any(not one or len(one) > LONGEST_NAME or "\0" in one for one in names):
+    names = [entry for kind in notes.inputs.values() for entry in kind] + notes.parameters
+    if len(names) > NAMES or any(not entry or len(entry) > LONGEST_NAME or "\0" in entry for entry in names):
         _refuse(name, "what they were made from has names that are none")
     if own_file not in notes.inputs["modules"]:
         _refuse(name, f"they do not follow from {own_file}")
-    for one in notes.inputs["sources"]:
-        if PurePosixPath(one).is_absolute() or ".." in PurePosixPath(one).parts:
-            _refuse(name, f"they follow from sources outside the project ('{one}')")
+    for source in notes.inputs["sources"]:
+        if PurePosixPath(source).is_absolute() or ".." in PurePosixPath(source).parts:
+            _refuse(name, f"they follow from sources outside the project ('{source}')")
 
 
 def _refuse_other_solids(name: str, made: Made) -> None:

@@ -1,6 +1,6 @@
 """What authors have written in ``mechanisms/``, as contents by their hash, and as files again on a worker.
 
-Of the mechanism whose parts are made every file travels, because parts.py may read any of them; of the others the
+Every file of the mechanism whose parts are made travels, because parts.py may read any of them; of the others the
 Python files, which it may import. The program itself does not travel: a worker has the same.
 """
 
@@ -27,19 +27,19 @@ class Order(msgspec.Struct, frozen=True, kw_only=True):
     files: dict[str, str]
     """By name below the project, the hash of the content of each of the authors' files."""
     program: dict[str, str]
-    """Versions and sources of who asks, as ``identity`` tells them."""
+    """Versions and sources of who asks, as ``identity`` gives them."""
 
 
 def collected(name: str) -> dict[str, bytes]:
     """The files of all authors, by name below the project, that go along for the mechanism or variant ``name``.
 
-    One that cannot be read, or goes meanwhile, stays here; its want is reported from here.
+    One that cannot be read, or goes meanwhile, stays here; that it is missing is reported from here.
     """
-    found: dict[str, bytes] = {}
+    contents: dict[str, bytes] = {}
     for path in sorted(_paths(paths.owner_of(name))):
         with suppress(OSError):
-            found[path.relative_to(paths.ROOT).as_posix()] = path.read_bytes()
-    return found
+            contents[path.relative_to(paths.ROOT).as_posix()] = path.read_bytes()
+    return contents
 
 
 def by_content(files: Mapping[str, bytes]) -> dict[str, bytes]:

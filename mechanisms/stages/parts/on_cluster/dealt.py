@@ -1,4 +1,4 @@
-"""The parts of a mechanism asked of the workers of the cluster. What none of them can tell is left to this machine."""
+"""The parts of a mechanism, asked of the cluster's workers. What none of them can answer is left to this machine."""
 
 from __future__ import annotations
 

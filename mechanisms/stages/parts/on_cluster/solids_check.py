@@ -1,7 +1,7 @@
 """``python -m mechanisms.stages.parts.on_cluster.solids_check FOLDER``: reads solids that another machine has made.
 
 It ends with code 1 and a sentence on stderr unless every mesh and every STEP file beside parts.json is whole, is the
-same closed solid, and has the mass that parts.json tells.
+same closed solid, and has the mass that parts.json states.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from shared.stage.errors import UserError
 MEMORY = 16_000_000_000
 """Bytes of addresses that reading may take."""
 RELATIVE = 2e-3
-"""Of masses: a solid read from STEP is that solid but for the last digits, and integrals of splines are not exact."""
+"""Tolerance of masses: a solid read from STEP differs in the last digits, and integrals of splines are not exact."""
 APART = 0.05
 """Largest distance (mm) between the box about a mesh and the box about its solid, with 1 % of its size."""
 START, END = b"ISO-10303-21;", b"END-ISO-10303-21;"
@@ -35,7 +35,7 @@ RECORD, HEAD = 50, 84
 
 
 def refuse_wrong(folder: Path) -> None:
-    """Raise UserError naming the first solid that is not what parts.json tells of it."""
+    """Raise UserError naming the first solid that is not what parts.json says of it."""
     document = parts_from((folder / "parts.json").read_bytes(), "parts.json")
     for body, solids in document.bodies.items():
         for name, piece in solids.pieces.items():
@@ -53,7 +53,7 @@ def _refuse_wrong_piece(folder: Path, where: str, piece: Piece) -> None:
     mesh = read_mesh(stl)
     if len(mesh.faces) != piece.triangles or not mesh.is_watertight:
         raise UserError(
-            f"{where}: {piece.stl} has {len(mesh.faces)} triangles that do not close, or not as many as told"
+            f"{where}: {piece.stl} has {len(mesh.faces)} triangles that do not close, or not as many as parts.json says"
         )
     heights = tuple(metres(float(height)) for height in mesh.bounds[:, 2])
     if not np.allclose(heights, piece.z_range, rtol=0.0, atol=1e-9):
@@ -100,18 +100,18 @@ def _refuse_wrong_sums(body: str, solids: BodyParts) -> None:
         raise UserError(f"{body}: its middle is not that of a piece")
 
 
-def _alike(one: Mass, other: Mass, size: float, relative: float) -> bool:
+def _alike(first: Mass, second: Mass, size: float, relative: float) -> bool:
     """Whether two masses agree, ``size`` (m) being how large the solid is."""
-    near = np.isclose([one.mass, one.volume], [other.mass, other.volume], rtol=relative, atol=1e-15).all()
-    at = np.allclose(one.com, other.com, rtol=0.0, atol=relative * size + 1e-9)
-    close = relative * (one.inertia + one.mass * size**2)
-    if (one.z is None) != (other.z is None) or (one.products is None) != (other.products is None):
+    near = np.isclose([first.mass, first.volume], [second.mass, second.volume], rtol=relative, atol=1e-15).all()
+    at = np.allclose(first.com, second.com, rtol=0.0, atol=relative * size + 1e-9)
+    close = relative * (first.inertia + first.mass * size**2)
+    if (first.z is None) != (second.z is None) or (first.products is None) != (second.products is None):
         return False
-    if one.z is not None and other.z is not None:
-        at = at and abs(one.z - other.z) <= relative * size + 1e-9
-    if one.products is not None and other.products is not None:
-        at = at and np.allclose(one.products, other.products, rtol=0.0, atol=close + 1e-15)
-    return bool(near and at and abs(one.inertia - other.inertia) <= close)
+    if first.z is not None and second.z is not None:
+        at = at and abs(first.z - second.z) <= relative * size + 1e-9
+    if first.products is not None and second.products is not None:
+        at = at and np.allclose(first.products, second.products, rtol=0.0, atol=close + 1e-15)
+    return bool(near and at and abs(first.inertia - second.inertia) <= close)
 
 
 if __name__ == "__main__":

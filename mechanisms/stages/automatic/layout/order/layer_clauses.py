@@ -81,15 +81,15 @@ class Clauses:
 
     def apart(self, first: AnyReach, second: AnyReach, key: Hashable = None) -> None:
         """Two items share no height; with a ``key`` only where its literal is true."""
-        one, other = self.new(), self.new()
-        self._below(one, first, second)
-        self._below(other, second, first)
+        first_below, second_below = self.new(), self.new()
+        self._below(first_below, first, second)
+        self._below(second_below, second, first)
         if key is None:
-            self.add(one, other)
+            self.add(first_below, second_below)
             return
         if key not in self.keys:
             self.keys[key] = self.new()
-        self.add(-self.keys[key], one, other)
+        self.add(-self.keys[key], first_below, second_below)
 
     def _below(self, literal: int, first: AnyReach, second: AnyReach) -> None:
         for mine, (_, high) in self._ends(first):
@@ -118,32 +118,32 @@ class Clauses:
 
     def crossings(self, items: Sequence[Item]) -> list[int]:
         """Literals that are true for every step from a layer to the next that a pin goes through."""
-        found: list[int] = []
+        literals: list[int] = []
         for item in items:
             ((choice, ends),) = item.reach.ends.items()
             bodies = tuple(dict.fromkeys(self.heads[body] for body in self._layered(item.reach)))
             if ends[0][0] is not None:
-                found += [] if ends[0][1] is None else self._crossed(bodies, bodies, [])
+                literals += [] if ends[0][1] is None else self._crossed(bodies, bodies, [])
                 continue
             given = [] if choice is None else [self.choices[choice]]
-            found += self._crossed((None,), bodies, given)
+            literals += self._crossed((None,), bodies, given)
             if choice is not None:
-                found += self._crossed(bodies, (None,), [-given[0]])
-        return found
+                literals += self._crossed(bodies, (None,), [-given[0]])
+        return literals
 
     def _crossed(self, lows: Sequence[str | None], highs: Sequence[str | None], given: Sequence[int]) -> list[int]:
         """From the lowest to the highest of bodies; None is what is below, or above, all of them."""
         if lows == highs and len(lows) < 2:
             return []
-        found = [self.new() for _ in range(self.count - 1)]
-        for level, literal in enumerate(found, start=1):
+        literals = [self.new() for _ in range(self.count - 1)]
+        for level, literal in enumerate(literals, start=1):
             for a in lows:
                 for b in highs:
                     if a is None or a != b:
                         below = [] if a is None else [self.at_least(a, level)]
                         above = [] if b is None else [-self.at_least(b, level)]
                         self.add(literal, *below, *above, *given)
-        return found
+        return literals
 
     def count_of(self, literals: Sequence[int], most: int) -> list[int]:
         """Literals r[k] that are true if more than k of ``literals`` are, k up to ``most``."""
@@ -156,15 +156,15 @@ class Clauses:
         return list(total.rhs)
 
     def solved(self, assumed: Sequence[int] = (), budget: int | None = None) -> bool | None:
-        """Whether there is a model under assumptions; None if ``budget`` conflicts of the solver do not tell."""
+        """Whether there is a model under assumptions; None if ``budget`` conflicts of the solver do not decide."""
         if budget is None:
-            found = self.solver.solve(assumptions=assumed)
+            answer = self.solver.solve(assumptions=assumed)
         else:
             self.solver.conf_budget(budget)
-            found = self.solver.solve_limited(assumptions=assumed)
-        if found:
+            answer = self.solver.solve_limited(assumptions=assumed)
+        if answer:
             self._model = {literal for literal in self.solver.get_model() or () if literal > 0}
-        return found
+        return answer
 
     @property
     def spent(self) -> int:

@@ -62,8 +62,8 @@ class Problem:
         fixed = max((level + step for level in self.fixed.values()), default=0)
         return 1 + step * (len(set(self.heads.values())) - 1) + fixed
 
-    def clauses(self, count: int, told: Sequence[Hashable] = ()) -> Clauses:
-        """All rules with ``count`` layers; ``told`` gives each conflict a key, and only those assumed by it count."""
+    def clauses(self, count: int, keys: Sequence[Hashable] = ()) -> Clauses:
+        """All rules with ``count`` layers; ``keys`` gives each conflict one, and only those assumed by it count."""
         made = Clauses(self.heads, choices_of(self.items), count)
         for body, level in self.fixed.items():
             made.add(made.at_least(body, level))
@@ -74,7 +74,7 @@ class Problem:
         for low, high, runners in self.between:
             made.between(low, high, runners)
         for k, (i, j) in enumerate(self.conflicts):
-            made.apart(self.items[i].reach, self.items[j].reach, told[k] if told else None)
+            made.apart(self.items[i].reach, self.items[j].reach, keys[k] if keys else None)
         return made
 
     @property
@@ -93,10 +93,10 @@ class Problem:
         for i, j in self.conflicts:
             a, b = self.items[i].reach, self.items[j].reach
             if a == Reach(a.bodies[:1]) and b == Reach(b.bodies[:1]) and a.bodies and b.bodies:
-                one, other = self.heads[a.bodies[0]], self.heads[b.bodies[0]]
-                if one != other:
-                    meet[one].add(other)
-                    meet[other].add(one)
+                first, second = self.heads[a.bodies[0]], self.heads[b.bodies[0]]
+                if first != second:
+                    meet[first].add(second)
+                    meet[second].add(first)
         most = 1
         for start in meet:
             clique, left = 1, meet[start]
@@ -116,9 +116,9 @@ def find_layers(problem: Problem) -> dict[str, int] | None:
         if bridges is None:
             return None
     for count in range(least, problem.most):
-        found = _within(problem, count, bridges, BUDGET if few else BUDGET // LESS)
-        if found is not None:
-            return found
+        order = _within(problem, count, bridges, BUDGET if few else BUDGET // LESS)
+        if order is not None:
+            return order
     return _within(problem, problem.most, bridges, None)
 
 
@@ -128,12 +128,12 @@ def _fewest_bridges(problem: Problem) -> int | None:
     literals = problem.bridged(clauses)
     if not clauses.solved():
         return None
-    found = sum(map(clauses.holds, literals))
+    fewest = sum(map(clauses.holds, literals))
     total = clauses.count_of(literals, len(literals))
-    while found and clauses.solved([-total[found - 1]]):
-        found = sum(map(clauses.holds, literals))
+    while fewest and clauses.solved([-total[fewest - 1]]):
+        fewest = sum(map(clauses.holds, literals))
     clauses.close()
-    return found
+    return fewest
 
 
 def _within(problem: Problem, count: int, bridges: int, budget: int | None) -> dict[str, int] | None:
@@ -158,10 +158,10 @@ def _within(problem: Problem, count: int, bridges: int, budget: int | None) -> d
         _lower(clauses, wish, purse)
     if few:
         _settle(clauses, [*_highest_first(clauses.steps), *clauses.choices.values()])
-    found = {body: clauses.layer(body) for body in problem.bodies}
-    found |= {choice: int(clauses.holds(literal)) for choice, literal in clauses.choices.items()}
+    chosen = {body: clauses.layer(body) for body in problem.bodies}
+    chosen |= {choice: int(clauses.holds(literal)) for choice, literal in clauses.choices.items()}
     clauses.close()
-    return found
+    return chosen
 
 
 def _lower(clauses: Clauses, literals: Sequence[int], purse: int) -> None:
@@ -193,10 +193,10 @@ def _highest_first(steps: Mapping[str, Sequence[int]]) -> list[int]:
     return [step for own in steps.values() for step in reversed(own)]
 
 
-def blocking[Key: Hashable](problem: Problem, told: Sequence[Key]) -> list[Key]:
-    """Keys of conflicts that leave no order; without any one of them there would be one. ``told``: one per conflict."""
-    clauses = problem.clauses(problem.most, told)
-    kept = list(dict.fromkeys(told))
+def blocking[Key: Hashable](problem: Problem, keys: Sequence[Key]) -> list[Key]:
+    """Keys of conflicts that leave no order; without any one of them there would be one. ``keys``: one per conflict."""
+    clauses = problem.clauses(problem.most, keys)
+    kept = list(dict.fromkeys(keys))
     literals = {key: clauses.keys[key] for key in kept}
     if clauses.solved(list(literals.values())):
         raise ValueError("there is an order of layers")

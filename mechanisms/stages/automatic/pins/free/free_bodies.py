@@ -107,11 +107,11 @@ def free_bodies(layout: Layout) -> list[Feature]:
         for a, b in combinations([name for name in names if name not in held], 2)
     ]
     shrink = max(min([1.0, *crowded]), LEAST / LARGEST[1])
-    found: list[Feature] = []
+    features: list[Feature] = []
     for name in names:
         radius = radii[name] if name in held else radii[name] * shrink
-        found.append(FreeBody(name, *places[name], radius, name not in held))
-    return found
+        features.append(FreeBody(name, *places[name], radius, name not in held))
+    return features
 
 
 def _place(layout: Layout, name: str) -> tuple[float, float]:

@@ -113,7 +113,7 @@ def styluses(layout: Layout, tall: bool, pointers: bool) -> list[Feature]:
     """One for every traced point of a moving body, except where a joint's eye or a weight is, and on balls. Points on
     rims get marks there (rim_marks.py), with ``pointers`` where these are wanted.
     """
-    found: list[Feature] = []
+    features: list[Feature] = []
     balls = {feature.body for feature in layout.features if isinstance(feature, FreeBody) and feature.is_ball}
     taken = [a for feature in layout.features for a in feature.anchors(layout)]
     for name, marker in layout.m.traces.items():
@@ -122,7 +122,7 @@ def styluses(layout: Layout, tall: bool, pointers: bool) -> list[Feature]:
         face = face_at(body, x, y, layout) if body in layout.moving else None
         if face is not None:
             mark = rim_mark(name, body, x, y, face, taken, pointers, layout)
-            found += [mark] if mark else []
+            features += [mark] if mark else []
             continue
         if (
             body not in layout.moving
@@ -130,8 +130,8 @@ def styluses(layout: Layout, tall: bool, pointers: bool) -> list[Feature]:
             or any(a.body == body and math.hypot(a.x - x, a.y - y) < near for a in taken)
         ):
             continue
-        found.append(Stylus(name, body, x, y, tall))
-    return found
+        features.append(Stylus(name, body, x, y, tall))
+    return features
 
 
 def weights(layout: Layout, heavy: bool) -> list[Feature]:
@@ -140,7 +140,7 @@ def weights(layout: Layout, heavy: bool) -> list[Feature]:
 
     ``heavy``: only for ends of bars where their centre of mass is, even if they are traced.
     """
-    found: list[Feature] = []
+    features: list[Feature] = []
     free = {feature.body for feature in layout.features if isinstance(feature, FreeBody)}
     round_bodies = {*layout.wheels, *(body for body, _, _ in layout.rounds)}
     taken = [a for feature in layout.features for a in feature.anchors(layout)]
@@ -158,5 +158,5 @@ def weights(layout: Layout, heavy: bool) -> list[Feature]:
             if heavy and (body.length is None or math.dist((x, y), centre) > layout.sizes.eye):
                 continue
             if all(math.hypot(a.x - x, a.y - y) > 2 * layout.sizes.eye for a in here):
-                found.append(Weight(name, x, y))
-    return found
+                features.append(Weight(name, x, y))
+    return features

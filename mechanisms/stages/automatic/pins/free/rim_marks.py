@@ -27,7 +27,7 @@ from shared.shapes.pin import pin
 from shared.shapes.solid import placed
 
 HEIGHT, TIP = 1.4, 0.5
-"""Of a pointer, and radius of its tip (rmm)."""
+"""Height of a pointer, and radius of its tip (rmm)."""
 SHANK, LEAST = 2.0, 0.5
 """Most and least radius of its pin (rmm)."""
 WALL, BASE = 0.8, 0.8
@@ -39,8 +39,8 @@ SEEN = 0.05
 
 
 class Face(NamedTuple):
-    """Of a wheel, in its body's frame (rmm): what lies within ``inner`` is solid and touches nothing; beyond ``outer``
-    the body may have an arm.
+    """Face of a wheel, in its body's frame (rmm): what lies within ``inner`` is solid and touches nothing; beyond
+    ``outer`` the body may have an arm.
     """
 
     x: float
@@ -74,7 +74,11 @@ class RimMark:
         """The pointer, over the face of its wheel."""
         if self.points:
             shape = Rounded(np.array([self.at, (self.x, self.y)]), self.radius + BASE)
-            own = frozenset(one.what for one in layout.features if isinstance(one, Pin) and self._is_clear_of(one))
+            own = frozenset(
+                joint_pin.what
+                for joint_pin in layout.features
+                if isinstance(joint_pin, Pin) and self._is_clear_of(joint_pin)
+            )
             yield Item(
                 f"the pointer of {self.name}", self.body, shape, Reach((self.body,), 1, 1), source=self, meshes=own,
                 spared=False,
@@ -103,10 +107,10 @@ class RimMark:
         shape = extruded(needle, HEIGHT, low).union(collar).union(shank)
         plan.make(self.body, f"pointer_{self.name}", shape, "brass", 0)
 
-    def _is_clear_of(self, one: Pin) -> bool:
+    def _is_clear_of(self, joint_pin: Pin) -> bool:
         """Whether a pin of its body is near, from whose hardware it keeps away by its place."""
-        return self.body in one.places and math.dist(one.places[self.body], self.at) < math.dist(
-            one.places[self.body], (self.x, self.y)
+        return self.body in joint_pin.places and math.dist(joint_pin.places[self.body], self.at) < math.dist(
+            joint_pin.places[self.body], (self.x, self.y)
         )
 
 
@@ -115,12 +119,12 @@ def face_at(body: str, x: float, y: float, layout: Layout) -> Face | None:
     eye = layout.sizes.stylus_eye
     for feature in layout.features:
         face_of = getattr(feature, "face_of", None)
-        found = face_of(body, layout) if face_of else None
-        if found is None:
+        face = face_of(body, layout) if face_of else None
+        if face is None:
             continue
-        away = math.hypot(x - found.x, y - found.y)
-        if found.inner < away + eye and away - eye < found.outer + layout.sizes.room:
-            return found
+        away = math.hypot(x - face.x, y - face.y)
+        if face.inner < away + eye and away - eye < face.outer + layout.sizes.room:
+            return face
     return None
 
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.layout import Layout
 
 RADIUS, BROAD = 9.0, 0.17
-"""Of a coil's middle line: at most (rmm), and at most as a part of its least length."""
+"""Radius of a coil's middle line: at most (rmm), and at most as a part of its least length."""
 WIRE, CYLINDER = 0.2, 0.6
 """Radius of the wire, and of a cylinder, in radii of a coil."""
 ASIDE = 0.05
@@ -118,27 +118,27 @@ def _all_at(first: Force | Joint, m: Mechanism, layout: Layout) -> list[Feature]
     between = stretching(m, layout.apart)
     if first is not between[0]:
         return []
-    found = [one for force in between if (one := _stretching(force, layout)) is not None]
-    layout.springs.found[:] = [one.force for one in found]
-    for one in found:
-        layout.extra.append(one.layer)
-        layout.poses[one.layer] = np.zeros((len(layout.times), 3))
-    return [*_studs(found, layout), *found]
+    springs = [spring for force in between if (spring := _stretching(force, layout)) is not None]
+    layout.springs.names[:] = [spring.force for spring in springs]
+    for spring in springs:
+        layout.extra.append(spring.layer)
+        layout.poses[spring.layer] = np.zeros((len(layout.times), 3))
+    return [*_studs(springs, layout), *springs]
 
 
-def _studs(found: Sequence[Stretching], layout: Layout) -> list[Feature]:
+def _studs(springs: Sequence[Stretching], layout: Layout) -> list[Feature]:
     """Ends that share a place of a body, or a pin, share a stud."""
     pins = [feature for feature in layout.features if isinstance(feature, Pin)]
     places: list[tuple[str, float, float, Pin | None, list[tuple[Stretching, int]]]] = []
-    for one in found:
-        for k, (body, x, y) in enumerate(one.ends):
+    for spring in springs:
+        for k, (body, x, y) in enumerate(spring.ends):
             pin = next((p for p in pins if body in p.places and math.dist(p.places[body], (x, y)) < SAME), None)
             if pin is not None:
                 body, (x, y) = pin.home, pin.places[pin.home]
             for place in places:
                 if place[0] == body and math.dist(place[1:3], (x, y)) < SAME:
-                    place[4].append((one, k))
+                    place[4].append((spring, k))
                     break
             else:
-                places.append((body, x, y, pin, [(one, k)]))
+                places.append((body, x, y, pin, [(spring, k)]))
     return [Stud(body, x, y, tuple(ends), pin) for body, x, y, pin, ends in places]

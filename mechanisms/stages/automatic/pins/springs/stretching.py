@@ -37,9 +37,9 @@ class Stretching:
 
     force: str
     radius: float
-    """Of the coil that the film draws, or from which it draws a cylinder."""
+    """Radius of the coil that the film draws, or from which it draws a cylinder."""
     outer: float
-    """Of all that it draws."""
+    """Outer radius of all that it draws."""
     ends: tuple[tuple[str, float, float], tuple[str, float, float]]
     path: np.ndarray
     """(T, 2, 2): both ends at every pose."""
@@ -53,7 +53,7 @@ class Stretching:
 
     @property
     def names(self) -> tuple[str, str]:
-        """Of its barrel and of its whole length on the axis."""
+        """Names of its barrel and of its whole length on the axis."""
         return f"the spring {self.force}", f"the ends of spring {self.force}"
 
     def z(self, heights: Heights) -> float:
@@ -78,14 +78,14 @@ class Stretching:
         studs_alone = frozenset(stud.what for stud in held)
         yield Item(ends, self.layer, Rounded(self.path, BALL + 0.4), layer, source=self, meshes=studs_alone)
         wide = Rounded(inner, self.outer)
-        meshes = frozenset(own | {one.names[0] for one in others})
+        meshes = frozenset(own | {spring.names[0] for spring in others})
         yield Item(barrel, self.layer, wide, beside, source=self, meshes=meshes)
         if others:
-            cores = frozenset(_core(one) for one in others)
+            cores = frozenset(_core(spring) for spring in others)
             yield Item(_core(self), self.layer, wide, layer, source=self, only=cores)
 
     def _studs(self, layout: Layout) -> list[Stud]:
-        return [f for f in layout.features if isinstance(f, Stud) and any(one is self for one, _ in f.ends)]
+        return [f for f in layout.features if isinstance(f, Stud) and any(spring is self for spring, _ in f.ends)]
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """Room for its barrel, beside that of another and above a pin that its end stands on."""
@@ -93,7 +93,7 @@ class Stretching:
         others = [f for f in layout.features if isinstance(f, Stretching) and f is not self]
         pins = [max(levels[body] for body in stud.pin.movers) for stud in self._studs(layout) if stud.pin]
         for gap, next_to in ((level - 1, level - 1), (level, level + 1)):
-            beside = [one.over(layout) for one in others if levels[one.layer] == next_to]
+            beside = [spring.over(layout) for spring in others if levels[spring.layer] == next_to]
             extra = max([0.0, *beside, *(sizes.end_room for top in pins if top == gap)])
             if over + extra > 0:
                 yield Need(gap, over + sizes.pivot.fit.axial + extra)
@@ -106,8 +106,8 @@ class Stretching:
         """Nothing: the film draws it."""
 
 
-def _core(one: Stretching) -> str:
-    return f"{one.names[0]} in its layer"
+def _core(spring: Stretching) -> str:
+    return f"{spring.names[0]} in its layer"
 
 
 def _corners(ends: np.ndarray, corner: np.ndarray) -> np.ndarray:
@@ -129,9 +129,9 @@ class Stud:
 
     @property
     def name(self) -> str:
-        """Of its first end."""
-        one, end = self.ends[0]
-        return f"{one.force}_{end + 1}"
+        """Name of its first end."""
+        spring, end = self.ends[0]
+        return f"{spring.force}_{end + 1}"
 
     @property
     def what(self) -> str:
@@ -140,8 +140,8 @@ class Stud:
 
     @property
     def layers(self) -> tuple[str, ...]:
-        """Of all that it holds."""
-        return tuple(dict.fromkeys(one.layer for one, _ in self.ends))
+        """Layers of all that it holds."""
+        return tuple(dict.fromkeys(spring.layer for spring, _ in self.ends))
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """An eye in the plate, or the foot of a post."""
@@ -151,7 +151,7 @@ class Stud:
 
     def items(self, layout: Layout) -> Iterable[Item]:
         """All between its body, or its pin, and what it holds; and that this lies over it."""
-        held = frozenset(one.names[1] for one, _ in self.ends)
+        held = frozenset(spring.names[1] for spring, _ in self.ends)
         if self.pin is not None:
             under = Reach(self.pin.movers, high=1, base=True)
             reach, spares = Reach((*self.pin.movers, *self.layers), 1, -1), frozenset(self.pin.places)

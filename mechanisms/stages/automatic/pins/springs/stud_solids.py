@@ -72,7 +72,7 @@ def stud_on_pin(stud: Stud, pin: Pin, plan: Plan, heights: Heights) -> None:
 
 def _lines(stud: Stud, heights: Heights) -> list[float]:
     """Heights of its balls, from below."""
-    return sorted({one.z(heights) for one, _ in stud.ends})
+    return sorted({spring.z(heights) for spring, _ in stud.ends})
 
 
 def _add(
@@ -84,5 +84,5 @@ def _add(
     at: tuple[float, float] | None = None,
 ) -> None:
     x, y = at or (stud.x, stud.y)
-    holds = tuple(Hold(one.force, one.z(heights), one.radius) for one, _ in stud.ends)
+    holds = tuple(Hold(spring.force, spring.z(heights), spring.radius) for spring, _ in stud.ends)
     plan.add(body, Solid(f"stud_{stud.name}", placed(shape, x, y), "steel", 0, holds))

@@ -89,7 +89,7 @@ class Piston:
     """What drives it."""
     wrist_joint: str
     area: float | None
-    """Of the bore (mm^2), where gas acts on it."""
+    """Area of the bore (mm^2), where gas acts on it."""
 
 
 @dataclass(frozen=True)

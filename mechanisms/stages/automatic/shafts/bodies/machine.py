@@ -38,12 +38,12 @@ def machine(
 
     Raises UserError, with the body and the remedy, for what has no parts here.
     """
-    found = Machine(m, poses, times, left_out=frozenset(left_out))
+    assembled = Machine(m, poses, times, left_out=frozenset(left_out))
     bodies = [name for name in m.bodies if name != "ground" and name not in left_out]
     joints = [
         joint
         for joint in m.joints.values()
-        if not found.left_out.intersection(joint.bodies) and joint.kind.name not in SHAPELESS
+        if not assembled.left_out.intersection(joint.bodies) and joint.kind.name not in SHAPELESS
     ]
     for joint in joints:
         if joint.kind.name not in JOINTS:
@@ -61,22 +61,22 @@ def machine(
             continue
         mains = [joint for joint in pins if "ground" in joint.bodies]
         if mains and (body in _wheeled(joints) or _is_shaft(m, body, pins)):
-            found.shafts[body] = _shaft(m, body, mains[0], pins)
+            assembled.shafts[body] = _shaft(m, body, mains[0], pins)
         else:
-            found.links[body] = _link(m, body, own, pins, _pistons(sliding, joints), chosen or {})
+            assembled.links[body] = _link(m, body, own, pins, _pistons(sliding, joints), chosen or {})
     for body, joint in sliding.items():
         if body in cams:
-            found.valves[body] = valve(found, body, joint, cams[body])
+            assembled.valves[body] = valve(assembled, body, joint, cams[body])
         elif body in bodies and body in _pistons(sliding, joints):
-            found.pistons[body] = piston(found, body, joint, joints)
+            assembled.pistons[body] = piston(assembled, body, joint, joints)
         elif body in bodies:
-            found.rams[body] = ram(found, body, joint, _pins_of(body, joints))
-    return found
+            assembled.rams[body] = ram(assembled, body, joint, _pins_of(body, joints))
+    return assembled
 
 
 def _cams(m: Mechanism, joints: Collection[Joint], sliding: Collection[str]) -> dict[str, Joint]:
     """Joints with cams by the body that is pushed. Raises UserError where that does not slide on ground."""
-    found = {}
+    cams = {}
     for joint in joints:
         if joint.kind.name != CAM:
             continue
@@ -87,14 +87,14 @@ def _cams(m: Mechanism, joints: Collection[Joint], sliding: Collection[str]) -> 
                 f"have places z cams push valves on ground alone; leave '{body}' out (automatic(m).leave_out), or "
                 f"write mechanisms/{m.name}/parts.py"
             )
-        found[body] = joint
-    return found
+        cams[body] = joint
+    return cams
 
 
 def _wheeled(joints: Collection[Joint]) -> set[str]:
     """Bodies with wheels and cams."""
-    found = {body for joint in joints if joint.kind.name in WHEELS for body in joint.bodies}
-    return found | {joint.i.body.name for joint in joints if joint.kind.name == CAM}
+    wheeled = {body for joint in joints if joint.kind.name in WHEELS for body in joint.bodies}
+    return wheeled | {joint.i.body.name for joint in joints if joint.kind.name == CAM}
 
 
 def _pins_of(body: str, joints: Collection[Joint]) -> list[Joint]:
@@ -102,7 +102,7 @@ def _pins_of(body: str, joints: Collection[Joint]) -> list[Joint]:
 
 
 def _pistons(sliding: Collection[str], joints: Collection[Joint]) -> set[str]:
-    """Of bodies that slide on ground, those with one pin at most; what has more is a ram, and tells links no plane."""
+    """Bodies that slide on ground with one pin at most; what has more is a ram, and gives links no plane."""
     return {body for body in sliding if len(_pins_of(body, joints)) < 2}
 
 
@@ -138,10 +138,10 @@ def _shaft(m: Mechanism, body: str, main: Joint, pins: list[Joint]) -> Shaft:
 
 
 def free_links(m: Mechanism, left_out: Collection[str]) -> list[str]:
-    """Links whose plane neither the model nor what they are pinned to tells."""
+    """Links whose plane neither the model nor what they are pinned to gives."""
     joints = [joint for joint in m.joints.values() if not set(left_out).intersection(joint.bodies)]
     sliding = {body for joint in joints for body in joint.bodies if _slides(joint, body)}
-    found = []
+    free = []
     for body in m.bodies:
         if body == "ground" or body in left_out or body in sliding or m.bodies[body].z is not None:
             continue
@@ -149,20 +149,20 @@ def free_links(m: Mechanism, left_out: Collection[str]) -> list[str]:
         is_shaft = any("ground" in joint.bodies for joint in pins) and (
             body in _wheeled(joints) or _is_shaft(m, body, pins)
         )
-        if not is_shaft and not _told(body, pins, _pistons(sliding, joints)):
-            found.append(body)
-    return found
+        if not is_shaft and not _known_planes(body, pins, _pistons(sliding, joints)):
+            free.append(body)
+    return free
 
 
-def _told(body: str, pins: list[Joint], sliding: Collection[str]) -> list[float]:
-    """Planes (mm) that markers tell, and the places of pistons."""
-    found: list[float] = []
+def _known_planes(body: str, pins: list[Joint], sliding: Collection[str]) -> list[float]:
+    """Planes (mm) that markers give, and the places of pistons."""
+    places: list[float] = []
     for joint in pins:
         own, other = marker_on(joint, body), other_on(joint, body)
         z = own.z if own.z is not None else other.plane if other.body.name in sliding else other.z
-        if z is not None and other.body.name != "ground" and all(abs(mm(z) - known) > SAME for known in found):
-            found.append(mm(z))
-    return found
+        if z is not None and other.body.name != "ground" and all(abs(mm(z) - known) > SAME for known in places):
+            places.append(mm(z))
+    return places
 
 
 def _link(
@@ -181,14 +181,14 @@ def _link(
             f"are guides on ground alone; leave '{body}' out (automatic(m).leave_out), or write "
             f"mechanisms/{m.name}/parts.py"
         )
-    found = _told(body, pins, sliding)
-    z = mm(given) if given is not None else found[0] if found else chosen.get(body)
+    places = _known_planes(body, pins, sliding)
+    z = mm(given) if given is not None else places[0] if places else chosen.get(body)
     if z is None:
         raise UserError(
             f"{m.name}: '{body}' has no place z along the normal, and other bodies have; give it one, such as "
             f"m.body('{body}', z=0.02)"
         )
-    apart = [other for other in found if abs(other - z) > SAME and given is None]
+    apart = [other for other in places if abs(other - z) > SAME and given is None]
     if apart:
         raise UserError(
             f"{m.name}: joints of '{body}' lie in planes at z = {z:g} and {apart[0]:g} mm; only a body that turns on "

@@ -14,7 +14,7 @@ class Mounted:
     z: float
     thickness: float
     radius: float
-    """Of what it sweeps."""
+    """Radius of what it sweeps."""
     inner: float
     """The largest radius of a shaft through it."""
     is_wheel: bool

@@ -53,13 +53,13 @@ def plane(joint: Joint, body: str) -> float | None:
 
 def planes(m: Mechanism, body: str) -> list[float]:
     """All different planes (mm) in which joints with moving bodies act on a body, in rising order."""
-    found: list[float] = []
+    heights: list[float] = []
     for joint in m.joints.values():
         if body in joint.bodies and "ground" not in joint.bodies:
             z = plane(joint, body)
-            if z is not None and all(abs(z - other) > SAME for other in found):
-                found.append(z)
-    return sorted(found)
+            if z is not None and all(abs(z - other) > SAME for other in heights):
+                heights.append(z)
+    return sorted(heights)
 
 
 def no_plane(m: Mechanism, joint: str, body: str) -> UserError:

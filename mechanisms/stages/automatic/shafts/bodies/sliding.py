@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.shafts.bodies.kinds import Machine
 
 
-def piston(found: Machine, body: str, joint: Joint, joints: list[Joint]) -> Piston:
+def piston(machine: Machine, body: str, joint: Joint, joints: list[Joint]) -> Piston:
     """Tell a piston. Raises UserError for several pins, for no plane, and for a rod beside it."""
-    m = found.m
+    m = machine.m
     wrists = [j for j in joints if j.kind.name == "revolute" and body in j.bodies]
     zs = planes(m, body)
     own = m.bodies[body].z
@@ -35,7 +35,9 @@ def piston(found: Machine, body: str, joint: Joint, joints: list[Joint]) -> Pist
     z = mm(own) if own is not None else zs[0] if zs else None
     if z is None:
         raise no_plane(m, joint.name, body)
-    links = [found.links[end.body.name] for end in (other_on(j, body) for j in wrists) if end.body.name in found.links]
+    links = [
+        machine.links[end.body.name] for end in (other_on(j, body) for j in wrists) if end.body.name in machine.links
+    ]
     apart = [link for link in links if abs(link.z - z) > SAME]
     if apart:
         raise UserError(
@@ -43,16 +45,16 @@ def piston(found: Machine, body: str, joint: Joint, joints: list[Joint]) -> Pist
             "the rod of a piston is in its middle: give both the same z"
         )
     ground, mine = marker_on(joint, "ground"), marker_on(joint, body)
-    theta = float(found.poses[body][0, 2])
+    theta = float(machine.poses[body][0, 2])
     along = np.array([math.cos(ground.angle), math.sin(ground.angle)])
     wrist = place(marker_on(wrists[0], body)) if wrists else place(mine)
     link = other_on(wrists[0], body).body.name if wrists else None
     line = np.array(place(ground))
-    origin = _driven_from(found, link, line)
-    if float(((found.path(body, *wrist) - origin) @ along).mean()) < 0:
+    origin = _driven_from(machine, link, line)
+    if float(((machine.path(body, *wrist) - origin) @ along).mean()) < 0:
         along = -along
     left = np.array([-along[1], along[0]])
-    aside = float((found.path(body, *wrist)[0] - line) @ left)
+    aside = float((machine.path(body, *wrist)[0] - line) @ left)
     turn = math.atan2(along[1], along[0]) - theta
     return Piston(
         body,
@@ -69,33 +71,33 @@ def piston(found: Machine, body: str, joint: Joint, joints: list[Joint]) -> Pist
     )
 
 
-def ram(found: Machine, body: str, joint: Joint, wrists: Sequence[Joint]) -> Ram:
+def ram(machine: Machine, body: str, joint: Joint, wrists: Sequence[Joint]) -> Ram:
     """Tell a ram. Raises UserError naming a pin that is not one of a link in a plane."""
-    m = found.m
-    for one in wrists:
-        other = other_on(one, body).body.name
-        if other not in found.links:
+    m = machine.m
+    for wrist in wrists:
+        other = other_on(wrist, body).body.name
+        if other not in machine.links:
             raise UserError(
                 f"{m.name}: '{body}' slides on ground in '{joint.name}' and is driven by several bodies, of which "
-                f"'{other}' in '{one.name}' is no link; leave it out (automatic(m).leave_out) or write "
+                f"'{other}' in '{wrist.name}' is no link; leave it out (automatic(m).leave_out) or write "
                 f"mechanisms/{m.name}/parts.py"
             )
     ground = marker_on(joint, "ground")
     along = np.array([math.cos(ground.angle), math.sin(ground.angle)])
     line = np.array(place(ground))
-    paths = [found.path(body, *place(marker_on(one, body))) for one in wrists]
-    links = [found.links[other_on(one, body).body.name] for one in wrists]
-    ends = [found.path(link.body, eye.x, eye.y) for link in links for eye in link.eyes if eye.on not in ("", body)]
+    paths = [machine.path(body, *place(marker_on(wrist, body))) for wrist in wrists]
+    links = [machine.links[other_on(wrist, body).body.name] for wrist in wrists]
+    ends = [machine.path(link.body, eye.x, eye.y) for link in links for eye in link.eyes if eye.on not in ("", body)]
     behind = np.mean([end.mean(axis=0) for end in ends], axis=0) if ends else line
     if sum(float(((path - behind) @ along).mean()) for path in paths) < 0:
         along = -along
     left = np.array([-along[1], along[0]])
-    turn = math.atan2(along[1], along[0]) - float(found.poses[body][0, 2])
+    turn = math.atan2(along[1], along[0]) - float(machine.poses[body][0, 2])
     first = min(range(len(wrists)), key=lambda k: links[k].z)
     s0 = float((paths[first][0] - line) @ along)
     pins = [
-        RamPin(one.name, link.body, float((path[0] - line) @ along) - s0, float((path[0] - line) @ left), link.z)
-        for one, link, path in zip(wrists, links, paths, strict=True)
+        RamPin(wrist.name, link.body, float((path[0] - line) @ along) - s0, float((path[0] - line) @ left), link.z)
+        for wrist, link, path in zip(wrists, links, paths, strict=True)
     ]
     pins.sort(key=lambda pin: pin.z)
     x, y = place(marker_on(wrists[first], body))
@@ -115,9 +117,9 @@ def ram(found: Machine, body: str, joint: Joint, wrists: Sequence[Joint]) -> Ram
     )
 
 
-def valve(found: Machine, body: str, joint: Joint, cam: Joint) -> Valve:
+def valve(machine: Machine, body: str, joint: Joint, cam: Joint) -> Valve:
     """Tell a valve, which slides in ``joint``. Raises UserError where it carries pins or lies in no plane."""
-    m = found.m
+    m = machine.m
     z = plane(cam, body)
     if z is None:
         raise no_plane(m, cam.name, body)
@@ -129,10 +131,10 @@ def valve(found: Machine, body: str, joint: Joint, cam: Joint) -> Valve:
             f"mechanisms/{m.name}/parts.py"
         )
     face = marker_on(cam, body)
-    theta = float(found.poses[body][0, 2])
+    theta = float(machine.poses[body][0, 2])
     normal = theta + face.angle + math.pi / 2
     along = np.array([math.cos(normal), math.sin(normal)])
-    path = found.path(body, *place(face))
+    path = machine.path(body, *place(face))
     pushed = path @ along
     least = int(np.argmin(pushed))
     return Valve(
@@ -149,20 +151,20 @@ def valve(found: Machine, body: str, joint: Joint, cam: Joint) -> Valve:
     )
 
 
-def _driven_from(found: Machine, link: str | None, line: np.ndarray) -> np.ndarray:
+def _driven_from(machine: Machine, link: str | None, line: np.ndarray) -> np.ndarray:
     """Where the shaft is whose link moves a piston, also by a rod in the plane of another; else the guide's marker."""
-    if link in found.links:
-        own = found.links[link]
-        others = [found.links[eye.on] for eye in own.eyes if eye.on in found.links]
+    if link in machine.links:
+        own = machine.links[link]
+        others = [machine.links[eye.on] for eye in own.eyes if eye.on in machine.links]
         for rod in [own, *(other for other in others if abs(other.z - own.z) < SAME)]:
             for eye in rod.eyes:
-                if eye.on in found.shafts:
-                    return np.array(found.shafts[eye.on].at)
+                if eye.on in machine.shafts:
+                    return np.array(machine.shafts[eye.on].at)
     return line
 
 
 def _area(m: Mechanism, body: str) -> float | None:
-    """Of the bore (mm^2), from a force of gas on the piston."""
+    """Area of the bore (mm^2), from a force of gas on the piston."""
     for force in m.forces.values():
         if body in force.bodies and "ground" in force.bodies:
             area = force.params.get("area")

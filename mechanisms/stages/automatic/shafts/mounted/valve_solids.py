@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 THROAT = 0.74
 """Radius of a port in that of its valve."""
 THICK = 0.025
-"""Of a retainer, in bores."""
+"""Thickness of a retainer, in bores."""
 SEAT = 0.02
 
 
@@ -47,14 +47,14 @@ def valve_solids(own: ValvePlan) -> list[Solid]:
     profile = [(0, low), (r - c, low), (r, low + c), (r, low + RIM * b), (0.7 * r, low + CONE * b)]
     profile += [(stem, low + TULIP * b), (stem, under), (own.tappet - c, under), (own.tappet, under + c)]
     profile += [(own.tappet, face - c / 2), (own.tappet - c / 2, face), (0, face)]
-    found = [Solid(own.valve.body, _in_frame(own, turned(profile)), "steel", 0)]
+    solids = [Solid(own.valve.body, _in_frame(own, turned(profile)), "steel", 0)]
     for spring, _, retainer in own.springs:
         wide, thick = RETAINER * b, THICK * b
         top = min(retainer + thick, under - SEAT)
         ring = extruded(circle(0, 0, wide), top - retainer, retainer, [circle(0, 0, stem + SEAT)])
         hold = Hold(spring, own.valve.z, COIL * b)
-        found.append(Solid(f"retainer_{spring}", _in_frame(own, ring), "brass", 1, holds=(hold,)))
-    return found
+        solids.append(Solid(f"retainer_{spring}", _in_frame(own, ring), "brass", 1, holds=(hold,)))
+    return solids
 
 
 def _in_frame(own: ValvePlan, shape: cq.Workplane) -> cq.Workplane:

@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 WIDEST, LEAST = 0.2, 0.08
 """Radius of a valve's head, wished and least."""
 BESIDE = 0.02
-"""Of a valve's head, from the wall of the bore and from the middle between two valves."""
+"""Gap of a valve's head, from the wall of the bore and from the middle between two valves."""
 RECESS, RIM, CONE, TULIP = 0.012, 0.02, 0.035, 0.1
-"""Of a closed valve above the head's face: its lower face; above that its rim, its cone and its stem begin."""
+"""Heights of a closed valve above the head's face: its lower face; above that its rim, cone and stem begin."""
 STEM = 0.04
 """Radius."""
 TAPPET, EDGE = 0.06, 0.03
@@ -57,11 +57,11 @@ class ValvePlan:
     valve: Valve
     cylinder: Cylinder
     radius: float
-    """Of its head."""
+    """Radius of its head."""
     cam: np.ndarray
     """(n, 2): outline of the cam in the frame of its shaft."""
     centre: tuple[float, float]
-    """Of the cam, in that frame."""
+    """Centre of the cam, in that frame."""
     base: float
     """The least radius of the cam."""
     reach: float
@@ -124,11 +124,11 @@ class ValvePlan:
 def valve_plans(machine: Machine, measures: Measures, cylinders: Mapping[str, Cylinder]) -> dict[str, ValvePlan]:
     """By body. Raises UserError naming a valve that is over no cylinder, has no room in one, or stands too low."""
     over = {name: _cylinder(machine, valve, cylinders) for name, valve in machine.valves.items()}
-    found = {}
+    plans = {}
     for name, valve in machine.valves.items():
         own = over[name]
         bore, away = own.bore, abs(valve.z - own.piston.z)
-        others = [machine.valves[other].z for other, one in over.items() if one is own and other != name]
+        others = [machine.valves[other].z for other, cylinder in over.items() if cylinder is own and other != name]
         halves = [abs(z - valve.z) / 2 for z in others]
         radius = min([WIDEST * bore, (0.5 - BESIDE) * bore - away, *(half - BESIDE * bore for half in halves)])
         if radius < LEAST * bore:
@@ -149,8 +149,8 @@ def valve_plans(machine: Machine, measures: Measures, cylinders: Mapping[str, Cy
                 f"and the head of its cylinder it needs {least:.4g} mm; move the camshaft away by "
                 f"{least - plan.face:.4g} mm"
             )
-        found[name] = plan
-    return found
+        plans[name] = plan
+    return plans
 
 
 def _cylinder(machine: Machine, valve: Valve, cylinders: Mapping[str, Cylinder]) -> Cylinder:
@@ -193,13 +193,13 @@ def _reach(machine: Machine, valve: Valve) -> float:
 
 def _springs(machine: Machine, valve: Valve, own: Cylinder) -> tuple[tuple[str, float, float], ...]:
     """Springs between the valve and ground on the line of its stem."""
-    found = []
+    springs = []
     for force in machine.m.forces.values():
         if force.kind.name == "spring" and set(force.bodies) == {"ground", valve.body}:
             ends = _ends(machine, force, valve, own)
             if ends is not None:
-                found.append((force.name, *ends))
-    return tuple(found)
+                springs.append((force.name, *ends))
+    return tuple(springs)
 
 
 def _ends(machine: Machine, force: Force, valve: Valve, own: Cylinder) -> tuple[float, float] | None:

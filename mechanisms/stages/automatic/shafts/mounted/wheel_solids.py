@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 SEAT = 0.02
 
 
-def wheel_solids(one: ShaftWheel, shaft: float, seat: float) -> list[Solid]:
+def wheel_solids(own: ShaftWheel, shaft: float, seat: float) -> list[Solid]:
     """A wheel on a shaft of that radius, in the frame of its body; ``seat`` (rmm) is between a pulley and its rim."""
-    wheel, unit = one.wheel, one.unit
-    thickness, low = one.thickness / unit, one.mounted.low / unit
+    wheel, unit = own.wheel, own.unit
+    thickness, low = own.thickness / unit, own.mounted.low / unit
     bore = 2 * (shaft + SEAT) / unit
     eye = Eye(max(HUB, bore / 2 + 2.0), bore)
     shape, _ = shape_of(wheel, thickness, [(0.0, 0.0, eye)])

@@ -76,22 +76,22 @@ class Wheels:
 
     def of(self, body: str) -> list[ShaftWheel]:
         """Those of a shaft, each once."""
-        return [one for one in self.every if one.wheel.body == body]
+        return [wheel for wheel in self.every if wheel.wheel.body == body]
 
     def takes(self) -> Iterable[Takes]:
         """Discs, and the strands of the belts at rest on ground."""
         unit = self.measures.unit
-        for one in self.every:
-            wheel = one.wheel
+        for own in self.every:
+            wheel = own.wheel
             mates = frozenset(mate.body for mate in wheel.mates if hasattr(mate, "body"))
-            shape = disc(wheel.x * unit, wheel.y * unit, one.outside)
-            yield Takes(wheel.what, wheel.body, shape, one.mounted.low, one.mounted.high, mates)
-        for one in self.belts:
-            on = frozenset(pulley.body for pulley in one.belt.pulleys)
-            for item in one.belt.items(self.layout):
+            shape = disc(wheel.x * unit, wheel.y * unit, own.outside)
+            yield Takes(wheel.what, wheel.body, shape, own.mounted.low, own.mounted.high, mates)
+        for own in self.belts:
+            on = frozenset(pulley.body for pulley in own.belt.pulleys)
+            for item in own.belt.items(self.layout):
                 shape = Rounded(item.shape.core * unit, item.shape.radius * unit)
                 half = 2 * BELT * unit
-                yield Takes(item.what, item.body, shape, one.z - half, one.z + half, on)
+                yield Takes(item.what, item.body, shape, own.z - half, own.z + half, on)
 
     @cached_property
     def layout(self) -> Layout:
@@ -110,17 +110,17 @@ def wheels(machine: Machine, measures: Measures) -> Wheels:
     meshes: list[Mesh] = []
     for joint in _joints(machine):
         z = _plane(machine, joint)
-        found = next((wheels for at, wheels in planes if abs(at - z) < SAME), None)
-        if found is None:
-            planes.append((z, found := []))
+        in_plane = next((wheels for at, wheels in planes if abs(at - z) < SAME), None)
+        if in_plane is None:
+            planes.append((z, in_plane := []))
         if joint.kind.name == BELTS:
             belt = belt_of(machine.m, joint, layout)
-            found += belt.pulleys
+            in_plane += belt.pulleys
             made.belts.append(ShaftBelt(belt, z))
             continue
         sized = with_radii(joint.params)
         first, second = (
-            wheel_at(found, joint.name, marker, sized[key], False, layout)
+            wheel_at(in_plane, joint.name, marker, sized[key], False, layout)
             for marker, key in ((joint.i, "radius_i"), (joint.j, "radius_j"))
         )
         refuse_apart(machine.m, joint, first, second, layout)
@@ -128,13 +128,13 @@ def wheels(machine: Machine, measures: Measures) -> Wheels:
         second.mates.append(first)
         meshes.append(Mesh(first, second, joint))
     in_phase(machine.m, [mesh_end for mesh in meshes for mesh_end in (mesh.first, mesh.second)], meshes, layout)
-    made.every.extend(ShaftWheel(wheel, z, thickness, measures.unit) for z, found in planes for wheel in found)
+    made.every.extend(ShaftWheel(wheel, z, thickness, measures.unit) for z, in_plane in planes for wheel in in_plane)
     return made
 
 
 def _joints(machine: Machine) -> list[Joint]:
     """Gears and belts. Raises UserError for a ring gear, and for a wheel whose centre is no shaft's axis."""
-    found = []
+    joints = []
     for joint in machine.m.joints.values():
         if joint.kind.name not in (GEARS, BELTS) or machine.left_out.intersection(joint.bodies):
             continue
@@ -157,8 +157,8 @@ def _joints(machine: Machine) -> list[Joint]:
                     f"{what} has its centre on '{marker.body.name}' {math.dist(at, shaft.axis):.4g} mm beside the axis "
                     "of the shaft; put it on the axis"
                 )
-        found.append(joint)
-    return found
+        joints.append(joint)
+    return joints
 
 
 def _plane(machine: Machine, joint: Joint) -> float:

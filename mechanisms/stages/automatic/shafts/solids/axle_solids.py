@@ -32,9 +32,9 @@ def axle_solids(own: Axle, machine: Machine, thickness: Mapping[str, float], siz
     faces = [(machine.links[b].z - thickness[b] / 2, machine.links[b].z + thickness[b] / 2) for b in own.stack]
     axial = max(0.15, pivot.fit.axial * unit)
     top = faces[-1][1] + axial
-    found: list[Solid] = []
+    solids: list[Solid] = []
     if own.holder == "ground":
-        found.append(
+        solids.append(
             Solid(
                 f"column_{own.joint}", _column(low, faces[0][0] - axial, pivot.held * unit, unit, x, y), "aluminium", 1
             )
@@ -44,14 +44,14 @@ def axle_solids(own: Axle, machine: Machine, thickness: Mapping[str, float], siz
         start = faces[0][0] + 0.02
     head = Head(sizes.head.diameter * unit, sizes.head.height * unit, sizes.head.dome * unit)
     bolt = placed(pin(pivot.pin * unit, top - start, head, chamfer=0.6 * unit), x, y, start)
-    found.append(Solid(f"pin_{own.joint}", bolt, "steel" if own.holder == "ground" else "brass", 0))
+    solids.append(Solid(f"pin_{own.joint}", bolt, "steel" if own.holder == "ground" else "brass", 0))
     for k, (below, above) in enumerate(pairwise(faces)):
         held = own.holder != "ground" and k == 0
         bottom, end = below[1] + (0.02 if held else axial), above[0] - axial
         if end - bottom > 0.2:
             tube = washer((pivot.pin + pivot.fit.running) * unit, pivot.washer * unit, end - bottom, 0.1 * unit)
-            found.append(Solid(f"spacer_{own.joint}_{k + 1}", placed(tube, x, y, bottom), "steel", 1))
-    return found
+            solids.append(Solid(f"spacer_{own.joint}_{k + 1}", placed(tube, x, y, bottom), "steel", 1))
+    return solids
 
 
 def _column(low: float, high: float, bore: float, unit: float, x: float, y: float) -> cq.Workplane:

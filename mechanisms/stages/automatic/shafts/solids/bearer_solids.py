@@ -29,21 +29,21 @@ SEAT = 0.02
 
 def bearer_solids(own: Bearers, low: float, number: str) -> list[Solid]:
     """Pillars from ``low`` up, and bearings, those between throws of two halves."""
-    found = []
+    solids = []
     for k, place in enumerate(own.places, start=1):
         shape = extruded(outline.circle(*place, own.radius), own.top - low, low)
-        found.append(Solid(f"pillar{number}_{k}", eased(shape, 0.15 * own.radius, "|Z", True), "steel", 0))
+        solids.append(Solid(f"pillar{number}_{k}", eased(shape, 0.15 * own.radius, "|Z", True), "steel", 0))
     last = len(own.journals)
     for k, journal in enumerate(own.journals, start=1):
         shape = _bearing(own, journal)
         if k in (1, last):
-            found.append(Solid(f"bearing{number}_{k}", shape, "aluminium", through_holes(shape)))
+            solids.append(Solid(f"bearing{number}_{k}", shape, "aluminium", through_holes(shape)))
             continue
         x, y = own.plan.shaft.at
         upper, lower = split(shape, (x, y), _across(own), 20 * own.plan.journal + 4 * own.plan.swept)
         for name, half in (("bearing", lower), ("cap", upper)):
-            found.append(Solid(f"{name}{number}_{k}", half, "aluminium", through_holes(half)))
-    return found
+            solids.append(Solid(f"{name}{number}_{k}", half, "aluminium", through_holes(half)))
+    return solids
 
 
 def _across(own: Bearers) -> float:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 SEAT = 0.02
 BEYOND = 0.01
-"""Of a pin into what it is made one with."""
+"""How far a pin reaches into what it is made one with."""
 
 
 def built_up(shape: cq.Workplane, plan: ShaftPlan, pins: Sequence[Pin]) -> list[cq.Workplane]:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from shared.shapes.solid import Solid
 
 SLIDES = 0.5
-"""Of what slides, the part that counterweights balance."""
+"""The part of what slides that counterweights balance."""
 
 
 @dataclass(frozen=True)
@@ -38,18 +38,18 @@ class Load:
 
 def loads(machine: Machine, shaft: Shaft, made: Mapping[str, Sequence[Solid]]) -> list[Load]:
     """One for each link on the shaft; masses are those that the model gives, else those of the solids in ``made``."""
-    found = []
+    on_pins = []
     for throw in shaft.throws:
         link = machine.links.get(throw.link)
         if link is not None:
             on = next(eye for eye in link.eyes if eye.joint == throw.joint)
             mass = _on_pin(machine, link, on, made)
-            found.append(Load(mass, throw.x - shaft.axis[0], throw.y - shaft.axis[1], throw.z))
-    return found
+            on_pins.append(Load(mass, throw.x - shaft.axis[0], throw.y - shaft.axis[1], throw.z))
+    return on_pins
 
 
 def _on_pin(machine: Machine, link: Link, on: LinkEye, made: Mapping[str, Sequence[Solid]]) -> float:
-    """Of a link, of the piston that it drives, and of rods on it that drive others."""
+    """Mass on a pin (kg): of a link, of the piston that it drives, and of rods on it that drive others."""
     mass, com = _mass(machine, link.body, made)
     others = [eye for eye in link.eyes if eye is not on and math.hypot(eye.x - on.x, eye.y - on.y) > 0]
     far = next((eye for eye in others if eye.on in machine.pistons), None) or max(
@@ -59,14 +59,14 @@ def _on_pin(machine: Machine, link: Link, on: LinkEye, made: Mapping[str, Sequen
         return mass
     u, v = far.x - on.x, far.y - on.y
     part = min(1.0, max(0.0, ((com[0] - on.x) * u + (com[1] - on.y) * v) / (u * u + v * v)))
-    found = mass * (1 - part)
+    share = mass * (1 - part)
     if far.on in machine.pistons:
-        found += SLIDES * (mass * part + _mass(machine, far.on, made)[0])
+        share += SLIDES * (mass * part + _mass(machine, far.on, made)[0])
     for eye in others:
         rod = machine.links.get(eye.on)
         if rod is not None and any(end.on in machine.pistons for end in rod.eyes):
-            found += _on_pin(machine, rod, next(end for end in rod.eyes if end.joint == eye.joint), made)
-    return found
+            share += _on_pin(machine, rod, next(end for end in rod.eyes if end.joint == eye.joint), made)
+    return share
 
 
 def _mass(machine: Machine, body: str, made: Mapping[str, Sequence[Solid]]) -> tuple[float, tuple[float, float]]:

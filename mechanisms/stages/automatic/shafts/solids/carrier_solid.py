@@ -29,7 +29,7 @@ WAIST = 1.1
 """Radius of a flange between two pins, in their distance from the crank pin."""
 EDGE = 0.02
 HOLLOW = 0.45
-"""Of a knuckle pin."""
+"""Radius of the hole in a knuckle pin, in that of the pin."""
 SEAT = 0.02
 END = 0.1
 """How far a knuckle pin ends below the face of a flange."""
@@ -85,7 +85,7 @@ def _flange(main: Point, pins: Sequence[Point], height: float, bore: float, edge
         arms = arms.union(extruded(outline.hull([(x, y, hub), (u, v, own)]), height))
     ways.append(lambda: arms)
     rounded = [partial(_eased, way, edge * bore) for way in ways]
-    made = first_sound([one for pair in zip(rounded, ways, strict=True) for one in pair])
+    made = first_sound([shape for pair in zip(rounded, ways, strict=True) for shape in pair])
     return arms if made is None else made
 
 

@@ -41,24 +41,24 @@ def bank_solids(
     valves: Sequence[ValvePlan] = (),
 ) -> list[Solid]:
     """Liners, heads with the seats of valve springs, and the deck from the base plate (z = ``low``) up."""
-    found = []
+    solids = []
     for own in bank:
         name = own.piston.body
         shape = _in_place(own, liner_shape(LinerSize.of(own), rounded(fin[name]), _window(own, bank, others)))
-        found.append(Solid(f"liner_{name}", shape, "aluminium", through_holes(shape)))
+        solids.append(Solid(f"liner_{name}", shape, "aluminium", through_holes(shape)))
         if own.against is not None:
             continue  # the other piston is its head
-        radius, above = min(fin[name], 1.25 * own.outer), [one for one in valves if one.cylinder is own]
+        radius, above = min(fin[name], 1.25 * own.outer), [plan for plan in valves if plan.cylinder is own]
         shape = _in_place(own, head_shape(own, radius, above))
-        found.append(Solid(f"head_{name}", shape, "aluminium_black", through_holes(shape)))
-        for one in above:
-            for spring, washer in spring_seats(one):
-                shape = _turned(own, washer.translate((0, 0, one.valve.z)))
-                hold = Hold(spring, one.valve.z, COIL * one.bore)
-                found.append(Solid(f"seat_{spring}", shape, "steel", 1, holds=(hold,)))
+        solids.append(Solid(f"head_{name}", shape, "aluminium_black", through_holes(shape)))
+        for plan in above:
+            for spring, washer in spring_seats(plan):
+                shape = _turned(own, washer.translate((0, 0, plan.valve.z)))
+                hold = Hold(spring, plan.valve.z, COIL * plan.bore)
+                solids.append(Solid(f"seat_{spring}", shape, "steel", 1, holds=(hold,)))
     deck = _deck(bank, low)
-    found.append(Solid(f"deck_{bank[0].piston.body}", deck, "aluminium_blue", through_holes(deck)))
-    return found
+    solids.append(Solid(f"deck_{bank[0].piston.body}", deck, "aluminium_blue", through_holes(deck)))
+    return solids
 
 
 def _deck(bank: Sequence[Cylinder], low: float) -> cq.Workplane:
@@ -93,7 +93,7 @@ def _window(own: Cylinder, bank: Sequence[Cylinder], others: Sequence[Sequence[C
     """Direction about the bore's middle, from left of it towards z (rad), to which its liner is open."""
     if len(bank) == 1:
         return math.pi / 2
-    every = [one[0].piston.along for one in others]
+    every = [other[0].piston.along for other in others]
     mean = sum(u for u, _ in every), sum(v for _, v in every)
     leans = mean[0] * own.piston.along[1] - mean[1] * own.piston.along[0]
     if math.hypot(*mean) < 1e-6:  # banks against each other are both open upwards

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 KERF = 0.03
 """Between a rod and its cap, on either side of the middle."""
 WIDTHS = (4.0, 5.1, 4.4, 6.2)
-"""Of the box that cuts a rod in two, in its reach: at some of them the kernel fails for no reason of the shape."""
+"""Widths of the box that cuts a rod in two, in its reach: with some the kernel fails for no reason of the shape."""
 
 
 def plate_shape(own: Link, eyes: list[tuple[float, float, Eye]], thickness: float, unit: float) -> cq.Workplane:
@@ -85,7 +85,7 @@ def split(
         return shape.intersect(placed(box, *at, turn=math.degrees(towards)))
 
     cuts = ((half(1.0, wide), half(-1.0, wide)) for wide in WIDTHS)
-    sound = (cut for cut in cuts if all(one.solids().size() == 1 for one in cut))
+    sound = (cut for cut in cuts if all(piece.solids().size() == 1 for piece in cut))
     return next(sound, (half(1.0, WIDTHS[0]), half(-1.0, WIDTHS[0])))
 
 

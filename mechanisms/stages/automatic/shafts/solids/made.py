@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from shared.contract import Mount
 
 PLATE, FOOT, MARGIN, INSET, ROUND = 10.0, 3.0, 14.0, 11.0, 8.0
-"""Of the base plate: thickness, height of its feet, what it reaches beyond all that stands on it, place of its feet,
+"""Base plate: thickness, height of its feet, what it reaches beyond all that stands on it, place of its feet,
 radius of its corners (rmm).
 """
 SEAT = 0.02
@@ -86,12 +86,12 @@ def _named(made: dict[str, list[Solid]], tolerance: float | None) -> dict[str, l
     def named(wish: str) -> str:
         name = re.sub(r"\W", "_", wish, flags=re.ASCII)
         name = name if name[:1].isalpha() else f"part_{name}"
-        found, number = name, 1
-        while found.lower() in taken:
+        free, number = name, 1
+        while free.lower() in taken:
             number += 1
-            found = f"{name}_{number}"
-        taken.add(found.lower())
-        return found
+            free = f"{name}_{number}"
+        taken.add(free.lower())
+        return free
 
     mains = {body: named("base_plate" if body == "ground" else body) for body in made}
     return {
@@ -127,24 +127,24 @@ def _base(own: BackPlate, mount: Mount) -> list[Solid]:
         plate = eased(extruded(rim, own.thickness, -own.thickness), 0.8 * unit, ">Z", chamfer=True)
     else:
         plate = base_plate(own.corners, own.thickness, ROUND * unit, edge=0.8 * unit)
-    found = [Solid("base_plate", placed(plate, z=own.top), "aluminium_black", 0)]
+    pieces = [Solid("base_plate", placed(plate, z=own.top), "aluminium_black", 0)]
     inset, low = INSET * unit, own.back - FOOT * unit - SEAT
     rests = mount.kind in ("desk", "wall")
     places = [(x, y) for x in (x0 + inset, x1 - inset) for y in (y0 + inset, y1 - inset)] if rests else []
     for k, (x, y) in enumerate(places, start=1):
-        found.append(Solid(f"foot_{k}", extruded(circle(x, y, 8.0 * unit), FOOT * unit, low), "rubber", 0))
-    return [replace(solid, shape=upright.in_model(solid.shape)) for solid in found]
+        pieces.append(Solid(f"foot_{k}", extruded(circle(x, y, 8.0 * unit), FOOT * unit, low), "rubber", 0))
+    return [replace(solid, shape=upright.in_model(solid.shape)) for solid in pieces]
 
 
 def _on_ground(own: Along) -> list[Solid]:
     """Liners with what holds them, and what carries shafts."""
     every = banks(own.cylinders)
     start = own.low + SEAT
-    found = [solid for bank in every for solid in bank_solids(bank, every, own.fins, start, [*own.valves.values()])]
-    found += [solid for one in own.rams.values() for solid in guide_solids(one, start)]
-    for k, one in enumerate(own.bearers):
-        found += bearer_solids(one, start, "" if len(own.bearers) == 1 else f"_{k + 1}")
-    return found
+    pieces = [solid for bank in every for solid in bank_solids(bank, every, own.fins, start, [*own.valves.values()])]
+    pieces += [solid for ram in own.rams.values() for solid in guide_solids(ram, start)]
+    for k, bearer in enumerate(own.bearers):
+        pieces += bearer_solids(bearer, start, "" if len(own.bearers) == 1 else f"_{k + 1}")
+    return pieces
 
 
 def _of_body(own: Along, body: str, material: str, is_wished: bool, made: Mapping[str, Sequence[Solid]]) -> list[Solid]:
@@ -165,10 +165,10 @@ def _of_body(own: Along, body: str, material: str, is_wished: bool, made: Mappin
         shape = shape.union(cam_shape(valve)) if valve.valve.shaft == body else shape
     pieces = built_up(shape, plan, [pin for pin in plan.pins if any(_is_closed(own, link) for link in pin.links)])
     names = [body, *(f"rear_{body}" for _ in pieces[1:])]
-    found = [Solid(name, one, material, through_holes(one)) for name, one in zip(names, pieces, strict=True)]
+    all_pieces = [Solid(name, piece, material, through_holes(piece)) for name, piece in zip(names, pieces, strict=True)]
     for wheel in own.wheels.of(body):
-        found += wheel_solids(wheel, plan.through(wheel.mounted), own.sizes.pivot.fit.seat)
-    return found
+        all_pieces += wheel_solids(wheel, plan.through(wheel.mounted), own.sizes.pivot.fit.seat)
+    return all_pieces
 
 
 def _is_closed(own: Along, body: str) -> bool:
@@ -194,17 +194,17 @@ def _piston(own: Along, body: str, material: str) -> list[Solid]:
 
     size = PistonSize.of(cylinder)
     shape = at(piston_shape(size, thickness, gap))
-    found = [Solid(body, shape, material, through_holes(shape))]
+    pieces = [Solid(body, shape, material, through_holes(shape))]
     for k, ring in enumerate(ring_shapes(size), start=1):
-        found.append(Solid(f"ring_{body}_{k}", at(ring), "steel", 1))
-    found.append(Solid(f"wrist_pin_{body}", at(wrist_pin_shape(size)), "brass", 1))
-    return found
+        pieces.append(Solid(f"ring_{body}_{k}", at(ring), "steel", 1))
+    pieces.append(Solid(f"wrist_pin_{body}", at(wrist_pin_shape(size)), "brass", 1))
+    return pieces
 
 
 def _link(own: Along, link: Link, material: str, is_wished: bool) -> list[Solid]:
     """A rod where it has two eyes and drives a piston, else a plate; split at its crank pin where it can be."""
     thickness, bore = own.thickness[link.body], own.measures.of_rod(link)
-    eyes, bottom, found = _eyes(own, link), link.z - thickness / 2, list[Solid]()
+    eyes, bottom, knuckle_pins = _eyes(own, link), link.z - thickness / 2, list[Solid]()
     cuts, main = _cuts(own, link, eyes), rod_foot(own.machine, link)
     big = next((k for k, eye in enumerate(eyes) if main is not None and math.dist(eye[:2], (main.x, main.y)) < 0.01), 0)
     if bore is not None and main is not None and is_carrier(own.machine, link):
@@ -215,7 +215,7 @@ def _link(own: Along, link: Link, material: str, is_wished: bool) -> list[Solid]
         pieces = cut_up(carrier_shape((main.x, main.y), eyes[big][2].bore, small, pins, fork), cuts)
         for eye in knuckled:
             pin = placed(knuckle_pin((eye.x, eye.y), thickness, bore), z=bottom)
-            found.append(Solid(f"pin_{eye.joint}", pin, "brass", 1))
+            knuckle_pins.append(Solid(f"pin_{eye.joint}", pin, "brass", 1))
     elif bore is not None and len(eyes) == 2 and main is not None:
         pieces = rod_pieces((eyes[big], eyes[1 - big]), thickness, bore, cuts)
     else:
@@ -225,20 +225,20 @@ def _link(own: Along, link: Link, material: str, is_wished: bool) -> list[Solid]
         material = ROD
     names = [link.body, *(f"cap_{link.body}" for _ in cuts)]
     made = [Solid(name, placed(it, z=bottom), material, n) for name, (it, n) in zip(names, pieces, strict=True)]
-    return [made[0], *found, *made[1:]]
+    return [made[0], *knuckle_pins, *made[1:]]
 
 
 def _cuts(own: Along, link: Link, eyes: Sequence[tuple[float, float, Eye]]) -> tuple[Cut, ...]:
     """Where a link is split: at crank pins, where all else of it lies on one side."""
-    found = list[Cut]()
+    cuts = list[Cut]()
     for k, on in enumerate(link.eyes):
         if on.on not in own.machine.shafts:
             continue
         x, y, eye = eyes[k]
         towards = splits_at(link, x, y)
         if towards is not None:
-            found.append(((x, y), towards, _reach(link) + 2 * eye.radius))
-    return tuple(found)
+            cuts.append(((x, y), towards, _reach(link) + 2 * eye.radius))
+    return tuple(cuts)
 
 
 def _reach(link: Link) -> float:
@@ -251,11 +251,11 @@ def _eyes(own: Along, link: Link) -> list[tuple[float, float, Eye]]:
 
 def _distinct(link: Link) -> list[LinkEye]:
     """Eyes without repeats at one place."""
-    found: list[LinkEye] = []
+    eyes: list[LinkEye] = []
     for eye in link.eyes:
-        if all(math.hypot(eye.x - other.x, eye.y - other.y) > 0.01 for other in found):
-            found.append(eye)
-    return found
+        if all(math.hypot(eye.x - other.x, eye.y - other.y) > 0.01 for other in eyes):
+            eyes.append(eye)
+    return eyes
 
 
 def _bore(own: Along, link: Link, eye: LinkEye) -> float:
@@ -270,9 +270,9 @@ def _bore(own: Along, link: Link, eye: LinkEye) -> float:
         return 2 * (KNUCKLE_PIN * (own.measures.of_rod(link) or 0.0) + max(0.12, 0.1 * own.measures.unit))
     axle = next(
         (
-            one
-            for one in own.axles
-            if link.body in one.places and math.dist(one.places[link.body], (eye.x, eye.y)) < 0.01
+            candidate
+            for candidate in own.axles
+            if link.body in candidate.places and math.dist(candidate.places[link.body], (eye.x, eye.y)) < 0.01
         ),
         None,
     )

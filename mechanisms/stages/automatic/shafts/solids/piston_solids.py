@@ -25,7 +25,7 @@ RINGS = (0.10, 0.19, 0.28)
 RING, DEEP = 0.035, 0.055
 """Height and depth of a ring."""
 RING_GAP = 0.7
-"""Of a ring in its liner, in that of the piston."""
+"""Gap of a ring in its liner, in that of the piston."""
 SEAT = 0.02
 HOLLOW, ROOF = 0.41, 0.1
 """Radius of the room inside a piston, and thickness of its crown above."""
@@ -54,11 +54,11 @@ class PistonSize(NamedTuple):
     skirt: float
     """Heights above and below the wrist pin."""
     aside: float
-    """Of the wrist pin, from the middle."""
+    """Offset of the wrist pin from the middle."""
 
     @classmethod
     def of(cls, own: Cylinder) -> PistonSize:
-        """Of a cylinder, its sizes rounded: what follows from the motion differs from bore to bore in its last bits."""
+        """Size for a cylinder, rounded: what follows from the motion differs from bore to bore in its last bits."""
         return cls(*(rounded(size) for size in (own.bore, own.running, own.crown, own.skirt, own.piston.aside)))
 
 
@@ -119,7 +119,7 @@ class LinerSize(NamedTuple):
 
     @classmethod
     def of(cls, own: Cylinder) -> LinerSize:
-        """Of a cylinder, rounded as those of its piston."""
+        """Size for a cylinder, rounded like that of its piston."""
         return cls(*(rounded(size) for size in (own.bore, own.outer, own.low, own.top)))
 
 

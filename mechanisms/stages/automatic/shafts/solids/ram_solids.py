@@ -23,20 +23,20 @@ def ram_solids(own: RamPlan, pin: float, material: str) -> list[Solid]:
     """The ram, its main piece first, and its pins of radius ``pin``."""
     first, last = own.span
     shape = _box(own.low, own.high, own.middle, own.half, first, last)
-    for one, room, bottom, top in own.clevises:
-        for low, high in ((bottom, one.z - room), (one.z + room, top)):
-            cheek = extruded(circle(one.s, one.q, own.eye), high - low, low)
-            shape = shape.union(cheek).union(_box(one.s, own.low + 1.0, one.q, own.eye, low, high))
-    for one, _, bottom, top in own.clevises:
-        shape = shape.cut(extruded(circle(one.s, one.q, pin + SEAT), top - bottom + 2, bottom - 1))
+    for clevis, room, bottom, top in own.clevises:
+        for low, high in ((bottom, clevis.z - room), (clevis.z + room, top)):
+            cheek = extruded(circle(clevis.s, clevis.q, own.eye), high - low, low)
+            shape = shape.union(cheek).union(_box(clevis.s, own.low + 1.0, clevis.q, own.eye, low, high))
+    for clevis, _, bottom, top in own.clevises:
+        shape = shape.cut(extruded(circle(clevis.s, clevis.q, pin + SEAT), top - bottom + 2, bottom - 1))
     running = max(0.12, 0.02 * own.unit)
     for z in own.columns:
         shape = shape.cut(_column(own, own.low - 1, own.high + 1, z, COLUMN * own.unit + running))
-    found = [Solid(own.ram.body, _on_body(own, shape), material, through_holes(shape))]
+    solids = [Solid(own.ram.body, _on_body(own, shape), material, through_holes(shape))]
     for s, q, bottom, top in _merged(own):
         bolt = extruded(circle(s, q, pin), top - bottom, bottom)
-        found.append(Solid(f"pin_{own.ram.body}", _on_body(own, bolt), "brass", 0))
-    return found
+        solids.append(Solid(f"pin_{own.ram.body}", _on_body(own, bolt), "brass", 0))
+    return solids
 
 
 def guide_solids(own: RamPlan, low: float) -> list[Solid]:
@@ -44,26 +44,26 @@ def guide_solids(own: RamPlan, low: float) -> list[Solid]:
     begin, (below, above) = own.begin, own.deck
     wide = own.half + HUB * own.unit
     deck = _box(below, above, own.middle, wide, low, own.span[1])
-    found = []
+    solids = []
     for k, z in enumerate(own.columns, start=1):
         column = _column(own, begin, above, z, COLUMN * own.unit)
         deck = deck.cut(_column(own, below - 1, above + 1, z, COLUMN * own.unit + SEAT))
-        found.append(Solid(f"column_{own.ram.body}_{k}", _on_ground(own, column), "steel", 0))
-    found.append(Solid(f"deck_{own.ram.body}", _on_ground(own, deck), "aluminium_blue", through_holes(deck)))
-    return found
+        solids.append(Solid(f"column_{own.ram.body}_{k}", _on_ground(own, column), "steel", 0))
+    solids.append(Solid(f"deck_{own.ram.body}", _on_ground(own, deck), "aluminium_blue", through_holes(deck)))
+    return solids
 
 
 def _merged(own: RamPlan) -> list[tuple[float, float, float, float]]:
     """Place and ends of the pins: one through clevises of one place whose cheeks touch."""
-    found: list[tuple[float, float, float, float]] = []
-    for one, _, bottom, top in own.clevises:
-        for k, (s, q, low, high) in enumerate(found):
-            if math.hypot(s - one.s, q - one.q) < SEAT and bottom < high + SEAT:
-                found[k] = (s, q, low, max(high, top))
+    merged: list[tuple[float, float, float, float]] = []
+    for clevis, _, bottom, top in own.clevises:
+        for k, (s, q, low, high) in enumerate(merged):
+            if math.hypot(s - clevis.s, q - clevis.q) < SEAT and bottom < high + SEAT:
+                merged[k] = (s, q, low, max(high, top))
                 break
         else:
-            found.append((one.s, one.q, bottom, top))
-    return found
+            merged.append((clevis.s, clevis.q, bottom, top))
+    return merged
 
 
 def _box(x0: float, x1: float, y: float, half: float, z0: float, z1: float) -> cq.Workplane:

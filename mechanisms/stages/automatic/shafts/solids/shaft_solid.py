@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.shafts.shaft_plan import ShaftPlan
 
 INTO = 0.3
-"""Of a web's thickness, how far pins and journals reach into it."""
+"""How far pins and journals reach into a web, in its thickness."""
 
 
 def shaft_solid(plan: ShaftPlan, webs: Sequence[cq.Workplane], flywheel: float = 0.0) -> cq.Workplane:

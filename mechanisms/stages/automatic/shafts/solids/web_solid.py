@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from shared.shapes.outline import Circle
 
 EDGE = 0.018
-"""Of what is rounded, in bores."""
+"""Radius of what is rounded, in bores."""
 
 
 @dataclass(frozen=True)

@@ -205,7 +205,7 @@ def _planned(m: Mechanism) -> Automatic:
     return Automatic(m, m.sweep())
 
 
-def test_a_body_left_out_of_parts_by_themselves_leaves_its_eyes() -> None:
+def test_a_body_left_out_of_automatic_parts_leaves_its_eyes() -> None:
     made = _planned(slider_crank())
     assert "rod" in made.levels
     made.leave_out("rod")

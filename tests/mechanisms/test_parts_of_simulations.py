@@ -11,7 +11,7 @@ import pytest
 from mbsd import Mechanism, constant_rate
 from mechanisms.stages.automatic import automatic
 from mechanisms.stages.loading import loading
-from mechanisms.stages.parts import parts_by_themselves
+from mechanisms.stages.parts import automatic_solids
 from mechanisms.stages.solve import bare_motion
 from mechanisms.stages.solve.bare_motion import bare_solution
 from shared.shapes.solid import Solid
@@ -50,7 +50,7 @@ def _recorded(monkeypatch: pytest.MonkeyPatch, sides: list[float]) -> list[dict[
         cube = [Solid("arm", cq.Workplane().box(side, side, side), "steel", 0)]
         return SimpleNamespace(solids=lambda: {"ground": cube, "arm": cube})
 
-    monkeypatch.setattr(parts_by_themselves, "bare_solution", solved)
+    monkeypatch.setattr(automatic_solids, "bare_solution", solved)
     monkeypatch.setattr(automatic, "automatic", made)
     return asked
 
@@ -62,7 +62,7 @@ def _cube(side: float) -> dict[str, Any]:
 def test_parts_are_made_again_until_they_fit_the_motion_with_their_masses(monkeypatch: pytest.MonkeyPatch) -> None:
     _Author(monkeypatch)
     asked = _recorded(monkeypatch, [10.0, 20.0, 20.0])
-    solids = parts_by_themselves.solids_of("arm")
+    solids = automatic_solids.solids_of("arm")
     assert asked == [None, _cube(10.0), _cube(20.0)]
     assert solids["arm"][0].shape.val().Volume() == pytest.approx(8000.0)
 
@@ -70,8 +70,8 @@ def test_parts_are_made_again_until_they_fit_the_motion_with_their_masses(monkey
 def test_parts_that_never_settle_end(monkeypatch: pytest.MonkeyPatch) -> None:
     _Author(monkeypatch)
     asked = _recorded(monkeypatch, [10.0, 11.0, 12.0, 13.0, 14.0, 15.0])
-    parts_by_themselves.solids_of("arm")
-    assert len(asked) == 1 + parts_by_themselves.ROUNDS
+    automatic_solids.solids_of("arm")
+    assert len(asked) == 1 + automatic_solids.ROUNDS
 
 
 @pytest.mark.parametrize("given", [{"mass": 0.5}, {"driven": True}])
@@ -80,7 +80,7 @@ def test_where_masses_decide_nothing_parts_are_made_once(
 ) -> None:
     _Author(monkeypatch, **given)
     asked = _recorded(monkeypatch, [10.0])
-    parts_by_themselves.solids_of("arm")
+    automatic_solids.solids_of("arm")
     assert asked == [None]
 
 

@@ -41,7 +41,7 @@ SOURCES = [
     *contract_sources(),
 ]
 _MOTION = ("bare_motion", "solving", "refined_times", "masses", "estimated_masses")
-_AUTOMATIC = ("automatic", "parts/parts_by_themselves.py", "loading/variants.py")
+_AUTOMATIC = ("automatic", "parts/automatic_solids.py", "loading/variants.py")
 AUTOMATIC = [
     *SOURCES,
     *(_STAGES / name for name in _AUTOMATIC),
@@ -200,7 +200,7 @@ def _build(name: str, given: Any) -> tuple[dict[str, list[Any]], list[str], Inpu
     from mechanisms.stages.parts.returned_parts import refuse_unfit
 
     if not has(name, "parts"):
-        from mechanisms.stages.parts.parts_by_themselves import solids_of
+        from mechanisms.stages.parts.automatic_solids import solids_of
 
         return solids_of(name), [], Inputs()
     stand_in, seen = traced(given)

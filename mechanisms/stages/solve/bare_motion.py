@@ -18,7 +18,7 @@ def bare_solution(name: str, masses: Mapping[str, Mass] | None = None) -> Soluti
     """Solve a mechanism with the masses of mechanism.py; where it gives none, with ``masses`` or estimated ones.
 
     Poses of a mechanism whose drivers fix every freedom do not depend on masses; those of a simulation do, so parts
-    made for it follow from a motion with their own masses (parts_by_themselves.py). Raises UserError.
+    made for it follow from a motion with their own masses (automatic_solids.py). Raises UserError.
     """
     module, p = loading.load(name, "mechanism"), loading.params(name)
     m = solving.build(name, module, p)

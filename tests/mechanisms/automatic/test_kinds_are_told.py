@@ -17,7 +17,7 @@ STOPS = {"angle_stop", "coordinate_stop"}
 
 def _rows() -> tuple[set[str], set[str]]:
     """Names in the table's rows, and in those of what has no parts."""
-    table = (ROOT / "docs" / "parts.md").read_text().split("## What is made by itself")[1].split("\n## ")[0]
+    table = (ROOT / "docs" / "parts.md").read_text().split("## Automatic parts")[1].split("\n## ")[0]
     rows = [line for line in table.splitlines() if line.startswith("|")]
     without = [line for line in rows if "without parts |" in line]
     made = [line.split("|")[1] for line in rows if line not in without]

@@ -13,7 +13,7 @@ WRONG = (COLLIDES, UNSOUND, ERROR, HUNG)
 
 _NAMED = re.compile(r"'[^']*'")
 _NUMBER = re.compile(r"[-+]?\d[\d.e+-]*")
-_REASONS = ("no order of layers", "has no parts by itself", "have no automatic parts", "must hang from a bridge")
+_REASONS = ("no order of layers", "has no automatic parts", "have no automatic parts", "must hang from a bridge")
 _PROVEN, _GIVEN_UP = "between two samples of data.json", "was given up: their"
 
 

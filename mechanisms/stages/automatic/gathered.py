@@ -75,8 +75,8 @@ def gathered(layout: Layout) -> list[Feature]:
             loose.append(joint)
         elif kind not in KINDS:
             raise UserError(
-                f"{m.name}: joint '{name}' is a {kind.replace('_', ' ')}, which has no parts by "
-                f"itself yet (there are: {', '.join(KINDS)}); leave one of its bodies out, or write "
+                f"{m.name}: joint '{name}' is a {kind.replace('_', ' ')}, which has no automatic "
+                f"parts yet (there are: {', '.join(KINDS)}); leave one of its bodies out, or write "
                 f"mechanisms/{m.name}/parts.py"
             )
         else:

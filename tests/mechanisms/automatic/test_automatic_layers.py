@@ -203,7 +203,7 @@ def test_a_kind_without_parts_is_refused_by_name(monkeypatch: pytest.MonkeyPatch
     m.distance("rod", a.end, b.end, length=0.2)
     m.start_near(a=90, b=90)
     m.drive_angle("motor", a, lambda t: math.pi / 2 + 0.1 * t)
-    with pytest.raises(UserError, match="joint 'rod' is a distance, which has no parts by itself yet"):
+    with pytest.raises(UserError, match="joint 'rod' is a distance, which has no automatic parts yet"):
         _ = Automatic(m, m.sweep(1.0)).levels
 
 

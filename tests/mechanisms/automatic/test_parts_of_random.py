@@ -35,7 +35,7 @@ KINDS = (
     "linkage, cranks swing",
     "model of each group",
 )
-REASONS = ("no order of layers lets", "has no parts by itself", "bends with a radius")
+REASONS = ("no order of layers lets", "has no automatic parts", "bends with a radius")
 
 
 @pytest.mark.slow
@@ -132,8 +132,8 @@ def test_what_is_wrong_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_refusals_are_counted_without_names_and_numbers() -> None:
-    text = "four: joint 'loop' is a belt, which has no parts by itself yet (there are: revolute)"
-    assert reason(text) == "has no parts by itself: belt"
+    text = "four: joint 'loop' is a belt, which has no automatic parts yet (there are: revolute)"
+    assert reason(text) == "has no automatic parts: belt"
     assert reason("a: no order of layers lets x and y pass each other with pins of 4 mm") == "no order of layers"
     assert reason("a: gears of 'b' with 12.5 mm") == reason("c: gears of 'd' with 3e-2 mm")
 

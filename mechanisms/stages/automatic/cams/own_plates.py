@@ -16,5 +16,5 @@ def refuse_ground(m: Mechanism, joint: Joint, *bodies: str) -> None:
     if "ground" in bodies:
         raise UserError(
             f"{m.name}: joint '{joint.name}' is a {joint.kind.name.replace('_', ' ')} with a part on ground, which has "
-            f"no parts by itself yet; let a body that is fixed (weld) carry it, or write mechanisms/{m.name}/parts.py"
+            f"no automatic parts yet; let a body that is fixed (weld) carry it, or write mechanisms/{m.name}/parts.py"
         )

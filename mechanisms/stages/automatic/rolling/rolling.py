@@ -76,7 +76,7 @@ def _refuse(m: Mechanism, joint: Joint) -> None:
     if joint.j.body.name == "ground":
         raise UserError(
             f"{m.name}: joint '{joint.name}' is a {joint.kind.name.replace('_', ' ')} whose disc is on ground; "
-            f"it has no parts by itself yet; write mechanisms/{m.name}/parts.py"
+            f"it has no automatic parts yet; write mechanisms/{m.name}/parts.py"
         )
 
 

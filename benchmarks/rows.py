@@ -50,7 +50,7 @@ def write(rows: Sequence[Row], bars: Sequence[Bar]) -> None:
 
 
 def read() -> tuple[list[Row], list[Bar]]:
-    """Of the last run."""
+    """Rows of the last run."""
     try:
         found = [json.loads((out_root() / name).read_text()) for name in ("bench.json", "bars.json")]
     except FileNotFoundError:

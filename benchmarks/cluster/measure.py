@@ -32,7 +32,7 @@ from shared.stage.signals import end_with_parent
 COUNTS = ((64, 100), (64, 1000), (64, 10_000), (8, 10_000), (1, 1000))
 """Workers and tasks."""
 SECONDS, TASKS = 0.5, 60
-"""Of a task, and how many there are, for two workers against one."""
+"""Duration (s) of a task, and how many there are, for two workers against one."""
 WANTED = 1.8
 IDLE = 0.5
 """Load of the machine, in cores, up to which tasks that take processor time say something."""

@@ -20,7 +20,7 @@ from benchmarks.dynamics.pins import Pinned
 
 
 class Dae:
-    """Of one mechanism, with the constraint as ``index`` 1 or 2."""
+    """Equations of one mechanism, with the constraint as ``index`` 1 or 2."""
 
     def __init__(self, model: Pinned, index: int, feedback: float = 0.0) -> None:
         self.model, self.index, self.feedback = model, index, feedback

@@ -30,7 +30,7 @@ def equations(model: Pinned) -> Equations:
 
 
 class Equations:
-    """Of one mechanism, dense; flat q and v of length ``size`` = 3 * bodies, ``rows`` = 2 * pins."""
+    """Equations of one mechanism, dense; flat q and v of length ``size`` = 3 * bodies, ``rows`` = 2 * pins."""
 
     def __init__(self, model: Pinned) -> None:
         count, pins = len(model.solids), len(model.pins)
@@ -135,7 +135,7 @@ class Equations:
         return free - self.correction(factor, self.times_jacobian(free, factor) - self.gamma(v, arms))
 
     def rates(self, _t: float, y: np.ndarray) -> np.ndarray:
-        """Of y = (q, v), for an integrator."""
+        """Rates of y = (q, v), for an integrator."""
         v = y[self.size :]
         return np.concatenate([v, self.acceleration(y[: self.size], v)])
 

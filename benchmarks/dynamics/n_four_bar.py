@@ -29,7 +29,7 @@ BAR = 20.0
 
 
 def name(loops: int) -> str:
-    """Of the problem with this many loops."""
+    """Name of the problem with this many loops."""
     return f"A02 N={loops}"
 
 

@@ -55,5 +55,5 @@ def measured() -> tuple[list[Row], list[Bar]]:
 
 
 def words_of(costs: list[float]) -> str:
-    """Of the bar."""
+    """Words of the bar."""
     return ", ".join(f"{cost * 1e6:.2f}" for cost in costs) + " us per body and second"

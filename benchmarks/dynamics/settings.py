@@ -25,7 +25,7 @@ def load() -> dict[str, dict[str, dict[str, Any]]]:
 
 
 def words(settings: dict[str, Any]) -> str:
-    """Of a row."""
+    """Words of a row."""
     return ", ".join(f"{name} {value}" for name, value in settings.items())
 
 

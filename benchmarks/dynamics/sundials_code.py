@@ -25,7 +25,8 @@ from benchmarks.dynamics.stepping import tolerances
 VERSION = f"{metadata.version('scikit-sundae')}"
 MOST_STEPS = 20_000
 MOST_EVALUATIONS = 60_000
-"""Of a residual in one run: IDA may creep at a singular pose for ever; after these it gets no numbers, and stops."""
+"""Number of evaluations in one run, after which IDA gets no numbers and stops: it may creep for ever at a singular
+pose."""
 SAMPLES = 1000
 
 

@@ -29,7 +29,7 @@ BEGIN, END = "<!-- rows of make bench-film -->", "<!-- end of bench-film -->"
 OF_PLAIN = 4
 """Frames of the plain script that are measured; each takes the same."""
 TURNS = 3
-"""Of the film; a plain script renders each of them."""
+"""Turns of the film; a plain script renders each of them."""
 
 
 def measured(words: Sequence[str]) -> int:

@@ -82,7 +82,7 @@ class Film:
         return time.perf_counter() - begun
 
     def timing(self) -> Timing:
-        """Of the last run."""
+        """Timing of the last run."""
         return jsonfile.read(self.store.timing, Timing)
 
     def plain(self, count: int) -> tuple[float, float]:

@@ -24,7 +24,7 @@ CODES = ("mbsd", "exudyn", "mujoco")
 BARS = dict.fromkeys(PROBLEMS, 10.0)
 """How many times the time of mbsd the quickest peer takes at least."""
 LIMITS = {PLANETARY: 1e-5, GENEVA: 1e-5, CAM: 1e-5, CONTACT: 1e-4}
-"""Of the error; wide enough that MuJoCo's soft loops are peers."""
+"""Limits of the error; wide enough that MuJoCo's soft loops are peers."""
 SUN, PLANET = 0.5, 0.5
 """Pitch radii (m): the carrier is the crank of the four-bar sweep's linkage and goes a quarter of the sun's way."""
 RATIO = SUN / (2 * SUN + 2 * PLANET)
@@ -35,7 +35,7 @@ INDEX = 0.78
 ECCENTRIC, DISC, ARM, PIVOT = 0.3, 1.0, 1.5, 2.0
 """A disc turns about a point off its centre; the roller's centre on an arm stays at DISC from it (m)."""
 STIFFNESS, HEIGHT, GRAVITY, DURATION = 1e8, 1.0, 10.0, 3.0
-"""Of a ball of 1 kg that falls by HEIGHT (N/m, m, m/s^2, s)."""
+"""Stiffness, height of fall, gravity and duration of a ball of 1 kg that falls (N/m, m, m/s^2, s)."""
 
 SPAN = {PLANETARY: (0.0, 2 * math.pi / RATIO), GENEVA: (-INDEX, INDEX), CAM: (0.0, 2 * math.pi)}
 
@@ -64,7 +64,7 @@ def worst(found: np.ndarray, wanted: np.ndarray) -> float:
 
 
 def height(time: float) -> float:
-    """Of the ball above the untouched floor (m): falls and half swings of the floor without loss."""
+    """Height of the ball above the untouched floor (m): falls and half swings of the floor without loss."""
     speed, omega = math.sqrt(2 * GRAVITY * HEIGHT), math.sqrt(STIFFNESS)
     sag = GRAVITY / STIFFNESS
     touch = 2 * (math.pi - math.atan2(speed / omega, sag)) / omega

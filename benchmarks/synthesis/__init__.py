@@ -14,4 +14,4 @@ POINTS = np.array(
 )
 """m; the first of the start, then each 67.5 degrees of the crank."""
 STEPS = 3600
-"""Of the sweep that tells the error."""
+"""Number of steps of the sweep that gives the error."""

@@ -22,12 +22,12 @@ from mbsd.base.quantity import written
 from mbsd.kinematics.pose.close import CLOSED, close
 
 LONGEST = 0.3
-"""Of one step, in sizes and rad."""
+"""Longest step, in sizes and rad."""
 MOST_STEPS = 400
 BALANCED = 1e-13
 """Part of the largest load that may stay unbalanced."""
 NOISE = 1e-14
-"""Of the stiffness: what a displacement by rounding changes in the loads."""
+"""Fraction of the stiffness: what a displacement by rounding changes in the loads."""
 ACCEPTED = 1e-9
 """What counts as balanced where rounding allows no further step."""
 AWAY, TURNED = 20.0, 25.0

@@ -53,7 +53,7 @@ class Linear(Protocol):
 
     @property
     def size(self) -> float:
-        """Of the mechanism (m)."""
+        """Size of the mechanism (m)."""
         ...
 
     @property

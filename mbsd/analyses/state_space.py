@@ -36,9 +36,9 @@ from mbsd.model.mechanism import Model
 from mbsd.results.friction import friction_view
 
 POSE_STEP = 5e-4
-"""Of differences of the pose, in sizes and rad."""
+"""Step of differences of the pose, in sizes and rad."""
 SPEED_STEP = 1e-5
-"""Of differences of the velocities, in sizes/s and rad/s: small against the speeds where dry friction turns."""
+"""Step of differences of the velocities, in sizes/s and rad/s: small against the speeds where dry friction turns."""
 ROUNDING = 1e-10
 """Entries of A below this part of the largest of their block are rounding."""
 MASSLESS = 1e-10
@@ -68,7 +68,7 @@ class Linearisation:
     com: np.ndarray
     """(nb, 2) in the authors' frames (m)."""
     size: float
-    """Of the mechanism (m): makes turns comparable with displacements."""
+    """Size of the mechanism (m): makes turns comparable with displacements."""
     states: tuple[str, ...] = ()
     """States of forces, which are the last s of x: ``boom.pressure_a`` (Pa)."""
 

@@ -23,7 +23,7 @@ from mbsd.equations.laws import Laws
 from mbsd.equations.loads import Loads
 
 STEP = 1e-3
-"""Of central differences, in sizes and rad; they are of fourth order."""
+"""Step of central differences, in sizes and rad; they are of fourth order."""
 DIFFERENCES = np.array([1.0, -8.0, 8.0, -1.0]) / 12.0
 OFFSETS = np.array([-2.0, -1.0, 1.0, 2.0])
 
@@ -85,7 +85,7 @@ class Statics:
 
 
 def statics(packed: Packed, time: float) -> Statics:
-    """Of a packed mechanism whose drivers hold where they are at ``time`` (s)."""
+    """Statics of a packed mechanism whose drivers hold where they are at ``time`` (s)."""
     drive = packed.drives(np.array([time]))[0]
     drive[:, 1:] = 0.0
     system = packed.system

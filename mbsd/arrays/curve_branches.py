@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 CURVES = ("curve", "curve_rolling")
 NEAR = 1e-5
-"""Of the size: a branch nearer than this may be the one a point is on."""
+"""Fraction of the size: a branch nearer than this may be the one a point is on."""
 
 
 class CurveRow(NamedTuple):
@@ -48,7 +48,7 @@ class CurveRow(NamedTuple):
     """Marker."""
     j: int
     numbers: np.ndarray
-    """Of its equation; a copy, as numba looks longer at the types of arrays that cannot be written into."""
+    """Numbers of its equation; a copy, as numba looks longer at the types of arrays that cannot be written into."""
     own: np.ndarray
     """(16,) its relative pose, scratch, and LAST."""
 

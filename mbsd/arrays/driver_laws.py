@@ -20,7 +20,7 @@ from mbsd.base.users_function import law_of
 from mbsd.model.laws import Motion
 
 LARGEST_ANGLE = 1e12
-"""Of a driver (rad): beyond it neighbouring numbers are more than 1e-4 rad apart."""
+"""Largest angle of a driver (rad): beyond it neighbouring numbers are more than 1e-4 rad apart."""
 LOOKS = 17
 """Times at which every law is evaluated before each analysis."""
 MOST_SPANS = 64

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 COLUMNS = 9
-"""Of Loads.interaction."""
+"""Number of columns of Loads.interaction."""
 SHAPES = {"pin": PIN, "guide": GUIDE, "slot": 2}
 """What the kernels call the pairs of :attr:`mbsd.model.joint.JointKind.pair`."""
 SHARP = 1e-9

@@ -43,7 +43,7 @@ class Packed:
     force_markers: np.ndarray
     """(forces, 2) marker numbers i, j."""
     motions: list[Motion]
-    """Of the drivers, in order; motion k of the tables is ``motions[k - 1]``."""
+    """Motions of the drivers, in order; motion k of the tables is ``motions[k - 1]``."""
     contacts: int
     """How many of the joints are contacts."""
     specials: Specials
@@ -62,7 +62,7 @@ class Packed:
 
     @property
     def masses(self) -> Masses:
-        """Of the bodies, ground included."""
+        """Masses of the bodies, ground included."""
         end = len(self.body_names) - self.states
         mass, inertia = self.system.mass[:end], self.system.inertia[:end]
         return Masses(self.body_names[:end], self.com[:end], mass, inertia, self.joints, self.name, self.size)

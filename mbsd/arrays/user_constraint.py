@@ -25,7 +25,7 @@ from mbsd.compiling.callback import Callback, WrongValue
 
 COMPLEX_STEP = 1e-30
 STEP = 4e-3
-"""Of differences, in sizes of the mechanism and rad; the error is about 1e-15 times the seventh derivative."""
+"""Step of differences, in sizes of the mechanism and rad; the error is about 1e-15 times the seventh derivative."""
 AGREEMENT = 1e-6
 REALS = (int, float, np.floating, np.integer)
 TRIALS = ((0.31, -0.42, 0.53), (-0.27, 0.66, -1.1), (0.81, 0.13, 2.2))

@@ -52,7 +52,7 @@ class _Turning:
 
 
 def effect_of_weight(sol: Any, weight: Counterweight, about: tuple[float, float], z0: float) -> Effect:
-    """Of a counterweight along the motion of a Solution."""
+    """Effect of a counterweight along the motion of a Solution."""
     at, body = sol.place(weight.about), sol.body(weight.body)
     turning = _Turning(
         np.stack([at.x, at.y], axis=-1), np.stack([at.vx, at.vy], axis=-1), np.stack([at.ax, at.ay], axis=-1),
@@ -62,7 +62,7 @@ def effect_of_weight(sol: Any, weight: Counterweight, about: tuple[float, float]
 
 
 def effect_of_shaft(sol: Any, shaft: BalanceShaft, crank: str, about: tuple[float, float], z0: float) -> Effect:
-    """Of a balance shaft that the body ``crank`` turns."""
+    """Effect of a balance shaft that the body ``crank`` turns."""
     body, still = sol.body(crank), np.zeros((len(sol.t), 2))
     turning = _Turning(
         still + np.asarray(shaft.at), still, still,

@@ -27,7 +27,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 C = TypeVar("C", bound=type)
 
 LARGEST = 1e100
-"""Of any number: squares and products of a few such numbers can still be represented."""
+"""Largest size of any number: squares and products of a few such numbers can still be represented."""
 
 
 def finite_number(what: str, value: object) -> float:

@@ -163,7 +163,7 @@ def _asked_for(recorder: Recorder, path: Any) -> None:
 
 
 def _started(recorder: Recorder, executable: Any, arguments: Any, cwd: Any, *_: Any) -> None:
-    """Of a program that is started, the files among its words; what else it reads is its own."""
+    """Count the files among the words of a program that is started; what else it reads is its own."""
     words = arguments if isinstance(arguments, list | tuple) else []
     for word in (executable, *words):
         if isinstance(word, str | os.PathLike) and word:

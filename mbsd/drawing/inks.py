@@ -29,7 +29,7 @@ BETWEEN = ("silver", "gold")
 FREE = ("orange", "blue", "gold", "green", "red", "violet")
 """Words by role, of which bodies of one role take turns: driven on ground, on ground, between, held by nothing."""
 SLATE = ("#51606e", "#6a5f57", "#4a6668", "#655a70", "#5f6650")
-"""Of bodies where arrows are to be seen, in turn: signal colours belong to quantities alone."""
+"""Colours of bodies where arrows are to be seen, in turn: signal colours belong to quantities alone."""
 DARKER = (0.0, -0.11, -0.055, -0.17, -0.085)
 """Shades of one ink in turn, in lightness."""
 TINTS = (250.0, 70.0, 150.0, 330.0)

@@ -95,7 +95,7 @@ class Tracks:
 
     times: np.ndarray
     views: dict[str, FrameView]
-    """Of bodies, ground included."""
+    """Frames of bodies, ground included."""
     paths: dict[str, np.ndarray]
     """See :class:`Pose`."""
     travel: dict[str, np.ndarray]
@@ -110,7 +110,7 @@ class Tracks:
 
 
 def tracks_of(sol: Solution) -> Tracks:
-    """Of a whole solution."""
+    """Tracks of a whole solution."""
     m = sol.mechanism
     views = {name: sol.body(name) for name in m.bodies}
     travel, aside = {}, {}

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 WIDTH, TALLEST, FLATTEST = 7.0, 7.0, 2.6
-"""Of a figure of our own (inches)."""
+"""Width, largest and least height of a figure of our own (inches)."""
 UNITS_ACROSS = 34.0
 """Units in the larger side of a drawing."""
 SMALLEST = 1e-12

@@ -21,7 +21,7 @@ class Steady:
     high: np.ndarray
     """(2,) extent of the machine over the whole motion (m)."""
     unit: float
-    """Of its symbols (m)."""
+    """Unit of its symbols (m)."""
     sides: dict[str, np.ndarray]
     coils: dict[str, int]
     wheels: dict[tuple[str, float], tuple[int, float]]
@@ -35,7 +35,7 @@ class Steady:
 
 
 def steady_of(m: Model, poses: Sequence[Pose], colours: dict[str, str], recorder: type[Canvas]) -> Steady:
-    """Of these poses; ``recorder`` is a canvas that needs no axes."""
+    """What stays the same in these poses; ``recorder`` is a canvas that needs no axes."""
     low, high, unit = measure_all(m, poses)
     sides = steady_sides(m, poses, unit)
     turns: dict[str, list[int]] = {}

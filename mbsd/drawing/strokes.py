@@ -43,7 +43,7 @@ class Stroke:
     fill: str | None
     """Role of the filling's colour; None: not filled."""
     alpha: float
-    """Of the filling, or of an open line."""
+    """Opacity of the filling, or of an open line."""
     width: float
     """Points."""
     order: float

@@ -33,7 +33,7 @@ def follow(
 
 
 def recording_of(met: EventRun, event_rows: bool = False) -> Recording:
-    """Of an event run that has ended: outputs that were reached, with rows at events if asked for."""
+    """Recording of an event run that has ended: outputs that were reached, with rows at events if asked for."""
     written = int(met.state.count[NEXT])
     out, held = Output(*(part[:written] for part in met.out)), met.held[:written]
     rows = met.rows if event_rows else met.rows[-1:] if met.ended else []

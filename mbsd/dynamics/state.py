@@ -70,7 +70,7 @@ class Settings(NamedTuple):
     smallest: float
     """Step (s) at which a method with an error estimate gives up."""
     step: float
-    """Of methods with a fixed step (s)."""
+    """Step of methods with a fixed step (s)."""
     options: Any
     """(options,) of the method itself, see Integrator.options."""
 

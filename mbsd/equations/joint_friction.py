@@ -22,17 +22,17 @@ from mbsd.equations.markers import move, place
 PIN, GUIDE = 0, 1
 """Places in FRICTION_JOINTS; the third is a pin in a slot."""
 SHAPE, MARKER_I, MARKER_J, FIRST, END, SECOND, WAY = range(7)
-"""Of a row: shape, markers, rows of the joint, 1 where body j moves (else the reaction on body i is read), the row that
-holds the joint while it sticks, -1 where there is none."""
+"""Columns of a row: shape, markers, rows of the joint, 1 where body j moves (else the reaction on body i is read), the
+row that holds the joint while it sticks, -1 where there is none."""
 COEFFICIENT, STATIC, STRIBECK, VISCOUS, SLIP_SPEED, PRELOAD, SIZE, SENSE = range(8)
-"""Of its numbers; SIZE: radius of a pin, length of a guide; SENSE: see BY_RATE."""
+"""Columns of its numbers; SIZE: radius of a pin, length of a guide; SENSE: see BY_RATE."""
 BY_RATE, NONE = 2.0, 0.0
 """Senses beside 1 and -1, the sign of a sliding that an event ends: friction by the rate alone; none (it sticks, or its
 joint is released)."""
 X, LAST, FOUND, CHANGE = range(4)
-"""Of ``normal``: used now, last residual, what the multipliers give, change to be applied."""
+"""Columns of ``normal``: the one used now, last residual, what the multipliers give, change to be applied."""
 WEIGHT, FAILED = 0, 1
-"""Of ``Loads.iteration``."""
+"""Columns of ``Loads.iteration``."""
 SETTLED, FAINT = 1e-12, 0.1
 """Part of the largest normal force that may be left; no less than this part of the largest weight counts as largest."""
 MOST_PASSES = 100

@@ -34,7 +34,7 @@ class Loads(NamedTuple):
     """(n, 9) body i, body j, law of time, first number, addresses of the function and of apply.py, crank, the first
     body that holds a state of the force, how many do."""
     given: Any
-    """Of each interaction: arm of i, axis of i, arm of j (body axes), angle of j less that of i, then its own."""
+    """Numbers of each interaction: arm and axis of i, arm of j (body axes), angle of j less that of i, then its own."""
     state: Any
     """(29,) what the function of an interaction reads."""
     switch: Any
@@ -56,7 +56,7 @@ class Loads(NamedTuple):
     iteration: Any
     """(2,) weight of the iteration's steps, and whether it failed."""
     total: int
-    """Of all elements, interactions and forces of the user; friction is not among them."""
+    """Number of all elements, interactions and forces of the user; friction is not among them."""
 
 
 @inlined

@@ -93,7 +93,7 @@ class DesignSweeps:
         self.driven, self.fixed = _turns(self.groups, packed.drives(dense))
 
     def __call__(self, values: np.ndarray, threads: int | None = None) -> Batch:
-        """Of designs whose numbers differ from the mechanism's own by ``values`` (n, moved) (m)."""
+        """Sweep designs whose numbers differ from the mechanism's own by ``values`` (n, moved) (m)."""
         m, grid, groups, moved, traces = self.m, self.grid, self.groups, self.moved, len(self.bodies)
         count, turned = len(values), self.turned
         refuse_beyond_memory(

@@ -102,7 +102,7 @@ def plan(samples: np.ndarray, kept_rows: np.ndarray, row_body: np.ndarray) -> tu
 def _planned(
     own_bytes: bytes, constant_bytes: bytes, value_bytes: bytes, rows_bytes: bytes, bodies_bytes: bytes
 ) -> tuple[Elimination, np.ndarray]:
-    """The sequence and the values of its constants, which hang on the pattern of J and its constant entries alone.
+    """The sequence and the values of its constants, which depend on the pattern of J and its constant entries alone.
 
     They are kept for the next call, so nobody writes into them.
     """

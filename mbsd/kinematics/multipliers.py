@@ -117,7 +117,7 @@ def singularity_margin(packed: Packed, rows: np.ndarray, drives: np.ndarray, q: 
 
 
 def _chunks(packed: Packed, count: int) -> Iterator[slice]:
-    """Of the outputs, so that not too many Jacobians are held at once."""
+    """Chunks of the outputs, so that not too many Jacobians are held at once."""
     size = max(1, JACOBIAN_NUMBERS // max(1, len(packed.ws.phi) * packed.coordinates))
     return (slice(start, min(start + size, count)) for start in range(0, count, size))
 

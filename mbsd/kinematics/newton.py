@@ -32,7 +32,7 @@ from mbsd.kinematics.law_step import jumps
 from mbsd.kinematics.predictor import quintic_factors
 
 TOLERANCE = 1e-12
-"""Of a Newton correction, relative to the mechanism's size (m) and to 1 rad."""
+"""Tolerance of a Newton correction, relative to the mechanism's size (m) and to 1 rad."""
 ROUNDING = 1e-9
 """A correction that stops shrinking below this has met rounding in an ill-conditioned pose, and is accepted."""
 MAX_ITERATIONS = 12

@@ -43,7 +43,7 @@ class Repetition:
 
     @property
     def period(self) -> float | None:
-        """Of the mechanism (s)."""
+        """Period of the mechanism (s)."""
         return None if self.laws is None or self.turns is None else self.turns * self.laws
 
 

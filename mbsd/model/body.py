@@ -55,7 +55,7 @@ class Marker:
 
 
 def rod_inertia(mass: float, length: float) -> float:
-    """Of a uniform slender rod about its middle (kg m^2)."""
+    """Inertia of a uniform slender rod about its middle (kg m^2)."""
     return mass * length**2 / 12
 
 
@@ -78,11 +78,11 @@ class Body:
     com: tuple[float, float] = (0.0, 0.0)
     inertia: float = 0.0
     length: float | None = None
-    """Of a bar (m); None for other bodies."""
+    """Length of a bar (m); None for other bodies."""
     mass_given: bool = False
     """Whether its mass was given when it was added; one of 0 makes it massless on purpose."""
     derived: frozenset[str] = frozenset()
-    """Of a bar: which of ``com`` and ``inertia`` follow from its length and mass, as of a uniform slender rod. They
+    """Which of a bar's ``com`` and ``inertia`` follow from its length and mass, as of a uniform slender rod. They
     follow every mass that is set; setting them ends that."""
     z: float | None = None
     """Place of its centre of mass along the normal of the plane (m); None: not given, and 0 where it counts."""

@@ -40,6 +40,6 @@ class CrankCycle:
     changes: tuple[float, ...]
     """Angles after the firing at which one phase follows another (rad)."""
     height: Callable[[np.ndarray], np.ndarray] | None
-    """Of the gas (m) at angles after the firing, as crank and rod have it; None where the pressure asks for none."""
+    """Height of the gas (m) at angles after the firing, by crank and rod; None where the pressure needs none."""
     burns: bool
     """Whether heat is released at these heights."""

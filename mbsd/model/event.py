@@ -35,11 +35,11 @@ class Happening:
     time: float
     """s"""
     name: str
-    """Of the event, contact, stop, clutch, force or driver."""
+    """Name of the event, contact, stop, clutch, force or driver."""
     what: str
     """event, end, impact, closes, opens, sticks, slides; jumps, of a force or driver whose law does."""
     impulse: float = 0.0
-    """Of an impact, normal (N s; N m s of stops of angles)."""
+    """Impulse of an impact, normal (N s; N m s of stops of angles)."""
     energy: float = 0.0
     """Kinetic energy after less before (J), of all that happens at this time; given once."""
 

@@ -117,7 +117,7 @@ class Masses(NamedTuple):
     model: str = ""
     """The mechanism's name, for errors."""
     size: float = 1.0
-    """Of the mechanism (m): a state of a force is a speed in it, by ``States.one`` for one size a second."""
+    """Size of the mechanism (m): a state of a force is a speed in it, by ``States.one`` for one size a second."""
 
 
 def _no_elements(force: Force) -> tuple[Element, ...]:
@@ -144,7 +144,7 @@ class ForceKind(ByName):
     potential: Callable[[Force, Masses, np.ndarray], np.ndarray] | None = None
     """(T,) potential energy (J) of its interactions along poses (T, 3 nb), if it follows from these alone."""
     surface: Callable[[Force], list[float]] | None = None
-    """Of a contact of a disc about marker j, of its ``radius``, with a surface of marker i: the surface's numbers, as
+    """Numbers of the surface of marker i that a disc about marker j, of its ``radius``, touches, as
     mbsd/equations/interactions/surface.py reads them."""
     depth_potential: Callable[[Force, np.ndarray], np.ndarray] | None = None
     """(T,) potential energy (J) of such a contact at depths (T,) of the disc in the surface (m)."""

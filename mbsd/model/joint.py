@@ -31,7 +31,7 @@ class Special:
     equation: str
     """File in mbsd/equations/relative."""
     unit: str
-    """Of the residual: m or rad."""
+    """Unit of the residual: m or rad."""
     phased: bool = False
     """Its constant is taken from the closed start pose: it holds how the bodies roll on each other, not where."""
 

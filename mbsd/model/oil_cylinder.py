@@ -28,7 +28,7 @@ ATMOSPHERE = 101325.0
 LEAST = 1e3
 """Pressure (Pa) below which oil is as stiff as there while it is compressed; oil boils at about that pressure."""
 HALVINGS = 100
-"""Of the bracket around the leak of a steady state."""
+"""Number of halvings of the bracket around the leak of a steady state."""
 
 Number = TypeVar("Number", float, np.ndarray)
 
@@ -70,7 +70,7 @@ class OilCylinder:
     pressure_b: float | None
 
     def volumes(self, length: Number) -> tuple[Number, Number]:
-        """Of both chambers (m^3) at a distance of the points (m)."""
+        """Volumes of both chambers (m^3) at a distance of the points (m)."""
         out_by = length - self.retracted
         return self.dead_a + self.area_a * out_by, self.dead_b + self.area_b * (self.stroke - out_by)
 

@@ -19,13 +19,13 @@ from mbsd.model.laws.curve import Curve
 FINE, MOST_CHORDS = 4, 4000
 """Chords of a piece, and in all, with which crossings are looked for."""
 PART_OF_LOOP = 1 / 8
-"""Of the shortest loop: how far a point may go in one step."""
+"""Fraction of the shortest loop: how far a point may go in one step."""
 BLOCK = 64
 """Chords that are compared with all others at once."""
 PARALLEL = 1e-6
 """Sine of the angle below which straight continuations do not meet."""
 SAME = 1e-9
-"""Of the longest step between points: those closer than this are the same."""
+"""Fraction of the longest step between points: those closer than this are the same."""
 TRIED, MOST_TRIED = 8, 512
 """Places of a piece, and pieces, from which it is tried whether the nearest node leads to the foot."""
 CLOSER = 0.7

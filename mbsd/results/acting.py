@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from mbsd.model.joint import Joint
 
 ROUNDING = 1e-9
-"""Of the torque about the second marker: what is left of less is nothing."""
+"""Fraction of the torque about the second marker: less counts as nothing."""
 
 
 def acting(packed: Packed, q: np.ndarray, wrench: np.ndarray, k: int) -> Wrench:

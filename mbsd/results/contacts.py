@@ -17,7 +17,7 @@ class ContactView:
 
     gap: np.ndarray
     rate: np.ndarray
-    """Of the gap, by s."""
+    """Rate of the gap, by s."""
     normal: np.ndarray
     """Force that pushes the gap open, never negative."""
     friction: np.ndarray
@@ -30,7 +30,7 @@ class ContactView:
 
 
 def contact_view(packed: Packed, row: int, q: np.ndarray, v: np.ndarray, lam: np.ndarray) -> ContactView:
-    """Of the contact whose gap is ``row``; q, v (T, nb, 3), lam (T, m)."""
+    """View of the contact whose gap is ``row``; q, v (T, nb, 3), lam (T, m)."""
     from mbsd.arrays.curve_branches import tabulate_along
     from mbsd.arrays.reactions import times_compact
 

@@ -15,7 +15,7 @@ from mbsd.base.errors import ModelError
 from mbsd.results.views import Wrench
 
 UNITS: Mapping[str, str] = {"length": "m", "angle": "rad", "coordinate": "m", "gap": "m"}
-"""Of what a force may measure."""
+"""Units of what a force may measure."""
 
 
 @dataclass(frozen=True)

@@ -31,9 +31,9 @@ class FrictionView:
 def friction_view(
     packed: Packed, name: str, q: np.ndarray, v: np.ndarray, lam: np.ndarray, held: np.ndarray | None = None
 ) -> FrictionView:
-    """Of the friction ``name``; q, v (T, nb, 3) or (T, 3 nb), lam (T, m); rows of J that ``held`` (T, m), None: all.
+    """View of the friction ``name``; q, v (T, nb, 3) or (T, 3 nb), lam (T, m).
 
-    A joint that an action released has no friction.
+    ``held`` (T, m) are the rows of J that hold, None: all. A joint that an action released has no friction.
     """
     from mbsd.arrays.curve_branches import tabulate_along
     from mbsd.arrays.friction_along import normals_along

@@ -19,11 +19,11 @@ from mbsd.results.force_view import ForceView
 from mbsd.results.moved import Moved
 
 POINTS = 6
-"""Of the quadrature between two rows."""
+"""Number of points of the quadrature between two rows."""
 WHOLE = 1e-9
 """Part of a cycle by which a motion may miss a whole number of cycles."""
 HALVINGS = 48
-"""Of a step, to find where a phase ends."""
+"""Number of halvings of a step, to find where a phase ends."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -69,7 +69,7 @@ class Jumps:
 
 
 def jumps_of(rows: Sequence[tuple[float, float, tuple[str, ...]]]) -> Jumps:
-    """Of times right before and right after, in any order, with the names of what may jump."""
+    """Jumps from times right before and right after, in any order, with the names of what may jump."""
     ordered = sorted(rows)
     before, after = (np.array([row[k] for row in ordered], float) for k in (0, 1))
     return Jumps(before, after, tuple(names for _, _, names in ordered))

@@ -98,7 +98,7 @@ class Solution(Generic[AnyModel]):
     efforts: Mapping[str, np.ndarray] = field(default_factory=dict, repr=False)
     """(T,) of forces that act by these instead of by their own laws (inverse dynamics)."""
     between: Callable[[np.ndarray], Solution] | None = field(default=None, repr=False)
-    """Of a simulation: the motion at other times; see :meth:`at`."""
+    """Motion of a simulation at other times; see :meth:`at`."""
     traces: Mapping[str, Marker] | None = field(default=None, repr=False)
     """Traced points as they were when this was solved."""
     planes: Planes | None = field(default=None, repr=False)

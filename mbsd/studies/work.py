@@ -54,7 +54,7 @@ class Order(NamedTuple):
     """Another text for each call of ``study``, between which modules of the user may have changed."""
 
     def recorder(self) -> Recorder | None:
-        """Of what build and measure read, if that matters."""
+        """Record of what build and measure read, if that matters."""
         return None if self.root is None else Recorder(StudyPlaces(Path(self.root)))
 
 
@@ -67,7 +67,7 @@ class Work(NamedTuple):
 
 
 _work: dict[str, Work] = {}
-"""Of this process, by a hash of the order."""
+"""Work of this process, by a hash of the order."""
 _before: set[str] = set()
 """Modules that were loaded before the first study."""
 

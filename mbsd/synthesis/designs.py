@@ -27,7 +27,7 @@ Build = Callable[..., Model]
 
 @dataclass(frozen=True, eq=False)
 class Paths:
-    """Of n designs."""
+    """Paths of n designs."""
 
     path: np.ndarray
     """(n, T, 2) of the traced point (m); NaN where a design does not close."""
@@ -54,7 +54,7 @@ class Designs:
         self.links = four_bar(m, packed) if grashof else []
         self.turned = list(dict.fromkeys(body for pin in self.pins for body in pin.bodies))
         self._used = np.zeros(0, bool)
-        """Of what a function of the author may move, what it has moved so far."""
+        """What a function of the author has moved so far of what it may move."""
         middle = (varied.low + varied.high) / 2
         self.at_once = in_closed_form(self.ready)
         if build is not None:
@@ -62,7 +62,7 @@ class Designs:
         self._sweeps: dict[bool, DesignSweeps] = {}
 
     def __call__(self, x: np.ndarray, fine: bool = False, threads: int | None = None) -> Paths:
-        """Of designs x (n, k)."""
+        """Paths of designs x (n, k)."""
         self.evaluations += len(x)
         values, moved = self.changes(x)
         if self.at_once:

@@ -17,16 +17,16 @@ from mbsd.synthesis.target import Target
 MARGIN = 1e-4
 """Conditions are kept by so much more than asked for (rad, or part of the lengths)."""
 STEP = 1e-6
-"""Of the differences that give the slopes, in parts of the bounds."""
+"""Step of the differences that give the slopes, in parts of the bounds."""
 WEIGHT = 10.0
-"""Of what conditions are missed by (rad, or part of the lengths), against distances in extents."""
+"""Weight of errors of conditions (rad, or fraction of the lengths) against distances in extents."""
 SQUARE = 0.01
 """Cosine of the angle between path and residual below which the place is where the path is nearest."""
 
 
 @dataclass
 class Missed:
-    """Of n designs, in extents of the target."""
+    """Errors of n designs, in extents of the target."""
 
     rows: np.ndarray
     """(n, r)"""
@@ -60,7 +60,7 @@ class Residuals:
     """(k,) lowest numbers, and how far the bounds are apart; the shift (s) is last where it is free."""
 
     def missed(self, u: np.ndarray, fine: bool) -> Missed:
-        """Of designs u (n, k), on chords of the coarse motion or exactly on the fine one."""
+        """Errors of designs u (n, k), on chords of the coarse motion or exactly on the fine one."""
         paths, shifts = self._paths(u, fine)
         there = np.where(paths.closes[:, None, None], paths.path, 0.0)
         where = self.target.where(there, shifts, fine)

@@ -31,7 +31,7 @@ MISSED = 1e2
 MEMBERS = 12
 """Designs of a generation for each number that varies."""
 POLISHED = 3
-"""Of the last generation, so many of the best are fitted by least squares."""
+"""Number of the best of the last generation that are fitted by least squares."""
 APART = 0.02
 """Designs nearer to each other than this part of the bounds count as one."""
 DRAWN, ONE_BY_ONE = 100, 12
@@ -77,7 +77,7 @@ class Search:
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Of a vector with all that is free."""
+        """Bounds of a vector with all that is free."""
         varied, (first, last) = self.designs.varied, self.target.span
         if not self.free_shift:
             return varied.low, varied.high
@@ -144,7 +144,7 @@ class Search:
         return best, least
 
     def _best(self, u: np.ndarray) -> tuple[np.ndarray, float]:
-        """Of designs u (n, k), the best first, the best after least squares: a vector, and its root mean square (m)."""
+        """Best design after least squares, a vector, and its root mean square (m); from u (n, k), best first."""
         low, high = self.bounds
         fitted = [self._fitted(low + (high - low) * u[k]) for k in _apart(u, POLISHED)]
         return min(fitted, key=lambda one: one[1])

@@ -27,7 +27,7 @@ class Varied:
 
     @property
     def count(self) -> int:
-        """Of numbers."""
+        """How many numbers there are."""
         return len(self.low)
 
     def columns(self) -> list[tuple[str, slice, bool]]:

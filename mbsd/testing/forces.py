@@ -27,7 +27,7 @@ from mbsd.testing.kept import check_kept
 
 SEEDS = range(3)
 STEP = 1e-6
-"""Of the differences (m, rad)."""
+"""Step of the differences (m, rad)."""
 
 
 def check_force(kind: ForceKind, seeds: Iterable[int] = SEEDS) -> None:

@@ -52,7 +52,7 @@ class Answer(msgspec.Struct, kw_only=True, frozen=True, omit_defaults=True):
     path: str = ""
     """A file that is whole."""
     key: str = ""
-    """Of the picture in that file."""
+    """Key of the picture in that file."""
     cycles: float = 0.0
     """Seconds inside Blender's renderer for this picture."""
     error: str = ""

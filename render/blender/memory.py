@@ -18,7 +18,7 @@ class Grown(Exception):
 
 
 class Memory:
-    """Of one process: what it took when it had settled, and what it takes now."""
+    """Memory of one process: what it took when it had settled, and what it takes now."""
 
     def __init__(self) -> None:
         self.pictures = 0

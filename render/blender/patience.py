@@ -12,7 +12,7 @@ KERNELS = 1800.0
 FLOOR = 120.0
 """Seconds for everything else, however short a picture takes."""
 TIMES = 10.0
-"""Of the longest picture so far: a machine may become that busy."""
+"""Multiple of the longest picture so far: a machine may become that busy."""
 LONGEST = 6 * 3600.0
 """Seconds that no silence is longer than, whatever a timing.json says."""
 VARIABLE = "MBSD_PATIENCE"

@@ -98,7 +98,7 @@ class FilmCamera:
 
     @cached_property
     def _still(self) -> CameraPose:
-        """Of a camera that does not swing, where its way begins to count."""
+        """Pose of a camera that does not swing, where its way begins to count."""
         return self._posed(self.azimuth, np.zeros(3))
 
     def _posed(self, azimuth: float, by: Array) -> CameraPose:
@@ -124,7 +124,7 @@ class FilmCamera:
 
     @property
     def width(self) -> float:
-        """Of the picture where the machine is (m)."""
+        """Width of the picture where the machine is (m)."""
         return 2 * half_field(self.shot.lens, self.aspect)[0] * self._stand[2]
 
     @cached_property

@@ -36,7 +36,7 @@ class Clock:
         self.start, self.end = motion.time[0], motion.time[-1]
         span = self.end - self.start
         self.turns = turns_of(motion) if self.repeats else 1
-        """Of the drivers in one showing."""
+        """Number of turns of the drivers in one showing."""
         if shot.rate is not None:
             seconds = span / shot.rate
         elif shot.seconds_per_turn is not None:

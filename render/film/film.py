@@ -161,7 +161,7 @@ class Film:
 
     @cached_property
     def _arrow_heights(self) -> tuple[list[float], list[float]]:
-        """Of each straight and each curved arrow (m)."""
+        """Heights of each straight and each curved arrow (m)."""
         straight, curved = (
             [self.heights.arrow(one.bodies, *(float(value) for value in one.place[0])) for one in ones]
             for ones in (self.arrows.vectors, self.arcs.torques)
@@ -188,7 +188,7 @@ class Film:
 
     @cached_property
     def _times(self) -> Array:
-        """Of the frames in which the motion goes on, and of its end where it is held (s)."""
+        """Times of the frames in which the motion goes on, and of its end where it is held (s)."""
         frames = range(min(self.clock.frames, self.clock.moving + 1))
         return np.array([self.clock.moment(frame).time for frame in frames])
 

@@ -18,23 +18,23 @@ from shared.contract import Motion, Parts, Shape
 from shared.contract.shot import Label, Trail
 
 OVER = 0.001
-"""Of trails and arrows over the body that carries them (m)."""
+"""Height of trails and arrows over the body that carries them (m)."""
 LABEL = 0.012
-"""Of a label over its pin, as a part of the size of the swept motion."""
+"""Height of a label over its pin, as a part of the size of the swept motion."""
 LETTER = 0.6
 """Width of a letter of a label, in its height."""
 LIES = 1.25
-"""Of the middle of a spring over what is below it, in its radii."""
+"""Height of the middle of a spring over what is below it, in its radii."""
 
 
 def tops(parts: Parts, body: str) -> list[float]:
-    """Of all pieces of a body."""
+    """Heights of all pieces of a body."""
     solids = parts.bodies.get(body)
     return [piece.z_range[1] for piece in solids.pieces.values()] if solids else []
 
 
 def trail_heights(motion: Motion, parts: Parts, trails: Iterable[Trail]) -> dict[str, float]:
-    """Of each trail, by its point: as the shot says, else just over the body that carries the point."""
+    """Heights of each trail, by its point: as the shot says, else just over the body that carries the point."""
     moving = [top for body in motion.bodies for top in tops(parts, body)]
     out = {}
     for trail in trails:
@@ -51,7 +51,7 @@ Array = NDArray[np.float64]
 
 
 class Heights:
-    """Of what floats over the bodies of one film."""
+    """Heights of what floats over the bodies of one film."""
 
     def __init__(self, poses: Poses, parts: Parts, space: SweptSpace, clock: Clock) -> None:
         self.poses, self.parts, self.space, self.clock = poses, parts, space, clock
@@ -66,7 +66,7 @@ class Heights:
         return max(found, default=float(self.space.moving[:, 2].max())) + OVER
 
     def spring(self, shape: Shape, radius: float) -> tuple[float, tuple[float, float]]:
-        """Of something of that radius that lies over what is at its two ends at the start, and the tops there."""
+        """Height of something of that radius over what is at its two ends at the start, and the tops there."""
         at = self.clock.moment(0)
         places = [placed(self.poses.body(b, at), marker) for b, marker in zip(shape.bodies, shape.markers, strict=True)]
         found = []

@@ -33,7 +33,7 @@ class Quintic:
         self._time, self._starts = time, np.flatnonzero(np.diff(time) > 0)
 
     def at(self, t: Array | float) -> Quintic.Weights:
-        """Of times ``t`` (m,)."""
+        """Weights of times ``t`` (m,)."""
         time, starts = self._time, self._starts
         t = np.clip(np.atleast_1d(np.asarray(t, dtype=float)), time[0], time[-1])
         i = starts[np.clip(np.searchsorted(time[starts], t, side="right") - 1, 0, len(starts) - 1)]
@@ -50,7 +50,7 @@ class Quintic:
 
     @dataclass(frozen=True)
     class Weights:
-        """Of value, rate and acceleration at both ends of the interval ``i`` (m,) of length ``h``."""
+        """Weights of value, rate and acceleration at both ends of the interval ``i`` (m,) of length ``h``."""
 
         i: NDArray[np.intp]
         h: Array

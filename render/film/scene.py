@@ -45,7 +45,7 @@ class TrailSpec(msgspec.Struct, kw_only=True, frozen=True):
     name: str
     colour: Colour
     strength: float
-    """Of the light, times the colour."""
+    """Strength of the light, times the colour."""
     radius: float
     rings: int
 

@@ -15,7 +15,7 @@ MILLIMETRE = 0.001
 DIRECTIONS, LEANS = 72, (-2.0, -1.0, -0.4, 0.0, 0.4, 1.0, 2.0)
 """In the plane, and how steeply up, in which points are looked for that are outermost."""
 SIDES = 16
-"""Of the polygon within which no corner of a hull is looked for."""
+"""Number of sides of the polygon within which no corner of a hull is looked for."""
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 

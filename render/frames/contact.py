@@ -66,7 +66,7 @@ def frames_of(film: Film) -> list[int]:
 
 
 def columns(aspect: float) -> int:
-    """Of a sheet of frames with that width over height: the sheet is about as wide as a screen."""
+    """Number of columns of a sheet of frames with that width over height: the sheet is about as wide as a screen."""
     return 4 if aspect > 1.2 else 6
 
 

@@ -24,7 +24,7 @@ class Animation:
         self.kept = np.flatnonzero(np.concatenate([[True], np.diff(np.maximum.accumulate(time)) > 0]))
         """Numbers of the times that it has."""
         self.fewer = self.kept[np.unique(np.linspace(0, len(self.kept) - 1, FEWER).round().astype(int))]
-        """Of these, for what changes its shape."""
+        """A selection of these, for what changes its shape."""
         self._time = time
         self._clocks: dict[int, int] = {}
         self._samplers: list[dict[str, Any]] = []

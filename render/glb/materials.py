@@ -10,7 +10,7 @@ from render.glb.document import Document
 CLEARCOAT = "KHR_materials_clearcoat"
 METALLIC = {"anodised": 1.0, "brushed": 1.0, "polished": 1.0, "satin": 0.35, "cast": 0.25}
 TONE = {"anodised": 0.8, "brushed": 0.68}
-"""Of the colour."""
+"""Factor on the colour."""
 CLEAR = 0.3
 """Opacity of a pane."""
 

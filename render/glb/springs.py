@@ -26,7 +26,7 @@ from shared.contract import Motion
 
 Array = NDArray[np.float64]
 LINKS = 24
-"""Of a rope."""
+"""Number of links of a rope."""
 WINDING = 0.35
 """Angle (rad) between two shapes of a spiral, at most, as long as there are no more than SHAPES."""
 SHAPES = 32

@@ -65,7 +65,7 @@ class Ground(msgspec.Struct, kw_only=True, frozen=True):
     other: Colour = (0.0, 0.0, 0.0)
     roughness: float = 0.5
     lines: Colour | None = None
-    """Of the marks painted on a road."""
+    """Colour of the marks painted on a road."""
 
 
 class Wall(msgspec.Struct, kw_only=True, frozen=True):

@@ -15,7 +15,7 @@ from shared.contract import Motion
 MOST = 12
 """Events on a page; of more, the first."""
 APART = 0.09
-"""Of the page: nearer marks share the text of the first."""
+"""Fraction of the page: nearer marks share the text of the first."""
 
 
 def mark(figure: Figure, over: Horizon, motion: Motion) -> None:

@@ -19,7 +19,7 @@ PEAK, KEPT = 12.0, 3.0
 USUAL = 90.0
 """Percentile of the largest at each time."""
 NEAR = 0.05
-"""Of the median of the margin: poses below are near a singular one."""
+"""Fraction of the median of the margin: poses below are near a singular one."""
 
 
 def dress_axis(axis: Axis, words: str, unit: str, ticks: int = TICKS) -> None:

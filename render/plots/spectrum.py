@@ -19,7 +19,7 @@ from render.crank import crank_of
 from shared.contract import Motion
 
 STEPS = 2048
-"""Of one period or turn, where the rows are not equally far apart."""
+"""Number of steps of one period or turn, where the rows are not equally far apart."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Spectrum:
 
 
 def spectrum(motion: Motion, values: np.ndarray) -> Spectrum:
-    """Of series (T,) or (T, k) over the times of a motion."""
+    """Spectrum of series (T,) or (T, k) over the times of a motion."""
     time, crank = np.asarray(motion.time), crank_of(motion)
     if motion.period:
         turns = crank.turns if crank and crank.first == 0 else 1

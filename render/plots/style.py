@@ -24,7 +24,7 @@ FAINT = "#d9dde1"
 # Dark enough for text on white, apart from each other for colour-blind eyes as well.
 PALETTE = ("#0b62a8", "#d1500a", "#00805e", "#a83a82", "#8a6d00", "#5a4fcf", "#b3261e", "#3b7d8c")
 PARTS = ("#0f766e", "#9d3f86")
-"""Of two parts of one thing, such as components and energies: no body has them."""
+"""Colours of two parts of one thing, such as components and energies: no body has them."""
 LABELLED = 10
 """Lines that get a label each; of more, the largest are labelled and the others drawn faint."""
 

@@ -53,7 +53,7 @@ def fastest(motion: Motion) -> tuple[str, float]:
 
 
 def _speed_of(body: BodyMotion) -> float:
-    """Of its centre of mass (m/s)."""
+    """Speed of its centre of mass (m/s)."""
     (x, y), omega, theta = body.com, np.array(body.omega), np.array(body.theta)
     vx = np.array(body.vx) - omega * (np.sin(theta) * x + np.cos(theta) * y)
     vy = np.array(body.vy) + omega * (np.cos(theta) * x - np.sin(theta) * y)
@@ -70,7 +70,7 @@ def _efforts(motion: Motion) -> list[tuple[str, str]]:
 
 
 def _joint_speeds(motion: Motion) -> dict[str, float]:
-    """Of the second markers of joints, from their bodies' frames (m/s)."""
+    """Speeds of the second markers of joints, from their bodies' frames (m/s)."""
     out = {}
     for name, joint in motion.joints.items():
         body = motion.bodies.get(joint.bodies[1])

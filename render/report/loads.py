@@ -13,9 +13,9 @@ from render.report.written import first_peak, moment, table, written
 from shared.contract import Motion
 
 NOTHING = 1e-12
-"""Of the largest in a table: no number."""
+"""Fraction of the largest in a table: smaller ones get no number."""
 ROUNDING = 1e-9
-"""Of what power could do all the time: no work."""
+"""Fraction of what power could do all the time: less is no work."""
 
 
 def load_section(motion: Motion) -> list[str]:
@@ -104,7 +104,7 @@ def _powers(power: np.ndarray) -> tuple[str, str]:
 
 
 def _work(power: np.ndarray, time: np.ndarray) -> str:
-    """Of all the time; rounding is nothing."""
+    """Work over all the time; rounding counts as none."""
     work = float(np.trapezoid(power, time))
     most = float(np.abs(power).max(initial=0.0)) * float(time[-1] - time[0])
     return written(work if abs(work) > ROUNDING * most else 0.0, "J")

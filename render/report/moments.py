@@ -8,7 +8,7 @@ from render.report.transmission import loops
 from shared.contract import Motion
 
 STEP = 1e-6
-"""Of the motion: times that are nearer are one."""
+"""Fraction of the motion: times that are nearer are one."""
 FEW = 6
 """Dead points at most; of a crank that turns and turns they would say nothing."""
 

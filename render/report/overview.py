@@ -17,7 +17,7 @@ from shared.stage.errors import UserError
 from shared.stage.paths import Out
 
 WIDTH = 120
-"""Of the table where no terminal has one (characters)."""
+"""Width of the table where no terminal has one (characters)."""
 COLUMNS = ("mechanism", "time", "pieces", "peak speed", "peak effort", "least gap", "outcome")
 
 

@@ -13,7 +13,7 @@ from shared.contract.quantity import figures
 
 G = 9.80665
 ROUNDING = 1e-9
-"""Of the fastest centre of mass: it does not move."""
+"""Fraction of the fastest centre of mass: a slower one does not move."""
 
 
 def motion_section(motion: Motion) -> list[str]:

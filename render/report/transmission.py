@@ -22,7 +22,7 @@ LEAST = np.radians(40.0)
 
 
 ON_LINE = 1e-9
-"""Of the largest: pins A, B, C are in line."""
+"""Fraction of the largest: below it pins A, B, C are in line."""
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ SAME = math.radians(1.0)
 
 
 def transmission_section(motion: Motion) -> list[str]:
-    """Of every four-bar and slider-crank in the mechanism."""
+    """Section on every four-bar and slider-crank in the mechanism."""
     lines: list[str] = []
     for loop in loops(motion):
         lines += [*_loop_lines(loop, np.array(motion.time)), ""]

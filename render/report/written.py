@@ -23,7 +23,7 @@ def turning(value: float) -> str:
 
 
 def degrees(value: float) -> str:
-    """Of radians."""
+    """Degrees from radians."""
     return f"{math.degrees(value):.1f}°".replace("-", MINUS)
 
 

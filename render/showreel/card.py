@@ -24,7 +24,7 @@ FADE = 0.45
 DARK = 0.34
 """Light that is left behind the words."""
 BLUR = 1 / 40
-"""Of the picture's width."""
+"""Fraction of the picture's width."""
 LEFT, MIDDLE = 0.085, 0.5
 """Where the words stand, as parts of width and height."""
 LINES = 3

@@ -30,7 +30,7 @@ from shared.contract.shot import Quantity
 
 ALL: tuple[Quantity, ...] = ("velocities", "accelerations", "forces", "reactions")
 PAIRS = 60
-"""Of the clearance, at most."""
+"""Number of pairs of the clearance, at most."""
 
 
 def arrows_of(motion: Motion, size: float, heights: Heights | None = None) -> dict[str, Any]:

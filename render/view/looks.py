@@ -17,7 +17,7 @@ from render.looks.look import Look, Softbox
 from render.looks.looks import LOOKS
 
 BRIGHTEST = 6.5
-"""Of a softbox: a reflection that is brighter is white all the same."""
+"""Brightness of a softbox: a reflection that is brighter is white all the same."""
 LARGER = 2.4
 """Times its size, at most."""
 

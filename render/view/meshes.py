@@ -53,7 +53,7 @@ class Meshes:
 
 
 def shapes(files: list[Path]) -> Iterator[Shape]:
-    """Of STL files, in their order; one that is another moved is worked out once."""
+    """Shapes of STL files, in their order; one that is another moved is worked out once."""
     known: dict[bytes, tuple[np.ndarray, Shape]] = {}
     for file in files:
         triangles = read_triangles(file)

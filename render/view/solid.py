@@ -31,7 +31,7 @@ from render.view.looks import looks_of
 from render.view.meshes import Meshes, shapes
 
 COAT = {"anodised": 0.18, "plastic": 0.25, "wood": 0.1}
-"""Of varnish, by finish."""
+"""Strength of varnish, by finish."""
 
 
 def with_parts(payload: dict[str, Any], film: Film) -> dict[str, Any]:

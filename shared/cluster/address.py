@@ -90,7 +90,7 @@ def workers_of(client: Client) -> dict[str, Any] | None:
     scheduler: Any = client.scheduler
     try:
         answer: Any = client.sync(scheduler.identity, n_workers=-1, callback_timeout=TIMEOUT)
-    except OSError:
+    except (OSError, RuntimeError):  # the latter where the client gives up while it asks
         return None
     return {name: worker for name, worker in answer["workers"].items() if _is_fit_to_print(name)}
 
@@ -100,7 +100,7 @@ def tasks_of(client: Client) -> dict[str, int]:
     scheduler: Any = client.scheduler
     try:
         answer: Any = client.sync(scheduler.processing, workers=None, callback_timeout=TIMEOUT)
-    except OSError:
+    except (OSError, RuntimeError):
         return {}
     return {worker: len(tasks) for worker, tasks in answer.items()}
 

@@ -10,7 +10,7 @@ from studio.live.history import History
 
 Push = Callable[[bytes, bool], None]
 LINES = 50
-"""Of what was printed, so many lines are kept for a page that opens later."""
+"""Number of printed lines that are kept for a page that opens later."""
 
 
 class Board:
@@ -20,12 +20,12 @@ class Board:
         self._push = push
         self.history = History()
         self.numbers: list[dict[str, Any]] = []
-        """Of Params as the file has it, with their ranges, labels and units."""
+        """Numbers of Params as the file has it, with their ranges, labels and units."""
         self._words: dict[str, dict[str, str]] = {}
         self.payload: bytes | None = None
-        """Of the last good motion."""
+        """Payload of the last good motion."""
         self.solid: bytes | None = None
-        """Of the last good motion as its file has it, what the page says of its parts, with numbers of that motion."""
+        """What the page says of the parts of the last good motion of the file, with the numbers of that motion."""
         self.error: str | None = None
         self._stop: dict[str, Any] | None = None
         self._lines: list[str] = []

@@ -20,11 +20,11 @@ from shared.stage.errors import UserError
 PLACE = re.compile(r"\[(\d+)\]")
 NAME = re.compile(r"([A-Za-z_]\w*)((?:\[\d+\])*)")
 LOW, HIGH = 0.25, 2.0
-"""Of a value, the ends of its range."""
+"""Multiples of a value that are the ends of its range."""
 LARGEST = 1e100
 """Beyond it a number has no slider; below its inverse it counts as 0."""
 DIGITS = 4
-"""Of a number that no hand has typed."""
+"""Number of digits of a number that no hand has typed."""
 PARTS = 1000
 """A slider has so many steps."""
 

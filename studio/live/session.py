@@ -199,7 +199,7 @@ class Session:
         self._good.ask(next(self._count), request)
 
     def _heard(self, child: Child, header: dict[str, Any], payload: bytes) -> None:
-        """Of the good child, which answers wishes."""
+        """What the good child answers to wishes."""
         if child is not self._good:
             return
         kind, asked = header.get("kind"), self._wished

@@ -13,7 +13,7 @@ from shared.stage.errors import UserError
 from studio.live.numbers import LARGEST
 
 PLACES = 1000
-"""Of a drawn path, at most."""
+"""Number of places of a drawn path, at most."""
 SHOWN = 300
 """Characters of a page's own text that are said back to it."""
 

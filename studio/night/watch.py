@@ -14,7 +14,7 @@ from studio.night.process import Process
 STAGE = 3600.0
 """Seconds without a word for a stage that is no render: a proof of clearance says nothing until its end."""
 TWICE = 2.5
-"""Of the patience with Blender: the stage kills it twice before it gives up by itself."""
+"""Multiple of the patience with Blender: the stage kills it twice before it gives up."""
 TRIES = 2
 """Times that a step is started."""
 

@@ -17,7 +17,7 @@ STEPS = (("mechanisms", "parts", "--or-none"), ("mechanisms", "solve"), ("mechan
 SILENCE = 300.0
 """Seconds that all mechanisms may take to be asked whether they have anything to do."""
 WIDTH = 120
-"""Of the table where no terminal has one (characters)."""
+"""Width of the table where no terminal has one (characters)."""
 
 
 def run(names: Sequence[str]) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import random
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -16,7 +17,7 @@ from shared.stage.paths import ROOT
 from tests.running.processes import ends_with_us, run_to_its_end, working_for
 from tools.torture.damage import cut, flipped, no_text
 from tools.torture.faults import BACKGROUND, CLUSTER, DISK_OF_ONE, FAULTS, FETCH, FULL
-from tools.torture.rounds import Outcome
+from tools.torture.rounds import TRACEBACK, Outcome
 
 
 @pytest.mark.slow
@@ -72,6 +73,13 @@ def test_a_cluster_ends_with_the_torture_that_is_killed(tmp_path: Path) -> None:
 def test_each_count_makes_a_round_bad(field: str) -> None:
     assert not Outcome(fault="x", target="run-all", state="half", moment=1.0).bad
     assert Outcome(fault="x", target="run-all", state="half", moment=1.0, **{field: 1}).bad
+
+
+@pytest.mark.parametrize("who", ["", "pendulum: ", "2026-11-27 06:14:49 ", "2026-11-27 06:14:49 pendulum: "])
+def test_tracebacks_are_seen_in_the_log_of_a_night_but_for_a_ctrl_c(who: str) -> None:
+    said = f"a line\n{who}Traceback (most recent call last):\n{who}  File x\n{who}    code\n{who}%s\n{who}more\n"
+    assert len(re.findall(TRACEBACK, said % "RuntimeError: ConnectionPool is closed", re.MULTILINE)) == 1
+    assert not re.findall(TRACEBACK, said % "KeyboardInterrupt", re.MULTILINE)
 
 
 def test_damages_change_the_bytes() -> None:

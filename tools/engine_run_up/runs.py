@@ -32,7 +32,7 @@ GRID = {
 BEYOND = 1.6
 """The run ends at so many times the speed at which the lowest order of the torque meets the rocking mode."""
 ROWS = 144
-"""Of the last turn, which every other turn has more of."""
+"""Rows of the last turn, which every other turn has more of."""
 RPM = 30 / math.pi
 """Times rad/s."""
 SPEEDS = np.linspace(0.02, 1.0, 491)

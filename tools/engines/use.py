@@ -23,7 +23,7 @@ WIDTH, HEIGHT = 1000, 620
 PHONE = 520, 780
 """As narrow as windows of all these browsers become."""
 PARTS = (0.0, 0.31, 0.62, 0.93)
-"""Of the motion, where pins are looked at."""
+"""Fractions of the motion, where pins are looked at."""
 NEAR = 2.0
 """Pixels between a pin and where data.json has it."""
 SECONDS = 60

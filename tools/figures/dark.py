@@ -13,7 +13,7 @@ from mbsd.drawing.inks import on_dark
 
 COLOUR = re.compile(r"#[0-9a-f]{6}\b")
 PAPER = "#0d1117"
-"""Of GitHub's dark pages."""
+"""Colour of GitHub's dark pages."""
 NEUTRAL = {
     look.PAPER: PAPER,
     look.INK: "#e6edf3",

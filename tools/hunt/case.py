@@ -21,7 +21,7 @@ from tools.hunt.subject import Family, Subject, all_families
 from tools.hunt.words.described import restarted
 
 VARIATIONS = 4
-"""Of each mechanism, drawn at random."""
+"""Number of variations of each mechanism, drawn at random."""
 EXAMPLES = 0.2
 """Share of the registries' examples, however many there are."""
 

@@ -18,12 +18,12 @@ BASE = "as built"
 
 @dataclass
 class Outcome:
-    """Of one variation of one mechanism."""
+    """Outcome of one variation of one mechanism."""
 
     variation: str
     state: str
     reason: str = ""
-    """Of a refusal: the error's class and whether it was expected; why it was not compared; what is wrong."""
+    """Reason of a refusal: the error's class and whether it was expected; why it was not compared; what is wrong."""
     detail: str = ""
 
 

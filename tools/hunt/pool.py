@@ -25,7 +25,7 @@ BEGINS, COMPILES, COMPILED = "begins", "compiles", "compiled"
 
 
 def _work(connection: Connection, run: Runner) -> None:
-    """Of a process: cases until there are no more."""
+    """Loop of a process: cases until there are no more."""
     import signal
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the parent, which ends this
@@ -81,7 +81,7 @@ class _Worker:
         self.connection.send(seed)
 
     def seconds(self) -> float:
-        """Of the case so far, without the start of the process and without compiling."""
+        """Seconds of the case so far, without the start of the process and without compiling."""
         return self.spent + (0.0 if self.waiting else time.monotonic() - self.since)
 
     def heard(self, word: str) -> None:

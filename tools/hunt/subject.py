@@ -49,7 +49,7 @@ class Family:
     build: Builder
     weight: float = 1.0
     example: bool = False
-    """Of the solver's registries; all of these together have a share of their own."""
+    """Whether it is one of the solver's registries; all of these together have a share of their own."""
 
 
 FAMILIES: dict[str, Family] = {}

@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from tools.hunt.subject import Subject
 
 ENGRAVED = 4
-"""Of so many cases one has an engraved base; marks only take away, so what is clear of a bare one is clear of it."""
+"""One case in so many has an engraved base; marks only take away, so what is clear of a bare one is clear of it."""
 OWN = 10
-"""Of so many cases one is of the kinds in own_kinds.py."""
+"""One case in so many is of the kinds in own_kinds.py."""
 STEPS = 360
 MOST = 4.0
 """Turns of a motion that are looked at."""

@@ -19,12 +19,12 @@ class Kept:
     def __init__(self, path: Path) -> None:
         self.path = path
         self.sources = sources_hash(*SOURCES)[:12]
-        """Of the program as it is; each line tells that of its own."""
+        """Hash of the program as it is; each line has that of its own."""
         self.others = 0
         """How many of the lines that were read are of another program."""
 
     def read(self, seeds: Iterable[int]) -> list[CaseResult]:
-        """Of these cases. A last line that was cut is taken off the file."""
+        """Results of these cases. A last line that was cut is taken off the file."""
         if not self.path.exists():
             return []
         content = self.path.read_bytes()

@@ -41,7 +41,7 @@ class Rung:
     error: float
     """Root mean square over the outputs (rad)."""
     seconds: float
-    """Of the processor, for the integration alone; the least of three."""
+    """Time of the processor, for the integration alone; the least of three."""
 
 
 @dataclass(frozen=True)

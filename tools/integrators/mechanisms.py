@@ -11,7 +11,7 @@ from mbsd import Mechanism
 
 G = 9.81
 AMPLITUDE = math.radians(100)
-"""Of the pendulum, whose rod of 1.5 m swings like a point on a string of 1 m."""
+"""Amplitude of the pendulum, whose rod of 1.5 m swings like a point on a string of 1 m."""
 
 
 def pendulum() -> Mechanism:
@@ -24,7 +24,7 @@ def pendulum() -> Mechanism:
 
 
 def pendulum_angle(t: np.ndarray) -> np.ndarray:
-    """Of the rod from the x axis (rad): sin(phi/2) = k sn(K - w t)."""
+    """Angle of the rod from the x axis (rad): sin(phi/2) = k sn(K - w t)."""
     k = math.sin(AMPLITUDE / 2)
     return 2 * np.arcsin(k * ellipj(ellipk(k * k) - math.sqrt(G) * t, k * k)[0]) - math.pi / 2
 

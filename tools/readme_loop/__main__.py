@@ -32,7 +32,7 @@ WIDTH, HEIGHT, LINES_WIDTH = 960, 420, 440
 CLOSER, BRIGHTER = 0.8, 1.5
 """Part of the film's height that is seen, and exposures of the page: the picture is small and narrow."""
 QUALITY = 62
-"""Of the WebP, of 100."""
+"""Quality of the WebP, of 100."""
 MINUTES = 60
 
 

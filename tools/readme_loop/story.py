@@ -11,7 +11,7 @@ RATE = 16
 """Frames a second."""
 SECONDS = 6.4
 TURNS = 3
-"""Of the crank in the loop, a whole number: it has no seam."""
+"""Turns of the crank in the loop, a whole number: it has no seam."""
 NUMBERS = ((0.5, CRANK), (1.2, 0.025), (2.2, 0.050), (2.8, CRANK))
 """Seconds and lengths of the crank (m); in between it glides, before and after it stays."""
 SOLID = ((2.9, 0.0), (3.35, 1.0), (5.85, 1.0), (6.3, 0.0))
@@ -28,7 +28,7 @@ class Frame:
     crank: float
     """m, in millimetres as it is written"""
     part: float
-    """Of a turn, 0 .. 1."""
+    """Fraction of a turn, 0 .. 1."""
     solid: float
     tilt: float
     reactions: float

@@ -32,7 +32,7 @@ ENDED = 15.0
 """Seconds in which all processes have ended after the server."""
 SIGNALS = (signal.SIGKILL, signal.SIGSTOP, signal.SIGTERM, signal.SIGSEGV)
 _wrong: list[int] = []
-"""Of the rounds that were played and not yet asked for."""
+"""Numbers of the rounds that were played and not yet asked for."""
 
 
 def live_page_hit(project: Project, chance: random.Random) -> bool:

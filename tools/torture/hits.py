@@ -21,7 +21,7 @@ from tools.torture.stage import MODULE
 Hit = Callable[[Project, random.Random], bool]
 """Does it; False if there is nothing to hit yet."""
 TARGETS = ("run-all", "overnight")
-"""Of make: a night in the terminal, and one in the background."""
+"""Targets of make: a night in the terminal, and one in the background."""
 
 
 def signal_to(role: str, what: signal.Signals) -> Hit:

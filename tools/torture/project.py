@@ -117,7 +117,7 @@ class Project:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def environment(self) -> dict[str, str]:
-        """Of every command of the user."""
+        """Variables of every command of the user."""
         inherited = ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "MBSD_MAKE", "COLUMNS", "TMUX", "TMUX_PANE")
         found = {key: value for key, value in os.environ.items() if key not in inherited}
         return found | {

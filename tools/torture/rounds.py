@@ -22,7 +22,8 @@ ORPHANED = 15.0
 """Seconds that processes have to end after their make."""
 POLL = 0.1
 TRACEBACK = (
-    r"^(?:[-0-9]+ [:0-9]+ (?:\[\d+\] )?)?Traceback \(most recent call last\):\n(?:[ \t].*\n)*(?!KeyboardInterrupt)\S"
+    r"^(?P<who>(?:[-0-9]+ [:0-9]+ )?(?:\[\d+\] )?(?:\w+: )?)Traceback \(most recent call last\):\n"
+    r"(?:(?P=who)[ \t].*\n)*(?P=who)(?!KeyboardInterrupt)\S"
 )
 """Python's own word for Ctrl-C while a program is still being loaded is none of ours."""
 STATES = ("empty", "half", "finished")
@@ -36,7 +37,7 @@ class Outcome:
 
     fault: str
     target: str
-    """Of make: ``run-all`` in the terminal, ``overnight`` in the background."""
+    """Target of make: ``run-all`` in the terminal, ``overnight`` in the background."""
     state: str
     moment: float
     """Seconds after the start of the run, or of the process during which the fault hits."""

@@ -63,7 +63,7 @@ class Brush(Canvas):
     """Colour of the signs of drivers: quiet beside arrows."""
     dpi: float = 100.0
     thin: float = 1.0
-    """Of the widths of lines in metres: less where symbols are small."""
+    """Factor on the widths of lines in metres: less where symbols are small."""
     remembers: bool = False
     """Whether obstacles for names are kept."""
 
@@ -172,7 +172,7 @@ class Brush(Canvas):
 
 
 def rgba(colour: str, alpha: float = 1.0) -> Colour:
-    """Of a hexadecimal colour."""
+    """Red, green, blue and alpha of a hexadecimal colour, 0 .. 1."""
     return (int(colour[1:3], 16) / 255, int(colour[3:5], 16) / 255, int(colour[5:7], 16) / 255, alpha)
 
 

@@ -24,7 +24,7 @@ from mbsd.results.solution import Solution
 LOOKED_AT = 24
 """Poses from which extent, sides and names are found."""
 LENGTH = 0.22
-"""Of the largest arrow, in the larger side of the machine."""
+"""Length of the largest arrow, as a fraction of the larger side of the machine."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Scene:
     steady: Steady
     """Extent and symbols."""
     inks: dict[str, str]
-    """Of moving bodies where no arrows are."""
+    """Colours of moving bodies where no arrows are."""
     _drawn: dict[tuple[int, float], Drawn] = field(default_factory=dict)
 
     @property
@@ -64,12 +64,12 @@ class Scene:
 
     @property
     def unit(self) -> float:
-        """Of its symbols (m)."""
+        """Unit of its symbols (m)."""
         return self.steady.unit
 
     @property
     def length(self) -> float:
-        """Of the largest arrow (m)."""
+        """Length of the largest arrow (m)."""
         return LENGTH * max(float((self.high - self.low).max()), 10 * self.unit)
 
     def pose(self, k: int) -> Pose:
@@ -148,7 +148,10 @@ class Scene:
 
 
 def scene_of(sol: Solution, clip: Clip, inks: Mapping[str, str] | None = None) -> Scene:
-    """Of a whole solution; symbols and extent are the same in all pictures. ``inks``: of bodies, by default by role."""
+    """Scene of a whole solution, with the same symbols and extent in all pictures.
+
+    ``inks``: colours of bodies, by default those of their roles.
+    """
     m = sol.mechanism
     here = at_times(sol, clip.times)
     whole = tracks_of(sol)

@@ -16,9 +16,9 @@ class Quantity:
     title: str
     colour: str
     unit: str
-    """Of its arrows."""
+    """Unit of its arrows."""
     turning: str
-    """Of its arcs."""
+    """Unit of its arcs."""
     head: Head = "solid"
     arcs: str = ""
     """Colour of its arcs, if they have another."""
@@ -39,7 +39,7 @@ TRAIL = "#1f9fb5"
 EVERYTHING = (("velocities",), ("accelerations",), ("forces", "reactions"), ("energy",))
 """The pictures side by side of ``show="all"``."""
 KINETIC, POTENTIAL, TAKEN = "#c48a00", "#4b6a9b", "#8a3b52"
-"""Of the bars beside: energies, and power that is taken."""
+"""Colours of the bars beside: energies, and power that is taken."""
 CARD = "#f7f8fa"
 """Behind a machine."""
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from mbsd.drawing.symbols.place import Place
 
 POINTS = 240
-"""Of the outline at most."""
+"""Number of points of the outline at most."""
 
 
 def draw_cam(canvas: Canvas, place: Place) -> None:

@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 MOST = 40
 """Teeth of a pinion."""
 POINTS = 12
-"""Of a rack's outline for each tooth."""
+"""Number of points of a rack's outline for each tooth."""
 BACK = 1.3
-"""Of a rack behind its teeth, in units."""
+"""Depth of a rack behind its teeth, in units."""
 
 
 def draw_rack(canvas: Canvas, place: Place) -> None:

@@ -14,10 +14,10 @@ from mbsd.model.mechanism import Model
 from mbsd.model.teeth import with_radii
 
 PITCH = 1.25
-"""Of the teeth, in units; fewer than FEWEST are not drawn."""
+"""Pitch of the teeth, in units; fewer than FEWEST are not drawn."""
 FEWEST = 10
 RIM = 1.5
-"""Of a ring beyond its teeth, in units."""
+"""Width of a ring beyond its teeth, in units."""
 
 
 def draw_gear_pair(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:

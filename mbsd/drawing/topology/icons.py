@@ -61,7 +61,7 @@ def _force(x: float, y: float, r: float, colour: str) -> list[str]:
 
 
 def _diamond(x: float, y: float, r: float, colour: str) -> list[str]:
-    """Of a kind without a sign."""
+    """Icon of a kind without a sign."""
     half = 0.5 * r
     return [_stroke(d("M", x - half, y, "l", half, -half, "l", half, half, "l", -half, half, "z"), colour)]
 

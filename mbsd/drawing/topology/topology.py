@@ -35,7 +35,7 @@ class Node:
     below: str
     """Second line: mass or kind."""
     kind: str
-    """Of the joint; "body" or "ground"."""
+    """Kind of the joint; "body" or "ground"."""
     colour: str
     size: tuple[float, float]
 
@@ -122,7 +122,7 @@ def _svg(
 
 
 def _middle(node: Node, place: np.ndarray) -> np.ndarray:
-    """Of a joint's symbol; its words are below."""
+    """Middle of a joint's symbol; its words are below."""
     return place - np.array([0.0, node.size[1] / 2 - JOINT - 2])
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 SENSITIVITY, LIMIT = 0, 1
-"""Of EmbeddingScratch.watch."""
+"""Places in EmbeddingScratch.watch."""
 
 
 class Embedding(NamedTuple):

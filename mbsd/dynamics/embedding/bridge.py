@@ -24,7 +24,7 @@ from mbsd.kinematics.groups.carrying.rates import SOLVED
 
 
 def _weights(x: np.ndarray) -> np.ndarray:
-    """Of one value of each pair x_i, -x_i: the polynomial through all of them, at zero."""
+    """Weights of one value of each pair x_i, -x_i: the polynomial through all of them, at zero."""
     square = x**2
     return np.array([0.5 * np.prod(np.delete(square, i) / np.delete(square - square[i], i)) for i in range(len(x))])
 

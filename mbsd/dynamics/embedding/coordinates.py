@@ -112,7 +112,7 @@ def _take_states(plan: Plan, count: int) -> None:
 
 
 def coordinates_of(plan: Plan, count: int) -> list[Coordinate]:
-    """Of a complete plan."""
+    """Coordinates of a complete plan."""
     out: list[Coordinate | None] = [None] * count
     for kind, bodies, motion, numbers in plan.taken:
         if motion < 0:

@@ -41,5 +41,5 @@ def group_numbers(groups: Groups) -> np.ndarray:
 
 
 def _nothing(n: list[float]) -> list[float]:
-    """Of a block, which has tables of its own."""
+    """Numbers of a block, which has tables of its own."""
     return []

@@ -22,7 +22,7 @@ INSIDE = 0.02
 NARROWEST = 1e-10
 MOST_LOOKS = 80
 NEAR, SLACK = 0.3, 0.05
-"""Of the higher sample: lines of the neighbours, and of the ends, that come down to this are followed."""
+"""Fractions of the higher sample: lines of the neighbours, and of the ends, that come down to this are followed."""
 UNSURE = 1e-4
 """Part of what the scalar changes by in a step below which the quintic does not tell its sign."""
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 class Jumps:
-    """Of one run, whose ``state`` they change; ``near``, ``still`` (m,): gaps and rates that count as zero."""
+    """Jumps of one run, whose ``state`` they change; ``near``, ``still`` (m,): gaps and rates that count as zero."""
 
     def __init__(
         self, ready: PreparedDynamics, scratch: Scratch, state: State, near: np.ndarray, still: np.ndarray
@@ -43,7 +43,7 @@ class Jumps:
         self.happenings: list[Happening] = []
 
     def compliance(self, time: float, q: np.ndarray) -> Compliance:
-        """Of a pose q (3 nb,) with the joints that hold now."""
+        """Compliance of a pose q (3 nb,) with the joints that hold now."""
         return Compliance(self.packed, self.dynamics, self.switches, float(time), q.copy())
 
     def act(self, event: Event) -> None:

@@ -30,7 +30,7 @@ from mbsd.equations.assembly import tabulate
 from mbsd.model.event import Event
 
 ROUNDING = 1e-10
-"""Of forces, as part of the largest."""
+"""Rounding of forces, as part of the largest."""
 CLOSES, LOCKS, OPENS, SLIPS, HALTS, USER = "closes", "locks", "opens", "slips", "halts", "event"
 
 
@@ -109,7 +109,7 @@ class Monitor:
 
 
 def contact_monitors(contact: RunContact, near: np.ndarray, still: np.ndarray, load: float) -> list[Monitor]:
-    """Of a contact in its present state. ``near``, ``still`` (m,): rounding."""
+    """Monitors of a contact in its present state. ``near``, ``still`` (m,): rounding."""
     gap, way, name, sign = contact.gap, contact.way or 0, contact.name, contact.sign
     if contact.state == OPEN:
         if contact.always_closed:
@@ -137,7 +137,10 @@ def contact_monitors(contact: RunContact, near: np.ndarray, still: np.ndarray, l
 def stick_monitors(
     sticks: Sequence[JointStick], together: Callable[[Samples], np.ndarray] | None, still: np.ndarray, load: float
 ) -> list[Monitor]:
-    """Of joints that stick by events; ``together`` (S,): 1 - s of those at rest, if they share their friction."""
+    """Monitors of joints that stick by events.
+
+    ``together`` (S,): 1 - s of those at rest, if they share their friction.
+    """
     out, resting = [], []
     for stick in sticks:
         if stick.state == SLIDES:
@@ -158,7 +161,7 @@ def _reserve(stick: JointStick) -> Callable[[Samples], np.ndarray]:
 
 
 def event_monitor(packed: Packed, event: Event, side: float) -> Monitor:
-    """Of an event of the user whose value now has the sign ``side``."""
+    """Monitor of an event of the user whose value now has the sign ``side``."""
 
     def value(s: Samples) -> np.ndarray:
         return np.array(

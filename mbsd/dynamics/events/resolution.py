@@ -15,7 +15,7 @@ import numpy as np
 TRIED = np.array([0.1337, 0.5437])
 """Parts of a step at which the polynomial is tried; no simple fractions, which a period might share."""
 ROUGH = 0.01, 0.05
-"""Of what the function changes by in a step: what is missed by more is not known; at first, and in halves."""
+"""Fractions of what the function changes by in a step: what is missed by more is not known; at first, and in halves."""
 PER_SHORTEST = 2.0
 """Looks at the shortest thing in a function."""
 FAR = 10.0

@@ -41,7 +41,7 @@ class Integrator:
     stages: int
     """Rows of Scratch.stages it needs."""
     order: int
-    """Of the global error for smooth problems; the registry test measures it. 0: the method chooses it step by step."""
+    """Order of the global error for smooth problems, which the registry test measures; 0: the method varies it."""
     fixed_step: bool
     """Steps are given by the user, not by an error estimate."""
     options: Mapping[str, Option] = field(default_factory=dict)

@@ -45,7 +45,7 @@ MOST_BLOCKS = 200
 LOOSE = 1e-9
 """Singular values of the scaled Jacobian below this part of the largest are zero."""
 SHARE = 1e-3
-"""Of a coordinate in a motion of unit length; less is rounding."""
+"""Share of a coordinate in a motion of unit length; less is rounding."""
 SLIGHT = 1e-6
 """Accelerations below this (sizes per s^2) are no load."""
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from mbsd.model.force import Element, Force, States
 
 MOMENT = 1e-5
-"""Of the differences that give x'' (s)."""
+"""Step of the differences that give x'' (s)."""
 USUAL = 10.0
 """An effort (N or N m) that is no rounding, for each kg of the mechanism."""
 FAINT = 1e-9

@@ -34,7 +34,8 @@ if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
 
 TOLERANCE, FUNCTION_TOLERANCE = 1e-4, 1e-9
-"""Of laws, of their size: enough to see where they are short; of functions, whose jumps and kinks have to be found."""
+"""Tolerances of laws (of their size: enough to see where they are short) and of functions, whose jumps and kinks are
+sought."""
 LAW_KINK = 1e-3
 """Part of its size by which a law's pieces disagree where it bends within a long step."""
 PER_STEP = 25
@@ -45,7 +46,7 @@ CHANGED = 1.9
 NARROWEST = 1e-7
 """Part of the span below which stops are not worth while."""
 MOST_CALLS = 20_000
-"""Of one function of the user."""
+"""Most calls of one function of the user."""
 CHUNK = 300_000
 """Numbers tabulated at once."""
 AT_ONCE = 1e-9
@@ -126,7 +127,7 @@ def stops_of(packed: Packed, loads: Loads, laws: Laws, start: float, end: float,
 
 
 def _of_law(laws: Laws, k: int, start: float, end: float, order: int) -> list[tuple[float, float]]:
-    """Of law k, whose derivative of this order counts."""
+    """Stops of law k, whose derivative of this order counts."""
     own = laws.numbers[laws.first[k] : laws.first[k + 1]]
     if laws.kind[k] == CYCLOIDAL:
         return [(float(own[2]), float(own[2])), (float(own[2] + own[1]), float(own[2] + own[1]))]
@@ -171,7 +172,7 @@ def _pulses(met: Fit, span: float) -> list[float]:
 def _of_functions(
     packed: Packed, loads: Loads, laws: Laws, start: float, end: float, q: np.ndarray, v: np.ndarray
 ) -> list[tuple[str, list[tuple[float, float]]]]:
-    """Of the user forces by name, with the bodies as they start."""
+    """Stops of the user forces by name, with the bodies as they start."""
     out: list[tuple[str, list[tuple[float, float]]]] = []
     forces = [force for force in packed.forces if "function" in force.params]
     for k, force in enumerate(forces):

@@ -68,7 +68,7 @@ class Scratch(NamedTuple):
     dense_work: Any
     """(7,) the same for the work (J)."""
     full: FullMatrices
-    """Of implicit methods."""
+    """Matrices of implicit methods."""
     report: Any
     """(4,) margin of the last factors; first and last change of the last projection (sizes, rad)."""
 

@@ -14,7 +14,7 @@ from mbsd.equations.assembly import evaluate_nu, evaluate_position
 from mbsd.equations.laws import evaluate_laws
 
 LIFT = 1e-11
-"""Of the diagonal of S, relative: where joints nearly depend (singular poses), rounding in Phi is not blown up."""
+"""Lift of the diagonal of S, relative: where joints nearly depend (singular poses), rounding in Phi is not blown up."""
 
 OPEN, CONTRACTION = 1e-4, 0.1
 """A second pass that moves coordinates by less (sizes, rad) leaves the square of that; one that moves them by more,

@@ -38,7 +38,7 @@ class RunContact:
 
     @property
     def state(self) -> str:
-        """Of the contact: OPEN, SLIDES or STICKS."""
+        """State of the contact: OPEN, SLIDES or STICKS."""
         return self.held.contacts[self.number]
 
     def set(self, state: str, sign: float = 0.0) -> None:

@@ -91,7 +91,7 @@ class Across:
         return float(self.run.scratch.report[0])
 
     def _carry(self) -> int | None:
-        """Go on in independent coordinates until the pose is clear; returns PAUSED or REACHED, None if in vain."""
+        """Go on in independent coordinates until the pose is clear; returns PAUSED or REACHED, None if that fails."""
         state = self.state
         made = embed(self.run.ready, state.y[0], state.y[1], float(state.clock[TIME]))
         if made is None:

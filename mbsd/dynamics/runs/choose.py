@@ -38,7 +38,7 @@ class ChoosingRun(Run):
     def embedded(self, state: run_state.State) -> EmbeddedRun | None:
         """The same run in independent coordinates from this state on, or None if it stays in reference coordinates.
 
-        Raises ModelError if independent coordinates were asked for in vain.
+        Raises ModelError if independent coordinates are asked for and impossible.
         """
         if self.formulation == REFERENCE or (self.formulation == AUTO and self.ready.masses_apart):
             return None  # independent coordinates solve once, and lose the digits of the light bodies

@@ -29,8 +29,8 @@ POOR = 20.0
 SMALLEST_STEP = 1e-6
 """Part of the longest step at which a run leaves its coordinates."""
 ROUNDING = 5e-14
-"""Of a step's accelerations, in rad/s^2 by rad, times the cubed sine of the angle between a group's two links: where it
-passes the tolerance the closed form gives way to poses beside."""
+"""Rounding of a step's accelerations, in rad/s^2 by rad, times the cubed sine of the angle between a group's two
+links: where it passes the tolerance the closed form gives way to poses beside."""
 WIDEST = 0.1**2
 """Squared sine above which closed forms always stand."""
 CLOSED, UNKNOWN_COST, PAIRED, BODY_COST, BESIDE = 0.04, 0.3, 0.03, 0.2, 0.3

@@ -68,7 +68,7 @@ class EmbeddedRun:
                 return
 
     def one_step(self, out: run_state.Output, end: float) -> int | None:
-        """Take one step towards ``end`` (s) and write it into the whole state; PAUSED, REACHED, or None in vain."""
+        """Take one step towards ``end`` (s) and write it into the whole state; PAUSED, REACHED, or None if it fails."""
         state = self.whole
         status = self._advance(out, end, 1)
         self.ready.packed.specials.check_trials()

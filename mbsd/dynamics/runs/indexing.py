@@ -44,7 +44,7 @@ NEAR = 3.0
 MOST_UNSEEN = 10
 """Steps that are taken before it is asked again how far the next jump is."""
 ROUNDING = 8
-"""Of the time, in neighbouring numbers: a jump is not found closer than this."""
+"""Rounding of the time, in neighbouring numbers: a jump is not found closer than this."""
 
 
 class Genevas:

@@ -30,7 +30,7 @@ PATIENCE = 10.0
 
 
 class Pace:
-    """Of one run from where ``state`` stands to ``end`` (s)."""
+    """Pace of one run from where ``state`` stands to ``end`` (s)."""
 
     def __init__(self, run: Running, state: State, end: float, progress: Callable[[float], None] | None) -> None:
         self.run, self.state, self.end, self.progress = run, state, end, progress

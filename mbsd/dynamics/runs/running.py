@@ -14,7 +14,7 @@ STEPS_AT_ONCE = 2000
 WORK_AT_ONCE = 3e6
 """Coordinates times evaluations between two looks: a fraction of a second."""
 EVALUATIONS = 12
-"""Of a step."""
+"""Number of evaluations of a step."""
 
 
 def steps_at_once(coordinates: int, matrices: bool) -> int:

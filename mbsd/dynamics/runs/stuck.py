@@ -44,7 +44,7 @@ NEEDLESS = 1e-5
 HOPELESS = 1e9
 """Steps of that sort that no one waits for."""
 DIFFERENCE = 1e-6
-"""Of velocities and coordinates, in sizes and rad."""
+"""Differences of velocities and coordinates, in sizes and rad."""
 MANY_BODIES = 100
 """Beyond, stiffness is looked for along the motion alone."""
 

@@ -57,7 +57,7 @@ from mbsd.equations.relative.equation import OWN, POINTER, A, X, Y, evaluate_fro
 GEOMETRY = 7
 """Numbers of an interaction before its own."""
 COLUMNS = 9
-"""Of Loads.interaction."""
+"""Number of columns of Loads.interaction."""
 _WHOLE = types.CPointer(types.int64)
 SIGNATURE = types.float64(
     _WHOLE, types.int64, POINTER, POINTER, POINTER, POINTER, types.float64, POINTER, POINTER, POINTER, POINTER

@@ -11,9 +11,9 @@ import math
 from mbsd.equations.interactions.law import CRANK, CRANK_RATE, FX, FY, OWN, SIDE, SWITCH, TORQUE, X, interaction
 
 AREA, OUTSIDE, SHIFT, BOTTOM, SENSE, FIRES_AT, FIRST, PERIOD, LEVER, COUNT, HEAD = range(11)
-"""Of the own numbers: m^2, Pa, m, m, 1 or -1, three angles (rad), m/rad, phases; then from HEAD on the phases."""
+"""Places of the own numbers: m^2, Pa, m, m, 1 or -1, three angles (rad), m/rad, phases; the phases follow from HEAD."""
 BEGIN, EXPONENT, TO, WIDTH, PIECES, PIECE_COUNT, PHASE = range(7)
-"""Of a phase: BEGIN counts from FIRST, PIECES is where its pieces begin among the own numbers."""
+"""Places in the numbers of a phase: BEGIN counts from FIRST, PIECES is where its pieces begin among the own numbers."""
 PIECE = 7
 """Numbers of a piece: where it begins (rad), six coefficients by rising powers."""
 NUDGE = 1e-10

@@ -19,19 +19,19 @@ from mbsd.compiling.jit import COMPILED
 from mbsd.equations.relative.equation import _PYTHON, OWN, A, X, Y, equation
 
 VX, VY, OMEGA, TIME, LAW, LAW_RATE = 14, 15, 16, 17, 18, 19
-"""Of ``state`` beside X, Y, A: rates (m/s, m/s, rad/s), time (s), value and rate of the law of time, 0 without one."""
+"""Places in ``state`` after X, Y, A: rates (m/s, m/s, rad/s), time (s), value and rate of the law of time, else 0."""
 SIDE = 23
-"""Of ``state``: 1 or -1 where the force is wanted as on that side of its switch, smoothly beyond it too; else 0."""
+"""Place in ``state``: 1 or -1 for the force of that side of its switch, smoothly beyond it, too; else 0."""
 APPROACH = 24
-"""Of ``state``: SPEED where SWITCH last went above 0 (m/s), not a number before it ever did: see switching.py."""
+"""Place in ``state``: SPEED where SWITCH last went above 0 (m/s), not a number before it ever did: see switching.py."""
 CRANK, CRANK_RATE = 25, 26
-"""Of ``state``: angle and rate of the body that the interaction names as its crank, against body i (rad, rad/s)."""
+"""Places in ``state``: angle and rate of the interaction's crank against body i (rad, rad/s)."""
 OWN_STATE = 27
 """The first of the states that the force itself carries, as speeds (mbsd/arrays/states.py)."""
 STATE = OWN_STATE + MOST_STATES
 """Numbers of a state."""
 FX, FY, TORQUE, SWITCH, POWER, SPEED, RATE = 0, 1, 2, 3, 4, 5, 6
-"""Of ``out``. SWITCH: what changes its sign where the force has a kink or a jump (m), above 0 where it acts.
+"""Places in ``out``. SWITCH: what changes its sign where the force has a kink or a jump (m), above 0 where it acts.
 POWER: by which power of that it grows, if that is no whole number. SPEED: rate of SWITCH, of forces that ask for
 APPROACH (m/s). RATE: the first of the rates of its own states."""
 RESULTS = RATE + MOST_STATES

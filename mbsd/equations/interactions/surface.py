@@ -15,7 +15,7 @@ from mbsd.equations.relative.curve_pieces import COUNT, CX, CY, DX, DY, LATER, T
 from mbsd.equations.relative.equation import X, Y
 
 DISTANCE, TX, TY = 20, 21, 22
-"""Of the state: filled by :func:`stand`."""
+"""Places in the state, filled by :func:`stand`."""
 
 
 @internal

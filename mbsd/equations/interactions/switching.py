@@ -27,7 +27,7 @@ held; scratch of KEPT; rate of s where it was evaluated last and where the step 
 0, not a number before it ever did: events may set it back, so it belongs to the record of a run (Held)."""
 WIDTH = 12
 TIGHT = 1e-12
-"""Of the size: interactions so near to their switch are on neither side."""
+"""Fraction of the size: interactions so near to their switch are on neither side."""
 
 
 @inlined

@@ -28,13 +28,13 @@ from mbsd.equations.system import LAST
 DISTANCE, RADIUS, CLOSED, SPAN, COUNT, FARTHEST, TABLE = range(OWN, OWN + 7)
 WIDTH = 15
 ARC, TANGENT = 13, 14
-"""Of a piece."""
+"""Columns of a piece."""
 LENGTH, TURNING, END_X, END_Y, END_DX, END_DY, REACH = range(7)
 """After the last piece."""
 LATER = 7
 """Numbers after the last piece."""
 U, PIECE, CX, CY, DX, DY, DDX, DDY, DDDX, DDDY = range(4, 14)
-"""Of the scratch after the relative pose: parameter, piece, and place and derivatives by u there."""
+"""Places in the scratch after the relative pose: parameter, piece, and place and derivatives by u there."""
 LOOKS = 48
 """Nodes looked at before the ones between the best two."""
 MOST_STEPS = 40

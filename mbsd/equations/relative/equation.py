@@ -25,12 +25,12 @@ from numba.extending import intrinsic
 from mbsd.compiling.jit import COMPILED, at_address
 
 X, Y, A, TURN = 0, 1, 2, 3
-"""Of ``relative``. TURN: how far the arm that carries both centres is turned against body i (rad)."""
+"""Places in ``relative``. TURN: how far the arm that carries both centres is turned against body i (rad)."""
 F, FX, FY, FA, FXX, FXY, FXA, FYY, FYA, FAA = range(10)
-"""Of ``out``."""
+"""Places in ``out``."""
 OFFSET, PHASE, DIRECTION, WRAPS, OWN = range(5)
-"""Of ``numbers``: angle of marker j less that of marker i in their bodies; F = 0 stands for this much; direction of
-the line of centres against the arm; 1 where no arm tells whole turns; the first number of the joint's own."""
+"""Places in ``numbers``: angle of marker j less that of marker i in their bodies; F = 0 stands for this much; direction
+of the line of centres against the arm; 1 where no arm tells whole turns; the first number of the joint's own."""
 
 POINTER = types.CPointer(types.float64)
 SIGNATURE = types.void(POINTER, POINTER, POINTER)

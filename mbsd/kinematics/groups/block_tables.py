@@ -41,7 +41,7 @@ class Hanging(NamedTuple):
     tree: list[tuple[int, int, Link | None]]
     """Body, how it hangs and by what, in the order of placing."""
     rows: list[int]
-    """Of J: all that hold these bodies."""
+    """Rows of J: all that hold these bodies."""
     equations: list[int]
     """Those by which no body hangs; as many as unknowns."""
 

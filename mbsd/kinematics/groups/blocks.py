@@ -20,7 +20,7 @@ BLOCK, TRAIN = 9, 10
 PIN, SLIDE, WELD, FREE = range(4)
 """How a body hangs."""
 UNKNOWNS = (1, 1, 0, 3)
-"""Of each of these."""
+"""Number of unknowns of each of these."""
 ALONG, ACROSS, TURNED, APART, SPECIAL = range(5)
 """Equations: x, y, a or the distance less a constant, or a constraint of relative pose."""
 BODIES, EQUATIONS, NEAR, CARRIES, TREE_AT, ROWS_AT, NEAR_AT, LAWS, MOVING = range(9)
@@ -76,7 +76,7 @@ class Blocks(NamedTuple):
 
 
 def no_blocks() -> Blocks:
-    """Of a plan of closed forms of one and two bodies alone."""
+    """Blocks of a plan of closed forms of one and two bodies alone."""
     return with_scratch(0, [], [], [], [], [], [], np.zeros(0), [], [], [])
 
 

@@ -18,7 +18,7 @@ class GroupKind:
     """One kind. Functions that make a group return None where the joints make none after all."""
 
     code: int
-    """Of groups.py."""
+    """Code in groups.py."""
     name: str
     embedded: Callable[[list[float]], list[float]]
     """Its numbers for columns of B: what the compiled loop would compute anew each time is computed once."""

@@ -30,7 +30,7 @@ class Link(NamedTuple):
     other: int
     """The other body."""
     offset: float
-    """Of its angle row: theta_j - theta_i (rad); of a rod its length (m)."""
+    """Offset of its angle row: theta_j - theta_i (rad); of a rod its length (m)."""
     motion: int
 
 
@@ -41,7 +41,7 @@ class Places:
         self.system, self.pose = system, pose
 
     def arm(self, marker: int) -> list[float]:
-        """Of a marker, from its body's centre of mass, in body axes (m)."""
+        """Arm of a marker, from its body's centre of mass, in body axes (m)."""
         return [float(value) for value in self.system.marker_arm[marker]]
 
     def axis(self, marker: int) -> Vector:
@@ -73,7 +73,7 @@ class Places:
         return [*base, *axis, angle]
 
     def hanging(self, link: Link) -> list[float]:
-        """Of a body of a block (mbsd/kinematics/groups/blocks.py) that hangs by a pin, a slide or a weld."""
+        """Numbers of a body of a block (mbsd/kinematics/groups/blocks.py) that hangs by a pin, a slide or a weld."""
         arm = self.arm(link.here)
         if link.kind == "P":
             return [float(x) for x in (*self.on_slide(link, arm), *arm)]
@@ -92,5 +92,5 @@ def turned(vector, angle: float) -> np.ndarray:
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> float:
-    """Of vectors (2,)."""
+    """Cross product of two vectors (2,)."""
     return float(a[0] * b[1] - a[1] * b[0])

@@ -141,7 +141,7 @@ class _Parts:
         self.plan.take((BLOCK, (bodies[0], -1, 0, 0), len(self.head) - 1, []), bodies)
 
     def cost(self) -> float:
-        """Of one time (us)."""
+        """Cost of one time (us)."""
         blocks = [
             PINNED if head[BODIES] == 1 and self.tree[head[TREE_AT]][HANGS] == PIN else BESIDE + EACH * head[EQUATIONS]
             for head in self.head

@@ -43,7 +43,7 @@ class Trains:
     def __init__(self, packed: Packed, q0: np.ndarray) -> None:
         self.packed, self.theta = packed, q0[2::3]
         self.sums: dict[int, Sum] = {}
-        """Of the bodies found so far."""
+        """Sums of the bodies known so far."""
         residual_and_jacobian(packed.system, q0, np.zeros((len(packed.motions) + 1, 3)), packed.ws)
         self.open = packed.ws.phi.copy()
         self.rows = self._angle_rows() | self._special_rows()

@@ -32,7 +32,7 @@ class Gap:
 
 
 def gaps(m: Model, packed: Packed, q: np.ndarray, limits: bool) -> list[Gap]:
-    """Of the contacts, and of the ``limits`` of joints, along poses q (T, 3 nb). A one-way clutch is always closed."""
+    """Gaps of the contacts, and of the ``limits`` of joints, along poses q (T, 3 nb); one-way clutches are closed."""
     from mbsd.equations.assembly import tabulate
     from mbsd.kinematics.limits.contact_rows import all_contacts, with_contacts
 

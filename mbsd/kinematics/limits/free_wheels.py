@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 MET = 1e-3
 """Part of the radii together below which the centres have met."""
 HALF = 0.5
-"""Of the way to each other: what a step may take."""
+"""Fraction of the way to each other: what a step may take."""
 
 
 class FreeWheels:

@@ -28,7 +28,7 @@ WELL_CONDITIONED = 1e-4
 _CLOSED: Kept[tuple[np.ndarray, np.ndarray]] = Kept()
 """Closed poses, and the angle offsets that go with them."""
 LONGEST_STEP = 0.5
-"""Of one Gauss-Newton step, in sizes and rad."""
+"""Longest Gauss-Newton step, in sizes and rad."""
 
 
 def assemble(m: Model, packed: Packed, time: float) -> np.ndarray:

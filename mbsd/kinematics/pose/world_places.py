@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from mbsd.model.mechanism import Model
 
 MOVES = 1e-7
-"""Of a body's coordinate in a unit vector of the null space."""
+"""Share of a body's coordinate in a unit vector of the null space."""
 ELSEWHERE = 1e-6
 """A start this far (in sizes, rad) from where a marker was put is another one."""
 

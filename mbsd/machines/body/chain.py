@@ -26,7 +26,7 @@ MOMENTS = ("hip_extensors", "knee_extensors", "plantarflexors", "shoulder_extens
 PLATE = 0.225
 """Radius of the usual plates of a barbell (m)."""
 BAR_INERTIA = 0.4 * PLATE**2
-"""Of a loaded barbell, by its mass (m^2). It does not turn: its plates hang on sleeves."""
+"""Inertia of a loaded barbell, by its mass (m^2). It does not turn: its plates hang on sleeves."""
 
 
 @dataclass(frozen=True)

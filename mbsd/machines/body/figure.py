@@ -36,7 +36,7 @@ class Figure:
             raise ModelError(f"figure: the table is a {type(self.table).__name__}; give WINTER or another SegmentTable")
 
     def length(self, limb: str) -> float:
-        """Of a limb between its joints (m); see LENGTHS in segments.py. Raises ModelError for an unknown one."""
+        """Length of a limb between its joints (m); see LENGTHS in segments.py. Raises ModelError for an unknown one."""
         if limb not in LENGTHS:
             raise ModelError(f"figure: there is no length '{limb}'; known: {', '.join(LENGTHS)}")
         return LENGTHS[limb] * self.height
@@ -53,17 +53,17 @@ class Figure:
 
     @property
     def heel(self) -> float:
-        """Of the heel from the ankle along the floor (m): negative, since it is behind."""
+        """Place of the heel from the ankle along the floor (m): negative, since it is behind."""
         return -HEEL * self.length("foot")
 
     @property
     def toe(self) -> float:
-        """Of the tip of the toes from the ankle along the floor (m)."""
+        """Place of the tip of the toes from the ankle along the floor (m)."""
         return (1.0 - HEEL) * self.length("foot")
 
     @property
     def mid_foot(self) -> float:
-        """Of the middle of the foot from the ankle along the floor (m)."""
+        """Place of the middle of the foot from the ankle along the floor (m)."""
         return (self.heel + self.toe) / 2
 
     def limb(self, name: str) -> MassProperties:

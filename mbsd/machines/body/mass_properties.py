@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class MassProperties:
-    """Of a rigid body in the plane: mass (kg), centre of mass (m), inertia about it (kg m^2)."""
+    """Mass properties of a rigid body in the plane: mass (kg), centre of mass (m), inertia about it (kg m^2)."""
 
     mass: float
     com: tuple[float, float]

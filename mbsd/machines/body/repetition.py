@@ -34,7 +34,7 @@ class Tempo:
 
     @property
     def period(self) -> float:
-        """Of a whole repetition (s)."""
+        """Duration of a whole repetition (s)."""
         return self.up + self.hold + self.down + self.rest
 
     @property

@@ -25,7 +25,7 @@ LENGTHS: Mapping[str, float] = {
     "forearm": 0.146,
     "hand": 0.108,
 }
-"""Of the height: ankle above the sole, length of the foot, between the joints; the trunk from hip to shoulder."""
+"""Fractions of the height: ankle above the sole, length of the foot, joint to joint; trunk from hip to shoulder."""
 
 HEEL, BALL = 0.25, 0.48
 """Assumed: heel behind and ball of the foot in front of the ankle, of the foot's length. The foot stands still, so that
@@ -37,7 +37,7 @@ class Segment:
     """A rigid segment, or several that are taken for one."""
 
     mass: float
-    """Of the body's mass."""
+    """Fraction of the body's mass."""
     com: float
     """Centre of mass from the proximal end, of ``length``."""
     gyration: float

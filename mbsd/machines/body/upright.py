@@ -114,7 +114,7 @@ def deadlift(
 
 
 def bar_on_shoulders(figure: Figure) -> tuple[float, float]:
-    """Of a bar on the back: along the trunk from the hip, and behind its axis (m)."""
+    """Place of a bar on the back: along the trunk from the hip, and behind its axis (m)."""
     return 0.98 * figure.length("trunk"), 0.055 * figure.height
 
 

@@ -29,7 +29,7 @@ from mbsd.model.cylinders.cycle import GasCycle
 
 ORDERS = (1, 2, 4, 6)
 NOTHING = 1e-9
-"""Of m r w^2, or times the spacing: no force, no couple."""
+"""Fraction of m r w^2, for couples times the spacing: less counts as no force, no couple."""
 EVEN = 1e-6
 """rad"""
 NARROWEST = 30.0

@@ -29,7 +29,7 @@ class ShaftMasses(NamedTuple):
     """Place of a rod's centre of mass from the crank pin, in parts of its length."""
     throw: float
     ring: float
-    """Of a master rod, more than a rod has."""
+    """Mass of the ring of a master rod, which other rods have not."""
 
 
 def crankshaft(

@@ -79,7 +79,7 @@ def firing(of: Layout, order: Sequence[int] | None = None, strokes: int = 4) -> 
 
 
 def _most_even(tops: np.ndarray, cycle: float, z: np.ndarray, name: str = "") -> Firing:
-    """Of all choices of turns the one whose intervals differ least from equal ones; of equal ones the smoothest.
+    """Choice of turns whose intervals differ least from equal ones; among equal ones the smoothest.
 
     Smoothest: S_n = |sum_k e^(2 pi i n a_k / cycle)|, the n-th harmonic of equal pulses at the angles a_k, is smallest
     for n = 1, then 2 and so on, since low orders shake most. Of those that are as smooth, the one in which cylinders

@@ -40,7 +40,10 @@ class FreeForces:
 
 
 def free_forces(of: Layout, ratio: float | None = None, orders: Sequence[int] = ORDERS) -> FreeForces:
-    """Of the moving masses of a layout. ``ratio``: crank radius over rod; None: all A_n 1, the layout's share alone."""
+    """Forces of the moving masses of a layout.
+
+    ``ratio``: crank radius over rod; None: all A_n 1, the layout's share alone.
+    """
     order = np.asarray(orders)
     size = np.ones(len(order), complex) if ratio is None else piston_harmonics(ratio, int(order.max()))[order - 1]
     axis = np.exp(1j * (of.banks + 0.5 * np.pi))
@@ -51,7 +54,7 @@ def free_forces(of: Layout, ratio: float | None = None, orders: Sequence[int] = 
 
 
 def rotating_forces(of: Layout) -> FreeForces:
-    """Of masses at the crank pins (the big ends and throws), one unit of m r w^2 each."""
+    """Forces of masses at the crank pins (the big ends and throws), one unit of m r w^2 each."""
     forward = 1j * np.exp(1j * of.throws)[None, :]
     return _summed(np.array([1]), forward, np.zeros_like(forward), of.z)
 

@@ -27,7 +27,7 @@ from mbsd.mechanism import Mechanism
 from mbsd.model.laws.constant_rate import constant_rate
 
 STEPS = 256
-"""Of a turn from which the orders of the forces are taken."""
+"""Number of steps of a turn from which the orders of the forces are taken."""
 HIGHEST = 8
 """Highest order where none are given."""
 PHASES = np.linspace(0.0, 1.0, 360, endpoint=False)

@@ -40,7 +40,7 @@ CROWN = 0.5
 GAP = 0.02
 """Between the crowns where they are nearest, in strokes, without gas."""
 TEETH = 60
-"""Of every gear."""
+"""Number of teeth of every gear."""
 MOST = 60.0
 """Degrees: a larger phase is a mistake."""
 

@@ -19,7 +19,7 @@ import numpy as np
 from mbsd.base.errors import ModelError
 
 SAMPLES = 4096
-"""Of the turn: the coefficients fall as 1 / l to their order, so that these suffice up to r / (l - |e|) = 0.98."""
+"""Number of samples of a turn: coefficients fall as 1 / l to their order; these suffice up to r / (l - |e|) = 0.98."""
 LONGEST = 0.98
 
 

@@ -7,7 +7,7 @@ import math
 from mbsd.machines.engines.layout import Layout
 
 SAME = 1e-6
-"""Of two angles (rad) or places (spacings)."""
+"""Difference of two angles (rad) or places (spacings) that are the same."""
 
 
 def throws(of: Layout) -> list[list[int]]:

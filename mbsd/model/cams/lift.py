@@ -25,8 +25,8 @@ TURN = 2 * math.pi
 PIECES = 720
 """Quintic pieces of a whole turn, about."""
 RISE_PIECES = 288
-"""Of a rise or fall, however narrow: a quintic piece of width h misses s'' by s^(6) h^4 / 1920, here by less than
-3e-9 of the peak of each law."""
+"""Number of pieces of a rise or fall, however narrow: a quintic piece of width h misses s'' by s^(6) h^4 / 1920, here
+by less than 3e-9 of the peak of each law."""
 LEAST_ROWS = 8
 
 
@@ -40,7 +40,7 @@ class Lift:
     """Height at cam angle 0."""
     angles: tuple[float, ...] = ()
     heights: tuple[float, ...] = ()
-    """Of a table."""
+    """Lifts of a table."""
 
     @staticmethod
     def of(*segments: Sequence[Any], start: float = 0.0) -> Lift:

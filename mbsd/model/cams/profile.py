@@ -32,7 +32,7 @@ class CamProfile:
     sizes: Mapping[str, float]
     """Radii and distances as they were given (m)."""
     angle: np.ndarray
-    """Of the cam (rad)."""
+    """Angle of the cam (rad)."""
     pitch: np.ndarray
     """(N, 2) the roller's centre (m); for a flat face the same as the outline."""
     outline: np.ndarray
@@ -40,9 +40,9 @@ class CamProfile:
     pressure_angle: np.ndarray
     """Between the common normal and the way the follower moves there (rad), signed."""
     curvature_radius: np.ndarray
-    """Of the outline (m): positive where it is convex, infinite where it is straight."""
+    """Radius of curvature of the outline (m): positive where it is convex, infinite where it is straight."""
     numbers: np.ndarray
-    """Of the joint's constraint."""
+    """Numbers of the joint's constraint."""
 
     @property
     def flat(self) -> bool:

@@ -32,7 +32,7 @@ class ArticulatedMotion:
     knuckle: tuple[float, float]
     """From the crank pin, along the master rod and to its left."""
     bank: float
-    """Of the own cylinder's axis against the master's."""
+    """Angle of the own cylinder's axis against the master's."""
     rod: float
     offset: float
     sense: float = 1.0

@@ -29,7 +29,7 @@ from mbsd.model.cylinders.piston_motion import PistonMotion
 
 TURN = 2.0 * math.pi
 PIECES = 128
-"""Of G while a charge burns: its quintics miss it by some 1e-9."""
+"""Number of pieces of G while a charge burns: its quintics miss it by some 1e-9."""
 BURNED = 37.0
 """exp(-37) is left: nothing burns any more."""
 
@@ -48,7 +48,7 @@ class Bore:
         return self.clearance + self.motion.stroke
 
     def height(self, phi: np.ndarray | float) -> np.ndarray:
-        """Of the gas (m) at angles of the crank (rad)."""
+        """Height of the gas (m) at angles of the crank (rad)."""
         return self.clearance + self.motion.below(np.asarray(phi, float))
 
 
@@ -66,7 +66,7 @@ class Phase:
     to: float = 0.0
     """p_to (Pa)."""
     width: float = 0.0
-    """Of the passage to it (rad); 0: there is none."""
+    """Width of the passage to it (rad); 0: there is none."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class GasCycle(ABC):
     """The pressure in a cylinder over one cycle."""
 
     turns: int
-    """Of the crank in one cycle."""
+    """Turns of the crank in one cycle."""
     compression: float | None
     """Volume at the bottom over that at the top dead centre; None: the clearance is not known."""
 
@@ -97,7 +97,7 @@ class GasCycle(ABC):
 
     @property
     def period(self) -> float:
-        """Of the cycle (rad)."""
+        """Period of the cycle (rad)."""
         return TURN * self.turns
 
     def openings(self, phi: float, bore: Bore) -> tuple[Opening, ...]:

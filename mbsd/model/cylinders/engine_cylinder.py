@@ -67,7 +67,7 @@ def cylinder_of(force: Force, joints: Sequence[Joint]) -> EngineCylinder:
 
 
 def given_motion(what: str, stroke: float, rod: float | None, offset: float, sense: float) -> PistonMotion:
-    """Of the numbers of a slider-crank, or without a rod of a Scotch yoke.
+    """Motion by the numbers of a slider-crank, or without a rod of a Scotch yoke.
 
     r = S sqrt((l^2 - e^2 - S^2 / 4) / (4 l^2 - S^2)). Raises ModelError for a rod with which the crank does not turn.
     """

@@ -28,7 +28,7 @@ Found = tuple[PistonMotion | ArticulatedMotion, float, float]
 
 
 def motion_of_joints(force: Force, joints: Sequence[Joint], sense: float) -> Found:
-    """Of a force of the kind gas_cycle. Raises ModelError where the joints do not tell it."""
+    """Motion of the piston of a gas_cycle. Raises ModelError where it does not follow from the joints."""
     frame, piston, crank = *force.bodies, force.params["crank"]
     bearing = next(_between(joints, "revolute", frame, crank), None)
     guide = next(_between(joints, "prismatic", frame, piston), None)
@@ -81,7 +81,7 @@ class _Line:
     def __init__(self, angle: float, bearing: Marker, on_frame: Marker, on_piston: Marker) -> None:
         self.angle, self.bearing, self.rail = angle, bearing, on_piston
         self.turned = on_frame.angle - on_piston.angle - angle
-        """Of the piston's frame (rad)."""
+        """Angle of the piston's frame (rad)."""
         self.across = self.from_axis(on_frame)[1]
 
     def from_axis(self, place: Marker) -> tuple[float, float]:

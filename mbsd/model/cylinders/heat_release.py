@@ -23,7 +23,7 @@ from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
 
 PIECES, POINTS = 64, 10
-"""Of the quadrature over the burning."""
+"""Numbers of the quadrature over the burning."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class HeatRelease:
         return -np.expm1(-self.a * since**self.n)
 
     def rate(self, phi: np.ndarray) -> np.ndarray:
-        """Of the burned fraction, by angle (1/rad)."""
+        """Rate of the burned fraction, by angle (1/rad)."""
         since = np.maximum(0.0, (np.asarray(phi, float) - self.start) / self.duration)
         return self.a * self.n / self.duration * since ** (self.n - 1) * np.exp(-self.a * since**self.n)
 

@@ -89,7 +89,7 @@ def _interactions(force, masses):
 
 
 def _potential(force: Force, masses: Masses, q: np.ndarray) -> np.ndarray:
-    """Of the stops; oil takes and gives by its pressures, which do not follow from the pose."""
+    """Potential of the stops; oil takes and gives by its pressures, which do not follow from the pose."""
     oil = _oil(force)
     gap = marker_place(force.j, masses, q) - marker_place(force.i, masses, q)
     out_by = np.hypot(gap[:, 0], gap[:, 1]) - oil.retracted

@@ -115,7 +115,7 @@ def _first_moments(
 
 
 def centre_of_mass(packed: Packed, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> PointView:
-    """Of all moving bodies, from (T, nb, 3) of their centres of mass. Raises ModelError where none has mass."""
+    """Centre of mass of all moving bodies, from (T, nb, 3) of theirs. Raises ModelError where none has mass."""
     mass = packed.system.mass[1:]
     if not mass.sum() > 0:
         raise ModelError(f"{packed.name}: no body has mass, so there is no centre of mass; give masses to the bodies")

@@ -14,7 +14,7 @@ from render.film.scene import ArcSpec, Point
 
 SIDES = 24
 RINGS = 64
-"""Of the tube; two more are the cone."""
+"""Number of rings of the tube; two more are the cone."""
 FRONT = -math.pi / 2
 """Angle (rad) of the middle of every arc: towards the camera."""
 

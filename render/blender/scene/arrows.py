@@ -161,5 +161,5 @@ def paint(name: str, colour: Colour) -> Any:
 
 
 def _linear(c: float) -> float:
-    """Of a colour as the picture has it (sRGB, IEC 61966-2-1)."""
+    """Linear value of a colour as the picture has it (sRGB, IEC 61966-2-1)."""
     return c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4

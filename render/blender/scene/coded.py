@@ -28,7 +28,7 @@ def number(things: list[Any], inked: list[Any], radius: float) -> None:
 
 
 def _material(radius: float, strength: str | None) -> Any:
-    """Of solids, or with a ``strength`` of inked things: the attribute of that name, or 1 where it has none."""
+    """Material of solids; with a ``strength``, of inked things: the attribute of that name, else 1."""
     import bpy
 
     made = bpy.data.materials.new("coded")

@@ -22,7 +22,7 @@ HALO, HALO_REACH, HALO_SOFT = 0.86, 0.17, 0.08
 """How much of the picture a halo of the opposite tone hides, how far it reaches beyond a letter, and how soft it ends,
 in heights of letters. With it the contrast is above 4.5 on whatever is behind."""
 HALOS = (9, 12, 17), (250, 251, 252)
-"""Of bright words and of dark ones."""
+"""Halos of bright words and of dark ones."""
 
 
 def lay_words(page: Any, writing: Writing, number: str) -> None:

@@ -87,7 +87,7 @@ class Arcs:
         return out
 
     def _radius(self, k: int) -> float:
-        """Of arc number ``k`` (m): wider than those before it about the same point."""
+        """Radius of arc number ``k`` (m): wider than those before it about the same point."""
         mine = self.torques[k].place
         inside = sum(bool(np.abs(one.place - mine).max() < RADIUS * self.size / 4) for one in self.torques[:k])
         return (RADIUS + APART * inside) * self.size

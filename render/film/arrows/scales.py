@@ -18,14 +18,14 @@ MOSTLY, BLOW = 90.0, 4.0
 """This percentile counts instead where it is so many times smaller: blows that return would leave nothing of the rest.
 """
 NEVER = 0.02
-"""Of the largest: what is smaller than this at nearly all times is a motion at rest."""
+"""Fraction of the largest: what is smaller than this at nearly all times is a motion at rest."""
 TINY = 0.025
-"""Of the full length: shorter arrows are left out."""
+"""Fraction of the full length: shorter arrows are left out."""
 
 
 @dataclass(frozen=True)
 class Scale:
-    """Of one unit: what is drawn at full length, a round number below it, and whether longer arrows are cut."""
+    """Scale of one unit: what is drawn at full length, a round number below it, and whether longer arrows are cut."""
 
     unit: str
     largest: float
@@ -43,7 +43,7 @@ class Sized(Protocol):
 
     @property
     def unit(self) -> str:
-        """Of the size."""
+        """Unit of the size."""
         ...
 
 

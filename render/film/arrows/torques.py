@@ -32,7 +32,7 @@ class Torque(Acting):
 
     @property
     def unit(self) -> str:
-        """Of its value."""
+        """Unit of its value."""
         return UNIT
 
 
@@ -52,7 +52,7 @@ def rounding(vectors: Sequence[Vector], size: float) -> float:
 
 
 def _reactions(motion: Motion, quantity: Quantity) -> Iterator[Torque]:
-    """Of joints and contacts, about where they act."""
+    """Torques of joints and contacts, about where they act."""
     for name, one in (*motion.joints.items(), *motion.contacts.items()):
         at = one.acts or one
         sign = 1.0 if one.bodies[1] != "ground" else -1.0
@@ -60,7 +60,7 @@ def _reactions(motion: Motion, quantity: Quantity) -> Iterator[Torque]:
 
 
 def _applied(motion: Motion, quantity: Quantity) -> Iterator[Torque]:
-    """Of forces and drivers."""
+    """Torques of forces and drivers."""
     for name, one in (*motion.forces.items(), *motion.drivers.items()):
         several = getattr(one, "several", False)
         moving = [action for action in one.actions if action.body != "ground"]

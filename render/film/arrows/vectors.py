@@ -15,7 +15,7 @@ from shared.contract.shot import Quantity
 
 Array = NDArray[np.float64]
 SAME = 1e-6
-"""Of the mechanism's size: places that stay closer than this are one, and stand still."""
+"""Fraction of the mechanism's size: places that stay closer than this are one, and stand still."""
 UNITS = {"velocities": "m/s", "accelerations": "m/s²", "forces": "N", "reactions": "N"}
 
 
@@ -47,7 +47,7 @@ class Vector(Acting):
 
     @property
     def unit(self) -> str:
-        """Of its value."""
+        """Unit of its value."""
         return UNITS[self.quantity]
 
     @property
@@ -103,7 +103,7 @@ def _forces(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
 
 
 def _movements(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
-    """Of traced points, of pins and other joints that move, and of the centres of mass of bodies that have neither."""
+    """Arrows of traced points, of pins and other moving joints, and of centres of mass of bodies that have neither."""
     fast = quantity == "velocities"
     slack = SAME * _extent(motion)
     shown: list[Array] = []

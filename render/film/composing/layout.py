@@ -13,7 +13,7 @@ from render.film.scene import ARC, Card, LegendRow, LineSpec
 from render.letters import width_of
 
 EDGE = 0.046
-"""Of what is written, from the picture's edges."""
+"""Distance of what is written, from the picture's edges."""
 TITLE, NUMBER, RATE, LEGEND = 1 / 16, 1 / 23, 1 / 27, 1 / 25
 """Heights of letters."""
 LINE = 1.4
@@ -25,7 +25,7 @@ LEAST = 0.3
 HALF = 0.5
 """Part of the picture's height that words at the upper left take at most."""
 ROW, PAD, GAP = 1.5, 0.7, 0.8
-"""Of the legend: from row to row, around its rows, and between its columns, in heights of letters."""
+"""Distances within the legend, in heights of letters: from row to row, around its rows, between its columns."""
 Box = tuple[float, float, float, float]
 """Left, upper, right and lower edge, in parts of the picture's shorter side."""
 

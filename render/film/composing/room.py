@@ -13,7 +13,7 @@ from render.presets import ASPECT
 
 Array = NDArray[np.float64]
 PARTS = 0.0, 0.04, 0.08, 0.12, 0.16, 0.2, 0.24
-"""Of the picture's height, kept empty at its top for words, at its bottom for a legend: the first that suffice."""
+"""Fractions of the picture's height, kept empty at its top for words, at its bottom for a legend: the first enough."""
 
 
 def held(camera: CameraPose, points: Array, place: Box, aspect: float = ASPECT) -> int:

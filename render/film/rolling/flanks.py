@@ -22,7 +22,7 @@ from shared.contract import ContactMotion, JointMotion, Motion, Shape
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 ROUNDING = 1e-9
-"""Of the largest reaction: smaller ones tell no flank."""
+"""Fraction of the largest reaction: smaller ones do not say which flank touches."""
 
 
 @dataclass(frozen=True)

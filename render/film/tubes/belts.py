@@ -29,7 +29,7 @@ MARK = SurfaceSpec(colour=(0.86, 0.5, 0.06), finish="satin", roughness=0.4)
 CHAIN = (("roller", STEEL, ROLLER), ("pin", STEEL, BOLT), ("lower plate", BLACK, PLATE), ("upper plate", BLACK, PLATE))
 """Name, surface and radius of what each link has; its plates reach to the next."""
 POINTS, MARK_POINTS = 181, 5
-"""Of a belt's tube and of a mark."""
+"""Numbers of points of a belt's tube and of a mark."""
 FEWEST, MOST = 6, 14
 """Marks on a belt."""
 OUTER, INNER = 1.0, 0.72
@@ -46,7 +46,7 @@ class Belt:
     z: float
     radius: float
     count: int
-    """Of marks or rollers."""
+    """Number of marks or rollers."""
     chain: bool
     lines: tuple[float, float]
     """Direction of the line of centres at the start and the end of the motion (rad), not wrapped."""
@@ -60,7 +60,7 @@ class Belt:
 
     @property
     def specs(self) -> list[TubeSpec]:
-        """Of each tube."""
+        """Description of each tube."""
         if not self.chain:
             marks = [
                 TubeSpec(name=f"{self.name} mark {k + 1}", surface=MARK, radius=PROUD * self.radius, points=MARK_POINTS)
@@ -74,7 +74,7 @@ class Belt:
         ]
 
     def paths(self, poses: Poses, at: Moment) -> list[list[Point]]:
-        """Of each tube at that moment."""
+        """Path of each tube at that moment."""
         place, every = self.run(poses, at)
         if not self.chain:
             reach = LONG * self.radius * np.linspace(-1.0, 1.0, MARK_POINTS)

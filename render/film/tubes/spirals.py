@@ -77,7 +77,7 @@ class Spiral:
 
     @property
     def top(self) -> float:
-        """Of hub and stud."""
+        """Top of hub and stud."""
         return self.z + 1.6 * self.wire
 
     @property
@@ -90,7 +90,7 @@ class Spiral:
         ]
 
     def paths(self, poses: Poses, at: Moment) -> list[list[Point]]:
-        """Of the three tubes at that moment."""
+        """Paths of the three tubes at that moment."""
         pose = poses.body(self.outer, at)
         x, y = placed(pose, self.at)
         c, s = math.cos(pose[2] + self.at[2]), math.sin(pose[2] + self.at[2])

@@ -47,7 +47,7 @@ class Stretched:
 
     @property
     def specs(self) -> list[TubeSpec]:
-        """Of each tube."""
+        """Description of each tube."""
         return [spec for spec, _ in self.tubes]
 
     def ends(self, poses: Poses, at: Moment) -> tuple[Array, Array]:
@@ -59,7 +59,7 @@ class Stretched:
         return np.array([*first, self.z]), np.array([*second, self.z])
 
     def paths(self, poses: Poses, at: Moment) -> list[list[Point]]:
-        """Of each tube."""
+        """Path of each tube."""
         ends = self.ends(poses, at)
         return [[(float(x), float(y), float(z)) for x, y, z in path(*ends)] for _, path in self.tubes]
 

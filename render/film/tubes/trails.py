@@ -15,7 +15,7 @@ from shared.contract.shot import Shot, Trail
 from shared.contract.signals import SIGNALS, linear
 
 RINGS, MOST_RINGS = 160, 3000
-"""Of a trail: the fewest and the most."""
+"""Numbers of rings of a trail: the fewest and the most."""
 STRAY = 0.15
 """How far a trail may stray from its point's way between two rings, in its own radii."""
 LIGHT, INK = 2.9, 1.2
@@ -67,7 +67,7 @@ class Trails:
 
     @cached_property
     def _rings(self) -> list[int]:
-        """Of each so many that the tube strays from the point's way by no more than a part of its own radius.
+        """Numbers of rings: as many as keep the tube within a part of its own radius of the point's way.
 
         Between two moments h apart a chord strays by a h^2 / 8 from a way with acceleration a.
         """

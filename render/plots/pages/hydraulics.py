@@ -40,7 +40,7 @@ def hydraulics(motion: Motion) -> Figure:
 
 
 def _both(shown: list[tuple[str, HydraulicMotion, str]], what: str, unit: float) -> list[Line]:
-    """Of chambers A and B of each."""
+    """Lines of chambers A and B of each."""
     lines: list[Line] = []
     for name, one, ink in shown:
         for chamber, tint in (("a", ink), ("b", f"{ink}88")):

@@ -15,7 +15,7 @@ from shared.contract.quantity import written
 from shared.contract.skeleton import Skeleton, Stroke
 
 WAY = "#c3c9cf"
-"""Of the lines along which joints move."""
+"""Colour of the lines along which joints move."""
 INKS = {
     "ink": INK,
     "quiet": QUIET,

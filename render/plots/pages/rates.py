@@ -25,7 +25,7 @@ STILL = 1e-9
 """m or rad: what varies less stands still."""
 KINDS = (("", "position", "m"), ("v", "velocity", "m/s"), ("a", "acceleration", "m/s²"))
 DASHES = ("-", (0, (5, 1.6)), (0, (1.6, 1.4)), (0, (7, 1.6, 1.6, 1.6)))
-"""Of lines of one body in turn."""
+"""Dashes of lines of one body in turn."""
 Line = tuple[str, np.ndarray, str]
 """Label, values, colour."""
 

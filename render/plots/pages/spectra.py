@@ -19,13 +19,13 @@ from shared.contract import Motion
 from shared.contract.quantity import figures, labelled, written
 
 SEEN = 1e-3
-"""Of the largest amplitude: the highest order that reaches it is the last one shown."""
+"""Fraction of the largest amplitude: the highest order that reaches it is the last one shown."""
 FEWEST, MOST = 6, 24
 """Orders on a page."""
 NUMBERED = 0.02
-"""Of the largest amplitude: smaller ones get no number."""
+"""Fraction of the largest amplitude: smaller ones get no number."""
 NOTHING = 1e-6
-"""Of the largest amplitude: no stem."""
+"""Fraction of the largest amplitude: smaller ones get no stem."""
 ASIDE = 0.2
 """Between stems of one order, in orders; together they are centred on it."""
 ROOMY = 12

@@ -11,7 +11,7 @@ from studio.live.numbers import numbers_of
 
 
 def numbers_with(name: str, source: bytes) -> list[dict[str, Any]]:
-    """Of Params, with ``source`` in place of the file's. This process is of no other use after it.
+    """Numbers of Params, with ``source`` in place of the file's. This process is of no other use after it.
 
     Raises UserError where it cannot be loaded.
     """

@@ -21,16 +21,16 @@ from studio.live.child.author import Author
 from studio.live.numbers import Number
 
 STEP = 1e-4
-"""Of a number, by which it is changed."""
+"""Step of a number, by which it is changed."""
 ALIKE = 1e-5
-"""Of a value: what differs less is equal."""
+"""Fraction of a value: what differs less is equal."""
 NOTHING = 1e-9
 """A slope, in sizes of what it changes, that is rounding."""
 PLACES = ("/x", "/y", "/length", "/place/0", "/place/1", "/com/0", "/com/1")
 OWN = {"mass": "kg", "inertia": "kg m^2", "gravity/0": "m/s^2", "gravity/1": "m/s^2", "free_length": "m"}
 """Units of a model's values."""
 RATES = {"drive_angle": "rad/s", "drive_relative_angle": "rad/s", "drive_distance": "m/s", "drive_coordinate": "m/s"}
-"""Of constant rates, by the driver's kind."""
+"""Units of constant rates, by the driver's kind."""
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ def _is_other(path: str) -> bool:
 
 
 def _values(m: Mechanism) -> Iterator[tuple[str, Any]]:
-    """Of a model, by path."""
+    """Values of a model, by path."""
     yield from _flat("gravity", m.gravity)
     for name, body in m.bodies.items():
         if name != "ground":

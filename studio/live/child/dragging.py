@@ -29,16 +29,16 @@ Places = Callable[[np.ndarray], np.ndarray]
 DRAGGED = "dragged by the page"
 """The name of the trace that follows what is dragged."""
 DIFFERENCE = 1e-6
-"""Of a number's size, for the slopes."""
+"""Step, as a fraction of a number's size, for the slopes."""
 ROUNDS = 8
 NEAR = 1e-7
-"""Of the mechanism's size: so near to the place asked for is there."""
+"""Fraction of the mechanism's size: so near to the place asked for is there."""
 LONGEST = 0.3
-"""Of its size, by which a number changes in a round at most."""
+"""Fraction of its size, by which a number changes in a round at most."""
 LEAST = 0.02
-"""Of its size at the start, below which a number does not shrink: it keeps its sign."""
+"""Fraction of its size at the start, below which a number does not shrink: it keeps its sign."""
 STEPS = 60
-"""Of the motion up to the moment of the drag."""
+"""Number of steps of the motion up to the moment of the drag."""
 
 
 def dragged(

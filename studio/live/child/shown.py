@@ -20,7 +20,7 @@ from shared.contract.skeleton import Moving as Told
 from shared.contract.spanning import with_rods
 
 OF_PARTS = ("bodies", "arrows", "arcs", "trails", "clearance", "solid")
-"""Of the payload, what changes once there are parts."""
+"""Entries of the payload that change once there are parts."""
 
 
 class Shown:
@@ -50,7 +50,7 @@ class Shown:
         return encode(payload(motion, told, shot, arrows or not quick), compress=False)
 
     def solid(self, parts: Parts, shot: Shot | None, folder: Path) -> bytes:
-        """Of the last motion, what the payload says once its parts are there. Raises UserError."""
+        """What the payload of the last motion says once its parts are there. Raises UserError."""
         from render.film.film import Film
         from render.view.solid import with_parts
 

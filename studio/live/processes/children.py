@@ -60,7 +60,7 @@ class Child:
 
     @property
     def pid(self) -> int:
-        """Of the process; 0 before it has begun."""
+        """Number of the process; 0 before it has begun."""
         return self._link.process if self._link is not None else 0
 
     async def _live(self) -> None:

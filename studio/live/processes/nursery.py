@@ -17,7 +17,7 @@ from studio.live.processes.warm_process import Failed, Link, WarmProcess
 WARM = "studio.live.child.warm"
 """What the warm process loads; its ``serve`` runs in each process."""
 MEMORY_PART = 0.5
-"""Of the machine's memory that a child may take with all that it begins."""
+"""Fraction of the machine's memory that a child may take with all that it begins."""
 TRIES = 3
 """Warm processes that are asked before a process is given up."""
 MOMENT = 2.0

@@ -88,7 +88,7 @@ class WarmProcess:
 
     @property
     def pid(self) -> int | None:
-        """Of the process."""
+        """Number of the process."""
         return self._process.pid if self._process is not None else None
 
     async def fork(self, name: str, most_bytes: int) -> Link:

@@ -15,7 +15,7 @@ from shared.stage.errors import UserError
 from shared.stage.files import refusal, whole_file
 
 AT_FDCWD, RENAME_EXCHANGE = -100, 2
-"""Of Linux's <fcntl.h> and <linux/fs.h>."""
+"""Constants of Linux's <fcntl.h> and <linux/fs.h>."""
 MOMENT = 0.05
 """Seconds in which an editor that had opened the old file before ends writing it."""
 
@@ -25,7 +25,7 @@ class Meanwhile(Exception):
 
 
 def content_of(path: Path) -> bytes:
-    """Of a file of the author's. Raises UserError."""
+    """Content of a file of the author's. Raises UserError."""
     try:
         return path.read_bytes()
     except OSError as error:

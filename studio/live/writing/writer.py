@@ -126,7 +126,7 @@ class Writer:
         return found
 
     async def _numbers(self, source: bytes) -> dict[str, float]:
-        """Of Params, if the file held ``source``. Raises UserError."""
+        """Numbers of Params, if the file held ``source``. Raises UserError."""
         answer: asyncio.Future[dict[str, Any]] = asyncio.get_running_loop().create_future()
 
         def heard(_: Child, header: dict[str, Any], __: bytes) -> None:

@@ -117,7 +117,7 @@ class Books:
         self._write()
 
     def forecast(self) -> Forecast:
-        """Of what is left now."""
+        """Forecast of what is left now."""
         films = [name for name in self.asked.names if self.board.outcome(name) in ("waiting", "at work")]
         known = [self.frames[name] for name in films if name in self.frames and self.frames[name].all]
         return forecast(known, len(films) - len(known), self.asked.preset, out_root())

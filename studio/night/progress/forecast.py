@@ -15,7 +15,7 @@ from studio.night.progress.frames import Frames
 START = 6.0
 """Seconds in which Blender is loaded and the scene is built, once a film."""
 BYTES = 1.3
-"""Of a picture of the studio, a pixel, until one was measured."""
+"""Bytes a pixel of a picture of the studio, until one was measured."""
 LEAST, SURE = 0.3, 0.7
 """The same at the least; and the part of what was measured that the others of that film surely have."""
 FILM = 0.1
@@ -26,7 +26,7 @@ RESERVE = 200e6
 
 @dataclass(frozen=True)
 class Forecast:
-    """Of the films that are still to be made."""
+    """Forecast of the films that are still to be made."""
 
     films: int
     pictures: int

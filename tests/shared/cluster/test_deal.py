@@ -14,6 +14,7 @@ import distributed
 import pytest
 
 from shared.cluster import deal, hand
+from shared.cluster.address import tasks_of, workers_of
 from shared.cluster.contents import content_hash
 from shared.cluster.deal import Deal
 from shared.cluster.identity import together
@@ -160,3 +161,14 @@ def test_killed_workers_lose_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyP
 def test_workers_with_one_reason_are_told_together() -> None:
     reasons = {f"w{n}": "numpy 1, here 2" for n in range(5)} | {"x": "Python 3.12, here 3.13"}
     assert list(together(reasons)) == [("x", "Python 3.12, here 3.13"), ("w0, w1, w2 and 2 more", "numpy 1, here 2")]
+
+
+def test_a_client_that_gives_up_while_it_asks_has_lost_the_scheduler() -> None:
+    """Its pool of connections is closed between two looks at its status, and it raises no OSError then."""
+    cluster = distributed.LocalCluster(n_workers=0, processes=False, dashboard_address=None)
+    client = distributed.Client(cluster, set_as_default=False)
+    client.sync(client.rpc.close)
+    assert workers_of(client) is None
+    assert tasks_of(client) == {}
+    client.close()
+    cluster.close()

@@ -11,7 +11,7 @@ from tools.figures.look import INK, MOVED, QUIET, note, plain
 
 HOEKEN = {"coupler": 2.5, "rocker": 2.5}
 NEAR = 0.06
-"""Of the path, what is nearer to the line than this is drawn in the second picture (m)."""
+"""Distance from the line (m): the part of the path that is nearer is drawn in the second picture."""
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:

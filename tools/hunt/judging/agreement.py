@@ -138,12 +138,12 @@ def sizes(values: Numbers, size: float, first: Solution) -> dict[str, float]:
 
 
 POWERS = {"q": 0, "v": 1, "a": 2, "reactions": 2, "efforts": 2, "energies": 2}
-"""Of 1 / margin in the bounds of driven motions."""
+"""Powers of 1 / margin in the bounds of driven motions."""
 
 
 @dataclass
 class Verdict:
-    """Of a comparison."""
+    """Outcome of a comparison."""
 
     compared: int
     """Instants."""
@@ -241,7 +241,7 @@ class Growth:
         )
 
     def larger(self, other: Growth) -> Growth:
-        """Of two nudges."""
+        """The larger of two nudges."""
         return Growth({key: np.maximum(values, other.of[key]) for key, values in self.of.items()})
 
 

@@ -126,7 +126,7 @@ def balanced(sol: Solution, tolerance: float, growth: float, scale: float) -> li
 
 
 def driven_problems(sol: Solution, subject: Subject) -> list[str]:
-    """Of a sweep."""
+    """Problems of a sweep."""
     out = finite(sol) or closed(sol)
     if out:
         return out

@@ -31,19 +31,19 @@ SLOPE_OF_LAST = 64.0
 
 @dataclass(frozen=True)
 class LawError:
-    """Of all drivers together, lengths in sizes of the mechanism."""
+    """Errors of all drivers together, lengths in sizes of the mechanism."""
 
     slope: float = 0.0
-    """Of f' (1/s)."""
+    """Error of f' (1/s)."""
     bend: float = 0.0
-    """Of f'' (1/s^2)."""
+    """Error of f'' (1/s^2)."""
 
     def __add__(self, other: LawError) -> LawError:
         return LawError(self.slope + other.slope, self.bend + other.bend)
 
 
 def law_error(sol: Solution) -> LawError:
-    """Of the laws of a solution, over its span."""
+    """Error of the laws of a solution, over its span."""
     out, first, last = LawError(), float(sol.t[0]), float(sol.t[-1])
     if not last > first:
         last = first + 1.0  # as the solver does
@@ -56,7 +56,7 @@ def law_error(sol: Solution) -> LawError:
 
 
 def of_law(law: Motion, first: float, last: float) -> LawError:
-    """Of one law between two times (s), in its own unit; none of laws that know their derivatives."""
+    """Error of one law between two times (s), in its own unit; none of laws that know their derivatives."""
     raised_by = 0.0
     while isinstance(law, Raised):
         law, raised_by = law.law, raised_by + abs(law.by)

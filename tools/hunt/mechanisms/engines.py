@@ -13,7 +13,7 @@ from mbsd.results.solution import Solution
 from tools.hunt.subject import Subject, family
 
 SLACK = 1e-8
-"""Of a stroke."""
+"""Fraction of a stroke."""
 
 
 @family("engines with gas that burns")

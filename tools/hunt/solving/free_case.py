@@ -112,7 +112,7 @@ class Free:
         return Outcome(name, WRONG, "differs", verdict.words)
 
     def verdict(self, other: Solution, words: Words, tolerance: float, slack: float = SLACK) -> Verdict:
-        """Of a comparison with the first solution."""
+        """Outcome of a comparison with the first solution."""
         assert self.first is not None
         assert self.growth is not None
         return compare_free(self.first, other, self.growth, TOLERANCE + tolerance, words, slack)

@@ -26,7 +26,7 @@ from tools.hunt.words.same_bits import changed, pickled
 
 STEPS = (1, 2, 3, 5, 12, 30, 360, 1440)
 FIXED_STEPS = 400
-"""Of methods without an error estimate, over the duration; then twice as many."""
+"""Number of steps of methods without an error estimate, over the duration; then twice as many."""
 
 RUNS: Variations[Free] = Variations()
 variation = RUNS.enter

@@ -78,7 +78,8 @@ def study_again(project: Project) -> int:
     """The same study once more; what is wrong with both: no sentence, a wrong table, kept points computed again."""
     place = _folder(project)
     said = (place / "said.txt").read_text(errors="replace")
-    kept = sum(len(file.read_text().splitlines()) for file in place.glob("*/*.jsonl"))
+    lines = [line for file in place.glob("*/*.jsonl") for line in file.read_text().splitlines()]
+    kept = sum(line.startswith("[") for line in lines)  # each file opens with the inputs of its points
     before = _computed(place)
     wrong = int("has gone; start it again" not in said) + said.count("Traceback (most recent call last)")
     wrong += int(_wait(_start(project)) != 0)

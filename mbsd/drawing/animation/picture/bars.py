@@ -14,10 +14,10 @@ from mbsd.drawing.animation.words import KINETIC, POTENTIAL, TAKEN
 from mbsd.drawing.look import INK, QUIET
 
 ROWS = 4
-"""Of powers; the largest ones."""
+"""Number of powers that are shown, the largest ones."""
 TRACK = "#e6e9ed"
 NOTHING = 1e-9
-"""Of the largest power: not shown."""
+"""Fraction of the largest power: smaller ones are not shown."""
 
 
 class Bars:

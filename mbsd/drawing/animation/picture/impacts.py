@@ -17,7 +17,7 @@ from mbsd.results.acting import acting
 SECONDS = 0.35
 """For which the ring is seen."""
 SMALLEST = 0.02
-"""Of the largest impulse."""
+"""Fraction of the largest impulse: smaller ones are not shown."""
 MOST = 60
 
 
@@ -29,7 +29,7 @@ class Impact:
     place: np.ndarray
     """(2,) m."""
     part: float
-    """Of the largest impulse."""
+    """Fraction of the largest impulse."""
 
 
 def impacts_of(scene: Scene) -> list[Impact]:

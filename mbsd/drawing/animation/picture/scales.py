@@ -16,16 +16,16 @@ USUAL = 97.0
 PEAK = 1.7
 """Peaks up to so many times the usual set it themselves; higher ones are cut."""
 LONGEST = 1.35
-"""Of an arrow that is cut, in lengths of the usual largest one."""
+"""Length of an arrow that is cut, in lengths of the usual largest one."""
 FULL_TURN = 1.5 * math.pi
 """Sweep of the largest arc."""
 NOTHING = 1e-9
-"""Of the largest of all pictures of this unit, or of what is usual: rounding, not drawn."""
+"""Fraction of the largest of all pictures of this unit, or of what is usual: less is rounding and not drawn."""
 
 
 @dataclass(frozen=True)
 class Scale:
-    """Of one unit in one picture."""
+    """Scale of one unit in one picture."""
 
     unit: str
     largest: float
@@ -36,7 +36,7 @@ class Scale:
     """Whether some arrow is longer than it is drawn."""
 
     def part(self, size: np.ndarray | float) -> np.ndarray:
-        """Of the full length, at most LONGEST."""
+        """Fraction of the full length, at most LONGEST."""
         return np.minimum(np.asarray(size) / self.largest, LONGEST)
 
 
@@ -58,6 +58,6 @@ def scales_of(marks: Sequence[Arrow | Arc], floor: dict[str, float]) -> dict[str
 
 
 def unit_of(mark: Arrow | Arc) -> str:
-    """Of an arrow or an arc."""
+    """Unit of an arrow or an arc."""
     quantity = QUANTITIES[mark.quantity]
     return quantity.turning if isinstance(mark, Arc) else quantity.unit

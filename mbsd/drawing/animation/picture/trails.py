@@ -14,7 +14,7 @@ from mbsd.results.solution import Solution
 PARTS = 4
 """Pieces between two known places."""
 BRIGHT = 0.3
-"""Of the whole motion: how far back the trail is bright."""
+"""Fraction of the whole motion: how far back the trail is bright."""
 SHADES = 10
 FAINT, STRONG = 0.20, 0.9
 
@@ -30,7 +30,7 @@ class Trail:
 
 
 def trails_of(whole: Solution, here: Solution) -> list[Trail]:
-    """Of all traced points, from the outputs and the pictures together."""
+    """Trails of all traced points, from the outputs and the pictures together."""
     times, first = np.unique(np.concatenate([whole.t, here.t]), return_index=True)
     jumps = np.array([event.time for event in whole.events])
     out = []

@@ -23,7 +23,7 @@ class Balance:
     potential: np.ndarray
     """From its least on."""
     powers: dict[str, np.ndarray]
-    """Of drivers and forces, by name; positive: given to the motion."""
+    """Powers of drivers and forces, by name; positive: given to the motion."""
     bodies: dict[str, np.ndarray]
     """Kinetic energy of each moving body."""
 

@@ -10,7 +10,7 @@ from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model
 
 SAME = 1e-9
-"""Of the size of the motion: points that stay closer than this are one."""
+"""Fraction of the size of the motion: points that stay closer than this are one."""
 
 
 def motion_arrows(m: Model, tracks: Tracks, quantity: str) -> list[Arrow | Arc]:

@@ -19,11 +19,11 @@ from mbsd.dynamics.rows.switches import Switches
 from mbsd.equations.assembly import tabulate
 
 LESS = 1e-5
-"""Of the lift of coordinates without inertia: here nothing is refined, and a smaller one does no harm."""
+"""Fraction of the lift of coordinates without inertia: here nothing is refined, and a smaller one does no harm."""
 
 
 class Compliance:
-    """Of one pose and time; ``compact`` (m, 6) is J of all rows, ``phi`` (m,) their residuals."""
+    """Compliance of one pose and time; ``compact`` (m, 6) is J of all rows, ``phi`` (m,) their residuals."""
 
     def __init__(self, packed: Packed, dynamics: Dynamics, switches: Switches, time: float, q: np.ndarray) -> None:
         from scipy.sparse import bmat, csc_array, diags_array

@@ -47,7 +47,7 @@ class Decision:
 
 @dataclass
 class Verdict:
-    """Of all contacts that may stay closed, and the signs of sliding of all joints that may stick, 0: it sticks."""
+    """States of all contacts that may stay closed; signs of sliding of all joints that may stick, 0 if one sticks."""
 
     contacts: list[Decision]
     joints: dict[str, float]
@@ -117,7 +117,7 @@ class _Moment:
         """(c + k,) accelerations of gaps and ways without N and T."""
 
     def _rates(self, sticks: Sequence[JointStick]) -> dict[int, float]:
-        """Of all ways by row, those at rest taken to be so exactly: others may be at rest with them."""
+        """Rates of all ways by row, those at rest taken to be so exactly: others may be at rest with them."""
         case, at = self.case, self.at
         rows = {contact.way: contact.name for contact in case.closed if contact.way is not None}
         rows |= {stick.way: stick.name for stick in sticks}

@@ -47,7 +47,7 @@ WITHOUT = 0.5
 """How a step is shortened in which no interaction is held."""
 MOST_LOOKS = 60
 ROUNDING = 1e-15
-"""Of the time: a switch is not found closer than this."""
+"""Rounding, relative to the time: a switch is not found closer than this."""
 UNSEEN = 1e3
 """Change of the velocity, in tolerances, in a first step that does not matter; its error is 1e-4 of it."""
 REACH = 6.0

@@ -58,7 +58,7 @@ from mbsd.equations.interactions.switching import (
 STAGES = 17
 EXPONENT = 0.125
 SAFETY, BETA = 0.7, 0.04
-"""Of the step-size control. Cautious: a rejected step costs eleven evaluations, more than longer steps save."""
+"""Constants of a cautious step-size control: a rejected step costs eleven evaluations, more than longer steps save."""
 SMALL = -9.0
 """Logarithm of the least error that steers the next steps."""
 FEW = 9

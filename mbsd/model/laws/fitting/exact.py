@@ -27,7 +27,7 @@ from mbsd.model.laws.fitting.sampled import Sampled
 from mbsd.model.laws.numbers import Compiled, pieces, quintic_coefficients
 
 TOLERANCE = np.array([1e-12, 1e-10, 1e-9])
-"""Of f, f' and f'' of their size."""
+"""Tolerances of f, f' and f'', relative to their size."""
 MOST_TIMES = 600_000
 CLOSEST = 1e-12
 """Part of the span within which a jump of f'' is found."""

@@ -46,7 +46,7 @@ class Fit:
     leaves: Leaves
     cuts: list[Cut]
     size: float
-    """Of f."""
+    """Size of f."""
     missed: float = 0.0
     """Size of what could not be met, of f or, of a driver, of f'', and where (s)."""
     missed_at: float = 0.0

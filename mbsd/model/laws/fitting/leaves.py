@@ -29,7 +29,7 @@ BEND = np.stack([chebyshev.chebval(_NODES, chebyshev.chebder(row, 2)) for row in
 BEND_OF_LAST = 1344.0
 """T_8'' at the ends."""
 BEND_TOLERANCE, VALUE_TOLERANCE = 1e-8, 1e-11
-"""Of f'' of a driver's law, of f of a load's law; of what is usual nearby."""
+"""Tolerances of f'' of a driver's law, of f of a load's law, relative to what is usual nearby."""
 ROUNDING = 8 * np.finfo(float).eps
 LOOSER = 16.0
 """A law may be this many tolerances off between the nodes."""

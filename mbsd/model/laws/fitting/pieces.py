@@ -26,7 +26,7 @@ from mbsd.model.laws.fitting.leaves import (
 from mbsd.model.laws.numbers import Compiled, hermite_coefficients, pieces
 
 STEP, AT_ONCE = 1e-9, 1e-11
-"""Of the size of a load and of the span: what counts as a jump."""
+"""Fractions of the size of a load and of the span: what counts as a jump."""
 
 
 def fit_pieces(fit: Fit, load: bool) -> tuple[Compiled, list[float], list[float]]:
@@ -57,7 +57,7 @@ def fit_pieces(fit: Fit, load: bool) -> tuple[Compiled, list[float], list[float]
 
 
 def _stretches(fit: Fit) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """Of each stretch between cuts its nodes (n,) in s and f, f', f'' (n, 3) there."""
+    """Nodes (n,) in s of each stretch between cuts, and f, f', f'' (n, 3) there."""
     leaves = fit.leaves
     width = leaves.width
     slope = leaves.values @ SLOPE.T * (2 / width)[:, None]

@@ -1,7 +1,7 @@
 """MuJoCo: hinges along a tree of bodies, its "connect" equality where a loop closes (a soft constraint by design).
 
 A loop is held by a reference acceleration with time constant ``softness`` steps and critical damping, its impedance at
-the most that MuJoCo allows (0.9999). Below 2 steps MuJoCo must be told not to soften it (refsafe off).
+the most that MuJoCo allows (0.9999). Below 2 steps MuJoCo needs an option not to soften it (refsafe off).
 """
 
 from __future__ import annotations

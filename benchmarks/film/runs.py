@@ -23,7 +23,7 @@ from shared.stage import jsonfile
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, Out
 from shared.stage.signals import terminable
-from studio.verify.again import told
+from studio.verify.again import preset_words
 
 
 class Film:
@@ -54,7 +54,7 @@ class Film:
         command = [sys.executable, "-m", "render", "frames", self.name, "--preset", self.preset.name]
         if only:
             numbers = ",".join(map(str, only))
-            command = [sys.executable, "-m", "studio.verify.again", self.name, told(self.preset), numbers, ""]
+            command = [sys.executable, "-m", "studio.verify.again", self.name, preset_words(self.preset), numbers, ""]
         return subprocess.Popen(
             command,
             cwd=ROOT,

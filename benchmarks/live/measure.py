@@ -1,8 +1,8 @@
 """``make bench-live``: milliseconds from a slider of the live page to the picture that shows it.
 
 The slider moves on when the picture of its last step is on the screen; a picture counts once its frame is over. With
-``--beside FOLDER`` a checkout of another version is measured in turns with this one, and the ratio is told: that holds
-on a machine that others keep busy, where milliseconds alone say little.
+``--beside FOLDER`` a checkout of another version is measured in turns with this one, and the ratio is reported: that
+holds on a machine that others keep busy, where milliseconds alone say little.
 """
 
 from __future__ import annotations

@@ -142,12 +142,12 @@ class Child:
             if silence < min(word, limit):
                 continue
             standing = how_it_stands(process.pid)
-            told = f"Blender has said nothing for {duration(silence)} ({self.doing}{standing})"
+            message = f"Blender has said nothing for {duration(silence)} ({self.doing}{standing})"
             if silence >= limit:
-                raise Silent(told)
+                raise Silent(message)
             if standing or silence >= limit / 4:  # a large picture may well be quiet for that long
                 word = 2 * silence
-                warn("film", f"{told}; it is started again after {duration(limit)}")
+                warn("film", f"{message}; it is started again after {duration(limit)}")
 
     def _end(self, process: subprocess.Popen[bytes], chat: IO[bytes]) -> None:
         """Wait for its exit code after its last answer."""
@@ -157,8 +157,8 @@ class Child:
             raise Silent(f"Blender does not end ({self.doing}{how_it_stands(process.pid)})") from None
         if code:
             chat.seek(0)
-            told = how_it_ended(code, self.doing, chat.read().decode(errors="replace"))
-            raise Silent(told, remedy_of(code)) if is_crash(code) else UserError(told)
+            message = how_it_ended(code, self.doing, chat.read().decode(errors="replace"))
+            raise Silent(message, remedy_of(code)) if is_crash(code) else UserError(message)
 
     def stop(self) -> None:
         """Kill the process and wait for its end."""

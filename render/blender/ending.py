@@ -12,8 +12,8 @@ ENDED = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 class Silent(Exception):
     """The process gives no sign of life any more; the message is the first half of a sentence."""
 
-    def __init__(self, told: str, remedy: str = "") -> None:
-        super().__init__(told)
+    def __init__(self, message: str, remedy: str = "") -> None:
+        super().__init__(message)
         self.remedy = remedy
         """What a user can do, if it comes again."""
 

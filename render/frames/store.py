@@ -128,14 +128,14 @@ class FrameStore:
             os.close(handle)
 
     def _take(self, handle: int) -> None:
-        end, told = time.monotonic() + WAIT, False
+        end, announced = time.monotonic() + WAIT, False
         try:
             while not locks.take(handle):
                 if time.monotonic() >= end:
                     raise Busy(f"another process renders into {self.folder}; wait for it or stop it")
-                if not told:
+                if not announced:
                     say("frames", f"another process has {self.folder}; waiting {WAIT:.0f} s for it")
-                    told = True
+                    announced = True
                 time.sleep(0.1)
         except OSError as error:
             raise UserError(refusal(self.folder / ".lock", error, "lock")) from error

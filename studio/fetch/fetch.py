@@ -42,7 +42,7 @@ def run(host: str, folder: str = "") -> list[str]:
     refuse_links(films)
     films.mkdir(parents=True, exist_ok=True)
 
-    def told(name: str, size: int) -> None:
+    def report(name: str, size: int) -> None:
         say("fetch", f"{name}: {size / 1e6:.1f} MB")
 
     with _locked(arriving) as lock:
@@ -50,7 +50,7 @@ def run(host: str, folder: str = "") -> list[str]:
         if before:
             say("fetch", f"{before / 1e6:.1f} MB are here from a run that was stopped")
         say("fetch", f"{source} to {films}")
-        result = transfer(source, arriving, films, lock, told)
+        result = transfer(source, arriving, films, lock, report)
         if result.code:
             kept = _bytes(arriving)
             if not kept:

@@ -36,11 +36,11 @@ class Transfer:
     """Bytes of them that were here already."""
 
 
-def transfer(source: str, target: Path, beside: Path, lock: int, told: Callable[[str, int], None]) -> Transfer:
+def transfer(source: str, target: Path, beside: Path, lock: int, report: Callable[[str, int], None]) -> Transfer:
     """Bring the films of ``source`` into ``target``, those left out that ``beside`` has with the same bytes.
 
-    A file that is in ``target`` in part gets the rest alone. ``told`` is called with the name and the size of each that
-    is done. rsync keeps the open file ``lock``, so that a lock on it is held until it has ended itself.
+    A file that is in ``target`` in part gets the rest alone. ``report`` is called with the name and the size of each file
+    that is done. rsync keeps the open file ``lock``, so that a lock on it is held until it has ended itself.
     """
     command = [program("rsync"), "-r", "--checksum", "--inplace", "--no-whole-file", "--stats"]
     command += ["--out-format=file %b %l %n", f"--compare-dest={beside.resolve()}", f"--rsh={remote_shell()}"]
@@ -59,21 +59,21 @@ def transfer(source: str, target: Path, beside: Path, lock: int, told: Callable[
             preexec_fn=partial(end_with_parent, signal.SIGTERM),
         )
         try:
-            return _listened(process, told)
+            return _listened(process, report)
         finally:
             with suppress(ProcessLookupError):
                 process.terminate()  # rsync keeps what it has
             process.wait()
 
 
-def _listened(process: subprocess.Popen[str], told: Callable[[str, int], None]) -> Transfer:
+def _listened(process: subprocess.Popen[str], report: Callable[[str, int], None]) -> Transfer:
     assert process.stdout is not None
     found = Transfer(code=0, said=[])
     for line in process.stdout:
         words = line.strip()
         if done := FILE.match(words):
             if not done[3].endswith("/"):
-                told(done[3], int(done[2]))
+                report(done[3], int(done[2]))
         elif number := re.match(r"(Literal|Matched) data: ([\d,.]+)", words):
             count = int(re.sub(r"\D", "", number[2]))
             if number[1] == "Literal":

@@ -99,7 +99,7 @@ class Live:
     async def _watch(self, session: Session) -> None:
         """Begin once the warm process is, and follow the files from then on; a page may open meanwhile.
 
-        An error of ours is told, and does not end it.
+        An error of ours is reported, and does not end it.
         """
         with suppress(Failed):  # the child says it
             await self.nursery.warm()

@@ -1,4 +1,4 @@
-"""Pages and their pictures one mechanism after the other: what is fresh is left, what fails is told at the end."""
+"""Pages and their pictures one mechanism after the other: what is fresh is left, what fails is reported at the end."""
 
 from __future__ import annotations
 

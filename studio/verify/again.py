@@ -17,7 +17,7 @@ from shared.stage.console import run_cli
 from shared.stage.paths import Out
 
 
-def told(preset: Preset) -> str:
+def preset_words(preset: Preset) -> str:
     """A preset as a word of the command line."""
     return ",".join(str(int(field) if isinstance(field, bool) else field) for field in astuple(preset))
 

@@ -69,7 +69,7 @@ def _of_pictures(
     out: Out, preset: Preset, index: FrameIndex, wanted: list[int], show: str, scratch: Path
 ) -> list[Finding]:
     root, store = scratch / "out", FrameStore(out.frames(preset.name))
-    _stage(root, "studio.verify.again", out.name, again.told(preset), ",".join(map(str, wanted)), show)
+    _stage(root, "studio.verify.again", out.name, again.preset_words(preset), ",".join(map(str, wanted)), show)
     made = FrameStore(root / out.name / "frames" / preset.name)
     found = [pictures.compared(frame, index.frames[frame], store, made) for frame in wanted]
     return [*found, film.compared(named(out.film(preset.name), show), scratch, store, index, preset)]

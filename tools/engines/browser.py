@@ -1,4 +1,4 @@
-"""What a browser that is told what to do must be able to do, and actions of a hand in WebDriver's words."""
+"""What a remotely controlled browser must be able to do, and actions of a hand in WebDriver's words."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class Browser(Protocol):
     """A window with one page. Both standards that tell browsers what to do write actions alike."""
 
     touches: bool
-    """Whether fingers that it is told of come to the page as fingers."""
+    """Whether touches that it performs reach the page as touches."""
 
     def open(self, page: Path, width: int, height: int) -> None:
         """Load a file into a page of that size (CSS pixels)."""

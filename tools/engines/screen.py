@@ -21,8 +21,8 @@ def screen(program: str) -> Iterator[dict[str, str]]:
     process = subprocess.Popen(command, pass_fds=[write], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     os.close(write)
     try:
-        with os.fdopen(read) as told:
-            number = told.readline().strip()
+        with os.fdopen(read) as display:
+            number = display.readline().strip()
         if not number:
             raise UserError("Xvfb gives no screen")
         kept = {name: value for name, value in os.environ.items() if name != "WAYLAND_DISPLAY"}

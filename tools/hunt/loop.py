@@ -1,4 +1,4 @@
-"""The cases of a hunt as they come in: shown, counted, and written now and then, so that nothing is in vain."""
+"""The cases of a hunt as they come in: shown, counted, and written now and then, so that nothing is lost."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tools.hunt.outcome import CaseResult
 SEEDS = 1_000_000
 """Cases of one --seed have numbers from seed * SEEDS on."""
 EACH = 30.0
-"""s after which the report is written again, so that a hunt that is killed has not been in vain."""
+"""s after which the report is written again, so that a hunt that is killed loses little."""
 
 
 class Report(Protocol):

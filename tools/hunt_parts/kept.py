@@ -42,11 +42,11 @@ class Kept:
     def add(self, result: CaseResult) -> None:
         """One more line."""
         last = result.outcomes[-1]
-        told = {"seed": result.seed, "kind": result.family, "state": last.state, "reason": last.reason}
-        told |= {"detail": last.detail, "seconds": round(result.seconds, 2), "sources": self.sources}
+        record = {"seed": result.seed, "kind": result.family, "state": last.state, "reason": last.reason}
+        record |= {"detail": last.detail, "seconds": round(result.seconds, 2), "sources": self.sources}
         self.path.parent.mkdir(parents=True, exist_ok=True)
         with self.path.open("ab") as file:
-            file.write(json.dumps(told).encode() + b"\n")
+            file.write(json.dumps(record).encode() + b"\n")
 
 
 def _result(line: dict[str, str]) -> CaseResult:

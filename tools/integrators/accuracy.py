@@ -98,8 +98,8 @@ def case(make: Callable[[], Mechanism], body: str, duration: float, step: float)
 
 def order(rungs: list[Rung]) -> float:
     """The slope of log error over log steps between rounding and what is too coarse to show it."""
-    told = [rung for rung in rungs if ROUNDING < rung.error < 1e-2]
-    steps, errors = [rung.steps for rung in told], [rung.error for rung in told]
+    usable = [rung for rung in rungs if ROUNDING < rung.error < 1e-2]
+    steps, errors = [rung.steps for rung in usable], [rung.error for rung in usable]
     return -float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
 
 

@@ -50,13 +50,13 @@ def long_runs(runs: dict[str, dict[str, Any]]) -> str:
     ]
     unit = sum(run["dop853"]["seconds"] for run in runs.values())
     for name, setting in RUNS.items():
-        told = (
+        setting_words = (
             f"{setting['steps']} steps a period" if "steps" in setting else f"tolerance {setting['tolerance']:.0e}"
         ).replace("e-0", "e-")
         one, other = pendulum[name], four_bar[name]
         seconds = (one["seconds"] + other["seconds"]) / unit
         lines.append(
-            f"| `{name.partition(',')[0]}` | {told} | {one['errors'][-1]:.0e} | {other['errors'][-1]:.0e} "
+            f"| `{name.partition(',')[0]}` | {setting_words} | {one['errors'][-1]:.0e} | {other['errors'][-1]:.0e} "
             f"| {one['evaluations']}, {other['evaluations']} | {seconds:.2g} |"
         )
     return "\n".join(lines)

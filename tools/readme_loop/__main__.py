@@ -38,8 +38,8 @@ MINUTES = 60
 
 def plan(every: int = 1) -> dict[str, Any]:
     """What the browser draws: the frames, and the motion with each number but the file's own."""
-    told = frames()[::every]
-    others = sorted({one.crank for one in told} - {CRANK})
+    shown = frames()[::every]
+    others = sorted({one.crank for one in shown} - {CRANK})
     patches = [base64.b64encode(_motion(crank)).decode() for crank in others]
     low, high = _extent(read_payload(Out(NAME))["skeleton"])
     return {
@@ -50,7 +50,7 @@ def plan(every: int = 1) -> dict[str, Any]:
                 "patch": None if one.crank == CRANK else others.index(one.crank), "number": f"{one.crank:.3f}",
                 "part": one.part, "solid": one.solid, "tilt": one.tilt, "reactions": one.reactions,
             }
-            for one in told
+            for one in shown
         ],
     }  # fmt: skip
 

@@ -96,7 +96,7 @@ def _follow(address: str, file: Path, server: subprocess.Popen[bytes], chance: r
         try:
             socket = connect(f"{address.replace('http', 'ws', 1)}socket", origin=origin, max_size=None)
             break
-        except OSError:  # the address is told before it answers
+        except OSError:  # the address is printed before it answers
             if time.monotonic() > ends:
                 return SAVES
             time.sleep(0.1)

@@ -79,7 +79,7 @@ class Project:
         return [path for store in self.stores for path in store.folder.glob("[!.]*.png")]
 
     def rendered(self) -> list[str]:
-        """Keys of the pictures that were rendered since :meth:`hush`, each as often as it was."""
+        """Keys of the pictures that were rendered since :meth:`clear_logs`, each as often as it was."""
         path = self.folder / RENDERED
         return path.read_text().split() if path.exists() else []
 
@@ -166,11 +166,11 @@ class Project:
         return 0 if found is not None and found.ended == "done" else 1
 
     def said(self) -> str:
-        """What make, its stages and nights in the background said since :meth:`hush`."""
+        """What make, its stages and nights in the background said since :meth:`clear_logs`."""
         paths = [self.folder / "said.txt", runs.log_file()]
         return "\n".join(path.read_text(errors="replace") for path in paths if path.exists())
 
-    def hush(self) -> None:
+    def clear_logs(self) -> None:
         """Forget what was said and rendered."""
         for path in (self.folder / "said.txt", self.folder / RENDERED, runs.log_file()):
             path.unlink(missing_ok=True)

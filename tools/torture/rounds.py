@@ -87,7 +87,7 @@ def play(project: Project, fault: Fault, chance: random.Random, reference: list[
     outcome = Outcome(fault=fault.name, target=target, state=state, moment=round(moment, 2))
     _prepare(project, state, chance)
     project.clustered = fault.cluster
-    project.hush()
+    project.clear_logs()
     if fault.before:
         fault.before(project)
     _faulted_run(project, fault, chance, outcome)

@@ -45,9 +45,9 @@ class Shown:
             skeleton = moving(solution)
             self._last = skeleton, copy.copy(solution.mechanism)
         motion = to_motion(solution, parts, "", {}, sources)
-        told = moving_of(solution, skeleton)
-        self._motion = motion, told
-        return encode(payload(motion, told, shot, arrows or not quick), compress=False)
+        skeleton_data = moving_of(solution, skeleton)
+        self._motion = motion, skeleton_data
+        return encode(payload(motion, skeleton_data, shot, arrows or not quick), compress=False)
 
     def solid(self, parts: Parts, shot: Shot | None, folder: Path) -> bytes:
         """What the payload of the last motion says once its parts are there. Raises UserError."""
@@ -55,7 +55,7 @@ class Shown:
         from render.view.solid import with_parts
 
         assert self._motion is not None
-        motion, told = self._motion
+        motion, skeleton_data = self._motion
         motion = with_rods(motion, parts)
-        whole = with_parts(payload(motion, told, shot), Film(motion, parts, shot or Shot(), folder))
+        whole = with_parts(payload(motion, skeleton_data, shot), Film(motion, parts, shot or Shot(), folder))
         return encode({key: whole[key] for key in OF_PARTS}, compress=False)

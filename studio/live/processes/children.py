@@ -133,14 +133,14 @@ class Child:
                 "the process of mechanism.py was ended from outside, with the one that watches over it; save again, "
                 "and the file is solved once more"
             )
-        told = json.loads(words) if words is not None else {"ended": None, "used": 0}
-        if told["used"]:
+        outcome = json.loads(words) if words is not None else {"ended": None, "used": 0}
+        if outcome["used"]:
             return (
-                f"mechanism.py has taken {told['used'] / 2**30:.1f} GiB of memory, more than the "
+                f"mechanism.py has taken {outcome['used'] / 2**30:.1f} GiB of memory, more than the "
                 f"{self._most_bytes / 2**30:.1f} GiB that a live page gives it, and was stopped; fewer steps or a "
                 "shorter motion need less"
             )
-        how = ending(told["ended"])
+        how = ending(outcome["ended"])
         return f"mechanism.py ended the process it ran in ({how}); no file of a mechanism should do that"
 
     def _over(self, text: str) -> None:

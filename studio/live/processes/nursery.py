@@ -127,7 +127,7 @@ class Nursery:
             task.exception()  # whoever waited has it; if nobody did, the next one tries anew
 
     def _gone(self, warm: WarmProcess, how: str) -> None:
-        """The warm process has ended: another one begins at once, and the pages are told."""
+        """The warm process has ended: another one begins at once, and the pages are informed."""
         if self._ended or warm is not self._warm:
             return
         self.say(f"the process from which those of mechanism.py are forked {how}; another one takes its place")

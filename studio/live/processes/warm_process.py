@@ -104,7 +104,7 @@ class WarmProcess:
             control.close()
             raise Failed(f"it does not listen ({error})") from error
         try:
-            told = json.loads(await asyncio.wait_for(words.readline(), BEGIN))
+            answer = json.loads(await asyncio.wait_for(words.readline(), BEGIN))
             reader, writer = await asyncio.open_unix_connection(sock=data)
         except BaseException as error:  # cancelled as well
             data.close()
@@ -112,7 +112,7 @@ class WarmProcess:
             if isinstance(error, TimeoutError | OSError | ValueError):
                 raise Failed("it did not fork") from error
             raise
-        return Link(reader, writer, words, control_writer, *told["begun"])
+        return Link(reader, writer, words, control_writer, *answer["begun"])
 
     def close(self) -> None:
         """End it; processes that it has forked go on."""

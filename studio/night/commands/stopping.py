@@ -27,14 +27,14 @@ def stop() -> int:
             run.ask_to_stop()
         except OSError as error:
             raise UserError(refusal(run.wish, error)) from error
-    began = told = time.monotonic()
+    began = announced = time.monotonic()
     for run in found:
         say("stop", f"run {run.number} ends after {_in_flight(run)}; Ctrl-C leaves it to that")
         while run.is_alive():
             time.sleep(LOOK)
-            if time.monotonic() - told > WORD:
-                told = time.monotonic()
-                say("stop", f"run {run.number}: {duration(told - began)}, still {_in_flight(run)}")
+            if time.monotonic() - announced > WORD:
+                announced = time.monotonic()
+                say("stop", f"run {run.number}: {duration(announced - began)}, still {_in_flight(run)}")
         say("stop", f"run {run.number} has ended after {duration(time.monotonic() - began)}; the same command goes on")
     return 0
 

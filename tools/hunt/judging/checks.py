@@ -59,13 +59,13 @@ def smooth(sol: Solution) -> list[str]:
     """
     odd = odd_steps(sol)
     if not odd or sol.work is not None or len(odd) > FEW:
-        return [told for _, told in odd[:1]]
+        return [problem for _, problem in odd[:1]]
     between = [np.linspace(sol.t[k], sol.t[k + 1], FINER + 1)[1:-1] for k, _ in odd]
     assert isinstance(sol.mechanism, Mechanism)
     fine = sol.mechanism.sweep(times=np.sort(np.concatenate([sol.t, *between])))
     apart = float(np.abs(fine.q[np.searchsorted(fine.t, sol.t)] - sol.q).max())
     still = {int(np.searchsorted(sol.t, fine.t[k], side="right")) - 1 for k, _ in odd_steps(fine)}
-    return [told for k, told in odd if k in still or apart > RESIDUAL * max(sol.packed.size, 1.0)][:1]
+    return [problem for k, problem in odd if k in still or apart > RESIDUAL * max(sol.packed.size, 1.0)][:1]
 
 
 def odd_steps(sol: Solution) -> list[tuple[int, str]]:

@@ -31,7 +31,7 @@ class Free:
     first: Solution | None = None
     refused: MechanismError | None = None
     growth: Growth | None = None
-    told: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
 
     @property
     def m(self) -> Mechanism:
@@ -119,9 +119,9 @@ class Free:
 
     def less_sure(self) -> bool:
         """Measure the growth of errors by further nudges; False if there is nothing new to learn."""
-        if self.told or self.first is None or self.growth is None:
+        if self.notes or self.first is None or self.growth is None:
             return False
-        self.told.append("nudged again")
+        self.notes.append("nudged again")
         for size in (-1.0, 10.0, 0.1):
             other, _ = self.run(nudged(self.m, size))
             if other is not None:

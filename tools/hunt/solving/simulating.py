@@ -194,7 +194,7 @@ def _converges(case: Free, name: str, method: str, order: int) -> Outcome:
         return Outcome(name, UNCLEAR, "fixed steps over events, jumps or stiff forces")
     assert case.first is not None
     shares, last = [], None
-    for count in (FIXED_STEPS, 2 * FIXED_STEPS) if not case.told else (4 * FIXED_STEPS, 16 * FIXED_STEPS):
+    for count in (FIXED_STEPS, 2 * FIXED_STEPS) if not case.notes else (4 * FIXED_STEPS, 16 * FIXED_STEPS):
         other, error = case.run(case.m, method=method, step=case.subject.duration / count)
         if error is not None:
             if isinstance(error, SimulationError):

@@ -39,8 +39,8 @@ class Transfer:
 def transfer(source: str, target: Path, beside: Path, lock: int, report: Callable[[str, int], None]) -> Transfer:
     """Bring the films of ``source`` into ``target``, those left out that ``beside`` has with the same bytes.
 
-    A file that is in ``target`` in part gets the rest alone. ``report`` is called with the name and the size of each file
-    that is done. rsync keeps the open file ``lock``, so that a lock on it is held until it has ended itself.
+    A file that is in ``target`` in part gets the rest alone. ``report`` is called with the name and the size of each
+    file that is done. rsync keeps the open file ``lock``, so that a lock on it is held until it has ended itself.
     """
     command = [program("rsync"), "-r", "--checksum", "--inplace", "--no-whole-file", "--stats"]
     command += ["--out-format=file %b %l %n", f"--compare-dest={beside.resolve()}", f"--rsh={remote_shell()}"]

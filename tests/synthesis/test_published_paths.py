@@ -100,6 +100,7 @@ def test_eighteen_points_at_even_angles_are_met_better() -> None:
 
 
 @pytest.mark.parametrize("seed", [0, 5, 12])
+@pytest.mark.slow
 def test_six_points_on_a_line_are_met_in_their_order_from_any_seed(seed: int) -> None:
     """Exact designs exist; of seeds 0 to 19 all but two find one, and those end below 1e-6."""
     case = CASES["cases"]["line"]

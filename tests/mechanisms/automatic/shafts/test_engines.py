@@ -19,6 +19,7 @@ def along_of(made: Automatic) -> Along:
     return made.along
 
 
+@pytest.mark.slow
 def test_an_inline_four_is_built() -> None:
     """That nothing touches is proven of mechanisms/inline_four."""
     made = plan("INLINE_FOUR")
@@ -40,6 +41,7 @@ def test_an_inline_four_is_built() -> None:
     assert shaft.ymax > 1000 * THROW
 
 
+@pytest.mark.slow
 def test_a_v_two_is_built_and_nothing_touches(monkeypatch: pytest.MonkeyPatch) -> None:
     """Its pistons are proven in their liners along their lines: the search over the motion takes minutes for that."""
     seen: list[tuple[float, float] | None] = []

@@ -17,6 +17,7 @@ def refusal(m: Mechanism) -> str:
     return str(told.value)
 
 
+@pytest.mark.slow
 def test_three_legs_on_a_shaft_are_built_and_nothing_touches() -> None:
     _, bodies = proven("LEGS")
     on_ground = [solid.name for solid in bodies["ground"]]

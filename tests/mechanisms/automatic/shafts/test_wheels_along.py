@@ -20,6 +20,7 @@ def along(m: Mechanism, pin: float | None = None) -> Along:
     return plan
 
 
+@pytest.mark.slow
 def test_gears_in_a_train_and_a_belt_are_built_and_nothing_touches() -> None:
     made, bodies = checked(models.geared_shafts())
     assert made.along is not None

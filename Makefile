@@ -91,7 +91,7 @@ define upto_motion
 @$(STAGE) parts "$$MECHANISM"
 @$(STAGE) solve "$$MECHANISM"
 endef
-# Motion and plots go on where there are no parts by themselves.
+# Motion and plots go on where there are no automatic parts.
 define upto_bare_motion
 @$(STAGE) parts "$$MECHANISM" --or-none
 @$(STAGE) solve "$$MECHANISM"

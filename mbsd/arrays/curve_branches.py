@@ -2,8 +2,7 @@
 
 Such a row keeps the parameter of its foot where the motion was accepted last (mbsd/equations/relative/curve_pieces.py),
 in LAST of its relative pose.
-Poses that are looked at afterwards tell their branch by themselves: at a crossing it is the one along which the point
-moves.
+A later look at the poses finds the branch from the motion: at a crossing it is the one along which the point moves.
 """
 
 from __future__ import annotations

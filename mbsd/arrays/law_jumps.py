@@ -39,7 +39,7 @@ def disagreeing(own: np.ndarray, order: int, part: float, over: float = 0.0) -> 
 def jump_times(packed: Packed, laws: Laws, start: float, end: float) -> dict[float, tuple[str, ...]]:
     """Times (s) between ``start`` and ``end`` at which something may jump, with the drivers and forces that do.
 
-    Of functions of the user the breaks that were given count.
+    For functions of the user, the breaks that were given count.
     """
     found: dict[float, dict[str, None]] = {}
     names = [(name, 2) for name in packed.driver_names]

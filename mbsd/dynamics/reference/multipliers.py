@@ -2,7 +2,7 @@
 
     S lam = J W^-1 Q - gamma, refined as in acceleration.py, step for step, so that both give the same numbers
 
-J and gamma are tabulated beforehand, as the results want them anyway, and Q by its own kernel; so this one is small.
+J and gamma are tabulated beforehand, because the results need them in any case, and Q by its own kernel.
 """
 
 from __future__ import annotations

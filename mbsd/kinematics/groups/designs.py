@@ -34,7 +34,7 @@ def place_designs(
 ):
     """Fill out (n, points, T, 2), angle (n, bodies, T) and status (n,) of n designs with numbers (n, g, 14).
 
-    Of the poses solved, equally far apart in time, every ``every``th is kept.
+    Poses are solved equally far apart in time; every ``every``th is kept.
     driven (every (T - 1) + 1, g, 2) cosine and sine of DRIVEN groups' angles, values of the other laws; fixed (g, 2, 2)
     cosine and sine of the constant angles of A and B of the other groups.
     Points: body (points,) and arm (n, points, 2) from centres of mass; turned (bodies,) whose angles are wanted, going

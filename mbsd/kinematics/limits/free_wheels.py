@@ -67,7 +67,7 @@ class FreeWheels:
     def refuse_meeting(self, time: float, state: np.ndarray, h: float) -> None:
         """Raise SimulationError where centres meet within h (s) of a state (2, 3 nb), at the speed that they have.
 
-        Of methods whose equations of a step have no solution there.
+        It serves methods whose equations of a step have no solution there.
         """
         for joint, i, j in self.pairs:
             line = self._line(state[0], i, j)

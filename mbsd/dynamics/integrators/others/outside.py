@@ -77,7 +77,7 @@ class Stepper(Protocol):
 
 
 class Rates:
-    """y' of (t, y), as libraries want it."""
+    """Right side y'(t, y) with the signature that other libraries expect."""
 
     def __init__(self, dyn: Dynamics, scratch: Scratch) -> None:
         self.dyn, self.scratch = dyn, scratch

@@ -60,6 +60,82 @@ class Loads(NamedTuple):
 
 
 @inlined
+def arm_of(cos_sin, body, x, y):
+    """The arm (x, y) in the axes of a body, turned into those of ground."""
+    c = cos_sin[body, 0]
+    s = cos_sin[body, 1]
+    return c * x - s * y, s * x + c * y
+
+
+@inlined
+def between(kind, axis, arm_i, arm_j, i, j, t, q, v):
+    """The direction of a force, the vector from marker i to marker j, its length x along that direction, and dx/dt.
+
+    A push acts on body j alone: its x is the time, and its rate is the speed of marker j.
+    """
+    ux, uy = axis
+    dx = q[3 * j] + arm_j[0] - q[3 * i] - arm_i[0]
+    dy = q[3 * j + 1] + arm_j[1] - q[3 * i + 1] - arm_i[1]
+    vx = v[3 * j] - v[3 * j + 2] * arm_j[1]
+    vy = v[3 * j + 1] + v[3 * j + 2] * arm_j[0]
+    if kind == PUSH:
+        return (ux, uy), (dx, dy), t, ux * vx + uy * vy
+    vx -= v[3 * i] - v[3 * i + 2] * arm_i[1]
+    vy -= v[3 * i + 1] + v[3 * i + 2] * arm_i[0]
+    if kind == LINE:
+        x = math.sqrt(dx * dx + dy * dy)
+        ux = dx / x if x > 0.0 else 0.0
+        uy = dy / x if x > 0.0 else 0.0
+        return (ux, uy), (dx, dy), x, ux * vx + uy * vy
+    return (ux, uy), (dx, dy), ux * dx + uy * dy, ux * vx + uy * vy + v[3 * i + 2] * (-uy * dx + ux * dy)
+
+
+@inlined
+def effort(term, number, first, end, laws, law, t, x, rate):
+    """The sum of the terms ``first`` to ``end`` at a length or angle x and its rate (N, N m)."""
+    force = 0.0
+    for k in range(first, end):
+        what = term[k, 0]
+        a = number[k, 0]
+        b = number[k, 1]
+        if what == CONSTANT:
+            force += a
+        elif what == LINEAR:
+            force -= a * (x - b)
+        elif what == DAMPING:
+            force -= a * rate
+        elif what == POWER:
+            force += a * (x + b) ** number[k, 2]
+        elif what == DRY:
+            force -= a * math.tanh(rate / b)
+        else:
+            at = x
+            if what == LAW_RATE:
+                at = rate
+            elif what == LAW_TIME:
+                at = t
+            law_at(laws, term[k, 1], at, law)
+            force += a * law[0]
+    return force
+
+
+@inlined
+def push_apart(kind, force, axis, gap, arm_i, arm_j, i, j, load):
+    """Add a force along ``axis`` on body j and, unless it is a push, its reaction on body i."""
+    fx = force * axis[0]
+    fy = force * axis[1]
+    load[3 * j] += fx
+    load[3 * j + 1] += fy
+    load[3 * j + 2] += fy * arm_j[0] - fx * arm_j[1]
+    if kind != PUSH:
+        load[3 * i] -= fx
+        load[3 * i + 1] -= fy
+        load[3 * i + 2] -= fy * arm_i[0] - fx * arm_i[1]
+        if kind == AXIS:
+            load[3 * i + 2] += force * (axis[0] * gap[1] - axis[1] * gap[0])
+
+
+@inlined
 def apply_elements(element, place, term, number, laws, law, t, q, v, cos_sin, load):
     """Add the generalised forces of all elements to load (3 nb,); cos_sin (nb, 2) turns the bodies.
 
@@ -70,82 +146,19 @@ def apply_elements(element, place, term, number, laws, law, t, q, v, cos_sin, lo
         kind = element[e, 0]
         i = element[e, 1]
         j = element[e, 2]
-        bi = 3 * i
-        bj = 3 * j
-        ux = uy = dx = dy = 0.0
-        arm_ix = arm_iy = arm_jx = arm_jy = 0.0
         if kind == TURN:
-            x = q[bj + 2] - q[bi + 2]
-            rate = v[bj + 2] - v[bi + 2]
+            rate = v[3 * j + 2] - v[3 * i + 2]
+            force = effort(term, number, element[e, 3], element[e, 4], laws, law, t, q[3 * j + 2] - q[3 * i + 2], rate)
+            load[3 * j + 2] += force
+            load[3 * i + 2] -= force
         else:
-            c = cos_sin[i, 0]
-            s = cos_sin[i, 1]
-            arm_ix = c * place[e, 0] - s * place[e, 1]
-            arm_iy = s * place[e, 0] + c * place[e, 1]
-            ux = c * place[e, 2] - s * place[e, 3]
-            uy = s * place[e, 2] + c * place[e, 3]
-            c = cos_sin[j, 0]
-            s = cos_sin[j, 1]
-            arm_jx = c * place[e, 4] - s * place[e, 5]
-            arm_jy = s * place[e, 4] + c * place[e, 5]
-            dx = q[bj] + arm_jx - q[bi] - arm_ix
-            dy = q[bj + 1] + arm_jy - q[bi + 1] - arm_iy
-            vx = v[bj] - v[bj + 2] * arm_jy
-            vy = v[bj + 1] + v[bj + 2] * arm_jx
-            if kind == PUSH:
-                x = t
-                rate = ux * vx + uy * vy
-            else:
-                vx -= v[bi] - v[bi + 2] * arm_iy
-                vy -= v[bi + 1] + v[bi + 2] * arm_ix
-                if kind == LINE:
-                    x = math.sqrt(dx * dx + dy * dy)
-                    ux = dx / x if x > 0.0 else 0.0
-                    uy = dy / x if x > 0.0 else 0.0
-                    rate = ux * vx + uy * vy
-                else:
-                    x = ux * dx + uy * dy
-                    rate = ux * vx + uy * vy + v[bi + 2] * (-uy * dx + ux * dy)
-        force = 0.0
-        for k in range(element[e, 3], element[e, 4]):
-            what = term[k, 0]
-            a = number[k, 0]
-            b = number[k, 1]
-            if what == CONSTANT:
-                force += a
-            elif what == LINEAR:
-                force -= a * (x - b)
-            elif what == DAMPING:
-                force -= a * rate
-            elif what == POWER:
-                force += a * (x + b) ** number[k, 2]
-            elif what == DRY:
-                force -= a * math.tanh(rate / b)
-            else:
-                at = x
-                if what == LAW_RATE:
-                    at = rate
-                elif what == LAW_TIME:
-                    at = t
-                law_at(laws, term[k, 1], at, law)
-                force += a * law[0]
+            arm_i = arm_of(cos_sin, i, place[e, 0], place[e, 1])
+            arm_j = arm_of(cos_sin, j, place[e, 4], place[e, 5])
+            axis = arm_of(cos_sin, i, place[e, 2], place[e, 3])
+            axis, gap, x, rate = between(kind, axis, arm_i, arm_j, i, j, t, q, v)
+            force = effort(term, number, element[e, 3], element[e, 4], laws, law, t, x, rate)
+            push_apart(kind, force, axis, gap, arm_i, arm_j, i, j, load)
         power += force * rate
-        if kind == TURN:
-            load[bj + 2] += force
-            load[bi + 2] -= force
-            continue
-        fx = force * ux
-        fy = force * uy
-        load[bj] += fx
-        load[bj + 1] += fy
-        load[bj + 2] += fy * arm_jx - fx * arm_jy
-        if kind == PUSH:
-            continue
-        load[bi] -= fx
-        load[bi + 1] -= fy
-        load[bi + 2] -= fy * arm_ix - fx * arm_iy
-        if kind == AXIS:
-            load[bi + 2] += force * (-uy * dx + ux * dy)
     return power
 
 

@@ -25,6 +25,45 @@ from mbsd.kinematics.groups.kinds.yoke import embed_yoke
 
 
 @inlined
+def embed_group(bodies, n, body, rate, base, coordinate, drive):
+    """The group of the kind that ``bodies`` names; returns its status."""
+    kind = bodies[KIND]
+    if kind == RRR:
+        return embed_rrr(bodies, n, body, rate, base, coordinate)
+    if kind == DRIVEN:
+        embed_driven(bodies, n, body, rate, coordinate, drive)
+        return SOLVED
+    if kind == WELDED:
+        return embed_welded(bodies, n, body, rate, coordinate)
+    if kind == RRP:
+        return embed_rrp(bodies, n, body, rate, base, coordinate)
+    if kind == RPR:
+        return embed_rpr(bodies, n, body, rate, base, coordinate)
+    if kind == YOKE:
+        return embed_yoke(bodies, n, body, rate, coordinate)
+    if kind == PRP:
+        return embed_prp(bodies, n, body, rate, coordinate)
+    if kind == ROD:
+        return embed_rod(bodies, n, body, rate, base, coordinate, drive)
+    if kind == TRAIN:
+        return embed_train(bodies, n, body, rate, base, coordinate)
+    return embed_slide(bodies, n, body, rate, coordinate, drive)
+
+
+@inlined
+def with_body(body, rate, gravity, i, total, push):
+    """The sums c . M c and c . M (g - b) with those of body i: its rate is c, its convective acceleration b."""
+    mass = body[i, MASS]
+    inertia = body[i, INERTIA]
+    cx = rate[i, 0]
+    cy = rate[i, 1]
+    omega = rate[i, 2]
+    total += mass * (cx * cx + cy * cy) + inertia * omega * omega
+    push += mass * (cx * (gravity[0] - rate[i, 3]) + cy * (gravity[1] - rate[i, 4]))
+    return total, push - inertia * omega * rate[i, 5]
+
+
+@inlined
 def solve_groups(
     group, number, block, block_number, numbers, work, body, rate, base, coordinate, drive, gravity, sums
 ):  # fmt: skip
@@ -37,58 +76,21 @@ def solve_groups(
     push = 0.0
     for e in range(group.shape[0]):
         bodies = group[e]
-        kind = bodies[KIND]
-        n = number[e]
-        status = SOLVED
-        if kind == RRR:
-            status = embed_rrr(bodies, n, body, rate, base, coordinate)
-        elif kind == DRIVEN:
-            embed_driven(bodies, n, body, rate, coordinate, drive)
-        elif kind == WELDED:
-            status = embed_welded(bodies, n, body, rate, coordinate)
-        elif kind == RRP:
-            status = embed_rrp(bodies, n, body, rate, base, coordinate)
-        elif kind == RPR:
-            status = embed_rpr(bodies, n, body, rate, base, coordinate)
-        elif kind == YOKE:
-            status = embed_yoke(bodies, n, body, rate, coordinate)
-        elif kind == PRP:
-            status = embed_prp(bodies, n, body, rate, coordinate)
-        elif kind == ROD:
-            status = embed_rod(bodies, n, body, rate, base, coordinate, drive)
-        elif kind == TRAIN:
-            status = embed_train(bodies, n, body, rate, base, coordinate)
-        elif kind == BLOCK:
+        if bodies[KIND] == BLOCK:
             status = embed_block(
                 bodies[LAW], block, block_number, numbers, work, body, rate, base, coordinate, drive, gravity, sums
             )  # fmt: skip
         else:
-            status = embed_slide(bodies, n, body, rate, coordinate, drive)
+            status = embed_group(bodies, number[e], body, rate, base, coordinate, drive)
         if status != SOLVED:
             return status
-        a = bodies[FIRST]
-        b = bodies[SECOND]
-        if single and kind == BLOCK:
+        if single and bodies[KIND] == BLOCK:
             total += sums[0]
             push += sums[1]
         elif single:
-            mass = body[a, MASS]
-            inertia = body[a, INERTIA]
-            cx = rate[a, 0]
-            cy = rate[a, 1]
-            omega = rate[a, 2]
-            total += mass * (cx * cx + cy * cy) + inertia * omega * omega
-            push += mass * (cx * (gravity[0] - rate[a, 3]) + cy * (gravity[1] - rate[a, 4]))
-            push -= inertia * omega * rate[a, 5]
-            if b >= 0:
-                mass = body[b, MASS]
-                inertia = body[b, INERTIA]
-                cx = rate[b, 0]
-                cy = rate[b, 1]
-                omega = rate[b, 2]
-                total += mass * (cx * cx + cy * cy) + inertia * omega * omega
-                push += mass * (cx * (gravity[0] - rate[b, 3]) + cy * (gravity[1] - rate[b, 4]))
-                push -= inertia * omega * rate[b, 5]
+            total, push = with_body(body, rate, gravity, bodies[FIRST], total, push)
+            if bodies[SECOND] >= 0:
+                total, push = with_body(body, rate, gravity, bodies[SECOND], total, push)
     sums[0] = total
     sums[1] = push
     return SOLVED

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import kernel
+from mbsd.compiling.jit import inlined, kernel
 from mbsd.dynamics.integrators.dop853.crossing import LANDED, crossing, nearness
 from mbsd.dynamics.integrators.dop853.dense import interpolant, write_outputs
 from mbsd.dynamics.integrators.dop853.tableau import E3, E5, A, B, C
@@ -71,16 +71,100 @@ ROUNDING = 1e-9
 """Changes below this (sizes, rad) are rounding in an ill-conditioned pose, and accepted."""
 
 
-@for_both(kernel)
-def advance(dyn, scratch, state, out, settings, end, max_steps):
-    """Go on to ``end`` (s), ``max_steps`` accepted steps at most, writing the outputs passed. Returns a status."""
+@inlined
+def sum_stages(y, k, s, h, trial):
+    """The state of stage s, from the derivatives k of those before it."""
+    n3 = y.shape[1]
+    if n3 < FEW:  # sums stay in registers
+        for c in range(3, n3):
+            rise = 0.0
+            gain = 0.0
+            for j in range(s):
+                rise += A[s, j] * k[j, 0, c]
+                gain += A[s, j] * k[j, 1, c]
+            trial[0, c] = y[0, c] + h * rise
+            trial[1, c] = y[1, c] + h * gain
+        return
+    for part in range(2):
+        for c in range(3, n3):
+            trial[part, c] = A[s, 0] * k[0, part, c]
+        for j in range(1, s):
+            factor = A[s, j]
+            if factor != 0.0:
+                for c in range(3, n3):
+                    trial[part, c] += factor * k[j, part, c]
+        for c in range(3, n3):
+            trial[part, c] = y[part, c] + h * trial[part, c]
+
+
+@inlined
+def sum_step(y, k, h, settings, trial):
+    """The state at the end of a step; returns its error relative to what is allowed."""
+    n3 = y.shape[1]
+    fifth = 0.0
+    third = 0.0
+    for part in range(2):
+        for c in range(3, n3):
+            change = 0.0
+            e5 = 0.0
+            e3 = 0.0
+            for j in range(12):
+                change += B[j] * k[j, part, c]
+                e5 += E5[j] * k[j, part, c]
+                e3 += E3[j] * k[j, part, c]
+            trial[part, c] = y[part, c] + h * change
+            scale = allowed(settings, y, trial, part, c)
+            fifth += (e5 / scale) ** 2
+            third += (e3 / scale) ** 2
+    if fifth > 0.0 or third > 0.0:
+        return h * fifth / math.sqrt((fifth + 0.01 * third) * max(2 * (n3 - 3), 1))
+    return 0.0
+
+
+@inlined
+def take_rates(state, scratch):
+    """Keep derivative and multipliers at the end of the step."""
+    for c in range(3, state.dy.shape[1]):
+        state.dy[0, c] = scratch.stages[12, 0, c]
+        state.dy[1, c] = scratch.stages[12, 1, c]
+    for r in range(state.lam.shape[0]):
+        state.lam[r] = scratch.multipliers[r]
+
+
+@inlined
+def take_state(state, scratch, reached, work):
+    """Go on to the end of the step."""
+    for part in range(2):
+        for c in range(3, state.y.shape[1]):
+            state.y[part, c] = scratch.state[part, c]
+            scratch.stages[0, part, c] = state.dy[part, c]
+    state.clock[TIME] = reached
+    state.clock[WORK] += work
+    state.clock[POWER] = scratch.power[12]
+    scratch.power[0] = scratch.power[12]
+
+
+@inlined
+def choose_step(state, settings, h, error, rejected, last):
+    """The length of the next step, from the errors of this one and the one before."""
+    growth = 10.0
+    if error > 0.0:
+        growth = math.log(error)
+        before = state.clock[ERROR] if state.clock[ERROR] < 0.0 else growth
+        state.clock[ERROR] = max(growth, SMALL)
+        growth = min(10.0, SAFETY * math.exp(BETA * before - (EXPONENT - 0.2 * BETA) * growth))
+    if rejected:
+        growth = min(growth, 1.0)
+    if not last or growth < 1.0:
+        state.clock[STEP] = min(h * growth, settings.longest)
+
+
+@for_both(inlined)
+def start(dyn, scratch, state, out, settings, switching):
+    """Evaluate the state at a start or restart, choose a first step, and write the outputs that stand at its time."""
     y = state.y
     k = scratch.stages
-    trial = scratch.state
-    n3 = y.shape[1]
-    count = max(2 * (n3 - 3), 1)
     switch = dyn.loads.switch
-    switching = switch[0, SWITCHING] > 0.0
     begin_sides(switch, state.clock[TIME], state.count[STARTED] != 0)
     begin(dyn, scratch, state)
     if switching and switch[0, REMEMBERS] > 0.0 and switch[0, FREE] > 0.0:
@@ -91,10 +175,71 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
         state.clock[STEP] = first_step(dyn, scratch, state, settings, 0.125)
     while state.count[NEXT] < out.t.shape[0] and out.t[state.count[NEXT]] <= state.clock[TIME]:
         record_here(dyn, scratch, state, out)
-    for c in range(3, n3):
+    for c in range(3, y.shape[1]):
         k[0, 0, c] = state.dy[0, c]
         k[0, 1, c] = state.dy[1, c]
     scratch.power[0] = state.clock[POWER]
+
+
+@for_both(inlined)
+def stages(dyn, scratch, state, settings, t, h, reached):
+    """Evaluate a step; its end is left in scratch.state, projected.
+
+    Returns the part of h that the next try may have (1 where the step stands), the error relative to what is allowed,
+    and the work of loads and drivers (J).
+    """
+    y = state.y
+    k = scratch.stages
+    trial = scratch.state
+    error = 0.0
+    work = 0.0
+    shorter = 1.0
+    for s in range(1, 13):
+        if s < 12:
+            sum_stages(y, k, s, h, trial)
+        else:
+            for j in range(12):
+                work += h * B[j] * scratch.power[j]
+            error = sum_step(y, k, h, settings, trial)
+            if not error < 1.0:
+                shorter = max(0.2, SAFETY * error**-EXPONENT) if math.isfinite(error) else 0.2
+                break
+            project(dyn, scratch, reached, trial, 2)
+            if not scratch.report[2] <= max(CONTRACTION * scratch.report[1], ROUNDING):
+                shorter = 0.5
+                break
+        for c in range(3, y.shape[1]):
+            k[s, 0, c] = trial[1, c]
+        state.count[EVALUATIONS] += 1
+        at = t + C[s] * h if s < 12 else reached
+        scratch.power[s] = accelerate(dyn, scratch, at, trial, k[s, 1], scratch.multipliers)
+        if scratch.power[s] != scratch.power[s]:
+            shorter = UNCLEAR_STEP
+            break
+    return shorter, error, work
+
+
+@for_both(inlined)
+def outputs_passed(dyn, scratch, state, out, h, reached):
+    """Write the outputs within the step; returns whether their poses are clear."""
+    trial = scratch.state
+    waiting = scratch.dense[7]  # recording uses scratch.state, so that the end of the step waits here
+    for part in range(2):
+        for c in range(3, trial.shape[1]):
+            waiting[part, c] = state.y[part, c] + scratch.dense[0, part, c]
+    clear = write_outputs(dyn, scratch, state, out, h, reached)
+    for part in range(2):
+        for c in range(3, trial.shape[1]):
+            trial[part, c] = waiting[part, c]
+    return clear
+
+
+@for_both(kernel)
+def advance(dyn, scratch, state, out, settings, end, max_steps):
+    """Go on to ``end`` (s), ``max_steps`` accepted steps at most, writing the outputs passed. Returns a status."""
+    switch = dyn.loads.switch
+    switching = switch[0, SWITCHING] > 0.0
+    start(dyn, scratch, state, out, settings, switching)
     accepted = 0
     rejected = False
     while state.clock[TIME] < end:
@@ -108,69 +253,10 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
         elif h < settings.smallest:
             return STEP_TOO_SMALL
         reached = end if last else t + h
-        work = 0.0
-        error = 0.0
-        shorter = 1.0
-        landed = False
         if switching:
             hold(switch, nearness(switch, settings))
-        for s in range(1, 13):
-            if s < 12:
-                if n3 < FEW:  # sums stay in registers
-                    for c in range(3, n3):
-                        rise = 0.0
-                        gain = 0.0
-                        for j in range(s):
-                            rise += A[s, j] * k[j, 0, c]
-                            gain += A[s, j] * k[j, 1, c]
-                        trial[0, c] = y[0, c] + h * rise
-                        trial[1, c] = y[1, c] + h * gain
-                else:
-                    for part in range(2):
-                        for c in range(3, n3):
-                            trial[part, c] = A[s, 0] * k[0, part, c]
-                        for j in range(1, s):
-                            factor = A[s, j]
-                            if factor != 0.0:
-                                for c in range(3, n3):
-                                    trial[part, c] += factor * k[j, part, c]
-                        for c in range(3, n3):
-                            trial[part, c] = y[part, c] + h * trial[part, c]
-            else:
-                for j in range(12):
-                    work += h * B[j] * scratch.power[j]
-                fifth = 0.0
-                third = 0.0
-                for part in range(2):
-                    for c in range(3, n3):
-                        change = 0.0
-                        e5 = 0.0
-                        e3 = 0.0
-                        for j in range(12):
-                            change += B[j] * k[j, part, c]
-                            e5 += E5[j] * k[j, part, c]
-                            e3 += E3[j] * k[j, part, c]
-                        trial[part, c] = y[part, c] + h * change
-                        scale = allowed(settings, y, trial, part, c)
-                        fifth += (e5 / scale) ** 2
-                        third += (e3 / scale) ** 2
-                if fifth > 0.0 or third > 0.0:
-                    error = h * fifth / math.sqrt((fifth + 0.01 * third) * count)
-                if not error < 1.0:
-                    shorter = max(0.2, SAFETY * error**-EXPONENT) if math.isfinite(error) else 0.2
-                    break
-                project(dyn, scratch, reached, trial, 2)
-                if not scratch.report[2] <= max(CONTRACTION * scratch.report[1], ROUNDING):
-                    shorter = 0.5
-                    break
-            for c in range(3, n3):
-                k[s, 0, c] = trial[1, c]
-            state.count[EVALUATIONS] += 1
-            at = t + C[s] * h if s < 12 else reached
-            scratch.power[s] = accelerate(dyn, scratch, at, trial, k[s, 1], scratch.multipliers)
-            if scratch.power[s] != scratch.power[s]:
-                shorter = UNCLEAR_STEP
-                break
+        shorter, error, work = stages(dyn, scratch, state, settings, t, h, reached)
+        landed = False
         if switching:
             switch[0, HELD] = 0.0
             if shorter == 1.0 and (switch[0, BEYOND] < math.inf or switch[0, CUTS] > 0.0):
@@ -178,6 +264,22 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
                 switch[0, HELD] = 0.0
             landed = shorter > 1.0
             note_end(switch)
+        margin = scratch.report[0]
+        fresh = True
+        if shorter >= 1.0:
+            take_rates(state, scratch)
+            following = state.count[NEXT]
+            if following < out.t.shape[0] and out.t[following] < reached:
+                fresh = False
+                state.count[EVALUATIONS] += 3
+                if switching:
+                    switch[0, HELD] = 1.0
+                interpolant(dyn, scratch, state, h, work)
+                switch[0, HELD] = 0.0
+                if scratch.dense_work[3] != scratch.dense_work[3]:
+                    shorter = UNCLEAR_STEP
+                elif not outputs_passed(dyn, scratch, state, out, h, reached):
+                    return UNCLEAR
         if shorter < 1.0:
             if h < settings.smallest:
                 return NOT_FINITE
@@ -185,66 +287,20 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
             state.count[REJECTED] += 1
             rejected = True
             continue
-        margin = scratch.report[0]
-        for c in range(3, n3):
-            state.dy[0, c] = k[12, 0, c]
-            state.dy[1, c] = k[12, 1, c]
-        for r in range(state.lam.shape[0]):
-            state.lam[r] = scratch.multipliers[r]
-        following = state.count[NEXT]
-        fresh = True
-        if following < out.t.shape[0] and out.t[following] < reached:
-            fresh = False
-            if switching:
-                switch[0, HELD] = 1.0
-            interpolant(dyn, scratch, state, h, work)
-            switch[0, HELD] = 0.0
-            state.count[EVALUATIONS] += 3
-            if scratch.dense_work[3] != scratch.dense_work[3]:
-                if h < settings.smallest:
-                    return NOT_FINITE
-                state.clock[STEP] = UNCLEAR_STEP * h
-                state.count[REJECTED] += 1
-                rejected = True
-                continue
-            for part in range(2):  # record and the interpolant use trial: the end of the step waits in dense[7]
-                for c in range(3, n3):
-                    scratch.dense[7, part, c] = y[part, c] + scratch.dense[0, part, c]
-            if not write_outputs(dyn, scratch, state, out, h, reached):
-                return UNCLEAR
-            following = state.count[NEXT]
-            for part in range(2):
-                for c in range(3, n3):
-                    trial[part, c] = scratch.dense[7, part, c]
         if switching:
             accept(switch, reached)
             if landed:
                 scratch.power[12] = scratch.power[LANDED]
-                for c in range(3, n3):
-                    state.dy[1, c] = k[LANDED, 1, c]
-        for part in range(2):
-            for c in range(3, n3):
-                y[part, c] = trial[part, c]
-                k[0, part, c] = state.dy[part, c]
-        state.clock[TIME] = reached
-        state.clock[WORK] += work
-        state.clock[POWER] = scratch.power[12]
-        scratch.power[0] = scratch.power[12]
+                for c in range(3, state.y.shape[1]):
+                    state.dy[1, c] = scratch.stages[LANDED, 1, c]
+        take_state(state, scratch, reached, work)
         scratch.report[0] = margin
+        following = state.count[NEXT]
         if following < out.t.shape[0] and out.t[following] <= reached:
             record_here(dyn, scratch, state, out)
             fresh = False
-        other = settle(dyn, scratch, reached, trial, fresh)
-        growth = 10.0
-        if error > 0.0:
-            growth = math.log(error)
-            before = state.clock[ERROR] if state.clock[ERROR] < 0.0 else growth
-            state.clock[ERROR] = max(growth, SMALL)
-            growth = min(10.0, SAFETY * math.exp(BETA * before - (EXPONENT - 0.2 * BETA) * growth))
-        if rejected:
-            growth = min(growth, 1.0)
-        if not last or growth < 1.0:
-            state.clock[STEP] = min(h * growth, settings.longest)
+        other = settle(dyn, scratch, reached, scratch.state, fresh)
+        choose_step(state, settings, h, error, rejected, last)
         if landed:
             state.clock[STEP] = switch[0, RATE]
             state.clock[ERROR] = 0.0

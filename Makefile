@@ -51,7 +51,7 @@ override ANYWAY := $(value ANYWAY)
 override CLUSTER := $(value CLUSTER)
 override CLUSTER_TLS := $(value CLUSTER_TLS)
 override MECHANISM = $(subst -,_,$*)
-export PRESET SHEET_PRESET ASPECT FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N HOST FOLDER ONLY WATTS SEED
+export PRESET SHEET_PRESET ASPECT FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N HOST FOLDER ONLY WITHIN WATTS SEED
 export CLUSTER CLUSTER_TLS ANYWAY STRICT
 
 PRESETS := draft preview production final
@@ -84,7 +84,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new test-fast test test-slow lint format bench bench-start bench-live bench-film hunt hunt-parts torture check-numbers record-numbers schema docs study-engines study-run-up readme-loop integrators wheel lock clean clean-all always
+.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new test-fast test test-slow lint format bench bench-start bench-live bench-film hunt hunt-parts torture check-numbers keep-numbers record-numbers schema docs study-engines study-run-up readme-loop integrators wheel lock clean clean-all always
 
 # A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
 define upto_motion
@@ -292,9 +292,13 @@ bench-live: install ## from a slider of the live page to the picture, in Chromiu
 bench-film: install ## what a film costs beside Cycles alone, a plain script, one core; NAME=four_bar N=60 frames
 	@$(PYTHON) -m benchmarks film --name "$${NAME:-four_bar}" --preset "$$PRESET" --frames "$${N:-60}"
 
-check-numbers: install ## raw bytes of 290 runs against those recorded, all or ONLY="gallery four_bar"
+check-numbers: install ## raw bytes of 300 runs against those recorded, or WITHIN=1e-9 of those kept; ONLY="gallery four_bar"
 	$(ALL_KERNELS)
-	@$(PYTHON) -m tools.numbers check "$$ONLY"
+	@$(PYTHON) -m tools.numbers $${WITHIN:+within} $${WITHIN:-check} "$$ONLY"
+
+keep-numbers: install ## keep the numbers of these runs, before a change that may move last digits
+	$(ALL_KERNELS)
+	@$(PYTHON) -m tools.numbers keep "$$ONLY"
 
 record-numbers: install ## record them anew, where a change of numbers is meant
 	$(ALL_KERNELS)

@@ -11,7 +11,6 @@ from typing import Any
 import pytest
 
 from mbsd import Mechanism
-from tools.numbers.digest import digest
 
 TESTS = Path(__file__).resolve().parent.parent.parent / "tests"
 FILES = "test_reference*.py"
@@ -19,10 +18,11 @@ ASKED = ("sweep", "simulate", "equilibrium", "linearise", "modes", "batch")
 
 
 class _Watch:
-    """Notes a hash of each call's result, under the name of the test and the number of the call."""
+    """Notes what ``measure`` makes of each call's result, under the name of the test and the number of the call."""
 
-    def __init__(self) -> None:
-        self.found: dict[str, str] = {}
+    def __init__(self, measure: Callable[[Any], Any]) -> None:
+        self.noted: dict[str, Any] = {}
+        self._measure = measure
         self._test, self._calls, self._depth = "", 0, 0
 
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
@@ -40,15 +40,15 @@ class _Watch:
                 self._depth -= 1
             if not self._depth:
                 self._calls += 1
-                self.found[f"{self._test} {self._calls}"] = digest(result)
+                self.noted[f"{self._test} {self._calls}"] = self._measure(result)
             return result
 
         return call
 
 
-def published(only: str) -> Iterator[tuple[str, str]]:
-    """Name and hash of each call of the solver in these tests; of the files and tests that ``only`` names."""
-    watch, kept = _Watch(), {name: getattr(Mechanism, name) for name in ASKED}
+def published(only: str, measure: Callable[[Any], Any]) -> Iterator[tuple[str, Any]]:
+    """Name of each call of the solver in the files and tests that ``only`` names, and the measure of its result."""
+    watch, kept = _Watch(measure), {name: getattr(Mechanism, name) for name in ASKED}
     for name, method in kept.items():
         setattr(Mechanism, name, watch.watched(method))
     try:
@@ -61,4 +61,4 @@ def published(only: str) -> Iterator[tuple[str, str]]:
     finally:
         for name, method in kept.items():
             setattr(Mechanism, name, method)
-    yield from watch.found.items()
+    yield from watch.noted.items()

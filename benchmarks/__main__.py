@@ -59,8 +59,8 @@ def main() -> int:
                 "machines": machines,
                 "synthesis": synthesis,
             }
-            found, bars = parts[part].measured()
-            rows.show_all(found)
+            rows_of_part, bars = parts[part].measured()
+            rows.show_all(rows_of_part)
             return _tell(bars)
         case ["film", *words]:
             return film.measured(words)
@@ -93,14 +93,14 @@ def _all() -> int:
             row = _measure(code)
             best[code] = min(best.get(code, row), row, key=lambda r: r.seconds)
         say("bench", f"round {turn + 1} of {ROUNDS} done")
-    found = [best[code] for code in CODES]
-    rows.show(found, STEPS)
-    exact = found[0].error < LARGEST_ERROR
+    chosen = [best[code] for code in CODES]
+    rows.show(chosen, STEPS)
+    exact = chosen[0].error < LARGEST_ERROR
     bars = []
     for code, wanted in BARS.items():
-        ratio = best[code].seconds / found[0].seconds
-        bars.append(Bar(found[0].problem, wanted, ratio, code, best[code].settings, exact and ratio >= wanted))
-    everything = list(found)
+        ratio = best[code].seconds / chosen[0].seconds
+        bars.append(Bar(chosen[0].problem, wanted, ratio, code, best[code].settings, exact and ratio >= wanted))
+    everything = list(chosen)
     for part in (
         calls.measured,
         batch.measured,
@@ -114,7 +114,7 @@ def _all() -> int:
         everything += more
         bars += more_bars
     films, missed = timing.rows_of_films()
-    rows.show_all(everything[len(found) :] + films)
+    rows.show_all(everything[len(chosen) :] + films)
     rows.write(everything + films, bars)
     table.write(everything, bars)
     for line in missed:

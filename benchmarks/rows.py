@@ -44,18 +44,18 @@ class Bar:
 
 def write(rows: Sequence[Row], bars: Sequence[Bar]) -> None:
     """out/bench.json and out/bars.json, whole."""
-    for name, found in (("bench.json", rows), ("bars.json", bars)):
-        text = json.dumps([asdict(one) for one in found], indent=1) + "\n"
+    for name, entries in (("bench.json", rows), ("bars.json", bars)):
+        text = json.dumps([asdict(row) for row in entries], indent=1) + "\n"
         write_bytes(out_root() / name, text.encode())
 
 
 def read() -> tuple[list[Row], list[Bar]]:
     """Rows of the last run."""
     try:
-        found = [json.loads((out_root() / name).read_text()) for name in ("bench.json", "bars.json")]
+        documents = [json.loads((out_root() / name).read_text()) for name in ("bench.json", "bars.json")]
     except FileNotFoundError:
         raise UserError("bench: there is no run to make a table of; make bench") from None
-    return [Row(**row) for row in found[0]], [Bar(**bar) for bar in found[1]]
+    return [Row(**row) for row in documents[0]], [Bar(**bar) for bar in documents[1]]
 
 
 def show(rows: Sequence[Row], steps: int) -> None:

@@ -193,5 +193,5 @@ _LATER = {
 def __getattr__(name: str) -> Any:
     if name not in _LATER:
         raise AttributeError(f"module 'mbsd' has no attribute '{name}'")
-    found = globals()[name] = getattr(importlib.import_module(_LATER[name]), name)
-    return found
+    value = globals()[name] = getattr(importlib.import_module(_LATER[name]), name)
+    return value

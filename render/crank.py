@@ -31,9 +31,9 @@ class Crank:
 
 def crank_of(motion: Motion) -> Crank | None:
     """The crank; of several the one that a driver turns, else the first in the file. None where nothing turns so."""
-    found = [crank for body, at in _on_ground(motion).items() if (crank := _crank(motion, body, at)) is not None]
+    cranks = [crank for body, at in _on_ground(motion).items() if (crank := _crank(motion, body, at)) is not None]
     driven = driven_bodies(motion)
-    return min(found, key=lambda crank: crank.body not in driven, default=None)
+    return min(cranks, key=lambda crank: crank.body not in driven, default=None)
 
 
 def driven_bodies(motion: Motion) -> set[str]:
@@ -43,13 +43,13 @@ def driven_bodies(motion: Motion) -> set[str]:
 
 def _on_ground(motion: Motion) -> dict[str, tuple[float, float]]:
     """Bodies that revolute joints hold on ground, with the axis."""
-    found: dict[str, tuple[float, float]] = {}
+    pins: dict[str, tuple[float, float]] = {}
     for joint in motion.joints.values():
         if joint.pair == "pin" and "ground" in joint.bodies:
             for body in joint.bodies:
                 if body != "ground":
-                    found.setdefault(body, (joint.x[0], joint.y[0]))
-    return found
+                    pins.setdefault(body, (joint.x[0], joint.y[0]))
+    return pins
 
 
 def _crank(motion: Motion, body: str, at: tuple[float, float]) -> Crank | None:

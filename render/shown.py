@@ -32,7 +32,7 @@ def show_words(text: str) -> str:
 
 def _meant(word: str) -> str:
     """The word that shows what is asked for, or one that is alike."""
-    found = [shows for shows, others in MEANT.items() if word.lower().removesuffix("s") + "s" in others]
-    if found:
-        return f"; these are among {' and '.join(found)}"
+    meant = [shows for shows, others in MEANT.items() if word.lower().removesuffix("s") + "s" in others]
+    if meant:
+        return f"; these are among {' and '.join(meant)}"
     return did_you_mean(word, WORDS)

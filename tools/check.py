@@ -40,11 +40,11 @@ def _wrong_packages() -> list[str]:
     wrong = []
     for name, version in locked(ROOT / "requirements.lock").items():
         try:
-            found = metadata.version(name)
+            installed = metadata.version(name)
         except metadata.PackageNotFoundError:
-            found = "missing"
-        if found != version:
-            wrong.append(f"{name} is {found}, requirements.lock has {version}; remove .venv and run make install")
+            installed = "missing"
+        if installed != version:
+            wrong.append(f"{name} is {installed}, requirements.lock has {version}; remove .venv and run make install")
     return wrong
 
 

@@ -76,8 +76,8 @@ def _sweeps() -> list[Call]:
         turns[0] = 1.0 + 1e-6 * next(speeds)
         return again()
 
-    def error(found: list[np.ndarray]) -> float:
-        return rocker_error(found[0][:, 3], found[1][:, 3] + swing)  # sensors give the change against the start
+    def error(result: list[np.ndarray]) -> float:
+        return rocker_error(result[0][:, 3], result[1][:, 3] + swing)  # sensors give the change against the start
 
     way = "SolveStatic, full Newton, stabilizer 1e-6, positions only"
     return [Call(SWEEP, f"Assemble, {way}", again, error), Call(CHANGED, f"Assemble, {way}", changed, error)]
@@ -109,4 +109,4 @@ def _simulation() -> Call:
         system.SolveDynamic(settings, solverType=exu.DynamicSolverType.RK44)
         return [np.array(system.GetSensorStoredData(sensor))[:, 1] for sensor in sensors]
 
-    return Call(SIMULATION, f"Assemble, tree, RK44, steps {OUTPUTS}", again, lambda found: energy_drift(*found))
+    return Call(SIMULATION, f"Assemble, tree, RK44, steps {OUTPUTS}", again, lambda result: energy_drift(*result))

@@ -29,14 +29,14 @@ def measured() -> tuple[list[Row], list[Bar]]:
         for code in CODES:
             for row in _measure(code):
                 key = row.problem, code
-                best[key] = min(best.get(key, row), row, key=lambda one: one.seconds)
-    found = [best[problem, code] for problem in BARS for code in CODES if (problem, code) in best]
+                best[key] = min(best.get(key, row), row, key=lambda call: call.seconds)
+    rows_of_codes = [best[problem, code] for problem in BARS for code in CODES if (problem, code) in best]
     bars = []
     for problem, most in BARS.items():
         ours = best[problem, "mbsd"]
         met = ours.seconds <= most and ours.error < LARGEST_ERROR
         bars.append(Bar(f"{problem}, ms", 1e3 * most, 1e3 * ours.seconds, "", ours.settings, met, most=True))
-    return found, bars
+    return rows_of_codes, bars
 
 
 def _measure(code: str) -> list[Row]:
@@ -56,14 +56,14 @@ def main(code: str) -> None:
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     module = importlib.import_module(f"benchmarks.calls.{code}_code")
     rows = []
-    for one in module.calls():
-        result, best = one.call(), float("inf")
+    for call in module.calls():
+        result, best = call.call(), float("inf")
         for _ in range(CALLS):
             started = time.perf_counter()
-            result = one.call()
+            result = call.call()
             best = min(best, time.perf_counter() - started)
-        error = one.error(result)
-        rows.append(Row(one.problem, code, module.VERSION, one.settings, best, error, {}, error < LARGEST_ERROR))
+        error = call.error(result)
+        rows.append(Row(call.problem, code, module.VERSION, call.settings, best, error, {}, error < LARGEST_ERROR))
     print(json.dumps([asdict(row) for row in rows]))
 
 

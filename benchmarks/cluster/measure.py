@@ -61,9 +61,12 @@ def measured() -> int:
 
 
 def _ratio(task: Callable[..., Any], what: str) -> float:
-    one, two = _taken(1, task), _taken(2, task)
-    say("bench", f"{TASKS} tasks, {what}: one worker {one:.1f} s, two on separate cores {two:.1f} s: {one / two:.2f}x")
-    return one / two
+    single, two = _taken(1, task), _taken(2, task)
+    say(
+        "bench",
+        f"{TASKS} tasks, {what}: one worker {single:.1f} s, two on separate cores {two:.1f} s: {single / two:.2f}x",
+    )
+    return single / two
 
 
 def _row(workers: int, tasks: int, largest: int) -> str:
@@ -117,9 +120,9 @@ def _deal(where: str, workers: int, task: Callable[..., Any], orders: dict[str, 
 @contextmanager
 def _cluster(workers: list[list[str]]) -> Iterator[tuple[str, int]]:
     """A scheduler and these workers; its address and process."""
-    with socket.socket() as one:
-        one.bind(("127.0.0.1", 0))
-        port = one.getsockname()[1]
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        port = listener.getsockname()[1]
     where = f"tcp://127.0.0.1:{port}"
     commands = [scheduler_command("127.0.0.1", port)]
     commands += [[where if word == "ADDRESS" else word for word in command] for command in workers]

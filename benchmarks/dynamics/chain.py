@@ -70,8 +70,8 @@ def angles(links: int, duration: float) -> np.ndarray:
         return np.concatenate([omega, np.linalg.solve(matrix, right)])
 
     start = np.concatenate([np.full(links, SLANT), np.zeros(links)])
-    found = solve_ivp(rates, (0.0, duration), start, method="DOP853", rtol=1e-9, atol=1e-11)
-    return found.y[:links, -1]
+    solved = solve_ivp(rates, (0.0, duration), start, method="DOP853", rtol=1e-9, atol=1e-11)
+    return solved.y[:links, -1]
 
 
 def errors(record: Record) -> dict[str, float]:

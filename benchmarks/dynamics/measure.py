@@ -42,10 +42,17 @@ def _once(code: str, name: str, settings: str) -> Row:
     )  # fmt: skip
     if run.returncode:
         raise UserError(f"bench: {code} on {name} failed: {(run.stderr.strip().splitlines() or ['no message'])[-1]}")
-    found = found_in(run.stdout)
+    record = found_in(run.stdout)
     main = list(case(name).limits)[-1]
     return Row(
-        name, code, found["version"], settings, found["seconds"], found["errors"][main], found["errors"], found["met"]
+        name,
+        code,
+        record["version"],
+        settings,
+        record["seconds"],
+        record["errors"][main],
+        record["errors"],
+        record["met"],
     )
 
 

@@ -144,16 +144,16 @@ def prepare(case: Case, settings: dict[str, Any]) -> tuple[Callable[[], Callable
 
     def record() -> Record:
         reset()
-        found = [(0.0, *state())]
+        record = [(0.0, *state())]
         done = 0
         for k in range(1, min(SAMPLES, steps) + 1):
             wanted = round(k * steps / min(SAMPLES, steps))
             mujoco.mj_step(model, data, wanted - done)
             done = wanted
-            found.append((done * case.duration / steps, *state()))
+            record.append((done * case.duration / steps, *state()))
         if data.warning.number.sum():  # an unstable run was put back to its start
-            found[-1] = (0.0, *found[-1][1:])
-        times, poses, velocities = (np.array(part) for part in zip(*found, strict=True))
+            record[-1] = (0.0, *record[-1][1:])
+        times, poses, velocities = (np.array(part) for part in zip(*record, strict=True))
         return Record(times, poses, velocities)
 
     return fresh, record

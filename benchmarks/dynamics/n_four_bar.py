@@ -56,11 +56,11 @@ def exact_angle(loops: int) -> float:
     from scipy.integrate import solve_ivp
 
     inertia, load = (loops + 1) / 3 + loops, GRAVITY * ((loops + 1) / 2 + loops)
-    found = solve_ivp(
+    solved = solve_ivp(
         lambda t, y: (y[1], -load * math.cos(y[0]) / inertia),
         (0, DURATION), (math.pi / 2, -SPEED / LENGTH), method="DOP853", rtol=1e-13, atol=1e-14,
     )  # fmt: skip
-    return float(found.y[0, -1])
+    return float(solved.y[0, -1])
 
 
 def errors(loops: int, record: Record) -> dict[str, float]:

@@ -27,27 +27,27 @@ def measured() -> tuple[list[Row], list[Bar]]:
     """A row for each size, and the bar."""
     method = integrator_named("A02", "dop853")
     cases = [case(name) for name in ALONE]
-    prepared = [ready(one) for one in cases]
+    prepared = [ready(chain) for chain in cases]
     best, angles = [float("inf")] * len(cases), [0.0] * len(cases)
     for repeat in range(1 + ROUNDS):
-        for k, (one, system) in enumerate(zip(cases, prepared, strict=True)):
-            state, out = system.begun(np.array([0.0, one.duration]))
-            run = ChoosingRun(system, method, TOLERANCE, one.duration, one.duration, {})
+        for k, (chain, system) in enumerate(zip(cases, prepared, strict=True)):
+            state, out = system.begun(np.array([0.0, chain.duration]))
+            run = ChoosingRun(system, method, TOLERANCE, chain.duration, chain.duration, {})
             begun = run.embedded(state) or run
             started = time.perf_counter()
             begun.in_one_go(state, out)
             if repeat > 0:  # the first one compiles
                 best[k] = min(best[k], time.perf_counter() - started)
-            loops = len(one.model.solids) // 2
+            loops = len(chain.model.solids) // 2
             vertical = out.y[-1].reshape(2, -1, 3)[0, 1::2, 2]
             angles[k] = float(np.abs(vertical - exact_angle(loops)).max())
     rows, costs = [], []
-    for one, seconds, angle in zip(cases, best, angles, strict=True):
-        costs.append(seconds / len(one.model.solids) / one.duration)
+    for chain, seconds, angle in zip(cases, best, angles, strict=True):
+        costs.append(seconds / len(chain.model.solids) / chain.duration)
         words = f"dop853, tolerance {TOLERANCE:g}; {costs[-1] * 1e6:.2f} us per body and second"
-        right = angle <= one.limits["angle (rad)"]
+        right = angle <= chain.limits["angle (rad)"]
         rows.append(
-            Row(f"{one.name}, alone", "mbsd", mbsd.__version__, words, seconds, angle, {"angle (rad)": angle}, right)
+            Row(f"{chain.name}, alone", "mbsd", mbsd.__version__, words, seconds, angle, {"angle (rad)": angle}, right)
         )
     spread = max(costs) / min(costs)
     met = spread <= SPREAD and all(row.within_limits for row in rows)

@@ -161,6 +161,6 @@ def _odeint(
     del project
     tolerance = settings["tolerance"]
     times = np.array([0.0, end]) if steps is None else np.linspace(0, end, 1001)
-    found = integrate.odeint(rates, start, times, tfirst=True, rtol=tolerance, atol=tolerance, mxstep=MOST_STEPS)
+    solved = integrate.odeint(rates, start, times, tfirst=True, rtol=tolerance, atol=tolerance, mxstep=MOST_STEPS)
     if steps is not None:
-        steps[:] = list(zip(times.tolist(), found, strict=True))
+        steps[:] = list(zip(times.tolist(), solved, strict=True))

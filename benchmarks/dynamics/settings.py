@@ -38,13 +38,13 @@ def tune_all(wanted: Sequence[str]) -> None:
         raise UserError(f"bench: {', '.join(sorted(unknown))}? There is: {', '.join((*CODES, *BESIDE_PEERS))}")
     for name in problems:
         for code in codes:
-            found = _sweep(code, name)
+            swept = _sweep(code, name)
             kept = load()
-            kept.setdefault(name, {})[code] = found
+            kept.setdefault(name, {})[code] = swept
             write(kept)
-            limits = "within" if found["met"] else "NOT within"
+            limits = "within" if swept["met"] else "NOT within"
             say(
-                "tune", f"{name}, {code}: {1000 * found['seconds']:.3g} ms, {limits} the limits, {found['tried']} tried"
+                "tune", f"{name}, {code}: {1000 * swept['seconds']:.3g} ms, {limits} the limits, {swept['tried']} tried"
             )
 
 

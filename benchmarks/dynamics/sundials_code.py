@@ -61,9 +61,9 @@ def prepare(case: Case, settings: dict[str, Any]) -> tuple[Callable[[], Callable
         return lambda: solve(ends)
 
     def record() -> Record:
-        found = solve(np.linspace(0, case.duration, SAMPLES + 1))
-        states = [unpack(y) for y in found.y]
-        return Record(np.array(found.t), np.array([q for q, _ in states]), np.array([v for _, v in states]))
+        solved = solve(np.linspace(0, case.duration, SAMPLES + 1))
+        states = [unpack(y) for y in solved.y]
+        return Record(np.array(solved.t), np.array([q for q, _ in states]), np.array([v for _, v in states]))
 
     return fresh, record
 

@@ -44,16 +44,16 @@ def tune(code: str, problem: Case) -> dict[str, Any]:
     for ladder in module.ladders(problem):
         k, last, reached = 0, 0, False
         while k < len(ladder):
-            found = _attempt(module, problem, ladder[k])
-            tried.append(found)
-            if found.excess <= 1:
-                best = min(best, found.seconds)
+            attempt = _attempt(module, problem, ladder[k])
+            tried.append(attempt)
+            if attempt.excess <= 1:
+                best = min(best, attempt.seconds)
                 if reached or k == 0:
                     break
                 reached, last = True, k
                 k = max(0, k - STRIDE + 1)
                 continue
-            if found.seconds > TOO_LONG * best:
+            if attempt.seconds > TOO_LONG * best:
                 break
             k += 1 if reached else STRIDE
             if reached and k >= last:

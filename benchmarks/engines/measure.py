@@ -42,7 +42,7 @@ def measured() -> tuple[list[Row], list[Bar]]:
     ratio = best["V12"] / best[FOUR_BAR]
     bars = [Bar(rows[-1].problem, MOST, ratio, FOUR_BAR, "as many angles", ratio <= MOST, most=True)]
     maps: list[int] = []
-    seconds = _seconds(lambda: maps.append(sum(len(one.angle) for one in all_families())))
+    seconds = _seconds(lambda: maps.append(sum(len(family.angle) for family in all_families())))
     whole = f"map of {len(FAMILIES)} families of V engines, {maps[0]} bank angles"
     rows.append(Row(whole, "mbsd", mbsd.__version__, "one process", seconds, 0.0))
     bars.append(Bar(whole, MAP_SECONDS, seconds, "a second", "one process", seconds <= MAP_SECONDS, most=True))

@@ -83,20 +83,20 @@ def cores(name: str, preset: Preset, frames: int, folder: Path) -> Bar:
         raise UserError("bench: two workers need two cores and a system that binds processes to them (Linux)")
     first, second, *_ = sorted(os.sched_getaffinity(0))
     alone, left, right = (Film(name, preset, frames, folder / word) for word in ("alone", "left", "right"))
-    one = alone.run([first], range(frames))
+    single = alone.run([first], range(frames))
     begun = time.perf_counter()
     halves = [left.start([first], range(0, frames, 2)), right.start([second], range(1, frames, 2))]
     with ended(*halves):
         for half in halves:
             refuse(half.wait())
     two = time.perf_counter() - begun
-    settings = f"{preset.name}, {frames} frames, {duration(one)} and {duration(two)}"
-    return Bar("two workers on separate cores", 1.8, one / two, "one worker", settings, one >= 1.8 * two)
+    settings = f"{preset.name}, {frames} frames, {duration(single)} and {duration(two)}"
+    return Bar("two workers on separate cores", 1.8, single / two, "one worker", settings, single >= 1.8 * two)
 
 
 def noop(name: str, preset: Preset, frames: int, folder: Path) -> Bar:
     """``make all`` where all films are there."""
-    names = [one for one in mechanism_names() if Out(one).film(preset.name).is_file()]
+    names = [name for name in mechanism_names() if Out(name).film(preset.name).is_file()]
     if not names:
         raise UserError(f"bench: no mechanism has its film at {preset.name}; make all PRESET={preset.name} makes them")
     command = [sys.executable, "-m", "studio.night", "run", "--preset", preset.name, f"--only={','.join(names)}"]

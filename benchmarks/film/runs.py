@@ -99,8 +99,8 @@ class Film:
         done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
         refuse(done.returncode, done.stderr)
         # Blender's own lines are flushed by C at the exit, after Python's unless that is unbuffered.
-        found = json.loads(next(line for line in done.stdout.splitlines() if line.startswith("{")))
-        return found["start"], sum(found["each"]) / len(found["each"])
+        measured = json.loads(next(line for line in done.stdout.splitlines() if line.startswith("{")))
+        return measured["start"], sum(measured["each"]) / len(measured["each"])
 
 
 @contextmanager

@@ -19,13 +19,13 @@ FEWEST_FRAMES = 10
 
 def rows_of_films() -> tuple[list[Row], list[str]]:
     """Two rows for each film rendered here (wall, Cycles), and the bars missed."""
-    found: list[Row] = []
+    rows: list[Row] = []
     missed: list[str] = []
     for path in sorted(out_root().glob("*/frames/*/timing.json")):
-        found += _rows_of(path, missed)
-    if not found:
+        rows += _rows_of(path, missed)
+    if not rows:
         say("bench", "no film was rendered here yet: make frames-four-bar, and the overhead is shown")
-    return found, missed
+    return rows, missed
 
 
 def _rows_of(path: Path, missed: list[str]) -> list[Row]:

@@ -46,21 +46,21 @@ def measured(words: list[str]) -> int:
         raise UserError("bench live: Chromium is missing: sudo apt-get install -y chromium")
     roots = {"this": ROOT} | ({"other": arguments.beside.resolve()} if arguments.beside else {})
     for view in arguments.views.split(","):
-        found: dict[str, list[float]] = {which: [] for which in roots}
+        times: dict[str, list[float]] = {which: [] for which in roots}
         busy = dict.fromkeys(roots, 0.0)
         for _ in range(arguments.turns):
             for which, root in roots.items():
                 with _served(root, arguments.name, ["--no-parts"] if view == "2d" else []) as address:
                     seen = _seen(browser, address, arguments.slider, view, arguments.count)
-                found[which] += seen["milliseconds"]
+                times[which] += seen["milliseconds"]
                 busy[which] += 1000 * seen["processor"]
-        _tell(view, found, busy)
+        _tell(view, times, busy)
     return 0
 
 
-def _tell(view: str, found: dict[str, list[float]], busy: dict[str, float]) -> None:
+def _tell(view: str, times_of: dict[str, list[float]], busy: dict[str, float]) -> None:
     load = ", ".join(f"{value:.1f}" for value in os.getloadavg())
-    for which, times in found.items():
+    for which, times in times_of.items():
         low, *_, high = statistics.quantiles(times, n=10)
         say(
             "bench",
@@ -68,8 +68,8 @@ def _tell(view: str, found: dict[str, list[float]], busy: dict[str, float]) -> N
             f"one below {low:.0f}; {busy[which] / len(times):.0f} ms of processor time of browser and server; "
             f"{len(times)} steps, {os.cpu_count()} cores, load {load}",
         )
-    if "other" in found:
-        ratio = statistics.median(found["other"]) / statistics.median(found["this"])
+    if "other" in times_of:
+        ratio = statistics.median(times_of["other"]) / statistics.median(times_of["this"])
         say("bench", f"{VIEWS[view]}: the other version takes {ratio:.2f} times as long in the median")
 
 

@@ -58,9 +58,9 @@ def exact(problem: str, phi: np.ndarray) -> np.ndarray:
     return (np.arctan2(y, x) - bend)[:, None]
 
 
-def worst(found: np.ndarray, wanted: np.ndarray) -> float:
+def worst(values: np.ndarray, wanted: np.ndarray) -> float:
     """Largest difference of angles, whole turns aside."""
-    return float(np.abs(np.angle(np.exp(1j * (found - wanted)))).max())
+    return float(np.abs(np.angle(np.exp(1j * (values - wanted)))).max())
 
 
 def height(time: float) -> float:

@@ -213,7 +213,7 @@ def _falling() -> tuple[Callable[[], Callable[[], Any]], Callable[[Any], float]]
 
     def error(_: Any) -> float:
         system, node = last
-        found = system.GetNodeOutput(node, exu.OutputVariableType.Coordinates)
-        return abs(float(np.ravel(found)[0]) - machines.height(machines.DURATION))
+        coordinates = system.GetNodeOutput(node, exu.OutputVariableType.Coordinates)
+        return abs(float(np.ravel(coordinates)[0]) - machines.height(machines.DURATION))
 
     return fresh, error

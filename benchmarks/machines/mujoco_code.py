@@ -132,8 +132,8 @@ def prepare(problem: str) -> tuple[Callable[[], Callable[[], Any]], Callable[[An
             at = dict(zip(names, data.qpos, strict=True))
             wanted = machines.exact(problem, np.array([first + at[driven]]))[0]
             for k, joints in enumerate(WATCHED[problem]):
-                found = whole[1, k] + sum(at[name] for name in joints)
-                out = max(out, machines.worst(np.array(found), np.array(wanted[k])))
+                angle = whole[1, k] + sum(at[name] for name in joints)
+                out = max(out, machines.worst(np.array(angle), np.array(wanted[k])))
         return out
 
     return fresh, error

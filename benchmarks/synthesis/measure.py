@@ -63,15 +63,21 @@ def _theirs() -> list[Any]:
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        found = path_generation([(float(x), float(y)) for x, y in POINTS], max_solutions=1)
-    return found.raw_solutions
+        solutions = path_generation([(float(x), float(y)) for x, y in POINTS], max_solutions=1)
+    return solutions.raw_solutions
 
 
-def as_mechanism(one: Any) -> mbsd.Mechanism:
+def as_mechanism(design: Any) -> mbsd.Mechanism:
     """A design of pylinkage, driven from the pose that it gives to the next whole turn."""
     a, b, c, d, p = (
         np.array(place, float)
-        for place in (one.ground_pivot_a, one.crank_pivot_b, one.coupler_pivot_c, one.ground_pivot_d, one.coupler_point)
+        for place in (
+            design.ground_pivot_a,
+            design.crank_pivot_b,
+            design.coupler_pivot_c,
+            design.ground_pivot_d,
+            design.coupler_point,
+        )
     )
     along = (c - b) / np.hypot(*(c - b))
     on_coupler = along @ (p - b), along[0] * (p - b)[1] - along[1] * (p - b)[0]
@@ -87,19 +93,19 @@ def as_mechanism(one: Any) -> mbsd.Mechanism:
 def _timed(run: Any) -> tuple[float, Any]:
     """The best processor time of some runs (s), and what the last one found."""
     run()
-    best, found = math.inf, None
+    best, last = math.inf, None
     for _ in range(ROUNDS):
         began = time.process_time()
-        found = run()
+        last = run()
         best = min(best, time.process_time() - began)
-    return best, found
+    return best, last
 
 
 def measured() -> tuple[list[Row], list[Bar]]:
     """Both rows, and the bar."""
     ours, mechanism = _timed(_ours)
     theirs, designs = _timed(_theirs)
-    errors = [error(as_mechanism(one)) for one in designs]
+    errors = [error(as_mechanism(design)) for design in designs]
     rows = [
         Row(PROBLEM, "mbsd", mbsd.__version__, f"fit_path, one start, nine numbers free{TIME}", ours, error(mechanism)),
         Row(

@@ -95,19 +95,19 @@ def descend(ready: Statics, q: np.ndarray) -> tuple[np.ndarray, int]:
             if not len(value) or value[0] >= -max(flat, 1e-9 * here.largest):
                 return q, count
             step = LONGEST / 3.0 * direction[:, 0] * (1.0 if direction[:, 0].sum() >= 0.0 else -1.0)
-            found = _leave(ready, q, here.basis, step)
+            better = _leave(ready, q, here.basis, step)
         else:
             step = -np.linalg.solve(stiffness, here.slope) if value[0] > flat else None
             if step is None or step @ here.slope >= 0.0:
                 least = max(flat, 1e-3 * float(np.abs(here.slope).max()))
                 step = -direction @ (direction.T @ here.slope / np.maximum(np.abs(value), least))
             step *= min(1.0, LONGEST / max(float(np.linalg.norm(step)), 1e-300))
-            found = _downhill(ready, q, here, step)
-        if found is None:
+            better = _downhill(ready, q, here, step)
+        if better is None:
             if here.balanced(ACCEPTED, stiffness):
                 return q, count
             break
-        q, here = found
+        q, here = better
     raise _none(ready, here, start, q, began)
 
 
@@ -147,19 +147,19 @@ def newton(ready: Statics, q: np.ndarray) -> tuple[np.ndarray, int]:
             return q, count
         step = -np.linalg.lstsq(stiffness, here.slope, rcond=1e-10)[0]
         step *= min(1.0, LONGEST / max(float(np.linalg.norm(step)), 1e-300))
-        part, found = 1.0, None
+        part, better = 1.0, None
         for _ in range(30):
             moved = _moved(ready, q, here.basis @ (part * step))
             there = look(ready, moved) if moved is not None else None
             if moved is not None and there is not None and _norm(there) < (1.0 - 1e-4 * part) * _norm(here):
-                found = moved, there
+                better = moved, there
                 break
             part /= 2.0
-        if found is None:
+        if better is None:
             if here.balanced(ACCEPTED, stiffness):
                 return q, count
             break
-        q, here = found
+        q, here = better
     raise _none(ready, here, start, q, began)
 
 

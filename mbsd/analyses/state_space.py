@@ -124,7 +124,7 @@ def _refuse_massless(model: str, names: tuple[str, ...], mass: np.ndarray) -> No
     """Raise MobilityError for a motion (f, f) that moves no mass: it has no equation of motion."""
     size = np.sqrt(np.maximum(np.diag(mass), 0.0))
     if not (size > 0).all():
-        loose = [name for name, one in zip(names, size, strict=True) if not one > 0]
+        loose = [name for name, mass_moved in zip(names, size, strict=True) if not mass_moved > 0]
         raise MobilityError(
             f"{model}: nothing that has a mass moves with {', '.join(loose)}; give bodies mass and inertia"
         )

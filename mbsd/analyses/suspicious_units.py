@@ -276,10 +276,10 @@ def _assemblies(m: Model) -> Iterator[Finding]:
     """A start that may be meant otherwise."""
     from mbsd.kinematics.pose.twins import twin
 
-    found = twin(m)
-    if found is not None:
-        name = found.body
-        taken, other = (f"{math.degrees(angle):.4g}" for angle in (found.taken, found.other))
+    second_assembly = twin(m)
+    if second_assembly is not None:
+        name = second_assembly.body
+        taken, other = (f"{math.degrees(angle):.4g}" for angle in (second_assembly.taken, second_assembly.other))
         yield Finding(
             name,
             f"the links close in two ways that are as near to where they were put: with {name} at {taken} degrees, "

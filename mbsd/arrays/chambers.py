@@ -71,26 +71,26 @@ def check_pistons(packed: Packed, t: np.ndarray, q: np.ndarray, tell: bool = Tru
     Where ``tell`` says so, warn of a piston that is elsewhere than crank and rod of its cycle have it, since heat is
     released there.
     """
-    for one in chambers(packed):
-        cycle, shift = one.chamber.cycle, one.chamber.shift
+    for placed in chambers(packed):
+        cycle, shift = placed.chamber.cycle, placed.chamber.shift
         if cycle is not None and cycle.height is None:
             continue  # its pressure asks for no volume
-        height = _height(packed, one, q)
+        height = _height(packed, placed, q)
         k = int(height.argmin())
         if not height[k] > 0.0:
             raise ModelError(
-                f"{packed.name}: force '{one.name}': at t = {t[k]:.6g} s the piston lies {height[k] - shift:.6g} m "
+                f"{packed.name}: force '{placed.name}': at t = {t[k]:.6g} s the piston lies {height[k] - shift:.6g} m "
                 f"along its cylinder, where its gas has no room left: the volume would be "
-                f"{one.chamber.area * height[k]:.3g} m^3. Move the markers apart, or give it more clearance"
+                f"{placed.chamber.area * height[k]:.3g} m^3. Move the markers apart, or give it more clearance"
             )
         if not tell or cycle is None or cycle.height is None or not cycle.burns:
             continue
-        since = one.since(q)
+        since = placed.since(q)
         off = height - cycle.height(since)
         k = int(np.abs(off).argmax())
-        if abs(off[k]) > ASTRAY * cycle.displaced / one.chamber.area:
+        if abs(off[k]) > ASTRAY * cycle.displaced / placed.chamber.area:
             warn(
-                f"{packed.name}: force '{one.name}': at t = {t[k]:.6g} s, with the crank "
+                f"{packed.name}: force '{placed.name}': at t = {t[k]:.6g} s, with the crank "
                 f"{math.degrees(since[k]):.4g} degrees past its firing, the piston lies {height[k] - shift:.6g} m "
                 f"along its cylinder; stroke, rod, offset, fires_at and top have it at "
                 f"{height[k] - off[k] - shift:.6g} m. Correct them",
@@ -98,18 +98,18 @@ def check_pistons(packed: Packed, t: np.ndarray, q: np.ndarray, tell: bool = Tru
             )
 
 
-def _height(packed: Packed, one: Placed, q: np.ndarray) -> np.ndarray:
+def _height(packed: Packed, placed: Placed, q: np.ndarray) -> np.ndarray:
     """(T,) of the gas (m)."""
-    place = marker_places(packed, q, one.j) - marker_places(packed, q, one.i)
-    return (marker_axes(packed, q, one.i) * place).sum(axis=1) + one.chamber.shift
+    place = marker_places(packed, q, placed.j) - marker_places(packed, q, placed.i)
+    return (marker_axes(packed, q, placed.i) * place).sum(axis=1) + placed.chamber.shift
 
 
 def whole_cycles(packed: Packed, first: np.ndarray, last: np.ndarray) -> int:
     """How often a motion between two poses (3 nb,) repeats until all gas is where its cycle began; 1 where none is."""
     times = 1
-    for one in chambers(packed):
-        if one.chamber.cycle is not None:
-            turned = float(one.angle(last[None])[0] - one.angle(first[None])[0]) / one.chamber.cycle.period
+    for placed in chambers(packed):
+        if placed.chamber.cycle is not None:
+            turned = float(placed.angle(last[None])[0] - placed.angle(first[None])[0]) / placed.chamber.cycle.period
             ratio = Fraction(turned).limit_denominator(MOST)
             if ratio and abs(turned - float(ratio)) <= SAME:
                 times = math.lcm(times, ratio.denominator)
@@ -127,16 +127,16 @@ def phase_changes(
     ``states``: q, v, a (T, 3 nb) at times t (T,); ``motion`` gives q, v at other rising times.
     """
     out: list[tuple[float, float, str]] = []
-    for one in chambers(packed):
-        cycle = one.chamber.cycle
+    for placed in chambers(packed):
+        cycle = placed.chamber.cycle
         if cycle is None or not cycle.changes:
             continue
-        angle = one.since(states[0])
+        angle = placed.since(states[0])
         step, wanted = _passed(angle, cycle.changes, cycle.period)
         if not len(step):
             continue
         h = np.diff(t)[step]
-        samples = np.stack([angle, one.angle(states[1]), one.angle(states[2])], axis=-1)
+        samples = np.stack([angle, placed.angle(states[1]), placed.angle(states[2])], axis=-1)
         quintics = hermite(h, samples[step], samples[step + 1])
         low, high, way = np.zeros(len(step)), h.copy(), np.sign(angle[step + 1] - angle[step])
         for _ in range(HALVINGS):
@@ -149,7 +149,7 @@ def phase_changes(
             order = np.argsort(times, kind="stable")
             at, inverse = np.unique(times[order], return_inverse=True)
             q, v = motion(at)
-            gap, rates = one.since(q), one.angle(v)
+            gap, rates = placed.since(q), placed.angle(v)
             back = np.empty(len(times), int)
             back[order] = inverse
             miss, rate = gap[back] - wanted, rates[back]
@@ -159,7 +159,7 @@ def phase_changes(
                 break
         near = NEAR / np.maximum(np.abs(rate), 1e-300)
         room = (near < 0.1 * h) & (times - near > t[0]) & (times + near < t[-1])
-        out += [(float(a - b), float(a + b), one.name) for a, b in zip(times[room], near[room], strict=True)]
+        out += [(float(a - b), float(a + b), placed.name) for a, b in zip(times[room], near[room], strict=True)]
     return sorted(out)
 
 

@@ -72,9 +72,11 @@ def with_friction(
     for passes in range(MOST_PASSES):
         friction = friction_under(packed, loads, q, v, x)
         solved = solve(friction)
-        found = normals_along(packed, loads, q, compact, solved[0])
-        gap = found - x
-        open_ = ~(np.abs(gap).max(axis=1) <= SETTLED * np.maximum(found.max(axis=1), FAINT * found.max()))
+        normal_forces = normals_along(packed, loads, q, compact, solved[0])
+        gap = normal_forces - x
+        open_ = ~(
+            np.abs(gap).max(axis=1) <= SETTLED * np.maximum(normal_forces.max(axis=1), FAINT * normal_forces.max())
+        )
         if not open_.any():
             return solved, friction
         bend = gap - last

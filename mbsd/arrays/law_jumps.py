@@ -41,7 +41,7 @@ def jump_times(packed: Packed, laws: Laws, start: float, end: float) -> dict[flo
 
     For functions of the user, the breaks that were given count.
     """
-    found: dict[float, dict[str, None]] = {}
+    jumping: dict[float, dict[str, None]] = {}
     names = [(name, 2) for name in packed.driver_names]
     names += [(force.name, 0) for force in packed.forces for _ in force.laws]
     given = [(float(t), force.name) for force in packed.forces for t in force.params.get("breaks", ())]
@@ -51,8 +51,8 @@ def jump_times(packed: Packed, laws: Laws, start: float, end: float) -> dict[flo
             given += [(t, name) for t in disagreeing(own, order, LAW_STEP)]
     for t, name in given:
         if start < t < end:
-            found.setdefault(t, {})[name] = None
-    return {t: tuple(found[t]) for t in sorted(found)}
+            jumping.setdefault(t, {})[name] = None
+    return {t: tuple(jumping[t]) for t in sorted(jumping)}
 
 
 def reach_beside(start: float, end: float) -> float:

@@ -53,9 +53,9 @@ def _loads(packed: Packed) -> Loads:
             ux, uy = system.marker_axis[i]
             axis = (-uy, ux) if part.turned else (ux, uy)
             where.append((*system.marker_arm[i], *axis, *system.marker_arm[j]))
-            for one in part.terms:
-                term.append((one.kind, numbered[one.law] if one.law else 0))
-                number.append((one.a, one.b, one.c))
+            for addend in part.terms:
+                term.append((addend.kind, numbered[addend.law] if addend.law else 0))
+                number.append((addend.a, addend.b, addend.c))
     interaction, given, switching, remembers = pack_interactions(packed)
     user, user_body, user_com = pack_user_forces(packed)
     friction, friction_number = pack_friction(packed)
@@ -89,19 +89,27 @@ def pack_interactions(packed: Packed) -> tuple[np.ndarray, np.ndarray, bool, boo
     for force in packed.forces:
         numbered = {name: law + 1 + k for k, name in enumerate(force.laws)}
         law += len(force.laws)
-        for one in force.kind.interactions(force, packed.masses):
-            i, j = number[one.i.body.name], number[one.j.body.name]
-            arms = [(m.x - packed.com[b, 0], m.y - packed.com[b, 1]) for m, b in ((one.i, i), (one.j, j))]
-            axis = math.cos(one.i.angle), math.sin(one.i.angle)
-            called = (float(law_address(packed, force)),) if one.calls_law else ()
-            block = np.array([*arms[0], *axis, *arms[1], one.j.angle - one.i.angle, *called, *one.numbers], float)
-            law_of, crank = numbered[one.law] if one.law else 0, number[one.crank] if one.crank else 0
-            holding = first_holding(force, number) if one.with_states else (0, 0)
-            rows.append((i, j, law_of, at, address_of(one.function), call.address(), crank, *holding))
+        for interaction in force.kind.interactions(force, packed.masses):
+            i, j = number[interaction.i.body.name], number[interaction.j.body.name]
+            arms = [
+                (m.x - packed.com[b, 0], m.y - packed.com[b, 1]) for m, b in ((interaction.i, i), (interaction.j, j))
+            ]
+            axis = math.cos(interaction.i.angle), math.sin(interaction.i.angle)
+            called = (float(law_address(packed, force)),) if interaction.calls_law else ()
+            block = np.array(
+                [*arms[0], *axis, *arms[1], interaction.j.angle - interaction.i.angle, *called, *interaction.numbers],
+                float,
+            )
+            law_of, crank = (
+                numbered[interaction.law] if interaction.law else 0,
+                number[interaction.crank] if interaction.crank else 0,
+            )
+            holding = first_holding(force, number) if interaction.with_states else (0, 0)
+            rows.append((i, j, law_of, at, address_of(interaction.function), call.address(), crank, *holding))
             given.append(block)
             at += len(block)
-            switching = switching or switches(one.function)
-            remembers = remembers or one.remembers
+            switching = switching or switches(interaction.function)
+            remembers = remembers or interaction.remembers
     table = np.array(rows, np.int64).reshape(-1, COLUMNS)
     return table, np.concatenate(given) if given else np.zeros(0), switching, remembers
 

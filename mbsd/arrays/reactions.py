@@ -25,9 +25,9 @@ def wrenches(packed: Packed, compact: np.ndarray, q: np.ndarray, lam: np.ndarray
     own = rows[:, 3:] if second.all() else np.where(np.repeat(second, counts)[:, None, None], rows[:, 3:], rows[:, :3])
     parts = own * _by_time(lam)[:, None]
     push = np.zeros((len(counts), 3, len(lam)))
-    for one, start, count in zip(push, first_row, counts, strict=False):
+    for total, start, count in zip(push, first_row, counts, strict=False):
         for row in range(start, start + count):
-            one += parts[row]
+            total += parts[row]
     push *= np.where(second, -1.0, 1.0)[:, None, None]
     pose = _by_row(q.reshape(len(q), -1, 3))
     turn = np.zeros((2, len(pose), len(lam)))

@@ -106,21 +106,21 @@ def balance(
     wanted = _wanted(m.name, of)
     if norm not in ("rms", "peak"):
         raise ModelError(f"{m.name}: balance: norm is {norm!r}; it is 'rms' or 'peak'")
-    if not means or not all(isinstance(one, Counterweight | BalanceShaft) for one in means):
+    if not means or not all(isinstance(mass, Counterweight | BalanceShaft) for mass in means):
         raise ModelError(f"{m.name}: balance: give a list of Counterweight(...) and BalanceShaft(...)")
     if sol.work is not None:
         raise ModelError(f"{m.name}: balance: masses would change a motion that forces make; give one of sweep()")
-    for one in means:
-        if isinstance(one, Counterweight) and m.bodies.get(one.body) is not one.about.body:
-            raise ModelError(f"{m.name}: balance: the counterweight on '{one.body}' is on a body of another mechanism")
+    for mass in means:
+        if isinstance(mass, Counterweight) and m.bodies.get(mass.body) is not mass.about.body:
+            raise ModelError(f"{m.name}: balance: the counterweight on '{mass.body}' is on a body of another mechanism")
     place, z0 = number_pair(f"{m.name}: balance: about", about), finite_number(f"{m.name}: balance: z", z)
-    shafts = any(isinstance(one, BalanceShaft) for one in means)
+    shafts = any(isinstance(mass, BalanceShaft) for mass in means)
     turned_by = (crank_of(sol) if crank is None else crank) if shafts else ""
     effects = [
-        effect_of_weight(sol, one, place, z0)
-        if isinstance(one, Counterweight)
-        else effect_of_shaft(sol, one, turned_by, place, z0)
-        for one in means
+        effect_of_weight(sol, mass, place, z0)
+        if isinstance(mass, Counterweight)
+        else effect_of_shaft(sol, mass, turned_by, place, z0)
+        for mass in means
     ]
     given = {name: _given(sol, name, place, z0) for name in wanted}
     rate = _rate(sol, wanted)
@@ -128,12 +128,12 @@ def balance(
     if "torque" in wanted:
         added["torque"] = added["torque"] - added["torque"].mean(axis=0)
     shares = _shares(sol.t)
-    u = _search(given, added, wanted, norm, np.array([one.largest for one in means]), shares)
+    u = _search(given, added, wanted, norm, np.array([mass.largest for mass in means]), shares)
     full = np.concatenate([u, np.hypot(*u.T)[:, None]], axis=1)
     series = {name: given[name] + np.einsum("tckj,kj->tc", added[name], full) for name in wanted}
     return Balance(
-        tuple(_weight(one, v) for one, v in zip(means, u, strict=True) if isinstance(one, Counterweight)),
-        tuple(_shaft(one, v) for one, v in zip(means, u, strict=True) if isinstance(one, BalanceShaft)),
+        tuple(_weight(mass, v) for mass, v in zip(means, u, strict=True) if isinstance(mass, Counterweight)),
+        tuple(_shaft(mass, v) for mass, v in zip(means, u, strict=True) if isinstance(mass, BalanceShaft)),
         norm,
         {name: _measure(given[name], norm, shares) for name in wanted},
         {name: _measure(series[name], norm, shares) for name in wanted},
@@ -225,14 +225,17 @@ def _shares(t: np.ndarray) -> np.ndarray:
     return np.append(gaps, 0.0) / (2 * (t[-1] - t[0])) + np.insert(gaps, 0, 0.0) / (2 * (t[-1] - t[0]))
 
 
-def _weight(one: Counterweight, u: np.ndarray) -> Weight:
+def _weight(counterweight: Counterweight, u: np.ndarray) -> Weight:
     mass, angle = float(np.hypot(*u)), math.atan2(u[1], u[0])
-    x, y = one.about.x + one.radius * math.cos(angle), one.about.y + one.radius * math.sin(angle)
-    return Weight(one.body, mass, angle, x, y, one.plane)
+    x, y = (
+        counterweight.about.x + counterweight.radius * math.cos(angle),
+        counterweight.about.y + counterweight.radius * math.sin(angle),
+    )
+    return Weight(counterweight.body, mass, angle, x, y, counterweight.plane)
 
 
-def _shaft(one: BalanceShaft, u: np.ndarray) -> Shaft:
-    return Shaft(one.ratio, float(np.hypot(*u)), math.atan2(u[1], u[0]), one.at, one.z)
+def _shaft(balance_shaft: BalanceShaft, u: np.ndarray) -> Shaft:
+    return Shaft(balance_shaft.ratio, float(np.hypot(*u)), math.atan2(u[1], u[0]), balance_shaft.at, balance_shaft.z)
 
 
 def _carry(body: Body, weight: Weight) -> None:

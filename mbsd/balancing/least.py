@@ -30,7 +30,7 @@ def least_mean_square(b: np.ndarray, columns: np.ndarray, bounds: np.ndarray) ->
     size = _sizes(free, bounds)
     best, least = np.zeros_like(free), np.inf
     for start in _starts(free, bounds):
-        found = minimize(
+        minimum = minimize(
             lambda x: _square(x.reshape(-1, 2) * size, gram, pull),
             (start / size).ravel(),
             jac=lambda x: _slope(x.reshape(-1, 2) * size, gram, pull, size),
@@ -38,8 +38,8 @@ def least_mean_square(b: np.ndarray, columns: np.ndarray, bounds: np.ndarray) ->
             method="SLSQP",
             options={"ftol": 1e-14, "maxiter": 200},
         )
-        if found.fun < least:
-            best, least = found.x.reshape(-1, 2) * size, found.fun
+        if minimum.fun < least:
+            best, least = minimum.x.reshape(-1, 2) * size, minimum.fun
     return best
 
 
@@ -70,17 +70,17 @@ def least_peak(
     limits = [
         {
             "type": "ineq",
-            "fun": lambda x, one=one: one["fun"](x[:-1]),
-            "jac": lambda x, one=one: np.append(one["jac"](x[:-1]), 0.0),
+            "fun": lambda x, bound=bound: bound["fun"](x[:-1]),
+            "jac": lambda x, bound=bound: np.append(bound["jac"](x[:-1]), 0.0),
         }
-        for one in _within(bounds, size)
+        for bound in _within(bounds, size)
     ]
-    found = minimize(
+    minimum = minimize(
         lambda x: x[-1], first, jac=lambda x: np.append(np.zeros(len(x) - 1), 1.0),
         constraints=[{"type": "ineq", "fun": margin, "jac": margin_slope}, *limits],
         method="SLSQP", options={"ftol": 1e-12, "maxiter": 500},
     )  # fmt: skip
-    u = found.x[:-1].reshape(-1, 2) * size
+    u = minimum.x[:-1].reshape(-1, 2) * size
     peaks = [np.bincount(width, rows(np.append((v / size).ravel(), 0.0)) ** 2, groups).max() for v in (u, start)]
     inside = (np.hypot(*u.T) <= bounds * (1 + 1e-9)).all()
     return u if inside and peaks[0] <= peaks[1] else start

@@ -87,8 +87,8 @@ def number_array(what: str, value: object, finite: bool = True) -> np.ndarray:
         raise ModelError(f"{what} is {shown(value)}; it must be a list of numbers, all rows equally long") from None
     plain = isinstance(value, list | tuple)
     if plain or array.dtype.kind == "O":
-        for at, one in _entries(value if plain else array):
-            finite_number(f"{what}{at}", one) if finite else _number(f"{what}{at}", one)
+        for at, number in _entries(value if plain else array):
+            finite_number(f"{what}{at}", number) if finite else _number(f"{what}{at}", number)
     if array.dtype.kind not in "fiuO":
         raise ModelError(f"{what} is {shown(value)}; it must be numbers")
     try:
@@ -106,9 +106,9 @@ def _entries(value: Any, at: str = "", level: int = 0) -> Iterator[tuple[str, An
     if isinstance(value, np.ndarray) and (value.ndim == 0 or value.dtype.kind in "fiu"):
         yield from () if value.ndim else [(at, value.item())]
     elif level < 4 and isinstance(value, list | tuple | np.ndarray):
-        for k, one in enumerate(value):
-            if type(one) is not float or not math.isfinite(one):
-                yield from _entries(one, f"{at}[{k}]", level + 1)
+        for k, entry in enumerate(value):
+            if type(entry) is not float or not math.isfinite(entry):
+                yield from _entries(entry, f"{at}[{k}]", level + 1)
     elif level < 4 and np.ndim(value):
         yield from _entries(np.asarray(value), at, level + 1)
     else:

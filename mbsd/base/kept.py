@@ -27,9 +27,9 @@ class Kept(Generic[T]):
         with self._changing:
             if key in self._results:
                 return self._results[key]
-        found = find()
+        result = find()
         with self._changing:
             while len(self._results) >= MOST:
                 del self._results[next(iter(self._results))]
-            self._results[key] = found
-        return found
+            self._results[key] = result
+        return result

@@ -19,7 +19,7 @@ def no_such(what: str, name: object, known: Iterable[object]) -> str:
 
     ``what`` says what was looked for; ``known`` are the names that there are, of which thirty are listed.
     """
-    names = [str(one) for one in known]
+    names = [str(known_name) for known_name in known]
     listed = ", ".join(names[:LISTED]) or "none"
     if len(names) > LISTED:
         listed += f" and {len(names) - LISTED} more"
@@ -42,7 +42,7 @@ def _meant(name: object, names: list[str]) -> str | None:
     if not isinstance(name, str) or not 0 < len(name) <= 200:
         return None
     small: dict[str, str] = {}
-    for one in names:
-        small.setdefault(one.lower(), one)
+    for known_name in names:
+        small.setdefault(known_name.lower(), known_name)
     near = get_close_matches(name.strip().lower(), small, n=1, cutoff=ALIKE)
     return small[near[0]] if near else None

@@ -57,9 +57,9 @@ def kind_named(module: str, name: str) -> Any:
         content = list(vars(importlib.import_module(module)).values())
     except (ImportError, ValueError) as error:
         raise ModelError(f"the kind '{name}' is of {module}, which cannot be imported here: {error}") from error
-    for one in content:
-        if isinstance(one, ByName) and one.name == name:
-            return one
+    for candidate in content:
+        if isinstance(candidate, ByName) and candidate.name == name:
+            return candidate
     raise ModelError(f"there is no kind '{name}' in {module}; keep it in a variable at the top level of that file")
 
 
@@ -124,7 +124,7 @@ def from_code(code: bytes, own: list[Any], what: str) -> Function:
 
 def _held(value: Any, what: str) -> Any:
     if isinstance(value, Mapping):
-        return {key: _held(one, what) for key, one in value.items()}
+        return {key: _held(part, what) for key, part in value.items()}
     if not callable(value) or isinstance(value, type):
         return value
     kind = type(value).__module__
@@ -133,5 +133,5 @@ def _held(value: Any, what: str) -> Any:
 
 def _released(value: Any) -> Any:
     if isinstance(value, Mapping):
-        return {key: _released(one) for key, one in value.items()}
+        return {key: _released(part) for key, part in value.items()}
     return value.function if isinstance(value, Function) else value

@@ -20,10 +20,10 @@ _pending = threading.Event()
 
 def taken() -> bool:
     """Whether Ctrl-C came in a function that a kernel called, since it was last asked."""
-    found = _pending.is_set()
-    if found:
+    came = _pending.is_set()
+    if came:
         _pending.clear()
-    return found
+    return came
 
 
 @contextmanager

@@ -96,14 +96,14 @@ def _own_temporary() -> Path | None:
 def _read(path: str) -> tuple[bytes, tuple[tuple[str, tuple[str, ...]], ...]]:
     """Hash of a source file; the modules that it imports at its top, each with the names that it takes from there."""
     source = Path(path).read_bytes()
-    found: list[tuple[str, tuple[str, ...]]] = []
+    imports: list[tuple[str, tuple[str, ...]]] = []
     for match in _IMPORT.finditer(source.decode()):
         base, members, plain = match.groups()
         if base:
-            found.append((base, tuple(re.findall(r"\w+", re.sub(r"\bas\s+\w+|#.*", "", members)))))
+            imports.append((base, tuple(re.findall(r"\w+", re.sub(r"\bas\s+\w+|#.*", "", members)))))
         else:
-            found += [(name.split()[0], ()) for name in plain.split(",") if name.split()]
-    return hashlib.sha256(source).digest(), tuple(found)
+            imports += [(name.split()[0], ()) for name in plain.split(",") if name.split()]
+    return hashlib.sha256(source).digest(), tuple(imports)
 
 
 def _sources(path: str) -> Iterator[str]:
@@ -117,10 +117,10 @@ def _sources(path: str) -> Iterator[str]:
             if len(modules) < max(1, len(members)):  # a package that only modules are taken from gives no value itself
                 modules.append(base)
             for name in modules:
-                found = getattr(sys.modules.get(name), "__file__", None)
-                if found and found not in seen and found.startswith(within) and found not in _ABOUT_THE_CACHE:
-                    seen.add(found)
-                    waiting.append(found)
+                file = getattr(sys.modules.get(name), "__file__", None)
+                if file and file not in seen and file.startswith(within) and file not in _ABOUT_THE_CACHE:
+                    seen.add(file)
+                    waiting.append(file)
 
 
 @cache
@@ -183,11 +183,11 @@ class _ShippedLocator(_Locator):
 
 def _forget_old(folder: Path) -> None:
     """Remove all but the newest versions of what is kept in ``folder``."""
-    same = [one for one in folder.parent.glob(f"{folder.name[:-16]}*") if len(one.name) == len(folder.name)]
+    same = [version for version in folder.parent.glob(f"{folder.name[:-16]}*") if len(version.name) == len(folder.name)]
     times = []
-    for one in same:
+    for version in same:
         try:
-            times.append((one.stat().st_mtime, one))
+            times.append((version.stat().st_mtime, version))
         except OSError:
             continue
     for _, old in sorted(times, reverse=True)[KEPT:]:
@@ -202,8 +202,8 @@ class _Results(CompileResultCacheImpl):
     def reduce(self, cres: Any) -> Any:
         """What is written."""
         library = cres.library
-        called = {name: (*_place(one.dispatcher), one.arguments) for name, one in library.calls.items()}
-        cells = [(*_place(one.dispatcher), one.arguments, one.returns) for one in library.cells.values()]
+        called = {name: (*_place(call.dispatcher), call.arguments) for name, call in library.calls.items()}
+        cells = [(*_place(cell.dispatcher), cell.arguments, cell.returns) for cell in library.cells.values()]
         return called, cells, super().reduce(cres)
 
     def rebuild(self, target_context: Any, payload: Any) -> Any:
@@ -220,7 +220,7 @@ class _Results(CompileResultCacheImpl):
                 return None
         cres = super().rebuild(target_context, own)
         cres.library.calls = calls
-        cres.library.cells = {one.name: one for one in made}
+        cres.library.cells = {cell.name: cell for cell in made}
         return cres
 
 
@@ -283,12 +283,12 @@ class KernelCache(_Cache):
         """The compiled function, or None."""
         if not self._enabled:
             return None
-        found = self._shipped.load_overload(sig, target_context) if self._shipped is not None else None
-        if found is None and self._files is not None:
-            found = self._files.load_overload(sig, target_context)
-        if found is None and SHIPPED.is_dir():
+        overload = self._shipped.load_overload(sig, target_context) if self._shipped is not None else None
+        if overload is None and self._files is not None:
+            overload = self._files.load_overload(sig, target_context)
+        if overload is None and SHIPPED.is_dir():
             tell_of_other_kernels()
-        return found
+        return overload
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep a compiled function."""

@@ -83,9 +83,9 @@ class KernelLibrary(JITCodeLibrary):
         whole = self.own_module()
         if self.calls:
             whole = whole.clone()
-            for one in self.calls.values():
-                library = one.library
-                assert library is not None, one.name
+            for called in self.calls.values():
+                library = called.library
+                assert library is not None, called.name
                 whole.link_in(library._get_module_for_linking(), preserve=True)
         return whole
 

@@ -47,13 +47,13 @@ class _Worker(InlineWorker):
         numba makes two copies, each of which takes all variables of the function along with every block.
         """
         copied: dict[int, Any] = {}
-        blocks = {label: copy.deepcopy(one, copied) for label, one in callee_ir.blocks.items()}
+        blocks = {label: copy.deepcopy(callee_block, copied) for label, callee_block in callee_ir.blocks.items()}
         scope, statement = block.scope, block.body[i]
         blocks = add_offset_to_labels(blocks, max(ir_utils._the_max_label.next(), *caller_ir.blocks) + 1)
         blocks = simplify_CFG(blocks)
         first = min(blocks)
         ir_utils._the_max_label.update(max(blocks))
-        (own,) = {id(one.scope): one.scope for one in blocks.values()}.values()
+        (own,) = {id(callee_block.scope): callee_block.scope for callee_block in blocks.values()}.values()
         renamed = {}
         for variable in tuple(own.localvars._con.values()):
             name = _created_inlined_var_name(callee_ir.func_id.unique_name, variable.name)
@@ -121,7 +121,8 @@ class _Inline(InlineInlinables):
 
 def _with_ours(manager: Any) -> Any:
     manager.passes = [
-        (_Inline, description) if one is InlineInlinables else (one, description) for one, description in manager.passes
+        (_Inline, description) if step is InlineInlinables else (step, description)
+        for step, description in manager.passes
     ]
     return manager
 

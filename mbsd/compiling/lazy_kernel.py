@@ -121,8 +121,8 @@ def _through_cell(dispatcher: Any) -> Callable[..., Any]:
         place = module.globals.get(cell.name) or cgutils.ir.GlobalVariable(module, byte, cell.name)
         with cgutils.if_unlikely(builder, cgutils.is_null(builder, builder.load(place))):
             fill = cgutils.get_or_insert_function(module, cgutils.ir.FunctionType(status, [place.type]), COMPILE)
-            found = builder.call(fill, [place])
-            with cgutils.if_unlikely(builder, builder.icmp_signed("==", found, status(FAILED))):
+            compiled = builder.call(fill, [place])
+            with cgutils.if_unlikely(builder, builder.icmp_signed("==", compiled, status(FAILED))):
                 conventions.return_user_exc(builder, RuntimeError, ("mbsd: a kernel could not be compiled",))
             with cgutils.if_unlikely(builder, cgutils.is_null(builder, builder.load(place))):
                 conventions.return_user_exc(builder, KeyboardInterrupt, ())

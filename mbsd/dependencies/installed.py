@@ -44,7 +44,7 @@ def distributions(top: str) -> tuple[str, ...]:
     try:
         metadata.version(top)
     except (metadata.PackageNotFoundError, ValueError):
-        return tuple(sorted({one.metadata["Name"] for one in _by_module().get(top, ())}))
+        return tuple(sorted({distribution.metadata["Name"] for distribution in _by_module().get(top, ())}))
     return (top,)
 
 
@@ -54,21 +54,21 @@ def _by_module() -> Mapping[str, list[metadata.Distribution]]:
 
     ``metadata.packages_distributions()`` asks the disk for every file of every package, which takes a second.
     """
-    found: defaultdict[str, list[metadata.Distribution]] = defaultdict(list)
-    for one in metadata.distributions():
-        for top in _tops(one):
-            found[top].append(one)
-    return found
+    by_module: defaultdict[str, list[metadata.Distribution]] = defaultdict(list)
+    for distribution in metadata.distributions():
+        for top in _tops(distribution):
+            by_module[top].append(distribution)
+    return by_module
 
 
-def _tops(one: metadata.Distribution) -> set[str]:
+def _tops(distribution: metadata.Distribution) -> set[str]:
     """Top-level modules of a distribution: those that it declares, else those of its files."""
-    declared = (one.read_text("top_level.txt") or "").split()
+    declared = (distribution.read_text("top_level.txt") or "").split()
     if declared:
         return set(declared)
-    record = one.read_text("RECORD")
+    record = distribution.read_text("RECORD")
     if record is None:
-        paths = [file.as_posix() for file in one.files or ()]
+        paths = [file.as_posix() for file in distribution.files or ()]
     else:
         paths = [line.removeprefix('"').partition(",")[0] for line in record.splitlines()]
     tops = {path.partition("/")[0] if "/" in path else inspect.getmodulename(path) or path for path in paths}

@@ -126,4 +126,4 @@ def hex_of(light: float, chroma: float, hue: float) -> str:
             break
     linear = np.clip(linear, 0.0, 1.0)
     rgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-    return "#" + "".join(f"{round(255 * float(one)):02x}" for one in rgb)
+    return "#" + "".join(f"{round(255 * float(channel)):02x}" for channel in rgb)

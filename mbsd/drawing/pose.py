@@ -129,7 +129,7 @@ def tracks_of(sol: Solution) -> Tracks:
 def _markers_of(m: Model) -> dict[str, Joint | Force]:
     """All that has two markers. A force or contact may have the name of a joint, so theirs say what they are."""
     forces = {f"force {name}": force for name, force in m.forces.items()}
-    return {**m.joints, **m.drivers, **forces, **{f"contact {name}": one for name, one in m.contacts.items()}}
+    return {**m.joints, **m.drivers, **forces, **{f"contact {name}": contact for name, contact in m.contacts.items()}}
 
 
 def _path(view: FrameView, marker: Marker) -> np.ndarray:

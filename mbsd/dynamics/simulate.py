@@ -103,8 +103,8 @@ def simulate(
     if event_rows:
         recording, asked = with_phase_changes(ready, run, recording, events, grid, asked)
     anew = partial(simulate, m, None, 1, grid, method, tolerance, step, None, options, event_rows, formulation)
-    found = solution(m, ready, recording, Between(at, anew, recording.out.y[-1, 0]))
-    return found if asked is None else asked.rows(found)
+    sol = solution(m, ready, recording, Between(at, anew, recording.out.y[-1, 0]))
+    return sol if asked is None else asked.rows(sol)
 
 
 def integrator_named(model: str, method: str) -> Integrator:

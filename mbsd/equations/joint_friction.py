@@ -162,9 +162,9 @@ def settle(dyn, ws, a, lam):
     loads = dyn.loads
     x = loads.normal[X]
     last = loads.normal[LAST]
-    found = loads.normal[FOUND]
+    settled = loads.normal[FOUND]
     change = loads.normal[CHANGE]
-    normal_forces(loads, ws, ws.jac, lam, found)
+    normal_forces(loads, ws, ws.jac, lam, settled)
     largest = 0.0
     for c in range(3, a.shape[0]):  # joints that carry nothing, as in free flight, have normal forces of rounding
         if c % 3 != 2:
@@ -174,11 +174,11 @@ def settle(dyn, ws, a, lam):
     square = 0.0
     for k in range(x.shape[0]):
         if loads.friction_number[k, SENSE] == NONE:
-            x[k] = found[k]
-        gap = found[k] - x[k]
+            x[k] = settled[k]
+        gap = settled[k] - x[k]
         if not math.isfinite(gap):
             return True
-        largest = max(largest, found[k])
+        largest = max(largest, settled[k])
         worst = max(worst, abs(gap))
         product += last[k] * (gap - last[k])
         square += (gap - last[k]) ** 2
@@ -192,7 +192,7 @@ def settle(dyn, ws, a, lam):
         weight = min(max(-weight * product / square, -10.0), 10.0)
     loads.iteration[WEIGHT] = weight
     for k in range(x.shape[0]):
-        gap = found[k] - x[k]
+        gap = settled[k] - x[k]
         last[k] = gap
         moved = max(x[k] + weight * gap, 0.0)
         change[k] = moved - x[k]

@@ -24,8 +24,8 @@ def place(system, q, ws):
         theta = q[3 * b + 2]
         ws.cos_sin[b, 0] = math.cos(theta)
         ws.cos_sin[b, 1] = math.sin(theta)
-    for one in system.moving:
-        k = one & PLACE
+    for coded in system.moving:
+        k = coded & PLACE
         b = system.marker_body[k] & PLACE
         c = ws.cos_sin[b, 0]
         s = ws.cos_sin[b, 1]
@@ -37,8 +37,8 @@ def place(system, q, ws):
         ws.arm[k, 1] = arm_y
         ws.position[k, 0] = q[3 * b] + arm_x
         ws.position[k, 1] = q[3 * b + 1] + arm_y
-    for one in system.directed:
-        k = one & PLACE
+    for coded in system.directed:
+        k = coded & PLACE
         b = system.marker_body[k] & PLACE
         c = ws.cos_sin[b, 0]
         s = ws.cos_sin[b, 1]
@@ -51,8 +51,8 @@ def place(system, q, ws):
 @inlined
 def move(system, v, ws):
     """Fill velocity and convective acceleration of the markers from v (3 nb,), after place at the same pose."""
-    for one in system.moving:
-        k = one & PLACE
+    for coded in system.moving:
+        k = coded & PLACE
         b = 3 * (system.marker_body[k] & PLACE)
         omega = v[b + 2]
         ws.velocity[k, 0] = v[b] - omega * ws.arm[k, 1]

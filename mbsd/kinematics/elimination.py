@@ -120,10 +120,10 @@ def _planned(
     steps: list[tuple[np.ndarray, np.ndarray]] = []
     while True:
         usable = constant & same_part & (np.abs(value) > 1e-9)
-        found = _cheapest_pivot(pattern, usable, open_rows, open_columns)
-        if found is None:
+        cheapest = _cheapest_pivot(pattern, usable, open_rows, open_columns)
+        if cheapest is None:
             break
-        r, c = found
+        r, c = cheapest
         open_rows[r], open_columns[c] = False, False
         targets = np.flatnonzero(pattern[:, c] & open_rows)
         others = np.flatnonzero(pattern[r] & open_columns)

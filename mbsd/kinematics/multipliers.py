@@ -90,10 +90,10 @@ def inverse_dynamics(
             motion = times[at], q[at], v[at]
             solved = partial(_multipliers, ready, times[at], compact, jac)
             applied = loads[at].copy()
-            [found], friction = with_friction(
+            [efforts], friction = with_friction(
                 packed, packed_loads, motion, compact, lambda f, solve=solved, q=applied: (solve(q + f),)
             )
-            lam[:] = found
+            lam[:] = efforts
             loads[at] += friction
         out.wrench[at] = wrenches(packed, compact, q[at], lam)
         rate = np.einsum("trc,tc->tr", jac, v[at, 3:]) - nu[at]
@@ -107,13 +107,13 @@ def inverse_dynamics(
 
 def singularity_margin(packed: Packed, rows: np.ndarray, drives: np.ndarray, q: np.ndarray) -> np.ndarray:
     """(T,) smallest over largest singular value of the scaled rows (n,) of J along a motion q (T, 3 nb)."""
-    kept, found = rows.astype(np.int64), np.zeros(len(q))
+    kept, margin = rows.astype(np.int64), np.zeros(len(q))
     scale = packed.row_scale()[kept, None] * packed.column_scale()
     for at in _chunks(packed, len(q)):
         _, compact, _ = _tabulated(packed, drives[at], q[at], np.zeros_like(q[at]))
         singular = np.linalg.svd(packed.spread(compact)[:, kept] * scale, compute_uv=False)
-        found[at] = singular[:, -1] / singular[:, 0]
-    return found
+        margin[at] = singular[:, -1] / singular[:, 0]
+    return margin
 
 
 def _chunks(packed: Packed, count: int) -> Iterator[slice]:
@@ -158,7 +158,9 @@ def _multipliers(
 ) -> np.ndarray:
     """(T, m) of J, compact (T, m, 6) and spread (T, m, n), and loads (T, 3 nb)."""
     if ready.mobility.redundant_rows:
-        return np.array([np.linalg.lstsq(one.T, load[3:], rcond=1e-9)[0] for one, load in zip(jac, loads, strict=True)])
+        return np.array(
+            [np.linalg.lstsq(matrix.T, load[3:], rcond=1e-9)[0] for matrix, load in zip(jac, loads, strict=True)]
+        )
     if jac.shape[1] <= DENSE:
         try:
             return np.linalg.solve(jac.transpose(0, 2, 1), loads[:, 3:, None])[..., 0]

@@ -98,16 +98,16 @@ def repetition(m: Model, common: float, ready: Prepared) -> Repetition:
     if least is None:
         return Repetition(common, None)
     for turns in sorted({max(least, 2), MOST_TURNS // least * least}):
-        found = _search(m, common, least, turns)
-        if found is not None:
-            return Repetition(common, found)
+        repeats = _search(m, common, least, turns)
+        if repeats is not None:
+            return Repetition(common, repeats)
     return Repetition(common, None)
 
 
 def rational(value: float) -> Fraction | None:
     """``value`` as p / q with q up to MOST_TURNS; None where it is none."""
-    found = Fraction(value).limit_denominator(MOST_TURNS)
-    return found if abs(value - float(found)) <= RATIONAL * max(1.0, abs(value)) else None
+    fraction = Fraction(value).limit_denominator(MOST_TURNS)
+    return fraction if abs(value - float(fraction)) <= RATIONAL * max(1.0, abs(value)) else None
 
 
 def _holds(law: object) -> bool:

@@ -99,15 +99,15 @@ class Prepared:
         """The motion at rising times (T,) (s): closed forms where they serve, else Newton-Raphson."""
         steps = Steps(self.packed, times)
         if self.groups is not None:
-            found = self._closed_form(self.groups, steps)
-            if found is not None:
-                return March(*found, steps, True)
+            marched = self._closed_form(self.groups, steps)
+            if marched is not None:
+                return March(*marched, steps, True)
         out_of_reach = steps.out_of_reach
         steps = Steps(self.packed, times)  # those of the closed form may be just where branches meet
-        found = self._newton(steps)
+        marched = self._newton(steps)
         if out_of_reach is not None:
             raise self._out_of_reach(out_of_reach)
-        return March(*found, steps, False)
+        return March(*marched, steps, False)
 
     def _closed_form(self, groups: Groups, steps: Steps) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
         """Positions, velocities, accelerations (T, 3 nb) at all steps; None where branches meet or a group opens."""

@@ -88,20 +88,20 @@ class _Flow:
         inner = self.t[k:end]
         times = inner if len(inner) and inner[-1] == last else np.append(inner, last)
         size = self.wide.size
-        found = solve_ivp(
+        solved = solve_ivp(
             self, (first, last), begun, "LSODA", times, rtol=TOLERANCE, atol=TOLERANCE * size,
             max_step=float(np.diff(self.t).max()),
         )  # fmt: skip
         self.wide.specials.check()
-        if not found.success:
-            at = float(found.t[-1]) if len(found.t) else first
+        if not solved.success:
+            at = float(solved.t[-1]) if len(solved.t) else first
             raise SimulationError(
                 f"{self.wide.name}: the states of its forces ({', '.join(self.wide.body_names[-self.wide.states :])}) "
-                f"cannot be followed beyond t = {at:.6g} s of this motion: {found.message} Look at what lets them grow "
-                "without bound there, such as a closed valve of a cylinder that a driver moves"
+                f"cannot be followed beyond t = {at:.6g} s of this motion: {solved.message} Look at what lets them "
+                "grow without bound there, such as a closed valve of a cylinder that a driver moves"
             )
-        out[k:end] = found.y.T[: end - k]
-        self.state = found.y[:, -1]
+        out[k:end] = solved.y.T[: end - k]
+        self.state = solved.y[:, -1]
 
     def __call__(self, time: float, state: np.ndarray) -> np.ndarray:
         step = min(max(int(np.searchsorted(self.t, time, side="right")) - 1, 0), len(self.t) - 2)

@@ -69,7 +69,7 @@ def sweep(
         check_states(packed, grid, q, states)
     loads = inverse_dynamics(ready, grid, drives, q, v, a, states)
     shape = (len(grid), -1, 3)
-    found = Solution(
+    sol = Solution(
         mechanism=m,
         packed=packed,
         t=grid,
@@ -86,7 +86,7 @@ def sweep(
         mobility=ready.mobility,
         route=ready.route if march.closed else "Newton-Raphson",
     )
-    return found if asked is None else asked.rows(found)
+    return sol if asked is None else asked.rows(sol)
 
 
 def _beside_jumps(ready: Prepared, grid: np.ndarray, march: March) -> Asked | None:
@@ -97,8 +97,8 @@ def _beside_jumps(ready: Prepared, grid: np.ndarray, march: March) -> Asked | No
 
     def motion(times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         every = np.union1d(grid, times)
-        found, rows = ready.march(every), np.searchsorted(every, times)
-        return found.q[rows], found.v[rows]
+        march, rows = ready.march(every), np.searchsorted(every, times)
+        return march.q[rows], march.v[rows]
 
     jumps, beside = jump_times(packed, compiled_laws(packed, start, end), start, end), reach_beside(start, end)
     rows = [(t - beside, t + beside, names) for t, names in jumps.items()]
@@ -142,9 +142,9 @@ def _whole_period(m: Model, ready: Prepared, march: March, duration: float) -> f
     if common is None:
         why = "the laws of its drivers have no common period"
     else:
-        found = repetition(m, common, ready).period
-        if found is not None:
-            return found
+        period = repetition(m, common, ready).period
+        if period is not None:
+            return period
         why = f"its bodies are not back within {MOST_TURNS} times {common:.6g} s, after which its drivers repeat"
     warn(
         f"{m.name}: {why}, so the motion does not repeat, and {duration:.6g} s of it are swept; "

@@ -35,22 +35,22 @@ def with_markers(
     """
     out = dict(named)
     known = arguments(add)
-    slots = [one for one in known if one.name not in named]
-    needed = [one for one in slots if one.role in (Role.MARKER, Role.BODY) and not one.several]
-    given = [one for one in slots if one.role is Role.OPTIONAL_BODY]
+    slots = [parameter for parameter in known if parameter.name not in named]
+    needed = [slot for slot in slots if slot.role in (Role.MARKER, Role.BODY) and not slot.several]
+    given = [slot for slot in slots if slot.role is Role.OPTIONAL_BODY]
     left = markers[: len(markers) - len(needed)]
     for slot, marker in [*zip(needed, markers[len(left) :], strict=False), *zip(given, left, strict=False)]:
         out[slot.name] = marker if slot.role is Role.MARKER else marker.body
-    for k, one in enumerate(known):
-        if one.several:
-            several = [bodies[name] for name in out.pop(one.name)]
+    for k, parameter in enumerate(known):
+        if parameter.several:
+            several = [bodies[name] for name in out.pop(parameter.name)]
             return [*(out.pop(before.name) for before in known[:k]), *several], out
     return [], out
 
 
 def law_name(add: Callable[..., Any]) -> str:
     """The argument of a driver's function that is its law."""
-    [law] = [one.name for one in arguments(add) if one.role is Role.LAW]
+    [law] = [parameter.name for parameter in arguments(add) if parameter.role is Role.LAW]
     return law
 
 
@@ -81,7 +81,11 @@ def _change(m: Model, table: dict[str, Any], name: str, values: Mapping[str, Any
     assert add is not None
     also = old.kind.also if isinstance(old, Force) else {}
     values = {also.get(key, key): value for key, value in values.items()}
-    own = [one.name for one in arguments(add) if one.role not in (Role.MARKER, Role.BODY, Role.OPTIONAL_BODY)]
+    own = [
+        parameter.name
+        for parameter in arguments(add)
+        if parameter.role not in (Role.MARKER, Role.BODY, Role.OPTIONAL_BODY)
+    ]
     _refuse_others(m, f"{old.kind.name} '{name}'", values, own)
     if not values:
         return
@@ -126,7 +130,7 @@ def _move_ends(m: Model, bar: Body, old: float, new: float) -> None:
     for table in connections(m):
         for name, entry in table.items():
             assert isinstance(entry, Joint | Force)
-            params = {key: moved(one) if isinstance(one, Marker) else one for key, one in entry.params.items()}
+            params = {key: moved(value) if isinstance(value, Marker) else value for key, value in entry.params.items()}
             table[name] = replace(entry, i=moved(entry.i), j=moved(entry.j), params=params)  # pyright: ignore[reportIndexIssue]
     for name, marker in m.traces.items():
         m.traces[name] = moved(marker)

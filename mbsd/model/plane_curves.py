@@ -182,20 +182,20 @@ def crossings(
     u, place, slope = _chords(breaks, coefficients, closed, distance)
     a, b = (place, np.roll(place, -1, axis=0)) if closed else (place[:-1], place[1:])
     n = len(a)
-    found = []
+    blocks = []
     for start in range(0, n - 2, BLOCK):
         k, others = np.arange(start, min(start + BLOCK, n - 2)), np.arange(start + 2, n)
         p, q, r, s = a[k, None], b[k, None], a[others], b[others]
-        one, two, three, four = _side(p, q, r), _side(p, q, s), _side(r, s, p), _side(r, s, q)
-        hit = (one * two <= 0) & (three * four <= 0) & ((one != 0) | (two != 0))
+        r_side, s_side, p_side, q_side = _side(p, q, r), _side(p, q, s), _side(r, s, p), _side(r, s, q)
+        hit = (r_side * s_side <= 0) & (p_side * q_side <= 0) & ((r_side != 0) | (s_side != 0))
         hit &= others >= k[:, None] + 2
         if closed:
             hit &= (k[:, None] > 0) | (others < n - 1)
         which, other = np.nonzero(hit)
-        found.append(np.stack([u[k[which]], u[others[other]]], axis=1))
+        blocks.append(np.stack([u[k[which]], u[others[other]]], axis=1))
     if continued and not closed:
-        found += _continued_crossings(u, place, slope)
-    return np.concatenate([np.zeros((0, 2)), *found])
+        blocks += _continued_crossings(u, place, slope)
+    return np.concatenate([np.zeros((0, 2)), *blocks])
 
 
 def _chords(
@@ -255,10 +255,10 @@ _FARTHEST: Kept[float] = Kept()
 
 
 def _farthest_step(breaks: np.ndarray, coefficients: np.ndarray, closed: bool, distance: float) -> float:
-    found = crossings(breaks, coefficients, closed, distance, continued=True)
-    if not len(found):
+    crossed = crossings(breaks, coefficients, closed, distance, continued=True)
+    if not len(crossed):
         return 0.0
-    around = np.abs(found[:, 1] - found[:, 0])
+    around = np.abs(crossed[:, 1] - crossed[:, 0])
     if closed:
         around = np.minimum(around, breaks[-1] - breaks[0] - around)
     return float(around.min()) * PART_OF_LOOP
@@ -312,11 +312,11 @@ def checked_points(what: str, points: object, closed: bool) -> list[list[float]]
 def refuse_crossing(what: str, points: list[list[float]], closed: bool) -> None:
     """Raise ModelError for a curve that crosses itself or its continuation: no side of it is free."""
     pieces = curve_pieces(np.array(points), closed)
-    found = crossings(*pieces, closed, 0.0, continued=True)
-    inside = (found >= pieces[0][0]) & (found <= pieces[0][-1])
-    found, both = found[inside[:, 0]], inside[inside[:, 0], 1]  # continuations that cross make a roof or a valley
-    if len(found):
-        k = min(int(np.searchsorted(pieces[0], found[0, 0], "right")) - 1, len(pieces[1]) - 1)
+    places = crossings(*pieces, closed, 0.0, continued=True)
+    inside = (places >= pieces[0][0]) & (places <= pieces[0][-1])
+    places, both = places[inside[:, 0]], inside[inside[:, 0], 1]  # continuations that cross make a roof or a valley
+    if len(places):
+        k = min(int(np.searchsorted(pieces[0], places[0, 0], "right")) - 1, len(pieces[1]) - 1)
         x, y = pieces[1][k, :, 0]
         crossed = "itself" if both[0] else "the straight line on which it goes on beyond its end"
         raise ModelError(

@@ -139,9 +139,9 @@ def _places(moved: Moved, force: Force, i: int, j: int) -> list[tuple[int, np.nd
     packed, q = moved.packed, moved.q
     if "bodies" in force.params:
         return [(b, _place(packed, q, b, (0.0, 0.0))) for b in map(packed.body_names.index, force.params["bodies"])]
-    others = [one.j for one in force.kind.interactions(force, packed.masses)]
+    others = [interaction.j for interaction in force.kind.interactions(force, packed.masses)]
     if force.kind.outside and others:
-        return [(b, _place(packed, q, b, (one.x, one.y))) for one in others for b in [_number(packed, one)]]
+        return [(b, _place(packed, q, b, (marker.x, marker.y))) for marker in others for b in [_number(packed, marker)]]
     bi, bj = (int(b) for b in packed.system.marker_body[[i, j]])
     second = marker_places(packed, q, j)
     if force.kind.outside:

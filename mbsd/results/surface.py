@@ -33,10 +33,10 @@ def foot_of(packed: Packed, force: Force, q: np.ndarray) -> Foot:
     """Where the disc of a force whose kind has a ``surface`` stands to it along poses q (T, 3 nb)."""
     assert force.kind.surface is not None
     i, j = packed.force_markers[packed.forces.index(force)]
-    numbers, found = np.array([0.0] * OWN + force.kind.surface(force)), np.zeros((len(q), 3))
+    numbers, stand = np.array([0.0] * OWN + force.kind.surface(force)), np.zeros((len(q), 3))
     x, y = (measured(packed, Element(AXIS, (), turned), i, j, q) for turned in (False, True))
-    tabulate_stand(numbers, x, y, np.zeros(STATE), found)
-    distance, tx, ty = found.T[:, :, None]
+    tabulate_stand(numbers, x, y, np.zeros(STATE), stand)
+    distance, tx, ty = stand.T[:, :, None]
     normal = -ty * marker_axes(packed, q, i) + tx * marker_axes(packed, q, i, turned=True)
     place = marker_places(packed, q, j) - distance * normal
     return Foot(distance[:, 0] - force.params["radius"], place, normal)

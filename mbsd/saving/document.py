@@ -126,9 +126,9 @@ def _state(state: Any) -> dict[str, Any]:
 
 def _refuse_other_version(top: Entry) -> None:
     for key, wanted in (("schema", SCHEMA), ("schema_version", SCHEMA_VERSION)):
-        found = top.get(key)
-        if found != wanted or isinstance(found, bool):
-            said = "missing" if found is None else shown(found)
+        given = top.get(key)
+        if given != wanted or isinstance(given, bool):
+            said = "missing" if given is None else shown(given)
             raise ModelError(
                 f"{top.where}: {key} is {said}, this program reads {wanted!r}; save the model again with this version"
             )

@@ -43,12 +43,12 @@ def load(path: str | os.PathLike[str], make: type[M]) -> M:
 
 
 def _no_twins(pairs: list[tuple[str, Any]], path: object) -> dict[str, Any]:
-    found: dict[str, Any] = {}
+    entries: dict[str, Any] = {}
     for key, value in pairs:
-        if key in found:
+        if key in entries:
             raise ModelError(f"{path}: there are two of the name '{key}' in one object; rename or remove one")
-        found[key] = value
-    return found
+        entries[key] = value
+    return entries
 
 
 def _too_deep(path: object) -> ModelError:

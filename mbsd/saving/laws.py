@@ -32,15 +32,15 @@ LAW_PLACES = ("mbsd.model.laws", CYCLES)
 @cache
 def factories() -> dict[str, Callable[..., Any]]:
     """Every law's function by its name, which is that of its class in small letters: ConstantRate, constant_rate."""
-    found: dict[str, Callable[..., Any]] = {}
+    makers: dict[str, Callable[..., Any]] = {}
     for place in LAW_PLACES:
         module = importlib.import_module(place)
         files = [f"{place}.{file.name}" for file in pkgutil.iter_modules(getattr(module, "__path__", []))]
         for file in files or [place]:
             content = vars(importlib.import_module(file))
             classes = [v for v in content.values() if isinstance(v, type) and v.__module__ == file]
-            found |= {name: content[name] for name in map(_small, classes) if callable(content.get(name))}
-    return found
+            makers |= {name: content[name] for name in map(_small, classes) if callable(content.get(name))}
+    return makers
 
 
 def _small(law: type) -> str:

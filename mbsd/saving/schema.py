@@ -128,7 +128,7 @@ def _force(name: str) -> dict[str, Any]:
     reference = {"$ref": "#/$defs/marker"}
     method = _adds(name)
     params, law = _parameters(method), ({"$ref": "#/$defs/law"}, False)
-    laws = {one.name: law for one in arguments(method) if one.role in (Role.AMOUNT, Role.CURVE)}
+    laws = {parameter.name: law for parameter in arguments(method) if parameter.role in (Role.AMOUNT, Role.CURVE)}
     amounts = {key: (NUMBER, False) for key in laws if key in params}
     fixed = {"kind": {"const": name}, "i": reference, "j": reference}
     return _object(fixed | {"params": _object({}, params | amounts), "laws": _object({}, laws)})
@@ -144,14 +144,14 @@ def _register_all() -> None:
 def _parameters(function: Callable[..., Any]) -> dict[str, tuple[dict[str, Any], bool]]:
     """What a method or law takes beside names, markers, bodies and laws: its schema, and whether it must be there."""
     out = {}
-    for one in arguments(function):
-        if one.role in (Role.VALUE, Role.AMOUNT):
-            types = [TYPES[known] for known in one.types if known in TYPES]
+    for parameter in arguments(function):
+        if parameter.role in (Role.VALUE, Role.AMOUNT):
+            types = [TYPES[known] for known in parameter.types if known in TYPES]
             types = [] if types == [TYPES[type(None)]] else types  # all but None is of another type
             known = types[0] if len(types) == 1 else {"anyOf": types} if types else {}
-            if one.several:
+            if parameter.several:
                 known = {"type": "array", "items": known}
-            out[one.name] = known, one.needed
+            out[parameter.name] = known, parameter.needed
     return out
 
 

@@ -70,7 +70,7 @@ def _value(name: Any, value: Any) -> Any:
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, list | tuple):
-        return tuple(_value(name, one) for one in value)
+        return tuple(_value(name, part) for part in value)
     if value is None or isinstance(value, str | bool | int | float):
         return value
     raise ModelError(f"study: a value of '{name}' is {shown(value)}; give numbers, texts or tuples of these")

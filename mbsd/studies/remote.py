@@ -68,8 +68,8 @@ def versions() -> dict[str, str]:
     """What this machine computes with."""
     import platform
 
-    found = {"Python": platform.python_version(), "mbsd": own_sources()[:12]}
-    return found | {package: metadata.version(package) for package in PACKAGES}
+    own = {"Python": platform.python_version(), "mbsd": own_sources()[:12]}
+    return own | {package: metadata.version(package) for package in PACKAGES}
 
 
 @dataclass(eq=False)
@@ -209,7 +209,7 @@ class Cluster:
             self._longest = max(self._longest, done.seconds / max(len(chunk.points), 1))
             self._settle(chunk, done)
 
-    def _settle(self, chunk: _Chunk, found: Done | BrokenExecutor) -> None:
+    def _settle(self, chunk: _Chunk, answer: Done | BrokenExecutor) -> None:
         """Hand the first answer on."""
         with self._changing:
             if self._chunks.pop(chunk.name, None) is None:
@@ -217,10 +217,10 @@ class Cluster:
         for future in list(chunk.futures.values()):
             if not future.done():
                 _cancel(future)
-        if isinstance(found, BrokenExecutor):
-            chunk.promise.set_exception(found)
+        if isinstance(answer, BrokenExecutor):
+            chunk.promise.set_exception(answer)
         else:
-            chunk.promise.set_result(found)
+            chunk.promise.set_result(answer)
 
 
 def _cancel(future: Any) -> None:

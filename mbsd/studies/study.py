@@ -83,8 +83,8 @@ def study(
     if todo:
         names = {name for point in points for name in point}
         with (
-            _client(client) as found,
-            closing(_workers(build, measure, content, store and places, found, processes, len(todo))) as workers,
+            _client(client) as connected,
+            closing(_workers(build, measure, content, store and places, connected, processes, len(todo))) as workers,
             reported(len(points), len(results), progress) as tell,
         ):
             try:

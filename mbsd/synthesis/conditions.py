@@ -31,7 +31,7 @@ class Pin(NamedTuple):
 def pins(m: Model, packed: Packed) -> list[Pin]:
     """The pins at which a transmission angle is defined."""
     moved = {body for driver in m.drivers.values() for body in driver.bodies} | {"ground"}
-    found = []
+    pins_between = []
     places = _pin_markers(m, packed)
     for joint in _revolutes(m):
         a, b = joint.bodies
@@ -40,8 +40,8 @@ def pins(m: Model, packed: Packed) -> list[Pin]:
         others = [[number for name, number in places[body] if name != joint.name] for body in (a, b)]
         if all(len(other) == 1 for other in others):
             own = [next(number for name, number in places[body] if name == joint.name) for body in (a, b)]
-            found.append(Pin(joint.name, (a, b), (own[0], own[1]), (others[0][0], others[1][0])))
-    return found
+            pins_between.append(Pin(joint.name, (a, b), (own[0], own[1]), (others[0][0], others[1][0])))
+    return pins_between
 
 
 def transmission_angles(pin: Pin, arms: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
@@ -62,7 +62,7 @@ def four_bar(m: Model, packed: Packed) -> list[tuple[int, int]]:
     Raises ModelError where the mechanism is no four-bar of pins.
     """
     places = _pin_markers(m, packed)
-    loops = {body: [number for _, number in found] for body, found in places.items() if found}
+    loops = {body: [number for _, number in markers] for body, markers in places.items() if markers}
     if len(loops) != 4 or len(_revolutes(m)) != 4 or any(len(numbers) != 2 for numbers in loops.values()):
         raise ModelError(
             f"{m.name}: fit_path: Grashof's condition is one of a four-bar of four pins, and this is none; leave it "

@@ -52,15 +52,15 @@ def descended(
         if not len(goes) or missed.cost.min() <= enough:
             break
         tried = np.clip(u[goes] + _steps(u[goes], missed.rows[goes], slopes[goes], damping[goes]), 0.0, 1.0)
-        found = residuals.missed(tried, fine)
-        better = found.cost < missed.cost[goes]
-        gained = found.cost <= (1 - GAIN) * missed.cost[goes]
+        there = residuals.missed(tried, fine)
+        better = there.cost < missed.cost[goes]
+        gained = there.cost <= (1 - GAIN) * missed.cost[goes]
         idle[goes] = np.where(gained, 0, idle[goes] + better)
         damping[goes] = np.where(better, np.maximum(FASTER * damping[goes], 1e-12), SLOWER * damping[goes])
         ours = goes[better]
         if len(ours):
             u[ours] = tried[better]
-            missed.put(ours, found.take(better))
+            missed.put(ours, there.take(better))
             slopes[ours] = residuals.slopes(u[ours], missed.take(ours), fine)
         best = int(missed.cost.argmin())
         seen(float(missed.cost[best]), u[best])

@@ -68,8 +68,8 @@ class Designs:
         if self.at_once:
             if fine not in self._sweeps:
                 self._sweeps[fine] = DesignSweeps(self.m, self.ready, self.grids[fine], moved, self.turned)
-            found = self._sweeps[fine](values, threads)
-            path, angles, closes = found.points[self.trace], found.angles, found.closes
+            swept = self._sweeps[fine](values, threads)
+            path, angles, closes = swept.points[self.trace], swept.angles, swept.closes
         else:
             path, angles, closes = self._one_by_one(x, self.grids[fine])
         arms = np.tile(self.ready.packed.system.marker_arm, (len(x), 1, 1))
@@ -101,15 +101,15 @@ class Designs:
         """(n, p) differences from the mechanism itself, and what each moves."""
         packed = self.ready.packed
         if self.build is not None:
-            rows = [self._places(self.model(one)) for one in x]
+            rows = [self._places(self.model(values)) for values in x]
             moved = [Moved([(number, axis)]) for number in range(2 * len(packed.joints)) for axis in (0, 1)]
             moved += [Moved(trace=(k, axis)) for k in range(len(self.m.traces)) for axis in (0, 1)]
             moved += [Moved(rod=k) for k in range(len(packed.system.distance_length))]
-            found = np.array(rows) - self._places(self.m)
-            used = found.any(axis=0)
+            differences = np.array(rows) - self._places(self.m)
+            used = differences.any(axis=0)
             if not len(self._used) or (used & ~self._used).any():
                 self._used, self._sweeps = used | (self._used if len(self._used) else False), {}
-            return found[:, self._used], [one for one, some in zip(moved, self._used, strict=True) if some]
+            return differences[:, self._used], [move for move, some in zip(moved, self._used, strict=True) if some]
         lengths, places = {}, {}
         for name, part, single in self.varied.columns():
             if single:
@@ -142,9 +142,9 @@ class Designs:
     def _one_by_one(self, x: np.ndarray, grid: np.ndarray) -> tuple[np.ndarray, dict[str, np.ndarray], np.ndarray]:
         path = np.full((len(x), len(grid), 2), np.nan)
         angles = {body: np.full((len(x), len(grid)), np.nan) for body in self.turned}
-        for k, one in enumerate(x):
+        for k, values in enumerate(x):
             try:
-                m = self.model(one)
+                m = self.model(values)
                 ready = prepare(m, float(grid[0]), float(grid[-1]))
                 q = ready.kinematics(grid)[0]
             except MechanismError:

@@ -142,10 +142,10 @@ def fit_path(
     if better is not None:
         tell = _told("better", better)
         search.better = lambda x, error: tell(given.values(x[: given.count]), error)
-    found = search.run(starts, whole_number(f"{m.name}: fit_path: seed", seed, 0))
-    if found is None:
+    outcome = search.run(starts, whole_number(f"{m.name}: fit_path: seed", seed, 0))
+    if outcome is None:
         raise SynthesisError(_nothing(m, search, limit, grashof))
-    return _result(search, trace, *found)
+    return _result(search, trace, *outcome)
 
 
 def _result(search: Search, trace: str, x: np.ndarray, ends: list[float]) -> PathFit:
@@ -186,21 +186,21 @@ def _placed(start: Start | None) -> bool:
 
 
 def _points(m: Model, points: object) -> np.ndarray:
-    found = number_array(f"{m.name}: fit_path: points", points)
-    if found.ndim != 2 or found.shape[1] != 2 or len(found) < 2:
-        raise ModelError(f"{m.name}: fit_path: points have shape {found.shape}; give two or more places (x, y)")
-    if not np.ptp(found, axis=0).any():
+    places = number_array(f"{m.name}: fit_path: points", points)
+    if places.ndim != 2 or places.shape[1] != 2 or len(places) < 2:
+        raise ModelError(f"{m.name}: fit_path: points have shape {places.shape}; give two or more places (x, y)")
+    if not np.ptp(places, axis=0).any():
         raise ModelError(f"{m.name}: fit_path: all points are the same place; a path needs some that differ")
-    return found
+    return places
 
 
 def _times(m: Model, times: object, count: int) -> np.ndarray | None:
     if times is None:
         return None
-    found = number_array(f"{m.name}: fit_path: times", times)
-    if found.shape != (count,):
-        raise ModelError(f"{m.name}: fit_path: {count} points have times of shape {found.shape}; give one time each")
-    return found
+    moments = number_array(f"{m.name}: fit_path: times", times)
+    if moments.shape != (count,):
+        raise ModelError(f"{m.name}: fit_path: {count} points have times of shape {moments.shape}; give one time each")
+    return moments
 
 
 def _traced(m: Model, point: str | Marker | None, build: Build | None) -> tuple[Model, str]:

@@ -119,8 +119,8 @@ def _refined(path: np.ndarray, points: np.ndarray, where: np.ndarray, closed: bo
     whole = np.zeros((len(points), 7, 6))  # places, derivatives and second derivatives by rising powers
     whole[..., :2], whole[:, :6, 2:4], whole[:, :5, 4:] = coefficients, rates, bends
     for _ in range(NEWTON_STEPS):
-        found = np.matmul(((where - middle)[:, None] ** powers)[:, None], whole)[:, 0]
-        gap, rate, bend = found[:, :2] - points, found[:, 2:4], found[:, 4:]
+        values = np.matmul(((where - middle)[:, None] ** powers)[:, None], whole)[:, 0]
+        gap, rate, bend = values[:, :2] - points, values[:, 2:4], values[:, 4:]
         speed = (rate**2).sum(-1)
         slope = speed + (gap * bend).sum(-1)
         slope = np.where(slope > 0.1 * speed, slope, speed)

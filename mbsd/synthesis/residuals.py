@@ -66,9 +66,9 @@ class Residuals:
         where = self.target.where(there, shifts, fine)
         rows = self._rows(paths, there, where, fine)
         cost = np.where(paths.closes, (rows**2).sum(-1) / len(self.target.points), np.inf)
-        found = Missed(rows, cost, where, np.zeros((0, 0, 2)))
-        found.along = self._along(there, found, fine)
-        return found
+        missed = Missed(rows, cost, where, np.zeros((0, 0, 2)))
+        missed.along = self._along(there, missed, fine)
+        return missed
 
     def slopes(self, u: np.ndarray, missed: Missed, fine: bool) -> np.ndarray:
         """(n, r, k) of the designs u (n, k) that missed so."""

@@ -119,13 +119,13 @@ class Search:
         low, _ = self.bounds
         sequence, count = self._sequence(random)
         best, least = low, np.inf
-        found: list[np.ndarray] = []
+        begun: list[np.ndarray] = []
         costs: list[float] = []
         rounds = ROUNDS if self._quick else 1
         for number in range(rounds):
             drawn = sequence.random(count)
             ends, missed = self._descended(drawn, (start + DESCENDING * number / rounds) / starts)
-            found.append(ends)
+            begun.append(ends)
             costs.append(float(missed[0]))
             if costs[-1] < NEAR:
                 x, error = self._best(ends)
@@ -139,7 +139,7 @@ class Search:
                 break
         if not least < np.inf:
             size = 1 << int(np.ceil(np.log2(MEMBERS * len(low))))
-            first = np.concatenate([*found, sequence.random(size)])[:size]
+            first = np.concatenate([*begun, sequence.random(size)])[:size]
             best, least = self._best(self._evolved(first, random, start, starts))
         return best, least
 
@@ -147,7 +147,7 @@ class Search:
         """Best design after least squares, a vector, and its root mean square (m); from u (n, k), best first."""
         low, high = self.bounds
         fitted = [self._fitted(low + (high - low) * u[k]) for k in _apart(u, POLISHED)]
-        return min(fitted, key=lambda one: one[1])
+        return min(fitted, key=lambda fit: fit[1])
 
     def _descended(self, drawn: np.ndarray, done: float) -> tuple[np.ndarray, np.ndarray]:
         """The ends of descents from the best of designs drawn (n, k), the best first, and their costs."""
@@ -244,8 +244,8 @@ class Search:
 def _apart(designs: np.ndarray, most: int) -> list[int]:
     """Numbers of the first designs (n, k) that are apart from each other."""
     chosen: list[int] = []
-    for k, one in enumerate(designs):
-        if all(np.abs(one - designs[other]).max() > APART for other in chosen):
+    for k, design in enumerate(designs):
+        if all(np.abs(design - designs[other]).max() > APART for other in chosen):
             chosen.append(k)
         if len(chosen) == most:
             break

@@ -76,7 +76,7 @@ class Target:
         Where the points are a closed curve, differences of the paths from it follow, weighed so that both count alike.
         """
         if fine:
-            places = np.array([at(path, one, self.returns) for path, one in zip(paths, where, strict=True)])
+            places = np.array([at(path, along, self.returns) for path, along in zip(paths, where, strict=True)])
             away = places.reshape(len(paths), -1, 2) - self.points
         else:
             away = on_chords(paths, where) - self.points
@@ -93,7 +93,7 @@ class Target:
         if fine:
             h = 1e-4
             ends = [
-                np.array([at(path, one + step, self.returns) for path, one in zip(paths, where, strict=True)])
+                np.array([at(path, along + step, self.returns) for path, along in zip(paths, where, strict=True)])
                 for step in (-h, h)
             ]
             line = (ends[1] - ends[0]).reshape(len(paths), -1, 2)

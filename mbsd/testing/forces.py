@@ -106,7 +106,7 @@ def evaluate(packed: Packed, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> tup
 
 def _check_others(kind: ForceKind, packed: Packed, force: Force, load: np.ndarray) -> None:
     """A load from outside acts on its own bodies alone."""
-    acted = {force.j.body.name} | {one.j.body.name for one in kind.interactions(force, packed.masses)}
+    acted = {force.j.body.name} | {interaction.j.body.name for interaction in kind.interactions(force, packed.masses)}
     for b, name in enumerate(packed.body_names):
         if name not in acted and load[:, 3 * b : 3 * b + 3].any():
             raise AssertionError(f"{kind.name}: a load from outside on '{force.j.body.name}' acts on '{name}', too")

@@ -48,6 +48,8 @@ def _compare(kind: str, after: str, old: Joint | Force, new: Joint | Force) -> N
     if new.params != old.params or new.kind is not old.kind:
         raise AssertionError(f"{kind}: after {after} params are {dict(new.params)} instead of {dict(old.params)}")
     for side in "ij":
-        here, there = ((one.body.name, one.x, one.y, one.angle) for one in (getattr(old, side), getattr(new, side)))
+        here, there = (
+            (marker.body.name, marker.x, marker.y, marker.angle) for marker in (getattr(old, side), getattr(new, side))
+        )
         if here != there:
             raise AssertionError(f"{kind}: after {after} marker {side} is {there} instead of {here}")

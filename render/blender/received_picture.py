@@ -40,9 +40,9 @@ def fault_of_chunks(content: bytes, width: int, height: int) -> str | None:
     header = chunks[0][1]
     if len(header) != HEADER or header[8:] != RGB:
         return "is not of eight bits for each of three colours"
-    found = int.from_bytes(header[:4]), int.from_bytes(header[4:8])
-    if found != (width, height):
-        return f"is {found[0]}x{found[1]}, not {width}x{height}"
+    header_numbers = int.from_bytes(header[:4]), int.from_bytes(header[4:8])
+    if header_numbers != (width, height):
+        return f"is {header_numbers[0]}x{header_numbers[1]}, not {width}x{height}"
     if any(zlib.crc32(chunk[4:-4]) != int.from_bytes(chunk[-4:]) for *_, chunk in chunks):
         return "has a chunk whose checksum is wrong"
     return None

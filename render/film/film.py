@@ -71,7 +71,7 @@ class Film:
             trails=self.trails.specs(self.look.dark),
             labels=[LabelSpec(text=s.text, size=s.size * self.size, colour=s.colour) for s in self.shot.labels],
             studio=self.studio,
-            tubes=[spec for one in self.drawn for spec in one.specs],
+            tubes=[spec for arrow in self.drawn for spec in arrow.specs],
             arrows=self.arrows.specs(),
             arcs=self.arcs.specs(),
             writing=self._writing(),
@@ -103,7 +103,7 @@ class Film:
             trails=self.trails.paths(frame),
             labels=[self.heights.words(label, at) for label in self.shot.labels],
             camera=self.camera(frame),
-            tubes=[path for one in self.drawn for path in one.paths(self.poses, at)],
+            tubes=[path for arrow in self.drawn for path in arrow.paths(self.poses, at)],
             arrows=self.arrows.at(at.time, arrows),
             arcs=self.arcs.at(at.time, arcs),
             number=self.number(at.time),
@@ -163,7 +163,7 @@ class Film:
     def _arrow_heights(self) -> tuple[list[float], list[float]]:
         """Heights of each straight and each curved arrow (m)."""
         straight, curved = (
-            [self.heights.arrow(one.bodies, *(float(value) for value in one.place[0])) for one in ones]
+            [self.heights.arrow(part.bodies, *(float(value) for value in part.place[0])) for part in ones]
             for ones in (self.arrows.vectors, self.arcs.torques)
         )
         return straight, curved
@@ -207,11 +207,11 @@ class Film:
     def _tubes(self) -> Array:
         """Points (n, 3) of springs, ropes and belts, over the whole motion, as seen from the way of the camera."""
         frames = range(0, self.clock.frames, max(1, self.clock.frames // LOOKED))
-        found = [np.zeros((0, 3))]
+        points = [np.zeros((0, 3))]
         for frame in frames:
             at, here = self.clock.moment(frame), 0.0 if self._way is None else self._way[frame]
-            found += [np.asarray(path) - here for one in self.drawn for path in one.paths(self.poses, at)]
-        return np.concatenate(found)
+            points += [np.asarray(path) - here for arrow in self.drawn for path in arrow.paths(self.poses, at)]
+        return np.concatenate(points)
 
     @cached_property
     def _drawn(self) -> Array:
@@ -220,9 +220,9 @@ class Film:
         way = None
         if self._way is not None:
             ways = self._way[: len(self._times)].T
-            way = np.stack([np.interp(self.poses.time, self._times, one) for one in ways], axis=1)
-        found = [*self.arrows.tips(straight, way), *self.arcs.rims(curved, way)]
-        return np.concatenate(found) if found else np.zeros((0, 3))
+            way = np.stack([np.interp(self.poses.time, self._times, way) for way in ways], axis=1)
+        tips = [*self.arrows.tips(straight, way), *self.arcs.rims(curved, way)]
+        return np.concatenate(tips) if tips else np.zeros((0, 3))
 
     @cached_property
     def _subject(self) -> Subject:

@@ -61,20 +61,20 @@ class Heights:
     def arrow(self, bodies: Iterable[str], x: float, y: float) -> float:
         """On the highest piece where it begins at the start; else over all its bodies."""
         bodies, start = list(bodies), self.clock.moment(0)
-        found = [top for body in bodies for top in self.space.tops_at(body, x, y, start)]
-        found = found or [top for body in bodies for top in tops(self.parts, body)]
-        return max(found, default=float(self.space.moving[:, 2].max())) + OVER
+        heights = [top for body in bodies for top in self.space.tops_at(body, x, y, start)]
+        heights = heights or [top for body in bodies for top in tops(self.parts, body)]
+        return max(heights, default=float(self.space.moving[:, 2].max())) + OVER
 
     def spring(self, shape: Shape, radius: float) -> tuple[float, tuple[float, float]]:
         """Height of something of that radius over what is at its two ends at the start, and the tops there."""
         at = self.clock.moment(0)
         places = [placed(self.poses.body(b, at), marker) for b, marker in zip(shape.bodies, shape.markers, strict=True)]
-        found = []
+        ends = []
         for body, place in zip(shape.bodies, places, strict=True):
             beside = tops(self.parts, body) if body != "ground" else []
             floor = float(self.space.all[:, 2].min())
-            found.append(max(self.space.tops_at(body, *place, at) or beside or [floor]))
-        return max(found) + LIES * radius, (found[0], found[1])
+            ends.append(max(self.space.tops_at(body, *place, at) or beside or [floor]))
+        return max(ends) + LIES * radius, (ends[0], ends[1])
 
     def site(self, bodies: tuple[str, str], places: Array, radius: float) -> Site | None:
         """Room for a spiral of that radius (m) over the pin of two bodies, whose places (T, 2) are given.
@@ -82,16 +82,16 @@ class Heights:
         The stud is on the body that is higher, where it is solid so far from the pin; None where neither is.
         """
         at, (u, v) = self.clock.moment(0), (float(value) for value in places[0])
-        found = []
+        seats = []
         for body in bodies:
             theta = self.poses.body(body, at)[2]
             angles = math.tau * np.arange(DIRECTIONS) / DIRECTIONS
             round_it = np.stack([u + radius * np.cos(theta + angles), v + radius * np.sin(theta + angles)], axis=1)
             for k, under in enumerate(self.space.tops_under(body, round_it, at)):
-                found += [(top, body != "ground", -k, body, float(angles[k])) for top in under]
-        if not found:
+                seats += [(top, body != "ground", -k, body, float(angles[k])) for top in under]
+        if not seats:
             return None
-        base, _, _, outer, direction = max(found)
+        base, _, _, outer, direction = max(seats)
         hub = max([base, *(top for body in bodies for top in self.space.tops_at(body, u, v, at))])
         return Site(outer, direction, base, hub, max(hub, self._passing(places, radius)))
 
@@ -116,8 +116,8 @@ class Heights:
         else:
             x, y = self.poses.joint(name, at)
             bodies = motion.joints[name].bodies
-        found = [top for body in bodies for top in self.space.tops_at(body, x, y, at)]
-        return x, y, max(found, default=float(self.space.moving[:, 2].max())) + LABEL * self.space.size
+        heights = [top for body in bodies for top in self.space.tops_at(body, x, y, at)]
+        return x, y, max(heights, default=float(self.space.moving[:, 2].max())) + LABEL * self.space.size
 
     def words(self, label: Label, at: Moment) -> Point:
         """Place of a label of the shot: also over all that ever passes under its words, which nothing cuts through."""

@@ -18,10 +18,10 @@ def moved(motion: Motion, body: str, marker: tuple[float, float, float]) -> tupl
     count = len(motion.time)
     if body not in motion.bodies:
         return np.tile([x, y], (count, 1)), np.full(count, turn)
-    one = motion.bodies[body]
-    theta = np.asarray(one.theta)
+    frame = motion.bodies[body]
+    theta = np.asarray(frame.theta)
     c, s = np.cos(theta), np.sin(theta)
-    return np.stack([np.asarray(one.x) + c * x - s * y, np.asarray(one.y) + s * x + c * y], axis=1), theta + turn
+    return np.stack([np.asarray(frame.x) + c * x - s * y, np.asarray(frame.y) + s * x + c * y], axis=1), theta + turn
 
 
 def local_place(body: BodyMotion, x: float, y: float) -> tuple[float, float]:

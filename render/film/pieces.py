@@ -71,9 +71,9 @@ def _surface(mechanism: str, shot: Shot, body: str, name: str, piece: Piece) -> 
 
 def neutral(surface: SurfaceSpec) -> SurfaceSpec:
     """The surface as grey as it is light: beside arrows no body has a colour, signal colours belong to quantities."""
-    light = sum(part * one for part, one in zip((0.2126, 0.7152, 0.0722), surface.colour, strict=True))
+    light = sum(part * channel for part, channel in zip((0.2126, 0.7152, 0.0722), surface.colour, strict=True))
     grey = GREY * max(light, DARKEST) if max(surface.colour) - min(surface.colour) > COLOURED else light
-    red, green, blue = (KEPT * one + (1 - KEPT) * grey for one in surface.colour)
+    red, green, blue = (KEPT * channel + (1 - KEPT) * grey for channel in surface.colour)
     return msgspec.structs.replace(surface, colour=(red, green, blue))
 
 

@@ -56,11 +56,11 @@ class SweptSpace:
 
     def places(self, times: Array) -> Array:
         """The outermost points (T, n, 3) of all that moves at ``times`` (T,); none if nothing moves."""
-        found: list[Array] = [np.zeros((len(times), 0, 3))]
+        corners: list[Array] = [np.zeros((len(times), 0, 3))]
         for body, points in self._farthest.items():
             if body in self._poses.motion.bodies:
-                found.append(swept(points, self._poses.over(body, times)).reshape(len(times), -1, 3))
-        return np.concatenate(found, axis=1)
+                corners.append(swept(points, self._poses.over(body, times)).reshape(len(times), -1, 3))
+        return np.concatenate(corners, axis=1)
 
     @cached_property
     def standing(self) -> Array:
@@ -100,13 +100,13 @@ class SweptSpace:
     @cached_property
     def _boxes(self) -> dict[str, tuple[Array, Array, Array]]:
         """Lowest and highest x, y (n, 2) and the top (n,) of the pieces of each body, in its frame."""
-        found = {}
+        boxes = {}
         for body, outlines in self._outlines.items():
             low, high = (
                 np.array([side(piece, axis=0) for piece in outlines]).reshape(-1, 3) for side in (np.min, np.max)
             )
-            found[body] = low[:, :2], high[:, :2], high[:, 2]
-        return found
+            boxes[body] = low[:, :2], high[:, :2], high[:, 2]
+        return boxes
 
     @cached_property
     def _outlines(self) -> dict[str, list[Array]]:

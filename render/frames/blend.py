@@ -78,9 +78,9 @@ def find_blender() -> str:
         if os.access(named, os.X_OK):
             return named
         raise UserError(f"BLENDER is set to {named}, which is not a program")
-    found = shutil.which("blender")
-    if found:
-        return found
+    path = shutil.which("blender")
+    if path:
+        return path
     for place in USUAL_PLACES:
         pattern = Path(place).expanduser()
         for program in sorted(Path(pattern.anchor).glob(str(pattern.relative_to(pattern.anchor))), reverse=True):

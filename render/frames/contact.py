@@ -47,8 +47,8 @@ def run(name: str, preset: Preset, show: str = "") -> None:
     pictures, store = frames.Pictures(film, preset), FrameStore(out.frames(preset.name), (preset.width, preset.height))
     with store.locked():
         frames.render(pictures, store, sorted(set(chosen)), "for the contact sheet", frames.Tally())
-        found = [frames.picture_of(pictures, store, frame) for frame in chosen]
-        write_bytes(target, sheet(found, _captions(film, chosen), out.name.replace("_", " ").replace("-", ": ")))
+        frames_shown = [frames.picture_of(pictures, store, frame) for frame in chosen]
+        write_bytes(target, sheet(frames_shown, _captions(film, chosen), out.name.replace("_", " ").replace("-", ": ")))
     stage.done()
     say("contact", f"{out.name}: {target}")
 

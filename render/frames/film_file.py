@@ -31,11 +31,11 @@ def refuse_other_than(
         reason = said[-1] if said else f"code {done.returncode}"
         raise UserError(f"{name}: the film does not decode ({reason}); is the disk full? Run the same command again")
     wanted = (count, f"{preset.width}x{preset.height}", count / fps)
-    found = _measured(done.stdout)
-    if found[:2] != wanted[:2] or abs(found[2] - wanted[2]) > 1e-6 + 0.1 / fps:
+    measured = _measured(done.stdout)
+    if measured[:2] != wanted[:2] or abs(measured[2] - wanted[2]) > 1e-6 + 0.1 / fps:
         raise UserError(
-            f"{name}: the film has {found[0]} frames of {found[1]} in {found[2]:.3f} s; {wanted[0]} of {wanted[1]} in "
-            f"{wanted[2]:.3f} s went in. Is the disk full? Run the same command again"
+            f"{name}: the film has {measured[0]} frames of {measured[1]} in {measured[2]:.3f} s; {wanted[0]} of "
+            f"{wanted[1]} in {wanted[2]:.3f} s went in. Is the disk full? Run the same command again"
         )
 
 

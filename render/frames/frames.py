@@ -54,18 +54,18 @@ def run(name: str, preset: Preset, show: str = "") -> None:
                     break  # nothing was damaged while the others were rendered
         finally:
             tally.write(store, preset, time.perf_counter() - started)
-        found = [picture_of(pictures, store, frame) for frame in frames]
+        made = [picture_of(pictures, store, frame) for frame in frames]
         index = FrameIndex(
             mechanism=out.name,
             preset=preset.name,
             width=preset.width,
             height=preset.height,
             fps=film.shot.fps,
-            frames=[path.name for path in found] * film.clock.showings,
+            frames=[path.name for path in made] * film.clock.showings,
         )
         jsonfile.write(store.index, index)
-        store.prune(set(found), spare=len(set(found)))
-    stage.outputs.extend(sorted(set(found)))
+        store.prune(set(made), spare=len(set(made)))
+    stage.outputs.extend(sorted(set(made)))
     stage.done()
 
 

@@ -42,5 +42,9 @@ def page(entries: Sequence[Entry]) -> str:
 def sentences(docstring: str) -> str:
     """The first two sentences of a docstring on one line; what all of them say is left out."""
     paragraph = " ".join(docstring.split("\n\n")[0].split())
-    found = [one for one in re.split(r"(?<=[.!?])\s+(?=[A-Z0-9])", paragraph) if one and one not in UNSAID]
-    return " ".join(found[:LONGEST])
+    said = [
+        sentence
+        for sentence in re.split(r"(?<=[.!?])\s+(?=[A-Z0-9])", paragraph)
+        if sentence and sentence not in UNSAID
+    ]
+    return " ".join(said[:LONGEST])

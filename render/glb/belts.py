@@ -56,7 +56,7 @@ def _links(document: Document, paints: Paints, belt: Belt, ahead: Array) -> list
     specs = {
         what: TubeSpec(name=what, surface=surface, radius=part * belt.radius, points=2) for what, surface, part in CHAIN
     }
-    found = []
+    links = []
     for k in range(1 if belt.alike else 2):
         aside, pin = belt.aside(k), PIN * belt.radius
         lines = {
@@ -69,8 +69,8 @@ def _links(document: Document, paints: Paints, belt: Belt, ahead: Array) -> list
             primitive(document, paints, specs[what], tube(np.array(line), specs[what].radius))
             for what, line in lines.items()
         ]
-        found.append(document.add("meshes", {"name": f"{belt.name} link {k + 1}", "primitives": parts}))
-    return found
+        links.append(document.add("meshes", {"name": f"{belt.name} link {k + 1}", "primitives": parts}))
+    return links
 
 
 def _units(

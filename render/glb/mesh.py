@@ -56,10 +56,10 @@ def _means(vertex: np.ndarray, normals: np.ndarray, weights: np.ndarray) -> np.n
         done = ends[first - 1] if first else 0
         last = max(first + 1, int(np.searchsorted(ends, done + PAIRS)))
         here = np.arange(first, min(last, len(order)))
-        one = np.repeat(here, mates[here])
-        offset = np.arange(len(one)) - np.repeat(np.cumsum(mates[here]) - mates[here], mates[here])
-        other = starts[vertex[order[one]]] + offset
-        a, b = order[one], order[other]
+        left = np.repeat(here, mates[here])
+        offset = np.arange(len(left)) - np.repeat(np.cumsum(mates[here]) - mates[here], mates[here])
+        other = starts[vertex[order[left]]] + offset
+        a, b = order[left], order[other]
         near = (normals[a] * normals[b]).sum(axis=1) >= np.cos(SHARP)
         np.add.at(out, a[near], normals[b[near]] * weights[b[near], None])
         first = last

@@ -39,16 +39,17 @@ class Springs:
         self._document, self._animation, self._paints, self._motion = document, animation, paints, motion
         self.nodes: list[int] = []
 
-    def stretched(self, one: Stretched) -> None:
+    def stretched(self, spring: Stretched) -> None:
         """A spring, damper or rope."""
         a, b = (
-            self._ends(body, marker, one.z) for body, marker in zip(one.shape.bodies, one.shape.markers, strict=True)
+            self._ends(body, marker, spring.z)
+            for body, marker in zip(spring.shape.bodies, spring.shape.markers, strict=True)
         )
-        for spec, path in one.tubes:
+        for spec, path in spring.tubes:
             if spec.points == 2:
                 lines = np.array([path(*ends) for ends in zip(a, b, strict=True)])
                 self._straight(spec, spec.name, lines)
-            elif one.name in self._motion.contacts:
+            elif spring.name in self._motion.contacts:
                 ropes = np.array([path(*ends) for ends in zip(a, b, strict=True)])
                 cuts = np.linspace(0, spec.points - 1, LINKS + 1).round().astype(int)
                 for k, (first, last) in enumerate(pairwise(cuts)):
@@ -56,25 +57,25 @@ class Springs:
             else:
                 self._coil(spec, path, a, b)
 
-    def spiral(self, one: Spiral) -> None:
+    def spiral(self, spring: Spiral) -> None:
         """A torsion spring."""
-        wire, hub, stud = one.specs
+        wire, hub, stud = spring.specs
         fewer = self._animation.fewer
-        place, start = (values[fewer] for values in moved(self._motion, one.outer, one.at))
-        inner = moved(self._motion, one.inner, (0.0, 0.0, 0.0))[1][fewer]
-        turned = inner - (start - one.at[2])
+        place, start = (values[fewer] for values in moved(self._motion, spring.outer, spring.at))
+        inner = moved(self._motion, spring.inner, (0.0, 0.0, 0.0))[1][fewer]
+        turned = inner - (start - spring.at[2])
         least, most = float(turned.min()), float(turned.max())
         shapes = np.linspace(least, most, min(SHAPES, max(2, math.ceil((most - least) / WINDING) + 1)))
-        tubes = [tube(one.curve(angle), wire.radius) for angle in shapes]
+        tubes = [tube(spring.curve(angle), wire.radius) for angle in shapes]
         node = self._node(wire, wire.name, tubes)
         self._animation.place(node, _flat(place), start)
         if most > least:
             weights = np.maximum(0.0, 1 - np.abs(turned[:, None] - shapes) / (shapes[1] - shapes[0]))[:, 1:]
             self._animation.add(node, "weights", weights)
             self._document.json["nodes"][node]["weights"] = weights[0].astype(np.float32).tolist()
-        rim = place + one.rim * np.stack([np.cos(start), np.sin(start)], axis=1)
-        for spec, places, low in ((hub, place, one.site.hub), (stud, rim, one.site.base)):
-            self._upright(spec, spec.name, places, low, one.top)
+        rim = place + spring.rim * np.stack([np.cos(start), np.sin(start)], axis=1)
+        for spec, places, low in ((hub, place, spring.site.hub), (stud, rim, spring.site.base)):
+            self._upright(spec, spec.name, places, low, spring.top)
 
     def _ends(self, body: str, marker: tuple[float, float, float], z: float) -> Array:
         """(T, 3) of a marker, at the height of what hangs on it."""

@@ -35,9 +35,9 @@ def tube_mesh(document: Document, paints: Paints, spec: TubeSpec, name: str, tub
     return document.add("meshes", mesh)
 
 
-def primitive(document: Document, paints: Paints, spec: TubeSpec, one: Tube) -> dict[str, Any]:
+def primitive(document: Document, paints: Paints, spec: TubeSpec, tube: Tube) -> dict[str, Any]:
     """A tube as a part of a mesh."""
-    positions, normals, corners = one
+    positions, normals, corners = tube
     return {
         "attributes": {
             "POSITION": document.array(positions.astype(np.float32), VERTICES, bounds=True),

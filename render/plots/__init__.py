@@ -106,7 +106,7 @@ def _spectra(motion: Motion, name: str, words: str, every: bool) -> list[str]:
     if not (every and words) and (words or variant_of(name) is None):
         refuse_unknown(motion, asked)
     known = known_names(motion)
-    return [f"spectrum-{one.replace(' ', '-')}" for one in asked if one in known]
+    return [f"spectrum-{page.replace(' ', '-')}" for page in asked if page in known]
 
 
 def _only_slides(theta: list[float]) -> bool:

@@ -31,12 +31,12 @@ def spectra_asked(name: str, words: str = "") -> list[str]:
 
 def _names(statement: ast.stmt, where: str) -> list[str]:
     value = getattr(statement, "value", None)
-    found = None
+    given = None
     if value is not None:
         try:
-            found = ast.literal_eval(value)
+            given = ast.literal_eval(value)
         except ValueError:
-            found = None
-    if not isinstance(found, tuple | list) or not all(isinstance(name, str) for name in found):
+            given = None
+    if not isinstance(given, tuple | list) or not all(isinstance(name, str) for name in given):
         raise UserError(f"{where}: SPECTRA is not a list of names that can be read without running the file; {FORM}")
-    return list(dict.fromkeys(found))
+    return list(dict.fromkeys(given))

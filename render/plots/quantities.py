@@ -98,18 +98,18 @@ def _moving(motion: Motion, name: str) -> Quantity:
 
 def _shaking_quantity(motion: Motion, name: str) -> Quantity:
     """What inertia puts on the frame."""
-    found = shaking(motion)
+    shaken = shaking(motion)
     if name == "shaking force":
         says = "force of inertia on the frame, \N{MINUS SIGN}Σ m a"
-        return Quantity(name, says, *PUSHING, _xy(found.fx, found.fy), force_floor(motion))
+        return Quantity(name, says, *PUSHING, _xy(shaken.fx, shaken.fy), force_floor(motion))
     if name == "shaking moment":
-        says = f"moment of inertia forces on the frame about {found.about}"
-        return Quantity(name, says, "moment", "N m", {"moment": found.moment}, moment_floor(motion))
+        says = f"moment of inertia forces on the frame about {shaken.about}"
+        return Quantity(name, says, "moment", "N m", {"moment": shaken.moment}, moment_floor(motion))
     assert motion.couple is not None
-    assert found.mx is not None
-    assert found.my is not None
+    assert shaken.mx is not None
+    assert shaken.my is not None
     says = f"couple of inertia forces about axes along x and y, at z = {1000 * motion.couple.about:.4g} mm"
-    return Quantity(name, says, "couple", "N m", _xy(found.mx, found.my), couple_floor(motion))
+    return Quantity(name, says, "couple", "N m", _xy(shaken.mx, shaken.my), couple_floor(motion))
 
 
 def _xy(x: Sequence[float] | np.ndarray, y: Sequence[float] | np.ndarray) -> dict[str, np.ndarray]:

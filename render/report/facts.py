@@ -48,7 +48,7 @@ def fastest(motion: Motion) -> tuple[str, float]:
     speeds = {name: _speed_of(body) for name, body in motion.bodies.items()}
     speeds |= {name: float(np.hypot(point.vx, point.vy).max()) for name, point in motion.points.items()}
     speeds |= {name: v for name, v in _joint_speeds(motion).items() if name not in speeds}
-    name = max(speeds, key=lambda one: speeds[one])
+    name = max(speeds, key=lambda entry: speeds[entry])
     return name, speeds[name]
 
 
@@ -62,11 +62,11 @@ def _speed_of(body: BodyMotion) -> float:
 
 def _efforts(motion: Motion) -> list[tuple[str, str]]:
     """Peak efforts of what moves the mechanism where no driver does, those that give most power first."""
-    found = []
+    efforts = []
     for name, force in motion.forces.items():
         if force.drives and force.effort is not None and np.any(force.effort) and max(force.power) > 0:
-            found.append((max(force.power), name, written(float(np.abs(force.effort).max()), force.effort_unit)))
-    return [(name, size) for _, name, size in sorted(found, key=lambda one: -one[0])]
+            efforts.append((max(force.power), name, written(float(np.abs(force.effort).max()), force.effort_unit)))
+    return [(name, size) for _, name, size in sorted(efforts, key=lambda entry: -entry[0])]
 
 
 def _joint_speeds(motion: Motion) -> dict[str, float]:

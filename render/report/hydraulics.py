@@ -12,16 +12,19 @@ def hydraulics_section(motion: Motion) -> list[str]:
     """A row for each hydraulic cylinder."""
     rows, time = [], np.array(motion.time)
     for name, force in motion.forces.items():
-        one = force.hydraulics
-        if one is None:
+        cylinder = force.hydraulics
+        if cylinder is None:
             continue
         cells = [name]
-        for pressure in (np.array(one.pressure_a), np.array(one.pressure_b)):
+        for pressure in (np.array(cylinder.pressure_a), np.array(cylinder.pressure_b)):
             k = first_peak(pressure)
             cells.append(f"{written(float(pressure.min()), 'Pa')} to {written(float(pressure[k]), 'Pa')}")
             cells.append(moment(time[k]))
-        taken = 1e3 * float(np.trapezoid(np.maximum(one.supply_flow, 0.0), time))
-        energies = [float(np.trapezoid(part, time)) for part in (one.supply_power, one.valve_loss, one.piston_power)]
+        taken = 1e3 * float(np.trapezoid(np.maximum(cylinder.supply_flow, 0.0), time))
+        energies = [
+            float(np.trapezoid(part, time))
+            for part in (cylinder.supply_power, cylinder.valve_loss, cylinder.piston_power)
+        ]
         rows.append([*cells, written(taken, "l"), *(written(energy, "J") for energy in energies)])
     if not rows:
         return []

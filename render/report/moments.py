@@ -16,11 +16,13 @@ FEW = 6
 def marks(motion: Motion) -> list[tuple[float, str]]:
     """Times (s) and words, in their order: dead points of driven cranks, and all events but the end."""
     time = np.asarray(motion.time)
-    found = [(at, f"{loop.follower} turns back") for loop in loops(motion) for at, _ in loop.dead_points(time)]
+    moments = [(at, f"{loop.follower} turns back") for loop in loops(motion) for at, _ in loop.dead_points(time)]
     if motion.period:  # what is at the start of a period is at its end
         close = STEP * (time[-1] - time[0])
         ends = (time[0], time[-1])
-        found += [(other, words) for at, words in found for end, other in (ends, ends[::-1]) if abs(at - end) < close]
-    found = found if len(found) <= FEW else []
-    found += [(event.time, f"{event.name}: {event.what}") for event in motion.events if event.what != "end"]
-    return sorted(set(found))
+        moments += [
+            (other, words) for at, words in moments for end, other in (ends, ends[::-1]) if abs(at - end) < close
+        ]
+    moments = moments if len(moments) <= FEW else []
+    moments += [(event.time, f"{event.name}: {event.what}") for event in motion.events if event.what != "end"]
+    return sorted(set(moments))

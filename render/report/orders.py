@@ -20,32 +20,35 @@ VECTORS = ("shaking force", "shaking couple")
 
 def orders_section(motion: Motion) -> list[str]:
     """A table with a row for each order that counts."""
-    found = motion.vibration
-    if found is None:
+    vibration = motion.vibration
+    if vibration is None:
         return []
     shown: list[tuple[str, Harmonics, np.ndarray]] = []
-    for name, one in found.harmonics.items():
+    for name, harmonics in vibration.harmonics.items():
         if name not in (*VECTORS, "shaking moment", *motion.drivers):
             continue
-        floor = floor_of(motion, name, one.unit)
-        size = np.array(one.forward) + np.array(one.backward)
+        floor = floor_of(motion, name, harmonics.unit)
+        size = np.array(harmonics.forward) + np.array(harmonics.backward)
         if size.max(initial=0.0) > floor:
-            shown.append((name, one, np.where(size > floor, size, 0.0)))
+            shown.append((name, harmonics, np.where(size > floor, size, 0.0)))
     if not shown:
         return []
     counts = np.max(np.array([size / size.max() for _, _, size in shown]), axis=0)
     kept = np.sort(np.argsort(counts, kind="stable")[::-1][:MOST])
     rows = [
-        [f"{found.order[k]:g}", *(cell for name, one, size in shown for cell in _cells(name, one, size, int(k)))]
+        [
+            f"{vibration.order[k]:g}",
+            *(cell for name, harmonics, size in shown for cell in _cells(name, harmonics, size, int(k))),
+        ]
         for k in kept
         if counts[k] > LEAST
     ]
     heads = [head for name, _, _ in shown for head in _heads(name)]
-    cycle = "turn" if found.turns == 1 else f"cycle of {found.turns} turns"
+    cycle = "turn" if vibration.turns == 1 else f"cycle of {vibration.turns} turns"
     lines = [
-        f"Largest size of each harmonic on the turn; an order counts periods in a turn of {found.crank}. With is the "
-        f"part that turns with it, which a counterweight cancels where the order is 1; against is the part that turns "
-        f"against it. All repeats after a {cycle}.",
+        f"Largest size of each harmonic on the turn; an order counts periods in a turn of {vibration.crank}. With is "
+        f"the part that turns with it, which a counterweight cancels where the order is 1; against is the part that "
+        f"turns against it. All repeats after a {cycle}.",
         "",
     ]
     return [*lines, *table(["order", *heads], rows), "", _mean(motion)]
@@ -55,22 +58,25 @@ def _heads(name: str) -> list[str]:
     return [name, "with", "against"] if name in VECTORS else [name]
 
 
-def _cells(name: str, one: Harmonics, size: np.ndarray, k: int) -> list[str]:
+def _cells(name: str, harmonics: Harmonics, size: np.ndarray, k: int) -> list[str]:
     if size[k] == 0.0:
         return ["0"] * len(_heads(name))
-    found = [written(float(size[k]), one.unit)]
+    cells = [written(float(size[k]), harmonics.unit)]
     if name in VECTORS:
         tiny = 1e-9 * float(size.max())
-        found += [written(value, one.unit) if value > tiny else "0" for value in (one.forward[k], one.backward[k])]
-    return found
+        cells += [
+            written(value, harmonics.unit) if value > tiny else "0"
+            for value in (harmonics.forward[k], harmonics.backward[k])
+        ]
+    return cells
 
 
 def _mean(motion: Motion) -> str:
     """Root mean squares, and how far the centre of mass goes."""
-    found = motion.vibration
-    assert found is not None
-    force = float(np.sqrt(np.mean(np.square(found.fx) + np.square(found.fy))))
-    x, y = (way if way > STILL else 0.0 for way in (float(np.ptp(found.x)), float(np.ptp(found.y))))
+    vibration = motion.vibration
+    assert vibration is not None
+    force = float(np.sqrt(np.mean(np.square(vibration.fx) + np.square(vibration.fy))))
+    x, y = (way if way > STILL else 0.0 for way in (float(np.ptp(vibration.x)), float(np.ptp(vibration.y))))
     shown = 0.0 if force < force_floor(motion) else force
     return (
         f"The shaking force is {written(shown, 'N')} by root mean square; the centre of mass of all that moves goes "

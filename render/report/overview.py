@@ -39,8 +39,8 @@ def run(lines: Iterable[str] = sys.stdin) -> None:
 def row_of(line: str) -> list[str]:
     """The words of a row. Results of a failed run are left out, because they may be of an earlier one."""
     name, seconds, outcome = line.split()
-    found = _numbers(Out(name)) if outcome == "done" else [""] * 4
-    return [name, duration(float(seconds)), *found, outcome]
+    numbers = _numbers(Out(name)) if outcome == "done" else [""] * 4
+    return [name, duration(float(seconds)), *numbers, outcome]
 
 
 def _numbers(out: Out) -> list[str]:
@@ -69,16 +69,16 @@ def _effort(motion: Motion) -> str:
         for name, force in motion.forces.items()
         if force.effort is not None
     }
-    found = [_largest(efforts, motion) for efforts in (drivers, forces) if efforts]
-    if not found:
+    largest_of = [_largest(efforts, motion) for efforts in (drivers, forces) if efforts]
+    if not largest_of:
         return ""
-    name, most, pushes = next((one for one in found if one[1] > 0.0), found[0])
+    name, most, pushes = next((largest for largest in largest_of if largest[1] > 0.0), largest_of[0])
     return f"{written(most, 'N' if pushes else 'N m')} ({name})"
 
 
 def _largest(efforts: Mapping[str, tuple[Sequence[float], bool]], motion: Motion) -> tuple[str, float, bool]:
     """Whose it is, how much, 0 where that is rounding, and whether it is a force."""
-    name = max(efforts, key=lambda one: float(np.abs(efforts[one][0]).max()))
+    name = max(efforts, key=lambda key: float(np.abs(efforts[key][0]).max()))
     effort, pushes = efforts[name]
     most = float(np.abs(effort).max())
     return name, most if most > effort_floor(motion, pushes) else 0.0, pushes

@@ -18,22 +18,25 @@ ROUNDING = 1e-9
 
 def motion_section(motion: Motion) -> list[str]:
     """Mobility, what was solved, how well it closes."""
-    found, span = motion.diagnostics, motion.time[-1] - motion.time[0]
+    diagnostics, span = motion.diagnostics, motion.time[-1] - motion.time[0]
     drivers = listed(list(motion.drivers)) if motion.drivers else ""
     moved = f"driven by {drivers}" if drivers else "moved by forces alone"
     times = f"{len(motion.time)} times over {moment(span)}"
     kind = "simulation" if motion.analysis == "simulation" else "sweep"
     repeats = f"; it repeats after {moment(motion.period)}" if motion.period else ""
     lines = [
-        f"The mechanism has {counted(found.dof, 'degree')} of freedom and is {moved}. The {kind} has {times}{repeats}.",
+        f"The mechanism has {counted(diagnostics.dof, 'degree')} of freedom and is {moved}. "
+        f"The {kind} has {times}{repeats}.",
         "",
-        f"Joints close to {found.position_residual:.1e} (m or rad); velocities fulfil their equations to "
-        f"{found.velocity_residual:.1e} and accelerations to {found.acceleration_residual:.1e} (by s, by s²).",
+        f"Joints close to {diagnostics.position_residual:.1e} (m or rad); velocities fulfil their equations to "
+        f"{diagnostics.velocity_residual:.1e} and accelerations to {diagnostics.acceleration_residual:.1e} "
+        "(by s, by s²).",
     ]
-    if found.redundant:
-        lines += ["", f"Joints that repeat what others hold: {', '.join(found.redundant)}. Their share of the load is "
-                  "that of least norm."]  # fmt: skip
-    margin = np.array(found.singularity_margin)
+    if diagnostics.redundant:
+        repeated = ", ".join(diagnostics.redundant)
+        words = f"Joints that repeat what others hold: {repeated}. Their share of the load is that of least norm."
+        lines += ["", words]
+    margin = np.array(diagnostics.singularity_margin)
     if len(margin) and margin.min() < 0.02:
         k = int(margin.argmin())
         lines += ["", f"It comes near a singular pose at t = {moment(motion.time[k])}, where its margin is "
@@ -91,15 +94,15 @@ def _last_turn(motion: Motion) -> list[str]:
 
 def frame_section(motion: Motion) -> list[str]:
     """What inertia does to the frame, of machines with bodies in different places along the normal of the plane."""
-    found = shaking(motion)
-    if found.mx is None or found.my is None:
+    shaken = shaking(motion)
+    if shaken.mx is None or shaken.my is None:
         return []
     rows = [
-        ["force", *(written(float(np.abs(values).max()), "N") for values in (found.fx, found.fy)), ""],
-        ["couple", *(written(float(np.abs(values).max()), "N m") for values in (found.mx, found.my)), ""],
-        ["moment", "", "", written(float(np.abs(found.moment).max()), "N m")],
+        ["force", *(written(float(np.abs(values).max()), "N") for values in (shaken.fx, shaken.fy)), ""],
+        ["couple", *(written(float(np.abs(values).max()), "N m") for values in (shaken.mx, shaken.my)), ""],
+        ["moment", "", "", written(float(np.abs(shaken.moment).max()), "N m")],
     ]
-    lines = [f"Largest force of inertia, couples about x and y, and moment about {found.about}.", ""]
+    lines = [f"Largest force of inertia, couples about x and y, and moment about {shaken.about}.", ""]
     return lines + table(["", "x", "y", "z"], rows)
 
 

@@ -82,8 +82,8 @@ class Loop:
     def lengths(self) -> tuple[float, float, float, float]:
         """Crank, coupler, follower and ground of a four-bar (m)."""
         ends = ((0, 1), (1, 2), (2, 3), (3, 0))
-        one, two, three, four = (float(np.hypot(*(self.pins[0, j] - self.pins[0, i]))) for i, j in ends)
-        return one, two, three, four
+        crank, coupler, follower, ground = (float(np.hypot(*(self.pins[0, j] - self.pins[0, i]))) for i, j in ends)
+        return crank, coupler, follower, ground
 
 
 def loops(motion: Motion) -> list[Loop]:
@@ -128,8 +128,8 @@ def _driven(motion: Motion) -> list[str]:
 
 def _turning(motion: Motion) -> list[str]:
     """The crank of a motion that forces make."""
-    found = crank_of(motion) if motion.analysis == "simulation" else None
-    return [] if found is None else [found.body]
+    crank = crank_of(motion) if motion.analysis == "simulation" else None
+    return [] if crank is None else [crank.body]
 
 
 def _normal(c: np.ndarray) -> np.ndarray:

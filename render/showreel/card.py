@@ -102,9 +102,9 @@ def _words(size: tuple[int, int], title: Title) -> np.ndarray:
 
 def _lines(said: str, letters: int, most: int) -> list[str]:
     """As many whole sentences as fit into so many lines of so many letters."""
-    found = re.split(r"(?<=[.!?])\s+(?=[A-Z0-9])", said)
-    for count in range(len(found), 0, -1):
-        lines = textwrap.wrap(" ".join(found[:count]), letters)
+    sentences = re.split(r"(?<=[.!?])\s+(?=[A-Z0-9])", said)
+    for count in range(len(sentences), 0, -1):
+        lines = textwrap.wrap(" ".join(sentences[:count]), letters)
         if len(lines) <= most:
             return lines
     return textwrap.wrap(said, letters, max_lines=most, placeholder=" ...")

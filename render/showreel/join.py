@@ -52,11 +52,11 @@ def join(films: Sequence[tuple[Path, Title]], preset: Preset, target: Path, scra
 
 def _difference(clip: Clip, other: Clip) -> str:
     """Why a film cannot be copied, in words."""
-    one, two = clip.parameters, other.parameters
+    ours, two = clip.parameters, other.parameters
     if clip.fps != other.fps:
         return f"{clip.fps} frames a second, not {other.fps}"
-    if one.size != two.size:
-        return f"{one.size} pixels, not {two.size}"
+    if ours.size != two.size:
+        return f"{ours.size} pixels, not {two.size}"
     return "its encoder had other settings"
 
 

@@ -25,9 +25,9 @@ def run(preset: Preset, only: str = "", show: str = "") -> Path:
     Raises UserError if there is none, if one of ``only`` is missing, or if a film does not decode.
     """
     names = [known_name(word) for word in only.replace(",", " ").split()] or _all_names()
-    found = {name: film for name in names if (film := named(Out(name).film(preset.name), show)).is_file()}
-    left = [name for name in names if name not in found]
-    if not found or (only.strip() and left):
+    films = {name: film for name in names if (film := named(Out(name).film(preset.name), show)).is_file()}
+    left = [name for name in names if name not in films]
+    if not films or (only.strip() and left):
         first = (left or ["<name>"])[0].replace("_", "-")
         wanted = ", ".join(left) if only.strip() else "any mechanism"
         raise UserError(f"showreel: there is no film of {wanted} at {preset.name}; make film-{first} {preset.asked}")
@@ -38,10 +38,10 @@ def run(preset: Preset, only: str = "", show: str = "") -> Path:
         raise UserError(f"showreel: a mechanism has this name, and so has its film; call mechanisms/{NAME} otherwise")
     target = named(out_root() / "films" / f"{NAME}-{preset.name}.mp4", show)
     home = out_root() / f".{NAME}"
-    say("showreel", f"{len(found)} films of {preset}, each under its title")
+    say("showreel", f"{len(films)} films of {preset}, each under its title")
     try:
         with scratch_folder(home) as scratch:
-            row = join([(film, title_of(name)) for name, film in found.items()], preset, target, scratch)
+            row = join([(film, title_of(name)) for name, film in films.items()], preset, target, scratch)
     finally:
         with suppress(OSError):
             home.rmdir()
@@ -49,7 +49,7 @@ def run(preset: Preset, only: str = "", show: str = "") -> Path:
     copied = sum(clip.path.parent == target.parent for clip in row)
     say(
         NAME,
-        f"{target}: {duration(seconds)}, {copied} films copied as they are, {len(found) - copied} encoded again, "
+        f"{target}: {duration(seconds)}, {copied} films copied as they are, {len(films) - copied} encoded again, "
         f"{target.stat().st_size / 1e6:.1f} MB",
     )
     return target

@@ -31,9 +31,9 @@ def encode(payload: dict[str, Any], compress: bool = True) -> bytes:
             blocks.extend(b"\0" * (-len(blocks) % 8))
             return {"$": [TYPES[value.dtype.name], place, value.size]}
         if isinstance(value, dict):
-            return {str(key): plain(one) for key, one in value.items()}
+            return {str(key): plain(part) for key, part in value.items()}
         if isinstance(value, list | tuple):
-            return [plain(one) for one in value]
+            return [plain(part) for part in value]
         return value
 
     header = json.dumps(plain(payload), separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode()

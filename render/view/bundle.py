@@ -56,13 +56,13 @@ def bundle() -> Bundle:
             *("--charset=utf8", "--log-level=warning", f"--outfile={made}"),
         ]
         _run(command, "esbuild could not bundle the page", {"NODE_PATH": str(modules)}, PAGE)
-        found = Bundle(
+        made_bundle = Bundle(
             script=made.read_text("utf-8"),
             style=made.with_suffix(".css").read_text("utf-8"),
             licences=_licences(modules),
         )
-    jsonfile.write(kept, found)
-    return found
+    jsonfile.write(kept, made_bundle)
+    return made_bundle
 
 
 def sources_key() -> str:

@@ -34,18 +34,18 @@ def gap_places(film: Film, clearance: Clearance) -> list[GapPlace | None]:
     """For each pair, at the time of its least gap; None beyond MOST, for missing pieces, and between layers."""
     out: list[GapPlace | None] = []
     for number, pair in enumerate(clearance.pairs):
-        found = [
+        pieces = [
             film.parts.bodies[body].pieces.get(piece) if body in film.parts.bodies else None
             for body, piece in zip(pair.bodies, pair.pieces, strict=True)
         ]
-        if number >= MOST or None in found or pair.proof == "layers":
+        if number >= MOST or None in pieces or pair.proof == "layers":
             out.append(None)
             continue
         at = Moment(float(film.poses.time[0]) if pair.time is None else pair.time, 0)
         poses = [film.poses.body(body, at) for body in pair.bodies]
         surfaces = [
             _placed(read_triangles(film.folder / piece.stl), pose)
-            for pose, piece in zip(poses, found, strict=True)
+            for pose, piece in zip(poses, pieces, strict=True)
             if piece is not None
         ]
         x, y, z = (float(value) for value in middle(*surfaces))
@@ -57,20 +57,20 @@ def gap_places(film: Film, clearance: Clearance) -> list[GapPlace | None]:
 
 def middle(first: Array, second: Array) -> Array:
     """(3,) halfway between the two nearest points of triangles (n, 3, 3) and (m, 3, 3)."""
-    size = max(float(np.ptp(one.reshape(-1, 3), axis=0).max()) for one in (first, second))
+    size = max(float(np.ptp(faces.reshape(-1, 3), axis=0).max()) for faces in (first, second))
     # Far triangles of a large piece need no points: those within reach of the other's box alone.
-    near = [_beside(one, other, size / 4) for one, other in ((first, second), (second, first))]
-    a, b = (_points(one, size / FINE) for one in near)
+    near = [_beside(faces, other, size / 4) for faces, other in ((first, second), (second, first))]
+    a, b = (_points(faces, size / FINE) for faces in near)
     distance, index = KDTree(b).query(a)
     k = int(np.argmin(distance))
     return (a[k] + b[int(np.asarray(index)[k])]) / 2
 
 
-def _beside(one: Array, other: Array, reach: float) -> Array:
+def _beside(faces: Array, other: Array, reach: float) -> Array:
     corners = other.reshape(-1, 3)
     low, high = corners.min(axis=0) - reach, corners.max(axis=0) + reach
-    there = ((one.max(axis=1) >= low) & (one.min(axis=1) <= high)).all(axis=1)
-    return one[there] if there.any() else one
+    there = ((faces.max(axis=1) >= low) & (faces.min(axis=1) <= high)).all(axis=1)
+    return faces[there] if there.any() else faces
 
 
 def _points(triangles: Array, apart: float) -> Array:

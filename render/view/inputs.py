@@ -32,10 +32,10 @@ def read_payload(out: Out) -> dict[str, Any]:
     shot = read_shot(out.shot) if out.shot.is_file() else Shot()
     parts = read_parts(out.parts, out.name) if out.parts.is_file() else None
     motion = with_rods(motion, parts) if parts else motion
-    found = payload(motion, skeleton.moving, shot)
+    page = payload(motion, skeleton.moving, shot)
     film = Film(motion, parts, shot, out.parts_folder) if parts else None
     if film is not None:
-        found = with_parts(found, film)
+        page = with_parts(page, film)
     if out.clearance.is_file():
-        found["clearance"] = clearance_of(read_clearance(out.clearance), film)
-    return found
+        page["clearance"] = clearance_of(read_clearance(out.clearance), film)
+    return page

@@ -43,16 +43,16 @@ def arrows_of(motion: Motion, size: float, heights: Heights | None = None) -> di
         "scales": {unit: _scale(scale) for unit, scale in arrows.scales.items()},
         "list": [
             {
-                "quantity": one.quantity,
-                "row": one.row,
-                "name": one.name,
-                "unit": one.unit,
-                "bodies": list(one.bodies),
-                "place": one.place.astype(np.float32),
-                "value": one.value.astype(np.float32),
-                "z": heights.arrow(one.bodies, *map(float, one.place[0])) if heights else 0.0,
+                "quantity": vector.quantity,
+                "row": vector.row,
+                "name": vector.name,
+                "unit": vector.unit,
+                "bodies": list(vector.bodies),
+                "place": vector.place.astype(np.float32),
+                "value": vector.value.astype(np.float32),
+                "z": heights.arrow(vector.bodies, *map(float, vector.place[0])) if heights else 0.0,
             }
-            for one in arrows.vectors
+            for vector in arrows.vectors
         ],
     }
 
@@ -66,16 +66,16 @@ def arcs_of(motion: Motion, size: float, heights: Heights | None = None) -> dict
         "scale": _scale(arcs.scale) if arcs.scale else None,
         "list": [
             {
-                "quantity": one.quantity,
-                "row": SIGNAL[one.quantity],
-                "name": one.name,
-                "bodies": list(one.bodies),
-                "place": one.place.astype(np.float32),
-                "value": one.value.astype(np.float32),
+                "quantity": torque.quantity,
+                "row": SIGNAL[torque.quantity],
+                "name": torque.name,
+                "bodies": list(torque.bodies),
+                "place": torque.place.astype(np.float32),
+                "value": torque.value.astype(np.float32),
                 "radius": spec.radius,
-                "z": heights.arrow(one.bodies, *map(float, one.place[0])) if heights else 0.0,
+                "z": heights.arrow(torque.bodies, *map(float, torque.place[0])) if heights else 0.0,
             }
-            for one, spec in zip(arcs.torques, arcs.specs(), strict=True)
+            for torque, spec in zip(arcs.torques, arcs.specs(), strict=True)
         ],
     }
 
@@ -87,14 +87,14 @@ def clearance_of(clearance: Clearance, film: Film | None = None) -> dict[str, An
         "limit": clearance.limit,
         "pairs": [
             {
-                "bodies": list(one.bodies),
-                "pieces": list(one.pieces),
-                "gap": one.proven,
-                "time": one.time,
+                "bodies": list(pair.bodies),
+                "pieces": list(pair.pieces),
+                "gap": pair.proven,
+                "time": pair.time,
                 "at": list(place.at) if place else None,
                 "on": place.body if place else None,
             }
-            for one, place in zip(clearance.pairs[:PAIRS], places[:PAIRS], strict=True)
+            for pair, place in zip(clearance.pairs[:PAIRS], places[:PAIRS], strict=True)
         ],
     }
 

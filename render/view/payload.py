@@ -82,9 +82,14 @@ def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bo
         },
         "forces": {name: _force(force) for name, force in motion.forces.items()},
         "contacts": {
-            name: {"kind": one.kind, "bodies": list(one.bodies), "unit": one.unit, "effort_unit": one.effort_unit}
-            | _series(one, "x", "y", "fx", "fy", "torque", "gap", "normal", "friction")
-            for name, one in motion.contacts.items()
+            name: {
+                "kind": contact.kind,
+                "bodies": list(contact.bodies),
+                "unit": contact.unit,
+                "effort_unit": contact.effort_unit,
+            }
+            | _series(contact, "x", "y", "fx", "fy", "torque", "gap", "normal", "friction")
+            for name, contact in motion.contacts.items()
         },
         "couple": couple_of(motion),
         "frame": frame_of(motion),
@@ -98,13 +103,13 @@ def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bo
         **({"arrows": arrows_of(motion, size), "arcs": arcs_of(motion, size)} if arrows else {}),
         "trails": [
             {
-                "point": one.point,
-                "colour": one.colour and list(one.colour),
-                "tail": one.tail,
-                "radius": one.radius * size,
+                "point": trail.point,
+                "colour": trail.colour and list(trail.colour),
+                "tail": trail.tail,
+                "radius": trail.radius * size,
                 "z": 0.0,
             }
-            for one in trails_of(motion, shot)
+            for trail in trails_of(motion, shot)
         ],
         "clearance": None,
         "solid": None,
@@ -121,19 +126,19 @@ def skeleton(moving: Moving) -> dict[str, Any]:
         "high": list(moving.high),
         "times": np.asarray(moving.times, np.float64),
         "strokes": [
-            _stroke(one.stroke)
-            | {"carrier": _carrier(one.carrier), "shapes": floats(one.shapes) if one.shapes else None}
-            for one in sorted(moving.strokes, key=lambda one: one.stroke.order)
+            _stroke(carried.stroke)
+            | {"carrier": _carrier(carried.carrier), "shapes": floats(carried.shapes) if carried.shapes else None}
+            for carried in sorted(moving.strokes, key=lambda carried: carried.stroke.order)
         ],
         "names": [
             {
-                "text": one.name.text,
-                "at": list(one.name.at),
-                "clearance": one.name.clearance,
-                "ink": one.name.ink,
-                "carrier": _carrier(one.carrier),
+                "text": label.name.text,
+                "at": list(label.name.at),
+                "clearance": label.name.clearance,
+                "ink": label.name.ink,
+                "carrier": _carrier(label.carrier),
             }
-            for one in moving.names
+            for label in moving.names
         ],
     }
 
@@ -156,23 +161,23 @@ def _series(thing: Any, *names: str) -> dict[str, Any]:
 
 def couple_of(motion: Motion) -> dict[str, Any] | None:
     """What inertia does to the frame about axes in the plane, rounding as zero."""
-    found = shaking(motion)
-    return None if found.mx is None else _series(found, "mx", "my")
+    shaken = shaking(motion)
+    return None if shaken.mx is None else _series(shaken, "mx", "my")
 
 
 def frame_of(motion: Motion) -> dict[str, Any] | None:
     """Force of inertia, centre of mass, and the largest size of each harmonic."""
-    found = motion.vibration
-    if found is None or motion.couple is None:
+    vibration = motion.vibration
+    if vibration is None or motion.couple is None:
         return None
     shaken = shaking(motion)
     harmonics = {}
-    for name, one in found.harmonics.items():
-        size, floor = np.add(one.forward, one.backward), floor_of(motion, name, one.unit)
+    for name, each in vibration.harmonics.items():
+        size, floor = np.add(each.forward, each.backward), floor_of(motion, name, each.unit)
         if size.max(initial=0.0) > floor:
-            harmonics[name] = {"unit": one.unit, "size": floats(np.where(size > floor, size, 0.0))}
-    series = _series(shaken, "fx", "fy") | _series(found, "x", "y")
-    return series | {"crank": found.crank, "order": floats(found.order), "harmonics": harmonics}
+            harmonics[name] = {"unit": each.unit, "size": floats(np.where(size > floor, size, 0.0))}
+    series = _series(shaken, "fx", "fy") | _series(vibration, "x", "y")
+    return series | {"crank": vibration.crank, "order": floats(vibration.order), "harmonics": harmonics}
 
 
 def _body(body: Any) -> dict[str, Any]:

@@ -40,6 +40,6 @@ def sketch(skeleton: dict[str, Any]) -> str:
             looks.append(f'stroke-dasharray="{" ".join(f"{WIDTH * dash:g}" for dash in stroke["dash"])}"')
         return f'<path {" ".join(looks)} d="M{"L".join(corners)}{end}"/>'
 
-    paths = "".join(path(one) for one in skeleton["strokes"] if not one["sign"] and len(one["points"]))
+    paths = "".join(path(stroke) for stroke in skeleton["strokes"] if not stroke["sign"] and len(stroke["points"]))
     box = f'viewBox="0 0 {width:.1f} {height:.1f}"'
     return f'<svg class="mbsd-sketch" {box} role="img" aria-label="Skeleton">{paths}</svg>'

@@ -38,8 +38,8 @@ def with_parts(payload: dict[str, Any], film: Film) -> dict[str, Any]:
     """The payload of the film's motion with its parts, and arrows and trails at their heights."""
     size, heights = film.space.size, film.trails.heights
     trails = [
-        one | {"z": heights[trail.point], "radius": trail.radius * size}
-        for one, trail in zip(payload["trails"], film.trails.trails, strict=True)
+        record | {"z": heights[trail.point], "radius": trail.radius * size}
+        for record, trail in zip(payload["trails"], film.trails.trails, strict=True)
     ]
     return payload | {
         "arrows": arrows_of(film.motion, size, film.heights),
@@ -52,12 +52,12 @@ def with_parts(payload: dict[str, Any], film: Film) -> dict[str, Any]:
 def solid(film: Film) -> dict[str, Any]:
     """See the file."""
     specs = piece_specs(film.parts, film.shot, film.folder)
-    found = list(shapes([Path(spec.stl) for spec in specs]))
-    meshes = Meshes(max(float(np.ptp(positions, axis=0).max()) for positions, _, _ in found))
+    solids = list(shapes([Path(spec.stl) for spec in specs]))
+    meshes = Meshes(max(float(np.ptp(positions, axis=0).max()) for positions, _, _ in solids))
     surfaces: dict[SurfaceSpec, int] = {}
-    turned = {(one.body, one.piece): one for one in film.rollers.found}
+    turned = {(roller.body, roller.piece): roller for roller in film.rollers.found}
     pieces = []
-    for spec, shape in zip(specs, found, strict=True):
+    for spec, shape in zip(specs, solids, strict=True):
         mesh, at = meshes.add(shape)
         surface = surfaces.setdefault(spec.surface, len(surfaces))
         turns = _turns(turned.get((spec.body, spec.name)), spec)

@@ -68,7 +68,7 @@ def transfer(source: str, target: Path, beside: Path, lock: int, report: Callabl
 
 def _listened(process: subprocess.Popen[str], report: Callable[[str, int], None]) -> Transfer:
     assert process.stdout is not None
-    found = Transfer(code=0, said=[])
+    transfer = Transfer(code=0, said=[])
     for line in process.stdout:
         words = line.strip()
         if done := FILE.match(words):
@@ -77,13 +77,13 @@ def _listened(process: subprocess.Popen[str], report: Callable[[str, int], None]
         elif number := re.match(r"(Literal|Matched) data: ([\d,.]+)", words):
             count = int(re.sub(r"\D", "", number[2]))
             if number[1] == "Literal":
-                found.received = count
+                transfer.received = count
             else:
-                found.there = count
+                transfer.there = count
         elif words and not re.match(r"(Number of|Total|File list|sent |total size)", words):
-            found.said.append(words)
-    found.code = process.wait()
-    return found
+            transfer.said.append(words)
+    transfer.code = process.wait()
+    return transfer
 
 
 def remote_shell() -> str:
@@ -98,8 +98,8 @@ def shell_program() -> str:
 
 def program(name: str) -> str:
     """The program's path; raises UserError with the command that installs it."""
-    found = missing.program(name)
-    if found is None:
+    path = missing.program(name)
+    if path is None:
         command = missing.remedy([name])
         raise UserError(f"fetch: {name} is not installed here" + (f"; {command}" if command else ""))
-    return found
+    return path

@@ -22,11 +22,11 @@ class Fit:
         name: str,
         nursery: Nursery,
         tell: Tell,
-        found: Callable[[dict[str, float]], None],
+        fitted: Callable[[dict[str, float]], None],
         best: Callable[[dict[str, float] | None], None],
     ) -> None:
         """``best`` is called with the numbers of the best linkage so far, with None where a fit ends without any."""
-        self._name, self._nursery, self._tell, self._found, self._best = name, nursery, tell, found, best
+        self._name, self._nursery, self._tell, self._found, self._best = name, nursery, tell, fitted, best
         self._shown = False
         self._child: Child | None = None
 

@@ -47,7 +47,7 @@ class History:
 
     def keep(self, names: set[str]) -> None:
         """Forget numbers that are no longer there, in all states."""
-        self._states = [{name: value for name, value in one.items() if name in names} for one in self._states]
+        self._states = [{name: value for name, value in state.items() if name in names} for state in self._states]
 
     def written(self, values: dict[str, float], before: dict[str, float]) -> None:
         """The file now holds these, where it held ``before``: all states mean what they meant, beside the new file.

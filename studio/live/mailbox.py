@@ -22,14 +22,14 @@ class Mailbox:
     def put(self, frame: bytes, replaces: bool = False) -> None:
         """Add a frame; one that ``replaces`` takes the place of an older one that did."""
         if replaces:
-            self._bytes -= sum(len(one) for one, replaced in self._waiting if replaced)
-            self._waiting = deque(one for one in self._waiting if not one[1])
+            self._bytes -= sum(len(message) for message, replaced in self._waiting if replaced)
+            self._waiting = deque(message for message in self._waiting if not message[1])
         self._add(frame, replaces)
         if len(self._waiting) > MOST or self._bytes > LARGEST:
             self._waiting.clear()
             self._bytes = 0
-            for one in self._anew():
-                self._add(one, False)
+            for message in self._anew():
+                self._add(message, False)
         self._some.set()
 
     async def get(self) -> bytes:

@@ -45,7 +45,7 @@ def numbers_of(p: Any) -> list[Number]:
     """All numbers of a dataclass, in its order. Raises UserError for a range that is none."""
     if not dataclasses.is_dataclass(p):
         return []
-    found = []
+    numbers = []
     fields = [field for field in dataclasses.fields(p) if field.init]
     every = [abs(float(value)) for field in fields for _, value in _plain("", getattr(p, field.name))]
     usual = sorted(value for value in every if value > 1 / LARGEST)
@@ -57,8 +57,8 @@ def numbers_of(p: Any) -> list[Number]:
                 f'Params.{field.name}: metadata={{"range": {given!r}}} is no range; write (lowest, highest), rising'
             )
         for name, value in _plain(field.name, getattr(p, field.name)):
-            found.append(_number(name, value, given, middle))
-    return found
+            numbers.append(_number(name, value, given, middle))
+    return numbers
 
 
 def changed(p: Any, values: dict[str, float]) -> Any:
@@ -94,8 +94,8 @@ def parsed(name: str) -> tuple[str, list[int]]:
 
 def _plain(name: str, value: Any) -> Iterator[tuple[str, float | int]]:
     if isinstance(value, tuple | list):
-        for place, one in enumerate(value):
-            yield from _plain(f"{name}[{place}]", one)
+        for place, part in enumerate(value):
+            yield from _plain(f"{name}[{place}]", part)
     elif isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < LARGEST:
         yield name, value
 
@@ -120,7 +120,7 @@ def _with(value: Any, places: list[int], new: float | int) -> Any:
     if not places:
         return new
     first, *rest = places
-    parts = [_with(one, rest, new) if k == first else one for k, one in enumerate(value)]
+    parts = [_with(part, rest, new) if k == first else part for k, part in enumerate(value)]
     return type(value)(parts)
 
 

@@ -150,9 +150,9 @@ class Session:
     def _drop_drag(self) -> bool:
         """Forget a drag that is being solved or waits; whether there was one that had ended."""
         busy = self._wished if self._good is not None and self._good.busy else None
-        drags = [one for one in (busy, self._wish) if one is not None and one["do"] == "drag" and one.get("final")]
-        for one in drags:
-            one["final"] = False
+        drags = [wish for wish in (busy, self._wish) if wish is not None and wish["do"] == "drag" and wish.get("final")]
+        for drag in drags:
+            drag["final"] = False
         return bool(drags)
 
     def _write(self, wish: Write) -> None:

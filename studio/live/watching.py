@@ -64,9 +64,9 @@ class Watch:
                 if first:
                     yield first
                 async for _ in watched:
-                    found = self._changed(self._all())
-                    if found:
-                        yield found
+                    changed = self._changed(self._all())
+                    if changed:
+                        yield changed
                     if ended() or not self.folder.is_dir():
                         break
             except (OSError, RuntimeError):
@@ -88,13 +88,13 @@ class Watch:
         return own | self._files | {file for file in self._states if file.parent == self.folder}
 
     def _changed(self, files: set[Path]) -> set[Path]:
-        found = set()
+        changed = set()
         for file in files:
             now = state(file)
             if self._states.get(file) != now:
-                found.add(file)
+                changed.add(file)
             self._states[file] = now
-        return found
+        return changed
 
 
 def state(file: Path) -> str:

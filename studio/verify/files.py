@@ -20,24 +20,24 @@ def compared(what: str, old: Path, new: Path) -> Finding:
         return Finding(what, "differs", "it was not made again")
     if not old.is_file():
         return Finding(what, "differs", "it is not there, but was made again")
-    one, other = old.read_bytes(), new.read_bytes()
-    if one == other:
-        return Finding(what, "same", f"{len(one)} bytes")
+    ours, other = old.read_bytes(), new.read_bytes()
+    if ours == other:
+        return Finding(what, "same", f"{len(ours)} bytes")
     if old.suffix == ".json":
-        return _of_json(what, one, other)
-    return Finding(what, "differs", _first_byte(one, other))
+        return _of_json(what, ours, other)
+    return Finding(what, "differs", _first_byte(ours, other))
 
 
-def _first_byte(one: bytes, other: bytes) -> str:
-    place = next((k for k, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other)))
-    return f"from byte {place} on; {len(one)} bytes, made again {len(other)}"
+def _first_byte(ours: bytes, other: bytes) -> str:
+    place = next((k for k, (a, b) in enumerate(zip(ours, other, strict=False)) if a != b), min(len(ours), len(other)))
+    return f"from byte {place} on; {len(ours)} bytes, made again {len(other)}"
 
 
-def _of_json(what: str, one: bytes, other: bytes) -> Finding:
+def _of_json(what: str, ours: bytes, other: bytes) -> Finding:
     try:
-        first, second = msgspec.json.decode(one), msgspec.json.decode(other)
+        first, second = msgspec.json.decode(ours), msgspec.json.decode(other)
     except msgspec.DecodeError:
-        return Finding(what, "differs", f"it is not whole JSON; {_first_byte(one, other)}")
+        return Finding(what, "differs", f"it is not whole JSON; {_first_byte(ours, other)}")
     if _inputs(first) != _inputs(second):
         return Finding(what, "outdated", "something that it follows from has changed since")
     where = _first_field(first, second, "")
@@ -49,21 +49,21 @@ def _inputs(document: Any) -> Any:
     return provenance.get("inputs") if isinstance(provenance, dict) else None
 
 
-def _first_field(one: Any, other: Any, path: str) -> tuple[str, str, str] | None:
+def _first_field(ours: Any, other: Any, path: str) -> tuple[str, str, str] | None:
     """Path and values of the first field that differs."""
-    if isinstance(one, dict) and isinstance(other, dict):
-        for name in dict.fromkeys([*one, *other]):
-            found = _first_field(one.get(name, _NONE), other.get(name, _NONE), f"{path}.{name}" if path else name)
-            if found:
-                return found
+    if isinstance(ours, dict) and isinstance(other, dict):
+        for name in dict.fromkeys([*ours, *other]):
+            difference = _first_field(ours.get(name, _NONE), other.get(name, _NONE), f"{path}.{name}" if path else name)
+            if difference:
+                return difference
         return None
-    if isinstance(one, list) and isinstance(other, list):
-        for k, (a, b) in enumerate(zip_longest(one, other, fillvalue=_NONE)):
-            found = _first_field(a, b, f"{path}[{k}]")
-            if found:
-                return found
+    if isinstance(ours, list) and isinstance(other, list):
+        for k, (a, b) in enumerate(zip_longest(ours, other, fillvalue=_NONE)):
+            difference = _first_field(a, b, f"{path}[{k}]")
+            if difference:
+                return difference
         return None
-    return None if one == other else (path, _word(one), _word(other))
+    return None if ours == other else (path, _word(ours), _word(other))
 
 
 class _None:

@@ -24,12 +24,12 @@ def chosen(words: str, count: int, mechanism: str) -> list[int]:
     """Numbers of frames in ``0,30,60``, or three of them; raises UserError for what is no frame of the film."""
     if not words.strip():
         return sorted({k * count // CHOSEN for k in range(CHOSEN)})
-    found = []
+    frames = []
     for word in words.replace(",", " ").split():
         if not word.isascii() or not word.isdigit() or int(word) >= count:
             raise UserError(f"{mechanism}: there is no frame {word!r}; the film has frames 0 to {count - 1}")
-        found.append(int(word))
-    return sorted(set(found))
+        frames.append(int(word))
+    return sorted(set(frames))
 
 
 def compared(frame: int, name: str, store: FrameStore, again: FrameStore) -> Finding:
@@ -46,13 +46,13 @@ def compared(frame: int, name: str, store: FrameStore, again: FrameStore) -> Fin
 
 def pixels(what: str, old: bytes, new: bytes) -> Finding:
     """Two PNGs, decoded."""
-    one, other = _decoded(old), _decoded(new)
-    if one.shape != other.shape:
-        return Finding(what, "differs", f"{_size(one)} pixels, made again {_size(other)}")
-    far = np.abs(one.astype(np.int16) - other).max(axis=2)
+    ours, other = _decoded(old), _decoded(new)
+    if ours.shape != other.shape:
+        return Finding(what, "differs", f"{_size(ours)} pixels, made again {_size(other)}")
+    far = np.abs(ours.astype(np.int16) - other).max(axis=2)
     if not far.any():
         beside = "the same bytes" if old == new else "other bytes around the same pixels"
-        return Finding(what, "same", f"{_size(one)} pixels, {beside}")
+        return Finding(what, "same", f"{_size(ours)} pixels, {beside}")
     rows, columns = np.nonzero(far)
     return Finding(
         what,

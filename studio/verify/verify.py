@@ -35,13 +35,13 @@ def run(name: str, preset: Preset, frames: str = "", show: str = "") -> int:
     home = out_root() / ".verify"
     try:
         with scratch_folder(home) as scratch:
-            found = _compared(out, preset, frames, show, scratch)
+            findings = _compared(out, preset, frames, show, scratch)
     finally:
         with suppress(OSError):
             home.rmdir()  # unless another run uses it
-    for finding in found:
+    for finding in findings:
         (say if finding.verdict in ("same", "missing") else _complain)("verify", f"{out.name}: {finding}")
-    return _sum(out.name, found)
+    return _sum(out.name, findings)
 
 
 def _compared(out: Out, preset: Preset, frames: str, show: str, scratch: Path) -> list[Finding]:
@@ -55,14 +55,14 @@ def _compared(out: Out, preset: Preset, frames: str, show: str, scratch: Path) -
     ):  # masses are those of solids, where there are some
         _stage(root, "mechanisms", stage, out.name)
     made = root / out.name
-    found = [_of_parts(out, made)] if solids else [Finding("solids", "missing", "there are none")]
+    findings = [_of_parts(out, made)] if solids else [Finding("solids", "missing", "there are none")]
     for what, path in (("motion", out.motion), ("skeleton", out.skeleton), ("shot", out.shot)):
         if path.is_file() and (solids or path != out.shot):
-            found.append(files.compared(f"{what} ({path.name})", path, made / path.name))
+            findings.append(files.compared(f"{what} ({path.name})", path, made / path.name))
     if index is None or not solids:
         hint = f"make film-{_hyphens(out.name)} {preset.asked} first"
-        return [*found, Finding("frames and film", "missing", f"none of {preset.name} are there; {hint}")]
-    return [*found, *_of_pictures(out, preset, index, wanted, show, scratch)]
+        return [*findings, Finding("frames and film", "missing", f"none of {preset.name} are there; {hint}")]
+    return [*findings, *_of_pictures(out, preset, index, wanted, show, scratch)]
 
 
 def _of_pictures(
@@ -71,8 +71,8 @@ def _of_pictures(
     root, store = scratch / "out", FrameStore(out.frames(preset.name))
     _stage(root, "studio.verify.again", out.name, again.preset_words(preset), ",".join(map(str, wanted)), show)
     made = FrameStore(root / out.name / "frames" / preset.name)
-    found = [pictures.compared(frame, index.frames[frame], store, made) for frame in wanted]
-    return [*found, film.compared(named(out.film(preset.name), show), scratch, store, index, preset)]
+    findings = [pictures.compared(frame, index.frames[frame], store, made) for frame in wanted]
+    return [*findings, film.compared(named(out.film(preset.name), show), scratch, store, index, preset)]
 
 
 def _of_parts(out: Out, again: Path) -> Finding:
@@ -82,12 +82,12 @@ def _of_parts(out: Out, again: Path) -> Finding:
         return Finding(f"solids ({described.what})", described.verdict, described.detail)
     here, there = out.parts_folder, again / "parts"
     names = sorted({path.name for folder in (here, there) for path in folder.glob("*.st[el]*")})
-    found = [files.compared(name, here / name, there / name) for name in names]
-    wrong = [finding for finding in found if finding.verdict != "same"]
+    findings = [files.compared(name, here / name, there / name) for name in names]
+    wrong = [finding for finding in findings if finding.verdict != "same"]
     if wrong:
-        detail = f"{len(wrong)} of {len(found)} files, such as {wrong[0].what} {wrong[0].detail}"
+        detail = f"{len(wrong)} of {len(findings)} files, such as {wrong[0].what} {wrong[0].detail}"
         return Finding("solids (STL, STEP)", "differs", detail)
-    return Finding("solids (parts.json, STL, STEP)", "same", f"{len(found) + 1} files")
+    return Finding("solids (parts.json, STL, STEP)", "same", f"{len(findings) + 1} files")
 
 
 def _stage(root: Path, module: str, *arguments: str) -> None:
@@ -102,9 +102,9 @@ def _complain(_: str, text: str) -> None:
     fail(text)
 
 
-def _sum(name: str, found: list[Finding]) -> int:
+def _sum(name: str, findings: list[Finding]) -> int:
     """The last line, and the exit code."""
-    counts = Counter(finding.verdict for finding in found)
+    counts = Counter(finding.verdict for finding in findings)
     words = [f"{counts['same']} the same"]
     if counts["missing"]:
         words.append(f"{counts['missing']} not compared")

@@ -26,6 +26,8 @@ INSTEAD = {
     r"it were": "it was",
     r"parts by (?:them|it)sel(?:ves|f)": "automatic parts",
 }
+NAMELESS = ("one", "found")
+"""Names that say nothing of what they hold."""
 LITERAL = {
     "hangs? on": (  # on a pin, a sleeve, a master rod
         *("mechanisms/chain/", "mechanisms/double_pendulum/", "mbsd/drawing/skeleton.py", "mbsd/machines/"),
@@ -49,6 +51,27 @@ def test_the_sources_use_textbook_words(word: str) -> None:
         if pattern.search(line)
     ]
     assert not lines, f"say {INSTEAD[word]}: " + "; ".join(lines)
+
+
+@pytest.mark.parametrize("room", [*ROOMS, *MORE])
+def test_variables_are_called_what_they_are(room: str) -> None:
+    nameless = [
+        f"{_place(file)}:{node.lineno} {name}"
+        for file in ALL
+        if _place(file).startswith(f"{room}/")
+        for node in _bindings(ast.parse(file.read_text()))
+        if (name := node.id if isinstance(node, ast.Name) else node.arg) in NAMELESS
+    ]
+    assert not nameless, "name what it is: " + "; ".join(nameless)
+
+
+def _bindings(tree: ast.AST) -> Iterator[ast.Name | ast.arg]:
+    """What a file calls its variables and arguments; fields of classes are read after their owner's name."""
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, ast.arg) or (isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)):
+            yield node
+        elif not (isinstance(node, ast.AnnAssign) and isinstance(tree, ast.ClassDef)):
+            yield from _bindings(node)
 
 
 def test_docstrings_begin_with_their_noun_or_verb() -> None:

@@ -47,19 +47,19 @@ def rows(maps: list[BankAngles]) -> str:
         for order in ORDERS
     ]
     table.writerow(["engine", "bank angle (deg)", *named, "uneven (deg)", "firing order", "torque ripple"])
-    for one in maps:
-        plain, held = one.left(), one.left(counterweights=True)
-        for k, angle in enumerate(one.angle):
+    for chart in maps:
+        plain, held = chart.left(), chart.left(counterweights=True)
+        for k, angle in enumerate(chart.angle):
             sizes = [part[k] for left in (plain, held) for part in (left.force, left.couple)]
             numbers = [f"{value:.9g}" for part in sizes for value in part]
-            ripple = "" if one.ripple is None else f"{one.ripple[k]:.6g}"
+            ripple = "" if chart.ripple is None else f"{chart.ripple[k]:.6g}"
             table.writerow(
                 [
-                    one.family.name,
+                    chart.family.name,
                     f"{angle:g}",
                     *numbers,
-                    f"{one.uneven[k]:.6g}",
-                    "-".join(map(str, one.order[k])),
+                    f"{chart.uneven[k]:.6g}",
+                    "-".join(map(str, chart.order[k])),
                     ripple,
                 ]
             )

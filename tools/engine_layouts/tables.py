@@ -23,8 +23,8 @@ def with_tables(page: str, maps: Sequence[BankAngles]) -> str:
     """The page with its tables as they should be. Raises ValueError where their markers are missing."""
     for part, text in (("layouts", layouts()), ("angles", bank_angles(maps))):
         begin, end = MARKERS[part]
-        before, found, rest = page.partition(begin)
-        if not found or end not in rest:
+        before, mark, rest = page.partition(begin)
+        if not mark or end not in rest:
             raise ValueError(f"the page has no '{begin}' ... '{end}'")
         page = f"{before}{begin}\n{text}\n{end}{rest.partition(end)[2]}"
     return page
@@ -51,14 +51,14 @@ def bank_angles(maps: Sequence[BankAngles]) -> str:
         "| engine | best angle | force, order 1 | order 2 | couple, order 1 | order 2 | torque ripple | why |",
         "|---|---|---|---|---|---|---|---|",
     ]
-    for one in maps:
-        k = int(np.argmin(np.abs(one.angle - one.best)))
-        left = one.left(counterweights=True)
+    for chart in maps:
+        k = int(np.argmin(np.abs(chart.angle - chart.best)))
+        left = chart.left(counterweights=True)
         sizes = [size(part[k, row]) for part in (left.force, left.couple) for row in (0, 1)]
-        every = len(one.angle) > 1 and one.left(True).rank(0).max() < 1e-9 and one.left(True).rank(1).max() < 1e-9
-        best = f"any, such as {one.best:g}" if every else f"{one.best:g}"
-        ripple = "" if one.ripple is None else f"{one.ripple[k]:.2g}"
-        lines.append(f"| {one.family.name} | {best} | {' | '.join(sizes)} | {ripple} | {' '.join(one.reasons())} |")
+        every = len(chart.angle) > 1 and chart.left(True).rank(0).max() < 1e-9 and chart.left(True).rank(1).max() < 1e-9
+        best = f"any, such as {chart.best:g}" if every else f"{chart.best:g}"
+        ripple = "" if chart.ripple is None else f"{chart.ripple[k]:.2g}"
+        lines.append(f"| {chart.family.name} | {best} | {' | '.join(sizes)} | {ripple} | {' '.join(chart.reasons())} |")
     return "\n".join(lines)
 
 

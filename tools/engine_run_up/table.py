@@ -15,8 +15,8 @@ RATES = (100.0, 2000.0)
 
 def with_table(page: str, runs: Any) -> str:
     """The page with its table as it should be. Raises ValueError where its markers are missing."""
-    before, found, rest = page.partition(BEGIN)
-    if not found or END not in rest:
+    before, mark, rest = page.partition(BEGIN)
+    if not mark or END not in rest:
         raise ValueError(f"the page has no '{BEGIN}' ... '{END}'")
     return f"{before}{BEGIN}\n{table(runs)}\n{END}{rest.partition(END)[2]}"
 

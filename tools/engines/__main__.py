@@ -63,19 +63,19 @@ def _faults(
     kind = ENGINES[name][0]
     page = listening(out.view, place / "view.html")
     pictures.mkdir(parents=True, exist_ok=True)
-    found = 0
+    count = 0
     for flat in (False, True):
         browser = kind(program, place / f"profile-{flat}", environment, webgl=not flat)
         try:
             for fault in use_flat(browser, page, pictures) if flat else use(browser, out, page, pictures):
-                found += 1
+                count += 1
                 yield f"{browser.version}: {fault}"
         except UserError as error:
-            found += 1
+            count += 1
             yield f"{browser.version}: {error}"
         finally:
             browser.close()
-    if not found:
+    if not count:
         say("engines", f"{out.name}: {name} {browser.version}: all is well")
 
 
@@ -92,10 +92,10 @@ def _small(folder: Path) -> Out:
 
 
 def _program(name: str) -> str:
-    found = missing.program(name)
-    if found is None:
+    path = missing.program(name)
+    if path is None:
         raise UserError(f"{name} is not installed; {missing.remedy([name])}")
-    return found
+    return path
 
 
 if __name__ == "__main__":

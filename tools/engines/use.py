@@ -129,11 +129,11 @@ def _pin(
         if np.hypot(ox + scale * place[0] - wanted[0], oy - scale * place[1] - wanted[1]) > 1e-6:
             yield "the plane is not to scale"
     try:
-        found = dot(picture)
+        pin = dot(picture)
     except AssertionError:
         yield f"{view}: nothing marks joint {joint} at {motion.time[step]} s ({picture})"
         return
-    away = float(np.hypot(found[0] - wanted[0], found[1] - wanted[1]))
+    away = float(np.hypot(pin[0] - wanted[0], pin[1] - wanted[1]))
     if away > NEAR:
         yield f"{view}: joint {joint} at {motion.time[step]} s is {away:.1f} pixels from where data.json has it"
 

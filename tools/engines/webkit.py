@@ -32,15 +32,15 @@ class WebKit:
         self.downloads.mkdir()
         (folder / "user-dirs.dirs").write_text(f'XDG_DOWNLOAD_DIR="{self.downloads}"\n')
         environment = environment | {"HOME": str(folder), "XDG_CONFIG_HOME": str(folder)}
-        found = [path for pattern in BROWSERS for path in Path("/").glob(pattern[1:])]
-        if not found:
+        browsers = [path for pattern in BROWSERS for path in Path("/").glob(pattern[1:])]
+        if not browsers:
             raise UserError(f"no MiniBrowser of WebKitGTK at {BROWSERS[0]}; Debian: apt-get install {PACKAGES}")
         port = _free_port()
         with (folder / "log").open("w") as sink:
             self.process = subprocess.Popen([program, f"--port={port}"], stdout=sink, stderr=sink, env=environment)
         self.client = httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=SECONDS, trust_env=False)
         arguments = ["--automation", *([] if webgl else ["--enable-webgl=false"])]
-        options = {"webkitgtk:browserOptions": {"binary": str(found[0]), "args": arguments}}
+        options = {"webkitgtk:browserOptions": {"binary": str(browsers[0]), "args": arguments}}
         self.session = ""
         try:
             self._wait()
@@ -118,6 +118,6 @@ class WebKit:
 def _free_port() -> int:
     import socket
 
-    with socket.socket() as one:
-        one.bind(("127.0.0.1", 0))
-        return one.getsockname()[1]
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return listener.getsockname()[1]

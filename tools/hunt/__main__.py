@@ -37,8 +37,8 @@ def hunt(n: int, seed: int, jobs: int, limit: float = LIMIT, kind: str | None = 
     def add(result: CaseResult) -> list[str]:
         return [f"{o.state}: case {result.seed} ({result.family}), {o.variation}" for o in tally.add(result)]
 
-    found = results(seeds(seed, n), partial(case.run, name=kind), jobs, limit, _compiling)
-    follow("tools.hunt", tally, out_root() / "hunt.json", seed, n, found, add)
+    outcomes = results(seeds(seed, n), partial(case.run, name=kind), jobs, limit, _compiling)
+    follow("tools.hunt", tally, out_root() / "hunt.json", seed, n, outcomes, add)
     return 1 if tally.count(WRONG) or tally.count(HUNG) else 0
 
 
@@ -58,10 +58,10 @@ def one_case(seed: int, kind: str | None) -> int:
         start, moving = m.starts.get(name), m.velocities.get(name)
         print(f"  body {name}: {body.mass:.9g} kg, com {body.com}, {body.inertia:.9g} kg m^2, {start}, {moving}")
     for table in (m.joints, m.drivers, m.forces, m.contacts):
-        for name, one in table.items():
-            ends = " - ".join(f"{e.body.name}({e.x!r}, {e.y!r}, {e.angle!r})" for e in (one.i, one.j))
-            laws = getattr(one, "motion", None) or getattr(one, "laws", None) or ""
-            print(f"  {one.kind.name} {name}: {ends} {dict(one.params) or ''} {laws}")
+        for name, entry in table.items():
+            ends = " - ".join(f"{e.body.name}({e.x!r}, {e.y!r}, {e.angle!r})" for e in (entry.i, entry.j))
+            laws = getattr(entry, "motion", None) or getattr(entry, "laws", None) or ""
+            print(f"  {entry.kind.name} {name}: {ends} {dict(entry.params) or ''} {laws}")
     result = case.run(seed, kind, every=True)
     for outcome in result.outcomes:
         print(f"{outcome.state:>12}  {outcome.variation}: {outcome.reason} {outcome.detail}".rstrip(" :"))

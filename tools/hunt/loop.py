@@ -44,7 +44,7 @@ def follow(
     path: Path,
     seed: int,
     n: int,
-    found: Iterable[CaseResult],
+    arrived: Iterable[CaseResult],
     add: Callable[[CaseResult], list[str]],
 ) -> None:
     """Take in n results; ``add`` counts one and gives what is to be shown of it. Ctrl-C ends it with the report."""
@@ -52,7 +52,7 @@ def follow(
     name, stopped = program.rpartition(".")[2].replace("_", "-"), False
     try:
         with progress(name, n, "case") as shown:
-            for result in found:
+            for result in arrived:
                 for line in add(result):
                     warn(name, line)
                 shown.advance(1, f"{len(tally.findings)} found" if tally.findings else "")

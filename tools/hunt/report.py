@@ -30,8 +30,8 @@ class Tally:
 
     def add(self, result: CaseResult) -> list[Outcome]:
         """One more case; what it found."""
-        found = [outcome for outcome in result.outcomes if outcome.state in (WRONG, HUNG)]
-        self.findings += [(result, outcome) for outcome in found]
+        wrong = [outcome for outcome in result.outcomes if outcome.state in (WRONG, HUNG)]
+        self.findings += [(result, outcome) for outcome in wrong]
         self.cases[result.family] += 1
         self.seconds[result.family] += result.seconds
         for outcome in result.outcomes:
@@ -41,7 +41,7 @@ class Tally:
                 self.reasons[outcome.reason] += 1
             elif outcome.state == UNCLEAR:
                 self.not_compared[outcome.reason] += 1
-        return found
+        return wrong
 
     def count(self, state: str) -> int:
         """Solutions that came out so."""
@@ -72,7 +72,7 @@ class Tally:
             "not_compared": dict(self.not_compared.most_common()),
             "findings": [
                 {"seed": result.seed, "kind": result.family} | asdict(outcome)
-                for result, outcome in sorted(self.findings, key=lambda found: found[0].seed)
+                for result, outcome in sorted(self.findings, key=lambda wrong: wrong[0].seed)
             ],
         }
 
@@ -91,7 +91,7 @@ class Tally:
         for title, counts in (("refused", self.reasons), ("not compared", self.not_compared)):
             for reason, count in counts.most_common():
                 console.print(f"{title} {count:6d}  {reason}", markup=False)
-        for result, outcome in sorted(self.findings, key=lambda found: found[0].seed)[:SHOWN]:
+        for result, outcome in sorted(self.findings, key=lambda wrong: wrong[0].seed)[:SHOWN]:
             console.print(
                 f"{outcome.state}: case {result.seed} ({result.family}), {outcome.variation}: {outcome.reason}: "
                 f"{outcome.detail}",

@@ -74,6 +74,6 @@ def all_families() -> dict[str, Family]:
 
     from tools.hunt import mechanisms
 
-    for module in sorted(found.name for found in pkgutil.iter_modules(mechanisms.__path__)):
+    for module in sorted(info.name for info in pkgutil.iter_modules(mechanisms.__path__)):
         importlib.import_module(f"{mechanisms.__name__}.{module}")
     return FAMILIES

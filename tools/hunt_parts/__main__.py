@@ -40,10 +40,10 @@ def main() -> int:
     asked = known.parse_args()
     refuse_unknown(None if asked.kind in KINDS else asked.kind)
     if asked.case is not None:
-        found = case.run(asked.case, asked.kind, not asked.layers)
-        outcome = found.outcomes[-1]
-        print(f"case {asked.case}: {found.family}: {outcome.state}: {outcome.reason}\n{outcome.detail}")
-        print(f"{found.seconds:.1f} s")
+        result = case.run(asked.case, asked.kind, not asked.layers)
+        outcome = result.outcomes[-1]
+        print(f"case {asked.case}: {result.family}: {outcome.state}: {outcome.reason}\n{outcome.detail}")
+        print(f"{result.seconds:.1f} s")
         return int(outcome.state in WRONG)
     return hunt(asked.n, asked.seed, asked.jobs, asked.kind, not asked.layers, asked.limit, asked.anew)
 

@@ -88,9 +88,9 @@ def parts_of(m: Mechanism, solution: Solution, solids: bool = True, engraved: bo
 
     made = Automatic(m, solution)
     try:
-        found = _planned(made)
+        outcome = _planned(made)
         if not solids:
-            return Outcome(BASE, BUILT, _bridges(made), found)
+            return Outcome(BASE, BUILT, _bridges(made), outcome)
         bodies = made.solids(engraved).on_stand()
     except UserError as error:
         state = UNSOUND if KERNEL in str(error) else REFUSED
@@ -108,7 +108,7 @@ def parts_of(m: Mechanism, solution: Solution, solids: bool = True, engraved: bo
         if "is proven, required" in str(error):
             return Outcome(BASE, REFUSED, reason(str(error)), str(error))
         return Outcome(BASE, COLLIDES, "", str(error))
-    return Outcome(BASE, BUILT, _bridges(made), f"{found}; {proof}")
+    return Outcome(BASE, BUILT, _bridges(made), f"{outcome}; {proof}")
 
 
 def _planned(made: Automatic) -> str:
@@ -181,7 +181,7 @@ def proven(m: Mechanism, solution: Solution, bodies: Bodies, pieces: list[MeshPi
         may_touch=sorted(bodies.touching),
         pieces_may_touch=sorted(bodies.pieces_touching),
     )
-    found = check(parts, to_motion(solution, None, "0" * 64, {}), pieces, "0" * 64)
-    if not found.pairs:
+    proof = check(parts, to_motion(solution, None, "0" * 64, {}), pieces, "0" * 64)
+    if not proof.pairs:
         return f"{len(pieces)} pieces, nothing near"
-    return f"{len(pieces)} pieces, nearest {1e3 * found.pairs[0].gap:.3f} mm"
+    return f"{len(pieces)} pieces, nearest {1e3 * proof.pairs[0].gap:.3f} mm"

@@ -31,13 +31,13 @@ class Kept:
         whole = content[: content.rfind(b"\n") + 1]
         if whole != content:
             write_bytes(self.path, whole)
-        wanted, found = set(seeds), {}
+        wanted, results = set(seeds), {}
         for line in whole.splitlines():
-            one = json.loads(line)
-            if one["seed"] in wanted:
-                found[one["seed"]] = one
-        self.others = sum(one["sources"] != self.sources for one in found.values())
-        return [_result(one) for one in found.values()]
+            result = json.loads(line)
+            if result["seed"] in wanted:
+                results[result["seed"]] = result
+        self.others = sum(result["sources"] != self.sources for result in results.values())
+        return [_result(result) for result in results.values()]
 
     def add(self, result: CaseResult) -> None:
         """One more line."""

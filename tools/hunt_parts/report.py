@@ -57,11 +57,11 @@ class Tally:
                 {
                     "seed": result.seed,
                     "kind": result.family,
-                    "state": found.state,
-                    "reason": found.reason,
-                    "detail": found.detail,
+                    "state": finding.state,
+                    "reason": finding.reason,
+                    "detail": finding.detail,
                 }
-                for result, found in sorted(self.findings, key=lambda both: both[0].seed)
+                for result, finding in sorted(self.findings, key=lambda both: both[0].seed)
             ],
         }
 
@@ -86,7 +86,7 @@ class Tally:
         for title, counts in ((BUILT, self.built), (REFUSED, self.reasons)):
             for reason, count in counts.most_common():
                 console.print(f"{title} {count:5d}  {reason}", markup=False)
-        for result, found in sorted(self.findings, key=lambda both: both[0].seed):
-            console.print(f"{found.state}: case {result.seed} ({result.family}): {found.detail}", markup=False)
+        for result, finding in sorted(self.findings, key=lambda both: both[0].seed):
+            console.print(f"{finding.state}: case {result.seed} ({result.family}): {finding.detail}", markup=False)
         slowest, seed = self.slowest
         console.print(f"{self.count(*STATES)} cases in {duration(seconds)}, the slowest {seed} in {slowest:.0f} s")

@@ -71,7 +71,7 @@ class Case:
         ready = prepare_dynamics(self.make(), 0.0, self.duration)
         times = part * np.linspace(0.0, self.duration, OUTPUTS + 1)
         angle = 3 * ready.packed.body_names.index(self.body) + 2
-        least, found = math.inf, Rung(0, math.inf, 0.0)
+        least, rung = math.inf, Rung(0, math.inf, 0.0)
         for _ in range(3):
             begin = time.process_time()
             try:
@@ -81,10 +81,10 @@ class Case:
             least = min(least, time.process_time() - begin)
             with np.errstate(over="ignore"):  # what blew up
                 error = float(np.sqrt(np.mean((out.y[:, 0, angle] - self.exact) ** 2)))
-            found = Rung(int(state.count[ACCEPTED]), error, least)
+            rung = Rung(int(state.count[ACCEPTED]), error, least)
             if least > 0.5:
                 break
-        return found
+        return rung
 
 
 def case(make: Callable[[], Mechanism], body: str, duration: float, step: float) -> Case:

@@ -72,6 +72,6 @@ def measured(tell: Callable[[str], None]) -> dict[str, dict[str, dict[str, Any]]
         length, scale = swing(make())
         out[make().name] = {}
         for name in RUNS:
-            out[make().name][name] = found = one(make(), length, scale, name)
-            tell(f"{make().name}, {length:.4f} s, {name}: {found['errors'][-1]}, {found['seconds']:.1f} s")
+            out[make().name][name] = numbers = one(make(), length, scale, name)
+            tell(f"{make().name}, {length:.4f} s, {name}: {numbers['errors'][-1]}, {numbers['seconds']:.1f} s")
     return out

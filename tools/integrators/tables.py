@@ -16,8 +16,8 @@ def with_tables(page: str, measured: dict[str, Any]) -> str:
     """The page with its tables as they should be."""
     for part, text in (("accuracy", accuracy(measured["accuracy"])), ("long", long_runs(measured["long"]))):
         begin, end = MARKERS[part]
-        before, found, rest = page.partition(begin)
-        if not found or end not in rest:
+        before, mark, rest = page.partition(begin)
+        if not mark or end not in rest:
             raise ValueError(f"the page has no '{begin}' ... '{end}'")
         page = f"{before}{begin}\n{text}\n{end}{rest.partition(end)[2]}"
     return page
@@ -53,10 +53,10 @@ def long_runs(runs: dict[str, dict[str, Any]]) -> str:
         setting_words = (
             f"{setting['steps']} steps a period" if "steps" in setting else f"tolerance {setting['tolerance']:.0e}"
         ).replace("e-0", "e-")
-        one, other = pendulum[name], four_bar[name]
-        seconds = (one["seconds"] + other["seconds"]) / unit
+        first, other = pendulum[name], four_bar[name]
+        seconds = (first["seconds"] + other["seconds"]) / unit
         lines.append(
-            f"| `{name.partition(',')[0]}` | {setting_words} | {one['errors'][-1]:.0e} | {other['errors'][-1]:.0e} "
-            f"| {one['evaluations']}, {other['evaluations']} | {seconds:.2g} |"
+            f"| `{name.partition(',')[0]}` | {setting_words} | {first['errors'][-1]:.0e} | {other['errors'][-1]:.0e} "
+            f"| {first['evaluations']}, {other['evaluations']} | {seconds:.2g} |"
         )
     return "\n".join(lines)

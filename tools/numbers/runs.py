@@ -128,7 +128,7 @@ def _analyses() -> Iterator[tuple[str, Run]]:
 
     yield "equilibrium", lambda: _of_rest(hanging())
     yield "linearise", lambda: _plain(_of_rest(hanging())[1].linearise())
-    yield "modes", lambda: [(one.eigenvalue, one.shape) for one in _of_rest(hanging())[1].modes()]
+    yield "modes", lambda: [(mode.eigenvalue, mode.shape) for mode in _of_rest(hanging())[1].modes()]
     yield "batch", _batch
     yield "sweep by Newton-Raphson", _newton
     yield "sweep in closed form", lambda: driven_four_bar().sweep(steps=60)
@@ -231,8 +231,8 @@ def _sticking() -> Any:
 
 
 def _of_rest(m: Mechanism) -> Any:
-    found = m.equilibrium()
-    return found.solution, found.model, found.stiffness, found.stability
+    rest = m.equilibrium()
+    return rest.solution, rest.model, rest.stiffness, rest.stability
 
 
 def _batch() -> Any:

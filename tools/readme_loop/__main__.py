@@ -39,7 +39,7 @@ MINUTES = 60
 def plan(every: int = 1) -> dict[str, Any]:
     """What the browser draws: the frames, and the motion with each number but the file's own."""
     shown = frames()[::every]
-    others = sorted({one.crank for one in shown} - {CRANK})
+    others = sorted({frame.crank for frame in shown} - {CRANK})
     patches = [base64.b64encode(_motion(crank)).decode() for crank in others]
     low, high = _extent(read_payload(Out(NAME))["skeleton"])
     return {
@@ -47,10 +47,10 @@ def plan(every: int = 1) -> dict[str, Any]:
         "low": low, "high": high, "patches": patches, "closer": CLOSER, "brighter": BRIGHTER,
         "frames": [
             {
-                "patch": None if one.crank == CRANK else others.index(one.crank), "number": f"{one.crank:.3f}",
-                "part": one.part, "solid": one.solid, "tilt": one.tilt, "reactions": one.reactions,
+                "patch": None if frame.crank == CRANK else others.index(frame.crank), "number": f"{frame.crank:.3f}",
+                "part": frame.part, "solid": frame.solid, "tilt": frame.tilt, "reactions": frame.reactions,
             }
-            for one in shown
+            for frame in shown
         ],
     }  # fmt: skip
 

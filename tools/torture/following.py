@@ -75,9 +75,9 @@ def _play(folder: Path, chance: random.Random) -> int:
 def _address(said: Path, server: subprocess.Popen[bytes]) -> str | None:
     ends = time.monotonic() + PATIENCE
     while time.monotonic() < ends and server.poll() is None:
-        found = re.search(r"http://\S+/", said.read_text(errors="replace"))
-        if found:
-            return found[0]
+        address = re.search(r"http://\S+/", said.read_text(errors="replace"))
+        if address:
+            return address[0]
         time.sleep(0.1)
     return None
 
@@ -133,17 +133,17 @@ def _is_solved(socket: Any, length: float) -> bool:
 
 def _hit(server: subprocess.Popen[bytes], chance: random.Random, marks: set[str]) -> None:
     """A signal to one of the processes of the server."""
-    found = []
+    hits = []
     with suppress(psutil.Error):
         for process in psutil.Process(server.pid).children(recursive=True):
             with suppress(psutil.Error, OSError):
                 mark = process.environ().get(MARK)
                 if mark:
                     marks.add(mark)
-                    found.append(process)
-    if found:
+                    hits.append(process)
+    if hits:
         with suppress(psutil.Error):
-            chance.choice(found).send_signal(chance.choice(SIGNALS))
+            chance.choice(hits).send_signal(chance.choice(SIGNALS))
 
 
 def _outlived(marks: set[str]) -> int:

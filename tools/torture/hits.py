@@ -29,12 +29,12 @@ def signal_to(role: str, what: signal.Signals) -> Hit:
 
     def hit(project: Project, chance: random.Random) -> bool:
         if role == "make":
-            found = [p for p in project.alive() if p.number == project.runs[0].pid]
+            alive = [p for p in project.alive() if p.number == project.runs[0].pid]
         else:
-            found = [p for p in project.alive() if role in p.arguments and "-c" not in p.arguments.split()[:2]]
-        if not found:
+            alive = [p for p in project.alive() if role in p.arguments and "-c" not in p.arguments.split()[:2]]
+        if not alive:
             return False
-        chance.choice(found).send(what)
+        chance.choice(alive).send(what)
         return True
 
     return hit
@@ -42,12 +42,12 @@ def signal_to(role: str, what: signal.Signals) -> Hit:
 
 def stop_for_a_while(project: Project, chance: random.Random) -> bool:
     """Stop the stage itself, as Ctrl-Z does, and let it go on."""
-    found = [p for p in project.alive() if f"{MODULE} film" in p.arguments]
-    for process in found:
+    alive = [p for p in project.alive() if f"{MODULE} film" in p.arguments]
+    for process in alive:
         process.send(signal.SIGSTOP)
         subprocess.run(["sleep", f"{chance.uniform(0.2, 1.5):.2f}"], check=True)
         process.send(signal.SIGCONT)
-    return bool(found)
+    return bool(alive)
 
 
 TRIES = 50
@@ -97,10 +97,10 @@ def writable(project: Project) -> None:
 
 def folder_for_lock(project: Project, chance: random.Random) -> bool:
     """Put a folder where the lock of the frames is."""
-    found = [lock for store in project.stores if (lock := store.folder / ".lock").is_file()]
-    if not found:
+    locks = [lock for store in project.stores if (lock := store.folder / ".lock").is_file()]
+    if not locks:
         return False
-    lock = chance.choice(found)
+    lock = chance.choice(locks)
     lock.unlink()
     lock.mkdir()
     return True
@@ -135,8 +135,8 @@ def limited(role: str, what: str) -> Hit:
     """A limit on a running process (Linux): on the size of files, as a full disk is one, or on its memory."""
 
     def hit(project: Project, chance: random.Random) -> bool:
-        found = [process for process in project.alive() if role in process.arguments]
-        for process in found:
+        alive = [process for process in project.alive() if role in process.arguments]
+        for process in alive:
             with suppress(OSError):
                 if what == "files":
                     most = chance.randrange(0, 6000)
@@ -145,7 +145,7 @@ def limited(role: str, what: str) -> Hit:
                     pages = int(Path(f"/proc/{process.number}/statm").read_text().split()[0])
                     most = pages * resource.getpagesize() + chance.randrange(0, 8_000_000)
                     resource.prlimit(process.number, resource.RLIMIT_AS, (most, most))
-        return bool(found)
+        return bool(alive)
 
     return hit
 
@@ -154,10 +154,10 @@ def damaged(pick: Callable[[Project], list[Path]], how: Callable[[bytes, random.
     """Change one of the files that ``pick`` finds; ``how`` gives its new bytes, None removes it."""
 
     def hit(project: Project, chance: random.Random) -> bool:
-        found = sorted(pick(project))
-        if not found:
+        targets = sorted(pick(project))
+        if not targets:
             return False
-        path = chance.choice(found)
+        path = chance.choice(targets)
         try:
             content = path.read_bytes()
             new = how(content, chance)
@@ -179,13 +179,13 @@ def pictures(project: Project) -> list[Path]:
 
 def swapped(project: Project, chance: random.Random) -> bool:
     """Exchange the content of two pictures; both are whole."""
-    found = sorted(pictures(project))
-    if len(found) < 2:
+    targets = sorted(pictures(project))
+    if len(targets) < 2:
         return False
-    first, second = chance.sample(found, 2)
-    one, other = first.read_bytes(), second.read_bytes()
+    first, second = chance.sample(targets, 2)
+    ours, other = first.read_bytes(), second.read_bytes()
     first.write_bytes(other)
-    second.write_bytes(one)
+    second.write_bytes(ours)
     return True
 
 
@@ -199,8 +199,8 @@ def records(project: Project) -> list[Path]:
 
 def results(project: Project) -> list[Path]:
     """Motion, parts and shot."""
-    found = [path for out in project.outs for path in out.folder.rglob("[!.]*")]
-    return [path for path in found if path.suffix in (".json", ".stl") and path.is_file()]
+    files = [path for out in project.outs for path in out.folder.rglob("[!.]*")]
+    return [path for path in files if path.suffix in (".json", ".stl") and path.is_file()]
 
 
 def film(project: Project) -> list[Path]:

@@ -28,9 +28,9 @@ def processes() -> list[Process]:
     """All that run now; those that have ended and were not yet collected do not count."""
     command = ["ps", "-axwwo", "pid=,pgid=,stat=,args="]
     listing = subprocess.run(command, capture_output=True, text=True, errors="replace", check=True).stdout
-    found = []
+    alive = []
     for line in listing.splitlines():
         fields = line.split(maxsplit=3)
         if len(fields) == 4 and not fields[2].startswith("Z"):
-            found.append(Process(int(fields[0]), int(fields[1]), fields[2], fields[3]))
-    return found
+            alive.append(Process(int(fields[0]), int(fields[1]), fields[2], fields[3]))
+    return alive

@@ -119,8 +119,8 @@ class Project:
     def environment(self) -> dict[str, str]:
         """Variables of every command of the user."""
         inherited = ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "MBSD_MAKE", "COLUMNS", "TMUX", "TMUX_PANE")
-        found = {key: value for key, value in os.environ.items() if key not in inherited}
-        return found | {
+        environment = {key: value for key, value in os.environ.items() if key not in inherited}
+        return environment | {
             "MBSD_OUT": str(self.disk / "out"),
             "MBSD_PATIENCE": str(PATIENCE),
             "PYTHONPATH": str(ROOT),
@@ -162,8 +162,8 @@ class Project:
         first = self.runs[0]
         if "overnight" not in str(first.args) or first.returncode:
             return first.returncode
-        found = record.read(runs.Run(1))
-        return 0 if found is not None and found.ended == "done" else 1
+        recorded = record.read(runs.Run(1))
+        return 0 if recorded is not None and recorded.ended == "done" else 1
 
     def said(self) -> str:
         """What make, its stages and nights in the background said since :meth:`clear_logs`."""

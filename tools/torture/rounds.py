@@ -117,25 +117,25 @@ def play(project: Project, fault: Fault, chance: random.Random, reference: list[
 
 def whole_pictures(project: Project) -> dict[str, int]:
     """Names of the pictures that are what was rendered, and when they were written."""
-    found = {}
+    whole = {}
     for path in project.pictures():
         if is_as_named(path, path.read_bytes()):
-            found[path.name] = path.stat().st_mtime_ns
-    return found
+            whole[path.name] = path.stat().st_mtime_ns
+    return whole
 
 
 def leftovers(project: Project) -> list[str]:
     """Temporary files and folders below the results."""
     out = project.disk / "out"
     kept = {out / ".blender", out / ".blender" / "user", out / ".blender" / "cache"}
-    found = []
+    left = []
     for path in out.rglob("*"):
         inside = {out / ".blender" / "user", out / ".blender" / "cache"} & set(path.parents)
         temporary = path.name.startswith((".", "tmp-")) and path.name not in (".stamps", ".lock")
         temporary = temporary and not (path.parent == runs.folder() and path.suffix == ".lock")  # locks stay
         if temporary and not inside and path not in kept:
-            found.append(str(path.relative_to(out)))
-    return found
+            left.append(str(path.relative_to(out)))
+    return left
 
 
 def _prepare(project: Project, state: str, chance: random.Random) -> None:

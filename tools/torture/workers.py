@@ -114,14 +114,14 @@ class Workers:
         return self._below(lambda words: BLENDER in words)
 
     def _below(self, fits: Callable[[str], bool]) -> list[psutil.Process]:
-        found = []
+        below = []
         for nanny in self.nannies:
             with suppress(psutil.Error):
                 for process in psutil.Process(nanny.pid).children(recursive=True):
                     with suppress(psutil.Error):
                         if fits(" ".join(process.cmdline())):
-                            found.append(process)
-        return found
+                            below.append(process)
+        return below
 
     def _start(self, *words: str, out: str = "scheduler") -> subprocess.Popen[bytes]:
         return self._called([sys.executable, "-m", "shared.cluster", *words], out)
@@ -169,9 +169,9 @@ def _kill_all(*processes: subprocess.Popen[bytes]) -> None:
     """Kill them with all that they have started."""
     for process in processes:
         with suppress(psutil.Error):
-            for one in psutil.Process(process.pid).children(recursive=True):
+            for child in psutil.Process(process.pid).children(recursive=True):
                 with suppress(psutil.Error):
-                    one.kill()
+                    child.kill()
         process.kill()
         process.wait()
 
@@ -180,11 +180,11 @@ def signal_to_one(pick: Callable[[Workers], list[psutil.Process]], what: signal.
     """A signal to one of the processes."""
 
     def hit(project: Project, chance: random.Random) -> bool:
-        found = pick(project.workers) if project.workers else []
-        if not found:
+        workers = pick(project.workers) if project.workers else []
+        if not workers:
             return False
         with suppress(psutil.Error):
-            chance.choice(found).send_signal(what)
+            chance.choice(workers).send_signal(what)
         return True
 
     return hit
@@ -194,10 +194,10 @@ def limit_one(pick: Callable[[Workers], list[psutil.Process]], what: str) -> Cal
     """A limit on one of them: on the size of its files, as a full disk is one, or on its memory."""
 
     def hit(project: Project, chance: random.Random) -> bool:
-        found = pick(project.workers) if project.workers else []
-        if not found:
+        workers = pick(project.workers) if project.workers else []
+        if not workers:
             return False
-        process = chance.choice(found)
+        process = chance.choice(workers)
         with suppress(psutil.Error, OSError):
             if what == "files":
                 most, kind = chance.randrange(0, 6000), resource.RLIMIT_FSIZE

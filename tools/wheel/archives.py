@@ -80,7 +80,7 @@ def _settle(sdist: Path) -> None:
     """Write it again with its members in order and no word of when and by whom they were made."""
     plain = io.BytesIO()
     with tarfile.open(sdist) as old, tarfile.open(fileobj=plain, mode="w", format=tarfile.PAX_FORMAT) as new:
-        for member in sorted(old.getmembers(), key=lambda one: one.name):
+        for member in sorted(old.getmembers(), key=lambda entry: entry.name):
             member.mtime, member.uid, member.gid, member.uname, member.gname = _time(), 0, 0, "", ""
             member.mode, member.pax_headers = 0o755 if member.isdir() else 0o644, {}
             new.addfile(member, old.extractfile(member) if member.isfile() else None)

@@ -137,7 +137,7 @@ class Brush(Canvas):
 
         still, moved = Affine2D(), Affine2D().translate(*shift)
         every = [*((mark, moved) for mark in others), *((mark, still) for mark in self.marks)]
-        for mark, way in sorted(every, key=lambda one: one[0].order):
+        for mark, way in sorted(every, key=lambda pair: pair[0].order):
             gc = renderer.new_gc()
             gc.set_linewidth(renderer.points_to_pixels(mark.width) if mark.edge else 0.0)
             gc.set_foreground(mark.edge or (0, 0, 0, 0), isRGBA=True)

@@ -26,7 +26,7 @@ H264 = (
     *("-threads", "2", "-flags:v", "+bitexact"),
     *PLAIN,
 )
-EXACT = (PAPER, CARD, INK, QUIET, KINETIC, POTENTIAL, TAKEN, *(one.colour for one in QUANTITIES.values()))
+EXACT = (PAPER, CARD, INK, QUIET, KINETIC, POTENTIAL, TAKEN, *(quantity.colour for quantity in QUANTITIES.values()))
 """Colours that a GIF must not change."""
 SAMPLED = 6
 """Pictures from which the colours of a GIF are taken."""
@@ -39,12 +39,12 @@ def ffmpeg() -> str:
 
         return imageio_ffmpeg.get_ffmpeg_exe()
     except (ImportError, RuntimeError):
-        found = shutil.which("ffmpeg")
-        if found is None:
+        path = shutil.which("ffmpeg")
+        if path is None:
             raise ModelError(
                 "an MP4 needs ffmpeg: install mbsd[animate], or ffmpeg itself; a path that ends with .gif needs neither"
             ) from None
-        return found
+        return path
 
 
 def write_mp4(path: Path, pictures: Iterable[np.ndarray], size: tuple[int, int], fps: float, rounds: int) -> None:
@@ -114,9 +114,9 @@ def _palette(strip: Any) -> Any:
     from PIL import Image
 
     plain = [int(colour[k : k + 2], 16) for colour in EXACT for k in (1, 3, 5)]
-    found = strip.quantize(256 - len(EXACT), method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    quantized = strip.quantize(256 - len(EXACT), method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     out = Image.new("P", (1, 1))
-    out.putpalette((plain + (found.getpalette() or []))[:768])
+    out.putpalette((plain + (quantized.getpalette() or []))[:768])
     return out
 
 

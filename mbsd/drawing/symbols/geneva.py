@@ -59,9 +59,9 @@ def _wheel(slots: int, distance: float, radius: float, rim: float, wide: float) 
     arc = distance * np.cos(off) - np.sqrt(np.maximum(inside, 0.0))
     reach = np.where((inside > 0) & (arc < rim), arc, rim)
     between = reach[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    one = np.vstack([slot[::-1], between])
+    tooth = np.vstack([slot[::-1], between])
     turns = 2 * math.pi / slots * np.arange(slots)
-    return np.vstack([one @ np.array([[math.cos(a), math.sin(a)], [-math.sin(a), math.cos(a)]]) for a in turns])
+    return np.vstack([tooth @ np.array([[math.cos(a), math.sin(a)], [-math.sin(a), math.cos(a)]]) for a in turns])
 
 
 def _lock(slots: int, room: float, lock: float) -> np.ndarray:

@@ -68,15 +68,15 @@ def _floors(contacts: Sequence[Joint]) -> list[list[Joint]]:
     return out
 
 
-def _same_line(one: Joint, other: Joint) -> bool:
-    a, b = one.i, other.i
+def _same_line(joint: Joint, other: Joint) -> bool:
+    a, b = joint.i, other.i
     across = -(b.x - a.x) * math.sin(a.angle) + (b.y - a.y) * math.cos(a.angle)
     return a.body is b.body and abs(across) < ALIKE and abs(a.angle - b.angle) < ALIKE
 
 
 def _floor(canvas: Canvas, feet: list[Joint], pose: Pose, colours: dict[str, str]) -> None:
     first, axis = pose.place(feet[0].i), pose.axis(feet[0].i)
-    ends = np.concatenate([float((pose.place(one.i) - first) @ axis) + _travel(one, pose) for one in feet])
+    ends = np.concatenate([float((pose.place(foot.i) - first) @ axis) + _travel(foot, pose) for foot in feet])
     a, b = (first + way * axis for way in (ends.min() - BEYOND * canvas.unit, ends.max() + BEYOND * canvas.unit))
     if feet[0].i.body.name == "ground":
         canvas.hatched(a, b, np.array([axis[1], -axis[0]]))

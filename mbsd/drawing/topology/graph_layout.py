@@ -72,13 +72,13 @@ def _distances(edges: list[tuple[int, int]], count: int) -> np.ndarray:
         out[source, source] = 0
         wave = [source]
         while wave:
-            found = []
+            next_wave = []
             for node in wave:
                 for other in beside[node]:
                     if out[source, other] == np.inf:
                         out[source, other] = out[source, node] + 1
-                        found.append(other)
-            wave = found
+                        next_wave.append(other)
+            wave = next_wave
     known = out[np.isfinite(out)]
     out[~np.isfinite(out)] = known.max() + 2
     return out

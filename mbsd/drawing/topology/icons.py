@@ -20,13 +20,13 @@ def icon(sign: str, x: float, y: float, radius: float, colour: str) -> list[str]
     return [_disc(x, y, radius - 1, colour), *ICONS.get(sign, _diamond)(x, y, radius, colour)]
 
 
-def sign_of(one: Joint | Force) -> str:
+def sign_of(connection: Joint | Force) -> str:
     """The sign of a joint, driver or force in ICONS."""
-    if isinstance(one.kind, ForceKind):
+    if isinstance(connection.kind, ForceKind):
         return "force"
-    if one.kind.driven:
-        return "turning" if one.kind.angular else "pushing"
-    return one.kind.drawn_as
+    if connection.kind.driven:
+        return "turning" if connection.kind.angular else "pushing"
+    return connection.kind.drawn_as
 
 
 def _revolute(x: float, y: float, r: float, colour: str) -> list[str]:

@@ -48,8 +48,8 @@ def topology(m: Model) -> Svg:
             f"{m.name}: {len(m.bodies) + len(joints)} bodies, joints and drivers are too many for one diagram "
             f"(at most {MOST_NODES}); print(m.mobility()) has the counts"
         )
-    found, said = _mobility(m)
-    redundant = set(found.redundant) if found else set()
+    mobility, said = _mobility(m)
+    redundant = set(mobility.redundant) if mobility else set()
     nodes = [_body(m, name, k) for k, name in enumerate(m.bodies)]
     nodes += [_joint(j, j.name in redundant) for j in joints]
     number = {name: k for k, name in enumerate(m.bodies)}
@@ -62,12 +62,12 @@ def _mobility(m: Model) -> tuple[Mobility | None, str]:
     if len(m.bodies) < 2 or not m.joints:
         return None, f"{3 * (len(m.bodies) - 1)} degrees of freedom, no joints"
     try:
-        found = m.mobility()
+        mobility = m.mobility()
     except AssemblyError:
         return None, "the links do not close, so freedoms and redundant joints are unknown"
     count = len(m.drivers)
     driven = f"; {count} driver{'s' * (count != 1)}" if count else "; no driver"
-    return found, f"{found}{driven}"
+    return mobility, f"{mobility}{driven}"
 
 
 def _body(m: Model, name: str, k: int) -> Node:

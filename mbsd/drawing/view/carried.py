@@ -70,25 +70,30 @@ def moving(solution: Solution) -> Moving:
     first, frames = drawn[looked[0]], {step: Frames(tracks, step) for step in looked}
     known = candidates(m)
 
-    def holds(one: Carrier, series: Sequence[np.ndarray | None], closed: bool, slack: float) -> bool:
+    def holds(candidate: Carrier, series: Sequence[np.ndarray | None], closed: bool, slack: float) -> bool:
         pairs = reversed(list(zip(looked, series, strict=True)))
         return all(
-            points is not None and alike(one.moved(series[0], frames[looked[0]], frames[step]), points, closed, slack)
+            points is not None
+            and alike(candidate.moved(series[0], frames[looked[0]], frames[step]), points, closed, slack)
             for step, points in pairs
         )
 
     def carrier(series: Sequence[np.ndarray | None], closed: bool, ink: str) -> Carrier | None:
-        named = [one for one in known if one.kind == "body" and f"body:{one.ends[0].body}" == ink]
-        strict = [(one, SLACK) for one in (GROUND, *named, *known)]
-        tried = [*strict, *((one, TEETH) for one in named if closed)]
-        return next((one for one, slack in tried if holds(one, series, closed, slack * steady.unit)), None)
+        named = [
+            candidate for candidate in known if candidate.kind == "body" and f"body:{candidate.ends[0].body}" == ink
+        ]
+        strict = [(candidate, SLACK) for candidate in (GROUND, *named, *known)]
+        tried = [*strict, *((candidate, TEETH) for candidate in named if closed)]
+        return next(
+            (candidate for candidate, slack in tried if holds(candidate, series, closed, slack * steady.unit)), None
+        )
 
     series = {step: _aligned(first.strokes, canvas.strokes) for step, canvas in drawn.items()}
-    found = [
+    carriers = [
         carrier([series[step][k] for step in looked], stroke.closed, stroke.ink)
         for k, stroke in enumerate(first.strokes)
     ]
-    free = [k for k, one in enumerate(found) if one is None]
+    free = [k for k, by in enumerate(carriers) if by is None]
     shapes: dict[int, list[np.ndarray]] = {k: [] for k in free}
     if free:
         for step in steps:
@@ -98,10 +103,10 @@ def moving(solution: Solution) -> Moving:
                 points = here[k]
                 shapes[k].append(np.zeros((0, 2)) if points is None else points)
     strokes = [
-        Carried(stroke, one)
-        if one is not None
+        Carried(stroke, by)
+        if by is not None
         else Carried(stroke, Carrier("shapes"), resampled(shapes[k], stroke.closed))
-        for k, (stroke, one) in enumerate(zip(first.strokes, found, strict=True))
+        for k, (stroke, by) in enumerate(zip(first.strokes, carriers, strict=True))
     ]
     names = []
     for k, label in enumerate(first.labels):
@@ -111,9 +116,9 @@ def moving(solution: Solution) -> Moving:
             else None
             for canvas in drawn.values()
         ]
-        one = carrier(places, False, label.colour)
-        if one is not None:
-            names.append((label, one))
+        by = carrier(places, False, label.colour)
+        if by is not None:
+            names.append((label, by))
     return Moving(strokes, names, solution.t[steps], steady)
 
 

@@ -73,7 +73,7 @@ GROUND = Carrier("ground")
 def candidates(m: Model) -> list[Carrier]:
     """All of a model, in the order in which they are tried."""
     pairs = [*m.joints.values(), *m.drivers.values(), *m.forces.values(), *m.contacts.values()]
-    ends = [(_end(one.i), _end(one.j)) for one in pairs]
+    ends = [(_end(pair.i), _end(pair.j)) for pair in pairs]
     bodies = [Carrier("body", (End(name),)) for name in m.bodies if name != "ground"]
     centres = [End(name, *map(float, body.com)) for name, body in m.bodies.items() if name != "ground"]
     ours = [end for pair in ends for end in pair if end.body != "ground"]

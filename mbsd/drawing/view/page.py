@@ -83,46 +83,46 @@ def view(sol: Solution, path: str | os.PathLike[str] | None, height: float) -> V
 
 
 def _data(sol: Solution) -> dict[str, Any]:
-    found = moving(sol)
+    skeleton = moving(sol)
     kept = np.unique(np.linspace(0, len(sol.t) - 1, MOST).round().astype(int))
     views = {name: sol.body(name) for name in sol.mechanism.bodies if name != "ground"}
     traces = [sol.point(name) for name in sol.mechanism.traces]
     return {
         "name": sol.mechanism.name,
-        "unit": _short(found.steady.unit),
-        "low": _short(found.steady.low),
-        "high": _short(found.steady.high),
+        "unit": _short(skeleton.steady.unit),
+        "low": _short(skeleton.steady.low),
+        "high": _short(skeleton.steady.high),
         "t": _short(sol.t[kept], 10),
         "loops": sol.period is not None,
         "bodies": {
-            name: [_short(values[kept], 8) for values in (one.x, one.y, one.theta)] for name, one in views.items()
+            name: [_short(values[kept], 8) for values in (view.x, view.y, view.theta)] for name, view in views.items()
         },
         "inks": {name: [ink, on_dark(ink)] for name, ink in body_inks(sol.mechanism).items()},
-        "times": _short(found.times, 10),
-        "paths": [_short(np.stack([one.x[kept], one.y[kept]], axis=1).ravel()) for one in traces],
+        "times": _short(skeleton.times, 10),
+        "paths": [_short(np.stack([trace.x[kept], trace.y[kept]], axis=1).ravel()) for trace in traces],
         "strokes": [
             {
-                "points": _short(one.stroke.points.ravel()),
-                "closed": one.stroke.closed,
-                "ink": one.stroke.ink,
-                "fill": one.stroke.fill,
-                "alpha": one.stroke.alpha,
-                "width": one.stroke.width,
-                "dash": list(one.stroke.dash),
-                "by": _by(one.carrier),
-                "shapes": [_short(shape.ravel()) for shape in one.shapes],
+                "points": _short(carried.stroke.points.ravel()),
+                "closed": carried.stroke.closed,
+                "ink": carried.stroke.ink,
+                "fill": carried.stroke.fill,
+                "alpha": carried.stroke.alpha,
+                "width": carried.stroke.width,
+                "dash": list(carried.stroke.dash),
+                "by": _by(carried.carrier),
+                "shapes": [_short(shape.ravel()) for shape in carried.shapes],
             }
-            for one in sorted(found.strokes, key=lambda one: one.stroke.order)
+            for carried in sorted(skeleton.strokes, key=lambda carried: carried.stroke.order)
         ],
         "names": [
             {
                 "text": label.text.replace("_", " "),
                 "points": _short(label.anchor),
-                "off": _short(label.clearance * found.steady.unit),
+                "off": _short(label.clearance * skeleton.steady.unit),
                 "ink": label.colour,
                 "by": _by(carrier),
             }
-            for label, carrier in found.names
+            for label, carrier in skeleton.names
         ],
     }
 

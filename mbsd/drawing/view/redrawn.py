@@ -24,7 +24,7 @@ def redrawn(solution: Solution, before: Moving, old: Model) -> Moving | None:
     """
     m = solution.mechanism
     was, now = candidates(old), candidates(m)
-    if len(was) != len(now) or any(one.carrier.kind == "shapes" for one in before.strokes):
+    if len(was) != len(now) or any(earlier.carrier.kind == "shapes" for earlier in before.strokes):
         return None
     same = dict(zip(was, now, strict=True)) | {GROUND: GROUND}
     if any(carrier.kind != other.kind or _bodies(carrier) != _bodies(other) for carrier, other in same.items()):
@@ -34,12 +34,14 @@ def redrawn(solution: Solution, before: Moving, old: Model) -> Moving | None:
     canvas = Recorder(None, before.steady.unit)
     before.steady.ready(canvas, dict.fromkeys(tracks.views, 0.0))
     draw_on(canvas, m, tracks.pose(0), colours, False, before.steady.sides)
-    if [_kind(one) for one in canvas.strokes] != [_kind(one.stroke) for one in before.strokes]:
+    if [_kind(stroke) for stroke in canvas.strokes] != [_kind(earlier.stroke) for earlier in before.strokes]:
         return None
     labels = {(label.text, label.colour): label for label in canvas.labels}
     if any((label.text, label.colour) not in labels for label, _ in before.names):
         return None
-    strokes = [Carried(stroke, same[one.carrier]) for stroke, one in zip(canvas.strokes, before.strokes, strict=True)]
+    strokes = [
+        Carried(stroke, same[earlier.carrier]) for stroke, earlier in zip(canvas.strokes, before.strokes, strict=True)
+    ]
     names = [(labels[label.text, label.colour], same[by]) for label, by in before.names]
     return replace(before, strokes=strokes, names=names, times=solution.t[[0, -1]])
 

@@ -101,11 +101,11 @@ def bridge(
         for j in range(columns):
             turning += base[b, TURNS + j] * (coordinate[j, SPEED] if columns > 1 else 1.0)
         fastest = max(fastest, abs(turning))
-    found = False
+    joined = False
     way = WAY
     if fastest > 0.0:
         for _ in range(HALVINGS):
-            found = _joined(
+            joined = _joined(
                 laws,
                 group,
                 number,
@@ -126,12 +126,12 @@ def bridge(
                 way,
                 fastest,
             )
-            if found:
+            if joined:
                 break
             way *= 0.5
         if drive.shape[0] > 1:
             evaluate_laws(laws, drive.shape[0], t, drive)
-    if not found:
+    if not joined:
         usual = 0.0
         for e in range(number.shape[0]):
             usual = number[e, AVOID]

@@ -95,11 +95,11 @@ def choices(packed: Packed, q: np.ndarray, count: int) -> Iterator[Choice]:
             continue
         start = Choice(Plan(packed, q.reshape(-1, 3), links_of_joints(packed, everything)))
         _take_states(start.plan, count)
-        found = _complete(start, trains, count - packed.states, 0, [TRIALS], blocks)
-        first = next(found, None)
+        complete = _complete(start, trains, count - packed.states, 0, [TRIALS], blocks)
+        first = next(complete, None)
         if first is not None:
             yield first
-            yield from islice(found, CHOICES - 1)
+            yield from islice(complete, CHOICES - 1)
             return
 
 
@@ -118,7 +118,7 @@ def coordinates_of(plan: Plan, count: int) -> list[Coordinate]:
         if motion < 0:
             slide = kind == SLIDE
             out[-motion - 1] = Coordinate(bodies[0], bodies[2 if slide else 3], np.array(numbers) if slide else None)
-    return [one for one in out if one is not None]
+    return [coordinate for coordinate in out if coordinate is not None]
 
 
 class _Trains:
@@ -144,8 +144,8 @@ class _Trains:
             holding = [link for link in plan.links[body] if link.other in plan.known]
             if [link.kind for link in holding] != ["R"] or not self.trains.solve([row], [body], {}):
                 continue
-            found = self.trains.sums[body]
-            made = train(plan.places, body, holding[0], found.constant, found.shares)
+            angle_sum = self.trains.sums[body]
+            made = train(plan.places, body, holding[0], angle_sum.constant, angle_sum.shares)
             if made is not None:
                 plan.used |= {joint, holding[0].joint}
                 plan.take(made, (body,))

@@ -57,10 +57,10 @@ def reduced(rate, inertia, weight, force, mass, a):
             m = inertia[3 * b + c]
             push = weight[3 * b + c] + force[3 * b + c] - m * rate[b, last + c]
             for i in range(count):
-                one = rate[b, 3 * i + c]
-                a[3 + i] += one * push
+                share = rate[b, 3 * i + c]
+                a[3 + i] += share * push
                 for j in range(i + 1):
-                    mass[i, j] += m * one * rate[b, 3 * j + c]
+                    mass[i, j] += m * share * rate[b, 3 * j + c]
     for i in range(count):
         for j in range(i + 1):
             value = mass[i, j]

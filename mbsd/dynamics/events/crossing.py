@@ -35,12 +35,12 @@ def first_crossing(
     one; ``looked`` adds parts and values where those of an event of the user do not tell how it goes, and ``rounding``
     says by how much its value at the start of the step may be off.
     """
-    at_parts, found = samples(PARTS), None
+    at_parts, earliest = samples(PARTS), None
     for monitor in monitors:
         parts, values = PARTS, monitor.value(at_parts)
         if monitor.event is not None:
             parts, values = looked(monitor, parts, values)
-        met = _falls(monitor, samples, parts, values, None if found is None else found[2], rounding)
+        met = _falls(monitor, samples, parts, values, None if earliest is None else earliest[2], rounding)
         before = len(parts) if met is None else int(np.searchsorted(parts, met[0], side="right"))
 
         def quintic(x: float, monitor: Monitor = monitor) -> float:
@@ -56,9 +56,9 @@ def first_crossing(
 
             where = float(brentq(quintic, *dip, xtol=1e-14)) if crosses else 0.5 * sum(dip)  # pyright: ignore[reportArgumentType]
             met = where, dip.below
-        if met is not None and (found is None or met[0] < found[1]):
-            found = monitor, *met
-    return found
+        if met is not None and (earliest is None or met[0] < earliest[1]):
+            earliest = monitor, *met
+    return earliest
 
 
 def _falls(

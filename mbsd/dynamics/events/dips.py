@@ -71,14 +71,14 @@ def first_dip(
         interval = _interval(x, values, slopes, k, quintic, -still)
         if interval is None:
             continue
-        found = _searched(interval, UNSURE * spread - still, quintic)
-        if found is None:
+        dip = _searched(interval, UNSURE * spread - still, quintic)
+        if dip is None:
             continue
-        if quintic(found.below) < -still and true(found.below) < -still:
-            return found
-        found = _searched(interval, -still, true)
-        if found is not None:
-            return found
+        if quintic(dip.below) < -still and true(dip.below) < -still:
+            return dip
+        dip = _searched(interval, -still, true)
+        if dip is not None:
+            return dip
     return None
 
 
@@ -107,17 +107,17 @@ def _searched(interval: _Interval, level: float, value: Callable[[float], float]
     """The first place that is found below ``level``, and one before it that is not."""
     waiting, looks = [interval], 0
     while waiting and looks < MOST_LOOKS:
-        one = waiting.pop()
-        x, least = one.lowest()
-        width = one.b - one.a
-        if least >= one.enough(level) or width < NARROWEST:
+        piece = waiting.pop()
+        x, least = piece.lowest()
+        width = piece.b - piece.a
+        if least >= piece.enough(level) or width < NARROWEST:
             continue
-        x = min(max(x, one.a + INSIDE * width), one.b - INSIDE * width)
+        x = min(max(x, piece.a + INSIDE * width), piece.b - INSIDE * width)
         fx = value(x)
         looks += 1
         if fx < level:
-            return Dip(one.a, x)
-        left, right = (fx - one.fa) / (x - one.a), (one.fb - fx) / (one.b - x)
-        waiting.append(_Interval(x, fx, one.b, one.fb, max(left, one.falls), one.rises))
-        waiting.append(_Interval(one.a, one.fa, x, fx, one.falls, min(right, one.rises)))
+            return Dip(piece.a, x)
+        left, right = (fx - piece.fa) / (x - piece.a), (piece.fb - fx) / (piece.b - x)
+        waiting.append(_Interval(x, fx, piece.b, piece.fb, max(left, piece.falls), piece.rises))
+        waiting.append(_Interval(piece.a, piece.fa, x, fx, piece.falls, min(right, piece.rises)))
     return None

@@ -110,7 +110,7 @@ class Jumps:
         """
         verdict = decide(at, case)
         for _ in case.closed:
-            holding = [one.contact for one in verdict.contacts if one.normal > 0.0]
+            holding = [decision.contact for decision in verdict.contacts if decision.normal > 0.0]
             gaps = [contact.gap for contact in holding]
             if not (np.abs(at.rates(gaps, case.v)) > self.still[gaps]).any():
                 break

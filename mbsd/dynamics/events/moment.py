@@ -53,7 +53,11 @@ class Moment:
 
     def state(self, force: str, name: str) -> float:
         """A state of a force (SI), such as ``pressure_a`` of a hydraulic cylinder. Raises ModelError for no such."""
-        known = {one.name: one.kind.states.names for one in self.packed.forces if one.kind.states is not None}
+        known = {
+            with_states.name: with_states.kind.states.names
+            for with_states in self.packed.forces
+            if with_states.kind.states is not None
+        }
         if not isinstance(force, str) or force not in known:
             raise ModelError(f"{self.packed.name}: {no_such('force with states', force, known)}")
         if name not in known[force]:
@@ -91,7 +95,7 @@ class Moment:
 
     def release(self, joint: str) -> None:
         """Let a joint or driver go for good, as if it broke."""
-        names = [one.name for one in self.packed.joints[: len(self.packed.joints) - self.packed.contacts]]
+        names = [candidate.name for candidate in self.packed.joints[: len(self.packed.joints) - self.packed.contacts]]
         if not isinstance(joint, str) or joint not in names:
             raise ModelError(f"{self.packed.name}: {no_such('joint to release', joint, names)}")
         self.released.append(names.index(joint))

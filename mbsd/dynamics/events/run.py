@@ -127,14 +127,14 @@ class EventRun:
             self._make_valid()
             before = copied(state)
             status = self.run.advance(state, self.out, end, 1)
-            found = self._crossing(before) if state.clock[TIME] > before.clock[TIME] else None
-            pace.note(extra=0 if found is None else EVENT_STEPS)
-            if found is None:
+            crossing = self._crossing(before) if state.clock[TIME] > before.clock[TIME] else None
+            pace.note(extra=0 if crossing is None else EVENT_STEPS)
+            if crossing is None:
                 self._note_rows()
                 if status == REACHED and state.clock[TIME] >= end:
                     return True
                 continue
-            monitor, first, last = found
+            monitor, first, last = crossing
             self._find(monitor, before, first, last)
             self._note_rows()
             if monitor.stops:
@@ -172,7 +172,7 @@ class EventRun:
     @property
     def _sharing(self) -> bool:
         held = self.switches.held() if self.sticks else None
-        return held is not None and any(one.state == STICKS and not held[one.way] for one in self.sticks)
+        return held is not None and any(stick.state == STICKS and not held[stick.way] for stick in self.sticks)
 
     def _carried(self, time: float, q: np.ndarray, lam: np.ndarray) -> tuple[np.ndarray, float]:
         return carried(self.jumps.compliance(time, q), self.sticks, lam)
@@ -180,7 +180,7 @@ class EventRun:
     def _spare(self, samples: Samples) -> np.ndarray:
         """(S,) 1 - s"""
         along = zip(samples.t, samples.q, samples.multipliers(), strict=True)
-        return np.array([1.0 - self._carried(*one)[1] for one in along])
+        return np.array([1.0 - self._carried(*sample)[1] for sample in along])
 
     # -- finding ------------------------------------------------------------------------------------------------
 
@@ -209,10 +209,10 @@ class EventRun:
 
         monitors = list(self.monitors)
         while monitors:
-            found = first_crossing(monitors, samples, true, looked, rounding)
-            if found is None:
+            crossing = first_crossing(monitors, samples, true, looked, rounding)
+            if crossing is None:
                 return None
-            monitor, where, negative = found
+            monitor, where, negative = crossing
             times = quintic.times(np.array([where, negative]))
             if where == 0.0 or self._true(monitor, before, float(times[1])) < -monitor.still:
                 return monitor, float(times[0]), float(times[1])
@@ -278,7 +278,7 @@ class EventRun:
 
     def _happen(self, monitor: Monitor) -> None:
         time = float(self.state.clock[TIME])
-        self._times = [one for one in self._times if one == time] + [time]
+        self._times = [earlier for earlier in self._times if earlier == time] + [time]
         if len(self._times) > AT_ONE_TIME:
             raise SimulationError(
                 f"{self.packed.name}: more than {AT_ONE_TIME} events at t = {time:.6g} s, the last of '{monitor.name}' "

@@ -105,7 +105,7 @@ def for_both(decorate: Callable[[Any], Any]) -> Callable[[Callable[..., Any]], B
     """Decorator: a function in the words above, decorated for each formulation."""
 
     def twice(function: Any) -> Both:
-        return Both(*(_made(decorate, function, one) for one in ("reference", "independent")))
+        return Both(*(_made(decorate, function, formulation) for formulation in ("reference", "independent")))
 
     return twice
 

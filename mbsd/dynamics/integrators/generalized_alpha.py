@@ -117,7 +117,7 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
             known[1, c] = y[1, c] + h * (1.0 - g) * x[c]
             slope[0, c] = m * x[c] - f * state.dy[1, c]
         last = 1e300
-        found = False
+        converged = False
         for k in range(PASSES):
             for c in range(3, n3):
                 trial[0, c] = known[0, c] + h * h * b * x[c]
@@ -140,12 +140,12 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
                 if not size <= moved:
                     moved = size
             if moved <= CLOSED or (moved <= ROUNDING and moved > SLOW * last):
-                found = True
+                converged = True
                 break
             if not moved < 1e300:
                 break
             last = moved
-        if not found:
+        if not converged:
             return NO_CONVERGENCE
         if k > 3:
             factored = 0.0

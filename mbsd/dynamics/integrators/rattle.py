@@ -145,7 +145,7 @@ def rattle_step(dyn, scratch, t, h, y, power):
     if scratch.drive.shape[0] > 1:
         evaluate_laws(dyn.laws, scratch.drive.shape[0], t + h, scratch.drive)
     last = 1e300
-    found = False
+    converged = False
     for _ in range(PASSES):
         for c in range(3, n3):
             y[0, c] = start[c] + h * v[c]
@@ -156,12 +156,12 @@ def rattle_step(dyn, scratch, t, h, y, power):
                 side[k, s, 0] = ws.phi[r] / h if r >= 0 else 0.0
         moved = abs(h) * _correct(dyn, scratch, v, lam)
         if moved <= CLOSED or (moved <= ROUNDING and moved > 0.3 * last):
-            found = True
+            converged = True
             break
         if not moved < 1e3:
             break
         last = moved
-    if not found:
+    if not converged:
         return False
     for c in range(3, n3):
         y[0, c] = start[c] + h * v[c]
@@ -171,7 +171,7 @@ def rattle_step(dyn, scratch, t, h, y, power):
         work += _driver_work(dyn, scratch, lam)
     _factor(dyn, scratch, t + h, y[0])
     evaluate_nu(system, scratch.drive, ws.right[1])
-    found = False
+    converged = False
     for _ in range(PASSES):
         power = _loads(dyn, scratch, t + h, y)
         for c in range(3, n3):
@@ -194,12 +194,12 @@ def rattle_step(dyn, scratch, t, h, y, power):
             if not size <= moved:
                 moved = size
         if dyn.loads.total == 0 or moved <= CLOSED:
-            found = moved < 1e300
+            converged = moved < 1e300
             break
     work += 0.5 * h * power + _driver_work(dyn, scratch, lam)
     scratch.report[1] = power
     scratch.report[2] = work
-    return found
+    return converged
 
 
 @apart

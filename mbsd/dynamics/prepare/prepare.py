@@ -132,8 +132,8 @@ _SEQUENCES: Kept[Schur] = Kept()
 def _sequence(row_body: np.ndarray, blocks: np.ndarray) -> Schur:
     """That of plan_schur, with rows of its own, as events change them."""
     key = row_body.tobytes(), blocks.tobytes()
-    found = _SEQUENCES.get(key, lambda: plan_schur(row_body, blocks)[0]) if len(blocks) < MOST_BLOCKS else None
-    return plan_schur(row_body, blocks)[0] if found is None else found._replace(rows=found.rows.copy())
+    sequence = _SEQUENCES.get(key, lambda: plan_schur(row_body, blocks)[0]) if len(blocks) < MOST_BLOCKS else None
+    return plan_schur(row_body, blocks)[0] if sequence is None else sequence._replace(rows=sequence.rows.copy())
 
 
 def _inertias(packed: Packed) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -105,7 +105,7 @@ class PreparedDynamics:
             names = [
                 force.name
                 for force in self.packed.forces
-                if any(one.remembers for one in force.kind.interactions(force, self.packed.masses))
+                if any(interaction.remembers for interaction in force.kind.interactions(force, self.packed.masses))
             ]
             raise ModelError(
                 f"{self.packed.name}: the damping of contact '{names[0]}' depends on how fast it approaches when it "
@@ -118,12 +118,18 @@ class PreparedDynamics:
         self, method: Integrator, tolerance: float, step: float, duration: float, options: Mapping[str, float]
     ) -> run_state.Settings:
         """Tolerances in the mechanism's own sizes. Raises ModelError for options that the method does not have."""
-        one = self._sizes * tolerance
+        allowed = self._sizes * tolerance
         numbers = method.numbers(self.packed.name, options)
         shortest = [force.params.get("shortest") for force in self.packed.forces if "function" in force.params]
         longest = min([float(duration) / OUTPUTS_LONGEST, *(length for length in shortest if length)])
-        growing = np.full((2, len(one)), tolerance)
+        growing = np.full((2, len(allowed)), tolerance)
         growing[0, 2::3] = 0.0
         return run_state.Settings(
-            np.array([one, one]), float(tolerance), growing, longest, SMALLEST_STEP * longest, float(step), numbers
+            np.array([allowed, allowed]),
+            float(tolerance),
+            growing,
+            longest,
+            SMALLEST_STEP * longest,
+            float(step),
+            numbers,
         )

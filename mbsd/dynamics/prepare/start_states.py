@@ -91,5 +91,8 @@ def _measured_accelerations(ready: PreparedDynamics, holders: list[_Holder], eff
     q = state[0] + steps * state[1] + 0.5 * steps**2 * out[1]
     v = state[1] + steps * out[1]
     return np.array(
-        [np.diff(measured_rate(packed, one.element, one.i, one.j, q, v))[0] / (2.0 * MOMENT) for one in holders]
+        [
+            np.diff(measured_rate(packed, holder.element, holder.i, holder.j, q, v))[0] / (2.0 * MOMENT)
+            for holder in holders
+        ]
     )

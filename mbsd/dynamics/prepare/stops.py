@@ -99,18 +99,18 @@ def stops_of(packed: Packed, loads: Loads, laws: Laws, start: float, end: float,
     """
     if not end > start or not (packed.motions or packed.forces):
         return Stops(np.zeros(0), np.zeros(0))
-    found: list[tuple[str, list[tuple[float, float]]]] = []
+    stop_intervals: list[tuple[str, list[tuple[float, float]]]] = []
     given: list[tuple[str, Motion | Curve]] = list(zip(packed.driver_names, packed.motions, strict=True))
     drivers = len(given)
     for force in packed.forces:
         given += [(force.name, law) for law in force.laws.values()]
     for k, (name, law) in enumerate(given):
         if isinstance(law, Motion):
-            found.append((name, [(t, t) for t in getattr(law, "breaks", ())]))
-            found.append((name, _of_law(laws, k + 1, start, end, 2 if k < drivers else 0)))
-    found += _of_functions(packed, loads, laws, start, end, q, v)
+            stop_intervals.append((name, [(t, t) for t in getattr(law, "breaks", ())]))
+            stop_intervals.append((name, _of_law(laws, k + 1, start, end, 2 if k < drivers else 0)))
+    stop_intervals += _of_functions(packed, loads, laws, start, end, q, v)
     names: dict[tuple[float, float], dict[str, None]] = {}
-    for name, times in found:
+    for name, times in stop_intervals:
         for a, b in times:
             if start < a <= b < end:
                 names.setdefault((a, b), {})[name] = None
@@ -199,15 +199,15 @@ def _values(
 
     def values(times: np.ndarray) -> np.ndarray:
         """(n, 3 k) forces and torques at times (n,)."""
-        found = []
+        chunks = []
         for part in np.array_split(times, max(1, len(times) * len(q) // CHUNK)):
             count = len(part)
             out = np.zeros((count, len(q)))
             poses, rates = np.repeat(q[None], count, axis=0), np.repeat(v[None], count, axis=0)
             tabulate_loads(packed.system, alone, laws, part, poses, rates, packed.ws, out, np.zeros(count))
             packed.specials.check()
-            found.append(out[:, columns])
-        return np.concatenate(found)
+            chunks.append(out[:, columns])
+        return np.concatenate(chunks)
 
     return values
 

@@ -55,13 +55,13 @@ class Held:
 
     def copy(self) -> Held:
         """As it is now."""
-        return Held(**{one.name: getattr(self, one.name).copy() for one in fields(self)})
+        return Held(**{entry.name: getattr(self, entry.name).copy() for entry in fields(self)})
 
     def restore(self, other: Held) -> None:
         """Become as ``other`` is, in place."""
-        for one in fields(self):
-            own, given = getattr(self, one.name), getattr(other, one.name)
+        for entry in fields(self):
+            own, given = getattr(self, entry.name), getattr(other, entry.name)
             if isinstance(own, np.ndarray):
                 own[...] = given
             else:
-                setattr(self, one.name, given.copy())
+                setattr(self, entry.name, given.copy())

@@ -62,8 +62,8 @@ class Embedded:
     def state(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """(2, 3 + f) of q, v (3 nb,)."""
         out = np.zeros((2, 3 + len(self.coordinates)))
-        for k, one in enumerate(self.coordinates):
-            out[0, 3 + k], out[1, 3 + k] = one.at(q), one.rate(q, v)
+        for k, coordinate in enumerate(self.coordinates):
+            out[0, 3 + k], out[1, 3 + k] = coordinate.at(q), coordinate.rate(q, v)
         return out
 
     def settings(self, settings: Settings) -> Settings:
@@ -72,7 +72,7 @@ class Embedded:
         absolute, growing = np.full((2, 2, count), settings.relative)
         absolute[:, 3:] = 1.0 / self.arrays.size * settings.relative
         growing[0, :3] = 0.0
-        growing[0, 3:][[one.slide is None for one in self.coordinates]] = 0.0
+        growing[0, 3:][[coordinate.slide is None for coordinate in self.coordinates]] = 0.0
         return settings._replace(absolute=absolute, growing=growing, smallest=SMALLEST_STEP * settings.longest)
 
 
@@ -135,9 +135,9 @@ def _best(ready: PreparedDynamics, q: np.ndarray, v: np.ndarray, time: float) ->
     """The same as a choice, and how fast bodies move under it."""
     best = None
     for choice in choices(ready.packed, q, _freedoms(ready)):
-        found = _sensitivity(ready, _made(ready, choice, _freedoms(ready)), q, v, time)
-        if found < POOR and (best is None or found < best[1]):
-            best = choice, found
+        sensitivity = _sensitivity(ready, _made(ready, choice, _freedoms(ready)), q, v, time)
+        if sensitivity < POOR and (best is None or sensitivity < best[1]):
+            best = choice, sensitivity
         if best is not None and best[1] <= GOOD:
             break
     return best
@@ -224,7 +224,7 @@ def _made(ready: PreparedDynamics, choice: Choice, count: int) -> Embedded:
         number=group_numbers(groups),
         block=block,
         block_number=block_number,
-        size=np.array([1.0 if one.slide is None else size for one in coordinates]),
+        size=np.array([1.0 if coordinate.slide is None else size for coordinate in coordinates]),
         loaded=loaded[loaded > 0],
         angles=functions or any(reading),
     )

@@ -68,11 +68,11 @@ class Pace:
         if self._checks < self._next:
             return
         self._next *= 2
-        found = diagnosis(self.run, current() if current else self.state, advance, left)
-        if found is not None:
+        cause = diagnosis(self.run, current() if current else self.state, advance, left)
+        if cause is not None:
             raise SimulationError(
                 f"{self.run.ready.packed.name}: {self.run.method.name} no longer advances at t = {at:.6g} s: the last "
-                f"{steps} steps took {advance * steps:.2g} s of {self.end - at:.3g} s that are left; {found}"
+                f"{steps} steps took {advance * steps:.2g} s of {self.end - at:.3g} s that are left; {cause}"
             )
 
     def _steps(self) -> int:

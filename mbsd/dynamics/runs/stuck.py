@@ -58,10 +58,10 @@ class Stiffest(NamedTuple):
 
 def diagnosis(run: Running, state: State, h: float, left: float) -> str | None:
     """What keeps steps at h (s), with the remedy, or None if the run may go on; ``left`` steps are still to do."""
-    found = jump(run, state, h)
+    cause = jump(run, state, h)
     slope = _slope(run, state)
-    if found is not None or slope is None:
-        return found
+    if cause is not None or slope is None:
+        return cause
     if h > NEEDLESS * _own_time(run, state, slope):
         return None
     stiff = _stiffest(run, float(state.clock[TIME]), state.y, slope)
@@ -80,10 +80,10 @@ def diagnosis(run: Running, state: State, h: float, left: float) -> str | None:
 def jump(run: Running, state: State, h: float) -> str | None:
     """The force that jumps within some steps of h (s), with the remedy, or None."""
     slope = _slope(run, state)
-    found = None if slope is None else _jumping(run, float(state.clock[TIME]), state.y, slope, h)
-    if found is None:
+    cause = None if slope is None else _jumping(run, float(state.clock[TIME]), state.y, slope, h)
+    if cause is None:
         return None
-    force, size = found
+    force, size = cause
     return (
         f"force '{force.name}' jumps there, by {size:.3g} (N or N m). Make it smooth, say with "
         "tanh(speed / slip_speed) in place of sign(speed), or take friction of a joint with sticks=True."

@@ -125,10 +125,10 @@ def _close(
     which weighs all alike, takes over."""
     q = rough
     for metric in (weights, light):
-        found, worst = _nearer(packed, time, q, metric)
+        nearer, worst = _nearer(packed, time, q, metric)
         if worst <= CLOSED:
-            return found
-        q = found if np.isfinite(found).all() else q
+            return nearer
+        q = nearer if np.isfinite(nearer).all() else q
     raise AssemblyError(why_open(m, packed, q, packed.drives(np.array([time]))[0], time))
 
 
@@ -210,16 +210,16 @@ def mobility_large(m: Model, packed: Packed) -> Mobility:
     free.drivers = {}
     joints = pack(free)
     take_decided(joints, packed)
-    found = independent_large(joints, 0.0, q)[1]
+    mobility = independent_large(joints, 0.0, q)[1]
     random = np.random.default_rng(1)
     for k in range(12):
-        if k > 1 and not (found.singular and found.redundant_rows):
+        if k > 1 and not (mobility.singular and mobility.redundant_rows):
             break  # more are tried where branches of other rank meet at the start
         moved = q.copy()
         moved[3:] += NEARBY * packed.column_scale() * random.standard_normal(packed.coordinates)
         moved, worst = _nearer(joints, 0.0, moved, light)
         if worst <= CLOSED:
             there = independent_large(joints, 0.0, moved)[1]
-            if there.dof < found.dof:
-                found = replace(there, singular=True)
-    return found
+            if there.dof < mobility.dof:
+                mobility = replace(there, singular=True)
+    return mobility

@@ -58,8 +58,8 @@ def fixed_bodies(packed: Packed, known: Collection[int], left: Sequence[int], pa
     columns = np.concatenate([3 * body - 3 + np.arange(3) for body in unknown])
     own = pattern[np.ix_(left, columns)]
     key = own.tobytes(), unknown, tuple(arms.get(row, 0) for row in left)
-    found = _FIXED.get(key, lambda: _fixed(own, unknown, key[2]))
-    return None if found is None else set(found)
+    fixed = _FIXED.get(key, lambda: _fixed(own, unknown, key[2]))
+    return None if fixed is None else set(fixed)
 
 
 _FIXED: Kept[tuple[int, ...] | None] = Kept()
@@ -113,16 +113,16 @@ def hanging_tree(plan: Plan, members: set[int]) -> tuple[list[tuple[int, int, Li
     tree: list[tuple[int, int, Link | None]] = []
     joints: set[int] = set()
     while waiting:
-        found = None
+        hanging = None
         for kind in HANGING:
             for body in waiting:
                 links = [x for x in plan.links[body] if x.kind == kind and x.other in placed]
                 if links:
-                    found = body, HANGING[kind], links[0]
+                    hanging = body, HANGING[kind], links[0]
                     break
-            if found:
+            if hanging:
                 break
-        body, hangs, link = found or (waiting[0], FREE, None)
+        body, hangs, link = hanging or (waiting[0], FREE, None)
         tree.append((body, hangs, link))
         if link is not None:
             joints.add(link.joint)

@@ -44,8 +44,8 @@ def plan_groups(packed: Packed, q0: np.ndarray, redundant_rows: int) -> Groups |
     if numbers is None:
         return _planned(packed, q0)
     kinds = [(*joint.kind.constraints, joint.kind.driven) for joint in packed.joints]
-    found = _GROUPS.get((*numbers, q0.tobytes(), *kinds), lambda: _planned(packed, q0))
-    return None if found is None else Groups(*[part.copy() for part in found])
+    groups = _GROUPS.get((*numbers, q0.tobytes(), *kinds), lambda: _planned(packed, q0))
+    return None if groups is None else Groups(*[part.copy() for part in groups])
 
 
 _GROUPS: Kept[Groups | None] = Kept()

@@ -133,7 +133,7 @@ class Trains:
         """Bodies that pins hold together at the point of a marker, and their arms to it."""
         packed, system = self.packed, self.packed.system
         near = SAME_POINT * packed.size
-        found = {int(system.marker_body[marker]): system.marker_arm[marker]}
+        arms = {int(system.marker_body[marker]): system.marker_arm[marker]}
         grows = True
         while grows:
             grows = False
@@ -142,9 +142,9 @@ class Trains:
                     continue
                 for here, there in ((i, j), (j, i)):
                     body, other = int(system.marker_body[here]), int(system.marker_body[there])
-                    if body not in found or other in found:
+                    if body not in arms or other in arms:
                         continue
-                    if np.abs(system.marker_arm[here] - found[body]).max() <= near:
-                        found[other] = system.marker_arm[there]
+                    if np.abs(system.marker_arm[here] - arms[body]).max() <= near:
+                        arms[other] = system.marker_arm[there]
                         grows = True
-        return found
+        return arms

@@ -45,11 +45,11 @@ def gaps(m: Model, packed: Packed, q: np.ndarray, limits: bool) -> list[Gap]:
     drives = np.zeros((count, len(wide.motions) + 1, 3))
     tabulate(wide.system, drives, q, np.zeros_like(q), wide.ws, phi, compact, gamma)
     first, angular, scale = len(wide.joints) - wide.contacts, set(wide.specials.angular_rows), wide.row_scale()
-    found = []
+    listed = []
     for contact, row in zip(contacts, wide.first_row[first:-1], strict=True):
         value = np.zeros(count) if getattr(contact.kind, "always_closed", False) else phi[:, row]
-        found.append(Gap(contact.name, value, float(INSIDE / scale[row]), "rad" if row in angular else "m"))
-    return found
+        listed.append(Gap(contact.name, value, float(INSIDE / scale[row]), "rad" if row in angular else "m"))
+    return listed
 
 
 def refuse_passed_contacts(m: Model, packed: Packed, times: np.ndarray, q: np.ndarray) -> None:

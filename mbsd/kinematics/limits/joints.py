@@ -40,12 +40,12 @@ class Limit:
 
 def limits_of(packed: Packed) -> list[Limit]:
     """The limited joints of a mechanism."""
-    found = []
+    limits = []
     for joint, (i, j) in zip(packed.joints, packed.markers, strict=True):
         given = joint.params.get("limits")
         if given is not None:
             lower, upper = given
-            found.append(
+            limits.append(
                 Limit(
                     name=joint.name,
                     marker_i=int(i),
@@ -56,7 +56,7 @@ def limits_of(packed: Packed) -> list[Limit]:
                     upper=math.inf if upper is None else float(upper),
                 )
             )
-    return found
+    return limits
 
 
 def coordinate(packed: Packed, limit: Limit, q: np.ndarray) -> np.ndarray:

@@ -53,16 +53,16 @@ def consistent(m: Model, packed: Packed, time: float, metric: np.ndarray) -> Ini
     """
     drive = packed.drives(np.array([time]))[0]
 
-    def found() -> tuple[Initial, np.ndarray]:
+    def started() -> tuple[Initial, np.ndarray]:
         q, deviations = start_pose(m, packed, time, drive)
         v, slips = _velocities(m, packed, q, drive, metric)
         return Initial(q, v, tuple(deviations), tuple(slips)), packed.system.angle_offset
 
     numbers = packed.numbers()
     if numbers is None:
-        return found()[0]
+        return started()[0]
     given = repr(m.starts), repr(m.velocities), drive.tobytes(), metric.tobytes()
-    initial, offsets = _CONSISTENT.get((*numbers, tuple(packed.body_names), *given), found)
+    initial, offsets = _CONSISTENT.get((*numbers, tuple(packed.body_names), *given), started)
     packed.system = packed.system.changed(angle_offset=offsets)
     return replace(initial, q=initial.q.copy(), v=initial.v.copy())
 

@@ -47,11 +47,11 @@ def joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
 def rows_at(packed: Packed, q: np.ndarray) -> list[int]:
     """Rows of J at q (3 nb,) that are independent of those before them."""
 
-    def found() -> tuple[int, ...]:
+    def independent() -> tuple[int, ...]:
         return tuple(independent_rows(scaled_jacobian(packed, q)))
 
     key = _key(packed, q)
-    return list(found() if key is None else _ROWS.get(key, found))
+    return list(independent() if key is None else _ROWS.get(key, independent))
 
 
 def _key(packed: Packed, q: np.ndarray) -> tuple[object, ...] | None:

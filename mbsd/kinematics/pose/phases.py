@@ -107,12 +107,12 @@ def _arm_of(packed: Packed, q: np.ndarray, i: int, j: int) -> int | None:
     centres = _place(packed, q, i), _place(packed, q, j)
     pins: list[set[int]] = []
     for centre, own in zip(centres, (i, j), strict=True):
-        found = {int(packed.system.marker_body[own])}
+        sharing = {int(packed.system.marker_body[own])}
         for joint, markers in zip(packed.joints, packed.markers, strict=True):
             if joint.kind.pair == "pin":
                 near = np.linalg.norm(_place(packed, q, markers[0]) - centre) < SAME_PLACE * packed.size
-                found |= {int(packed.system.marker_body[marker]) for marker in markers} if near else set()
-        pins.append(found)
+                sharing |= {int(packed.system.marker_body[marker]) for marker in markers} if near else set()
+        pins.append(sharing)
     return min(pins[0] & pins[1], default=None)
 
 

@@ -43,8 +43,10 @@ def marker_in_world(m: Model, body: Body, x: float, y: float, angle: float) -> M
 
 def moved_markers(m: Model) -> Iterator[tuple[Marker, tuple[float, float, float], tuple[float, float]]]:
     """Markers of at_world that start elsewhere: where each was put (m, m, rad), and where it starts (m)."""
-    joined = [one for part in (m.joints, m.drivers, m.forces, m.contacts) for one in part.values()]
-    used = {id(marker) for one in joined for marker in (one.i, one.j)} | {id(marker) for marker in m.traces.values()}
+    joined = [joint for part in (m.joints, m.drivers, m.forces, m.contacts) for joint in part.values()]
+    used = {id(marker) for joint in joined for marker in (joint.i, joint.j)} | {
+        id(marker) for marker in m.traces.values()
+    }
     markers = [(marker, given) for marker, given in m.world_markers if id(marker) in used]
     if not markers:
         return
@@ -75,18 +77,18 @@ def _around(m: Model, body: Body) -> Model:
         if "ground" not in (first, second):
             near.setdefault(first, set()).add(second)
             near.setdefault(second, set()).add(first)
-    found, queue = {body.name}, [body.name]
+    reached, queue = {body.name}, [body.name]
     while queue:
-        new = near.get(queue.pop(), set()) - found
-        found |= new
+        new = near.get(queue.pop(), set()) - reached
+        reached |= new
         queue += new
     out = copied(m)  # pyright: ignore[reportArgumentType]
-    kept = found | {"ground"}
-    out.bodies = {name: one for name, one in m.bodies.items() if name in kept}
+    kept = reached | {"ground"}
+    out.bodies = {name: kept_body for name, kept_body in m.bodies.items() if name in kept}
     out.starts = {name: start for name, start in m.starts.items() if name in kept}
     for part in ("joints", "drivers"):
-        ends = {name: {one.i.body.name, one.j.body.name} for name, one in getattr(m, part).items()}
-        setattr(out, part, {name: one for name, one in getattr(m, part).items() if ends[name] & found})
+        ends = {name: {joint.i.body.name, joint.j.body.name} for name, joint in getattr(m, part).items()}
+        setattr(out, part, {name: joint for name, joint in getattr(m, part).items() if ends[name] & reached})
     out.forces, out.contacts, out.events, out.traces, out.velocities = {}, {}, {}, {}, {}
     return out
 

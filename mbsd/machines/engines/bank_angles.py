@@ -184,12 +184,12 @@ def bank_angles(
         fired.append(firing(of))
         free.append(free_forces(of, ratio, ORDERS))
     mean = 720.0 / family.cylinders
-    uneven = np.array([np.abs(np.degrees(one.intervals) - mean).max() for one in fired])
+    uneven = np.array([np.abs(np.degrees(sequence.intervals) - mean).max() for sequence in fired])
     ripple = None
     if cycle is not None:
         torque = gas_torque(cycle, ratio)
-        ripple = np.array([_ripple(torque, one.angles, one.cycle) for one in fired])
-    return BankAngles(family, ratio, wide, tuple(free), uneven, tuple(one.order for one in fired), ripple)
+        ripple = np.array([_ripple(torque, sequence.angles, sequence.cycle) for sequence in fired])
+    return BankAngles(family, ratio, wide, tuple(free), uneven, tuple(sequence.order for sequence in fired), ripple)
 
 
 def gas_torque(cycle: GasCycle, ratio: float, steps: int = 1440) -> np.ndarray:

@@ -218,7 +218,7 @@ def _fires(
     fired = firing(of, order, 4 if gas is None else 2 * gas.turns)
     first = of.cylinders[fired.order[0] - 1]
     begin = (first.bank - first.throw) % (2 * math.pi)
-    late = {number: knuckle.late for number, knuckle in ((k + 1, one) for k, one in hung.items())}
+    late = {number: knuckle.late for number, knuckle in ((k + 1, hung_knuckle) for k, hung_knuckle in hung.items())}
     return {
         number: begin + float(since) + late.get(number, 0.0)
         for number, since in zip(fired.order, fired.angles, strict=True)
@@ -280,9 +280,9 @@ def _places(of: Layout, name: str, spacing: float, bank_offset: float | None) ->
 
 def _refuse_overlaps(of: Layout, name: str, z: np.ndarray, bore: float) -> None:
     """Cylinders of one bank must stand at least a bore apart."""
-    for first, one in enumerate(of.cylinders):
+    for first, cylinder in enumerate(of.cylinders):
         for second in range(first + 1, len(of.cylinders)):
-            side = math.remainder(one.bank - of.cylinders[second].bank, 2 * math.pi)
+            side = math.remainder(cylinder.bank - of.cylinders[second].bank, 2 * math.pi)
             gap = abs(float(z[first] - z[second]))
             if abs(side) < SAME and gap < bore:
                 raise ModelError(

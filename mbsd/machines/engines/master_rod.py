@@ -100,10 +100,10 @@ def knuckles(
     groups = [group for group in throws(of) if len(group) > 1]
     if not groups:
         raise ModelError(f"engine '{name}': rods 'master', but no throw has two rods; leave it out")
-    found: dict[int, Knuckle] = {}
+    knuckle_of: dict[int, Knuckle] = {}
     for group in groups:
-        found |= _of_throw(of, name, own, group, throw, rod, radius)
-    return own, found
+        knuckle_of |= _of_throw(of, name, own, group, throw, rod, radius)
+    return own, knuckle_of
 
 
 def ring_of(name: str, own: MasterRod, hung: Mapping[int, Knuckle], rod_mass: float | None) -> Ring:
@@ -143,9 +143,9 @@ def _of_throw(
             )
         what = f"engine '{name}': angle of the knuckle pin of cylinder"
         angles = [math.radians(finite_number(f"{what} {k + 1}", a)) for k, a in zip(others, own.angles, strict=True)]
-    found: dict[int, Knuckle] = {}
+    knuckle_of: dict[int, Knuckle] = {}
     for k, angle in zip(others, angles, strict=True):
-        for other, earlier in found.items():
+        for other, earlier in knuckle_of.items():
             if abs(math.remainder(angle - earlier.angle, 2 * math.pi)) < SAME:
                 raise ModelError(
                     f"engine '{name}': the knuckle pins of cylinders {other + 1} and {k + 1} are in one place, "
@@ -162,5 +162,5 @@ def _of_throw(
             )
         # The motion counts the throw from where it points away from the master's head.
         late = math.remainder(motion.top + math.pi - banks[k], 2 * math.pi)
-        found[k] = Knuckle(master, radius, angle, motion, late)
-    return found
+        knuckle_of[k] = Knuckle(master, radius, angle, motion, late)
+    return knuckle_of

@@ -112,17 +112,17 @@ def opposed_pistons(
     masses = ShaftMasses(piston_mass, rod_mass, end, throw_mass, 0.0)
     z, share = of.z * apart, share_of(name, counterweight)
     cranks = [
-        crankshaft(m, one, z, throw, share, masses, 0.0, shaft)
-        for one, shaft in ((of, "crank"), (upper, "upper_crank"))
+        crankshaft(m, engine, z, throw, share, masses, 0.0, shaft)
+        for engine, shaft in ((of, "crank"), (upper, "upper_crank"))
     ]
     m.revolute("main", m.ground.origin, cranks[0].origin)
     m.revolute("upper_main", m.ground.at(0.0, between), cranks[1].origin)
     _geared(m, cranks, between, float(z.max()) + apart, opposite)
-    for crank, one, prefix, axis, foot in (
+    for crank, engine, prefix, axis, foot in (
         (cranks[0], of, "", UPRIGHT, 0.0),
         (cranks[1], upper, "upper_", -UPRIGHT, between),
     ):
-        _pistons(m, crank, one, z, (prefix, axis, foot), (throw, rod), (piston_mass, rod_mass, end))
+        _pistons(m, crank, engine, z, (prefix, axis, foot), (throw, rod), (piston_mass, rod_mass, end))
     if gas is not None:
         ratio = 2.0 * rod * math.cos(0.5 * lead) ** 2 / math.cos(lead)
         for k, cylinder in enumerate(of.cylinders, start=1):

@@ -12,8 +12,8 @@ SAME = 1e-6
 
 def throws(of: Layout) -> list[list[int]]:
     """Indices of the cylinders on each throw; pins that are split are throws of their own."""
-    found: dict[tuple[int, int], list[int]] = {}
+    by_throw: dict[tuple[int, int], list[int]] = {}
     for k, cylinder in enumerate(of.cylinders):
         turned = round(math.remainder(cylinder.throw, 2 * math.pi) / SAME)
-        found.setdefault((turned, round(cylinder.z / SAME)), []).append(k)
-    return list(found.values())
+        by_throw.setdefault((turned, round(cylinder.z / SAME)), []).append(k)
+    return list(by_throw.values())

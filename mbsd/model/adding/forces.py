@@ -90,12 +90,12 @@ def spring_amounts(m: Model, name: str, **values: Amount) -> tuple[dict[str, Any
 def curves_given(m: Model, name: str, **curves: Curve | None) -> dict[str, Curve]:
     """Characteristic curves that were given, one at least. Raises ModelError."""
     out = {}
-    for what, one in curves.items():
-        if one is None:
+    for what, curve in curves.items():
+        if curve is None:
             continue
-        if not isinstance(one, Curve):
-            raise ModelError(f"{m.name}: force '{name}': {what} is {shown(one)}; it must be a curve(x, y)")
-        out[what] = one
+        if not isinstance(curve, Curve):
+            raise ModelError(f"{m.name}: force '{name}': {what} is {shown(curve)}; it must be a curve(x, y)")
+        out[what] = curve
     if not out:
         raise ModelError(f"{m.name}: force '{name}' has no curve; give {' or '.join(curves)}")
     return out

@@ -62,22 +62,22 @@ class CamProfile:
     @property
     def problems(self) -> list[str]:
         """What is wrong with this cam, with remedies; empty if it can be made and should run."""
-        found = []
+        faults = []
         if self.undercut:
             where = np.degrees(self.angle[self._undercut])
             remedy = "" if self.flat else " or a smaller roller"
-            found.append(
+            faults.append(
                 f"the outline is undercut between cam angles {where.min():.4g} and {where.max():.4g} degrees; take a "
                 f"larger base circle{remedy}"
             )
         limit = STEEP["oscillating" if self.follower.startswith("oscillating") else "translating"]
         if self.largest_pressure_angle > limit:
             at = math.degrees(self.angle[int(np.argmax(np.abs(self.pressure_angle)))])
-            found.append(
+            faults.append(
                 f"the pressure angle reaches {math.degrees(self.largest_pressure_angle):.4g} degrees at cam angle "
                 f"{at:.4g}, above {math.degrees(limit):.4g}; take a larger base circle or a longer rise"
             )
-        return found
+        return faults
 
     @property
     def data(self) -> dict[str, Any]:

@@ -76,6 +76,6 @@ def stop(
     add = angle_stop if joint.kind.pair == "pin" else coordinate_stop
     ends = [("lower", lower, False), ("upper", upper, True)]
     given = [(f"{name} {end}", at, is_upper) for end, at, is_upper in ends if at is not None]
-    for one, _, _ in given:
-        new_name(m, one, "contact", *connections(m))
-    return tuple(add(m, one, joint.i, joint.j, at, is_upper, restitution) for one, at, is_upper in given)
+    for end_name, _, _ in given:
+        new_name(m, end_name, "contact", *connections(m))
+    return tuple(add(m, end_name, joint.i, joint.j, at, is_upper, restitution) for end_name, at, is_upper in given)

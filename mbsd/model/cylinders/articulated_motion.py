@@ -107,12 +107,12 @@ def _turn() -> np.ndarray:
 def _dead_centres(motion: ArticulatedMotion) -> tuple[float, float]:
     """Angles of the throw at the top and at the bottom, where the rate of the way is zero."""
     way = motion._way(_turn())
-    found = []
+    turning_points = []
     for k, sign in ((int(way.argmin()), 1.0), (int(way.argmax()), -1.0)):
         low, high = (2.0 * math.pi / LOOKS * (k + side) for side in (-1, 1))
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
             rising = sign * float(motion._rate(np.array([middle]))[0]) > 0.0
             low, high = (low, middle) if rising else (middle, high)
-        found.append(0.5 * (low + high))
-    return found[0], found[1]
+        turning_points.append(0.5 * (low + high))
+    return turning_points[0], turning_points[1]

@@ -191,8 +191,8 @@ def heat_given(what: str, heat: float | None, heat_density: float | None) -> tup
     if heat is not None and heat_density is not None:
         raise ModelError(f"{what}: give heat (J) or heat_density (J/m^3), not both")
     named = {key: value for key, value in (("heat", heat), ("heat_density", heat_density)) if value is not None}
-    found = numbers_given(what, (), dict.fromkeys(named, 0.0), **named)
-    return found.get("heat"), found.get("heat_density")
+    numbers = numbers_given(what, (), dict.fromkeys(named, 0.0), **named)
+    return numbers.get("heat"), numbers.get("heat_density")
 
 
 def compression_given(what: str, value: float) -> float:

@@ -90,19 +90,22 @@ class Function(WithFunctions, Motion):
         from mbsd.model.laws.fitting.sampled import Sampled
 
         looks, sampled = look_times(first, last, self.shortest), Sampled(self._values)
-        found = fit(sampled, first, last, given_cuts(self.breaks, first, last), looks, load)
-        made, cuts, jumps = fit_pieces(found, load)
-        missed, where = None, f"near t = {found.missed_at:.6g} s"
-        if found.overrun and not load:
+        fitted = fit(sampled, first, last, given_cuts(self.breaks, first, last), looks, load)
+        made, cuts, jumps = fit_pieces(fitted, load)
+        missed, where = None, f"near t = {fitted.missed_at:.6g} s"
+        if fitted.overrun and not load:
             raise ModelError(
                 f"function: the law is not smooth: {sampled.count} values do not determine f'' {where}; {REMEDY}"
             )
-        if load and found.missed > TOLD * found.size:
+        if load and fitted.missed > TOLD * fitted.size:
             missed = (
-                f"{sampled.count} values do not determine the law: {found.missed:.2g} of it is missed {where}; {REMEDY}"
+                f"{sampled.count} values do not determine the law: {fitted.missed:.2g} of it is missed {where}; "
+                f"{REMEDY}"
             )
-        elif found.missed and not load:
-            missed = f"f'' is uncertain by {found.missed:.2g} {where}, where a derivative grows without bound; {REMEDY}"
+        elif fitted.missed and not load:
+            missed = (
+                f"f'' is uncertain by {fitted.missed:.2g} {where}, where a derivative grows without bound; {REMEDY}"
+            )
         return Fitted(
             self.f,
             repeats_after=self.repeats_after,

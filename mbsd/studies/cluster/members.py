@@ -74,9 +74,9 @@ class Members:
         began, warned = time.monotonic(), False
         while True:
             self.look()
-            found = {name: threads for name, threads in self.fit.items() if name not in but}
-            if found:
-                return found
+            able = {name: threads for name, threads in self.fit.items() if name not in but}
+            if able:
+                return able
             waited = time.monotonic() - began
             silent = self._there.keys() - self._fits - self.out.keys()
             reasons = self.out | dict.fromkeys(silent, "it does not answer")

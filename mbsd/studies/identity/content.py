@@ -213,12 +213,12 @@ class Content:
         package = str(function.__globals__.get("__package__") or "")
         for name, level, taken in sorted(named.imports):
             base = resolved(name, level, package)
-            for one in (base, *(f"{base}.{part}" for part in taken)):
-                self._count_whole(one)
+            for module_name in (base, *(f"{base}.{part}" for part in taken)):
+                self._count_whole(module_name)
             yield _joined("import", f"{base} {taken}")
         if named.any_module:
-            for one in list(sys.modules):
-                self._count_whole(one)
+            for module_name in list(sys.modules):
+                self._count_whole(module_name)
         if named.any_global and module is not None:
             self._count_whole(module.__name__)
 

@@ -67,7 +67,10 @@ def instructions(code: CodeType) -> Iterator[tuple[str, object, bool]]:
     """
     steps = [step for step in dis.get_instructions(code) if step.opname != "EXTENDED_ARG"]
     for step, then in zip(steps, [*steps[1:], None], strict=True):
-        if any(one is not None and one.opname == "STORE_NAME" and one.argval in _PLACES for one in (step, then)):
+        if any(
+            instruction is not None and instruction.opname == "STORE_NAME" and instruction.argval in _PLACES
+            for instruction in (step, then)
+        ):
             continue
         constant = step.opcode in dis.hasconst
         yield step.opname, step.argval if constant else (step.arg, step.argrepr), constant

@@ -178,11 +178,11 @@ def _facing(states: list[State]) -> list[np.ndarray]:
         return [tilt, np.zeros(len(states)), turn]
     from mathutils import Euler
 
-    found = [Euler((tilt[0], 0.0, turn[0]))]
+    facing = [Euler((tilt[0], 0.0, turn[0]))]
     for a, b in zip(tilt, turn, strict=True):
         turned = studio.to_world(up) @ Euler((a, 0.0, b)).to_matrix().to_4x4()
-        found.append(turned.to_euler("XYZ", found[-1]))
-    return list(np.array([list(angles) for angles in found[1:]]).T)
+        facing.append(turned.to_euler("XYZ", facing[-1]))
+    return list(np.array([list(angles) for angles in facing[1:]]).T)
 
 
 def _key(thing: Any, path: str, channels: list[np.ndarray], slot: str = "OBJECT") -> None:

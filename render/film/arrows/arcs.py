@@ -34,7 +34,7 @@ class Arcs:
     def __init__(self, time: Array, torques: Sequence[Torque], size: float, least: float = 0.0) -> None:
         self.time, self.size = time, size
         self.scale = scales_of(torques, {UNIT: least}).get(UNIT)
-        self.torques = [one for one in torques if abs(self._sweeps(one)).max() >= TINY * FULL_TURN]
+        self.torques = [torque for torque in torques if abs(self._sweeps(torque)).max() >= TINY * FULL_TURN]
         """Those that are seen at some time."""
 
     def specs(self) -> list[ArcSpec]:
@@ -89,7 +89,7 @@ class Arcs:
     def _radius(self, k: int) -> float:
         """Radius of arc number ``k`` (m): wider than those before it about the same point."""
         mine = self.torques[k].place
-        inside = sum(bool(np.abs(one.place - mine).max() < RADIUS * self.size / 4) for one in self.torques[:k])
+        inside = sum(bool(np.abs(torque.place - mine).max() < RADIUS * self.size / 4) for torque in self.torques[:k])
         return (RADIUS + APART * inside) * self.size
 
     def _sweeps(self, torque: Torque) -> Array:

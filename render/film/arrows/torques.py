@@ -53,19 +53,19 @@ def rounding(vectors: Sequence[Vector], size: float) -> float:
 
 def _reactions(motion: Motion, quantity: Quantity) -> Iterator[Torque]:
     """Torques of joints and contacts, about where they act."""
-    for name, one in (*motion.joints.items(), *motion.contacts.items()):
-        at = one.acts or one
-        sign = 1.0 if one.bodies[1] != "ground" else -1.0
-        yield Torque(quantity, name, one.bodies, _two(at.x, at.y), sign * np.asarray(at.torque, float))
+    for name, joint in (*motion.joints.items(), *motion.contacts.items()):
+        at = joint.acts or joint
+        sign = 1.0 if joint.bodies[1] != "ground" else -1.0
+        yield Torque(quantity, name, joint.bodies, _two(at.x, at.y), sign * np.asarray(at.torque, float))
 
 
 def _applied(motion: Motion, quantity: Quantity) -> Iterator[Torque]:
     """Torques of forces and drivers."""
-    for name, one in (*motion.forces.items(), *motion.drivers.items()):
-        several = getattr(one, "several", False)
-        moving = [action for action in one.actions if action.body != "ground"]
+    for name, load in (*motion.forces.items(), *motion.drivers.items()):
+        several = getattr(load, "several", False)
+        moving = [action for action in load.actions if action.body != "ground"]
         for action in moving if several else moving[-1:]:
-            bodies = (action.body,) if several else tuple(other.body for other in one.actions)
+            bodies = (action.body,) if several else tuple(other.body for other in load.actions)
             value = np.asarray(action.torque, float)
             yield Torque(quantity, f"{name} on {action.body}", bodies, _two(action.x, action.y), value)
 

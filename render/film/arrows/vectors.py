@@ -81,16 +81,16 @@ def at_time(time: Array, values: Array, t: float) -> Array:
 
 def _reactions(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
     """What joints and rigid contacts do to their second body; to the first one where the second is ground."""
-    for name, one in (*motion.joints.items(), *motion.contacts.items()):
-        at, force = one.acts or one, _two(one.fx, one.fy)
-        sign = 1.0 if one.bodies[1] != "ground" else -1.0
-        yield Vector(quantity, name, one.bodies, _two(at.x, at.y), sign * force)
+    for name, joint in (*motion.joints.items(), *motion.contacts.items()):
+        at, force = joint.acts or joint, _two(joint.fx, joint.fy)
+        sign = 1.0 if joint.bodies[1] != "ground" else -1.0
+        yield Vector(quantity, name, joint.bodies, _two(at.x, at.y), sign * force)
 
 
 def _forces(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
     """Forces and drivers on each moving body that feels them, and the weights."""
-    for name, one in (*motion.forces.items(), *motion.drivers.items()):
-        for action in one.actions:
+    for name, load in (*motion.forces.items(), *motion.drivers.items()):
+        for action in load.actions:
             if action.body != "ground":
                 place, value = _two(action.x, action.y), _two(action.fx, action.fy)
                 yield Vector(quantity, f"{name} on {action.body}", (action.body,), place, value)
@@ -107,16 +107,16 @@ def _movements(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
     fast = quantity == "velocities"
     slack = SAME * _extent(motion)
     shown: list[Array] = []
-    found: set[str] = set()
+    marked: set[str] = set()
     for name, on, (place, velocity, acceleration) in _marked(motion):
         if np.ptp(place, axis=0).max() <= slack:
             continue
-        found |= {on}
+        marked |= {on}
         if not any(np.abs(place - other).max() <= slack for other in shown):
             shown.append(place)
             yield Vector(quantity, f"{quantity} of {name}", (on,), place, velocity if fast else acceleration)
     for name, body in motion.bodies.items():
-        if name not in found:
+        if name not in marked:
             place, velocity, acceleration = at_body(body, *body.com)
             yield Vector(quantity, f"{quantity} of {name}", (name,), place, velocity if fast else acceleration)
 

@@ -57,9 +57,9 @@ def number(motion: Motion, shot: Shot) -> Callable[[float], str]:
             return f"{name}  {slow(v)}   {fast(3.6 * v)}"
 
         return speed
-    one = motion.drivers.get(name) or motion.forces[name]
-    efforts = np.asarray(one.effort if one.effort is not None else np.zeros(len(time)), float)[:, None]
-    write = live(efforts[:, 0].tolist(), one.effort_unit, FIGURES)
+    load = motion.drivers.get(name) or motion.forces[name]
+    efforts = np.asarray(load.effort if load.effort is not None else np.zeros(len(time)), float)[:, None]
+    write = live(efforts[:, 0].tolist(), load.effort_unit, FIGURES)
     return lambda t: f"{name}  {write(float(at_time(time, efforts, t)[0]))}"
 
 

@@ -41,16 +41,16 @@ def lines(title: str, numbers: Sequence[str], rate: str, aspect: float) -> list[
     """
     wide = sides(aspect)[0] - 2 * EDGE
     widest = max(numbers, key=width_of, default="")
-    found: list[tuple[str, str, float, bool, bool]] = []
+    kept_lines: list[tuple[str, str, float, bool, bool]] = []
     if title:
         size, broken = _broken(title, TITLE, wide)
-        found += [(words, words, size, True, False) for words in broken]
+        kept_lines += [(words, words, size, True, False) for words in broken]
     if widest:
-        found.append(("", widest, _fitting(widest, NUMBER, wide), False, False))
+        kept_lines.append(("", widest, _fitting(widest, NUMBER, wide), False, False))
     if rate:
-        found.append((rate, rate, _fitting(rate, RATE, wide), False, True))
+        kept_lines.append((rate, rate, _fitting(rate, RATE, wide), False, True))
     out, y = [], EDGE
-    for words, measured, size, bold, quiet in found:
+    for words, measured, size, bold, quiet in kept_lines:
         width = size * width_of(measured, bold)
         out.append(LineSpec(words=words, x=EDGE, y=y, width=width, size=size, bold=bold, quiet=quiet))
         y += LINE * size
@@ -73,10 +73,10 @@ def cards(rows: Sequence[LegendRow], over: Box, aspect: float) -> dict[str, Card
         return {}
     part = 1.0
     while True:
-        found = _cards(rows, part * LEGEND, aspect)
-        free = {corner: card for corner, card in found.items() if _is_free(card, over, aspect)}
+        cards_of_rows = _cards(rows, part * LEGEND, aspect)
+        free = {corner: card for corner, card in cards_of_rows.items() if _is_free(card, over, aspect)}
         if free or part < LEAST:
-            return free or found
+            return free or cards_of_rows
         part *= 0.92
 
 

@@ -89,10 +89,10 @@ def _velocity(motion: Motion, body: str, places: Array) -> Array:
     """(T, 2) of the material of a body at places (T, 2) of the world."""
     if body not in motion.bodies:
         return np.zeros_like(places)
-    one = motion.bodies[body]
-    arm = places - np.stack([np.asarray(one.x), np.asarray(one.y)], axis=1)
+    frame = motion.bodies[body]
+    arm = places - np.stack([np.asarray(frame.x), np.asarray(frame.y)], axis=1)
     across = np.stack([-arm[:, 1], arm[:, 0]], axis=1)
-    return np.stack([np.asarray(one.vx), np.asarray(one.vy)], axis=1) + _omega(motion, body)[:, None] * across
+    return np.stack([np.asarray(frame.vx), np.asarray(frame.vy)], axis=1) + _omega(motion, body)[:, None] * across
 
 
 def _omega(motion: Motion, body: str) -> Array:

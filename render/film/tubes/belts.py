@@ -79,13 +79,13 @@ class Belt:
         if not self.chain:
             reach = LONG * self.radius * np.linspace(-1.0, 1.0, MARK_POINTS)
             return [place.points(self.closed), *(place.points(s + reach) for s in every)]
-        seats, found = place.points(every), []
+        seats, ways = place.points(every), []
         for (x, y, z), half in ((seat, half) for half in (self.roller, PIN * self.radius) for seat in seats):
-            found.append([(x, y, z - half), (x, y, z + half)])
+            ways.append([(x, y, z - half), (x, y, z + half)])
         for side in (-1.0, 1.0):
             for k, (start, end) in enumerate(zip(seats, [*seats[1:], seats[0]], strict=True)):
-                found.append([(x, y, z + side * self.aside(k)) for x, y, z in (start, end)])
-        return found
+                ways.append([(x, y, z + side * self.aside(k)) for x, y, z in (start, end)])
+        return ways
 
     @property
     def closed(self) -> Array:

@@ -122,18 +122,18 @@ def spirals(
         if pin is None:
             continue
         bodies, places = pin
-        found = site(bodies, places, RIM * size)
-        if found is None:
+        place = site(bodies, places, RIM * size)
+        if place is None:
             continue
-        inner = bodies[1] if found.outer == bodies[0] else bodies[0]
-        turned = _theta(motion, inner) - _theta(motion, found.outer)
+        inner = bodies[1] if place.outer == bodies[0] else bodies[0]
+        turned = _theta(motion, inner) - _theta(motion, place.outer)
         least, most = (float(end) / math.tau for end in (turned.min(), turned.max()))
         mean = max(USUAL, LEAST + (most - least) / 2)
         wire = min(WIRE * size, (RIM - HUB) * size / (2 * APART * (mean + (most - least) / 2)))
-        local = _local(motion, found.outer, places[0])
+        local = _local(motion, place.outer, places[0])
         points = math.ceil(PER_TURN * (mean + (most - least) / 2)) + 1
         turns = mean - (least + most) / 2
-        yield Spiral(name, found.outer, inner, (*local, found.direction), turns, points, size, wire, found)
+        yield Spiral(name, place.outer, inner, (*local, place.direction), turns, points, size, wire, place)
 
 
 def _pin(motion: Motion, force: ForceMotion, size: float) -> tuple[tuple[str, str], Array] | None:

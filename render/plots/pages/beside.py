@@ -29,7 +29,7 @@ Panel = tuple[str, str, Callable[[Motion], np.ndarray | None]]
 def figures(name: str, motions: Motions) -> dict[str, Figure]:
     """All pages by name; those with nothing to show are left out."""
     with house_style():
-        found = {
+        pages = {
             "bodies": _page(name, motions, "how the bodies move", _body_panels(motions)),
             "drivers": _page(name, motions, "what the drivers give", _driver_panels(motions)),
             "reactions": _page(name, motions, "what the joints carry", _joint_panels(motions)),
@@ -37,7 +37,7 @@ def figures(name: str, motions: Motions) -> dict[str, Figure]:
             "energy": _page(name, motions, "energy", _energy_panels()),
             "paths": _paths(name, motions),
         }
-    return {plot: figure for plot, figure in found.items() if figure is not None}
+    return {plot: figure for plot, figure in pages.items() if figure is not None}
 
 
 def _page(name: str, motions: Motions, title: str, panels: Sequence[Panel]) -> Figure | None:
@@ -168,8 +168,8 @@ def _of(
     """Reads one series of every motion that has it."""
 
     def read(motion: Motion) -> np.ndarray | None:
-        one = getattr(motion, kind).get(name)
-        series = None if one is None else getattr(one, field)
+        entry = getattr(motion, kind).get(name)
+        series = None if entry is None else getattr(entry, field)
         return None if series is None else without_noise(scale * np.asarray(series), floor)
 
     return read

@@ -31,9 +31,9 @@ def spectra_figure(name: str, motions: Mapping[str, Motion], asked: Sequence[str
         columns = 1 if len(panels) == 1 else 2 if len(panels) in (2, 4) else 3
         grid = figure.subplots(math.ceil(len(panels) / columns), columns, squeeze=False)
         figure.subplots_adjust(left=0.075, right=0.975, top=0.79, bottom=0.085, wspace=0.24, hspace=0.34)
-        for axes, (title, found) in zip(grid.ravel(), panels, strict=False):
+        for axes, (title, spectra_of_panel) in zip(grid.ravel(), panels, strict=False):
             axes.set_title(title, fontsize=10, loc="left")
-            _stems(axes, found, len(motions))
+            _stems(axes, spectra_of_panel, len(motions))
         for axes in grid.ravel()[len(panels) :]:
             axes.set_visible(False)
         for axes in list(grid.ravel()[: len(panels)])[-columns:]:
@@ -50,22 +50,22 @@ def _panels(motions: Mapping[str, Motion], asked: Sequence[str]) -> list[tuple[s
             if what not in known_names(motion):
                 continue
             series = quantity(motion, what)
-            found = spectrum(motion, series.rows)
-            if not found.harmonic:
+            spectra = spectrum(motion, series.rows)
+            if not spectra.harmonic:
                 continue
-            last = shown_orders(found)
+            last = shown_orders(spectra)
             for column, component in enumerate(series.components):
                 part = f" {component}" if component in ("x", "y") else ""
                 panel = panels.setdefault(labelled(f"{what}{part}", series.unit), {})
-                panel[number] = found.at[1 : last + 1], found.amplitudes[1 : last + 1, column]
-    return [(title, found) for title, found in panels.items() if any(sizes.any() for _, sizes in found.values())]
+                panel[number] = spectra.at[1 : last + 1], spectra.amplitudes[1 : last + 1, column]
+    return [(title, spectra) for title, spectra in panels.items() if any(sizes.any() for _, sizes in spectra.values())]
 
 
-def _stems(axes: Axes, found: dict[int, Series], count: int) -> None:
+def _stems(axes: Axes, spectra: dict[int, Series], count: int) -> None:
     """Those of all motions side by side at each order."""
-    largest = max(float(sizes.max()) for _, sizes in found.values())
-    end = max(float(at[-1]) for at, _ in found.values())
-    for number, (at, sizes) in found.items():
+    largest = max(float(sizes.max()) for _, sizes in spectra.values())
+    end = max(float(at[-1]) for at, _ in spectra.values())
+    for number, (at, sizes) in spectra.items():
         there = sizes > NOTHING * largest
         places = at + (number - (count - 1) / 2) * float(at[0]) * min(0.15, 0.7 / count)
         axes.vlines(places[there], 0.0, sizes[there], color=colour(number), linewidth=2.6)

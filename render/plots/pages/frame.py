@@ -17,16 +17,21 @@ STILL = 1e-9
 
 def frame(motion: Motion) -> Figure:
     """Force of inertia (N), couples about axes in the plane (N m), and the way of the centre of mass (m)."""
-    over, found, vibration = horizon(motion), shaking(motion), motion.vibration
+    over, shaken, vibration = horizon(motion), shaking(motion), motion.vibration
     assert vibration is not None
-    assert found.mx is not None
-    assert found.my is not None
-    figure = page(motion.mechanism, "what the frame feels", f"inertia alone; moment about {found.about} in the report")
+    assert shaken.mx is not None
+    assert shaken.my is not None
+    figure = page(motion.mechanism, "what the frame feels", f"inertia alone; moment about {shaken.about} in the report")
     force, couple, centre = rows(figure, 3)
     draw(
-        force, over, "force", "N", [("x", found.fx, PALETTE[0]), ("y", found.fy, PALETTE[1])], floor=force_floor(motion)
+        force,
+        over,
+        "force",
+        "N",
+        [("x", shaken.fx, PALETTE[0]), ("y", shaken.fy, PALETTE[1])],
+        floor=force_floor(motion),
     )
-    lines = [("about x", found.mx, PALETTE[0]), ("about y", found.my, PALETTE[1])]
+    lines = [("about x", shaken.mx, PALETTE[0]), ("about y", shaken.my, PALETTE[1])]
     draw(couple, over, "couple", "N m", lines, floor=couple_floor(motion))
     ways = [np.array(values) - np.mean(values) for values in (vibration.x, vibration.y)]
     lines = [("x", ways[0], PALETTE[0]), ("y", ways[1], PALETTE[1])]

@@ -28,10 +28,13 @@ def gas(motion: Motion) -> Figure:
     figure = page(motion.mechanism, "gas in the cylinders", _subtitle(chambers))
     indicated, over = figure.subplots(1, 2, width_ratios=(1.0, 1.15))
     figure.subplots_adjust(left=0.075, right=0.9, top=0.845, bottom=0.095, wspace=0.2)
-    for name, one, ink in chambers[:FEW] if len(chambers) <= FEW else chambers[:1]:
-        rows = _last_cycle(one)
+    for name, chamber, ink in chambers[:FEW] if len(chambers) <= FEW else chambers[:1]:
+        rows = _last_cycle(chamber)
         indicated.plot(
-            np.array(one.volume)[rows] / CUBIC_CENTIMETRE, np.array(one.pressure)[rows] / BAR, color=ink, label=name
+            np.array(chamber.volume)[rows] / CUBIC_CENTIMETRE,
+            np.array(chamber.pressure)[rows] / BAR,
+            color=ink,
+            label=name,
         )
     outside = chambers[0][1].outside
     indicated.axhline(outside / BAR, color=QUIET, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1)
@@ -44,17 +47,17 @@ def gas(motion: Motion) -> Figure:
 
 def _over_crank(axes: Axes, motion: Motion, chambers: list[tuple[str, GasMotion, str]]) -> None:
     """Pressure over the angle since the firing, one cycle; over time where no crank is known."""
-    turning = [one for _, one, _ in chambers if one.crank_angle is not None]
+    turning = [chamber for _, chamber, _ in chambers if chamber.crank_angle is not None]
     ends = []
-    for name, one, ink in chambers:
-        pressure = np.array(one.pressure) / BAR
-        if len(turning) < len(chambers) or one.crank_angle is None or one.cycle_angle is None:
+    for name, chamber, ink in chambers:
+        pressure = np.array(chamber.pressure) / BAR
+        if len(turning) < len(chambers) or chamber.crank_angle is None or chamber.cycle_angle is None:
             axes.plot(motion.time, pressure, color=ink, label=name)
             ends.append((name, float(pressure[-1]), ink))
             continue
-        rows = _last_cycle(one)
-        angle = np.degrees(np.array(one.crank_angle)[rows])
-        period = math.degrees(one.cycle_angle)
+        rows = _last_cycle(chamber)
+        angle = np.degrees(np.array(chamber.crank_angle)[rows])
+        period = math.degrees(chamber.cycle_angle)
         shown = (angle + period / 2) % period - period / 2
         order = np.flatnonzero(np.abs(np.diff(shown)) > period / 2) + 1
         for part in np.split(np.arange(len(shown)), order):
@@ -68,23 +71,24 @@ def _over_crank(axes: Axes, motion: Motion, chambers: list[tuple[str, GasMotion,
     label_ends(axes, 0.0, ends)
 
 
-def _last_cycle(one: GasMotion) -> np.ndarray:
+def _last_cycle(chamber: GasMotion) -> np.ndarray:
     """Rows of the last whole cycle, or of all where there is none."""
-    everything = np.arange(len(one.pressure))
-    if one.crank_angle is None or one.cycle_angle is None:
+    everything = np.arange(len(chamber.pressure))
+    if chamber.crank_angle is None or chamber.cycle_angle is None:
         return everything
-    angle = np.array(one.crank_angle)
-    return everything[np.abs(angle - angle[-1]) <= one.cycle_angle * (1.0 + 1e-9)]
+    angle = np.array(chamber.crank_angle)
+    return everything[np.abs(angle - angle[-1]) <= chamber.cycle_angle * (1.0 + 1e-9)]
 
 
 def _subtitle(chambers: list[tuple[str, GasMotion, str]]) -> str:
     """What the first chambers give."""
     words = []
-    for name, one, _ in chambers[:2]:
-        if one.indicated_work and one.displaced:
-            work = float(np.mean(one.indicated_work))
+    for name, chamber, _ in chambers[:2]:
+        if chamber.indicated_work and chamber.displaced:
+            work = float(np.mean(chamber.indicated_work))
             words.append(
-                f"{name}: {written(work, 'J')} a cycle, mean effective pressure {written(work / one.displaced, 'Pa')}"
+                f"{name}: {written(work, 'J')} a cycle, "
+                f"mean effective pressure {written(work / chamber.displaced, 'Pa')}"
             )
     more = f", and {len(chambers) - 2} more" if len(chambers) > 2 and words else ""
     return "; ".join(words) + more if words else "pressure over volume, and in time"

@@ -20,20 +20,20 @@ FEW = 4
 def hydraulics(motion: Motion) -> Figure:
     """Pressure (bar), flow (l/min) and power (W) over the motion; chamber B is paler."""
     known = [(name, force.hydraulics) for name, force in motion.forces.items() if force.hydraulics is not None]
-    known.sort(key=lambda one: -float(np.max(np.abs(one[1].supply_power))))
-    shown = [(name, one, acting_on(motion, name)) for name, one in known[:FEW]]
+    known.sort(key=lambda cylinder: -float(np.max(np.abs(cylinder[1].supply_power))))
+    shown = [(name, cylinder, acting_on(motion, name)) for name, cylinder in known[:FEW]]
     over = horizon(motion)
     figure = page(motion.mechanism, "hydraulic cylinders", _subtitle(known))
     pressures, flows, powers = rows(figure, 3)
     draw(pressures, over, "pressure", "bar", _both(shown, "pressure", BAR))
     draw(flows, over, "flow", "l/min", _both(shown, "flow", LITRES_PER_MINUTE))
     lines: list[Line] = []
-    for name, one, ink in shown:
-        lines.append((f"{name} supply", np.array(one.supply_power), ink))
+    for name, cylinder, ink in shown:
+        lines.append((f"{name} supply", np.array(cylinder.supply_power), ink))
     if len(shown) == 1:
-        [(_, one, _)] = shown
-        lines.append(("valve", np.array(one.valve_loss), PARTS[0]))
-        lines.append(("piston", np.array(one.piston_power), PARTS[1]))
+        [(_, cylinder, _)] = shown
+        lines.append(("valve", np.array(cylinder.valve_loss), PARTS[0]))
+        lines.append(("piston", np.array(cylinder.piston_power), PARTS[1]))
     draw(powers, over, "power", "W", lines)
     over.dress(powers)
     return figure
@@ -42,15 +42,15 @@ def hydraulics(motion: Motion) -> Figure:
 def _both(shown: list[tuple[str, HydraulicMotion, str]], what: str, unit: float) -> list[Line]:
     """Lines of chambers A and B of each."""
     lines: list[Line] = []
-    for name, one, ink in shown:
+    for name, cylinder, ink in shown:
         for chamber, tint in (("a", ink), ("b", f"{ink}88")):
-            lines.append((f"{name} {chamber.upper()}", np.array(getattr(one, f"{what}_{chamber}")) / unit, tint))
+            lines.append((f"{name} {chamber.upper()}", np.array(getattr(cylinder, f"{what}_{chamber}")) / unit, tint))
     return lines
 
 
 def _subtitle(known: list[tuple[str, HydraulicMotion]]) -> str:
     words = []
-    for name, one in known[:2]:
-        highest = max(max(one.pressure_a), max(one.pressure_b))
+    for name, cylinder in known[:2]:
+        highest = max(max(cylinder.pressure_a), max(cylinder.pressure_b))
         words.append(f"{name}: up to {written(highest, 'Pa')}")
     return "; ".join(words) + (f", and {len(known) - 2} more" if len(known) > 2 else "")

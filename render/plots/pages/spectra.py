@@ -35,9 +35,9 @@ ROOMY = 12
 def spectrum_page(motion: Motion, name: str) -> Figure:
     """Time history and amplitudes of one quantity of :mod:`quantities`."""
     what = quantity(motion, name)
-    found = spectrum(motion, what.rows)
-    orders = f"; orders of the {found.order_of}" if found.harmonic else ""
-    figure = page(motion.mechanism, f"spectrum of {_article(name)}{name}", f"{what.says}; over {found.over}{orders}")
+    lines = spectrum(motion, what.rows)
+    orders = f"; orders of the {lines.order_of}" if lines.harmonic else ""
+    figure = page(motion.mechanism, f"spectrum of {_article(name)}{name}", f"{what.says}; over {lines.over}{orders}")
     over = horizon(motion)
     upper, lower = figure.subplots(2, 1)
     figure.subplots_adjust(left=0.095, right=0.885, top=0.855, bottom=0.085, hspace=0.34)
@@ -51,29 +51,29 @@ def spectrum_page(motion: Motion, name: str) -> Figure:
         [(text, values, inks[text]) for text, values in zip(what.components, what.rows.T, strict=True)],
     )
     over.dress(upper)
-    return _amplitudes(figure, lower, what, found, inks)
+    return _amplitudes(figure, lower, what, lines, inks)
 
 
-def _amplitudes(figure: Figure, axes: Axes, what: Quantity, found: Spectrum, inks: Mapping[str, str]) -> Figure:
-    if found.harmonic:
-        stems(axes, found, found.amplitudes, list(inks.values()), list(inks))
-        axes.set_xlabel(f"order of the {found.order_of}; order 1 is {written(found.base, 'Hz', 4)}")
+def _amplitudes(figure: Figure, axes: Axes, what: Quantity, lines: Spectrum, inks: Mapping[str, str]) -> Figure:
+    if lines.harmonic:
+        stems(axes, lines, lines.amplitudes, list(inks.values()), list(inks))
+        axes.set_xlabel(f"order of the {lines.order_of}; order 1 is {written(lines.base, 'Hz', 4)}")
     else:
         for column, (text, ink) in enumerate(inks.items()):
-            axes.plot(found.at[1:], found.amplitudes[1:, column], color=ink, label=text)
-        last = shown_orders(found)
-        axes.set_xlim(0.0, found.at[min(last, len(found.at) - 1)])
+            axes.plot(lines.at[1:], lines.amplitudes[1:, column], color=ink, label=text)
+        last = shown_orders(lines)
+        axes.set_xlim(0.0, lines.at[min(last, len(lines.at) - 1)])
         axes.set_ylim(bottom=0.0)
-        axes.set_xlabel(f"{labelled('frequency', 'Hz')}; resolved to {written(2 * found.base, 'Hz', 2)}")
+        axes.set_xlabel(f"{labelled('frequency', 'Hz')}; resolved to {written(2 * lines.base, 'Hz', 2)}")
     dress_axis(axes.yaxis, "amplitude", what.unit)
     return figure
 
 
-def stems(axes: Axes, found: Spectrum, amplitudes: np.ndarray, inks: list[str], names: list[str]) -> None:
+def stems(axes: Axes, lines: Spectrum, amplitudes: np.ndarray, inks: list[str], names: list[str]) -> None:
     """A stem for each order above 0 and each column (K, k) of ``amplitudes``, with numbers on top; those that an order
     has stand side by side with their middle on the order."""
-    last = shown_orders(found)
-    at, shown = found.at[1 : last + 1], amplitudes[1 : last + 1]
+    last = shown_orders(lines)
+    at, shown = lines.at[1 : last + 1], amplitudes[1 : last + 1]
     step = float(at[0])
     columns = shown.shape[1]
     largest = float(shown.max(initial=0.0)) or 1.0
@@ -112,15 +112,15 @@ def _legend(axes: Axes, inks: list[str], names: list[str]) -> None:
         )  # fmt: skip
 
 
-def shown_orders(found: Spectrum) -> int:
+def shown_orders(lines: Spectrum) -> int:
     """The highest row that is shown."""
-    sizes = found.amplitudes[1:].max(axis=tuple(range(1, found.amplitudes.ndim)))
+    sizes = lines.amplitudes[1:].max(axis=tuple(range(1, lines.amplitudes.ndim)))
     seen = np.flatnonzero(sizes >= SEEN * sizes.max(initial=0.0)) if sizes.max(initial=0.0) > 0 else np.array([])
     last = int(seen[-1]) + 1 if len(seen) else 1
-    if not found.harmonic:
-        return min(max(int(1.1 * last), 8), len(found.at) - 1)
-    least, most = (int(np.searchsorted(found.at, n)) for n in (FEWEST, MOST))
-    return min(max(last, least), most, len(found.at) - 1)
+    if not lines.harmonic:
+        return min(max(int(1.1 * last), 8), len(lines.at) - 1)
+    least, most = (int(np.searchsorted(lines.at, n)) for n in (FEWEST, MOST))
+    return min(max(last, least), most, len(lines.at) - 1)
 
 
 def _article(name: str) -> str:

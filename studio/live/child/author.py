@@ -118,12 +118,12 @@ class Author:
 
     def _files(self, read: dict[str, str]) -> list[Path]:
         """The author's own files that were loaded or read."""
-        found = {path_of(name) for name in read}
+        files = {path_of(name) for name in read}
         package = loading.package_of(self.name)
         for file in ("mechanism", "shot"):
             if f"{package}.{file}" in sys.modules:
-                found |= {path for path, _ in author_files(self.folder / f"{file}.py", package, Path())}
-        return sorted(found)
+                files |= {path for path, _ in author_files(self.folder / f"{file}.py", package, Path())}
+        return sorted(files)
 
 
 def said(function: Callable[[], Any]) -> Any:

@@ -81,8 +81,8 @@ def decided_by(author: Author, numbers: list[Number]) -> Decided:
             continue
         with suppress(MechanismError, UserError):
             low, high = model({number.name: number.value - step}), model({number.name: number.value + step})
-            found = {path: (_number(high.get(path)) - _number(low.get(path))) / (2 * step) for path in low}
-            slopes[number.name] = {path: slope for path, slope in found.items() if abs(slope) > NOTHING}
+            rates = {path: (_number(high.get(path)) - _number(low.get(path))) / (2 * step) for path in low}
+            slopes[number.name] = {path: slope for path, slope in rates.items() if abs(slope) > NOTHING}
     return Decided(own, slopes, _lengths(own, slopes, {number.name: number.value for number in numbers}))
 
 
@@ -94,14 +94,14 @@ def _lengths(model: dict[str, Any], slopes: dict[str, dict[str, float]], values:
             if path.endswith(PLACES):
                 deciding.setdefault(path, {})[name] = slope
     others = {name for name, paths in slopes.items() if any(_is_other(path) for path in paths)}
-    found: set[str] = set()
+    lengths: set[str] = set()
     for path, by in deciding.items():
         shares, value = [values[name] * slope for name, slope in by.items()], _number(model.get(path))
         largest = max(abs(share) for share in shares)
         grows = abs(sum(shares) - value) <= ALIKE * largest if largest else value == 0 and len(by) == 1
         if grows and not others & set(by):
-            found |= set(by)
-    return frozenset(found)
+            lengths |= set(by)
+    return frozenset(lengths)
 
 
 def _is_other(path: str) -> bool:
@@ -123,9 +123,9 @@ def _values(m: Mechanism) -> Iterator[tuple[str, Any]]:
             of = {"mass": body.mass, "com": body.com, "inertia": body.inertia, "length": body.length}
             yield from _flat(f"bodies/{name}", of)
     for table in ("joints", "drivers", "forces", "contacts"):
-        for name, one in getattr(m, table).items():
-            laws = {"law": getattr(one, "motion", None), "laws": getattr(one, "laws", {})}
-            of = {"kind": one.kind.name, "i": _marker(one.i), "j": _marker(one.j), "params": one.given, **laws}
+        for name, entry in getattr(m, table).items():
+            laws = {"law": getattr(entry, "motion", None), "laws": getattr(entry, "laws", {})}
+            of = {"kind": entry.kind.name, "i": _marker(entry.i), "j": _marker(entry.j), "params": entry.given, **laws}
             yield from _flat(f"{table}/{name}", of)
     yield from _flat("traces", {name: _marker(marker) for name, marker in m.traces.items()})
     yield from _flat("starts", m.starts)
@@ -141,11 +141,11 @@ def _flat(path: str, value: Any) -> Iterator[tuple[str, Any]]:
         named = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
         value = {"kind": type(value).__name__, **named}
     if isinstance(value, Mapping):
-        for key, one in value.items():
-            yield from _flat(f"{path}/{key}" if path else key, one)
+        for key, part in value.items():
+            yield from _flat(f"{path}/{key}" if path else key, part)
     elif isinstance(value, list | tuple):
-        for k, one in enumerate(value):
-            yield from _flat(f"{path}/{k}", one)
+        for k, part in enumerate(value):
+            yield from _flat(f"{path}/{k}", part)
     else:
         yield path, value
 

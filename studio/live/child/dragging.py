@@ -66,8 +66,8 @@ def dragged(
         raise UserError(str(error)) from error
 
     def places(x: np.ndarray) -> np.ndarray:
-        found = designs(x)
-        return np.where(found.closes[:, None], found.path[:, -1], np.nan)
+        traced = designs(x)
+        return np.where(traced.closes[:, None], traced.path[:, -1], np.nan)
 
     x = _nearest(places, designs.ready.packed.size, start, size, delta, np.asarray(to, float))
     return values | _found(names, start, x)
@@ -95,7 +95,11 @@ def _at_start(
     moving = np.hypot(*(around[1:] - around[0]).T) > 1e-4 * DIFFERENCE * extent  # masses, springs and dampers do not
     if not moving.any():
         raise UserError(f"{author.name}: no number of Params decides where '{thing['name']}' is at the start")
-    names, start, delta = [name for name, one in zip(names, moving, strict=True) if one], start[moving], delta[moving]
+    names, start, delta = (
+        [name for name, moves in zip(names, moving, strict=True) if moves],
+        start[moving],
+        delta[moving],
+    )
     size = np.where(start == 0, max(float(np.abs(start).max()), extent), np.abs(start))
     x = _nearest(places, extent, start, size, delta, np.asarray(to, float))
     return values | _found(names, start, x)

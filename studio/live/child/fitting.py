@@ -40,9 +40,9 @@ def fitted(author: Author, request: dict[str, Any], reply: Callable[..., None]) 
             reply({"kind": "progress", "done": done, "error": error, "values": leader})
             leader = None
 
-    def better(found: dict[str, Any], _: float) -> None:
+    def better(values_so_far: dict[str, Any], _: float) -> None:
         nonlocal leader
-        leader = values | in_digits(found)
+        leader = values | in_digits(values_so_far)
 
     try:
         fit = fit_path(
@@ -55,11 +55,11 @@ def fitted(author: Author, request: dict[str, Any], reply: Callable[..., None]) 
         )  # fmt: skip
     except MechanismError as error:
         raise UserError(str(error)) from error
-    found = values | in_digits(fit.values)
+    fitted_values = values | in_digits(fit.values)
     reply(
         {
             "kind": "fitted",
-            "values": found,
+            "values": fitted_values,
             "mean": fit.mean,
             "largest": fit.largest,
             "least_transmission": fit.least_transmission,

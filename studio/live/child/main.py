@@ -86,8 +86,8 @@ def _describe(author: Author, request: dict[str, Any], reply: Send) -> None:
 
 def _solid(author: Author, request: dict[str, Any], reply: Send) -> None:
     author.answer({})
-    found = author.solid()
-    reply({"kind": "solid"}, found or b"")
+    parts = author.solid()
+    reply({"kind": "solid"}, parts or b"")
 
 
 def _drag(author: Author, request: dict[str, Any], reply: Send) -> None:

@@ -42,11 +42,11 @@ def until_it_stops(name: str, module: Any, m: Mechanism, solve: Callable[[], Sol
     except UserError as error:
         if not isinstance(error.__cause__, OPENS) or hasattr(module, "motion") or not m.drivers:
             raise
-        found = _longest(m, variants.constant(name, module, "DURATION"))
-        if found is None:
+        longest = _longest(m, variants.constant(name, module, "DURATION"))
+        if longest is None:
             raise
-        values = {driver: float(found.driver(driver).value[-1]) for driver in m.drivers}
-        return found, Stop(float(found.t[-1]), values, str(error))
+        values = {driver: float(longest.driver(driver).value[-1]) for driver in m.drivers}
+        return longest, Stop(float(longest.t[-1]), values, str(error))
 
 
 def _longest(m: Mechanism, duration: Any) -> Solution | None:

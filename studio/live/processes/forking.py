@@ -85,13 +85,13 @@ def _tell(control: socket.socket, words: dict[str, Any]) -> None:
 
 
 def _exactly(channel: socket.socket, count: int) -> bytes:
-    found = b""
-    while len(found) < count:
-        part = channel.recv(count - len(found))
+    read = b""
+    while len(read) < count:
+        part = channel.recv(count - len(read))
         if not part:
             raise EOFError
-        found += part
-    return found
+        read += part
+    return read
 
 
 if __name__ == "__main__":

@@ -63,8 +63,8 @@ def keep(child: int, server: int, most_bytes: int | None = None) -> tuple[int | 
     code, used = None, 0
     while True:
         events = dict(poll.poll(1000 * PERIOD))
-        for one, ended in reaped():
-            if one == child:
+        for number, ended in reaped():
+            if number == child:
                 code = ended
         if code is not None or server in events:
             break

@@ -32,19 +32,19 @@ def adopt_orphans() -> None:
 
 def below(process: int) -> list[int]:
     """The processes that descend from ``process``, without itself; those that have ended but were not awaited too."""
-    found = []
+    numbers = []
     for child in _children(process):
-        found += [child, *below(child)]
-    return found
+        numbers += [child, *below(child)]
+    return numbers
 
 
 def end_below(process: int) -> None:
     """Kill all that descends from ``process``, also what begins meanwhile; returns when nothing is left."""
     for _ in range(ROUNDS):
         left = below(process)
-        for one in left:
+        for each in left:
             with suppress(ProcessLookupError, PermissionError):
-                os.kill(one, signal.SIGKILL)
+                os.kill(each, signal.SIGKILL)
         for _ in reaped():
             pass
         if not left:
@@ -57,9 +57,9 @@ def end_with_below(process: int) -> None:
     with suppress(ProcessLookupError, PermissionError):
         os.kill(process, signal.SIGSTOP)  # so that it begins no other
     left = below(process)
-    for one in [*left, process]:
+    for each in [*left, process]:
         with suppress(ProcessLookupError, PermissionError):
-            os.kill(one, signal.SIGKILL)
+            os.kill(each, signal.SIGKILL)
 
 
 def end_marked(mark: str) -> None:
@@ -97,13 +97,13 @@ def is_stopped(process: int) -> bool:
 
 
 def _children(process: int) -> list[int]:
-    found: list[int] = []
+    children: list[int] = []
     try:
         for thread in os.listdir(f"/proc/{process}/task"):
             with suppress(OSError):
-                found += map(int, Path(f"/proc/{process}/task/{thread}/children").read_text().split())
+                children += map(int, Path(f"/proc/{process}/task/{thread}/children").read_text().split())
     except OSError:
         if not os.path.isdir("/proc/self/task"):
             with suppress(psutil.Error):
                 return [child.pid for child in psutil.Process(process).children()]
-    return found
+    return children

@@ -68,9 +68,9 @@ def _of_params(tree: ast.Module, field: str, file: str) -> ast.expr:
         if isinstance(statement, ast.ClassDef) and statement.name == "Params":
             for line in statement.body:
                 if isinstance(line, ast.AnnAssign) and isinstance(line.target, ast.Name) and line.target.id == field:
-                    found = _default(line.value)
-                    if found is not None:
-                        return found
+                    default = _default(line.value)
+                    if default is not None:
+                        return default
                     raise UserError(f"{file}:{line.lineno}: Params.{field} has no default of its own to replace")
     raise UserError(f"{file}: class Params does not define '{field}' itself; write its default there")
 
@@ -91,9 +91,9 @@ def _of_variant(tree: ast.Module, field: str, file: str, variant: str) -> ast.ex
         if not any(isinstance(t, ast.Name) and t.id == "VARIANTS" for t in targets) or not isinstance(value, ast.Dict):
             continue
         inner = _of_key(value, variant)
-        found = _of_key(inner, field) if isinstance(inner, ast.Dict) else None
-        if found is not None:
-            return found
+        given = _of_key(inner, field) if isinstance(inner, ast.Dict) else None
+        if given is not None:
+            return given
     raise UserError(
         f"{file}: VARIANTS['{variant}'] does not replace '{field}', so writing it would change the mechanism itself; "
         f'add "{field}" there first, or open the mechanism'

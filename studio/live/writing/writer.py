@@ -116,14 +116,14 @@ class Writer:
 
     def _computed(self, before: bytes, values: dict[str, Any], variant: str | None) -> list[str]:
         """Sentences on expressions that give way to a number."""
-        tree, found = ast.parse(before), []
+        tree, computed = ast.parse(before), []
         for name in values:
             node = literal(tree, name, self._file, variant)
             try:
                 ast.literal_eval(node)
             except ValueError:
-                found.append(f"{name} was {ast.unparse(node)[:SHOWN]} and is a number now")
-        return found
+                computed.append(f"{name} was {ast.unparse(node)[:SHOWN]} and is a number now")
+        return computed
 
     async def _numbers(self, source: bytes) -> dict[str, float]:
         """Numbers of Params, if the file held ``source``. Raises UserError."""

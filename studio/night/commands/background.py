@@ -37,8 +37,8 @@ def start(asked: Options) -> int:
     UserError where the results cannot be written, the disk is surely too small, or the run does not begin.
     """
     for run in runs.alive():
-        found = record.read(run)
-        who = f" (process {found.process} on {found.host}, since {found.started})" if found else ""
+        recorded = record.read(run)
+        who = f" (process {recorded.process} on {recorded.host}, since {recorded.started})" if recorded else ""
         warn("night", f"run {run.number} is at work already{who}; this one takes what that one is not at")
     refuse_before_start(asked, asked.names)
     before = {run.number for run in runs.alive()}
@@ -81,16 +81,16 @@ def _launch(command: list[str], environment: dict[str, str]) -> str:
         # A server of its own has the environment of this command; that of the user's server may be of another day.
         socket = f"night-{_tree()}"
         session = _free_session(tmux, socket)
-        found = subprocess.run(
+        launched = subprocess.run(
             [*scope, tmux, "-L", socket, "new-session", "-d", "-s", session, "-c", str(ROOT), *command],
             env={key: value for key, value in environment.items() if key not in ("TMUX", "TMUX_PANE")},
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
         )
-        if found.returncode == 0:
+        if launched.returncode == 0:
             return f"tmux -L {socket} attach -t {session}"
-        warn("night", f"tmux could not start a session ({found.stderr.strip()}); it goes on without")
+        warn("night", f"tmux could not start a session ({launched.stderr.strip()}); it goes on without")
     else:
         warn("night", f"tmux is not installed ({missing.remedy(['tmux'])}), so there is nothing to attach to")
     subprocess.Popen(
@@ -139,13 +139,13 @@ def _tell_forecast(night: Run) -> None:
     """Wait until the forecast stands, or the run is over, and say it."""
     say("night", "a frame of every film is measured for the forecast; Ctrl-C ends the waiting, not the night")
     try:
-        _wait(lambda: not night.is_alive() or bool((found := record.read(night)) and found.forecast))
+        _wait(lambda: not night.is_alive() or bool((recorded := record.read(night)) and recorded.forecast))
     except KeyboardInterrupt:
         print()
         return
-    found = record.read(night)
-    if found is not None and found.forecast:
-        say("night", f"forecast: {found.forecast}")
+    recorded = record.read(night)
+    if recorded is not None and recorded.forecast:
+        say("night", f"forecast: {recorded.forecast}")
 
 
 def _wait(ready: Callable[[], bool], seconds: float = float("inf")) -> bool:

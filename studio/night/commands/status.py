@@ -16,41 +16,41 @@ HEAD = ("film", "frames", "each", "left", "at")
 
 def tell() -> int:
     """Print the state of every run, a row for each film; always 0."""
-    known = [(run, found) for run in runs.runs() if (found := record.read(run)) is not None]
+    known = [(run, recorded) for run in runs.runs() if (recorded := record.read(run)) is not None]
     if not known:
         print("No night was started here yet: make overnight starts one, make all the same in this terminal.")
         return 0
-    sys.stdout.write("\n".join("\n".join(words(run, found, run.is_alive())) for run, found in known) + "\n")
+    sys.stdout.write("\n".join("\n".join(words(run, recorded, run.is_alive())) for run, recorded in known) + "\n")
     return 0
 
 
-def words(run: Run, found: NightRecord, alive: bool) -> list[str]:
+def words(run: Run, recorded: NightRecord, alive: bool) -> list[str]:
     """The lines of one run."""
-    lines = [f"{standing(found, alive)} (run {run.number}, {found.preset}, started {found.started})"]
-    if found.forecast:
-        lines.append(f"forecast: {found.forecast}")
-    if alive and found.left:
-        end = datetime.now() + timedelta(seconds=found.left)
-        lines.append(f"now: {duration(found.left)} left, until {end:%a %H:%M}")
-    lines += table([row(name, film, alive) for name, film in found.films.items()])
-    for name, film in found.films.items():
+    lines = [f"{standing(recorded, alive)} (run {run.number}, {recorded.preset}, started {recorded.started})"]
+    if recorded.forecast:
+        lines.append(f"forecast: {recorded.forecast}")
+    if alive and recorded.left:
+        end = datetime.now() + timedelta(seconds=recorded.left)
+        lines.append(f"now: {duration(recorded.left)} left, until {end:%a %H:%M}")
+    lines += table([row(name, film, alive) for name, film in recorded.films.items()])
+    for name, film in recorded.films.items():
         if film.error:
             lines.append(f"{name}: {film.error}" + ("; done since then" if film.outcome == "done" else ""))
     lines.append(f"log: {runs.log_file()}")
     return lines
 
 
-def standing(found: NightRecord, alive: bool) -> str:
+def standing(recorded: NightRecord, alive: bool) -> str:
     """How the run stands, in a few words."""
     if alive:
-        return f"at work as process {found.process} on {found.host}"
+        return f"at work as process {recorded.process} on {recorded.host}"
     how = {
         "done": "done",
         "failed": "over, with failures; the same command tries these again",
         "stopped": "stopped; the same command goes on from here",
         "": "ended without a word: killed, or the machine went down; the same command goes on from here",
     }
-    return f"{how[found.ended]}, last seen {found.updated}"
+    return f"{how[recorded.ended]}, last seen {recorded.updated}"
 
 
 def row(name: str, film: FilmRecord, alive: bool) -> tuple[str, ...]:

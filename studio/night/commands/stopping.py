@@ -18,17 +18,17 @@ WORD = 30.0
 
 def stop() -> int:
     """Ask all runs to stop and wait for their end; 0 also where there was none. Raises UserError if it cannot ask."""
-    found = runs.alive()
-    if not found:
+    running = runs.alive()
+    if not running:
         say("stop", "no night is at work here")
         return 0
-    for run in found:
+    for run in running:
         try:
             run.ask_to_stop()
         except OSError as error:
             raise UserError(refusal(run.wish, error)) from error
     began = announced = time.monotonic()
-    for run in found:
+    for run in running:
         say("stop", f"run {run.number} ends after {_in_flight(run)}; Ctrl-C leaves it to that")
         while run.is_alive():
             time.sleep(LOOK)
@@ -41,9 +41,9 @@ def stop() -> int:
 
 def _in_flight(run: Run) -> str:
     """What it waits for: ``the frame in flight of four_bar (about 8.3 s)``."""
-    found = record.read(run)
-    if found is not None:
-        for name, film in found.films.items():
+    recorded = record.read(run)
+    if recorded is not None:
+        for name, film in recorded.films.items():
             if any(film.steps.get(step) == "running" for step in ("poster", "film")):
                 return f"the frame in flight of {name}" + (f" (about {duration(film.each)})" if film.each else "")
     return "what it is at"

@@ -71,7 +71,7 @@ class Board:
 
         Every probe comes before the first film, so that the forecast stands when the night begins.
         """
-        found = [
+        waiting_steps = [
             (step.rank, place, name, step.name)
             for place, name in enumerate(self.names)
             for step in self.steps.values()
@@ -80,7 +80,7 @@ class Board:
             and all(self._states[name, need] in GOOD for need in step.needs)
             and (step.name != FILM or self.is_measured())
         ]
-        for _, _, name, step in sorted(found):
+        for _, _, name, step in sorted(waiting_steps):
             yield name, step
 
     def outcome(self, name: str) -> Literal["waiting", "at work", "done", "failed"]:

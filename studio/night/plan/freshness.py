@@ -27,7 +27,7 @@ def fresh_steps(asked: Options) -> dict[str, list[str]]:
     """By mechanism, the steps that have nothing to do."""
     words = [sys.executable, "-m", "studio.night", "fresh", "--preset", asked.preset.name]
     words += [f"--show={asked.show}", f"--spectra={asked.spectra}", "--", *asked.names]
-    found: dict[str, list[str]] = {}
+    fresh: dict[str, list[str]] = {}
     with subprocess.Popen(
         words, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
     ) as process:
@@ -40,11 +40,11 @@ def fresh_steps(asked: Options) -> dict[str, list[str]]:
                     name, steps = json.loads(line)
                 except ValueError:
                     continue  # a word of an author's own
-                found[name] = steps
+                fresh[name] = steps
         finally:
             watch.over()
             process.kill()
-    return found
+    return fresh
 
 
 class _Watch:
@@ -76,11 +76,11 @@ def tell(names: Iterable[str], preset: Preset, show: str, spectra: str) -> None:
 def fresh_of(name: str, preset: Preset, show: str, spectra: str) -> list[str]:
     """The steps of one mechanism that have nothing to do, as far as the steps that they need have nothing to do."""
     asking = _questions(name, preset, show, spectra)
-    found: list[str] = []
+    fresh: list[str] = []
     for step in STEPS:
-        if set(step.needs) <= set(found) and _is_fresh(asking[step.name]):
-            found.append(step.name)
-    return found
+        if set(step.needs) <= set(fresh) and _is_fresh(asking[step.name]):
+            fresh.append(step.name)
+    return fresh
 
 
 def _is_fresh(question: Callable[[], bool]) -> bool:

@@ -53,8 +53,8 @@ def command(step: str, name: str, asked: Options) -> list[str]:
 
 def followers(step: str, steps: Sequence[Step] = STEPS) -> list[str]:
     """The steps that need this one, by themselves or through others."""
-    found = {step}
+    after = {step}
     for other in steps:  # each stands behind those that it needs
-        if found & set(other.needs):
-            found.add(other.name)
-    return [other.name for other in steps if other.name in found - {step}]
+        if after & set(other.needs):
+            after.add(other.name)
+    return [other.name for other in steps if other.name in after - {step}]

@@ -126,12 +126,12 @@ class Books:
         """Say the forecast, and warn where the disk may be too small for it; raises UserError where it surely is."""
         first, self._told = self._told is None, time.monotonic()
         self._read_what_is_there()
-        found = self.forecast()
-        self._record.forecast = found.words(datetime.now(), self.asked.watts)
+        forecast = self.forecast()
+        self._record.forecast = forecast.words(datetime.now(), self.asked.watts)
         self.log.say(f"{word}: {self._record.forecast}")
         if first:
-            refuse(self.asked, found)
-        if first and not found.fits:
+            refuse(self.asked, forecast)
+        if first and not forecast.fits:
             self.log.warn(
                 f"the disk may be too small for all of it; films are made as long as there is room. Free some space on "
                 f"the disk of {out_root()}, take a smaller PRESET or set MBSD_OUT to another disk"
@@ -148,8 +148,8 @@ class Books:
                 self._read(name)
 
     def _read(self, name: str) -> None:
-        found = self.frames.setdefault(name, Frames(name, self.asked.preset))
-        found.read(self.asked.show)
+        frames = self.frames.setdefault(name, Frames(name, self.asked.preset))
+        frames.read(self.asked.show)
 
     def _write(self) -> None:
         for name, film in self._films.items():

@@ -18,13 +18,13 @@ def refuse_before_start(asked: Options, names: tuple[str, ...]) -> None:
     refuse(asked, forecast(known, len(films) - len(known), asked.preset, out_root()))
 
 
-def refuse(asked: Options, found: Forecast) -> None:
+def refuse(asked: Options, forecast: Forecast) -> None:
     """Raise UserError with the numbers where ``found`` surely exceeds what is free, and nobody said ANYWAY."""
-    if asked.anyway or found.can_fit or found.free is None:
+    if asked.anyway or forecast.can_fit or forecast.free is None:
         return
     raise UserError(
-        f"{found.pictures} pictures of {asked.preset.name} are still to be made and need {size(found.least)} of disk "
-        f"at the least; {out_root()} has {size(found.free)} free, of which {size(RESERVE)} stay free. Free some space, "
-        "take a smaller PRESET, or set MBSD_OUT to another disk; ANYWAY=1 begins all the same and makes films as long "
-        "as there is room"
+        f"{forecast.pictures} pictures of {asked.preset.name} are still to be made and need {size(forecast.least)} of "
+        f"disk at the least; {out_root()} has {size(forecast.free)} free, of which {size(RESERVE)} stay free. "
+        "Free some space, take a smaller PRESET, or set MBSD_OUT to another disk; ANYWAY=1 begins all the same and "
+        "makes films as long as there is room"
     )

@@ -77,14 +77,14 @@ class Frames:
         folder = Out(self.name).frames(self.preset.name)
         try:
             with os.scandir(folder) as entries:
-                found = {entry.name: entry for entry in entries if entry.name.endswith(".png")}
-                found = {name: entry for name, entry in found.items() if not name.startswith(".")}
-                fresh = set(found) - self.files
+                pictures = {entry.name: entry for entry in entries if entry.name.endswith(".png")}
+                pictures = {name: entry for name, entry in pictures.items() if not name.startswith(".")}
+                fresh = set(pictures) - self.files
                 if fresh and not self.size:
-                    self.size = sum(found[name].stat().st_size for name in fresh) / len(fresh)
+                    self.size = sum(pictures[name].stat().st_size for name in fresh) / len(fresh)
         except OSError:
-            found, fresh = {}, set()
-        self.files = frozenset(found)
+            pictures, fresh = {}, set()
+        self.files = frozenset(pictures)
         if fresh:
             self._seen.append((time.monotonic(), self.done))
         return bool(fresh)

@@ -15,22 +15,22 @@ def pictures(page: SimpleNamespace) -> dict[str, Figure]:
     """See tools/figures/__main__.py."""
     figure = Figure(figsize=(9.6, 8.4), layout="constrained")
     axes = figure.subplots(4, 3, sharex=True)
-    for ax, one in zip(axes.ravel(), page.maps, strict=True):
-        left = one.left(counterweights=True)
+    for ax, chart in zip(axes.ravel(), page.maps, strict=True):
+        left = chart.left(counterweights=True)
         for row, colour, words in ((0, MOVED, "first order"), (1, BLUE, "second order")):
             values = np.where(left.rank(row) < NOTHING, 0.0, left.rank(row))
-            ax.plot(one.angle, values, color=colour, label=words, clip_on=False)
-        even = one.angle[one.uneven < 1e-3]
+            ax.plot(chart.angle, values, color=colour, label=words, clip_on=False)
+        even = chart.angle[chart.uneven < 1e-3]
         ax.plot(
             even, 0 * even, "|", color=GREEN, markersize=9, markeredgewidth=1.6, label="fires evenly", clip_on=False
         )
-        ax.axvline(one.best, color=QUIET, linewidth=0.9, linestyle=(0, (3, 3)))
-        beside = {"x": one.best - 3, "ha": "right"} if one.best > 150 else {"x": one.best + 3, "ha": "left"}
+        ax.axvline(chart.best, color=QUIET, linewidth=0.9, linestyle=(0, (3, 3)))
+        beside = {"x": chart.best - 3, "ha": "right"} if chart.best > 150 else {"x": chart.best + 3, "ha": "left"}
         place = ax.get_xaxis_transform()
-        ax.text(y=0.97, s=f"{one.best:g}°", transform=place, va="top", color=QUIET, fontsize=9, **beside)
+        ax.text(y=0.97, s=f"{chart.best:g}°", transform=place, va="top", color=QUIET, fontsize=9, **beside)
         top = max(left.rank(0).max(), left.rank(1).max())
         plain(ax, xlim=(0, 180), ylim=(0, 1.05 * top if top > NOTHING else 1.0), xticks=range(0, 181, 45))
-        ax.set_title(one.family.name)
+        ax.set_title(chart.family.name)
     for ax in axes[-1]:
         ax.set_xlabel("between the banks, degrees")
     for ax in axes[:, 0]:

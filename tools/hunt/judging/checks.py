@@ -116,8 +116,8 @@ def balanced(sol: Solution, tolerance: float, growth: float, scale: float) -> li
     """Energy less work, of a simulation without impacts."""
     if sol.audit is None:
         return []
-    later = [one for one in sol.events if one.time > sol.t[0]]  # what happens at the start is in the first output
-    lost = sum(np.where(sol.t > one.time, one.energy, 0.0) for one in later)
+    later = [event for event in sol.events if event.time > sol.t[0]]  # what happens at the start is in the first output
+    lost = sum(np.where(sol.t > event.time, event.energy, 0.0) for event in later)
     audit = sol.audit - lost
     limit = 1e4 * tolerance * (scale + growth)
     if np.ptp(audit) <= limit:

@@ -49,9 +49,9 @@ def law_error(sol: Solution) -> LawError:
         last = first + 1.0  # as the solver does
     for driver in sol.mechanism.drivers.values():
         assert driver.motion is not None
-        found = of_law(driver.motion, first, last)
+        error = of_law(driver.motion, first, last)
         scale = 1.0 if "angle" in driver.kind.name else sol.packed.size
-        out += LawError(found.slope / scale, found.bend / scale)
+        out += LawError(error.slope / scale, error.bend / scale)
     return out
 
 

@@ -34,6 +34,6 @@ def cannot_be_saved(m: Mechanism) -> bool:
     """Whether the model holds a Python function, or events."""
     laws = [driver.motion for driver in m.drivers.values()]
     laws += [law for force in m.forces.values() for law in force.laws.values()]
-    kinds = [KINDS[one.kind.name].saved for one in m.joints.values()]
-    kinds += [FORCE_KINDS[one.kind.name].saved for one in m.forces.values()]
+    kinds = [KINDS[joint.kind.name].saved for joint in m.joints.values()]
+    kinds += [FORCE_KINDS[force.kind.name].saved for force in m.forces.values()]
     return bool(m.events) or not all(kinds) or any(isinstance(law, Function | Raised) for law in laws)

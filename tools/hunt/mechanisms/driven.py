@@ -182,7 +182,7 @@ def every_group(rng: np.random.Generator) -> Subject:
     for name, joint in words.joints.items():  # half of the markers keep their old numbers: another mechanism
         if rng.random() < 0.5:
             old = m.joints[name]
-            i, j = (words.bodies[one.body.name].at(one.x, one.y, one.angle) for one in (old.i, old.j))
+            i, j = (words.bodies[marker.body.name].at(marker.x, marker.y, marker.angle) for marker in (old.i, old.j))
             words.joints[name] = type(joint)(joint.kind, name, i, j, joint.params)
     period = 2 * math.pi / 6.0
     if set(m.bodies) >= {"base", "arm"}:

@@ -93,8 +93,8 @@ def restitution(rng: np.random.Generator) -> Subject:
         m.start_near(rod=float(rng.uniform(-60, 0)))
     else:
         m.gravity = None
-        one, two = solid(m, "one", rng, 0.1), solid(m, "two", rng, 0.1)
-        m.contact("meet", one.at(0.0, 0.0, float(rng.uniform(-0.3, 0.3))), two.origin, **loss)
+        first, two = solid(m, "one", rng, 0.1), solid(m, "two", rng, 0.1)
+        m.contact("meet", first.at(0.0, 0.0, float(rng.uniform(-0.3, 0.3))), two.origin, **loss)
         m.start_near(one=(0, 0, 0), two=(0.0, 0.3, 0))
         m.start_moving(two=(float(rng.normal(scale=0.3)), -1.5, 0.0))
     return Subject(m, float(rng.uniform(0.3, 0.8)), False, truth=audited, traits=frozenset({"stiff"}))

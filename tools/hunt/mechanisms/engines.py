@@ -63,13 +63,13 @@ def _cycle(rng: np.random.Generator) -> GasCycle:
 def _judge(sol: Solution) -> list[str]:
     """Volumes by the angle of the crank, as numbers of the slider-crank have them."""
     out = []
-    for one in chambers(sol.packed):
-        view, cycle = sol.force(one.name), one.chamber.cycle
+    for placed in chambers(sol.packed):
+        view, cycle = sol.force(placed.name), placed.chamber.cycle
         assert isinstance(view, GasView)
         assert view.crank_angle is not None
         if cycle is None or cycle.height is None:
             continue
-        gap = np.abs(view.volume / one.chamber.area - cycle.height(view.crank_angle))
-        if not gap.max() < SLACK * cycle.displaced / one.chamber.area:
-            out.append(f"volume: '{one.name}' is off by {gap.max():.3g} m at t = {sol.t[int(gap.argmax())]:.6g} s")
+        gap = np.abs(view.volume / placed.chamber.area - cycle.height(view.crank_angle))
+        if not gap.max() < SLACK * cycle.displaced / placed.chamber.area:
+            out.append(f"volume: '{placed.name}' is off by {gap.max():.3g} m at t = {sol.t[int(gap.argmax())]:.6g} s")
     return out

@@ -50,15 +50,17 @@ def _passages(away: CubicHermiteSpline, t: np.ndarray, near: float) -> list[floa
         return None
     out = []
     for k in np.flatnonzero((apart[1:-1] <= apart[:-2]) & (apart[1:-1] <= apart[2:])) + 1:
-        found: Any = minimize_scalar(distance, bounds=(t[k - 1], t[k + 1]), method="bounded", options={"xatol": 1e-13})
-        if abs(found.fun - near) < CLEAR * near + 1e-7:
+        nearest: Any = minimize_scalar(
+            distance, bounds=(t[k - 1], t[k + 1]), method="bounded", options={"xatol": 1e-13}
+        )
+        if abs(nearest.fun - near) < CLEAR * near + 1e-7:
             return None
-        if found.fun < near:
-            farthest = np.hypot(*away(np.linspace(out[-1], found.x, LOOKS)).T).max() if out else np.inf
+        if nearest.fun < near:
+            farthest = np.hypot(*away(np.linspace(out[-1], nearest.x, LOOKS)).T).max() if out else np.inf
             if abs(farthest - near) < CLEAR * near + 1e-7:
                 return None
             if farthest > near:  # else it has not left since
-                out.append(float(found.x))
+                out.append(float(nearest.x))
     return out
 
 

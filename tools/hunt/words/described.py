@@ -58,11 +58,11 @@ def back(pose: Pose) -> Pose:
 def turnable(m: Mechanism) -> set[str]:
     """Bodies, ground among them, whose frames may be turned: those that no kind unknown to this file measures."""
     fixed: set[str] = set()
-    for one in (*m.joints.values(), *m.drivers.values(), *m.forces.values(), *m.contacts.values()):
-        method = getattr(m, one.kind.name)
+    for entry in (*m.joints.values(), *m.drivers.values(), *m.forces.values(), *m.contacts.values()):
+        method = getattr(m, entry.kind.name)
         names_bodies = any("Body" in str(p.annotation) for p in inspect.signature(method).parameters.values())
-        if names_bodies and one.kind.name not in ANGLES_OF_BODIES:
-            fixed |= set(one.bodies)
+        if names_bodies and entry.kind.name not in ANGLES_OF_BODIES:
+            fixed |= set(entry.bodies)
     return set(m.bodies) - fixed
 
 
@@ -82,8 +82,8 @@ def seen_from(m: Mechanism, frames: Mapping[str, Pose]) -> Mechanism:
         x, y, angle = after(back(frames.get(old.body.name, NOWHERE)), (old.x, old.y, old.angle))
         return out.bodies[old.body.name].at(x, y, angle)
 
-    def grows(one: Joint | Force) -> float:
-        first, second = (frames.get(name, NOWHERE)[2] for name in one.bodies)
+    def grows(entry: Joint | Force) -> float:
+        first, second = (frames.get(name, NOWHERE)[2] for name in entry.bodies)
         return second - first
 
     for table, new in ((m.joints, out.joints), (m.drivers, out.drivers), (m.contacts, out.contacts)):
@@ -195,10 +195,10 @@ def on_a_base(m: Mechanism, world: Pose, mass: float = 0.0) -> Mechanism:
     out.bodies.clear()
     out.bodies.update({"ground": entries.pop("ground"), BASE: entries.pop(BASE)} | entries)
     for old, new in ((m.joints, out.joints), (m.contacts, out.contacts), (m.drivers, out.drivers)):
-        for name, one in old.items():
-            if one.kind.name == "drive_angle":
+        for name, entry in old.items():
+            if entry.kind.name == "drive_angle":
                 continue
-            new[name] = _rehosted(one, new[name], base)
+            new[name] = _rehosted(entry, new[name], base)
     for name, force in m.forces.items():
         if force.kind.name in (
             "spring",

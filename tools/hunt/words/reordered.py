@@ -47,25 +47,25 @@ def exchanged(m: Mechanism, rng: np.random.Generator) -> Mechanism:
     out = seen_from(m, {})
     rubbed = {force.params.get("joint") for force in out.forces.values()}
     for table in (out.joints, out.drivers, out.forces, out.contacts):
-        for name, one in table.items():
+        for name, joint in table.items():
             if rng.random() < 0.5 and name not in rubbed:
-                table[name] = _turned_round(one)
+                table[name] = _turned_round(joint)
     return out
 
 
-def _turned_round(one: Any) -> Any:
+def _turned_round(joint: Any) -> Any:
     """The same joint or force with its ends exchanged; as it is where the kind does not allow it."""
-    params, kind = dict(one.params), one.kind.name
+    params, kind = dict(joint.params), joint.kind.name
     if kind == "drive_relative_angle":
-        return replace(one, i=one.j, j=one.i, motion=raised(one.motion, 0.0, sign=-1.0))
-    if kind == "torsion_spring" and "free_angle" not in one.laws:
+        return replace(joint, i=joint.j, j=joint.i, motion=raised(joint.motion, 0.0, sign=-1.0))
+    if kind == "torsion_spring" and "free_angle" not in joint.laws:
         params["free_angle"] = -params.get("free_angle", 0.0)
-        return replace(one, i=one.j, j=one.i, params=params)
+        return replace(joint, i=joint.j, j=joint.i, params=params)
     if kind in ("gear_pair", "rigid_discs"):
         if params.get("internal") or params.get("inside"):
-            return one
+            return joint
     elif kind not in SYMMETRIC:
-        return one
+        return joint
     if "radius_i" in params:
         params["radius_i"], params["radius_j"] = params["radius_j"], params["radius_i"]
     if params.get("phase") is not None:
@@ -73,4 +73,4 @@ def _turned_round(one: Any) -> Any:
     if params.get("limits") is not None:
         low, high = params["limits"]
         params["limits"] = (None if high is None else -high, None if low is None else -low)
-    return replace(one, i=one.j, j=one.i, params=params)
+    return replace(joint, i=joint.j, j=joint.i, params=params)

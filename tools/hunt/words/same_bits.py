@@ -82,14 +82,14 @@ def _own(m: Mechanism, table: str, name: str) -> dict[str, Any]:
     if table == "bodies":
         return dict.fromkeys(("com", "inertia")) | given_body(m.bodies[name])
     entry = getattr(m, table)[name]
-    return {one.name: None for one in arguments(entry.kind.add)} | given(entry)
+    return {parameter.name: None for parameter in arguments(entry.kind.add)} | given(entry)
 
 
 def _altered(entry: dict[str, Any], table: str, rng: np.random.Generator) -> list[str]:
     """Make some numbers of an entry of a document others; the arguments that were altered."""
     numbers = entry if table == "bodies" else entry["params"]
-    found = [key for key, value in numbers.items() if isinstance(value, float) and value > 0 and key != "length"]
-    chosen = [key for key in found if rng.random() < 0.6]
+    lengths = [key for key, value in numbers.items() if isinstance(value, float) and value > 0 and key != "length"]
+    chosen = [key for key in lengths if rng.random() < 0.6]
     for key in chosen:
         numbers[key] *= float(rng.uniform(0.6, 1.4))
     law = entry.get("law")

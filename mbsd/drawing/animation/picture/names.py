@@ -36,8 +36,8 @@ def place_names(
 ) -> list[Placed]:
     """For the ``wanted`` labels of some pictures whose obstacles were kept; ``frame``: left, low, right, top."""
     first = drawn[0]
-    points = [one.view.pixels(np.concatenate(one.obstacles)) for one in drawn]
-    anchors = [one.view.pixels([label.anchor for label in one.labels]) for one in drawn]
+    points = [brush.view.pixels(np.concatenate(brush.obstacles)) for brush in drawn]
+    anchors = [brush.view.pixels([label.anchor for label in brush.labels]) for brush in drawn]
     out: list[Placed] = []
     taken: list[list[np.ndarray]] = [[] for _ in drawn]
     for number in wanted:

@@ -67,10 +67,10 @@ def balance_of(sol: Solution) -> Balance:
 def _middle(m: Model, tracks: Tracks, name: str) -> np.ndarray:
     """(T, 2) of a body: its centre of mass, or the middle of its joints where it has none."""
     body = m.bodies[name]
-    here = [one for joint in m.joints.values() for one in (joint.i, joint.j) if one.body is body]
+    here = [marker for joint in m.joints.values() for marker in (joint.i, joint.j) if marker.body is body]
     x, y = body.com
     if body.mass == 0 and here:
-        x, y = (float(np.mean([getattr(one, axis) for one in here])) for axis in "xy")
+        x, y = (float(np.mean([getattr(marker, axis) for marker in here])) for axis in "xy")
     return moving(tracks.views[name], x, y).place
 
 

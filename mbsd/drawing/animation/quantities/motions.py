@@ -18,17 +18,17 @@ def motion_arrows(m: Model, tracks: Tracks, quantity: str) -> list[Arrow | Arc]:
     out: list[Arrow | Arc] = []
     shown: list[Moving] = []
     points = {name: [moving_marker(tracks.views, marker) for marker in _markers(m, name)] for name in m.bodies}
-    everywhere = np.concatenate([one.place for several in points.values() for one in several] or [np.zeros((1, 2))])
+    everywhere = np.concatenate([point.place for several in points.values() for point in several] or [np.zeros((1, 2))])
     slack = SAME * max(float(np.ptp(everywhere, axis=0).max()), 1e-12)
     for name, view in tracks.views.items():
         if name == "ground":
             continue
-        moves = [one for one in points[name] if np.ptp(one.place, axis=0).max() > slack]
-        for one in moves:
-            if any(np.abs(one.place - other.place).max() < slack for other in shown):
+        moves = [point for point in points[name] if np.ptp(point.place, axis=0).max() > slack]
+        for move in moves:
+            if any(np.abs(move.place - other.place).max() < slack for other in shown):
                 continue
-            shown.append(one)
-            out.append(Arrow(quantity, one.place, one.velocity if quantity == "velocities" else one.acceleration))
+            shown.append(move)
+            out.append(Arrow(quantity, move.place, move.velocity if quantity == "velocities" else move.acceleration))
         if not moves and np.ptp(view.theta) > 0:
             pivot = points[name][0] if points[name] else moving(view, *m.bodies[name].com)
             out.append(Arc(quantity, pivot.place, view.omega if quantity == "velocities" else view.alpha))
@@ -37,7 +37,7 @@ def motion_arrows(m: Model, tracks: Tracks, quantity: str) -> list[Arrow | Arc]:
 
 def _markers(m: Model, name: str) -> list[Marker]:
     """Where a body has joints and traced points; its centre of mass too, or a bar's end, if these are one place."""
-    joints = [*m.joints.values(), *(one for one in m.contacts.values() if one.kind.drawn_as == "rope")]
+    joints = [*m.joints.values(), *(contact for contact in m.contacts.values() if contact.kind.drawn_as == "rope")]
     out = [marker for joint in joints for marker in (joint.j, joint.i) if marker.body.name == name]
     out += [marker for marker in m.traces.values() if marker.body.name == name]
     body = m.bodies[name]

@@ -37,8 +37,8 @@ from mbsd.kinematics.groups.blocks import ARM, LARGEST
 
 def block_arrays(blocks: Sequence[Tables], bodies: int, columns: int) -> tuple[np.ndarray, np.ndarray]:
     """``block`` and ``block_number`` of Embedding; ``columns``: of B."""
-    unknowns = sum(len(one.equations) for one in blocks)
-    most = max((len(one.tree) for one in blocks), default=0)
+    unknowns = sum(len(tables.equations) for tables in blocks)
+    most = max((len(tables.tree) for tables in blocks), default=0)
     kept = 3 * bodies + (columns + 2) * unknowns + len(blocks) if blocks else 0
     start = np.zeros(WORK + 1, np.int64)
     start[HEADS], start[KEPT_SIZE] = WORK + 1, kept
@@ -63,16 +63,16 @@ def block_arrays(blocks: Sequence[Tables], bodies: int, columns: int) -> tuple[n
     heads = np.zeros((len(blocks), HEAD), np.int64)
     integers += [0] * heads.size
     first = 0
-    for head, one in zip(heads, blocks, strict=True):
-        near = sorted(set(one.near) | _arms(one))
-        head[[BODIES, EQUATIONS, NEAR, FIRST]] = len(one.tree), len(one.equations), len(near), first
-        first += len(one.equations)
-        for entry, lines in ((TREE, one.tree), (ROWS, one.equations)):
+    for head, tables in zip(heads, blocks, strict=True):
+        near = sorted(set(tables.near) | _arms(tables))
+        head[[BODIES, EQUATIONS, NEAR, FIRST]] = len(tables.tree), len(tables.equations), len(near), first
+        first += len(tables.equations)
+        for entry, lines in ((TREE, tables.tree), (ROWS, tables.equations)):
             head[entry] = len(integers)
             integers += [value for line in lines for value in line]
         head[NEAR_AT] = len(integers)
         integers += near
-        for entry, lines in ((FRAME, one.frame), (ARMS, one.arms)):
+        for entry, lines in ((FRAME, tables.frame), (ARMS, tables.arms)):
             head[entry] = len(numbers)
             numbers += [value for line in lines for value in line]
     block = np.array(integers, np.int64)
@@ -89,6 +89,6 @@ def block_work(block: np.ndarray, q: np.ndarray) -> np.ndarray:
     return work
 
 
-def _arms(one: Tables) -> set[int]:
+def _arms(tables: Tables) -> set[int]:
     """Known bodies whose turns an equation counts."""
-    return {line[ARM] for line in one.equations} - {line[0] for line in one.tree} - {0}
+    return {line[ARM] for line in tables.equations} - {line[0] for line in tables.tree} - {0}

@@ -7,22 +7,22 @@ from mbsd.kinematics.groups.newton.fused import fused
 
 
 @fused
-def expected(one, seen, coordinate, since):
-    """An unknown by its value, convective acceleration and columns ``one`` (C + 2,) at coordinates ``seen`` (C,).
+def expected(numbers, seen, coordinate, since):
+    """An unknown by its value, convective acceleration and columns ``numbers`` (C + 2,) at coordinates ``seen`` (C,).
 
     ``since``: time since then (s).
     """
-    value = one[0] + 0.5 * one[1] * since * since
+    value = numbers[0] + 0.5 * numbers[1] * since * since
     for j in range(coordinate.shape[0] - 1):
-        value += one[2 + j] * (coordinate[j, VALUE] - seen[j])
+        value += numbers[2 + j] * (coordinate[j, VALUE] - seen[j])
     return value
 
 
 @fused
-def expected_since(one, coordinate):
+def expected_since(numbers, coordinate):
     """The same from the last accepted pose on."""
     since = coordinate[coordinate.shape[0] - 1, VALUE]
-    value = one[0] + 0.5 * one[1] * since * since
+    value = numbers[0] + 0.5 * numbers[1] * since * since
     for j in range(coordinate.shape[0] - 1):
-        value += one[2 + j] * (coordinate[j, VALUE] - coordinate[j, BASE])
+        value += numbers[2 + j] * (coordinate[j, VALUE] - coordinate[j, BASE])
     return value

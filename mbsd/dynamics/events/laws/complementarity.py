@@ -55,13 +55,13 @@ def complementarity(
     rates = rates * unit
     fastest = float(np.abs(rates).max(initial=0.0)) or 1.0
     b = rates / fastest
-    one = np.eye(k)
+    unity = np.eye(k)
     matrix = np.block(
         [
             [g[n, n], g[n, t], -g[n, t], np.zeros((c, k))],
-            [g[t, n], g[t, t], -g[t, t], one],
-            [-g[t, n], -g[t, t], g[t, t], one],
-            [pick, -one, -one, np.zeros((k, k))],
+            [g[t, n], g[t, t], -g[t, t], unity],
+            [-g[t, n], -g[t, t], g[t, t], unity],
+            [pick, -unity, -unity, np.zeros((k, k))],
         ]
     )
     z = lemke(matrix, np.concatenate([b[n], b[t], -b[t], limits * size / fastest]))

@@ -78,9 +78,9 @@ class Compliance:
         lam = np.zeros((len(self.compact), impulses.shape[1]))
         if not impulses.shape[1]:
             return impulses, lam
-        found = self._solve(np.vstack([impulses, np.zeros((len(self.rows), impulses.shape[1]))]))
-        lam[self.rows] = found[self._count :]
-        return found[: self._count], lam
+        solved = self._solve(np.vstack([impulses, np.zeros((len(self.rows), impulses.shape[1]))]))
+        lam[self.rows] = solved[self._count :]
+        return solved[: self._count], lam
 
     def stopped(self, rows: Sequence[int] | np.ndarray, v: np.ndarray) -> np.ndarray:
         """(3 nb,) velocities v with the rates of the rows taken off by impulses along them; rows may depend."""
@@ -101,6 +101,6 @@ class Compliance:
 
     def accelerations(self, loads: np.ndarray, gamma: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Without contacts, under loads (3 nb,): a (n,), and the multipliers (m,) of joints and drivers."""
-        found, lam = self._solve(np.concatenate([loads[3:], gamma[self.rows]])), np.zeros(len(gamma))
-        lam[self.rows] = found[self._count :]
-        return found[: self._count], lam
+        solved, lam = self._solve(np.concatenate([loads[3:], gamma[self.rows]])), np.zeros(len(gamma))
+        lam[self.rows] = solved[self._count :]
+        return solved[: self._count], lam

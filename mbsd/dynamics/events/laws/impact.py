@@ -63,7 +63,9 @@ def impacts(
             more, dv = _push(at, taking, v, bounce * normal)
             normal = normal + more
             v[3:] += dv
-        given += [Impulse(contact, float(one)) for contact, one in zip(taking, normal, strict=True) if one > 0.0]
+        given += [
+            Impulse(contact, float(impulse)) for contact, impulse in zip(taking, normal, strict=True) if impulse > 0.0
+        ]
     return v, given
 
 

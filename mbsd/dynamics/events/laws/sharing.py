@@ -36,10 +36,10 @@ def _programme(null: np.ndarray, part: np.ndarray, limits: np.ndarray) -> tuple[
     from scipy.optimize import linprog
 
     k, free = null.shape
-    one = np.ones((k, 1))
+    column = np.ones((k, 1))
     least = linprog(
         np.r_[np.zeros(free), 1.0],
-        A_ub=np.block([[null, -one], [-null, -one]]),
+        A_ub=np.block([[null, -column], [-null, -column]]),
         b_ub=np.r_[-part, part],
         bounds=[(None, None)] * free + [(0.0, None)],
     )

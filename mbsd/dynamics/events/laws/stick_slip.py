@@ -165,9 +165,9 @@ class _Moment:
                     direction = -float(np.sign(along[w]))
             contacts.append(Decision(contact, float(normal[k]) if holds else 0.0, direction))
         breaking = {
-            one.contact.name: one.sliding
-            for k, one in enumerate(contacts)
-            if k in rough and one.sliding != 0.0 and one.contact.static_friction > one.contact.friction
+            decision.contact.name: decision.sliding
+            for k, decision in enumerate(contacts)
+            if k in rough and decision.sliding != 0.0 and decision.contact.static_friction > decision.contact.friction
         }
         if breaking:
             return decide(self.at, replace(self.case, forced={**self.case.forced, **breaking}))
@@ -198,11 +198,13 @@ class _Moment:
                 complementarity(at, self.case.closed, self.ways, self.compliance, self.free, pick, limits)
             )
             forces = self._shared(forces, limits)
-            found = normals_along(packed, loads, at.q[None], at.compact[None], (lam + self.lam_of @ forces)[None])[0]
-            gap = found - x
+            normal_forces = normals_along(
+                packed, loads, at.q[None], at.compact[None], (lam + self.lam_of @ forces)[None]
+            )[0]
+            gap = normal_forces - x
             largest = float(np.abs(load[3:]).max(initial=0.0))
             part = SETTLED if passes < PATIENCE else ROUNDING
-            if not len(x) or np.abs(gap).max() <= part * max(found.max(), FAINT * largest):
+            if not len(x) or np.abs(gap).max() <= part * max(normal_forces.max(), FAINT * largest):
                 return forces, limits, largest
             bend = gap - last
             square = float(bend @ bend)

@@ -179,7 +179,7 @@ def crossing(dyn, scratch, state, settings, h, reached, work):
         part = fa / (fa - fb)
     c = a
     fc = fa
-    found = -1.0
+    landing = -1.0
     for _ in range(MOST_LOOKS):
         x = a + part * (b - a)
         interpolate(scratch.dense, scratch.dense_work, state.y, x, trial)
@@ -208,10 +208,10 @@ def crossing(dyn, scratch, state, settings, h, reached, work):
         a = x
         fa = f
         if abs(f) <= 0.9 * aim:
-            found = a
+            landing = a
             break
         if abs(b - a) * h <= ROUNDING * abs(t):
-            found = a if fa > 0.0 else b
+            landing = a if fa > 0.0 else b
             break
         xi = (a - b) / (c - b)
         phi = (fa - fb) / (fc - fb)
@@ -220,8 +220,8 @@ def crossing(dyn, scratch, state, settings, h, reached, work):
             part = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
         part = min(max(part, 1e-9), 1.0 - 1e-9)
     switch[0, RATE] = abs((fa - fc) / ((a - c) * h))
-    if not 0.0 < found < 1.0 or found * h < max(settings.smallest, ROUNDING * abs(t)):
+    if not 0.0 < landing < 1.0 or landing * h < max(settings.smallest, ROUNDING * abs(t)):
         switch[0, FREE] = 1.0
         switch[0, CUTS] = 0.0
         return WITHOUT
-    return found
+    return landing

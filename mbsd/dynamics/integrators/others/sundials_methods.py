@@ -43,9 +43,9 @@ class _Cvode:
 
     def step(self) -> bool:
         """See Stepper."""
-        found = self._solver.step(self._end, "onestep", self._end)
-        self.t, self.y = float(found.t), np.array(found.y)
-        return bool(found.success)
+        taken = self._solver.step(self._end, "onestep", self._end)
+        self.t, self.y = float(taken.t), np.array(taken.y)
+        return bool(taken.success)
 
     def between(self, t: float) -> np.ndarray:
         """See Stepper."""

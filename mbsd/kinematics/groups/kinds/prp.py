@@ -76,7 +76,7 @@ def solve_prp(bodies, n, qk, vk, ak, turn, point):
     p = point[0]
     r = point[1]
     g = point[2]
-    one = bodies[FIRST]
+    first_body = bodies[FIRST]
     two = bodies[SECOND]
     k1 = bodies[K1]
     k2 = bodies[K2]
@@ -121,8 +121,8 @@ def solve_prp(bodies, n, qk, vk, ak, turn, point):
     bend = (fx * dy - fy * dx) * inverse
     g[4] = c1x + bend * ex
     g[5] = c1y + bend * ey
-    follow(qk, vk, ak, turn, one, k1, n[ANGLE_A])
-    hang(qk, vk, ak, turn, one, g, n[CA_X], n[CA_Y])
+    follow(qk, vk, ak, turn, first_body, k1, n[ANGLE_A])
+    hang(qk, vk, ak, turn, first_body, g, n[CA_X], n[CA_Y])
     if two >= 0:
         follow(qk, vk, ak, turn, two, k2, n[ANGLE_B])
         hang(qk, vk, ak, turn, two, g, n[CB_X], n[CB_Y])

@@ -48,7 +48,7 @@ def solve_rod(bodies, n, law, qk, vk, ak, last, turn, point):
     """Positions and rates; law (3,): l and its rates beside the constant length. See prp.solve_prp."""
     p = point[0]
     r = point[1]
-    one = bodies[FIRST]
+    a = bodies[FIRST]
     carried(qk, vk, ak, turn, bodies[K1], n[P1_X], n[P1_Y], p)
     carried(qk, vk, ak, turn, bodies[K2], n[Q2_X], n[Q2_Y], r)
     lx = n[CA_X] - n[PA_X]
@@ -75,7 +75,7 @@ def solve_rod(bodies, n, law, qk, vk, ak, last, turn, point):
     uy = along * dy + height * dx
     wx = ux - dx
     wy = uy - dy
-    aim(turn, qk, last[3 * one + 2], one, ux, uy, lx, ly)
+    aim(turn, qk, last[3 * a + 2], a, ux, uy, lx, ly)
     lever = 1.0 / (wy * ux - wx * uy)
     omega = (rod * law[1] + wx * fx + wy * fy) * lever
     rate_x = -omega * uy - fx
@@ -83,9 +83,9 @@ def solve_rod(bodies, n, law, qk, vk, ak, last, turn, point):
     fx = r[4] - p[4] + omega * omega * ux
     fy = r[5] - p[5] + omega * omega * uy
     bend = law[1] * law[1] + rod * law[2] - rate_x * rate_x - rate_y * rate_y
-    vk[3 * one + 2] = omega
-    ak[3 * one + 2] = (bend + wx * fx + wy * fy) * lever
-    hang(qk, vk, ak, turn, one, p, n[PA_X], n[PA_Y])
+    vk[3 * a + 2] = omega
+    ak[3 * a + 2] = (bend + wx * fx + wy * fy) * lever
+    hang(qk, vk, ak, turn, a, p, n[PA_X], n[PA_Y])
     return SOLVED
 
 

@@ -45,10 +45,10 @@ def finest(first: float, last: float) -> float:
 def merged(cuts: Sequence[Cut], apart: float) -> list[Cut]:
     """In order; brackets nearer to each other than ``apart`` (s) become one."""
     out: list[Cut] = []
-    for cut in sorted(cuts, key=lambda one: one.at):
+    for cut in sorted(cuts, key=lambda piece: piece.at):
         if out and cut.left - out[-1].right < apart:
             both = out.pop()
-            narrow = min(both, cut, key=lambda one: one.right - one.left)
+            narrow = min(both, cut, key=lambda piece: piece.right - piece.left)
             cut = Cut(min(both.left, cut.left), narrow.at, max(both.right, cut.right))
         out.append(cut)
     return out

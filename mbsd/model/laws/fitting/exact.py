@@ -50,15 +50,15 @@ def exact_pieces(
         return pieces(np.array([first, last]), np.array([[seen[0, 0], 0.0, 0.0, 0.0, 0.0, 0.0]]))
     refuse_between(law, looks, seen)
     sampled = Sampled(law)
-    found = given_cuts(breaks, first, last)
+    all_cuts = given_cuts(breaks, first, last)
     for _ in range(ROUNDS):
-        cuts, begin, end = without_edges(found, first, last)
+        cuts, begin, end = without_edges(all_cuts, first, last)
         rows, new = _refined(sampled, (first, last), begin, end, cuts, looks, seen)
         edges = [begin, end, *(edge for cut in cuts for edge in (cut.left, cut.right))]
         new = [cut for cut in new if not any(cut.left <= edge <= cut.right for edge in edges)]
         if not new:
             break
-        found = merged([*found, *new], 4 * finest(first, last))
+        all_cuts = merged([*all_cuts, *new], 4 * finest(first, last))
     at, left, right = rows
     for cut in cuts:
         k = int(np.searchsorted(at[:, 0], cut.at))

@@ -69,9 +69,9 @@ def fit(
     ``tolerance``: of a load, as part of its size. Raises ModelError where a driver's law jumps, has a kink or scatters.
     """
     sampled(np.array([first, last]))  # what fails everywhere fails at the begin
-    found, seen = list(cuts), sampled.once(looks)
+    all_cuts, seen = list(cuts), sampled.once(looks)
     for _ in range(ROUNDS):
-        tree = Tree(sampled, (first, last), found, (looks, seen), load, tolerance, most_calls)
+        tree = Tree(sampled, (first, last), all_cuts, (looks, seen), load, tolerance, most_calls)
         leaves = tree.refined()
         if tree.overrun:
             worst = int(np.argmax(leaves.last * leaves.stuck))
@@ -82,7 +82,7 @@ def fit(
         new = [cut for cut in new if cut.right - cut.left < BRIEF * (last - first) or not _touches(cut, known)]
         if not new:
             break
-        found = merged([*found, *new], 4 * finest(first, last))
+        all_cuts = merged([*all_cuts, *new], 4 * finest(first, last))
     if load:
         return Fit(leaves, tree.cuts, tree.size, tree.scatter, tree.scatter_at)
     hidden = np.where(leaves.rough, BEND_OF_LAST * 4 * leaves.last / leaves.width**2, 0.0)

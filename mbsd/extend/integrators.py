@@ -4,13 +4,14 @@ derivative, project     rates of a state, and a state closed onto the constraint
 close_step              the same at the end of a step of fixed length, and whether it closes
 begin, fixed_step       the start of ``advance``, and the next step of a method with fixed ones
 record, record_here     outputs between steps, and at the end of a step
+advance_with, tolerances, Rates, Stepper    a solver of another library over the model's rates
 kernel, apart, internal, inlined    how its functions are compiled
 """
 
 from mbsd.compiling.jit import apart, inlined, internal, kernel
 from mbsd.dynamics.integrators.kind import Integrator, Option, without_sliding
 from mbsd.dynamics.integrators.kind import register as register_integrator
-from mbsd.dynamics.integrators.others.outside import advance_with
+from mbsd.dynamics.integrators.others.outside import PULL, STAGES, Rates, Stepper, advance_with, tolerances
 from mbsd.dynamics.integrators.step_size import allowed, first_step
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.full_matrix import factor_full, solve_full
@@ -49,8 +50,10 @@ __all__ = [
     "NO_CONVERGENCE",
     "PAUSED",
     "POWER",
+    "PULL",
     "REACHED",
     "REJECTED",
+    "STAGES",
     "STEP",
     "STEP_TOO_SMALL",
     "TIME",
@@ -58,8 +61,10 @@ __all__ = [
     "Integrator",
     "Option",
     "Output",
+    "Rates",
     "Settings",
     "State",
+    "Stepper",
     "advance_with",
     "allowed",
     "apart",
@@ -78,6 +83,7 @@ __all__ = [
     "record_here",
     "register_integrator",
     "solve_full",
+    "tolerances",
     "too_large",
     "without_sliding",
 ]

@@ -23,7 +23,6 @@ OPTIONAL = {
     "matplotlib": "draw",
     "imageio_ffmpeg": "animate",
     "PIL": "animate",
-    "sksundae": "bench",
     "cloudpickle": "study",
     "loky": "study",
     "pyarrow": "study",
@@ -31,7 +30,7 @@ OPTIONAL = {
     "distributed": "cluster",
 }
 """What single methods ask for, and the extra that brings it."""
-PACKAGE = {"sksundae": "scikit-sundae", "imageio_ffmpeg": "imageio-ffmpeg", "PIL": "pillow"}
+PACKAGE = {"imageio_ffmpeg": "imageio-ffmpeg", "PIL": "pillow"}
 """Of what is imported under another name."""
 BLOCKER = """
 import sys
@@ -66,11 +65,9 @@ with tempfile.TemporaryDirectory() as folder:
     m.save(os.path.join(folder, "model.json"))
     assert Mechanism.load(os.path.join(folder, "model.json")).mobility().dof == 1
 assert m.topology()._repr_svg_().startswith("<svg")
-def outside():
-    m.simulate(0.01, method="sundials-bdf")
 def film():
     sol.animate("crank.mp4")
-asked = (("pandas", sol.to_frame), ("draw", m.draw), ("draw", sol.draw), ("animate", film), ("bench", outside))
+asked = (("pandas", sol.to_frame), ("draw", m.draw), ("draw", sol.draw), ("animate", film))
 for extra, ask in asked:
     try:
         ask()

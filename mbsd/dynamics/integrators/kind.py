@@ -73,6 +73,14 @@ class Integrator:
             return False
         return True
 
+    def why_refused(self, dynamics: Dynamics) -> str | None:
+        """Why this method cannot simulate a mechanism here, or None."""
+        if not self.installed:
+            return (
+                f"method '{self.name}' needs the package '{self.package}', which is not installed; take another method"
+            )
+        return self.refusal(dynamics)
+
     def numbers(self, model: str, given: Mapping[str, float]) -> np.ndarray:
         """(options,) what was given, else the defaults. Raises ModelError for unknown names and impossible values."""
         for name, value in given.items():

@@ -98,7 +98,7 @@ class PreparedDynamics:
 
     def scratch(self, method: Integrator) -> Scratch:
         """Scratch for one run. Raises ModelError where the method cannot simulate this mechanism."""
-        refusal = method.refusal(self.dynamics)
+        refusal = method.why_refused(self.dynamics)
         if refusal is not None:
             raise ModelError(f"{self.packed.name}: {refusal}")
         if self.approaches and not method.meets_switches:

@@ -13,6 +13,7 @@ A driver acts on its bodies: of a distance at both markers, of an angle at the p
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -61,6 +62,16 @@ def actions(packed: Packed, q: np.ndarray, wrench: np.ndarray, k: int) -> list[A
         Action(first[:, 0], first[:, 1], -on.fx, -on.fy, -on.torque, a),
         Action(on.x, on.y, on.fx, on.fy, on.torque, b),
     ]
+
+
+def felt(packed: Packed, q: np.ndarray, wrench: np.ndarray, k: int) -> Action:
+    """What joint, driver or contact number ``k`` does to the body that moves: the first where the second is ground."""
+    first, second = actions(packed, q, wrench, k)
+    return (
+        replace(second, fx=first.fx, fy=first.fy, torque=first.torque, body=first.body)
+        if second.body == "ground"
+        else second
+    )
 
 
 def _pin_of(packed: Packed, q: np.ndarray, driver: Joint, otherwise: np.ndarray) -> np.ndarray:

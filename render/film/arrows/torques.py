@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from render.film.arrows.vectors import Acting, Vector
 from shared.contract import Motion
+from shared.contract.felt import felt
 from shared.contract.shot import Quantity
 
 Array = NDArray[np.float64]
@@ -54,9 +55,8 @@ def rounding(vectors: Sequence[Vector], size: float) -> float:
 def _reactions(motion: Motion, quantity: Quantity) -> Iterator[Torque]:
     """Torques of joints and contacts, about where they act."""
     for name, joint in (*motion.joints.items(), *motion.contacts.items()):
-        at = joint.acts or joint
-        sign = 1.0 if joint.bodies[1] != "ground" else -1.0
-        yield Torque(quantity, name, joint.bodies, _two(at.x, at.y), sign * np.asarray(at.torque, float))
+        on = felt(joint)
+        yield Torque(quantity, name, joint.bodies, on.place, on.torque)
 
 
 def _applied(motion: Motion, quantity: Quantity) -> Iterator[Torque]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from render.film.markers import local_place
 from shared.contract import BodyMotion, Motion
+from shared.contract.felt import felt
 from shared.contract.shot import Quantity
 
 Array = NDArray[np.float64]
@@ -80,11 +81,10 @@ def at_time(time: Array, values: Array, t: float) -> Array:
 
 
 def _reactions(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
-    """What joints and rigid contacts do to their second body; to the first one where the second is ground."""
+    """What joints and rigid contacts do to the body that moves."""
     for name, joint in (*motion.joints.items(), *motion.contacts.items()):
-        at, force = joint.acts or joint, _two(joint.fx, joint.fy)
-        sign = 1.0 if joint.bodies[1] != "ground" else -1.0
-        yield Vector(quantity, name, joint.bodies, _two(at.x, at.y), sign * force)
+        on = felt(joint)
+        yield Vector(quantity, name, joint.bodies, on.place, on.force)
 
 
 def _forces(motion: Motion, quantity: Quantity) -> Iterator[Vector]:

@@ -1,0 +1,35 @@
+"""What a joint or contact does to the body that moves: its second one, or its first where the second is ground."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shared.contract.loads import ContactMotion
+from shared.contract.motion import JointMotion
+
+Array = NDArray[np.float64]
+
+
+class Felt(NamedTuple):
+    """A reaction over time, on one body."""
+
+    body: str
+    place: Array
+    """(T, 2) where it acts (m)."""
+    force: Array
+    """(T, 2) world axes (N)."""
+    torque: Array
+    """(T,) about that place (N m), positive counter-clockwise."""
+
+
+def felt(connection: JointMotion | ContactMotion) -> Felt:
+    """The reaction, with the sign that it has on that body: data.json has it as the second body feels it."""
+    at = connection.acts or connection
+    first, second = connection.bodies
+    body, sign = (first, -1.0) if second == "ground" else (second, 1.0)
+    place = np.array([at.x, at.y], float).T
+    force = np.array([connection.fx, connection.fy], float).T
+    return Felt(body, place, sign * force, sign * np.asarray(at.torque, float))

@@ -1,1 +1,1 @@
-"""Tests; a package, so that helpers like tests.models.motions are found before anyone else's ``tests``."""
+"""Tests; a package, so that helpers like tests.running.needs are found before anyone else's ``tests``."""

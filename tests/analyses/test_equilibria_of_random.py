@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mbsd import EquilibriumError, Mechanism
-from tests.models.random_linkages import linkage
+from tools.models.random_linkages import linkage
 
 
 def _loose_chain(seed: int, held: bool) -> Mechanism:

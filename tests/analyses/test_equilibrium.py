@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import brentq, minimize_scalar
 
 from mbsd import EquilibriumError, Mechanism, ModelError, SingularPoseError, constant_rate
-from tests.models import four_bars
+from tools.models import four_bars
 
 G = 9.81
 

@@ -22,7 +22,7 @@ from mbsd.drawing.animation.scene import Scene, scene_of
 from mbsd.drawing.animation.words import EVERYTHING, round_below
 from mbsd.drawing.look import PAPER
 from mbsd.results.solution import Solution
-from tests.models.contact_models import ball
+from tools.models.contact_models import ball
 
 SMALL = (320, 180)
 

@@ -18,7 +18,7 @@ from mbsd.drawing.strokes import Recorder
 from mbsd.drawing.view.carried import SLACK, TEETH, Moving, moving
 from mbsd.drawing.view.carriers import Frames
 from mbsd.drawing.view.curves import alike, resampled
-from tests.models import genevas, linkages, random_linkages
+from tools.models import genevas, linkages, random_linkages
 
 
 def hung() -> Solution:

@@ -9,7 +9,7 @@ import pytest
 
 from mbsd import GasCycle, Mechanism, two_stroke
 from mbsd.drawing.strokes import strokes_of
-from tests.models.engines import BORE, ROD, THROW, petrol, slider_crank
+from tools.models.engines import BORE, ROD, THROW, petrol, slider_crank
 
 TURN = 2 * math.pi
 RATE = 200.0

@@ -33,7 +33,7 @@ from mbsd.testing.forces import example as force_example
 from shared.stage.paths import ROOT
 from tests.dynamics.test_simulate import n_four_bar
 from tests.kinematics.test_mobility import four_bar, parallelogram
-from tests.models import four_bars
+from tools.models import four_bars
 
 
 def slider_crank() -> Mechanism:

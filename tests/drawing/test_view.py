@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelError, Solution
-from tests.models import linkages
+from tools.models import linkages
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, constant_rate
-from tests.models.contact_models import G, balance, ball, box, disc, times_of
+from tools.models.contact_models import G, balance, ball, box, disc, times_of
 
 
 def incline(angle: float, friction: float, up: float = 0.0) -> Mechanism:

@@ -15,7 +15,7 @@ from mbsd.dynamics.runs.embed import embedded_at_start
 from mbsd.kinematics.groups.blocks import BLOCK
 from mbsd.kinematics.groups.groups import KIND
 from tests.dynamics.test_embedding import agree, both
-from tests.models.random_machines import RandomMachine
+from tools.models.random_machines import RandomMachine
 
 PARTS = sorted(RandomMachine.KINDS)
 

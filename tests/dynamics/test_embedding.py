@@ -20,7 +20,7 @@ from mbsd.dynamics.simulate import integrator_named
 from mbsd.kinematics.groups.groups import KIND
 from mbsd.kinematics.groups.registry import NAMES
 from mbsd.results.solution import Solution
-from tests.models.assur_models import MODELS
+from tools.models.assur_models import MODELS
 
 PAIRS = ("q", "v", "a")
 

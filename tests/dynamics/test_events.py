@@ -21,7 +21,7 @@ from mbsd import (
 )
 from mbsd.dynamics.integrators.kind import INTEGRATORS
 from mbsd.results.solution import Solution
-from tests.models.contact_models import G, balance, ball, box, disc, times_of
+from tools.models.contact_models import G, balance, ball, box, disc, times_of
 
 for module in pkgutil.iter_modules(mbsd.dynamics.integrators.__path__):
     importlib.import_module(f"mbsd.dynamics.integrators.{module.name}")

@@ -13,7 +13,7 @@ from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import pack
 from mbsd.equations.joint_friction import tabulate_friction
 from mbsd.testing.forces import motion
-from tests.models.slider_cranks import slider_crank
+from tools.models.slider_cranks import slider_crank
 
 G = 9.80665
 

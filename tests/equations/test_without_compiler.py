@@ -33,7 +33,7 @@ def test_the_solver_passes_its_tests_without_numba() -> None:
 
 def test_compiled_and_plain_kernels_give_the_same_numbers() -> None:
     code = (
-        "from tests.models.four_bars import model; import hashlib, numpy as np;"
+        "from tools.models.four_bars import model; import hashlib, numpy as np;"
         "s = model((4.0, 1.0, 3.5, 3.0), 2.0, {'rocker': (1.0, (1.0, 0.2), 0.3)}).sweep(steps=20);"
         "print(' '.join(f'{x:.9e}' for x in [*s.q[-1].ravel(), *s.a[7].ravel(), *s.lam[13]]))"
     )

@@ -11,8 +11,8 @@ import pytest
 from mbsd import Mechanism, SingularPoseError, constant_rate, cycloidal, function, harmonic, table
 from mbsd.base.errors import BranchError, LimitError, MechanismError, ModelError
 from mbsd.kinematics.prepared import March, prepare
-from tests.models.genevas import geneva
-from tests.models.random_linkages import driven_linkage
+from tools.models.genevas import geneva
+from tools.models.random_linkages import driven_linkage
 
 GROUND, CRANK, COUPLER, ROCKER = 0.30, 0.10, 0.25, 0.15
 """m; shortest and longest together are as long as the others, so all bars lie in line at one crank angle."""

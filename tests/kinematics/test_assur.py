@@ -15,7 +15,7 @@ from mbsd.kinematics.groups.carrying.columns import SIGN
 from mbsd.kinematics.groups.groups import NUMBERS
 from mbsd.kinematics.groups.registry import KINDS, NAMES
 from mbsd.kinematics.prepared import Prepared, prepare
-from tests.models.assur_models import MODELS, crank, four_bar
+from tools.models.assur_models import MODELS, crank, four_bar
 
 
 def both_routes(m: Mechanism, duration: float = 1.05, steps: int = 240) -> tuple[Prepared, list, list]:

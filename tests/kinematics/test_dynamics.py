@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism, ModelError, constant_rate, harmonic
 from mbsd.results.solution import Solution
-from tests.models import four_bars
+from tools.models import four_bars
 
 Lengths = tuple[float, float, float, float]
 Masses = dict[str, tuple[float, tuple[float, float], float]]

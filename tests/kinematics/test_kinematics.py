@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, ModelError, constant_rate, cycloidal, function, harmonic
-from tests.models import four_bars
+from tools.models import four_bars
 
 
 @settings(max_examples=40)

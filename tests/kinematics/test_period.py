@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelWarning, constant_rate, harmonic, polynomial, table
-from tests.models import four_bars
+from tools.models import four_bars
 
 SPEED = 2 * math.pi
 

@@ -14,8 +14,8 @@ import mbsd.kinematics.groups.parts
 from mbsd import Mechanism, MechanismError, constant_rate
 from mbsd.kinematics.groups.plan import describe
 from mbsd.kinematics.prepared import Prepared, prepare
-from tests.models.assur_models import crank
-from tests.models.random_machines import RandomMachine
+from tools.models.assur_models import crank
+from tools.models.random_machines import RandomMachine
 
 
 def both(ready: Prepared, times: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray]]:

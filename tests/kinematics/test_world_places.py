@@ -12,7 +12,7 @@ import pytest
 
 from mbsd import AssemblyError, Mechanism, ModelError, ModelWarning, constant_rate
 from mbsd.model.body import Body
-from tests.models import four_bars
+from tools.models import four_bars
 
 A, B, C, D = (0.0, 0.0), (0.03, 0.04), (0.15, 0.10), (0.12, 0.0)
 """Of a four-bar as drawn (m)."""

@@ -13,7 +13,7 @@ from mechanisms.stages.parts import stage as parts_stage
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
 from tests.project.making import planned, run
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
 
 
 def test_the_stage_knows_what_can_be_drawn() -> None:

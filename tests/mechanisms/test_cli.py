@@ -19,7 +19,7 @@ from shared.contract.shot import read_shot
 from shared.stage import paths
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, Out
-from tests.models.motions import four_bar_motion
+from tools.models.motions import four_bar_motion
 
 MECHANISM = '''"""A test linkage.
 

@@ -27,7 +27,7 @@ from shared.shapes.solid import Solid
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
 from tests.mechanisms.author_project import Project
-from tests.models.linkages import four_bar, hands, slider_crank
+from tools.models.linkages import four_bar, hands, slider_crank
 
 MECHANISM = """\
 from dataclasses import dataclass

@@ -239,7 +239,7 @@ def test_what_does_not_hold_together_is_refused(loaded: Solution, tmp_path: Path
 
 
 def test_files_of_version_1_are_read(tmp_path: Path) -> None:
-    from tests.models.motions import four_bar_motion
+    from tools.models.motions import four_bar_motion
 
     document = json.loads(jsonfile.encode(four_bar_motion(steps=12)))
     document |= {"schema_version": 1, "conventions": contract.CONVENTIONS_OF[1]}

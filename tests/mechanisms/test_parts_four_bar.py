@@ -21,8 +21,8 @@ from shared.contract.clearance import read_clearance
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
 from tests.mechanisms.built_four_bar import make_parts, start_parts
-from tests.models.motions import four_bar_motion
 from tests.shared.shape_checks import checked
+from tools.models.motions import four_bar_motion
 
 
 @pytest.fixture(scope="module")

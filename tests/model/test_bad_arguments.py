@@ -42,7 +42,7 @@ from mbsd.model.contact import CONTACT_KINDS
 from mbsd.model.force import FORCE_KINDS
 from mbsd.model.joint import KINDS
 from mbsd.model.mechanism import connections
-from tests.models.wrong_values import NEVER, ODD
+from tools.models.wrong_values import NEVER, ODD
 
 for package in (mbsd.model.joints, mbsd.model.forces, mbsd.model.contacts):
     for module in pkgutil.iter_modules(package.__path__):

@@ -12,7 +12,7 @@ import pytest
 
 from mbsd import Mechanism, MechanismError, constant_rate, curve
 from mbsd.cams import Lift
-from tests.models.wrong_values import NEVER, ODD
+from tools.models.wrong_values import NEVER, ODD
 
 
 @cache

@@ -16,7 +16,7 @@ from mbsd import Mechanism, ModelWarning, constant_rate, cycloidal, harmonic
 from mbsd.analyses.suspicious_units import Finding
 from mbsd.saving.document import build, document
 from shared.stage.paths import mechanism_names
-from tests.models import random_linkages
+from tools.models import random_linkages
 
 
 def _four_bar(scale: float = 1.0, **lengths: float) -> Mechanism:

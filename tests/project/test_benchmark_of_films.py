@@ -12,7 +12,7 @@ from benchmarks.rows import Bar
 from render.presets import Preset
 from shared.contract.shot import Shot
 from shared.stage.errors import UserError
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
 
 TINY = Preset("tiny", 96, 54, 1)
 

@@ -19,9 +19,9 @@ from mbsd.model.contact import CONTACT_KINDS
 from mbsd.model.force import FORCE_KINDS
 from mbsd.model.joint import KINDS
 from mbsd.model.laws.examples import EXAMPLES
-from tests.models.four_bars import angles, model
 from tools.hunt import case, pool
 from tools.hunt.__main__ import hunt
+from tools.hunt.families import all_families
 from tools.hunt.judging.agreement import SAME, Growth, Words, compare_driven, compare_free
 from tools.hunt.judging.checks import driven_problems, odd_steps, one_assembly, smooth
 from tools.hunt.judging.law_error import of_law
@@ -30,9 +30,10 @@ from tools.hunt.mechanisms.energy import audited
 from tools.hunt.outcome import AGREED, BASE, HUNG, WRONG, CaseResult, Outcome
 from tools.hunt.pool import results
 from tools.hunt.solving.free_case import TOLERANCE, Free, nudged
-from tools.hunt.subject import Subject, all_families
+from tools.hunt.subject import Subject
 from tools.hunt.words.described import on_a_base, seen_from
 from tools.hunt.words.reordered import exchanged, shuffled
+from tools.models.four_bars import angles, model
 
 LENGTHS = (0.4, 0.1, 0.38, 0.3)
 

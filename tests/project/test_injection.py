@@ -19,7 +19,7 @@ from shared.stage.files import write_bytes
 from shared.stage.paths import ROOT, Out, mechanism_name
 from shared.stage.stages import Stage
 from studio.night.plan import options
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
 
 NASTY = [
     "$(touch pwned)",

@@ -107,8 +107,9 @@ def test_without_the_libraries_tests_of_the_solver_run_alone(tmp_path: Path) -> 
 
 
 def test_the_solvers_tests_load_neither_blender_nor_the_cad_kernel() -> None:
-    """Their import statements, and those of what they import of the tests."""
-    for file in (file for room in SOLVER for file in (ROOT / "tests" / room).rglob("*.py")):
+    """Their import statements, and those of the models that they solve."""
+    folders = [*(ROOT / "tests" / room for room in SOLVER), ROOT / "tools" / "models"]
+    for file in (file for folder in folders for file in folder.rglob("*.py")):
         if file.name in ("outlines.py",):  # of tests of parts
             continue
         for line in file.read_text().splitlines():
@@ -116,7 +117,7 @@ def test_the_solvers_tests_load_neither_blender_nor_the_cad_kernel() -> None:
             if words[:1] in (["import"], ["from"]):
                 top = words[1].split(".")
                 assert top[0] not in ("bpy", "OCP", "cadquery", "mechanisms", "render", "studio"), f"{file}: {line}"
-                assert words[1] != "tests.models.outlines", f"{file}: {line}"
+                assert words[1] != "tools.models.outlines", f"{file}: {line}"
                 assert top[:2] != ["shared", "shapes"], f"{file}: {line}"
 
 

@@ -12,9 +12,9 @@ from shared.contract import Provenance
 from shared.contract.clearance import Clearance, PairClearance
 from shared.contract.shot import Shot
 from shared.stage import jsonfile
-from tests.models.motions import four_bar_motion, plain_skeleton
 from tests.shared.test_contract import parts_document
 from tools import schema
+from tools.models.motions import four_bar_motion, plain_skeleton
 
 PAIR = PairClearance(
     bodies=("ground", "crank"), pieces=("pin_A", "bushing_A"), gap=9e-5, proven=9e-5, time=None, proof="turn", poses=0

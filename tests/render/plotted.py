@@ -9,7 +9,7 @@ from render.plots import figures
 from shared.contract import Motion, write_motion
 from shared.contract.skeleton import write_skeleton
 from shared.stage.paths import Out
-from tests.models.motions import four_bar_motion, plain_skeleton
+from tools.models.motions import four_bar_motion, plain_skeleton
 
 MOTION = four_bar_motion(steps=72)
 NAMES = ["bodies", "energy", "hodographs", "path", "point-P", "reactions"]

@@ -16,7 +16,7 @@ from shared.contract import Motion, write_motion
 from shared.stage import paths
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
-from tests.models.motions import four_bar_motion
+from tools.models.motions import four_bar_motion
 
 VARIANTS = 'VARIANTS = {"longer": {"coupler": 0.13}, "faster": {"speed": 9.0}}\n'
 

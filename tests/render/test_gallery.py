@@ -18,7 +18,7 @@ from render.report.written import speed
 from shared.contract import Action, ForceMotion, write_motion
 from shared.stage.errors import UserError
 from shared.stage.paths import Out, mechanism_names
-from tests.models.motions import bouncing_ball, four_bar_motion
+from tools.models.motions import bouncing_ball, four_bar_motion
 
 
 def noise(path: Path, size: tuple[int, int]) -> None:

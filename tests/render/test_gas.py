@@ -16,7 +16,7 @@ from render.plots.figures import WHOLE
 from render.report import report
 from shared.contract import Motion, read_motion, write_motion
 from shared.stage.errors import UserError
-from tests.models.engines import slider_crank
+from tools.models.engines import slider_crank
 
 
 def motion_of(m: Mechanism, **more) -> Motion:

@@ -14,8 +14,8 @@ from shared.contract import mounted, read_motion
 from shared.contract.materials import MATERIALS
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
-from tests.render import film_fixture
 from tests.render.glb_file import GlbFile
+from tools.fixtures import film_fixture
 
 
 @pytest.fixture

@@ -15,9 +15,9 @@ from render.film.scene import TubeSpec
 from render.glb.build import glb
 from shared.contract import read_motion, read_parts
 from shared.contract.shot import Shot
-from tests.render import film_fixture
 from tests.render.film import test_spirals, test_stretched
 from tests.render.glb_file import GlbFile
+from tools.fixtures import film_fixture
 
 UPRIGHT = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
 """From z up to y up."""

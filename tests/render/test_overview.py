@@ -13,8 +13,8 @@ from render.report.facts import fastest
 from shared.contract import Provenance, read_motion
 from shared.contract.clearance import Clearance, PairClearance, write_clearance
 from shared.contract.loads import ForceMotion
-from tests.models.motions import four_bar_motion
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
+from tools.models.motions import four_bar_motion
 
 MOTION = four_bar_motion()
 

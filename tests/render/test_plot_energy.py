@@ -7,8 +7,8 @@ import numpy as np
 
 from render import plots
 from render.plots.pages.energy import powers, statement
-from tests.models.motions import bouncing_ball
 from tests.render.plotted import MOTION, figure, overlaps, shown
+from tools.models.motions import bouncing_ball
 
 
 def test_an_impact_is_marked_in_joules_and_is_no_power() -> None:

@@ -10,8 +10,8 @@ import pytest
 
 from render import plots
 from render.plots.horizon import horizon
-from tests.models.motions import plain_skeleton
 from tests.render.plotted import MOTION, NAMES, figure, overlaps, shown
+from tools.models.motions import plain_skeleton
 
 
 @pytest.mark.parametrize("plot", [name for name in NAMES if name not in ("path",)])

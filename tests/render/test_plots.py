@@ -13,8 +13,8 @@ from shared.contract import Motion
 from shared.contract.skeleton import read_skeleton, write_skeleton
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
-from tests.models.motions import plain_skeleton
 from tests.render.plotted import MOTION, NAMES, figure, overlaps, shown, write
+from tools.models.motions import plain_skeleton
 
 
 @pytest.fixture

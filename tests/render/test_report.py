@@ -20,7 +20,7 @@ from shared.contract import Motion, Provenance, write_motion
 from shared.contract.clearance import Clearance, PairClearance
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
-from tests.models.motions import bouncing_ball, four_bar_motion
+from tools.models.motions import bouncing_ball, four_bar_motion
 
 MOTION = four_bar_motion()
 

@@ -28,7 +28,7 @@ from shared.contract.skeleton import write_skeleton
 from shared.stage import paths
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
-from tests.models.motions import bouncing_ball, four_bar_motion, plain_skeleton
+from tools.models.motions import bouncing_ball, four_bar_motion, plain_skeleton
 
 MOTION = four_bar_motion(steps=72)
 

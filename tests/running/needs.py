@@ -12,7 +12,7 @@ from shared.system.missing import missing_libraries, missing_programs, program, 
 
 TESTS = Path(__file__).parents[1]
 SOLVER = {
-    "analyses", "dependencies", "drawing", "dynamics", "equations", "kinematics", "model", "models", "published",
+    "analyses", "dependencies", "drawing", "dynamics", "equations", "kinematics", "model", "published",
     "running", "saving", "studies", "synthesis",
 }  # fmt: skip
 """Folders of tests whose files load neither Blender nor the CAD kernel, and so need no library of the system."""

@@ -33,7 +33,7 @@ from mbsd.testing.forces import evaluate
 from mbsd.testing.forces import example as force_example
 from mbsd.testing.forces import motion as force_motion
 from shared.stage.paths import ROOT
-from tests.models import four_bars
+from tools.models import four_bars
 
 
 def _example(kind: JointKind) -> Mechanism:

@@ -19,7 +19,7 @@ from shared.contract.clearance import Clearance, read_clearance, write_clearance
 from shared.contract.shot import Shot, read_shot, write_shot
 from shared.stage import jsonfile
 from shared.stage.errors import UserError
-from tests.models.motions import bouncing_ball, four_bar_motion
+from tools.models.motions import bouncing_ball, four_bar_motion
 
 MOTION = four_bar_motion(steps=12)
 CONTENT = jsonfile.encode(MOTION)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from shared.contract import Mount, mounted, read_parts, write_parts
 from shared.stage.errors import UserError
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
 
 
 @given(st.floats(-math.pi, math.pi), st.floats(1e-3, 100))

@@ -24,7 +24,7 @@ from shared.contract.shot import (
     write_shot,
 )
 from shared.stage.errors import UserError
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
 
 
 def test_defaults_and_the_four_bar_survive_a_round_trip(tmp_path: Path):

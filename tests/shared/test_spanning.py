@@ -18,10 +18,10 @@ from shared.contract.spanning import with_rods
 from shared.shapes.bodies import Bodies
 from shared.stage.errors import UserError
 from tests.mechanisms.clearance.clearance_pieces import NO_MASS
-from tests.models.motions import four_bar_motion
-from tests.render import film_fixture
 from tests.render.glb_file import GlbFile
 from tests.shared.test_contract import parts_document
+from tools.fixtures import film_fixture
+from tools.models.motions import four_bar_motion
 
 CRANK, COUPLER, ROCKER = 0.040, 0.120, 0.090
 

@@ -23,7 +23,7 @@ from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, Out
 from studio.verify import files, pictures, verify
 from studio.verify import film as compared_film
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
 
 TINY = Preset("tiny", 96, 54, 1)
 SHORT = Shot(turns=2, seconds_per_turn=0.2, trails=(), labels=())

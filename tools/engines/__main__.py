@@ -83,7 +83,7 @@ def _small(folder: Path) -> Out:
     """The four-bar of the tests, its page written."""
     from render import view
     from shared.contract.shot import Shot
-    from tests.render import film_fixture
+    from tools.fixtures import film_fixture
 
     os.environ["MBSD_OUT"] = str(folder / "out")
     out = film_fixture.write(Shot(trails=()))

@@ -26,7 +26,7 @@ def parser(program: str, about: str | None, limit: float = LIMIT) -> argparse.Ar
 
 def refuse_unknown(kind: str | None) -> None:
     """Raise UserError for a kind of mechanism that there is not; None means all."""
-    from tools.hunt.subject import all_families
+    from tools.hunt.families import all_families
 
     if kind is None:
         return

@@ -65,15 +65,3 @@ def family(name: str, weight: float = 1.0, example: bool = False) -> Callable[[B
         return build
 
     return enter
-
-
-def all_families() -> dict[str, Family]:
-    """Every kind, with all files of tools/hunt/mechanisms loaded."""
-    import importlib
-    import pkgutil
-
-    from tools.hunt import mechanisms
-
-    for module in sorted(info.name for info in pkgutil.iter_modules(mechanisms.__path__)):
-        importlib.import_module(f"{mechanisms.__name__}.{module}")
-    return FAMILIES

@@ -11,7 +11,7 @@ import numpy as np
 from mbsd import Mechanism
 from mbsd.kinematics.design_sweeps import DesignSweeps, Moved, in_closed_form
 from mbsd.kinematics.prepared import prepare
-from tests.models.assur_models import MODELS
+from tools.models.assur_models import MODELS
 
 INTERVAL = 0.3
 """s"""

@@ -30,7 +30,7 @@ from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from shared.stage.paths import out_root
 from shared.system.missing import missing_programs, program, sentence
-from tests.studio.loopback_ssh import machine
+from tools.fixtures.loopback_ssh import machine
 from tools.torture import fetching
 from tools.torture.faults import BACKGROUND, CLUSTER, DISK_OF_ONE, FAULTS, FETCH, FULL, Fault
 from tools.torture.project import Project

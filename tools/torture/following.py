@@ -13,7 +13,7 @@ import time
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import psutil
 
@@ -21,9 +21,6 @@ from shared.stage.paths import ROOT
 from shared.stage.signals import end_with_parent
 from studio.live.frames import unframed
 from studio.live.processes.trees import MARK
-
-if TYPE_CHECKING:
-    from tools.torture.project import Project
 
 SAVES = 6
 PATIENCE = 120.0
@@ -35,19 +32,25 @@ _wrong: list[int] = []
 """Numbers of the rounds that were played and not yet asked for."""
 
 
-def live_page_hit(project: Project, chance: random.Random) -> bool:
+class InFolder(Protocol):
+    """A project under attack, of which only its folder counts here."""
+
+    folder: Path
+
+
+def live_page_hit(project: InFolder, chance: random.Random) -> bool:
     """Save a mechanism again and again while one of the server's processes gets a signal; then end the server."""
     _wrong.append(_play(project.folder / "live", chance))
     return True
 
 
-def wrong_pages(_: Project) -> int:
+def wrong_pages(_: InFolder) -> int:
     """Saves that were not followed, and processes that outlived the server, in the round that was played last."""
     return _wrong.pop() if _wrong else 0
 
 
 def _play(folder: Path, chance: random.Random) -> int:
-    from tests.studio.live.served import ARM
+    from tools.fixtures.arm import ARM
 
     shutil.rmtree(folder, ignore_errors=True)
     file = folder / "mechanisms" / "arm" / "mechanism.py"
@@ -87,7 +90,7 @@ def _follow(address: str, file: Path, server: subprocess.Popen[bytes], chance: r
     from websockets.exceptions import WebSocketException
     from websockets.sync.client import connect
 
-    from tests.studio.live.served import ARM
+    from tools.fixtures.arm import ARM
 
     wrong = 0
     origin: Any = "/".join(address.split("/")[:3])

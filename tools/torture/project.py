@@ -85,7 +85,7 @@ class Project:
 
     def build(self) -> None:
         """Write everything, and mount the disk where that is allowed."""
-        from tests.render import film_fixture
+        from tools.fixtures import film_fixture
 
         os.environ["MBSD_OUT"] = str(self.disk / "out")
         self.disk.mkdir(parents=True)

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import psutil
 
@@ -23,9 +23,6 @@ from shared.cluster.__main__ import worker_command
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
 from shared.stage.signals import end_with_parent
-
-if TYPE_CHECKING:
-    from tools.torture.project import Project
 
 COUNT = 3
 BEGIN = 90.0
@@ -165,6 +162,15 @@ class Workers:
             time.sleep(0.2)
 
 
+class Clustered(Protocol):
+    """What may have a cluster: a project under attack."""
+
+    @property
+    def workers(self) -> Workers | None:
+        """The cluster, in rounds that have one."""
+        ...
+
+
 def _kill_all(*processes: subprocess.Popen[bytes]) -> None:
     """Kill them with all that they have started."""
     for process in processes:
@@ -179,7 +185,7 @@ def _kill_all(*processes: subprocess.Popen[bytes]) -> None:
 def signal_to_one(pick: Callable[[Workers], list[psutil.Process]], what: signal.Signals) -> Callable[..., bool]:
     """A signal to one of the processes."""
 
-    def hit(project: Project, chance: random.Random) -> bool:
+    def hit(project: Clustered, chance: random.Random) -> bool:
         workers = pick(project.workers) if project.workers else []
         if not workers:
             return False
@@ -193,7 +199,7 @@ def signal_to_one(pick: Callable[[Workers], list[psutil.Process]], what: signal.
 def limit_one(pick: Callable[[Workers], list[psutil.Process]], what: str) -> Callable[..., bool]:
     """A limit on one of them: on the size of its files, as a full disk is one, or on its memory."""
 
-    def hit(project: Project, chance: random.Random) -> bool:
+    def hit(project: Clustered, chance: random.Random) -> bool:
         workers = pick(project.workers) if project.workers else []
         if not workers:
             return False
@@ -209,7 +215,7 @@ def limit_one(pick: Callable[[Workers], list[psutil.Process]], what: str) -> Cal
     return hit
 
 
-def disk_of_one(project: Project, chance: random.Random) -> bool:
+def disk_of_one(project: Clustered, chance: random.Random) -> bool:
     """Fill the small disk of one worker but for a few kilobytes."""
     if project.workers is None or not project.workers.mounted:
         return False
@@ -219,28 +225,28 @@ def disk_of_one(project: Project, chance: random.Random) -> bool:
     return True
 
 
-def admitted(kind: str) -> Callable[[Project], None]:
+def admitted(kind: str) -> Callable[[Clustered], None]:
     """Before the run, a worker that lies in this way."""
 
-    def admit(project: Project) -> None:
+    def admit(project: Clustered) -> None:
         assert project.workers is not None
         project.workers.admit(kind)
 
     return admit
 
 
-def is_there(project: Project, chance: random.Random) -> bool:
+def is_there(project: Clustered, chance: random.Random) -> bool:
     """Nothing more is done to the run than that there is such a worker."""
     return project.workers is not None and project.workers.hostile is not None
 
 
-def expelled(project: Project) -> None:
+def expelled(project: Clustered) -> None:
     """What a user does about a worker whose answers are wrong."""
     assert project.workers is not None
     project.workers.expel()
 
 
-def no_scheduler(project: Project, chance: random.Random) -> bool:
+def no_scheduler(project: Clustered, chance: random.Random) -> bool:
     """Kill the scheduler."""
     if project.workers is None:
         return False
@@ -248,13 +254,13 @@ def no_scheduler(project: Project, chance: random.Random) -> bool:
     return True
 
 
-def healed(project: Project) -> None:
+def healed(project: Clustered) -> None:
     """What a user does about a worker."""
     assert project.workers is not None
     project.workers.heal()
 
 
-def scheduler_again(project: Project) -> None:
+def scheduler_again(project: Clustered) -> None:
     """What a user does about the scheduler."""
     assert project.workers is not None
     project.workers.restart()

@@ -15,10 +15,10 @@ from mechanisms.stages.automatic.pins.pins import Pin
 from mechanisms.stages.solve.refined_times import CLOSE, swept_closely
 from tests.mechanisms.automatic.layouts import meets
 from tests.mechanisms.automatic.test_parts_of_random import KINDS, SEED
-from tests.models.four_bars import model
 from tools.hunt.case import drawn
 from tools.hunt_parts import case
 from tools.hunt_parts.outcome import BUILT
+from tools.models.four_bars import model
 
 SUNK, WEBS = 46, 73
 

@@ -15,8 +15,8 @@ from mechanisms.stages.automatic.wheels.teeth import module_of
 from mechanisms.stages.automatic.wheels.wheels import Wheel
 from shared.shapes.involute import foul_inside, longest_tip, shortest_tip, toothed
 from shared.stage.errors import UserError
-from tests.models.outlines import gap
 from tests.shared.shape_checks import checked
+from tools.models.outlines import gap
 
 SUN, PLANET, RING = 24, 18, 60
 

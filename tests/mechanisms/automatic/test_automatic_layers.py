@@ -21,8 +21,8 @@ from mechanisms.stages.automatic.pins.bridges import Bridge
 from mechanisms.stages.automatic.pins.pins import Pin
 from shared.shapes.link import Eye
 from shared.stage.errors import UserError
-from tests.models.linkages import crank_shaper, drag_link, four_bar, hands, jansen_leg, lift, slider_crank, watt
 from tests.shared.shape_checks import checked
+from tools.models.linkages import crank_shaper, drag_link, four_bar, hands, jansen_leg, lift, slider_crank, watt
 
 
 def _samples(core: np.ndarray, count: int = 60) -> np.ndarray:

@@ -15,8 +15,8 @@ from mechanisms.stages.automatic.wheels.racks import Rack
 from mechanisms.stages.automatic.wheels.wheels import Wheel
 from shared.shapes.involute import longest_rack_tip, rack_outline
 from shared.stage.errors import UserError
-from tests.models.outlines import gap
 from tests.shared.shape_checks import checked
+from tools.models.outlines import gap
 
 
 def drive(

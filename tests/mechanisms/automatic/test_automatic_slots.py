@@ -18,9 +18,9 @@ from shared.shapes.band import band, loop, sharpest
 from shared.shapes.build import extruded
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.layouts import meets
-from tests.models.assur_models import six_bar_with_welds
 from tools.hunt_parts.case import parts_of
 from tools.hunt_parts.outcome import BUILT
+from tools.models.assur_models import six_bar_with_welds
 
 TURN = np.linspace(0.0, 1.0, 121)
 

@@ -14,8 +14,8 @@ from mbsd import Mechanism, constant_rate
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.wheels.wheels import TUBE, Wheel
 from tests.mechanisms.automatic.layouts import meets
-from tests.models.outlines import gap
 from tests.shared.shape_checks import checked
+from tools.models.outlines import gap
 
 
 def ring_drive(teeth: tuple[int, int], turn: float = 0.0, module: float = 1e-3) -> Mechanism:

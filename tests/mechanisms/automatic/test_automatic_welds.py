@@ -14,7 +14,7 @@ from mechanisms.stages.automatic.pins.pins import Pin
 from mechanisms.stages.automatic.pins.welds import BLOCK, Weld
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.layouts import meets
-from tests.models.four_bars import model
+from tools.models.four_bars import model
 
 LENGTHS = (0.1, 0.25, 0.2, 0.22)
 

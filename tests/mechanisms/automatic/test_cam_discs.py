@@ -14,7 +14,7 @@ from mechanisms.stages.parts_files import read_mesh, stl_bytes, volume_of
 from shared.shapes.cam import cam_disc
 from shared.shapes.polyline import distances
 from shared.stage.errors import UserError
-from tests.models.four_bars import model
+from tools.models.four_bars import model
 
 SAW = ((0.0, 1.0), (0.08, 0.0), (0.5, 0.3))
 """Places of a tooth: parts of its pitch, and of its height."""

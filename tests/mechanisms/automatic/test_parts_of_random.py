@@ -13,7 +13,6 @@ from mbsd.base.errors import MechanismError
 from mechanisms.stages.automatic.automatic import Automatic
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.layouts import meets
-from tests.models.four_bars import angles, model
 from tools.hunt.case import drawn
 from tools.hunt.loop import seeds
 from tools.hunt.outcome import CaseResult
@@ -21,6 +20,7 @@ from tools.hunt_parts import case
 from tools.hunt_parts.__main__ import hunt
 from tools.hunt_parts.kept import Kept
 from tools.hunt_parts.outcome import BUILT, COLLIDES, ERROR, STUCK, UNSOUND, reason
+from tools.models.four_bars import angles, model
 
 SEED = 4_000_000
 KINDS = (

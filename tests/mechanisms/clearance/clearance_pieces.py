@@ -11,7 +11,7 @@ from mechanisms.stages.clearance.pieces import MeshPiece
 from mechanisms.stages.clearance.stage import check
 from shared.contract import BodyParts, Mass, Motion, Parts, Provenance
 from shared.contract.clearance import Clearance
-from tests.models.motions import four_bar_motion
+from tools.models.motions import four_bar_motion
 
 NO_MASS = Mass(mass=0.0, com=(0.0, 0.0), inertia=0.0, volume=0.0)
 

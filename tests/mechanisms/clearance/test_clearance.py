@@ -18,7 +18,7 @@ from mechanisms.stages.clearance.turn import RESOLUTION, turn_gap
 from shared.contract import Motion
 from shared.stage.errors import UserError
 from tests.mechanisms.clearance.clearance_pieces import box, checked, disc, four_bar_pieces, lifted, prism
-from tests.models.motions import four_bar_motion
+from tools.models.motions import four_bar_motion
 
 
 def test_free_layers_pass_and_the_nearest_pairs_are_told() -> None:

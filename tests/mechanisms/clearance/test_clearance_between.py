@@ -23,7 +23,7 @@ from render.film.poses import Moment, Poses
 from shared.contract import BodyMotion, Energy, Motion
 from shared.stage.errors import UserError
 from tests.mechanisms.clearance.clearance_pieces import box, checked, disc
-from tests.models.motions import four_bar_motion
+from tools.models.motions import four_bar_motion
 
 
 def cam_motion(times: np.ndarray, eccentric: float, centres: float, speed: float = 2 * math.pi) -> Motion:

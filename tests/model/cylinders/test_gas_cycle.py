@@ -22,7 +22,7 @@ from mbsd import (
     two_stroke,
 )
 from mbsd.arrays.chambers import chambers
-from tests.models.engines import BORE, ROD, THROW, UP, petrol, radial, scotch_yoke, slider_crank
+from tools.models.engines import BORE, ROD, THROW, UP, petrol, radial, scotch_yoke, slider_crank
 
 CASE = json.loads((Path(__file__).parents[2] / "published/reference/engine_wiebe.json").read_text())
 GIVEN = CASE["given"]

@@ -25,8 +25,8 @@ from shared.contract.quantity import written
 from shared.contract.shot import Quantity, Shot, Title, shown
 from shared.contract.signals import SIGNALS, rgb
 from shared.stage.errors import UserError
-from tests.models.motions import GRAVITY, MASSES, bouncing_ball, four_bar_motion
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
+from tools.models.motions import GRAVITY, MASSES, bouncing_ball, four_bar_motion
 
 FORCE, WEIGHT = (rgb(SIGNALS[name].dark) for name in ("forces", "weights"))
 

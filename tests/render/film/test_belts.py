@@ -20,8 +20,8 @@ from render.film.tubes.belts import Belt, belts
 from shared.contract import Held
 from shared.contract.belt_path import BeltPath
 from shared.stage.errors import UserError
-from tests.models.outlines import inside
 from tests.shared.shape_checks import checked
+from tools.models.outlines import inside
 
 RADII = st.floats(0.01, 0.1)
 

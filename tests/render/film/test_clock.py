@@ -22,8 +22,8 @@ from shared.contract import Motion, read_motion, read_parts
 from shared.contract.shot import Camera, Shot, Trail, read_shot, write_shot
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
-from tests.models.motions import bouncing_ball, four_bar_motion
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
+from tools.models.motions import bouncing_ball, four_bar_motion
 
 MOTION = four_bar_motion(steps=72)
 BALL = bouncing_ball(steps=40)  # 0.903 s

@@ -15,7 +15,7 @@ from render.film.film import Film
 from render.film.framing import project
 from shared.contract import Mount, mounted, read_motion, read_parts
 from shared.contract.shot import Camera, Shot
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
 
 TIME = np.linspace(0.0, 1.0, 61)
 BOX = np.array([[x, y, z] for x in (-0.1, 0.1) for y in (-0.05, 0.05) for z in (0.0, 0.02)])

@@ -32,8 +32,8 @@ from shared.contract import (
 )
 from shared.contract.shot import Shot
 from shared.stage.errors import UserError
-from tests.models.motions import bouncing_ball
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
+from tools.models.motions import bouncing_ball
 
 TIME = np.linspace(0.0, 2.0, 201)
 ZERO = np.zeros_like(TIME)

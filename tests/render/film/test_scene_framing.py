@@ -19,7 +19,7 @@ from render.presets import ASPECTS
 from shared.contract import Mount, mounted, read_motion, read_parts
 from shared.contract.shot import Camera, Shot, Title
 from shared.stage.errors import UserError
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
 
 MOUNTS = [mounted((0.0, 0.0)), mounted((0.0, -9.81)), mounted((3.0, 4.0), "wall")]
 """On a desk, on a stand, and at a wall in a world that is turned."""

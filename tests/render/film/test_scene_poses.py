@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from render.film.clock import Clock
 from render.film.poses import Moment, Poses, hermite
 from shared.contract.shot import Shot
-from tests.models.motions import bouncing_ball, four_bar_motion
+from tools.models.motions import bouncing_ball, four_bar_motion
 
 MOTION = four_bar_motion()
 FINE = four_bar_motion(steps=360 * 7)

@@ -19,8 +19,8 @@ from render.film.poses import Moment, Poses
 from render.film.tubes.spirals import APART, HUB, RIM, Site, Spiral, spirals
 from shared.contract import Action, ForceMotion, Motion, Shape, read_motion, read_parts
 from shared.contract.shot import Shot
-from tests.models.motions import four_bar_motion
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
+from tools.models.motions import four_bar_motion
 
 PIN = np.array([0.12, 0.0])
 SITE = Site(outer="rocker", direction=0.4, base=0.02, hub=0.025, over=0.03)

@@ -16,7 +16,7 @@ from render.frames.keys import scene_key
 from render.presets import PRESETS
 from shared.contract import Action, ContactMotion, ForceMotion, Motion, Shape, read_motion, read_parts
 from shared.contract.shot import Shot, read_shot
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
 
 A = np.array([0.1, -0.2, 0.03])
 DOWN = np.array([0.0, -1.0, 0.0])

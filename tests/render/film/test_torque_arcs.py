@@ -28,8 +28,8 @@ from render.presets import ASPECT, Preset
 from shared.contract import Action, Acts, DriverMotion, ForceMotion, Motion
 from shared.contract.shot import Shot, Title
 from shared.contract.signals import SIGNALS, rgb
-from tests.models.motions import four_bar_motion
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
+from tools.models.motions import four_bar_motion
 
 TORQUE = rgb(SIGNALS["torques"].dark)
 

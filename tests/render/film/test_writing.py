@@ -22,8 +22,8 @@ from render.presets import ASPECT, ASPECTS
 from shared.contract.shot import Camera, Names, Shot, Title, refuse_unknown
 from shared.contract.signals import SIGNALS, rgb
 from shared.stage.errors import UserError
-from tests.models.motions import bouncing_ball, four_bar_motion
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
+from tools.models.motions import bouncing_ball, four_bar_motion
 
 FORCE = rgb(SIGNALS["forces"].dark)
 

@@ -17,8 +17,8 @@ from render.frames.store import FrameStore
 from render.presets import Preset
 from shared.contract.shot import Shot
 from shared.stage.paths import Out
-from tests.models.motions import four_bar_motion
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
+from tools.models.motions import four_bar_motion
 
 TINY = Preset("tiny", 96, 54, 1)
 

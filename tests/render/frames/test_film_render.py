@@ -26,7 +26,7 @@ from shared.contract import Rolling, mounted, read_parts, write_motion, write_pa
 from shared.contract.shot import Camera, Label, Shot, write_shot
 from shared.stage import jsonfile
 from shared.stage.paths import ROOT, Out
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
 
 TINY = Preset("tiny", 96, 54, 2)
 BLURRED = Preset("blurred", 96, 54, 2, motion_blur=True)

@@ -23,7 +23,7 @@ from shared.stage import jsonfile
 from shared.stage.errors import UserError
 from shared.stage.files import file_hash
 from shared.stage.paths import ROOT
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
 
 TINY = Preset("tiny", 96, 54, 2)
 

@@ -21,7 +21,7 @@ from shared.contract.shot import Camera, Label, Shot, Surface, Trail, read_shot,
 from shared.stage import stages
 from shared.stage.paths import ROOT
 from shared.stage.stages import contract_sources
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
 
 SHOT = Shot(seconds_per_turn=0.4)
 

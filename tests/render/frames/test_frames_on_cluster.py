@@ -21,7 +21,7 @@ from render.presets import Preset
 from shared.cluster import hand
 from shared.contract.shot import Shot
 from shared.stage import jsonfile
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
 
 TINY = Preset("tiny", 48, 27, 1)
 FRAMES = 12

@@ -25,7 +25,7 @@ from shared.contract.shot import Shot
 from shared.stage import jsonfile
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, Out
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
 
 TINY = Preset("tiny", 32, 18, 1)
 

@@ -20,7 +20,7 @@ from shared.contract.shot import Shot
 from shared.stage.errors import UserError
 from shared.stage.files import file_hash
 from shared.stage.paths import ROOT, Out
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
 
 TINY = Preset("tiny", 96, 54, 1)
 SHORT = Shot(turns=2, seconds_per_turn=0.2, trails=(), labels=())

@@ -13,10 +13,10 @@ from render.view.bundle import PAGE, bundle, node, node_modules
 from render.view.document import document
 from render.view.payload import payload
 from shared.contract.quantity import written
-from tests.models.motions import plain_skeleton
 from tests.render.test_shaking import motion_of
 from tests.results.test_couples import two_cylinders
 from tests.running.needs import needed
+from tools.models.motions import plain_skeleton
 
 
 def largest(orders: Orders, unit: str, order: float) -> str:

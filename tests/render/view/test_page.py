@@ -17,9 +17,9 @@ from render.view.bundle import PAGE, node, node_modules
 from shared.contract import read_motion
 from shared.contract.shot import Shot
 from shared.stage.paths import Out
-from tests.render import film_fixture
-from tests.render.view.pins import dot, projected
 from tests.running.needs import needed
+from tools.fixtures import film_fixture
+from tools.fixtures.pins import dot, projected
 
 JOINTS = ("B", "C", "B", "A", "C", "D", "B", "C", "B", "C")
 STEPS = (0, 31, 77, 110, 150, 190, 222, 260, 301, 340)

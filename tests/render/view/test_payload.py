@@ -19,8 +19,8 @@ from shared.contract import read_motion
 from shared.contract.skeleton import read_skeleton, write_skeleton
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
-from tests.render import film_fixture
 from tests.render.view.decoded import decoded
+from tools.fixtures import film_fixture
 
 KINDS = st.sampled_from([np.float32, np.float64, np.uint8, np.int8, np.int16, np.uint16, np.uint32])
 

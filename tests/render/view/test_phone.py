@@ -21,8 +21,8 @@ from shared.contract import read_motion
 from shared.contract.shot import Shot
 from shared.contract.skeleton import read_skeleton, write_skeleton
 from shared.stage.paths import Out
-from tests.render import film_fixture
 from tests.running.needs import needed
+from tools.fixtures import film_fixture
 
 SCRIPT = Path(__file__).with_name("phone.cjs")
 

@@ -31,35 +31,6 @@ from tests.studio.live import elsewhere
 WAIT = 240.0
 """Seconds that a test waits at most; a machine may be busy."""
 
-ARM = '''"""A crank whose end is traced."""
-
-from dataclasses import dataclass
-from math import tau
-
-from mbsd import Mechanism, constant_rate
-
-STEPS = 24
-
-
-@dataclass(frozen=True)
-class Params:
-    """m, rad/s."""
-
-    length: float = 0.2  # of the crank
-    speed: float = tau
-
-
-def build(p: Params) -> Mechanism:
-    """One crank."""
-    m = Mechanism("arm")
-    crank = m.bar("crank", p.length, mass=1.0)
-    m.revolute("A", m.ground.at(0, 0), crank.start)
-    m.drive_angle("motor", crank, constant_rate(p.speed))
-    m.trace("P", crank.end)
-    m.start_near(crank=0)
-    return m
-'''
-
 FOUR_BAR = '''"""A four-bar."""
 
 from dataclasses import dataclass, field

@@ -21,7 +21,7 @@ from studio.night.plan.steps import FILM, STEPS
 from studio.night.progress import forecast as told
 from studio.night.progress.forecast import START, Forecast, forecast
 from studio.night.progress.frames import Frames
-from tests.render import film_fixture
+from tools.fixtures import film_fixture
 
 PREVIEW = PRESETS["preview"]
 NOW = datetime(2026, 3, 1, 22, 30)

@@ -12,9 +12,9 @@ import pytest
 
 from shared.contract.shot import Shot
 from shared.stage.paths import ROOT
-from tests.render import film_fixture
 from tests.running.processes import working_for
 from tests.studio.night.nights import until
+from tools.fixtures import film_fixture
 
 PICTURES = 60
 

@@ -11,12 +11,12 @@ import numpy as np
 from mbsd import Mechanism, ModelError, constant_rate, harmonic
 from mbsd.cams import RISES, Lift, flat_cam, oscillating_flat_cam, oscillating_roller_cam, roller_cam
 from mbsd.results.solution import Solution
-from tests.models.assur_models import MODELS
-from tests.models.random_linkages import linkage
 from tools.hunt.mechanisms.laws import swinging, turning
 from tools.hunt.mechanisms.machines import _at_start, driven_crank, solid
 from tools.hunt.subject import Subject, family
 from tools.hunt.words.described import seen_from
+from tools.models.assur_models import MODELS
+from tools.models.random_linkages import linkage
 
 STEEPEST_FALL = -0.8
 """rad per rad of the cam: a flat face on an arm leaves the cam at -1, where there is none."""

@@ -8,10 +8,10 @@ import numpy as np
 
 from mbsd import Mechanism
 from mbsd.results.solution import Solution
-from tests.models.random_linkages import linkage
 from tools.hunt.mechanisms.free import chain
 from tools.hunt.solving.free_case import TOLERANCE
 from tools.hunt.subject import Subject, family
+from tools.models.random_linkages import linkage
 
 STEPS = 2000
 """More are looked at: usual are 20 to 200."""

@@ -10,10 +10,10 @@ from scipy.integrate import solve_ivp
 from mbsd import Mechanism, constant_rate, curve, harmonic
 from mbsd.model.body import Body
 from mbsd.results.solution import Solution
-from tests.models.assur_models import MODELS
-from tests.models.random_linkages import linkage
 from tools.hunt.mechanisms.machines import solid
 from tools.hunt.subject import Subject, family
+from tools.models.assur_models import MODELS
+from tools.models.random_linkages import linkage
 
 
 def chain(m: Mechanism, rng: np.random.Generator, count: int, cart: bool) -> list[Body]:

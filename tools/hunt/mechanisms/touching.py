@@ -7,9 +7,9 @@ import math
 import numpy as np
 
 from mbsd import Mechanism, curve
-from tests.models.contact_models import ball, box, disc
 from tools.hunt.mechanisms.machines import solid
 from tools.hunt.subject import Subject, family
+from tools.models.contact_models import ball, box, disc
 
 EVENTS = frozenset({"contacts"})
 

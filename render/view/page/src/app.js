@@ -12,6 +12,7 @@
  * "start", "move" or "end". Without it the plane is panned.
  */
 import { Clock } from "./data/clock.js";
+import { KINDS } from "./data/kinds.js";
 import { Motion } from "./data/motion.js";
 import { Plots } from "./plots/plots.js";
 import { Store, same } from "./state.js";
@@ -132,11 +133,6 @@ export class App {
     if (playing) this.redraw();
   }
 }
-
-/** By the kind of a thing, where the payload has it. */
-export const KINDS = {
-  joint: "joints", body: "bodies", driver: "drivers", point: "points", force: "forces", contact: "contacts",
-};
 
 const still = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 

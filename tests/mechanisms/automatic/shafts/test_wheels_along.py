@@ -10,8 +10,8 @@ from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.shafts.along import Along
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.shafts.proofs import checked
-from tests.models import machines_along
-from tests.models import shaft_machines as models
+from tools.models import machines_along
+from tools.models import shaft_machines as models
 
 
 def along(m: Mechanism, pin: float | None = None) -> Along:

@@ -15,8 +15,8 @@ from shared.contract.materials import MATERIALS
 from shared.contract.mount import Kind
 from shared.shapes.bodies import Bodies
 from shared.shapes.solid import Solid
-from tests.models.machines_along import V_TWO, engine
 from tools.hunt_parts.case import meshed, overlapping, proven
+from tools.models.machines_along import V_TWO, engine
 
 STEPS, PIN = 90, 8.0
 

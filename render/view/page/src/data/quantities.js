@@ -5,7 +5,7 @@
  * @typedef {{title: string, unit: string, lines: Line[]}} Chart
  * @typedef {{title: string, unit: string, crank: string, orders: Float32Array, sizes: Float32Array, body?: string}} Spectrum
  */
-import { KINDS } from "../app.js";
+import { KINDS } from "./kinds.js";
 
 /** Parts of the largest below which a curve is rounding; and what is rounding by itself, in SI units. */
 const NOTHING = 1e-9, TINY = 1e-12;

@@ -18,7 +18,7 @@ def main() -> None:
     """Load Blender and print what Cycles finds. Raises UserError if Blender cannot be loaded."""
     with tempfile.TemporaryDirectory() as home:
         os.environ |= {"BLENDER_USER_RESOURCES": home, "XDG_CACHE_HOME": home}  # or it writes into the home folder
-        with _hushed():
+        with _silenced():
             device = _device()
         say("render device", device)
 
@@ -36,7 +36,7 @@ def _device() -> str:
 
 
 @contextmanager
-def _hushed() -> Iterator[None]:
+def _silenced() -> Iterator[None]:
     """Blender reports every backend it does not find, below Python's own stdout."""
     kept, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
     try:

@@ -1,0 +1,229 @@
+"""What a mechanism is made of, by name: joints, drivers, forces, contacts, traced points, starts, events.
+
+Each method of a joint, driver, force or contact stands in the file of its kind; a line here makes it a method.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from mbsd.base.arguments import several_numbers
+from mbsd.base.errors import ModelError
+from mbsd.base.shown import shown
+from mbsd.model.body import Body, Marker
+from mbsd.model.contacts.discs import rigid_discs
+from mbsd.model.contacts.line import rigid_contact
+from mbsd.model.contacts.one_way import one_way
+from mbsd.model.contacts.rope import rope
+from mbsd.model.contacts.stops import angle_stop, coordinate_stop, stop
+from mbsd.model.contacts.terrain import rigid_terrain
+from mbsd.model.drivers.angle import drive_angle
+from mbsd.model.drivers.coordinate import drive_coordinate
+from mbsd.model.drivers.distance import drive_distance
+from mbsd.model.drivers.relative_angle import drive_relative_angle
+from mbsd.model.event import Event
+from mbsd.model.forces.actuator import actuator
+from mbsd.model.forces.bushing import bushing
+from mbsd.model.forces.contact import contact
+from mbsd.model.forces.curve_of_angle import curve_of_angle, motor
+from mbsd.model.forces.curve_of_length import curve_of_length
+from mbsd.model.forces.drag import drag
+from mbsd.model.forces.force import force
+from mbsd.model.forces.friction import friction
+from mbsd.model.forces.gas import gas
+from mbsd.model.forces.gas_cycle import gas_cycle
+from mbsd.model.forces.gas_strut import gas_strut
+from mbsd.model.forces.gravitation import gravitation
+from mbsd.model.forces.hydraulic_cylinder import hydraulic_cylinder
+from mbsd.model.forces.rotating_frame import rotating_frame
+from mbsd.model.forces.spring import spring
+from mbsd.model.forces.spring_law import spring_law
+from mbsd.model.forces.torque import torque
+from mbsd.model.forces.torsion_spring import torsion_spring
+from mbsd.model.forces.torsion_spring_law import torsion_spring_law
+from mbsd.model.forces.tyre import tyre
+from mbsd.model.forces.user_force import user_force
+from mbsd.model.joints.angle_lock import angle_lock
+from mbsd.model.joints.belt import belt
+from mbsd.model.joints.cam_flat import cam_flat
+from mbsd.model.joints.cam_roller import cam_roller
+from mbsd.model.joints.constraint import constraint
+from mbsd.model.joints.distance import distance
+from mbsd.model.joints.gear_pair import gear_pair
+from mbsd.model.joints.geneva import geneva
+from mbsd.model.joints.pin_in_slot import pin_in_slot
+from mbsd.model.joints.point_on_curve import point_on_curve
+from mbsd.model.joints.prismatic import prismatic
+from mbsd.model.joints.rack_and_pinion import rack_and_pinion
+from mbsd.model.joints.revolute import revolute
+from mbsd.model.joints.rolling_disc import rolling_disc
+from mbsd.model.joints.rolling_on_curve import rolling_on_curve
+from mbsd.model.joints.weld import weld
+from mbsd.model.laws.function import checked_pulses
+from mbsd.model.mechanism import Model, Start, StartVelocity, new_name, number_given, own_body
+
+
+class Building(Model):
+    """Adds to a model, and refuses at once what is wrong, by name."""
+
+    # -- joints --------------------------------------------------------------------------------------------------------
+
+    revolute = revolute
+    prismatic = prismatic
+    weld = weld
+    distance = distance
+    pin_in_slot = pin_in_slot
+    gear_pair = gear_pair
+    belt = belt
+    rack_and_pinion = rack_and_pinion
+    rolling_disc = rolling_disc
+    rolling_on_curve = rolling_on_curve
+    point_on_curve = point_on_curve
+    cam_roller = cam_roller
+    cam_flat = cam_flat
+    geneva = geneva
+    angle_lock = angle_lock
+    constraint = constraint
+
+    # -- drivers -------------------------------------------------------------------------------------------------------
+
+    drive_angle = drive_angle
+    drive_relative_angle = drive_relative_angle
+    drive_coordinate = drive_coordinate
+    drive_distance = drive_distance
+
+    # -- forces --------------------------------------------------------------------------------------------------------
+
+    spring = spring
+    torsion_spring = torsion_spring
+    spring_law = spring_law
+    torsion_spring_law = torsion_spring_law
+    bushing = bushing
+    torque = torque
+    force = force
+    actuator = actuator
+    curve_of_length = curve_of_length
+    curve_of_angle = curve_of_angle
+    motor = motor
+    gravitation = gravitation
+    gas = gas
+    gas_cycle = gas_cycle
+    gas_strut = gas_strut
+    hydraulic_cylinder = hydraulic_cylinder
+    contact = contact
+    tyre = tyre
+    drag = drag
+    rotating_frame = rotating_frame
+    friction = friction
+    user_force = user_force
+
+    # -- unilateral contacts and stops, which act in simulations alone -------------------------------------------------
+
+    rigid_contact = rigid_contact
+    rigid_discs = rigid_discs
+    rigid_terrain = rigid_terrain
+    rope = rope
+    angle_stop = angle_stop
+    coordinate_stop = coordinate_stop
+    stop = stop
+    one_way = one_way
+
+    # -- points, starts, events -------------------------------------------------------------------------------------
+
+    def trace(self, name: str, marker: Marker) -> Marker:
+        """Follow a point: its path, velocity and acceleration are in the solution."""
+        new_name(self, name, "trace", self.traces)
+        if not isinstance(marker, Marker):
+            raise ModelError(f"{self.name}: trace '{name}' needs a marker, got {shown(marker)}; write body.at(x, y)")
+        own_body(self, marker.body, f"trace '{name}'")
+        self.traces[name] = marker
+        return marker
+
+    def start_near(self, **poses: float | Sequence[float]) -> None:
+        """Rough start poses that pick the assembly branch, in DEGREES: ``crank=0, coupler=45``.
+
+        A body that no joint places, such as a slider, may be given as (x, y, degrees).
+        """
+        for name, pose in poses.items():
+            self.known_body(name)
+            if isinstance(pose, int | float | np.number):
+                self.starts[name] = Start(math.radians(number_given(self, f"start of '{name}'", pose)))
+                continue
+            x, y, degrees = several_numbers(
+                f"{self.name}: start of '{name}'", pose, 3, "give degrees, or (x, y, degrees)"
+            )
+            self.starts[name] = Start(math.radians(degrees), (x, y))
+
+    def start_moving(self, **velocities: float | Sequence[float]) -> None:
+        """Velocities at the start of a simulation: rad/s, or (vx, vy, omega) of the body's frame in m/s and rad/s.
+
+        Bodies that are not named move as their joints make them, with the least kinetic energy. Where joints and
+        drivers forbid a given value, it is changed and the simulation warns.
+        """
+        for name, velocity in velocities.items():
+            self.known_body(name)
+            what = f"start velocity of '{name}'"
+            if isinstance(velocity, int | float | np.number):
+                self.velocities[name] = StartVelocity(number_given(self, what, velocity))
+                continue
+            vx, vy, omega = several_numbers(f"{self.name}: {what}", velocity, 3, "give rad/s, or (vx, vy, omega)")
+            self.velocities[name] = StartVelocity(omega, (vx, vy))
+
+    def event(
+        self,
+        name: str,
+        value: Callable[[float, Any], float],
+        direction: int = 0,
+        terminal: bool = False,
+        action: Callable[[Any], object] | None = None,
+        shortest: float | None = None,
+    ) -> Event:
+        """Monitor a scalar: ``value(t, moment)`` passes zero, rising (direction 1), falling (-1) or either (0).
+
+        ``moment`` shows the motion now (mbsd/dynamics/events/moment.py). ``terminal`` ends the simulation there;
+        ``action`` is called with the moment and may change velocities and release joints. A scalar that is smooth is
+        found below zero however short a time it is there. One that has pulses is not seen between them: ``shortest``
+        (s) is how long the shortest thing in it lasts, and it is looked at twice as often.
+        """
+        new_name(self, name, "event", self.events)
+        for what, function in (("value", value), ("action", action)):
+            if not callable(function) and not (what == "action" and function is None):
+                raise ModelError(f"{self.name}: event '{name}': {what} is {shown(function)}; it must be a function")
+        if direction not in (-1, 0, 1):
+            raise ModelError(f"{self.name}: event '{name}': direction is {shown(direction)}; it must be 1, -1 or 0")
+        event = self.events[name] = Event(
+            name,
+            value,
+            direction,
+            bool(terminal),
+            action,
+            checked_pulses(f"{self.name}: event '{name}'", (), shortest)[1],
+        )
+        return event
+
+    def marker_in_world(self, body: Body, x: float, y: float, angle: float) -> Marker:
+        """See :meth:`mbsd.model.body.Body.at_world`."""
+        from mbsd.kinematics.pose.world_places import marker_in_world
+
+        return marker_in_world(self, body, x, y, angle)
+
+    def change(self, name: str, **values: Any) -> None:
+        """Change numbers or laws of a body, joint, driver, force or contact; the next solution has them.
+
+            m.change("spring", stiffness=250.0)
+            m.change("crank", mass=1.2)
+            m.change("motor", law=constant_rate(20.0))
+
+        ``values`` are the arguments of the method that added it, but for its markers and bodies; of a body its mass
+        (kg), com (m) and inertia (kg m^2), of a bar its length (m), too, with which all that is at its end moves. The
+        model is then the one that would have been built with these numbers: what was not given but follows from
+        others, such as the inertia of a bar or static friction, follows the new ones, and None takes a number back.
+        Nothing is compiled anew. Raises ModelError, and changes nothing, for what that method refuses.
+        """
+        from mbsd.model.change import change
+
+        change(self, name, values)

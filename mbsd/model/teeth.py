@@ -56,7 +56,7 @@ def gear_problem(params: Mapping[str, Any], x: float, y: float) -> str | None:
         return None
     return (
         f"its centres are {distance:.6g} m apart, but a module of {module:g} m and {first} {between} {second} teeth "
-        f"want {module:g} * ({first} {between} {second}) / 2 = {wanted:.6g} m. Move a centre or change module or "
+        f"need {module:g} * ({first} {between} {second}) / 2 = {wanted:.6g} m. Move a centre or change module or "
         "teeth; gears with profile shift are given by the radii at which they roll, radius_i= and radius_j="
     )
 
@@ -105,6 +105,6 @@ def rack_problem(params: Mapping[str, Any], x: float, y: float) -> str | None:
         return None
     return (
         f"the pinion's centre is {y:.6g} m above the rack's x axis, its pitch line, but a module of {module:g} m and "
-        f"{teeth} teeth want {module:g} * {teeth} / 2 = {radius:.6g} m.{side} Move the rack's marker or the pinion, or "
+        f"{teeth} teeth need {module:g} * {teeth} / 2 = {radius:.6g} m.{side} Move the rack's marker or the pinion, or "
         "change module or teeth; a pinion with profile shift is given by the radius at which it rolls, radius="
     )

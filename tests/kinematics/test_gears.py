@@ -190,10 +190,10 @@ def test_gears_by_teeth_are_those_of_their_radii(internal: bool, distance: float
 @pytest.mark.parametrize("method", ["sweep", "simulate", "equilibrium"])
 def test_a_centre_distance_that_does_not_fit_the_teeth_is_told(method: str) -> None:
     m = _pair(0.0601, teeth=(20, 40), module=0.002)
-    says = r"train: gear_pair 'g': its centres are 0\.0601 m apart, but .* and 20 \+ 40 teeth want .* = 0\.06 m\."
+    says = r"train: gear_pair 'g': its centres are 0\.0601 m apart, but .* and 20 \+ 40 teeth need .* = 0\.06 m\."
     with pytest.raises(AssemblyError, match=says):
         getattr(m, method)(*([1.0] if method != "equilibrium" else []))
-    with pytest.raises(AssemblyError, match=r"40 - 20 teeth want 0\.002 \* \(40 - 20\) / 2 = 0\.02 m"):
+    with pytest.raises(AssemblyError, match=r"40 - 20 teeth need 0\.002 \* \(40 - 20\) / 2 = 0\.02 m"):
         _pair(0.06, teeth=(40, 20), module=0.002, internal=True).sweep(1.0)
     with pytest.raises(AssemblyError, match=r"0\.06 m apart.*= 60 m"):  # a module in millimetres
         _pair(0.06, teeth=(20, 40), module=2.0).sweep(1.0)

@@ -52,7 +52,7 @@ def begin(work: Callable[[], int]) -> int:
 def keep(child: int, server: int, most_bytes: int | None = None) -> tuple[int | None, int]:
     """Wait until ``child`` ends or must end, and end all that is left below this process.
 
-    ``server`` is a descriptor that ends with the server, or when the server wants the end. Returns the exit code of
+    ``server`` is a descriptor that ends with the server, or when the server asks for it. Returns the exit code of
     the child, negative for signals, or None if it was ended here; and its bytes, if those were too many, else 0.
     """
     poll = select.poll()

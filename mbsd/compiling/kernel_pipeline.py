@@ -5,7 +5,7 @@ call one another by name need a number that depends on the function alone, becau
 another process.
 
 A function that is copied into its callers passes the untyped part of the pipeline once, not once for each call: numba
-copies the result anyway.
+copies the result anyway. Names of several kernels become one of them before calls are read (alternatives.py).
 """
 
 from __future__ import annotations
@@ -30,6 +30,8 @@ from numba.core.ir_utils import add_offset_to_labels, find_topo_order, guard, ne
 from numba.core.postproc import PostProcessor
 from numba.core.untyped_passes import ExtractByteCode, InlineInlinables
 
+from mbsd.compiling.alternatives import choose
+
 _READ: dict[Any, Any] = {}
 """Untyped code of the functions that are copied into others."""
 
@@ -40,6 +42,8 @@ class _Worker(InlineWorker):
     def __init__(self, *arguments: Any) -> None:
         super().__init__(*arguments)
         self._compiler_pipeline = _untyped
+        self.first: Any = None
+        """numba's type of the first argument of the kernel that is compiled; None where there is none yet."""
 
     def inline_ir(self, caller_ir: Any, block: Any, i: int, callee_ir: Any, *_: Any, **__: Any) -> Any:
         """Put a copy of ``callee_ir`` in place of call ``i`` of a block, by numba's own steps.
@@ -49,6 +53,7 @@ class _Worker(InlineWorker):
         copied: dict[int, Any] = {}
         blocks = {label: copy.deepcopy(callee_block, copied) for label, callee_block in callee_ir.blocks.items()}
         scope, statement = block.scope, block.body[i]
+        choose(blocks.values(), self.first)
         blocks = add_offset_to_labels(blocks, max(ir_utils._the_max_label.next(), *caller_ir.blocks) + 1)
         blocks = simplify_CFG(blocks)
         first = min(blocks)
@@ -101,6 +106,8 @@ class _Inline(InlineInlinables):
         """As numba's."""
         worker = _Worker(state.typingctx, state.targetctx, state.locals, state.pipeline, state.flags, None)
         blocks, modified = state.func_ir.blocks, False
+        worker.first = state.args[0] if state.args else None
+        choose(blocks.values(), worker.first)
         waiting = list(blocks.items())
         while waiting:
             _, block = waiting.pop()

@@ -116,7 +116,7 @@ from mbsd.dynamics.integrators.dop853 import crossing
 unused = [
     acceleration.derivative, projection.project, bridge.bridge.kernel, equations.reduced.kernel, equations.write_alone,
     rrp.embed_rrp.kernel, relative.rows.kernel, user_forces.apply_user_forces.kernel,
-    crossing.crossing.independent.kernel,
+    crossing.crossing.kernel,
 ]
 import sys
 print([one.py_func.__name__ for one in unused if one.overloads], "mbsd.equations.interactions.apply" in sys.modules)

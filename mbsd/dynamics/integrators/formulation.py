@@ -1,7 +1,7 @@
 """What explicit integrators call, for either formulation: reference coordinates (Dynamics) or independent (Embedding).
 
 A loop is written once, in the words below, and compiled for each formulation with that formulation's kernels in their
-place: nothing is asked at run time, and no loop contains what the other one needs.
+place, as its first argument says (mbsd/compiling/alternatives.py).
 
     accelerate(dyn, scratch, t, state, a, lam)    fill a (n,) and, in reference coordinates, lam (m,) at a state (2, n)
                                                   and time (s); returns the power of loads and drivers (W), not a
@@ -21,16 +21,13 @@ place: nothing is asked at run time, and no loop contains what the other one nee
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable
-from dataclasses import dataclass
-from types import FunctionType
-from typing import Any
-
+from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import inlined
 from mbsd.dynamics import state as run_state
 from mbsd.dynamics.embedding import equations, records
+from mbsd.dynamics.embedding.arrays import Embedding
 from mbsd.dynamics.reference import acceleration, projection
+from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.state import EVALUATIONS, POWER, STARTED, TIME
 
 
@@ -65,73 +62,18 @@ def _join_rows(dyn, scratch, out, k, apart):
     pass
 
 
-REFERENCE: dict[str, Any] = {
-    "accelerate": acceleration.accelerate,
-    "derivative": acceleration.derivative,
-    "project": projection.project,
-    "settle": _go_on,
-    "record": _record,
-    "record_all": _record,
-    "keep_row": _keep_row,
-    "join_rows": _join_rows,
-    "record_here": _record_here,
-}
-INDEPENDENT: dict[str, Any] = {
-    "accelerate": equations.accelerate,
-    "derivative": equations.derivative,
-    "project": _stay,
-    "settle": equations.settle,
-    "record": records.record,
-    "record_all": records.record_all,
-    "keep_row": records.keep_row,
-    "join_rows": records.join_rows,
-    "record_here": records.record_here,
-}
+accelerate = alternatives({Dynamics: acceleration.accelerate, Embedding: equations.accelerate})
+derivative = alternatives({Dynamics: acceleration.derivative, Embedding: equations.derivative})
+project = alternatives({Dynamics: projection.project, Embedding: _stay})
+settle = alternatives({Dynamics: _go_on, Embedding: equations.settle})
+record = alternatives({Dynamics: _record, Embedding: records.record})
+record_all = alternatives({Dynamics: _record, Embedding: records.record_all})
+keep_row = alternatives({Dynamics: _keep_row, Embedding: records.keep_row})
+join_rows = alternatives({Dynamics: _join_rows, Embedding: records.join_rows})
+record_here = alternatives({Dynamics: _record_here, Embedding: records.record_here})
 
 
-@dataclass(frozen=True)
-class Both:
-    """A kernel for either formulation."""
-
-    reference: Any
-    independent: Any
-
-    def __call__(self, *arguments: Any) -> Any:
-        """For the eye of a type checker alone: loops call one of the two."""
-        raise TypeError("call .reference or .independent")
-
-
-def for_both(decorate: Callable[[Any], Any]) -> Callable[[Callable[..., Any]], Both]:
-    """Decorator: a function in the words above, decorated for each formulation."""
-
-    def twice(function: Any) -> Both:
-        return Both(*(_made(decorate, function, formulation) for formulation in ("reference", "independent")))
-
-    return twice
-
-
-def _made(decorate: Callable[[Any], Any], function: Any, formulation: str) -> Any:
-    names = {
-        name: getattr(value, formulation) if isinstance(value, Both) else value
-        for name, value in function.__globals__.items()
-    }
-    names |= REFERENCE if formulation == "reference" else INDEPENDENT
-    own = FunctionType(function.__code__, names, f"{function.__name__}_{formulation}")
-    own.__qualname__, own.__module__, own.__doc__ = own.__name__, function.__module__, function.__doc__
-    made = decorate(own)
-    setattr(sys.modules[own.__module__], own.__name__, made)  # where the cache finds it
-    return made
-
-
-def _in_place(*_: Any) -> Any:
-    """What stands in a loop for a formulation's kernel."""
-    raise TypeError("a loop is called for one formulation")
-
-
-accelerate = derivative = project = settle = record = record_all = keep_row = join_rows = record_here = _in_place
-
-
-@for_both(inlined)
+@inlined
 def begin(dyn, scratch, state):
     """Make dy valid at a start or restart."""
     if state.count[STARTED] == 0:

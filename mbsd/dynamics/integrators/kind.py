@@ -48,19 +48,14 @@ class Integrator:
     """Numbers that ``simulate`` takes by name for this method; in this order they stand in Settings.options."""
     matrices: tuple[int, int] = (0, 0)
     """Full matrices it needs, and their rows for each coordinate (see mbsd/dynamics/reference/full_matrix.py)."""
-    independent: Callable[..., int] | None = None
-    """``advance`` of an Embedding, of methods that know independent coordinates."""
+    independent: bool = False
+    """Whether ``advance`` integrates independent coordinates as well: ``dyn`` is then an Embedding."""
     refusal: Callable[[Dynamics], str | None] = lambda dynamics: None
     """Why this method cannot simulate a mechanism, or None."""
     meets_switches: bool = False
     """Whether its steps end where contacts by penalty begin, so that it knows how fast they approach then."""
     package: str = ""
     """Another library's, by the name it is imported by; needed for this method alone."""
-
-    @property
-    def embeds(self) -> bool:
-        """Whether it integrates independent coordinates as well."""
-        return self.independent is not None
 
     @property
     def installed(self) -> bool:

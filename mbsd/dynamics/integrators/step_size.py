@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, inlined
-from mbsd.dynamics.integrators.formulation import derivative, for_both
+from mbsd.dynamics.integrators.formulation import derivative
 from mbsd.dynamics.state import EVALUATIONS, TIME
 
 WITHIN = 1e-3
@@ -21,7 +21,7 @@ def allowed(settings, before, after, part, c):
     return settings.absolute[part, c] + settings.growing[part, c] * max(abs(before[part, c]), abs(after[part, c]))
 
 
-@for_both(apart)
+@apart
 def first_step(dyn, scratch, state, settings, exponent):
     """Step (s) that suits the first two derivatives; ``exponent`` is one by the order of the estimate plus one."""
     y = state.y

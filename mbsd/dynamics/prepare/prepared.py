@@ -58,9 +58,7 @@ class PreparedDynamics:
         """Go on with ``method`` in reference coordinates (arrays: Dynamics) or in independent ones (Embedding)."""
         key = method.name, type(arrays)
         if key not in self.advancing:
-            chosen = method.advance if isinstance(arrays, Dynamics) else method.independent
-            assert chosen is not None, method.name
-            self.advancing[key] = Often(chosen)
+            self.advancing[key] = Often(method.advance)
         advancing: Any = self.advancing[key]
         if self.approaches:
             advancing = partial(self.approaches.through, advancing)

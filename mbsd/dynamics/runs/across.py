@@ -31,7 +31,7 @@ NEAR = 0.05
 def can_carry(run: Run) -> bool:
     """Whether a run in reference coordinates has poses of this sort and independent coordinates to pass them."""
     ready = run.ready
-    if not run.method.embeds or can_embed(ready) is not None:
+    if not run.method.independent or can_embed(ready) is not None:
         return False
     made = embedded_at_start(ready)
     if made is None:

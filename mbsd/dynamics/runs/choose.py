@@ -50,7 +50,7 @@ class ChoosingRun(Run):
         return None
 
     def _choice(self, state: run_state.State) -> tuple[str | None, Embedded | None]:
-        if not self.method.embeds:
+        if not self.method.independent:
             return f"method '{self.method.name}' works in reference coordinates", None
         why = can_embed(self.ready)
         if why is not None:

@@ -13,7 +13,7 @@ outer normal at the foot of marker j, and body i takes the opposite. Deepest and
     damping_model           A(e)                  with it a body returns with v_1 = e' v_0, where
     "hunt_crossley"         3 (1 - e) / 2         A (1 + e') = ln((1 + A) / (1 - A e')),  whatever k, n, m and v_0 are
     "lankarani_nikravesh"   3 (1 - e^2) / 4       (v_1 follows from w). For e = 0.9 e' is 0.909, 0.913 and 0.894,
-    "flores"                8 (1 - e) / (5 e)     for e = 0.5 it is 0.66, 0.73 and 0.47: the first two hold for small losses
+    "flores"                8 (1 - e) / (5 e)     for e = 0.5 it is 0.66, 0.73 and 0.47: the first two need e near 1
 
 v_0 counts as ``least_approach`` at least, so that resting does not get infinitely stiff. A contact in which the motion
 begins has no v_0 and no damping.

@@ -13,7 +13,7 @@ import math
 
 from mbsd.compiling.jit import inlined, lazy
 from mbsd.dynamics.integrators.dop853.dense import interpolant, interpolate
-from mbsd.dynamics.integrators.formulation import derivative, for_both
+from mbsd.dynamics.integrators.formulation import derivative
 from mbsd.dynamics.integrators.step_size import allowed
 from mbsd.dynamics.state import EVALUATIONS, TIME
 from mbsd.equations.interactions.switching import (
@@ -62,7 +62,7 @@ def nearness(switch, settings):
     return TIGHT * switch[0, SIZE]
 
 
-@for_both(inlined)
+@inlined
 def step_after(dyn, scratch, state, settings, t):
     """Step (s) that suits the stiffness felt along the motion, from the trial state, whose derivative is in row LANDED.
 
@@ -110,7 +110,7 @@ def step_after(dyn, scratch, state, settings, t):
     return min(wanted, settings.longest)
 
 
-@for_both(lazy(float))
+@lazy(float)
 def crossing(dyn, scratch, state, settings, h, reached, work):
     """What part of the step that was tried is to be taken again, below 1; 1: all is well; 2: it ends at a switch.
 

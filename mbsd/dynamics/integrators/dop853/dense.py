@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from mbsd.compiling.jit import apart, internal, lazy
 from mbsd.dynamics.integrators.dop853.tableau import A, C, D
-from mbsd.dynamics.integrators.formulation import derivative, for_both, join_rows, keep_row, record, record_all
+from mbsd.dynamics.integrators.formulation import derivative, join_rows, keep_row, record, record_all
 from mbsd.dynamics.state import NEXT, TIME, WORK
 
 BESIDE = 1e-3
 """Part of a step by which poses beside an unclear one are looked for, doubled until both are clear."""
 
 
-@for_both(apart)
+@apart
 def interpolant(dyn, scratch, state, h, work):
     """Coefficients of the dense output of the step that ends in scratch.state and does ``work`` (J)."""
     power = scratch.power
@@ -67,7 +67,7 @@ def interpolate(dense, dense_work, y, x, out):
     return work
 
 
-@for_both(lazy(bool))
+@lazy(bool)
 def _output_between(dyn, scratch, state, out, k, x, h, so_far):
     """Write output k at the part x of the step from poses beside; returns whether two are clear."""
     t = state.clock[TIME]
@@ -85,7 +85,7 @@ def _output_between(dyn, scratch, state, out, k, x, h, so_far):
     return False
 
 
-@for_both(apart)
+@apart
 def write_outputs(dyn, scratch, state, out, h, reached):
     """Write all outputs before the end of the step; returns whether their poses, or poses beside them, are clear."""
     t = state.clock[TIME]

@@ -19,7 +19,7 @@ from mbsd.compiling.jit import inlined, kernel
 from mbsd.dynamics.integrators.dop853.crossing import LANDED, crossing, nearness
 from mbsd.dynamics.integrators.dop853.dense import interpolant, write_outputs
 from mbsd.dynamics.integrators.dop853.tableau import E3, E5, A, B, C
-from mbsd.dynamics.integrators.formulation import accelerate, begin, derivative, for_both, project, record_here, settle
+from mbsd.dynamics.integrators.formulation import accelerate, begin, derivative, project, record_here, settle
 from mbsd.dynamics.integrators.kind import Integrator, register
 from mbsd.dynamics.integrators.step_size import allowed, first_step
 from mbsd.dynamics.state import (
@@ -159,7 +159,7 @@ def choose_step(state, settings, h, error, rejected, last):
         state.clock[STEP] = min(h * growth, settings.longest)
 
 
-@for_both(inlined)
+@inlined
 def start(dyn, scratch, state, out, settings, switching):
     """Evaluate the state at a start or restart, choose a first step, and write the outputs that stand at its time."""
     y = state.y
@@ -181,7 +181,7 @@ def start(dyn, scratch, state, out, settings, switching):
     scratch.power[0] = state.clock[POWER]
 
 
-@for_both(inlined)
+@inlined
 def stages(dyn, scratch, state, settings, t, h, reached):
     """Evaluate a step; its end is left in scratch.state, projected.
 
@@ -219,7 +219,7 @@ def stages(dyn, scratch, state, settings, t, h, reached):
     return shorter, error, work
 
 
-@for_both(inlined)
+@inlined
 def outputs_passed(dyn, scratch, state, out, h, reached):
     """Write the outputs within the step; returns whether their poses are clear."""
     trial = scratch.state
@@ -234,7 +234,7 @@ def outputs_passed(dyn, scratch, state, out, h, reached):
     return clear
 
 
-@for_both(kernel)
+@kernel
 def advance(dyn, scratch, state, out, settings, end, max_steps):
     """Go on to ``end`` (s), ``max_steps`` accepted steps at most, writing the outputs passed. Returns a status."""
     switch = dyn.loads.switch
@@ -315,11 +315,11 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
 DOP853 = register(
     Integrator(
         "dop853",
-        advance.reference,
+        advance,
         STAGES,
         order=8,
         fixed_step=False,
-        independent=advance.independent,
+        independent=True,
         meets_switches=True,
     )
 )

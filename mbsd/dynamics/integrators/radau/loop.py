@@ -51,7 +51,6 @@ from mbsd.dynamics.state import (
     record_here,
 )
 
-_first_step = first_step.reference
 STAGES = 13
 SMALLEST_STEP = 1e-13
 """Part of the longest step at which a run gives up."""
@@ -145,7 +144,7 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
     newton = max(2.3e-15 / settings.relative, min(0.03, math.sqrt(settings.relative)))
     begin(dyn, scratch, state)
     if state.clock[STEP] == 0.0:
-        state.clock[STEP] = _first_step(dyn, scratch, state, settings, 0.25)
+        state.clock[STEP] = first_step(dyn, scratch, state, settings, 0.25)
     accepted = 0
     refused = False
     current = False  # A and B belong to this step

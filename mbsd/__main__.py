@@ -43,13 +43,14 @@ def _newton() -> None:
 
     import numpy as np
 
-    from mbsd.kinematics.prepared import prepare
+    from mbsd.kinematics.march import march_along
+    from mbsd.kinematics.prepare import prepare
 
     m = Mechanism("slide")
     slider = m.body("slider")
     m.prismatic("A", m.ground.at(0, 0), slider.origin)
     m.drive_coordinate("feed", m.ground.at(0, 0), slider.origin, constant_rate(1.0))
-    dataclasses.replace(prepare(m), groups=None).march(np.linspace(0.0, 1.0, 4))
+    march_along(dataclasses.replace(prepare(m), groups=None), np.linspace(0.0, 1.0, 4))
 
 
 def _parts() -> None:

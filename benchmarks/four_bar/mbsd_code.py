@@ -9,7 +9,8 @@ import numpy as np
 
 import mbsd
 from benchmarks.four_bar import ANGLES, COUPLER, CRANK, GROUND, ROCKER, exact, worst
-from mbsd.kinematics import prepared
+from mbsd.kinematics import prepare as ready_to_solve
+from mbsd.kinematics.march import kinematics_at
 
 VERSION = mbsd.__version__
 SETTINGS = "closed form of its groups, found by the program, pos+vel+acc"
@@ -31,10 +32,10 @@ def model() -> mbsd.Mechanism:
 
 def prepare() -> tuple[Any, Any]:
     """``solve`` and ``error`` for measure.py."""
-    ready = prepared.prepare(model())
+    ready = ready_to_solve.prepare(model())
 
     def error(result: tuple[np.ndarray, ...]) -> float:
         coupler, rocker = exact(ANGLES)
         return max(worst(result[0][:, 2, 2], coupler), worst(result[0][:, 3, 2], rocker))
 
-    return lambda: ready.kinematics(ANGLES), error
+    return lambda: kinematics_at(ready, ANGLES), error

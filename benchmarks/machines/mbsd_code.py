@@ -13,7 +13,8 @@ from benchmarks import four_bar, machines
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.runs.choose import ChoosingRun
 from mbsd.dynamics.simulate import integrator_named
-from mbsd.kinematics.prepared import prepare as prepared
+from mbsd.kinematics.march import kinematics_at
+from mbsd.kinematics.prepare import prepare as prepared
 
 VERSION = mbsd.__version__
 TOLERANCE = 1e-7
@@ -96,7 +97,7 @@ def prepare(problem: str) -> tuple[Callable[[], Callable[[], Any]], Callable[[An
     def error(result: tuple[np.ndarray, ...]) -> float:
         return machines.worst(result[0][:, names, 2], machines.exact(problem, times))
 
-    return lambda: lambda: ready.kinematics(times), error
+    return lambda: lambda: kinematics_at(ready, times), error
 
 
 def _falling() -> tuple[Callable[[], Callable[[], Any]], Callable[[Any], float]]:

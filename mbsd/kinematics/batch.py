@@ -13,7 +13,7 @@ from mbsd.base.errors import ModelError
 from mbsd.base.names import names_in, no_such
 from mbsd.base.shown import shown
 from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Moved, in_closed_form
-from mbsd.kinematics.prepared import prepare
+from mbsd.kinematics.prepare import prepare
 from mbsd.model.body import at_end
 from mbsd.model.mechanism import Model
 

@@ -49,7 +49,7 @@ class Repetition:
 
 def period(m: Model) -> float | None:
     """See :meth:`mbsd.mechanism.Mechanism.period`."""
-    from mbsd.kinematics.prepared import prepare
+    from mbsd.kinematics.prepare import prepare
 
     common = common_period(m.drivers.values())
     if common is None:
@@ -91,7 +91,9 @@ def common_period(drivers: Iterable[Joint]) -> float | None:
 
 def repetition(m: Model, common: float, ready: Prepared) -> Repetition:
     """When ``m`` repeats, whose laws do so after ``common`` (s); ``ready`` for 0 .. common."""
-    march = ready.march(np.array([0.0, common]))
+    from mbsd.kinematics.march import march_along
+
+    march = march_along(ready, np.array([0.0, common]))
     if returned(_ends(march.q, march.v, march.a, 0, 1)):
         return Repetition(common, 1)
     least = _least_turns(_ends(march.q, march.v, march.a, 0, 1))
@@ -144,7 +146,7 @@ def _least_turns(ends: Ends) -> int | None:
 
 def _search(m: Model, common: float, least: int, turns: int) -> int | None:
     """The first multiple of ``least`` up to ``turns`` after which everything is back."""
-    from mbsd.kinematics.prepared import prepare
+    from mbsd.kinematics.prepare import prepare
 
     try:
         with warnings.catch_warnings():
@@ -155,7 +157,9 @@ def _search(m: Model, common: float, least: int, turns: int) -> int | None:
 
 
 def _first_return(ready: Prepared, common: float, least: int, turns: int) -> int | None:
-    march = ready.march(common * np.arange(0, turns + 1, least))
+    from mbsd.kinematics.march import march_along
+
+    march = march_along(ready, common * np.arange(0, turns + 1, least))
     for k in range(1, len(march.q)):
         if returned(_ends(march.q, march.v, march.a, 0, k)):
             return k * least

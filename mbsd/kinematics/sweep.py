@@ -16,9 +16,11 @@ from mbsd.base.warn import warn
 from mbsd.kinematics.limits.closed_contacts import refuse_passed_contacts
 from mbsd.kinematics.limits.curve_jumps import refuse_jumps
 from mbsd.kinematics.limits.joints import limits_of, refuse_passed
+from mbsd.kinematics.march import March, march_along
 from mbsd.kinematics.multipliers import inverse_dynamics, singularity_margin
 from mbsd.kinematics.period import MOST_TURNS, common_period, repetition
-from mbsd.kinematics.prepared import March, Prepared, prepare
+from mbsd.kinematics.prepare import prepare
+from mbsd.kinematics.prepared import Prepared
 from mbsd.kinematics.states_along import states_along
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import equal_times, rising_times
@@ -39,22 +41,22 @@ def sweep(
     """See :meth:`mbsd.mechanism.Mechanism.sweep`."""
     grid = sweep_times(m, duration, steps, times)
     ready = prepare(m, float(grid[0]), float(grid[-1]))
-    march = ready.march(grid)
+    march = march_along(ready, grid)
     if duration is None and times is None and m.drivers:
         whole = _whole_period(m, ready, march, float(grid[-1]))
         if whole is not None:
             grid = equal_times(m, whole, steps)
             ready = prepare(m, 0.0, whole)
-            march = ready.march(grid)
+            march = march_along(ready, grid)
         cycles = whole_cycles(ready.packed, march.q[0], march.q[-1])
         if cycles > 1:
             grid = equal_times(m, cycles * float(grid[-1]), steps)
             ready = prepare(m, 0.0, float(grid[-1]))
-            march = ready.march(grid)
+            march = march_along(ready, grid)
     asked = _beside_jumps(ready, grid, march) if event_rows else None
     if asked is not None:
         grid = asked.solved
-        march = ready.march(grid)
+        march = march_along(ready, grid)
     q, v, a, packed = march.q, march.v, march.a, ready.packed
     drives = packed.drives(grid)
     if m.contacts or limits_of(packed):
@@ -97,7 +99,7 @@ def _beside_jumps(ready: Prepared, grid: np.ndarray, march: March) -> Asked | No
 
     def motion(times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         every = np.union1d(grid, times)
-        march, rows = ready.march(every), np.searchsorted(every, times)
+        march, rows = march_along(ready, every), np.searchsorted(every, times)
         return march.q[rows], march.v[rows]
 
     jumps, beside = jump_times(packed, compiled_laws(packed, start, end), start, end), reach_beside(start, end)

@@ -16,7 +16,8 @@ from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.kinematics.batch import parameters
 from mbsd.kinematics.design_sweeps import DesignSweeps, Moved, in_closed_form
-from mbsd.kinematics.prepared import prepare
+from mbsd.kinematics.march import kinematics_at
+from mbsd.kinematics.prepare import prepare
 from mbsd.model.mechanism import Model
 from mbsd.synthesis.changed import changed
 from mbsd.synthesis.conditions import Pin, four_bar, grashof_excess, pins, transmission_angles
@@ -146,7 +147,7 @@ class Designs:
             try:
                 m = self.model(values)
                 ready = prepare(m, float(grid[0]), float(grid[-1]))
-                q = ready.kinematics(grid)[0]
+                q = kinematics_at(ready, grid)[0]
             except MechanismError:
                 continue
             marker = m.traces[self.trace]

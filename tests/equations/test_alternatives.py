@@ -1,4 +1,4 @@
-"""Kernels with one name: a caller that is compiled for a class gets the kernel of that class, directly or where it is copied in."""
+"""Kernels with one name: a caller gets that of the class for which it is compiled, where it is copied in, too."""
 
 from __future__ import annotations
 

@@ -11,7 +11,8 @@ import pytest
 
 from mbsd import LimitError, Mechanism, ModelError, constant_rate, harmonic
 from mbsd.kinematics.limits.joints import coordinate, limits_of
-from mbsd.kinematics.prepared import prepare
+from mbsd.kinematics.march import march_along
+from mbsd.kinematics.prepare import prepare
 
 
 def _slider_crank(**limits: Any) -> Mechanism:
@@ -60,7 +61,7 @@ def test_coordinates_of_limited_joints_in_moving_axes() -> None:
     m.drive_coordinate("pull", guide, hook.at(0.05, 0.0), harmonic(0.4, 3.0, 0.2))
     t = np.linspace(0.0, 2.0, 50)
     ready = prepare(m, 0.0, 2.0)
-    q = ready.march(t).q
+    q = march_along(ready, t).q
     pivot, slide = limits_of(ready.packed)
     np.testing.assert_allclose(coordinate(ready.packed, slide, q), 0.4 * np.sin(3 * t + 0.2), atol=1e-12)
     np.testing.assert_allclose(coordinate(ready.packed, pivot, q), 0.8 * np.sin(2 * t) - 0.7, atol=1e-12)

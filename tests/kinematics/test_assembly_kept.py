@@ -10,7 +10,8 @@ import pytest
 
 from mbsd import Mechanism, SingularPoseError, constant_rate, cycloidal, function, harmonic, table
 from mbsd.base.errors import BranchError, LimitError, MechanismError, ModelError
-from mbsd.kinematics.prepared import March, prepare
+from mbsd.kinematics.march import March, march_along
+from mbsd.kinematics.prepare import prepare
 from tools.models.genevas import geneva
 from tools.models.random_linkages import driven_linkage
 
@@ -55,7 +56,7 @@ def near_change_point(more: float, start: float, name: str = "", m: Mechanism | 
 def march(m: Mechanism, times: np.ndarray, closed: bool) -> March:
     """By closed forms, or by Newton-Raphson as a whole."""
     ready = prepare(m, float(times[0]), float(times[-1]))
-    return (ready if closed else dataclasses.replace(ready, groups=None)).march(times)
+    return march_along(ready if closed else dataclasses.replace(ready, groups=None), times)
 
 
 def end_of(m: Mechanism, motion: March, name: str, length: float) -> np.ndarray:

@@ -14,7 +14,9 @@ from mbsd import AssemblyError, Marker, Mechanism, MechanismError, constant_rate
 from mbsd.kinematics.groups.carrying.columns import SIGN
 from mbsd.kinematics.groups.groups import NUMBERS
 from mbsd.kinematics.groups.registry import KINDS, NAMES
-from mbsd.kinematics.prepared import Prepared, prepare
+from mbsd.kinematics.march import march_along
+from mbsd.kinematics.prepare import prepare
+from mbsd.kinematics.prepared import Prepared
 from tools.models.assur_models import MODELS, crank, four_bar
 
 
@@ -23,13 +25,13 @@ def both_routes(m: Mechanism, duration: float = 1.05, steps: int = 240) -> tuple
     times = np.linspace(0.0, duration, steps + 1)
     ready = prepare(m, 0.0, duration)
     assert ready.groups is not None
-    assert ready.march(times).closed
+    assert march_along(ready, times).closed
     return ready, motion_of(ready, times), motion_of(dataclasses.replace(ready, groups=None), times)
 
 
 def motion_of(ready: Prepared, times: np.ndarray) -> list[np.ndarray]:
     """Positions, velocities and accelerations."""
-    march = ready.march(times)
+    march = march_along(ready, times)
     return [march.q, march.v, march.a]
 
 
@@ -170,7 +172,7 @@ def test_links_that_cannot_close_give_the_same_error() -> None:
         m.sweep(1.0)
     ready = dataclasses.replace(prepare(m, 0.0, 1.0), groups=None)
     with pytest.raises(MechanismError) as newton:
-        ready.march(np.linspace(0.0, 1.0, 361))
+        march_along(ready, np.linspace(0.0, 1.0, 361))
     assert str(closed.value) == str(newton.value)
 
 
@@ -207,7 +209,7 @@ def test_three_bodies_that_only_together_are_rigid_are_solved_by_newton() -> Non
 @pytest.mark.parametrize("name", ["driven carried", "yoke", "driven slide", "rod driven"])
 def test_a_law_that_jumps_is_refused_by_both_routes(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The check of laws before the march is left out: it finds this jump first."""
-    monkeypatch.setattr("mbsd.kinematics.prepared.refuse_bad_laws", lambda *_: None)
+    monkeypatch.setattr("mbsd.kinematics.prepare.refuse_bad_laws", lambda *_: None)
     m = MODELS[name]()
     driver = next(iter(m.drivers.values()))
     law = driver.motion
@@ -220,7 +222,7 @@ def test_a_law_that_jumps_is_refused_by_both_routes(name: str, monkeypatch: pyte
     messages = []
     for route in (ready, dataclasses.replace(ready, groups=None)):
         with pytest.raises(MechanismError) as error:
-            route.march(np.linspace(0.0, 1.0, 41))
+            march_along(route, np.linspace(0.0, 1.0, 41))
         messages.append(str(error.value))
     assert messages[0] == messages[1]
 
@@ -236,9 +238,9 @@ def test_slides_that_become_parallel_are_left_to_newton() -> None:
     ready = prepare(m, 0.0, 2.0)
     assert "PRP" in ready.route
     with pytest.raises(MechanismError) as closed:
-        ready.march(np.linspace(0.0, 2.0, 201))
+        march_along(ready, np.linspace(0.0, 2.0, 201))
     with pytest.raises(MechanismError) as newton:
-        dataclasses.replace(ready, groups=None).march(np.linspace(0.0, 2.0, 201))
+        march_along(dataclasses.replace(ready, groups=None), np.linspace(0.0, 2.0, 201))
     assert str(closed.value) == str(newton.value)
 
 

@@ -13,14 +13,16 @@ from hypothesis import strategies as st
 import mbsd.kinematics.groups.parts
 from mbsd import Mechanism, MechanismError, constant_rate
 from mbsd.kinematics.groups.plan import describe
-from mbsd.kinematics.prepared import Prepared, prepare
+from mbsd.kinematics.march import march_along
+from mbsd.kinematics.prepare import prepare
+from mbsd.kinematics.prepared import Prepared
 from tools.models.assur_models import crank
 from tools.models.random_machines import RandomMachine
 
 
 def both(ready: Prepared, times: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Positions, velocities and accelerations by parts and of the whole."""
-    parts, whole = (route.march(times) for route in (ready, dataclasses.replace(ready, groups=None)))
+    parts, whole = (march_along(route, times) for route in (ready, dataclasses.replace(ready, groups=None)))
     assert parts.closed
     assert not whole.closed
     return [parts.q, parts.v, parts.a], [whole.q, whole.v, whole.a]
@@ -53,10 +55,10 @@ def test_random_machines(seed: int, kinds: list[str], scale: float, duration: fl
     assert ready.groups is not None
     times = np.linspace(0.0, duration, steps + 1)
     try:
-        dataclasses.replace(ready, groups=None).march(times)
+        march_along(dataclasses.replace(ready, groups=None), times)
     except MechanismError as error:
         with pytest.raises(type(error)):
-            ready.march(times)
+            march_along(ready, times)
         return
     assert_same(ready, times, scale)
 
@@ -107,7 +109,7 @@ def test_planetary_gear_with_a_four_bar_is_closed(planets: int) -> None:
     assert ready.proved
     times = np.linspace(0.0, 7.3, 50)
     assert_same(ready, times)
-    march = ready.march(times)
+    march = march_along(ready, times)
     sun, carrier = (march.q[:, 3 * ready.packed.body_names.index(name) + 2] for name in ("sun", "carrier"))
     assert np.abs(carrier - carrier[0] - (sun - sun[0]) * 18 / (18 + 66)).max() < 1e-12
 
@@ -167,9 +169,9 @@ def test_one_wheel_many_turns_a_step() -> None:
     m.start_near(wheel=0, coupler=50, rocker=90)
     ready = prepare(m, 0.0, 2.0)
     few, many = np.linspace(0.0, 2.0, 11), np.linspace(0.0, 2.0, 10_001)
-    march = ready.march(few)
+    march = march_along(ready, few)
     assert march.closed
-    assert np.abs(march.q - ready.march(many).q[::1000]).max() < 1e-10
+    assert np.abs(march.q - march_along(ready, many).q[::1000]).max() < 1e-10
 
 
 def test_an_arm_that_cannot_follow_ends_as_before() -> None:
@@ -184,7 +186,7 @@ def test_an_arm_that_cannot_follow_ends_as_before() -> None:
     errors = []
     for route in (ready, dataclasses.replace(ready, groups=None)):
         with pytest.raises(MechanismError) as caught:
-            route.march(times)
+            march_along(route, times)
         errors.append(str(caught.value))
     assert errors[0] == errors[1]
 
@@ -206,4 +208,4 @@ def test_what_a_users_relation_raises_comes_out() -> None:
     assert "Newton-Raphson other" in ready.route
     assert_same(ready, np.linspace(0.0, 0.13, 14))
     with pytest.raises(MechanismError, match="too far"):
-        ready.march(np.linspace(0.0, 1.0, 101))
+        march_along(ready, np.linspace(0.0, 1.0, 101))

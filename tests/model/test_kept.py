@@ -40,11 +40,11 @@ CHANGED: dict[str, Callable[[], Mechanism]] = {
 def test_another_mechanism_is_not_taken_for_the_one_before(what: str) -> None:
     import mbsd.kinematics.pose.close
     import mbsd.kinematics.pose.mobility
-    import mbsd.kinematics.prepared
+    import mbsd.kinematics.sample_jacobians
 
     poses(four_bar())
     after = poses(CHANGED[what]())
-    for kept in (mbsd.kinematics.pose.close._CLOSED, mbsd.kinematics.prepared._SAMPLES):
+    for kept in (mbsd.kinematics.pose.close._CLOSED, mbsd.kinematics.sample_jacobians._SAMPLES):
         kept._results.clear()
     for remembered in (mbsd.kinematics.pose.mobility._kept_independent, mbsd.kinematics.pose.mobility._kept_motion):
         remembered.cache_clear()

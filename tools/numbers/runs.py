@@ -22,7 +22,8 @@ from benchmarks.dynamics import mbsd_code
 from benchmarks.dynamics.cases import case
 from mbsd import Mechanism, constant_rate, harmonic
 from mbsd.dynamics.integrators.kind import INTEGRATORS
-from mbsd.kinematics.prepared import prepare
+from mbsd.kinematics.march import kinematics_at
+from mbsd.kinematics.prepare import prepare
 from mbsd.model.contact import CONTACT_KINDS
 from mbsd.model.force import FORCE_KINDS
 from mbsd.model.joint import KINDS
@@ -241,7 +242,7 @@ def _batch() -> Any:
 
 
 def _newton() -> Any:
-    return dataclasses.replace(prepare(driven_four_bar()), groups=None).kinematics(np.linspace(0.0, 1.0, 40))
+    return kinematics_at(dataclasses.replace(prepare(driven_four_bar()), groups=None), np.linspace(0.0, 1.0, 40))
 
 
 def _inverse() -> Any:

@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from mbsd.compiling.jit import internal, lazy
-from mbsd.dynamics.embedding.groups import solve_groups
+from mbsd.dynamics.embedding.groups import embed_groups
 from mbsd.equations.laws import evaluate_laws
 from mbsd.kinematics.groups.carrying.branch import FLOOR
 from mbsd.kinematics.groups.carrying.columns import AVOID, COS, INERTIA, MASS, SIN, SPEED, TURNS, VALUE
@@ -60,7 +60,7 @@ def _joined(
                 coordinate[j, VALUE] += ahead * (coordinate[j, SPEED] if columns > 1 else 1.0)
             if drive.shape[0] > 1:
                 evaluate_laws(laws, drive.shape[0], t + ahead, drive)
-            status = solve_groups(
+            status = embed_groups(
                 group, number, block, block_number, numbers, work, body, rate, base, coordinate, drive, gravity, sums
             )  # fmt: skip
             for j in range(columns):
@@ -136,7 +136,7 @@ def bridge(
         for e in range(number.shape[0]):
             usual = number[e, AVOID]
             number[e, AVOID] = FLOOR
-        status = solve_groups(
+        status = embed_groups(
             group, number, block, block_number, numbers, work, body, rate, base, coordinate, drive, gravity, sums
         )  # fmt: skip
         for e in range(number.shape[0]):

@@ -24,7 +24,7 @@ from mbsd.kinematics.groups.kinds.train import train
 from mbsd.kinematics.groups.links import Link
 from mbsd.kinematics.groups.plan import Plan, link_kind, links_of_joints
 from mbsd.kinematics.groups.trains import Trains
-from mbsd.kinematics.prepared import sample_jacobians
+from mbsd.kinematics.sample_jacobians import sample_jacobians
 
 MOST = 6
 """More coordinates than this are solved faster by multipliers."""

@@ -14,7 +14,7 @@ from mbsd.compiling.jit import apart, inlined, internal, kernel, lazy, merged
 from mbsd.dynamics.embedding.arrays import LIMIT, SENSITIVITY
 from mbsd.dynamics.embedding.blocks.places import KEPT_Q, KEPT_SIZE, Q
 from mbsd.dynamics.embedding.bridge import bridge
-from mbsd.dynamics.embedding.groups import solve_groups
+from mbsd.dynamics.embedding.groups import embed_groups
 from mbsd.equations.laws import evaluate_laws
 from mbsd.equations.loads import apply_loads
 from mbsd.kinematics.groups.carrying.branch import WIDE, angle_of
@@ -116,7 +116,7 @@ def accelerate(dyn, scratch, t, state, a, lam):
         coordinate[count, VALUE] = t
         evaluate_laws(dyn.laws, drive.shape[0], t, drive)
     power = 0.0
-    status = solve_groups(
+    status = embed_groups(
         dyn.group,
         dyn.number,
         dyn.block,

@@ -64,7 +64,7 @@ def with_body(body, rate, gravity, i, total, push):
 
 
 @inlined
-def solve_groups(
+def embed_groups(
     group, number, block, block_number, numbers, work, body, rate, base, coordinate, drive, gravity, sums
 ):  # fmt: skip
     """Fill ``body`` and ``rate`` from coordinate and drive; returns SOLVED, or DOUBTED where a group's pose is unclear.

@@ -16,7 +16,7 @@ place, as its first argument says (mbsd/compiling/alternatives.py).
     keep_row(dyn, scratch, out, k)                keep output k as the pose before an unclear one
     join_rows(dyn, scratch, out, k, apart)        put output k between the pose kept and its own
     record_here(dyn, scratch, state, out)         write the next output from the state itself, which stands at its time
-    begin(dyn, scratch, state)                    fill dy at a start or restart
+    begin_run(dyn, scratch, state)                fill dy at a start or restart
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ record_here = alternatives({Dynamics: _record_here, Embedding: records.record_he
 
 
 @inlined
-def begin(dyn, scratch, state):
+def begin_run(dyn, scratch, state):
     """Make dy valid at a start or restart."""
     if state.count[STARTED] == 0:
         state.clock[POWER] = derivative(dyn, scratch, state.clock[TIME], state.y, state.dy, state.lam)

@@ -155,7 +155,7 @@ def _freedoms(ready: PreparedDynamics) -> int:
     return ready.mobility.dof - len(ready.packed.motions) + ready.packed.states
 
 
-def scratch_for(ready: PreparedDynamics, made: Embedded, stages: int, q: np.ndarray) -> EmbeddingScratch:
+def embedding_scratch(ready: PreparedDynamics, made: Embedded, stages: int, q: np.ndarray) -> EmbeddingScratch:
     """Scratch for one run that begins at q (3 nb,), and predicts from there."""
     bodies, count = len(ready.packed.body_names), len(made.coordinates)
     columns = count + (made.drivers > 0)
@@ -254,7 +254,7 @@ def _of_dynamics(ready: PreparedDynamics) -> dict[str, Any]:
 
 
 def _sensitivity(ready: PreparedDynamics, made: Embedded, q: np.ndarray, v: np.ndarray, time: float) -> float:
-    arrays, scratch = made.copied(), scratch_for(ready, made, 1, q)
+    arrays, scratch = made.copied(), embedding_scratch(ready, made, 1, q)
     state = made.state(q, v)
     begin_at(arrays, scratch, state, time, math.inf)
     power = look(arrays, scratch, time, state)

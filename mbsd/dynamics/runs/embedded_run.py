@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from mbsd.dynamics import state as run_state
 from mbsd.dynamics.embedding.arrays import LIMIT, SENSITIVITY
 from mbsd.dynamics.embedding.equations import write_alone
-from mbsd.dynamics.runs.embed import DOUBLED, GOOD, POOR, Embedded, begin_at, embed, scratch_for
+from mbsd.dynamics.runs.embed import DOUBLED, GOOD, POOR, Embedded, begin_at, embed, embedding_scratch
 from mbsd.dynamics.runs.indexing import Genevas
 from mbsd.dynamics.runs.pace import Pace
 from mbsd.dynamics.state import NEXT, STARTED, STEP, TIME, WORK
@@ -102,7 +102,7 @@ class EmbeddedRun:
         """Go on in these coordinates from the whole state."""
         (q, v), clock = self.whole.y, self.whole.clock
         self.arrays = made.copied(self.run.tolerance)
-        self.scratch = scratch_for(self.ready, made, self.run.method.stages, q)
+        self.scratch = embedding_scratch(self.ready, made, self.run.method.stages, q)
         self.settings = made.settings(self.run.settings)
         begun = run_state.start_state(made.state(q, v), 0, float(clock[TIME]))
         self.own = begun._replace(clock=clock, count=self.whole.count)

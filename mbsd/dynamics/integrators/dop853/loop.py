@@ -19,7 +19,7 @@ from mbsd.compiling.jit import inlined, kernel
 from mbsd.dynamics.integrators.dop853.crossing import LANDED, crossing, nearness
 from mbsd.dynamics.integrators.dop853.dense import interpolant, write_outputs
 from mbsd.dynamics.integrators.dop853.tableau import E3, E5, A, B, C
-from mbsd.dynamics.integrators.formulation import accelerate, begin, derivative, project, record_here, settle
+from mbsd.dynamics.integrators.formulation import accelerate, begin_run, derivative, project, record_here, settle
 from mbsd.dynamics.integrators.kind import Integrator, register
 from mbsd.dynamics.integrators.step_size import allowed, first_step
 from mbsd.dynamics.state import (
@@ -166,7 +166,7 @@ def start(dyn, scratch, state, out, settings, switching):
     k = scratch.stages
     switch = dyn.loads.switch
     begin_sides(switch, state.clock[TIME], state.count[STARTED] != 0)
-    begin(dyn, scratch, state)
+    begin_run(dyn, scratch, state)
     if switching and switch[0, REMEMBERS] > 0.0 and switch[0, FREE] > 0.0:
         derivative(dyn, scratch, state.clock[TIME], y, k[LANDED], scratch.multipliers)
         state.count[EVALUATIONS] += 1

@@ -31,7 +31,7 @@ from mbsd.kinematics.groups.newton.call import PYTHON, SIGNATURE
 from mbsd.kinematics.groups.newton.fused import fused
 from mbsd.kinematics.groups.newton.iteration import iterate
 from mbsd.kinematics.groups.newton.matrix import held, solve
-from mbsd.kinematics.groups.newton.pinned import in_doubt, predicted, solve_pinned
+from mbsd.kinematics.groups.newton.pinned import extrapolated, in_doubt, solve_pinned
 from mbsd.kinematics.groups.newton.rows import begin, bend_of, move
 from mbsd.kinematics.law_step import jumps
 from mbsd.kinematics.newton import ROUNDING
@@ -50,7 +50,7 @@ def predict(tree, count, times, k, q, v, a, start):
         return
     for e in range(count):
         for c in range(3 * tree[e, BODY], 3 * tree[e, BODY] + 3):
-            q[k, c] = predicted(times, k, q, v, a, c)
+            q[k, c] = extrapolated(times, k, q, v, a, c)
 
 
 @fused

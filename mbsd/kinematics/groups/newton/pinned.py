@@ -25,7 +25,7 @@ from mbsd.kinematics.predictor import quintic_factors
 
 
 @fused
-def predicted(times, k, q, v, a, c):
+def extrapolated(times, k, q, v, a, c):
     """Coordinate c at row k."""
     from_q, from_v, from_a, earlier_v, earlier_a = quintic_factors(times, k, times[k])
     last = k - 1
@@ -61,7 +61,7 @@ def solve_pinned(
         h = times[k] - times[k - 1]
         if motion > 0 and jumps(drives[k, motion], drives[k - 1, motion], h, arms[0, STRIDE]):
             return DOUBTED
-        theta = predicted(times, k, q, v, a, b + 2)
+        theta = extrapolated(times, k, q, v, a, b + 2)
     own = 3 if row[BODY_J] == body else 0
     p = point[0]
     carried(qk, vk, ak, turn, tree[0, PARENT], n[0], n[1], p)

@@ -1,0 +1,152 @@
+"""The march along a driven motion: poses one after the other, closed forms first; steps that are refused are halved."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbsd.equations.assembly import residual_and_jacobian, tabulate
+from mbsd.kinematics import impossible_motions, newton
+from mbsd.kinematics.elimination import Elimination, plan
+from mbsd.kinematics.groups.carrying.rates import DOUBTED, OPEN, SOLVED
+from mbsd.kinematics.groups.groups import Groups
+from mbsd.kinematics.groups.solve import solve_groups
+from mbsd.kinematics.pose.mobility import best_rows
+from mbsd.kinematics.prepared import Prepared
+from mbsd.kinematics.sample_jacobians import sample_jacobians
+from mbsd.kinematics.steps import Steps
+
+ZERO_LENGTH = 1e-12
+"""Square of a length in sizes below which it counts as zero."""
+
+
+class March:
+    """A motion at the times asked for, and at all steps on the way."""
+
+    def __init__(self, q: np.ndarray, v: np.ndarray, a: np.ndarray, steps: Steps, closed: bool) -> None:
+        self.steps, self.closed = steps, closed
+        """``closed``: solved in closed form."""
+        self._all = q, v, a
+        every = slice(None) if steps.wanted.all() else steps.wanted
+        self.q, self.v, self.a = q[every], v[every], a[every]
+        """(T, 3 nb)"""
+
+    def closely(self) -> tuple[np.ndarray, np.ndarray]:
+        """Times (N,) and poses (N, 3 nb) of all steps and of seven times within each, by quintics through its ends."""
+        from mbsd.model.cams.profile import hermite
+
+        times, (q, v, a) = self.steps.times, self._all
+        if len(times) < 2:
+            return times, q
+        h, samples = np.diff(times), np.stack([q, v, a], axis=-1)
+        coefficients = hermite(h, samples[:-1], samples[1:])
+        ahead = h[:, None] * np.arange(8) / 8
+        poses = np.einsum("sxp,scp->sxc", ahead[..., None] ** np.arange(6), coefficients).reshape(-1, q.shape[1])
+        inner = (times[:-1, None] + ahead).ravel()
+        return np.append(inner, times[-1]), np.vstack([poses, q[-1:]])
+
+
+def kinematics_at(ready: Prepared, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(T, nb, 3) positions, velocities and accelerations of the centres of mass and angles; ground is body 0."""
+    motion = march_along(ready, times)
+    shape = (len(times), -1, 3)
+    return motion.q.reshape(shape), motion.v.reshape(shape), motion.a.reshape(shape)
+
+
+def march_along(ready: Prepared, times: np.ndarray) -> March:
+    """The motion at rising times (T,) (s): closed forms where they serve, else Newton-Raphson."""
+    steps = Steps(ready.packed, times)
+    if ready.groups is not None:
+        marched = _closed_form(ready, ready.groups, steps)
+        if marched is not None:
+            return March(*marched, steps, True)
+    out_of_reach = steps.out_of_reach
+    steps = Steps(ready.packed, times)  # those of the closed form may be just where branches meet
+    marched = _newton(ready, steps)
+    if out_of_reach is not None:
+        raise impossible_motions.out_of_reach(ready.packed, out_of_reach)
+    return March(*marched, steps, False)
+
+
+def _closed_form(ready: Prepared, groups: Groups, steps: Steps) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+    """Positions, velocities, accelerations (T, 3 nb) at all steps; None where branches meet or a group opens."""
+    n3, size, blocks = len(ready.q0), ready.packed.size, ready.blocks
+    turn, point, before = np.zeros((n3 // 3, 2)), np.zeros((4, 8)), np.zeros((len(groups.kind), 2))
+    turn[0, 0] = 1.0
+    q, v, a = (np.zeros((len(steps.times), n3)) for _ in range(3))
+    determinant = np.zeros((len(blocks.head), len(steps.times), 1))
+    first = 0
+    while True:
+        status, index, part = solve_groups(
+            groups, blocks, ready.q0, steps.times, steps.drives, steps.stride, ZERO_LENGTH * size * size, first,
+            q, v, a, determinant, turn, point, before,
+        )  # fmt: skip
+        ready.packed.specials.check()
+        if status == SOLVED:
+            return (q, v, a) if _all_close(ready, steps, q) else None
+        if status == OPEN:
+            steps.out_of_reach = float(steps.times[index])
+        if status != DOUBTED:
+            return None
+        if steps.follow_laws():
+            q, v, a = (np.zeros((len(steps.times), n3)) for _ in range(3))
+            determinant = np.zeros((len(blocks.head), len(steps.times), 1))
+            first = 0
+            continue
+        if not steps.divide(index, part):
+            return None
+        q, v, a = (np.insert(array, index, 0.0, axis=0) for array in (q, v, a))
+        determinant = np.insert(determinant, index, 0.0, axis=1)
+        first = index - 1
+
+
+def _all_close(ready: Prepared, steps: Steps, q: np.ndarray) -> bool:
+    """Whether joints that repeat others, which the groups leave out, hold at all poses q (T, 3 nb)."""
+    packed = ready.packed
+    if ready.proved or not ready.mobility.redundant_rows:
+        return True
+    count, rows = len(q), len(packed.ws.phi)
+    phi, gamma = np.zeros((2, count, rows))
+    tabulate(packed.system, steps.drives, q, np.zeros_like(q), packed.ws, phi, np.zeros((count, rows, 6)), gamma)
+    return float(np.abs(phi).max()) <= impossible_motions.REDUNDANT_GAP * max(packed.size, 1.0)
+
+
+def _newton(ready: Prepared, steps: Steps) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Positions, velocities, accelerations (T, 3 nb) at all steps; those that the kernel refuses are divided."""
+    packed, sequence, factors = ready.packed, ready.sequence, ready.factors
+    arrays = _arrays(ready.q0, len(steps.times), sequence)
+    first = chosen = 0
+    while True:
+        q, v, a, residual, determinant = arrays
+        status, index = newton.sweep(
+            packed.system, sequence, factors, packed.ws, packed.size, steps.times, steps.drives, steps.stride,
+            q, v, a, residual, determinant, first, chosen,
+        )  # fmt: skip
+        packed.specials.check()
+        if status == newton.DONE:
+            break
+        if index == 0:
+            raise impossible_motions.refused(packed, status, steps.times, 0, steps.drives, q, v)
+        if steps.follow_laws():
+            arrays, first, chosen = _arrays(ready.q0, len(steps.times), sequence), 0, 0
+            continue
+        if ready.mobility.redundant_rows and index - 1 > chosen:
+            residual_and_jacobian(packed.system, q[index - 1], steps.drives[index - 1], packed.ws)
+            kept = best_rows(packed, sequence.rows)
+            if kept is not None:
+                sequence, factors = plan(sample_jacobians(packed), kept, packed.system.row_body)
+                first = chosen = index - 1
+                arrays = *arrays[:4], np.zeros((len(steps.times), len(sequence.ends)))
+                continue
+        if not steps.divide(index):
+            raise impossible_motions.refused(packed, status, steps.times, index, steps.drives, q, v)
+        arrays = tuple(np.insert(array, index, 0.0, axis=0) for array in arrays)
+        first = index
+    impossible_motions.refuse_disagreeing(packed, steps.times, residual, q, steps.drives)
+    return q, v, a
+
+
+def _arrays(q0: np.ndarray, count: int, sequence: Elimination) -> tuple[np.ndarray, ...]:
+    n3, blocks = len(q0), len(sequence.ends)
+    q, v, a = (np.zeros((count, n3)) for _ in range(3))
+    q[0] = q0
+    return q, v, a, np.zeros(count), np.zeros((count, blocks))

@@ -243,7 +243,7 @@ def test_a_rack_and_a_toothed_belt_by_teeth(tmp_path: Path) -> None:
         way = one.sweep(2.0).body("rack").x
         assert way[-1] - way[0] == pytest.approx(0.030 * 2.0, abs=1e-12)
     says = (
-        r"steering: rack_and_pinion 'teeth': the pinion's centre is 0\.031 m above .* want 0\.003 \* 20 / 2 = 0\.03 m"
+        r"steering: rack_and_pinion 'teeth': the pinion's centre is 0\.031 m above .* need 0\.003 \* 20 / 2 = 0\.03 m"
     )
     with pytest.raises(AssemblyError, match=says):
         steering(0.031).sweep(1.0)

@@ -21,16 +21,16 @@ from mbsd.dynamics.events.crossing import first_crossing
 from mbsd.dynamics.events.dense import Quintic
 from mbsd.dynamics.events.jumps import Jumps
 from mbsd.dynamics.events.laws.resting import carried
-from mbsd.dynamics.events.moment import Moment
 from mbsd.dynamics.events.monitors import (
     Monitor,
     Samples,
-    checked,
     contact_monitors,
     event_monitor,
     stick_monitors,
 )
 from mbsd.dynamics.events.resolution import resolved
+from mbsd.dynamics.events.sides import NEAR, rounding_of, side_ahead, value_of
+from mbsd.dynamics.events.start_inside import refuse_inside
 from mbsd.dynamics.prepare.exchange import LOOK, exchange_rows
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.rows.held import STICKS
@@ -55,17 +55,9 @@ if TYPE_CHECKING:
     from mbsd.dynamics.prepare.prepared import PreparedDynamics
     from mbsd.dynamics.runs.run import Run
 
-NEAR = 1e-11
-"""Gaps below this part of the size (rad) are closed; rates below it by 1 s are zero where bodies rest."""
 STILL = 1e-9
-INSIDE = 1e-6
-"""A contact that starts deeper than this part of the size (rad) inside is refused."""
 EVENT_STEPS = 20
 """Steps that an event is worth where the pace of a run is looked at."""
-ROUNDINGS = ((1.0, 1.0, -1.0, -1.0), (-1.0, 1.0, 1.0, -1.0), (1.0, -1.0, 1.0), (-1.0, -1.0, 1.0, 1.0, 1.0))
-"""Signs, repeated, of small changes of a state."""
-AHEAD = (1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3)
-"""Parts of the duration after which the side is looked for to which an event that is zero goes."""
 AT_ONE_TIME = 500
 """Events that may happen without time going on."""
 
@@ -98,11 +90,11 @@ class EventRun:
 
     def begin(self) -> None:
         """At the start of a simulation: what is closed, and impacts of velocities that contacts forbid."""
-        self._refuse_inside()
+        refuse_inside(self.packed, self.dynamics, self.run.scratch, self.switches.contacts, self.state)
         for event in self.events:
-            value = self._value(event)
+            value = value_of(self.packed, event, self.state)
             self.now.events[event.name] = (
-                0.0 if abs(value) <= self._rounding(event, value, self.state) else float(np.sign(value))
+                0.0 if abs(value) <= rounding_of(self.packed, event, value, self.state) else float(np.sign(value))
             )
         self.jumps.resolve(None)
         self._restart()
@@ -205,7 +197,7 @@ class EventRun:
             return x, values
 
         def rounding(event: Event, value: float) -> float:
-            return self._rounding(event, value, before)
+            return rounding_of(self.packed, event, value, before)
 
         monitors = list(self.monitors)
         while monitors:
@@ -310,7 +302,9 @@ class EventRun:
         self.monitors += stick_monitors(self.sticks, together, self.still, load)
         for event in self.events:
             if self.now.events[event.name] == 0.0:
-                self.now.events[event.name] = self._side_ahead(event)
+                self.now.events[event.name] = side_ahead(
+                    self.packed, event, self.state, self.ready.end - self.ready.start
+                )
             self.monitors.append(event_monitor(self.packed, event, self.now.events[event.name] or 1.0))
         self.snapshots.append(self.snapshot())
 
@@ -334,49 +328,3 @@ class EventRun:
             float(self.run.scratch.report[0]),
             self.switches.held(),
         )
-
-    # -- at the start -------------------------------------------------------------------------------------------
-
-    def _value(self, event: Event) -> float:
-        state = self.state
-        return checked(self.packed, event, Moment(self.packed, float(state.clock[TIME]), state.y[0], state.y[1]))
-
-    def _rounding(self, event: Event, value: float, state: State) -> float:
-        """How much the value of an event at a state changes where that does by what counts as no distance."""
-        sizes = np.concatenate([np.zeros(3), self.packed.column_scale()])
-        time, most = float(state.clock[TIME]), 0.0
-        for signs in ROUNDINGS:
-            away = NEAR * sizes * np.resize(signs, len(sizes))
-            moment = Moment(self.packed, time * (1.0 + signs[0] * NEAR), state.y[0] + away, state.y[1] + away)
-            most = max(most, abs(checked(self.packed, event, moment) - value))
-        return most
-
-    def _side_ahead(self, event: Event) -> float:
-        """The sign that an event whose value is zero has next; 0 if it stays zero."""
-        (q, v), a, time = self.state.y, self.state.dy[1], float(self.state.clock[TIME])
-        value = self._value(event)
-        rounding = self._rounding(event, value, self.state)
-        if abs(value) > rounding:
-            return float(np.sign(value))
-        for part in AHEAD:
-            s = part * (self.ready.end - self.ready.start)
-            ahead = checked(self.packed, event, Moment(self.packed, time + s, q + s * v + s * s / 2 * a, v + s * a))
-            if abs(ahead) > 10.0 * rounding:
-                return float(np.sign(ahead))
-        return 0.0
-
-    def _refuse_inside(self) -> None:
-        state, scale = self.state, self.packed.row_scale()
-        time = np.array([state.clock[TIME]])
-        sample = Samples(self.packed, self.dynamics, self.run.scratch, time, state.y[0][None], state.y[1][None])
-        for contact in self.switches.contacts:
-            gap = float(sample.residuals()[0, contact.gap])
-            if not contact.always_closed and gap * scale[contact.gap] < -INSIDE:
-                closed = contact.joint.params.get("closed") is True
-                other = (
-                    "give the points of its closed curve in reverse order" if closed else "turn the contact's marker"
-                )
-                raise SimulationError(
-                    f"{self.packed.name}: contact '{contact.name}' starts {-gap:.3g} (m or rad) inside; "
-                    f"move the start with start_near, or, where its solid side is the wrong one, {other}"
-                )

@@ -1,5 +1,5 @@
-"""How the pantograph is filmed: the copy is drawn on the paper; its poster shows most of it."""
+"""How the pantograph is filmed: the copy is drawn on the paper in ink; its poster shows most of it."""
 
 from shared.shot import Shot, Trail
 
-shot = Shot(look="bench", trails=(Trail(point="copy", z=0.0014),), poster=0.28)
+shot = Shot(look="bench", trails=(Trail(point="copy", z=0.0014, ink=True),), poster=0.28)

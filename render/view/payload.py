@@ -41,7 +41,7 @@ import numpy as np
 
 from render.film.clock import Clock
 from render.film.markers import local_place
-from render.film.tubes.trails import trails_of
+from render.film.tubes.trails import colour_of, trails_of
 from render.report.moments import marks
 from render.shaking import floor_of, shaking
 from render.view.loads import arcs_of, arrows_of
@@ -104,7 +104,7 @@ def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bo
         "trails": [
             {
                 "point": trail.point,
-                "colour": trail.colour and list(trail.colour),
+                "colour": list(colour_of(trail, False)) if trail.colour or trail.ink else None,
                 "tail": trail.tail,
                 "radius": trail.radius * size,
                 "z": 0.0,

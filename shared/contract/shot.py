@@ -67,6 +67,8 @@ class Trail(_Strict, frozen=True):
     """At the point, as a part of the size of the swept motion."""
     z: float | None = None
     """Height (m); null is just above the body that carries the point."""
+    ink: bool = False
+    """Whether it lies on something bright, such as paper: it is then as deep as ink in every look, and never shines."""
 
 
 class Label(_Strict, frozen=True):

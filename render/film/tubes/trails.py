@@ -11,7 +11,7 @@ from render.film.clock import Clock
 from render.film.poses import Poses
 from render.film.scene import Point, TrailSpec
 from shared.contract import Motion
-from shared.contract.shot import Shot, Trail
+from shared.contract.shot import Colour, Shot, Trail
 from shared.contract.signals import SIGNALS, linear
 
 RINGS, MOST_RINGS = 160, 3000
@@ -29,6 +29,11 @@ def trails_of(motion: Motion, shot: Shot) -> tuple[Trail, ...]:
     return shot.trails if shot.trails is not None else tuple(Trail(point=point) for point in motion.points)
 
 
+def colour_of(trail: Trail, dark: bool) -> Colour:
+    """Linear RGB of a trail, where what is behind it is ``dark`` or bright."""
+    return trail.colour or linear(SIGNALS["trails"].dark if dark and not trail.ink else SIGNALS["trails"].light)
+
+
 class Trails:
     """The trails of one film at their heights (m) by point, ``size`` (m) being that of its swept motion."""
 
@@ -38,12 +43,11 @@ class Trails:
 
     def specs(self, dark: bool) -> list[TrailSpec]:
         """Their looks: lights where what is behind them is ``dark``, else as deep as ink."""
-        ink = linear(SIGNALS["trails"].dark if dark else SIGNALS["trails"].light)
         return [
             TrailSpec(
                 name=trail.point,
-                colour=trail.colour or ink,
-                strength=LIGHT if trail.colour or dark else INK,
+                colour=colour_of(trail, dark),
+                strength=INK if trail.ink or not (trail.colour or dark) else LIGHT,
                 radius=trail.radius * self.size,
                 rings=rings,
             )

@@ -212,6 +212,20 @@ def test_the_film_of_a_four_bar_is_as_before(out_root: Path) -> None:
     assert film.clock.frame_at(0.3) == 36
 
 
+def test_a_trail_in_ink_does_not_shine_in_any_look():
+    ball = bouncing_ball(restitution=1.0)
+    shot = Shot(
+        trails=(Trail(point="P"), Trail(point="P", ink=True), Trail(point="P", colour=(0.5, 0.0, 0.0), ink=True))
+    )
+    trails = Trails(Poses(ball), Clock(ball, shot), shot, {"P": 0.0}, 1.0)
+    light, ink, own = trails.specs(dark=True)
+    bright = trails.specs(dark=False)[0]
+    assert (ink.colour, ink.strength) == (bright.colour, bright.strength)
+    assert light.strength > ink.strength == own.strength
+    assert sum(light.colour) > 2 * sum(ink.colour)
+    assert own.colour == (0.5, 0.0, 0.0)
+
+
 def test_a_trail_turns_sharply_at_an_impact_also_where_it_goes_back_beyond_the_start_of_a_period():
     ball = bouncing_ball(restitution=1.0)
     ball = msgspec.structs.replace(ball, period=ball.time[-1])

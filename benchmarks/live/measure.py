@@ -13,6 +13,7 @@ import os
 import statistics
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -89,13 +90,17 @@ def _seen(browser: str, address: str, slider: str, view: str, count: int) -> dic
 def _served(root: Path, name: str, options: list[str]) -> Iterator[str]:
     """The address of a live page of the sources in ``root``."""
     command = [sys.executable, "-u", "-m", "studio.live", name, *options]
-    with subprocess.Popen(command, cwd=root, stdout=subprocess.PIPE, text=True) as server:
+    with (
+        tempfile.TemporaryFile("w+") as said,  # at its end the server says that it was stopped, which is no news here
+        subprocess.Popen(command, cwd=root, stdout=subprocess.PIPE, stderr=said, text=True) as server,
+    ):
         assert server.stdout is not None
         try:
             for line in server.stdout:
                 if "http://" in line:
                     yield line.split(": ")[-1].split(" ")[0]
                     return
-            raise UserError(f"bench live: no server of {name} in {root}")
+            said.seek(0)
+            raise UserError(f"bench live: no server of {name} in {root}: {' '.join(said.read().split())[-400:]}")
         finally:
             server.terminate()

@@ -101,6 +101,6 @@ def _served(root: Path, name: str, options: list[str]) -> Iterator[str]:
                     yield line.split(": ")[-1].split(" ")[0]
                     return
             said.seek(0)
-            raise UserError(f"bench live: no server of {name} in {root}: {' '.join(said.read().split())[-400:]}")
+            raise UserError(f"bench live: no server of {name} in {root}: {' '.join(said.read().split())[:600]}")
         finally:
             server.terminate()

@@ -47,6 +47,7 @@ from mbsd.dynamics.embedding.blocks.places import (
     Q,
     V,
 )
+from mbsd.dynamics.embedding.blocks.records import Past
 from mbsd.kinematics.groups.blocks import BODY, HANGS, LARGEST, PIN, SIZE
 from mbsd.kinematics.groups.carrying.branch import angle_of, predicted
 from mbsd.kinematics.groups.carrying.columns import BASE, COS, INERTIA, MASS, OMEGA, SIN, VALUE, X, Y
@@ -54,6 +55,7 @@ from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
 from mbsd.kinematics.groups.kinds.train import UNSURE
 from mbsd.kinematics.groups.newton.fused import fused
 from mbsd.kinematics.groups.newton.matrix import extent
+from mbsd.kinematics.groups.newton.records import Block, Motion, Work
 
 
 @fused
@@ -82,50 +84,53 @@ def embed_block(k, block, block_number, numbers, work, body, rate, base, coordin
     head = block[block[HEADS] + HEAD * k : block[HEADS] + HEAD * (k + 1)]
     count = head[BODIES]
     n = head[EQUATIONS]
-    tree = table(block, head[TREE], count, TREE_WIDTH)
-    rows = table(block, head[ROWS], n, ROWS_WIDTH)
-    near = block[head[NEAR_AT] : head[NEAR_AT] + head[NEAR]]
-    frame = table(block_number, head[FRAME], count, FRAME_WIDTH)
-    arms = table(block_number, head[ARMS], n, ARMS_WIDTH)
-    q = work[block[Q] : block[Q] + 3 * nb]
-    last = work[block[KEPT_Q] : block[KEPT_Q] + 3 * nb]
-    v = work[block[V] : block[V] + 3 * nb]
-    a = work[block[A] : block[A] + 3 * nb]
-    turn = table(work, block[TURN_AT], nb, 2)
-    jac = table(work, block[JAC], LARGEST, 6)
-    out = table(work, block[OUT], LARGEST, 10)
-    scratch = work[block[SCRATCH] :]
-    here = table(work, block[UNKNOWN_AT] + width * head[FIRST], n, width)
-    kept = table(work, block[KEPT_Q] + block[UNKNOWN_AT] + width * head[FIRST], n, width)
-    seen = work[block[SEEN_AT] + (columns + 1) * k : block[SEEN_AT] + (columns + 1) * (k + 1)]
-    before = work[block[KEPT_Q] + block[DETERMINANT_AT] + k]
+    tables = Block(
+        head,
+        table(block, head[TREE], count, TREE_WIDTH),
+        table(block, head[ROWS], n, ROWS_WIDTH),
+        block[head[NEAR_AT] : head[NEAR_AT] + head[NEAR]],
+        table(block_number, head[FRAME], count, FRAME_WIDTH),
+        table(block_number, head[ARMS], n, ARMS_WIDTH),
+        numbers,
+    )
+    motion = Motion(
+        work[block[Q] : block[Q] + 3 * nb],
+        work[block[V] : block[V] + 3 * nb],
+        work[block[A] : block[A] + 3 * nb],
+        table(work, block[TURN_AT], nb, 2),
+    )
+    scratch = Work(
+        table(work, block[UNKNOWN_WORK], 3, LARGEST),
+        table(work, block[JAC], LARGEST, 6),
+        table(work, block[OUT], LARGEST, 10),
+        table(work, block[SOLUTION], 2, LARGEST),
+        work[block[SCRATCH] :],
+        table(work, block[POINT], 4, 8),
+    )
+    past = Past(
+        work[block[KEPT_Q] : block[KEPT_Q] + 3 * nb],
+        table(work, block[UNKNOWN_AT] + width * head[FIRST], n, width),
+        table(work, block[KEPT_Q] + block[UNKNOWN_AT] + width * head[FIRST], n, width),
+        work[block[SEEN_AT] + (columns + 1) * k : block[SEEN_AT] + (columns + 1) * (k + 1)],
+        work[block[KEPT_Q] + block[DETERMINANT_AT] + k],
+    )
+    tree = tables.tree
+    q = motion.q
+    v = motion.v
+    turn = motion.turn
+    seen = past.seen
     now = coordinate[columns, VALUE] + coordinate[columns, BASE]
-    step = take_near(near, body, base, coordinate, q, last, turn, 1.0 / arms[0, SIZE])
+    step = take_near(tables.near, body, base, coordinate, q, past.q, turn, 1.0 / tables.arms[0, SIZE])
     if step < 0.0:
         return DOUBTED
     if count == 1 and n == 1 and tree[0, HANGS] == PIN:
-        determinant = place_pinned(
-            tree[0], rows[0], frame[0], arms[0], q, last, turn, numbers, jac[0], out[0], scratch, here[0], kept[0],
-            seen, coordinate, drive, before, step, now,
-        )  # fmt: skip
+        determinant = place_pinned(tables, motion, scratch, past, coordinate, drive, step, now)
         if determinant != 0.0:
-            move_pinned(
-                tree[0], rows[0], frame[0], arms[0], q, v, a, turn, jac[0], out[0], determinant, here[0], rate,
-                coordinate, drive,
-            )  # fmt: skip
+            move_pinned(tables, motion, scratch, determinant, past.here[0], rate, coordinate, drive)
     else:
-        unknown = table(work, block[UNKNOWN_WORK], 3, LARGEST)
-        solution = table(work, block[SOLUTION], 2, LARGEST)
-        point = table(work, block[POINT], 4, 8)
-        determinant = place_coupled(
-            head, tree, rows, frame, arms, q, last, v, a, turn, numbers, jac, out, scratch, unknown, solution, point,
-            here, kept, seen, coordinate, drive, before, step, now,
-        )  # fmt: skip
+        determinant = place_coupled(tables, motion, scratch, past, coordinate, drive, step, now)
         if determinant != 0.0:
-            move_coupled(
-                head, tree, rows, near, frame, arms, q, v, a, turn, jac, out, scratch, unknown, solution, point, here,
-                rate, coordinate, drive,
-            )  # fmt: skip
+            move_coupled(tables, motion, scratch, past.here, rate, coordinate, drive)
     if determinant == 0.0:
         return DOUBTED
     work[block[DETERMINANT_AT] + k] = determinant

@@ -9,64 +9,62 @@ from mbsd.kinematics.groups.carrying.columns import SPEED
 from mbsd.kinematics.groups.newton.fused import fused
 from mbsd.kinematics.groups.newton.iteration import correction, iterate
 from mbsd.kinematics.groups.newton.matrix import extent, held, solve
-from mbsd.kinematics.groups.newton.rows import begin, bend_of, move
+from mbsd.kinematics.groups.newton.rows import bend_of, move, read_unknowns
 from mbsd.kinematics.newton import ROUNDING, SHRINKS, SUSPICIOUS
 
 
 @fused
-def place_coupled(
-    head, tree, rows, frame, arms, q, last, v, a, turn, numbers, jac, out, scratch, unknown, solution, point,
-    here, kept, seen, coordinate, drive, before, step, now,
-):  # fmt: skip
-    """Place the bodies; ``scratch`` takes the factors of G. Returns its determinant, or 0 where the pose is doubted.
+def place_coupled(block, motion, work, past, coordinate, drive, step, now):
+    """Place the bodies; ``work`` takes the factors of G. Returns its determinant, or 0 where the pose is doubted.
 
-    ``before``: determinant at the last accepted pose, 0 at the first; ``step``: how far the bodies beside went since.
+    ``step``: how far the bodies beside went since the last accepted pose.
     """
-    count = head[BODIES]
-    n = head[EQUATIONS]
-    per_metre = 1.0 / arms[0, SIZE]
-    since = now - seen[coordinate.shape[0] - 1]
-    if before == 0.0:
-        begin(tree, frame, count, last, turn, unknown[0])
+    n = block.head[EQUATIONS]
+    unknown = work.unknown
+    per_metre = 1.0 / block.arms[0, SIZE]
+    since = now - past.seen[coordinate.shape[0] - 1]
+    if past.determinant == 0.0:
+        read_unknowns(block, past.q, motion.turn, unknown[0])
     for c in range(n):
         unknown[1, c] = 0.0
         unknown[2, c] = 0.0
     for attempt in range(2):
-        for c in range(n if before != 0.0 else 0):
+        for c in range(n if past.determinant != 0.0 else 0):
             if attempt == 0:
-                unknown[0, c] = expected(here[c], seen, coordinate, since)
+                unknown[0, c] = expected(past.here[c], past.seen, coordinate, since)
             else:
-                unknown[0, c] = expected_since(kept[c], coordinate)
-        determinant, change, _, _ = iterate(
-            False, head, tree, rows, frame, arms, drive, q, v, a, turn, numbers, jac, out, scratch, unknown, solution,
-            point,
-        )  # fmt: skip
+                unknown[0, c] = expected_since(past.kept[c], coordinate)
+        determinant, change, _, _ = iterate(False, block, drive, motion, work)
         if determinant != 0.0 and change <= ROUNDING:
-            move(tree, frame, count, unknown, False, q, v, a, turn, point)
-            if before == 0.0:
+            move(block, unknown, False, motion, work.point)
+            if past.determinant == 0.0:
                 return determinant
             way = step
-            for e in range(count):
-                way = max(way, extent(q, last, tree[e, BODY], per_metre))
+            for e in range(block.head[BODIES]):
+                way = max(way, extent(motion.q, past.q, block.tree[e, BODY], per_metre))
             for c in range(n):
-                solution[0, c] = unknown[0, c] - expected_since(kept[c], coordinate)
-            missed = correction(head, tree, solution[0], per_metre)
-            if determinant / before > SHRINKS and missed <= SUSPICIOUS * way + 1e-9:
+                work.solution[0, c] = unknown[0, c] - expected_since(past.kept[c], coordinate)
+            missed = correction(block, work.solution[0], per_metre)
+            if determinant / past.determinant > SHRINKS and missed <= SUSPICIOUS * way + 1e-9:
                 return determinant
-        if before == 0.0:
+        if past.determinant == 0.0:
             break
     return 0.0
 
 
 @fused
-def move_coupled(
-    head, tree, rows, near, frame, arms, q, v, a, turn, jac, out, scratch, unknown, solution, point, here, rate,
-    coordinate, drive,
-):  # fmt: skip
+def move_coupled(block, motion, work, here, rate, coordinate, drive):
     """Columns of B and convective accelerations of the bodies that ``place_coupled`` has placed."""
     columns = coordinate.shape[0] - 1
-    count = head[BODIES]
-    n = head[EQUATIONS]
+    tree = block.tree
+    rows = block.rows
+    near = block.near
+    count = block.head[BODIES]
+    n = block.head[EQUATIONS]
+    v = motion.v
+    a = motion.a
+    jac = work.jac
+    unknown = work.unknown
     for b in near:
         for c in range(3 * b, 3 * b + 3):
             a[c] = 0.0
@@ -77,11 +75,11 @@ def move_coupled(
                 v[3 * b + c] = rate[b, 3 * j + c]
         for c in range(n):
             unknown[1, c] = 0.0
-        move(tree, frame, count, unknown, True, q, v, a, turn, point)
+        move(block, unknown, True, motion, work.point)
         for r in range(n):
             unknown[1, r] = (drive[rows[r, MOTION], 1] if of_time else 0.0) - held(jac[r], rows[r], v)
-        solve(scratch, solution[1], n, unknown[1])
-        move(tree, frame, count, unknown, True, q, v, a, turn, point)
+        solve(work.matrix, work.solution[1], n, unknown[1])
+        move(block, unknown, True, motion, work.point)
         for e in range(count):
             b = tree[e, BODY]
             for c in range(3):
@@ -98,12 +96,12 @@ def move_coupled(
         unknown[1, c] = 0.0
         for j in range(columns):
             unknown[1, c] += here[c, 2 + j] * coordinate[j, SPEED]
-    move(tree, frame, count, unknown, True, q, v, a, turn, point)
+    move(block, unknown, True, motion, work.point)
     for r in range(n):
-        bend = bend_of(rows[r], arms[r], q, v, turn, out[r])
+        bend = bend_of(rows[r], block.arms[r], motion.q, v, motion.turn, work.out[r])
         unknown[2, r] = bend + drive[rows[r, MOTION], 2] - held(jac[r], rows[r], a)
-    solve(scratch, solution[1], n, unknown[2])
-    move(tree, frame, count, unknown, True, q, v, a, turn, point)
+    solve(work.matrix, work.solution[1], n, unknown[2])
+    move(block, unknown, True, motion, work.point)
     for c in range(n):
         here[c, 0] = unknown[0, c]
         here[c, 1] = unknown[2, c]

@@ -18,14 +18,19 @@ from mbsd.kinematics.newton import MAX_ITERATIONS, ROUNDING, SHRINKS, SUSPICIOUS
 
 
 @fused
-def place_pinned(
-    tree, row, frame, arm, q, last, turn, numbers, jac, out, scratch, here, kept, seen, coordinate, drive, before, step,
-    now,
-):  # fmt: skip
-    """Turn the body; out[0] takes F with its derivatives, jac its row. Returns F_theta, or 0 where the pose is doubted.
+def place_pinned(block, motion, work, past, coordinate, drive, step, now):
+    """Turn the body; ``work`` takes F with its derivatives and its row. Returns F_theta, or 0 where it is doubted.
 
     ``step``: how far the bodies beside went since the last accepted pose.
     """
+    tree = block.tree[0]
+    row = block.rows[0]
+    frame = block.frame[0]
+    arm = block.arms[0]
+    q = motion.q
+    turn = motion.turn
+    jac = work.jac[0]
+    out = work.out[0]
     body = tree[BODY]
     b = 3 * body
     parent = tree[PARENT]
@@ -34,12 +39,12 @@ def place_pinned(
     own = 3 if row[BODY_J] == body else 0
     wanted = drive[row[MOTION], 0]
     for attempt in range(2):
-        theta = last[b + 2]
-        if before != 0.0:
+        theta = past.q[b + 2]
+        if past.determinant != 0.0:
             theta = (
-                expected(here, seen, coordinate, now - seen[coordinate.shape[0] - 1])
+                expected(past.here[0], past.seen, coordinate, now - past.seen[coordinate.shape[0] - 1])
                 if attempt == 0
-                else expected_since(kept, coordinate)
+                else expected_since(past.kept[0], coordinate)
             )
         slope = 0.0
         change = math.inf
@@ -52,7 +57,7 @@ def place_pinned(
             q[b] = px - sx
             q[b + 1] = py - sy
             q[b + 2] = theta
-            value = evaluate_row(row, arm, q, turn, numbers, scratch, out, jac)
+            value = evaluate_row(row, arm, q, turn, block.numbers, work.matrix, out, jac)
             slope = jac[own] * sy - jac[own + 1] * sx + jac[own + 2]
             if slope == 0.0:
                 break
@@ -69,26 +74,37 @@ def place_pinned(
             turn[body, 0] -= turn[body, 1] * correction  # a correction of 1e-9 is exact this way
             turn[body, 1] += cosine * correction
             q[b + 2] = theta
-            if before == 0.0:
+            if past.determinant == 0.0:
                 return slope
-            way = max(step, abs(theta - last[b + 2]))
-            if slope / before > SHRINKS and abs(theta - expected_since(kept, coordinate)) <= SUSPICIOUS * way + 1e-9:
+            way = max(step, abs(theta - past.q[b + 2]))
+            missed = abs(theta - expected_since(past.kept[0], coordinate))
+            if slope / past.determinant > SHRINKS and missed <= SUSPICIOUS * way + 1e-9:
                 return slope
-        if before == 0.0:
+        if past.determinant == 0.0:
             break
     return 0.0
 
 
 @fused
-def move_pinned(tree, row, frame, arm, q, v, a, turn, jac, out, slope, here, rate, coordinate, drive):
+def move_pinned(block, motion, work, slope, here, rate, coordinate, drive):
     """Columns of B and convective accelerations of the body that ``place_pinned`` has turned."""
+    tree = block.tree[0]
+    row = block.rows[0]
+    frame = block.frame[0]
+    arm = block.arms[0]
+    q = motion.q
+    turn = motion.turn
+    jac = work.jac[0]
+    out = work.out[0]
+    v = motion.v
+    a = motion.a
     columns = coordinate.shape[0] - 1
     own_body = tree[BODY]
     parent = tree[PARENT]
     b = 3 * own_body
     own = 3 if row[BODY_J] == own_body else 0
     other = row[BODY_I] if own == 3 else row[BODY_J]
-    motion = row[MOTION]
+    law = row[MOTION]
     px = turn[parent, 0] * frame[0] - turn[parent, 1] * frame[1]
     py = turn[parent, 1] * frame[0] + turn[parent, 0] * frame[1]
     sx = turn[own_body, 0] * frame[5] - turn[own_body, 1] * frame[6]
@@ -107,7 +123,7 @@ def move_pinned(tree, row, frame, arm, q, v, a, turn, jac, out, slope, here, rat
         held = jac[own] * vx + jac[own + 1] * vy
         for c in range(3):
             held += jac[3 - own + c] * rate[other, at + c]
-        imposed = drive[motion, 1] if motion > 0 and j == columns - 1 else 0.0
+        imposed = drive[law, 1] if law > 0 and j == columns - 1 else 0.0
         omega = (imposed - held) / slope
         here[2 + j] = omega
         rate[own_body, at] = vx + omega * sy
@@ -129,7 +145,7 @@ def move_pinned(tree, row, frame, arm, q, v, a, turn, jac, out, slope, here, rat
     held = jac[own] * ax + jac[own + 1] * ay
     for c in range(3):
         held += jac[3 - own + c] * rate[other, at + c]
-    alpha = (bend_of(row, arm, q, v, turn, out) + drive[motion, 2] - held) / slope
+    alpha = (bend_of(row, arm, q, v, turn, out) + drive[law, 2] - held) / slope
     here[0] = q[b + 2]
     here[1] = alpha
     a[b] = ax + alpha * sy

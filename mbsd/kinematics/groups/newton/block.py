@@ -32,7 +32,8 @@ from mbsd.kinematics.groups.newton.fused import fused
 from mbsd.kinematics.groups.newton.iteration import iterate
 from mbsd.kinematics.groups.newton.matrix import held, solve
 from mbsd.kinematics.groups.newton.pinned import extrapolated, in_doubt, solve_pinned
-from mbsd.kinematics.groups.newton.rows import begin, bend_of, move
+from mbsd.kinematics.groups.newton.records import Block, History, Motion, Work
+from mbsd.kinematics.groups.newton.rows import bend_of, move, read_unknowns
 from mbsd.kinematics.law_step import jumps
 from mbsd.kinematics.newton import ROUNDING
 
@@ -41,58 +42,51 @@ LONG = 1 << 40
 
 
 @fused
-def predict(tree, count, times, k, q, v, a, start):
+def predict(k, block, history):
     """Fill row k of q for the block's bodies."""
-    if k == 0:
-        for e in range(count):
-            for c in range(3 * tree[e, BODY], 3 * tree[e, BODY] + 3):
-                q[0, c] = start[c]
-        return
-    for e in range(count):
+    tree = block.tree
+    q = history.q
+    for e in range(block.head[BODIES]):
         for c in range(3 * tree[e, BODY], 3 * tree[e, BODY] + 3):
-            q[k, c] = extrapolated(times, k, q, v, a, c)
+            q[k, c] = history.start[c] if k == 0 else extrapolated(history.times, k, q, history.v, history.a, c)
 
 
 @fused
-def solve_arrays(
-    k, head, tree, rows, near, frame, arms, times, drives, q, v, a, turn, start, numbers, determinant, point,
-    unknown, jac, out, du, scratch,
-):  # fmt: skip
+def solve_arrays(k, block, history, work):
     """Fill row k of q, v, a (T, 3 nb) for the bodies of one block; returns SOLVED, or why not."""
-    count = head[BODIES]
-    n = head[EQUATIONS]
+    n = block.head[EQUATIONS]
+    rows = block.rows
+    arms = block.arms
+    unknown = work.unknown
     per_metre = 1.0 / arms[0, SIZE]
-    qk = q[k]
-    vk = v[k]
-    ak = a[k]
-    drive = drives[k]
-    h = times[k] - times[k - 1] if k > 0 else 0.0
+    motion = Motion(history.q[k], history.v[k], history.a[k], history.turn)
+    drive = history.drives[k]
+    h = history.times[k] - history.times[k - 1] if k > 0 else 0.0
     for r in range(n):
-        motion = rows[r, MOTION]
-        if k > 0 and motion > 0 and jumps(drive[motion], drives[k - 1, motion], h, arms[r, STRIDE]):
+        law = rows[r, MOTION]
+        if k > 0 and law > 0 and jumps(drive[law], history.drives[k - 1, law], h, arms[r, STRIDE]):
             return DOUBTED
-    predict(tree, count, times, k, q, v, a, start)
-    begin(tree, frame, count, qk, turn, unknown[0])
+    predict(k, block, history)
+    read_unknowns(block, motion.q, motion.turn, unknown[0])
     for c in range(n):
         unknown[1, c] = 0.0
         unknown[2, c] = 0.0
-    determinant[k, 0], change, first, second = iterate(
-        True, head, tree, rows, frame, arms, drive, qk, vk, ak, turn, numbers, jac, out, scratch, unknown, du, point
-    )  # fmt: skip
-    if determinant[k, 0] == 0.0:
+    determinant, change, first, second = iterate(True, block, drive, motion, work)
+    history.determinant[k, 0] = determinant
+    if determinant == 0.0:
         return MEETING
     if not change <= ROUNDING:
         return DOUBTED
     for r in range(n):
-        unknown[1, r] = drive[rows[r, MOTION], 1] - held(jac[r], rows[r], vk)
-    solve(scratch, du[1], n, unknown[1])
-    move(tree, frame, count, unknown, False, qk, vk, ak, turn, point)
+        unknown[1, r] = drive[rows[r, MOTION], 1] - held(work.jac[r], rows[r], motion.v)
+    solve(work.matrix, work.solution[1], n, unknown[1])
+    move(block, unknown, False, motion, work.point)
     for r in range(n):
-        bend = bend_of(rows[r], arms[r], qk, vk, turn, out[r])
-        unknown[2, r] = bend + drive[rows[r, MOTION], 2] - held(jac[r], rows[r], ak)
-    solve(scratch, du[1], n, unknown[2])
-    move(tree, frame, count, unknown, True, qk, vk, ak, turn, point)
-    return in_doubt(head, tree, near, times, q, v, a, determinant, k, h, per_metre, first, second) if k > 0 else SOLVED
+        bend = bend_of(rows[r], arms[r], motion.q, motion.v, motion.turn, work.out[r])
+        unknown[2, r] = bend + drive[rows[r, MOTION], 2] - held(work.jac[r], rows[r], motion.a)
+    solve(work.matrix, work.solution[1], n, unknown[2])
+    move(block, unknown, True, motion, work.point)
+    return in_doubt(k, block, history, h, per_metre, first, second) if k > 0 else SOLVED
 
 
 def _at_address(
@@ -104,50 +98,57 @@ def _at_address(
     count = sizes[BODIES]
     n = sizes[EQUATIONS]
     bodies = sizes[MOVING]
-    rows_known = k + 1
-    tree_of = carray(tree, (count, 5))
-    rows_of = carray(rows, (n, 9))
-    near_of = carray(near, (sizes[NEAR],))
-    frame_of = carray(frame, (count, 7))
-    arms_of = carray(arms, (n, 9))
-    at = carray(times, (rows_known,))
-    laws = carray(drives, (rows_known, sizes[LAWS], 3))
-    qs = carray(q, (rows_known, 3 * bodies))
-    vs = carray(v, (rows_known, 3 * bodies))
-    bends = carray(a, (rows_known, 3 * bodies))
-    turned = carray(turn, (bodies, 2))
-    before = carray(start, (3 * bodies,))
-    all_numbers = carray(numbers, (LONG,))
-    determinants = carray(determinant, (rows_known, 1))
-    points = carray(point, (4, 8))
-    jacobian = carray(jac, (LARGEST, 6))
-    values = carray(out, (LARGEST, 10))
-    work = carray(scratch, (LONG,))
-    return solve_any(
-        k, sizes, tree_of, rows_of, near_of, frame_of, arms_of, at, laws, qs, vs, bends, turned, before, all_numbers,
-        determinants, points, carray(unknown, (3, LARGEST)), jacobian, values, carray(du, (2, LARGEST)), work,
-    )  # fmt: skip
+    known = k + 1
+    block = Block(
+        sizes,
+        carray(tree, (count, 5)),
+        carray(rows, (n, 9)),
+        carray(near, (sizes[NEAR],)),
+        carray(frame, (count, 7)),
+        carray(arms, (n, 9)),
+        carray(numbers, (LONG,)),
+    )
+    history = History(
+        carray(times, (known,)),
+        carray(drives, (known, sizes[LAWS], 3)),
+        carray(q, (known, 3 * bodies)),
+        carray(v, (known, 3 * bodies)),
+        carray(a, (known, 3 * bodies)),
+        carray(turn, (bodies, 2)),
+        carray(start, (3 * bodies,)),
+        carray(determinant, (known, 1)),
+    )
+    work = Work(
+        carray(unknown, (3, LARGEST)),
+        carray(jac, (LARGEST, 6)),
+        carray(out, (LARGEST, 10)),
+        carray(du, (2, LARGEST)),
+        carray(scratch, (LONG,)),
+        carray(point, (4, 8)),
+    )
+    return solve_any(k, block, history, work)
 
 
 @fused
-def solve_any(
+def solve_any(k, block, history, work):
+    """Fill row k of q, v, a (T, 3 nb) for the bodies of one block; returns SOLVED, or why not."""
+    if block.head[EQUATIONS] == 1 and block.head[BODIES] == 1 and block.tree[0, HANGS] == PIN:
+        return solve_pinned(k, block, history, work)
+    return solve_arrays(k, block, history, work)
+
+
+def _from_arrays(
     k, head, tree, rows, near, frame, arms, times, drives, q, v, a, turn, start, numbers, determinant, point,
     unknown, jac, out, du, scratch,
 ):  # fmt: skip
-    """Fill row k of q, v, a (T, 3 nb) for the bodies of one block; returns SOLVED, or why not."""
-    if head[EQUATIONS] == 1 and head[BODIES] == 1 and tree[0, HANGS] == PIN:
-        return solve_pinned(
-            k, head, tree, rows, near, frame, arms, times, drives, q, v, a, turn, start, numbers, determinant, point,
-            jac, out, scratch,
-        )  # fmt: skip
-    return solve_arrays(
-        k, head, tree, rows, near, frame, arms, times, drives, q, v, a, turn, start, numbers, determinant, point,
-        unknown, jac, out, du, scratch,
-    )  # fmt: skip
+    """The same with arrays, where nothing is compiled."""
+    block = Block(head, tree, rows, near, frame, arms, numbers)
+    history = History(times, drives, q, v, a, turn, start, determinant)
+    return solve_any(k, block, history, Work(unknown, jac, out, du, scratch, point))
 
 
 if COMPILED:
     ADDRESS = at_address(SIGNATURE)(_at_address).address
 else:
-    PYTHON[:] = [solve_any]
+    PYTHON[:] = [_from_arrays]
     ADDRESS = 0

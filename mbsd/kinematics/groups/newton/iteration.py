@@ -31,14 +31,17 @@ COLUMNS = LARGEST * LARGEST
 
 
 @fused
-def linearise(head, tree, rows, frame, arms, q, turn, numbers, jac, out, values, scratch):
-    """values (n,) of the equations, their rows jac (n, 6) with derivatives out (n, 10), and G in the scratch."""
-    count = head[BODIES]
-    n = head[EQUATIONS]
-    fill_columns(tree, frame, count, n, q, turn, scratch[COLUMNS:])
+def linearise(block, q, turn, work, values):
+    """values (n,) of the equations, their rows and derivatives in ``work``, and G in its matrix."""
+    count = block.head[BODIES]
+    n = block.head[EQUATIONS]
+    rows = block.rows
+    jac = work.jac
+    scratch = work.matrix
+    fill_columns(block, q, turn, scratch[COLUMNS:])
     relative = scratch[COLUMNS + 3 * n * count :]
     for r in range(n):
-        values[r] = evaluate_row(rows[r], arms[r], q, turn, numbers, relative, out[r], jac[r])
+        values[r] = evaluate_row(rows[r], block.arms[r], q, turn, block.numbers, relative, work.out[r], jac[r])
         first = rows[r, PLACE_I]
         second = rows[r, PLACE_J]
         for j in range(n):
@@ -52,10 +55,11 @@ def linearise(head, tree, rows, frame, arms, q, turn, numbers, jac, out, values,
 
 
 @fused
-def correction(head, tree, du, per_metre):
+def correction(block, du, per_metre):
     """Largest of a change of the unknowns, in sizes and rad; NaN counts as infinite."""
+    tree = block.tree
     largest = 0.0
-    for e in range(head[BODIES]):
+    for e in range(block.head[BODIES]):
         c = tree[e, UNKNOWN]
         hangs = tree[e, HANGS]
         for i in range(UNKNOWNS[hangs]):
@@ -68,34 +72,34 @@ def correction(head, tree, du, per_metre):
 
 
 @fused
-def iterate(
-    turned, head, tree, rows, frame, arms, drive, q, v, a, turn, numbers, jac, out, scratch, unknown, du, point
-):  # fmt: skip
-    """Correct the unknowns (3, n) from where they stand; ``turned``: pins' angles are in ``turn`` at first.
+def iterate(turned, block, drive, motion, work):
+    """Correct the unknowns (3, n) from where they stand; ``turned``: pins' angles are in ``motion.turn`` at first.
 
-    The scratch takes the factors of G, jac (n, 6) and out (n, 10) the equations; bodies stand where the last of them
-    were evaluated. Returns the determinant of G, 0 where it is singular, and the last, first and second correction.
+    ``work`` takes the factors of G and the equations; bodies stand where the last of them were evaluated. Returns the
+    determinant of G, 0 where it is singular, and the last, first and second correction.
     """
-    count = head[BODIES]
-    n = head[EQUATIONS]
-    per_metre = 1.0 / arms[0, SIZE]
+    n = block.head[EQUATIONS]
+    unknown = work.unknown
+    du = work.solution
+    scratch = work.matrix
+    per_metre = 1.0 / block.arms[0, SIZE]
     determinant = 0.0
     first = 0.0
     second = 0.0
     last = math.inf
     change = math.inf
     for iteration in range(MAX_ITERATIONS):
-        move(tree, frame, count, unknown, turned and iteration == 0, q, v, a, turn, point)
-        linearise(head, tree, rows, frame, arms, q, turn, numbers, jac, out, du[0], scratch)
+        move(block, unknown, turned and iteration == 0, motion, work.point)
+        linearise(block, motion.q, motion.turn, work, du[0])
         determinant = factor(scratch, du[1], n)
         if determinant == 0.0:
             break
         for r in range(n):
-            du[0, r] = drive[rows[r, MOTION], 0] - du[0, r]
+            du[0, r] = drive[block.rows[r, MOTION], 0] - du[0, r]
         solve(scratch, du[1], n, du[0])
         for c in range(n):
             unknown[0, c] += du[0, c]
-        change = correction(head, tree, du[0], per_metre)
+        change = correction(block, du[0], per_metre)
         if iteration == 0:
             first = change
         elif iteration == 1:

@@ -41,29 +41,33 @@ def extrapolated(times, k, q, v, a, c):
 
 
 @fused
-def solve_pinned(
-    k, head, tree, rows, near, frame, arms, times, drives, q, v, a, turn, start, numbers, determinant, point, jac, out,
-    relative,
-):  # fmt: skip
+def solve_pinned(k, block, history, work):
     """As solve_arrays for a block of one pinned body, whose angle is the only unknown."""
+    tree = block.tree
+    arms = block.arms
+    times = history.times
+    drives = history.drives
+    turn = history.turn
+    jac = work.jac
+    out = work.out
     body = tree[0, BODY]
     b = 3 * body
-    n = frame[0]
-    row = rows[0]
+    n = block.frame[0]
+    row = block.rows[0]
     per_metre = 1.0 / arms[0, SIZE]
     motion = row[MOTION]
-    qk = q[k]
-    vk = v[k]
-    ak = a[k]
+    qk = history.q[k]
+    vk = history.v[k]
+    ak = history.a[k]
     h = 0.0
-    theta = start[b + 2]
+    theta = history.start[b + 2]
     if k > 0:
         h = times[k] - times[k - 1]
         if motion > 0 and jumps(drives[k, motion], drives[k - 1, motion], h, arms[0, STRIDE]):
             return DOUBTED
-        theta = extrapolated(times, k, q, v, a, b + 2)
+        theta = extrapolated(times, k, history.q, history.v, history.a, b + 2)
     own = 3 if row[BODY_J] == body else 0
-    p = point[0]
+    p = work.point[0]
     carried(qk, vk, ak, turn, tree[0, PARENT], n[0], n[1], p)
     first = 0.0
     second = 0.0
@@ -79,7 +83,7 @@ def solve_pinned(
         qk[b] = p[0] - sx
         qk[b + 1] = p[1] - sy
         qk[b + 2] = theta
-        value = evaluate_row(row, arms[0], qk, turn, numbers, relative, out[0], jac[0])
+        value = evaluate_row(row, arms[0], qk, turn, block.numbers, work.matrix, out[0], jac[0])
         slope = jac[0, own] * sy - jac[0, own + 1] * sx + jac[0, own + 2]
         if slope == 0.0:
             return MEETING
@@ -97,7 +101,7 @@ def solve_pinned(
         last = change
     if not change <= ROUNDING:
         return DOUBTED
-    determinant[k, 0] = slope
+    history.determinant[k, 0] = slope
     qk[b + 2] = theta
     cosine = turn[body, 0]
     turn[body, 0] -= turn[body, 1] * correction  # a correction of 1e-9 is exact this way
@@ -111,20 +115,21 @@ def solve_pinned(
     bend = bend_of(row, arms[0], qk, vk, turn, out[0])
     ak[b + 2] = (bend + drives[k, motion, 2] - held(jac[0], row, ak)) / slope
     hang(qk, vk, ak, turn, body, p, n[5], n[6])
-    return in_doubt(head, tree, near, times, q, v, a, determinant, k, h, per_metre, first, second) if k > 0 else SOLVED
+    return in_doubt(k, block, history, h, per_metre, first, second) if k > 0 else SOLVED
 
 
 @fused
-def in_doubt(head, tree, near, times, q, v, a, determinant, k, h, per_metre, first, second):
+def in_doubt(k, block, history, h, per_metre, first, second):
     """The branch guard after row k: SOLVED, or in which step a pose is needed."""
+    q = history.q
     step = 0.0
-    for e in range(head[BODIES]):
-        step = max(step, extent(q[k], q[k - 1], tree[e, BODY], per_metre))
-    for e in range(head[NEAR]):
-        step = max(step, extent(q[k], q[k - 1], near[e], per_metre))
+    for e in range(block.head[BODIES]):
+        step = max(step, extent(q[k], q[k - 1], block.tree[e, BODY], per_metre))
+    for e in range(block.head[NEAR]):
+        step = max(step, extent(q[k], q[k - 1], block.near[e], per_metre))
     if first > SUSPICIOUS * step + 1e-9 or second > CONTRACTS * first + 1e-9:
         return DOUBTED
-    refused = heads_for_zero(determinant, times, k, 0)
+    refused = heads_for_zero(history.determinant, history.times, k, 0)
     if refused > 0:
         return DOUBTED if refused == k else DOUBTED_BEFORE
-    return DOUBTED if turns_too_far(head, tree, q, v, a, k, h, per_metre) else SOLVED
+    return DOUBTED if turns_too_far(block.head, block.tree, q, history.v, history.a, k, h, per_metre) else SOLVED

@@ -15,10 +15,12 @@ from mbsd.kinematics.groups.blocks import (
     ALONG,
     ARM,
     AT,
+    BODIES,
     BODY,
     BODY_I,
     BODY_J,
     EQUATION,
+    EQUATIONS,
     FREE,
     HANGS,
     PARENT,
@@ -35,8 +37,10 @@ from mbsd.kinematics.groups.newton.fused import fused
 
 
 @fused
-def begin(tree, frame, count, q, turn, u):
+def read_unknowns(block, q, turn, u):
     """Unknowns u (n,) of the pose q (3 nb,) of the block's bodies; turns them too."""
+    tree = block.tree
+    count = block.head[BODIES]
     for e in range(count):
         body = tree[e, BODY]
         turn[body, 0] = math.cos(q[3 * body + 2])
@@ -51,7 +55,7 @@ def begin(tree, frame, count, q, turn, u):
             for i in range(3):
                 u[c + i] = q[3 * body + i]
         elif tree[e, HANGS] == SLIDE:
-            n = frame[e]
+            n = block.frame[e]
             x = q[3 * body] - q[3 * parent] + turn[body, 0] * n[5] - turn[body, 1] * n[6]
             y = q[3 * body + 1] - q[3 * parent + 1] + turn[body, 1] * n[5] + turn[body, 0] * n[6]
             ex = turn[parent, 0] * x + turn[parent, 1] * y - n[0]
@@ -60,9 +64,15 @@ def begin(tree, frame, count, q, turn, u):
 
 
 @fused
-def move(tree, frame, count, u, turned, q, v, a, turn, point):
+def move(block, u, turned, motion, point):
     """Place the block's bodies by the unknowns u (3, n) with their rates; ``turned``: pins' angles are in ``turn``."""
-    for e in range(count):
+    tree = block.tree
+    frame = block.frame
+    q = motion.q
+    v = motion.v
+    a = motion.a
+    turn = motion.turn
+    for e in range(block.head[BODIES]):
         body = tree[e, BODY]
         parent = tree[e, PARENT]
         c = tree[e, UNKNOWN]
@@ -92,9 +102,12 @@ def move(tree, frame, count, u, turned, q, v, a, turn, point):
 
 
 @fused
-def fill_columns(tree, frame, count, unknowns, q, turn, columns):
+def fill_columns(block, q, turn, columns):
     """columns: (bodies, unknowns, 3) rates of each body for a unit rate of each unknown."""
-    for e in range(count):
+    tree = block.tree
+    frame = block.frame
+    unknowns = block.head[EQUATIONS]
+    for e in range(block.head[BODIES]):
         body = tree[e, BODY]
         parent = tree[e, PARENT]
         place = tree[e, PARENT_PLACE]

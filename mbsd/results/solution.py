@@ -16,7 +16,6 @@ sol.orders(sol.shaking().force)    harmonics against the crank
 
 from __future__ import annotations
 
-import html
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -38,7 +37,9 @@ from mbsd.results.energy import potential_of
 from mbsd.results.force_view import ForceView
 from mbsd.results.forces import force_view
 from mbsd.results.friction import FrictionView, friction_view
+from mbsd.results.html import html_of
 from mbsd.results.moved import Moved
+from mbsd.results.moved_frame import moved_frame
 from mbsd.results.returned import returned
 from mbsd.results.vibration.crank import crank_of
 from mbsd.results.vibration.orders import Orders, orders
@@ -80,7 +81,6 @@ class Solution(Generic[AnyModel]):
     """How positions were found: in closed form group by group, by Newton-Raphson, or by integration."""
     work: np.ndarray | None = None
     """(T,) of forces and drivers since the start (J), gravity left out, of a simulation."""
-
     changes: tuple[str, ...] = ()
     """What was changed of the given start of a simulation to make it consistent."""
     events: tuple[Happening, ...] = ()
@@ -116,9 +116,9 @@ class Solution(Generic[AnyModel]):
         return self.margin() if callable(self.margin) else self.margin
 
     def at(self, times: float | Sequence[float] | np.ndarray) -> Solution:
-        """A simulation at any rising times (s) it covers, as exact as at its outputs: integrated from the last one.
+        """A simulation at rising times (s), as exact as at its outputs; at the time of an event the motion after it.
 
-        At the time of an event it is the motion after it. Raises ModelError for a sweep and for times outside.
+        Raises ModelError for a sweep and for times outside.
         """
         wanted = np.atleast_1d(number_array(f"{self.mechanism.name}: times", times))
         if self.between is None:
@@ -258,9 +258,7 @@ class Solution(Generic[AnyModel]):
         """The time spanned (s) if pose, velocity and acceleration return to those of the start; else None."""
         ends = ((part[0], part[-1]) for part in (self.q, self.v, self.a))
         first, last = zip(*ends, strict=True)
-        if not returned((first, last)):
-            return None
-        return float(self.t[-1] - self.t[0])
+        return float(self.t[-1] - self.t[0]) if returned((first, last)) else None
 
     def to_frame(self) -> pandas.DataFrame:
         """All results as a pandas DataFrame indexed by time; columns name their units. Needs the extra ``pandas``."""
@@ -312,8 +310,8 @@ class Solution(Generic[AnyModel]):
         film; by default real time, or a round part or multiple of it, stated in the picture, where that would be too
         short or too long to see. ``fps``: pictures a second; ``size``: pixels, (1280, 720) by default, (800, 450) of a
         GIF. ``names``: True for three that matter, ``"all"``, or False. A motion that repeats (``period``) loops;
-        others play once. ``progress`` is called with the number of
-        pictures drawn, and of all. Needs the extra ``animate``; raises ModelError for what cannot be drawn or written.
+        others play once. ``progress`` is called with the number of pictures drawn, and of all. Needs the extra
+        ``animate``; raises ModelError for what cannot be drawn or written.
         """
         from mbsd.drawing.of_solution import animate
 
@@ -337,40 +335,14 @@ class Solution(Generic[AnyModel]):
 
     def _repr_html_(self) -> str:
         moving = self.view()._repr_html_() if len(self.mechanism.bodies) <= SHOWN and len(self.t) > 1 else ""
-        rows = [
-            (name, f"{view.min():.6g}", f"{view.max():.6g}")
-            for name, view in self.columns().items()
-            if not name.endswith((".ax [m/s^2]", ".ay [m/s^2]", ".vx [m/s]", ".vy [m/s]"))
-        ]
-        body = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in rows)
-        return (
-            f"<p><b>{html.escape(self.mechanism.name)}</b>: {html.escape(str(self.mobility))}; "
-            f"{len(self.t)} times from {self.t[0]:g} to {self.t[-1]:g} s; "
-            f"largest residual {self.stats.position_residual:.1e}</p>"
-            f"{moving}"
-            "<details><summary>Least and largest values</summary>"
-            "<table><tr><th>quantity</th><th>min</th><th>max</th></tr>"
-            f"{body}</table></details>"
-        )
+        span = f"{len(self.t)} times from {self.t[0]:g} to {self.t[-1]:g} s"
+        about = f"{self.mobility}; {span}; largest residual {self.stats.position_residual:.1e}"
+        return html_of(self.mechanism.name, about, self.columns(), moving)
 
     def _frame(self, b: int, place: tuple[float, float], turned: float = 0.0) -> FrameView:
-        """The frame at ``place`` of body b's author frame: moved from the centre of mass."""
-        q, v, a = self.q[:, b], self.v[:, b], self.a[:, b]
+        """The frame at ``place`` of body b's author frame."""
         local = np.array(place) - self.packed.com[b]
-        c, s = np.cos(q[:, 2]), np.sin(q[:, 2])
-        arm_x, arm_y = c * local[0] - s * local[1], s * local[0] + c * local[1]
-        omega, alpha = v[:, 2], a[:, 2]
-        return FrameView(
-            x=q[:, 0] + arm_x,
-            y=q[:, 1] + arm_y,
-            theta=q[:, 2] + turned,
-            vx=v[:, 0] - omega * arm_y,
-            vy=v[:, 1] + omega * arm_x,
-            omega=omega,
-            ax=a[:, 0] - alpha * arm_y - omega**2 * arm_x,
-            ay=a[:, 1] + alpha * arm_x - omega**2 * arm_y,
-            alpha=alpha,
-        )
+        return moved_frame(self.q[:, b], self.v[:, b], self.a[:, b], local, turned)
 
     def _index(self, name: str, names: list[str], what: str) -> int:
         if not isinstance(name, str) or name not in names:

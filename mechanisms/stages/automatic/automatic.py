@@ -55,8 +55,7 @@ class Automatic:
     """Automatic parts, and what an author may wish otherwise. Lengths that are given are mm."""
 
     def __init__(self, m: Mechanism, solution: Solution, pin: float | None = None, fit: Fit | None = None) -> None:
-        self.m = m
-        self.solution = solution
+        self.m, self.solution = m, solution
         self._pin, self._fit = pin, fit
         refuse_sizes(m.name, pin, fit)
         self._materials: dict[str, str] = {}

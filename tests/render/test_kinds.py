@@ -9,21 +9,28 @@ from pathlib import Path
 
 import msgspec
 import numpy as np
+import pytest
+from matplotlib.figure import Figure
 
 from mbsd import Mechanism, constant_rate
+from mbsd.drawing.animation.quantities.loads import reaction_arrows
 from mbsd.model.adding.joints import join
 from mbsd.model.contact import CONTACT_KINDS
 from mbsd.model.force import FORCE_KINDS
 from mbsd.model.joint import KINDS, JointKind
+from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.solve.motion_file import to_motion
 from mechanisms.stages.solve.skeleton_file import moving_of
 from render.crank import crank_of
 from render.film.arrows.torques import torques
 from render.film.arrows.vectors import vectors
+from render.plots import plots_of
+from render.plots.figures import WHOLE
 from render.report.transmission import loops
 from render.view.payload import payload
 from shared.contract import Motion
 from shared.contract.shot import Quantity
+from shared.stage.errors import UserError
 
 RENDER = Path(__file__).parents[2] / "render"
 SHOWN: tuple[Quantity, ...] = ("velocities", "accelerations", "forces", "reactions")
@@ -61,6 +68,7 @@ def four_bar(pin: JointKind) -> Mechanism:
     join(m, pin, "D", m.ground.at(0.12, 0.0), rocker.start, None)
     m.drive_angle("motor", crank, constant_rate(6.0))
     m.trace("P", coupler.at(0.06, 0.03))
+    m.start_near(c=90)
     return m
 
 
@@ -87,3 +95,41 @@ def test_a_kind_that_nobody_knows_is_drawn_and_reported_as_what_it_says_it_is() 
     assert msgspec.json.encode(pages[0], enc_hook=np.ndarray.tolist) == msgspec.json.encode(
         pages[1], enc_hook=np.ndarray.tolist
     )
+
+
+def test_a_kind_that_nobody_knows_is_drawn_animated_and_plotted() -> None:
+    known, hinge = KINDS["revolute"], replace(KINDS["revolute"], name="hinge", sign="revolute")
+    arrows, strokes, plots = [], [], []
+    for kind in (known, hinge):
+        solution = four_bar(kind).sweep(steps=24)
+        arrows.append(reaction_arrows(solution))
+        strokes.append(moving_of(solution).strokes)
+        motion = to_motion(solution, None, "key", {})
+        figures = {plot: WHOLE[plot](motion) for plot in ("reactions", "hodographs")}
+        plots.append((plots_of(motion), [_curves(made) for made in figures.values()]))
+    assert len(arrows[0]) == len(arrows[1]) > 0
+    assert all(np.array_equal(was.place, new.place) for was, new in zip(*arrows, strict=True))
+    assert strokes[0] == strokes[1]
+    assert plots[0] == plots[1]
+    assert all(plots[0][1])
+
+
+def _curves(made: Figure) -> list[list[float]]:
+    return [np.asarray(line.get_ydata(), float).tolist() for axes in made.axes for line in axes.lines]
+
+
+def test_automatic_parts_refuse_a_kind_that_they_do_not_know_by_its_name() -> None:
+    m = four_bar(replace(KINDS["revolute"], name="hinge", sign="revolute"))
+    with pytest.raises(UserError, match="four_bar: joint 'A' is a hinge, which has no automatic parts yet"):
+        Automatic(m, m.sweep(steps=24)).layout  # noqa: B018
+
+
+@pytest.mark.parametrize(
+    ("kinds", "pages"),
+    [("joints", ("joints", "cams")), ("forces", ("forces",)), ("contacts", ("events",))],
+)
+def test_the_pages_of_docs_list_every_kind(kinds: str, pages: tuple[str, ...]) -> None:
+    names = list({"joints": KINDS, "forces": FORCE_KINDS, "contacts": CONTACT_KINDS}[kinds])
+    text = "".join((RENDER.parent / "docs" / f"{page}.md").read_text() for page in pages)
+    assert names
+    assert [name for name in names if not re.search(rf"\b{name}\b", text)] == []

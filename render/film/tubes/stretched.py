@@ -28,6 +28,9 @@ HOOK = 0.13
 PER_TURN = 20
 """Points of a helix."""
 ROPE, ROPE_POINTS = 0.0042, 64
+LONG, INSIDE = 0.94, 0.94
+"""Length of a cylinder and of each rod that goes far out, in the least distance of the ends; the part of a rod that may
+leave what it runs in."""
 PIN = 1.5
 """Radius of the pins at the ends, in that of the wire or of the rod."""
 FOOT = 3.6
@@ -90,7 +93,7 @@ def stretched(
             continue
         radius = own.radius if own else min(COIL * size, BROAD * least)
         coil = force.look == "coil"
-        tubes = _coil(name, radius, least, most) if coil else _cylinder(name, 0.6 * radius, least, most)
+        tubes = _coil(name, radius, least, most) if coil else cylinder_tubes(name, 0.6 * radius, least, most)
         if own:
             yield Stretched(name, force.shape, own.z, tubes)
             continue
@@ -99,7 +102,7 @@ def stretched(
     for name, driver in motion.drivers.items():
         own = held.get(name)
         if own and driver.look == "cylinder" and driver.shape is not None and min(driver.value) > 0:
-            tubes = _cylinder(name, 0.6 * own.radius, min(driver.value), max(driver.value))
+            tubes = cylinder_tubes(name, 0.6 * own.radius, min(driver.value), max(driver.value))
             yield Stretched(name, driver.shape, own.z, tubes)
     for name, contact in motion.contacts.items():
         if contact.look == "cord" and contact.shape.length:
@@ -156,26 +159,40 @@ def _coil(name: str, radius: float, least: float, most: float) -> list[tuple[Tub
     return [(spec, lambda a, b: helix(a, b, radius, turns))]
 
 
-def _cylinder(name: str, radius: float, least: float, most: float) -> list[tuple[TubeSpec, Path]]:
-    """A cylinder from the first end, a rod from the second that never leaves it or reaches through."""
-    body = 0.68 * least
+def cylinder_tubes(name: str, radius: float, least: float, most: float) -> list[tuple[TubeSpec, Path]]:
+    """A cylinder from the first end, a rod from the second that never leaves it or reaches through; one that goes out
+    by far is longer, and by farther a telescope."""
+    body, stages = 0.68 * least, 1
     reach = min(0.9 * least, max(0.45 * least, most - 0.9 * body))
+    if 0.9 * body + reach < most:
+        body, reach = LONG * least, LONG * least
+        stages = max(1, math.ceil((most - body) / (INSIDE * reach)))
 
     def cylinder(a: Array, b: Array) -> Array:
         along = (b - a) / np.linalg.norm(b - a)
         return np.array([a + 0.1 * body * along, a + body * along])
 
-    def rod(a: Array, b: Array) -> Array:
-        along = (b - a) / np.linalg.norm(b - a)
-        return np.array([b, b - reach * along])
+    def rod(stage: int) -> Path:
+        def path(a: Array, b: Array) -> Array:
+            length = float(np.linalg.norm(b - a))
+            along = (b - a) / length
+            out = body + (length - body) * stage / stages
+            return np.array([a + out * along, a + (out - reach) * along])
+
+        return path
 
     def eye(a: Array, b: Array) -> Array:
         along = (b - a) / np.linalg.norm(b - a)
         return np.array([a, a + 0.12 * body * along])
 
+    rods = []
+    for stage in range(1, stages + 1):
+        called = f"{name} rod" if stage == stages else f"{name} stage {stage}"
+        thick = 0.42 + 0.43 * (stages - stage) / stages
+        rods.append((_tube(called, STEEL, thick * radius, 2), rod(stage)))
     return [
         (_tube(f"{name} cylinder", BLACK, radius, 2), cylinder),
-        (_tube(f"{name} rod", STEEL, 0.42 * radius, 2), rod),
+        *rods,
         (_tube(f"{name} eye", STEEL, 0.42 * radius, 2), eye),
     ]
 

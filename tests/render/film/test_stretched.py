@@ -11,7 +11,7 @@ import pytest
 from render.blender.scene.tubes import SIDES, vertices
 from render.film.film import Film
 from render.film.poses import Moment
-from render.film.tubes.stretched import HOOK, helix, placed, sagging
+from render.film.tubes.stretched import HOOK, cylinder_tubes, helix, placed, sagging
 from render.frames.keys import scene_key
 from render.presets import PRESETS
 from shared.contract import Action, ContactMotion, ForceMotion, Motion, Shape, read_motion, read_parts
@@ -124,6 +124,23 @@ def test_without_stiffness_a_rod_slides_in_a_cylinder_and_stays_in_it(out_root: 
         assert (rod[0] - cylinder[1]) @ axis > 0
     assert np.ptp(lengths[::2]) < 1e-9
     assert np.ptp(lengths[1::2]) < 1e-9
+
+
+@pytest.mark.parametrize("part", [1.0, 1.2, 1.5, 1.58, 1.6, 1.8, 1.9, 3.0, 7.5])
+def test_rods_reach_into_their_cylinder_however_far_it_goes_out(part: float):
+    least = 0.1
+    tubes = {spec.name: path for spec, path in cylinder_tubes("ram", 0.01, least, part * least)}
+    rods = [path for name, path in tubes.items() if "rod" in name or "stage" in name]
+    assert len(rods) == max(1, int(np.ceil((part - 0.94) / 0.94**2 - 1e-12)))
+    for length in np.linspace(least, part * least, 9):
+        a, b = np.zeros(3), np.array([length, 0.0, 0.0])
+        mouth = tubes["ram cylinder"](a, b)[1][0]
+        assert mouth <= length + 1e-12
+        for rod in rods:
+            out, inside = (point[0] for point in rod(a, b))
+            assert 0.0 <= inside < mouth <= out + 1e-12, (length, inside, mouth)
+            mouth = out
+        assert mouth == pytest.approx(length)
 
 
 def test_coil_and_rope_count_in_the_key_and_are_in_the_picture(out_root: Path):

@@ -21,13 +21,13 @@ def ball(restitution: float, height: float = 1.0) -> Mechanism:
 
 
 def times_of(sol: Solution, name: str, what: str) -> list[float]:
-    return [one.time for one in sol.events if one.name == name and one.what == what]
+    return [event.time for event in sol.events if event.name == name and event.what == what]
 
 
 def balance(sol: Solution) -> np.ndarray:
     """Energy less work less what impacts took: constant."""
     assert sol.audit is not None
-    return sol.audit - sum(np.where(sol.t > one.time, one.energy, 0.0) for one in sol.events)
+    return sol.audit - sum(np.where(sol.t > event.time, event.energy, 0.0) for event in sol.events)
 
 
 def disc(friction: float, slope: float = 0.0) -> Mechanism:

@@ -13,21 +13,21 @@ from mechanisms.stages.automatic.wheels.wheels import Wheel
 from shared.shapes.involute import rack_outline, toothed
 
 
-def outline(one: Wheel | Rack) -> np.ndarray:
-    """In its body's frame (rmm)."""
-    phase = one.phase or 0.0
-    if isinstance(one, Rack):
-        first, last = one.teeth
+def outline(wheel: Wheel | Rack) -> np.ndarray:
+    """(n, 2) in its body's frame (mm)."""
+    phase = wheel.phase or 0.0
+    if isinstance(wheel, Rack):
+        first, last = wheel.teeth
         points = rack_outline(
-            last - first + 1, one.module, one.tip, one.root, 3.0, one.play / 2, phase + first * one.pitch
+            last - first + 1, wheel.module, wheel.tip, wheel.root, 3.0, wheel.play / 2, phase + first * wheel.pitch
         )
-        return np.array([one.at(float(x), float(y)) for x, y in points])
-    if one.ring:
-        space = phase + math.pi / one.teeth
-        points = toothed(one.teeth, one.module, one.root, one.tip, -one.play / 2, space)
+        return np.array([wheel.at(float(x), float(y)) for x, y in points])
+    if wheel.ring:
+        space = phase + math.pi / wheel.teeth
+        points = toothed(wheel.teeth, wheel.module, wheel.root, wheel.tip, -wheel.play / 2, space)
     else:
-        points = toothed(one.teeth, one.module, one.tip, one.root, one.play / 2, phase)
-    return points + np.array([one.x, one.y])
+        points = toothed(wheel.teeth, wheel.module, wheel.tip, wheel.root, wheel.play / 2, phase)
+    return points + np.array([wheel.x, wheel.y])
 
 
 def inside(points: np.ndarray, polygon: np.ndarray) -> np.ndarray:
@@ -42,10 +42,10 @@ def inside(points: np.ndarray, polygon: np.ndarray) -> np.ndarray:
 def gap(made: Automatic, first: Wheel | Rack, second: Wheel, at: int) -> float:
     """Distance (mm) of two outlines at a pose; negative where one lies in the other's material."""
     placed = []
-    for one in (first, second):
-        x, y, turn = made.layout.poses[one.body][at]
+    for wheel in (first, second):
+        x, y, turn = made.layout.poses[wheel.body][at]
         c, s = math.cos(turn), math.sin(turn)
-        placed.append(outline(one) @ np.array([[c, s], [-s, c]]) + [x, y])
+        placed.append(outline(wheel) @ np.array([[c, s], [-s, c]]) + [x, y])
     a, b = placed
     ring = isinstance(first, Wheel) and first.ring
     hit = ~inside(b, a) if ring else inside(b, a)

@@ -141,9 +141,9 @@ class RandomMachine:
         way = self.random.uniform(0.0, 2 * math.pi)
         gap, crank, size = float(self.random.uniform(0.9, 1.1)), float(self.random.uniform(0.1, 0.25)), self.scale
         first, second = (self.body(float(self.random.uniform(-3.0, 3.0))) for _ in range(2))
-        one, two = self.random.uniform(0.7, 0.9, 2) * size
+        near, far = self.random.uniform(0.7, 0.9, 2) * size
         self.m.revolute(f"A {first.name}", shaft.at(crank * size, 0.0), first.origin)
-        self.m.revolute(f"B {first.name}", first.at(one, 0.0), second.at(two, 0.0))
+        self.m.revolute(f"B {first.name}", first.at(near, 0.0), second.at(far, 0.0))
         px, py = x + gap * math.cos(way), y + gap * math.sin(way)
         self.m.revolute(f"C {first.name}", self.at(px, py), second.origin)
         self.shafts.append((second, px, py))

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 
 class Past(NamedTuple):
-    """Of one block; C columns of B, n unknowns."""
+    """What is kept for one block with n unknowns and C columns of B."""
 
     q: Any
     """(3 nb,) the last accepted pose."""
@@ -17,4 +17,4 @@ class Past(NamedTuple):
     seen: Any
     """(C + 1,) coordinates and time at which ``here`` was evaluated."""
     determinant: Any
-    """Of G at the last accepted pose; 0 at the first."""
+    """The determinant of G at the last accepted pose; 0 at the first."""

@@ -11,7 +11,7 @@ class Block(NamedTuple):
     head: Any
     """(9,) counts, and where the tables begin."""
     tree: Any
-    """(bodies, 5) how each body hangs on another."""
+    """(bodies, 5) how each body is joined to another."""
     rows: Any
     """(n, 9) equations."""
     near: Any

@@ -12,7 +12,7 @@ LETTERS = {
 }  # fmt: skip
 """Theo Jansen's numbers (m)."""
 LAYERS = {"upper": (0, 1), "lower": (2, 3), "j": (-1, -2), "k": (4, 5), "c": (1, 0), "f": (3, 2)}
-"""Of a left and of a right leg on one throw."""
+"""Places of a left and of a right leg on one throw."""
 
 
 def walker(pairs: int = 6, pitch: float = 0.07, layer: float = 0.006) -> Mechanism:

@@ -13,7 +13,6 @@ A driver acts on its bodies: of a distance at both markers, of an angle at the p
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -66,12 +65,9 @@ def actions(packed: Packed, q: np.ndarray, wrench: np.ndarray, k: int) -> list[A
 
 def felt(packed: Packed, q: np.ndarray, wrench: np.ndarray, k: int) -> Action:
     """What joint, driver or contact number ``k`` does to the body that moves: the first where the second is ground."""
-    first, second = actions(packed, q, wrench, k)
-    return (
-        replace(second, fx=first.fx, fy=first.fy, torque=first.torque, body=first.body)
-        if second.body == "ground"
-        else second
-    )
+    on, (first, second) = acting(packed, q, wrench, k), packed.joints[k].bodies
+    body, sign = (first, -1.0) if second == "ground" else (second, 1.0)
+    return Action(on.x, on.y, sign * on.fx, sign * on.fy, sign * on.torque, body)
 
 
 def _pin_of(packed: Packed, q: np.ndarray, driver: Joint, otherwise: np.ndarray) -> np.ndarray:

@@ -14,9 +14,8 @@ Array = NDArray[np.float64]
 
 
 class Felt(NamedTuple):
-    """A reaction over time, on one body."""
+    """A reaction over time."""
 
-    body: str
     place: Array
     """(T, 2) where it acts (m)."""
     force: Array
@@ -28,8 +27,7 @@ class Felt(NamedTuple):
 def felt(connection: JointMotion | ContactMotion) -> Felt:
     """The reaction, with the sign that it has on that body: data.json has it as the second body feels it."""
     at = connection.acts or connection
-    first, second = connection.bodies
-    body, sign = (first, -1.0) if second == "ground" else (second, 1.0)
+    sign = -1.0 if connection.bodies[1] == "ground" else 1.0
     place = np.array([at.x, at.y], float).T
     force = np.array([connection.fx, connection.fy], float).T
-    return Felt(body, place, sign * force, sign * np.asarray(at.torque, float))
+    return Felt(place, sign * force, sign * np.asarray(at.torque, float))

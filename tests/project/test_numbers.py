@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from tools.numbers.digest import attempt, digest
+from tools.numbers.contents import outcome
+from tools.numbers.digest import digest
 from tools.numbers.kept import farthest, keep, kept, read
 from tools.numbers.runs import driven_four_bar
 
@@ -24,8 +25,12 @@ def test_one_last_digit_of_one_number_is_found() -> None:
 
 
 def test_an_error_counts_as_a_result() -> None:
-    assert attempt(lambda: driven_four_bar().sweep(steps=0)) == attempt(lambda: driven_four_bar().sweep(steps=0))
-    assert attempt(lambda: driven_four_bar().sweep(steps=0)) != attempt(lambda: driven_four_bar().batch())
+    assert digest(outcome(lambda: driven_four_bar().sweep(steps=0))) == digest(
+        outcome(lambda: driven_four_bar().sweep(steps=0))
+    )
+    assert digest(outcome(lambda: driven_four_bar().sweep(steps=0))) != digest(
+        outcome(lambda: driven_four_bar().batch())
+    )
 
 
 def test_runs_are_as_recorded() -> None:

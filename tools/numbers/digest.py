@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
 from typing import Any
 
-from tools.numbers.contents import contents, outcome
+from tools.numbers.contents import contents
 
 
 def digest(result: Any) -> str:
@@ -15,8 +14,3 @@ def digest(result: Any) -> str:
     for name, value in contents(result):
         whole.update(name.encode() + b"\0" + (value.encode() if isinstance(value, str) else value.tobytes()))
     return whole.hexdigest()[:16]
-
-
-def attempt(run: Callable[[], Any]) -> str:
-    """Hash of what ``run`` gives, or of the error that it ends with."""
-    return digest(outcome(run))

@@ -12,7 +12,7 @@ contains what another class needs.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from numba.core import ir, types
@@ -39,6 +39,11 @@ class Alternatives:
 def alternatives(kernels: Mapping[type, Any]) -> Any:
     """A name for all of them."""
     return Alternatives(kernels)
+
+
+def kernel_for(name: Any, arguments: Sequence[Any]) -> Any:
+    """The kernel that a name means for arguments of numba's types ``arguments``."""
+    return name.of(arguments[0].instance_class) if isinstance(name, Alternatives) else name
 
 
 def choose(blocks: Iterable[ir.Block], first: Any) -> None:

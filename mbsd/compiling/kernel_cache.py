@@ -27,6 +27,7 @@ from typing import Any
 
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _Cache, _CacheLocator
 
+from mbsd.compiling.alternatives import kernel_for
 from mbsd.compiling.kernel_library import Apart
 from mbsd.compiling.lazy_kernel import cell_of
 from mbsd.compiling.shipped_kernels import SHIPPED, tell_of_other_kernels
@@ -211,11 +212,13 @@ class _Results(CompileResultCacheImpl):
         called, cells, own = payload
         calls = {}
         made = [
-            cell_of(getattr(importlib.import_module(module), function).kernel, arguments, returns)
+            cell_of(
+                kernel_for(getattr(importlib.import_module(module), function), arguments).kernel, arguments, returns
+            )
             for module, function, arguments, returns in cells
         ]
         for name, (module, function, arguments) in called.items():
-            calls[name] = Apart(name, getattr(importlib.import_module(module), function), arguments)
+            calls[name] = Apart(name, _at(module, function), arguments)
             if calls[name].library is None:
                 return None
         cres = super().rebuild(target_context, own)
@@ -227,6 +230,11 @@ class _Results(CompileResultCacheImpl):
 def _place(dispatcher: Any) -> tuple[str, str]:
     """Module and name of a kernel."""
     return dispatcher.py_func.__module__, dispatcher.py_func.__qualname__
+
+
+def _at(module: str, function: str) -> Any:
+    """What stands at the place that ``_place`` tells."""
+    return getattr(importlib.import_module(module), function)
 
 
 class _Files(FunctionCache):

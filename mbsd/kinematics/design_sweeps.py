@@ -6,7 +6,6 @@ one matrix product. Designs share the branch of the mechanism itself.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -18,12 +17,14 @@ from mbsd.arrays.packing import Packed
 from mbsd.base.cores import cores
 from mbsd.base.errors import ModelError
 from mbsd.kinematics.groups.blocks import BLOCK
+from mbsd.kinematics.groups.carrying.columns import COS
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
 from mbsd.kinematics.groups.designs import place_designs
 from mbsd.kinematics.groups.groups import DRIVEN, Groups
 from mbsd.kinematics.groups.kinds.driven import OFFSET, SENSE
 from mbsd.kinematics.groups.plan import plan_groups
-from mbsd.kinematics.groups.registry import BRANCH, KINDS
+from mbsd.kinematics.groups.registry import BRANCH
+from mbsd.kinematics.groups.tables import rows_of
 from mbsd.kinematics.prepared import Prepared
 from mbsd.kinematics.steps import divisions
 from mbsd.model.mechanism import Model
@@ -90,7 +91,7 @@ class DesignSweeps:
         self.turned = np.array([_body(m, packed, name) for name in angles], np.int64)
         self.every = divisions(packed, grid)
         dense = np.linspace(grid[0], grid[-1], self.every * (len(grid) - 1) + 1)
-        self.driven, self.fixed = _turns(self.groups, packed.drives(dense))
+        self.driven = _driven(self.groups, packed.drives(dense))
 
     def __call__(self, values: np.ndarray, threads: int | None = None) -> Batch:
         """Sweep designs whose numbers differ from the mechanism's own by ``values`` (n, moved) (m)."""
@@ -112,12 +113,13 @@ class DesignSweeps:
 
         def work(first: int) -> None:
             part = slice(first, min(first + CHUNK, count))
-            place = np.zeros((len(self.packed.body_names), 4))
-            place[0, 2] = 1.0
-            scratch, roots, last = np.zeros((2, 2)), np.zeros((len(groups.kind), 2)), np.zeros(len(turned))
+            place = np.zeros((len(self.packed.body_names), 7))
+            place[0, COS] = 1.0
+            roots, last = np.zeros((len(groups.kind), 2)), np.zeros(len(turned))
             place_designs(
-                groups, numbers[part], self.q0, self.driven, self.every, self.fixed, place, scratch, roots, last,
-                self.bodies, arms[part], turned, out[part], out_angles[part], status[part],
+                groups.group, rows_of(groups.kind, numbers[part]), self.q0, self.driven, self.every, place,
+                np.zeros((1, 1)), roots, last, self.bodies, arms[part], turned, out[part], out_angles[part],
+                status[part],
             )  # fmt: skip
             for part_of in (out, out_angles):
                 part_of[part][status[part] != SOLVED] = np.nan
@@ -165,20 +167,16 @@ def slopes(packed: Packed, q0: np.ndarray, groups: Groups, moved: Sequence[Moved
     return out
 
 
-def _turns(groups: Groups, drives: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """What no design changes: cosine and sine of driven angles, other laws (T, g, 2); turns of A and B (g, 2, 2)."""
+def _driven(groups: Groups, drives: np.ndarray) -> np.ndarray:
+    """(T, g, 2) which no design changes: cosine and sine of driven angles, other laws."""
     driven = np.zeros((len(drives), len(groups.kind), 2))
-    fixed = np.zeros((len(groups.kind), 2, 2))
     for e, kind in enumerate(groups.kind):
         if kind == DRIVEN:
             angle = groups.number[e, SENSE] * (groups.number[e, OFFSET] + drives[:, groups.motion[e], 0])
             driven[:, e] = np.column_stack([np.cos(angle), np.sin(angle)])
         else:
             driven[:, e, 0] = drives[:, groups.motion[e], 0]
-        for side, column in KINDS[kind].angles:
-            angle = groups.number[e, column]
-            fixed[e, side] = math.cos(angle), math.sin(angle)
-    return driven, fixed
+    return driven
 
 
 def _body(m: Model, packed: Packed, name: str) -> int:

@@ -7,6 +7,7 @@ import numpy as np
 from mbsd.equations.assembly import residual_and_jacobian, tabulate
 from mbsd.kinematics import impossible_motions, newton
 from mbsd.kinematics.elimination import Elimination, plan
+from mbsd.kinematics.groups.carrying.columns import COS
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, OPEN, SOLVED
 from mbsd.kinematics.groups.groups import Groups
 from mbsd.kinematics.groups.solve import solve_groups
@@ -70,15 +71,17 @@ def march_along(ready: Prepared, times: np.ndarray) -> March:
 def _closed_form(ready: Prepared, groups: Groups, steps: Steps) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
     """Positions, velocities, accelerations (T, 3 nb) at all steps; None where branches meet or a group opens."""
     n3, size, blocks = len(ready.q0), ready.packed.size, ready.blocks
-    turn, point, before = np.zeros((n3 // 3, 2)), np.zeros((4, 8)), np.zeros((len(groups.kind), 2))
-    turn[0, 0] = 1.0
+    bodies = n3 // 3
+    body, rate, turn, point = np.zeros((bodies, 7)), np.zeros((bodies, 6)), np.zeros((bodies, 2)), np.zeros((4, 8))
+    body[0, COS] = turn[0, 0] = 1.0
+    before = np.zeros((len(groups.kind), 2))
     q, v, a = (np.zeros((len(steps.times), n3)) for _ in range(3))
     determinant = np.zeros((len(blocks.head), len(steps.times), 1))
     first = 0
     while True:
         status, index, part = solve_groups(
             groups, blocks, ready.q0, steps.times, steps.drives, steps.stride, ZERO_LENGTH * size * size, first,
-            q, v, a, determinant, turn, point, before,
+            q, v, a, determinant, body, rate, turn, point, before,
         )  # fmt: skip
         ready.packed.specials.check()
         if status == SOLVED:

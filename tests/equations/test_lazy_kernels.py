@@ -108,6 +108,7 @@ rod = m.bar("rod", 0.3, mass=0.2)
 m.revolute("A", m.ground.origin, rod.start)
 m.simulate(1.0, steps=20)
 from mbsd.dynamics.embedding import bridge, equations
+from mbsd.kinematics.groups.carrying.purposes import PerCoordinate
 from mbsd.kinematics.groups.kinds import rrp
 from mbsd.dynamics.reference import acceleration, projection
 from mbsd.equations import user_forces
@@ -115,7 +116,7 @@ from mbsd.equations.constraints import relative
 from mbsd.dynamics.integrators.dop853 import crossing
 unused = [
     acceleration.derivative, projection.project, bridge.bridge.kernel, equations.reduced.kernel, equations.write_alone,
-    rrp.embed_rrp.kernel, relative.rows.kernel, user_forces.apply_user_forces.kernel,
+    rrp.solve_rrp.of(PerCoordinate).kernel, relative.rows.kernel, user_forces.apply_user_forces.kernel,
     crossing.crossing.kernel,
 ]
 import sys

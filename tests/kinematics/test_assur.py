@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from mbsd import AssemblyError, Marker, Mechanism, MechanismError, constant_rate, function
 from mbsd.kinematics.groups.carrying.columns import SIGN
-from mbsd.kinematics.groups.groups import NUMBERS
+from mbsd.kinematics.groups.groups import FIRST, K1, K2, NUMBERS
 from mbsd.kinematics.groups.registry import KINDS, NAMES
 from mbsd.kinematics.march import march_along
 from mbsd.kinematics.prepare import prepare
@@ -55,8 +55,9 @@ def test_a_group_is_registered_under_its_code_and_fits_its_tables(code: int) -> 
     assert kind.code == code
     assert bool(kind.one) == bool(kind.of_one)
     assert bool(kind.two) == bool(kind.of_two)
-    assert len(kind.embedded([1.0 + 0.1 * k for k in range(NUMBERS)])) <= SIGN
-    assert all(column < NUMBERS for _, column in kind.angles)
+    assert len(kind.row(1.0 + 0.1 * np.arange(NUMBERS))) <= SIGN
+    assert all(column < NUMBERS and leader in (FIRST, K1, K2) for _, column, leader in kind.follows)
+    assert 0 <= kind.watched <= 1 + bool(kind.two)
 
 
 @settings(max_examples=25, deadline=None)

@@ -27,9 +27,9 @@ class Embedding(NamedTuple):
     gravity: Any
     """(2,) m/s^2."""
     group: Any
-    """(g, 8) in the order of their solution."""
+    """(g, 8) Groups.group."""
     number: Any
-    """(g, 20); mbsd/dynamics/embedding/numbers.py."""
+    """(g, 21) Groups.row."""
     block: Any
     """Integers of blocks; mbsd/dynamics/embedding/blocks/arrays.py."""
     block_number: Any

@@ -10,44 +10,11 @@ from mbsd.compiling.jit import inlined
 from mbsd.dynamics.embedding.blocks.block import embed_block
 from mbsd.kinematics.groups.blocks import BLOCK, TRAIN
 from mbsd.kinematics.groups.carrying.columns import INERTIA, MASS
+from mbsd.kinematics.groups.carrying.purposes import PerCoordinate
 from mbsd.kinematics.groups.carrying.rates import SOLVED
-from mbsd.kinematics.groups.groups import DRIVEN, FIRST, KIND, LAW, PRP, ROD, RPR, RRP, RRR, SECOND, WELDED, YOKE
-from mbsd.kinematics.groups.kinds.driven import embed_driven
-from mbsd.kinematics.groups.kinds.prp import embed_prp
-from mbsd.kinematics.groups.kinds.rod import embed_rod
-from mbsd.kinematics.groups.kinds.rpr import embed_rpr
-from mbsd.kinematics.groups.kinds.rrp import embed_rrp
-from mbsd.kinematics.groups.kinds.rrr import embed_rrr
-from mbsd.kinematics.groups.kinds.slide import embed_slide
+from mbsd.kinematics.groups.groups import FIRST, KIND, LAW, SECOND
 from mbsd.kinematics.groups.kinds.train import embed_train
-from mbsd.kinematics.groups.kinds.welded import embed_welded
-from mbsd.kinematics.groups.kinds.yoke import embed_yoke
-
-
-@inlined
-def embed_group(bodies, n, body, rate, base, coordinate, drive):
-    """The group of the kind that ``bodies`` names; returns its status."""
-    kind = bodies[KIND]
-    if kind == RRR:
-        return embed_rrr(bodies, n, body, rate, base, coordinate)
-    if kind == DRIVEN:
-        embed_driven(bodies, n, body, rate, coordinate, drive)
-        return SOLVED
-    if kind == WELDED:
-        return embed_welded(bodies, n, body, rate, coordinate)
-    if kind == RRP:
-        return embed_rrp(bodies, n, body, rate, base, coordinate)
-    if kind == RPR:
-        return embed_rpr(bodies, n, body, rate, base, coordinate)
-    if kind == YOKE:
-        return embed_yoke(bodies, n, body, rate, coordinate)
-    if kind == PRP:
-        return embed_prp(bodies, n, body, rate, coordinate)
-    if kind == ROD:
-        return embed_rod(bodies, n, body, rate, base, coordinate, drive)
-    if kind == TRAIN:
-        return embed_train(bodies, n, body, rate, base, coordinate)
-    return embed_slide(bodies, n, body, rate, coordinate, drive)
+from mbsd.kinematics.groups.solve_group import solve_group
 
 
 @inlined
@@ -74,14 +41,17 @@ def embed_groups(
     single = rate.shape[1] == 6
     total = 0.0
     push = 0.0
+    by = PerCoordinate(group, number, body, rate, base, coordinate, drive)
     for e in range(group.shape[0]):
         bodies = group[e]
         if bodies[KIND] == BLOCK:
             status = embed_block(
                 bodies[LAW], block, block_number, numbers, work, body, rate, base, coordinate, drive, gravity, sums
             )  # fmt: skip
+        elif bodies[KIND] == TRAIN:
+            status = embed_train(bodies, number[e], body, rate, base, coordinate)
         else:
-            status = embed_group(bodies, number[e], body, rate, base, coordinate, drive)
+            status = solve_group(by, e)
         if status != SOLVED:
             return status
         if single and bodies[KIND] == BLOCK:

@@ -16,7 +16,6 @@ from mbsd.dynamics.embedding.blocks.places import KEPT_SIZE
 from mbsd.dynamics.embedding.bridge import KEPT
 from mbsd.dynamics.embedding.coordinates import MOST, Choice, Coordinate, choices, coordinates_of
 from mbsd.dynamics.embedding.equations import look
-from mbsd.dynamics.embedding.numbers import group_numbers, group_table
 from mbsd.dynamics.prepare.prepared import UNKNOWN, PreparedDynamics
 from mbsd.dynamics.state import Settings
 from mbsd.kinematics.groups.carrying.branch import FLOOR
@@ -220,8 +219,8 @@ def _made(ready: PreparedDynamics, choice: Choice, count: int) -> Embedded:
     loaded = np.arange(1, len(packed.body_names)) if functions else np.unique(loads.element[:, 1:3])
     arrays = Embedding(
         **_of_dynamics(ready),
-        group=group_table(groups),
-        number=group_numbers(groups),
+        group=groups.group,
+        number=groups.row,
         block=block,
         block_number=block_number,
         size=np.array([1.0 if coordinate.slide is None else size for coordinate in coordinates]),

@@ -13,8 +13,10 @@ from typing import Any, NamedTuple
 DRIVEN, WELDED, RRR, RRP, RPR, YOKE, PRP, ROD, SLIDE = range(9)
 """Kinds; blocks.py has two more."""
 NUMBERS = 14
+LEADER_A, LEADER_B, WATCHED = range(3)
+"""Columns of Groups.turning."""
 FIRST, SECOND, K1, K2, LAW, COORDINATE, KIND, THIRD = range(8)
-"""Columns of Embedding.group: bodies A and B, known bodies, law of a driver, coordinate, kind, and the third
+"""Columns of Groups.group: bodies A and B, known bodies, law of a driver, coordinate, kind, and the third
 known body of a train; -1 or law 0 for none. The first four are those of Groups.body."""
 
 
@@ -28,4 +30,12 @@ class Groups(NamedTuple):
     motion: Any
     """(g,) law of DRIVEN and SLIDE groups and of actuators, else 0; -k for coordinate k."""
     number: Any
-    """(g, 14) columns in kinds/."""
+    """(g, 14) columns in kinds/; linear in the places of markers."""
+    group: Any
+    """(g, 8) the first three in one, for the compiled loops; law 0 where there is none."""
+    row: Any
+    """(g, 21) ``number`` as the compiled loops need it (tables.py)."""
+    angle: Any
+    """(g, 2) constant angles (rad) of A and B against the body with which they turn."""
+    turning: Any
+    """(g, 3) that body for A and B, or -1; how many of them a motion watches."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
 from mbsd.kinematics.groups.links import Link, Places
 
 Bodies = tuple[int, int, int, int]
@@ -20,8 +22,8 @@ class GroupKind:
     code: int
     """Code in groups.py."""
     name: str
-    embedded: Callable[[list[float]], list[float]]
-    """Its numbers for columns of B: what the compiled loop would compute anew each time is computed once."""
+    row: Callable[[np.ndarray], list[np.ndarray]]
+    """Its row of Groups.row, from its numbers (14, ...): what compiled loops would compute anew each time."""
     one: tuple[str, ...] = ()
     """Letters, sorted, of the joints by which known bodies hold one body, if they make it a group."""
     of_one: Callable[[Places, int, dict[str, Link]], Made | None] | None = None
@@ -32,11 +34,13 @@ class GroupKind:
     """The group of A and B: links of A to K1, of A to B, of B to K2."""
     branch: int | None = None
     """Column of the sign of the root, where two poses satisfy the joints."""
-    angles: tuple[tuple[int, int], ...] = ()
-    """Constant angles: 0 for that of A or 1 for that of B, and its column."""
+    follows: tuple[tuple[int, int, int], ...] = ()
+    """Bodies that turn with another: 0 for A or 1 for B, column of the constant angle, column of the other body."""
+    watched: int = 0
+    """How many of its bodies a motion watches, so that they turn little from pose to pose."""
 
 
-def line(x: float, y: float) -> tuple[tuple[float, float], float]:
+def line(x: np.ndarray, y: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
     """(x, y) over its squared length, so that turning it along a vector of that length is two products; the square."""
     square = x * x + y * y
     return (x / square, y / square), square

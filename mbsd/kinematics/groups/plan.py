@@ -15,10 +15,11 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.base.kept import Kept
 from mbsd.kinematics.groups.blocks import BLOCK, BODIES, BODY, TRAIN, TREE_AT, Blocks
-from mbsd.kinematics.groups.groups import NUMBERS, Groups
+from mbsd.kinematics.groups.groups import Groups
 from mbsd.kinematics.groups.kind import Made
 from mbsd.kinematics.groups.links import Link, Places
 from mbsd.kinematics.groups.registry import KINDS, NAMES
+from mbsd.kinematics.groups.tables import tables_of
 from mbsd.model.joint import Joint
 
 LETTERS = {
@@ -152,12 +153,7 @@ class Plan:
 
     def groups(self) -> Groups:
         """As tables."""
-        return Groups(
-            np.array([kind for kind, _, _, _ in self.taken], np.int64),
-            np.array([bodies for _, bodies, _, _ in self.taken], np.int64).reshape(-1, 4),
-            np.array([motion for _, _, motion, _ in self.taken], np.int64),
-            np.array([numbers + [0.0] * (NUMBERS - len(numbers)) for _, _, _, numbers in self.taken], float),
-        )
+        return tables_of(self.taken)
 
     def add_single(self) -> bool:
         """Add a group of one body, if there is one."""

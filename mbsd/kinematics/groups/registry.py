@@ -1,7 +1,6 @@
 """All kinds of groups, in the order of their codes (groups.py): what the plan tries, what tables are made with.
 
-A new kind is its file in kinds/, its code, a line here, and a line in each of the compiled loops that call it:
-solve.py, designs.py, mbsd/dynamics/embedding/groups.py.
+A new kind is its file in kinds/, its code, a line here, and one in solve_group.py.
 """
 
 from __future__ import annotations

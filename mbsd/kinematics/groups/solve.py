@@ -1,42 +1,74 @@
 """The compiled closed forms: positions, velocities and accelerations of all groups at all times.
 
-Each kind's equations and discriminant stand in its file in kinds/, blocks of Newton-Raphson in newton/. The sign of a
-discriminant tells whether its group closes, and its rates tell whether it does between two poses (carrying/rates.py).
+Each kind's equations stand in its file in kinds/, blocks of Newton-Raphson in newton/. The squared sine of a group
+tells whether it closes, and its rate tells whether it does between two poses (carrying/rates.py).
 
-The branch is that of the start. A step is doubted, and a pose between is asked for, where the discriminant may vanish
+The branch is that of the start. A step is doubted, and a pose between is asked for, where the squared sine may vanish
 between its ends, where a body turns too far to count turns, or where a law moves too far or jumps.
 """
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import kernel
-from mbsd.kinematics.groups.blocks import BLOCK, DOUBTED_BEFORE, NEAR_AT, ROWS_AT, TRAIN, TREE_AT
+import math
+
+from mbsd.compiling.jit import internal, kernel
+from mbsd.kinematics.groups.blocks import BLOCK, BODIES, BODY, DOUBTED_BEFORE, NEAR_AT, ROWS_AT, TRAIN, TREE_AT
+from mbsd.kinematics.groups.carrying.columns import CHANGE, COS, OMEGA, SIN, SINE, X, Y
+from mbsd.kinematics.groups.carrying.purposes import AlongLaws
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED, dip, wound
-from mbsd.kinematics.groups.groups import DRIVEN, FIRST, PRP, ROD, RPR, RRP, RRR, SECOND, SLIDE, WELDED, YOKE
-from mbsd.kinematics.groups.kinds.driven import solve_driven
-from mbsd.kinematics.groups.kinds.prp import solve_prp
-from mbsd.kinematics.groups.kinds.rod import solve_rod
-from mbsd.kinematics.groups.kinds.rpr import solve_rpr
-from mbsd.kinematics.groups.kinds.rrp import solve_rrp
-from mbsd.kinematics.groups.kinds.rrr import solve_rrr
-from mbsd.kinematics.groups.kinds.slide import solve_slide
+from mbsd.kinematics.groups.groups import DRIVEN, FIRST, LAW, SECOND, WATCHED
+from mbsd.kinematics.groups.kinds.driven import SENSE
 from mbsd.kinematics.groups.kinds.train import CARRIES_ON, solve_train
-from mbsd.kinematics.groups.kinds.welded import solve_welded
-from mbsd.kinematics.groups.kinds.yoke import solve_yoke
 from mbsd.kinematics.groups.newton.call import call_block
+from mbsd.kinematics.groups.solve_group import solve_group
 from mbsd.kinematics.law_step import jumps
+
+
+@internal
+def give(body, rate, b, q, v, a, turn):
+    """Pose and rates of body b from the closed forms to a row of the motion; the angle is filled elsewhere."""
+    at = 3 * b
+    q[at] = body[b, X]
+    q[at + 1] = body[b, Y]
+    turn[b, 0] = body[b, COS]
+    turn[b, 1] = body[b, SIN]
+    for c in range(3):
+        v[at + c] = rate[b, c]
+        a[at + c] = rate[b, 3 + c]
+
+
+@internal
+def take(body, rate, b, q, v, a, turn):
+    """Pose and rates of body b from a row of the motion to the closed forms."""
+    at = 3 * b
+    body[b, X] = q[at]
+    body[b, Y] = q[at + 1]
+    body[b, COS] = turn[b, 0]
+    body[b, SIN] = turn[b, 1]
+    body[b, OMEGA] = v[at + 2]
+    for c in range(3):
+        rate[b, c] = v[at + c]
+        rate[b, 3 + c] = a[at + c]
+
+
+@internal
+def turned_on(body, b, before):
+    """Angle of body b (rad), whose cosine and sine are known, next to the angle ``before``."""
+    angle = math.atan2(body[b, SIN], body[b, COS])
+    return angle + 2.0 * math.pi * math.floor((before - angle) / (2.0 * math.pi) + 0.5)
 
 
 @kernel
 def solve_groups(
-    groups, blocks, start, times, drives, stride, tiny, first_row, q, v, a, determinant, turn, point, before
+    groups, blocks, start, times, drives, stride, tiny, first_row, q, v, a, determinant, body, rate, turn, point, before
 ):
     """Fill rows ``first_row`` .. of q, v, a (T, 3 nb) at times (T,) with drives (T, motions + 1, 3).
 
     Angles go on from start (3 nb,). ``stride`` (motions + 1,) is how far each law may go in one step, ``tiny`` (m^2)
     the square of a length that counts as zero. The row ``first_row`` itself is not compared with the one before it.
     ``determinant`` (blocks, T, 1) is filled for the blocks (mbsd/kinematics/groups/blocks.py).
-    Scratch: ``turn`` (nb, 2) with (1, 0) for ground, ``point`` (4, 8), ``before`` (g, 2) discriminants and their rates.
+    Scratch: ``body`` (nb, 7) and ``turn`` (nb, 2) with cosine 1 for ground, ``rate`` (nb, 6), ``point`` (4, 8),
+    ``before`` (g, 2) squared sines and their rates.
     Returns (status, index, part): where a step was DOUBTED, the part of it at which a pose is asked for.
     """
     for k in range(first_row, times.shape[0]):
@@ -46,38 +78,28 @@ def solve_groups(
         last = start if k == 0 else q[k - 1]
         goes_on = k > first_row
         h = times[k] - times[k - 1] if goes_on else 0.0
+        by = AlongLaws(groups.group, groups.row, body, rate, drives[k], tiny)
         for e in range(groups.kind.shape[0]):
             kind = groups.kind[e]
-            bodies = groups.body[e]
-            motion = groups.motion[e]
-            n = groups.number[e]
-            turning = 3 * bodies[FIRST] + 2
-            driven = motion > 0 and kind in (DRIVEN, SLIDE, ROD)
-            if driven and goes_on and jumps(drives[k, motion], drives[k - 1, motion], h, stride[motion]):
-                return DOUBTED, k, 0.5
-            if kind == DRIVEN:
-                solve_driven(bodies, n, drives[k, motion], qk, vk, ak, turn, point)
-                continue
-            if kind == WELDED:
-                solve_welded(bodies, n, qk, vk, ak, turn, point)
-                continue
-            if kind == SLIDE:
-                solve_slide(bodies, n, drives[k, motion], qk, vk, ak, turn, point)
-                continue
+            bodies = groups.group[e]
+            n = groups.row[e]
             if kind == TRAIN:
-                train = blocks.train[motion]
+                train = blocks.train[groups.motion[e]]
                 solve_train(bodies, n, train, blocks.train_body, blocks.share, qk, vk, ak, turn, point)
+                turning = 3 * bodies[FIRST] + 2
                 if goes_on and n[CARRIES_ON] > 0.0 and wound(qk, last, vk, v[k - 1], ak, a[k - 1], h, turning):
                     return DOUBTED, k, 0.5
+                take(body, rate, bodies[FIRST], qk, vk, ak, turn)
                 continue
             if kind == BLOCK:
-                head = blocks.head[motion]
+                block = groups.motion[e]
+                head = blocks.head[block]
                 state = call_block(
                     blocks.address[0], k,
                     (
                         head, blocks.tree[head[TREE_AT] :], blocks.rows[head[ROWS_AT] :], blocks.near[head[NEAR_AT] :],
                         blocks.frame[head[TREE_AT] :], blocks.arms[head[ROWS_AT] :], times, drives, q, v, a, turn,
-                        start, blocks.numbers, determinant[motion], point, blocks.unknown, blocks.jac,
+                        start, blocks.numbers, determinant[block], point, blocks.unknown, blocks.jac,
                         blocks.out, blocks.du, blocks.scratch,
                     ),
                 )  # fmt: skip
@@ -85,31 +107,36 @@ def solve_groups(
                     return DOUBTED, k - 1, 0.5
                 if state != SOLVED:
                     return state, k, 0.5
+                for i in range(head[TREE_AT], head[TREE_AT] + head[BODIES]):
+                    take(body, rate, blocks.tree[i, BODY], qk, vk, ak, turn)
                 continue
-            if kind == RRR:
-                state = solve_rrr(bodies, n, qk, vk, ak, last, turn, point)
-            elif kind == RRP:
-                state = solve_rrp(bodies, n, qk, vk, ak, last, turn, point)
-            elif kind == RPR:
-                state = solve_rpr(bodies, n, qk, vk, ak, last, tiny, turn, point)
-            elif kind == YOKE:
-                state = solve_yoke(bodies, n, qk, vk, ak, turn, point)
-            elif kind == PRP:
-                state = solve_prp(bodies, n, qk, vk, ak, turn, point)
-            else:
-                state = solve_rod(bodies, n, drives[k, motion], qk, vk, ak, last, turn, point)
+            law = bodies[LAW]
+            if law > 0 and goes_on and jumps(drives[k, law], drives[k - 1, law], h, stride[law]):
+                return DOUBTED, k, 0.5
+            state = solve_group(by, e)
             if state != SOLVED:
                 return state, k, 0.0
-            left = point[3, 0]
-            rate_of_left = point[3, 1]
-            if goes_on:
-                if wound(qk, last, vk, v[k - 1], ak, a[k - 1], h, turning):
+            for side in range(2):
+                b = bodies[FIRST + side]
+                if b < 0:
+                    break
+                give(body, rate, b, qk, vk, ak, turn)
+                leader = groups.turning[e, side]
+                if kind == DRIVEN:
+                    qk[3 * b + 2] = qk[3 * leader + 2] + n[SENSE] * (groups.angle[e, side] + drives[k, law, 0])
+                elif leader >= 0:
+                    qk[3 * b + 2] = qk[3 * leader + 2] + groups.angle[e, side]
+                else:
+                    qk[3 * b + 2] = turned_on(body, b, last[3 * b + 2])
+            watched = groups.turning[e, WATCHED]
+            if goes_on and watched > 0:
+                if wound(qk, last, vk, v[k - 1], ak, a[k - 1], h, 3 * bodies[FIRST] + 2):
                     return DOUBTED, k, 0.5
-                if kind == RRR and wound(qk, last, vk, v[k - 1], ak, a[k - 1], h, 3 * bodies[SECOND] + 2):
+                if watched > 1 and wound(qk, last, vk, v[k - 1], ak, a[k - 1], h, 3 * bodies[SECOND] + 2):
                     return DOUBTED, k, 0.5
-                part = dip(h * before[e, 1], before[e, 0], h * rate_of_left, left)
+                part = dip(h * before[e, 1], before[e, 0], h * n[CHANGE], n[SINE])
                 if part > 0.0:
                     return DOUBTED, k, part
-            before[e, 0] = left
-            before[e, 1] = rate_of_left
+            before[e, 0] = n[SINE]
+            before[e, 1] = n[CHANGE]
     return SOLVED, times.shape[0], 0.0

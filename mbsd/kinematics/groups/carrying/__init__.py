@@ -1,1 +1,1 @@
-"""Points carried by bodies and bodies hung on points: with rates, as places alone, and for each column of B."""
+"""What the formulas of all groups share: points that bodies carry, branches, and what a group is solved for."""

@@ -2,10 +2,10 @@
 
 p = r + s,   p' = r' + omega s_perp,   p'' = r'' + alpha s_perp - omega^2 s;   s_perp = (-s_y, s_x)
 
-The sign of a group's root is that of the start as long as its discriminant D stays above zero, at the poses and
-between them. Between two poses D is the cubic through both ends with their rates: where it has a minimum there and
-falls by more than half, a pose at the minimum decides. Bodies turn by less than ``WOUND`` from pose to pose, so whole
-turns are counted, and the quintic through both ends is the motion between them.
+The sign of a group's root is that of the start as long as the squared sine D of the angle between its two links stays
+above zero, at the poses and between them. Between two poses D is the cubic through both ends with their rates: where it
+has a minimum there and falls by more than half, a pose at the minimum decides. Bodies turn by less than ``WOUND`` from
+pose to pose, so whole turns are counted, and the quintic through both ends is the motion between them.
 """
 
 from __future__ import annotations
@@ -16,10 +16,8 @@ from mbsd.compiling.jit import internal
 
 SOLVED, DOUBTED, OPEN, MEETING = 0, 1, 2, 3
 """Solved; a pose between is needed; out of reach; the two branches meet within rounding."""
-FLAT = 1e-12
-"""Discriminant over its scale at which branches meet: lengths that agree to this part count as equal."""
 DEEP = 0.5
-"""Part of the lower end below which the discriminant must not fall between two poses."""
+"""Part of the lower end below which the squared sine must not fall between two poses."""
 WOUND = 1.0
 """Angle (rad) by which a body may turn from pose to pose."""
 UNEXPLAINED = 0.02
@@ -67,18 +65,6 @@ def hang(q, v, a, turn, b, p, x, y):
 
 
 @internal
-def aim(turn, q, before, b, x, y, lx, ly):
-    """Turn body b so that its direction (lx, ly) points along (x, y); the angle goes on from ``before``."""
-    scale = 1.0 / math.sqrt((x * x + y * y) * (lx * lx + ly * ly))
-    c = (x * lx + y * ly) * scale
-    s = (y * lx - x * ly) * scale
-    turn[b, 0] = c
-    turn[b, 1] = s
-    angle = math.atan2(s, c)
-    q[3 * b + 2] = angle + 2.0 * math.pi * math.floor((before - angle) / (2.0 * math.pi) + 0.5)
-
-
-@internal
 def follow(q, v, a, turn, b, leader, angle):
     """Body b turns with its leader, at a fixed angle to it."""
     q[3 * b + 2] = q[3 * leader + 2] + angle
@@ -97,16 +83,8 @@ def wound(q, last, v, v_last, a, a_last, h, c):
 
 
 @internal
-def reach(discriminant, scale):
-    """SOLVED above zero, OPEN below, MEETING where it is zero beside ``scale``, what it is a difference of."""
-    if discriminant > FLAT * scale:
-        return SOLVED
-    return OPEN if discriminant < -FLAT * scale else MEETING
-
-
-@internal
 def dip(fall, before, rise, after):
-    """Where between two poses the discriminant has a low minimum, as a part of the step; 0 if nowhere.
+    """Where between two poses the squared sine has a low minimum, as a part of the step; 0 if nowhere.
 
     ``fall`` and ``rise``: its rates at both ends times the step. Source: cubic Hermite interpolation.
     """

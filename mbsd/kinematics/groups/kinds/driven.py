@@ -7,10 +7,19 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import inlined, merged
-from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIN, SPEED, VALUE, X, Y
-from mbsd.kinematics.groups.carrying.places import point_of, put_on, turn_with
-from mbsd.kinematics.groups.carrying.rates import carried, hang
+from mbsd.compiling.alternatives import alternatives
+from mbsd.compiling.jit import internal, merged
+from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIN, X, Y
+from mbsd.kinematics.groups.carrying.purposes import (
+    AlongLaws,
+    PerCoordinate,
+    PoseAlone,
+    columns_of,
+    law_rate,
+    speed_of,
+    value_of,
+)
+from mbsd.kinematics.groups.carrying.rates import SOLVED
 from mbsd.kinematics.groups.groups import COORDINATE, DRIVEN, FIRST, K1, K2, LAW
 from mbsd.kinematics.groups.kind import GroupKind, Made
 from mbsd.kinematics.groups.links import Link, Places
@@ -26,54 +35,27 @@ def driven(at: Places, body: int, links: dict[str, Link]) -> Made:
     return DRIVEN, (body, -1, pin.other, drive.other), drive.motion, [*at.pin(pin), drive.offset, sense]
 
 
-KIND = GroupKind(DRIVEN, "driven", lambda n: n[:6], one=("DR",), of_one=driven)
+KIND = GroupKind(DRIVEN, "driven", lambda n: [*n[:6]], one=("DR",), of_one=driven, follows=((0, OFFSET, K2),))
 
 
 @merged
-def solve_driven(bodies, n, law, qk, vk, ak, turn, point):
-    """Positions and rates; law (3,): f and its rates. See prp.solve_prp."""
-    body = bodies[FIRST]
-    k1 = bodies[K1]
-    k2 = bodies[K2]
-    p = point[0]
-    at = 3 * body
-    angle = qk[3 * k2 + 2] + n[SENSE] * (n[OFFSET] + law[0])
-    vk[at + 2] = vk[3 * k2 + 2] + n[SENSE] * law[1]
-    ak[at + 2] = ak[3 * k2 + 2] + n[SENSE] * law[2]
-    qk[at + 2] = angle
-    turn[body, 0] = math.cos(angle)
-    turn[body, 1] = math.sin(angle)
-    carried(qk, vk, ak, turn, k1, n[P1_X], n[P1_Y], p)
-    hang(qk, vk, ak, turn, body, p, n[PA_X], n[PA_Y])
-
-
-@inlined
-def place_driven(bodies, n, driven, place, p):
-    """Places alone; driven (2,): cosine and sine of s (offset + f). See rrr.place_rrr."""
-    a = bodies[FIRST]
-    k1 = bodies[K1]
-    k2 = bodies[K2]
-    point_of(place, k1, n[P1_X], n[P1_Y], p)
-    turn_with(place, a, k2, driven)
-    put_on(place, a, p[0], p[1], n[PA_X], n[PA_Y])
-
-
-@merged
-def embed_driven(bodies, n, body, rate, coordinate, drive):
-    """Positions and columns of B. See prp.embed_prp."""
+def solve_driven(by, e):
+    """Place the body of group e and fill its rates. See prp.solve_prp."""
+    bodies = by.group[e]
+    n = by.number[e]
+    body = by.body
+    rate = by.rate
     a = bodies[FIRST]
     k1 = bodies[K1]
     k2 = bodies[K2]
     law = bodies[LAW]
     column = bodies[COORDINATE]
-    columns = coordinate.shape[0] - 1
+    columns = columns_of(by)
     c = body[k1, COS]
     s = body[k1, SIN]
     px = c * n[P1_X] - s * n[P1_Y]
     py = s * n[P1_X] + c * n[P1_Y]
-    angle = n[SENSE] * (n[OFFSET] + (coordinate[column, VALUE] if column >= 0 else drive[law, 0]))
-    qx = math.cos(angle)
-    qy = math.sin(angle)
+    qx, qy = turn_rydriver(by, e, law, column, n)
     dx = body[k2, COS]
     dy = body[k2, SIN]
     c = dx * qx - dy * qy
@@ -84,6 +66,8 @@ def embed_driven(bodies, n, body, rate, coordinate, drive):
     ay = s * n[PA_X] + c * n[PA_Y]
     body[a, X] = body[k1, X] + px - ax
     body[a, Y] = body[k1, Y] + py - ay
+    if columns < 0:
+        return SOLVED
     turning = 0.0
     for j in range(columns):
         at = 3 * j
@@ -94,8 +78,8 @@ def embed_driven(bodies, n, body, rate, coordinate, drive):
         if j == column:
             omega += n[SENSE]
         elif j == columns - 1 and law > 0:
-            omega += n[SENSE] * drive[law, 1]
-        turning += omega * coordinate[j, SPEED]
+            omega += n[SENSE] * law_rate(by, law, 1)
+        turning += omega * speed_of(by, j)
         rate[a, at] = cx + omega * ay
         rate[a, at + 1] = cy - omega * ax
         rate[a, at + 2] = omega
@@ -108,7 +92,23 @@ def embed_driven(bodies, n, body, rate, coordinate, drive):
     cy = rate[k1, at + 1] + omega * px - square * py
     omega = rate[k2, at + 2]
     if law > 0:
-        omega += n[SENSE] * drive[law, 2]
+        omega += n[SENSE] * law_rate(by, law, 2)
     rate[a, at] = cx + omega * ay + turning * ax
     rate[a, at + 1] = cy - omega * ax + turning * ay
     rate[a, at + 2] = omega
+    return SOLVED
+
+
+@internal
+def _tabulated(by, e, law, column, n):
+    return by.driven[e, 0], by.driven[e, 1]
+
+
+@internal
+def _evaluated(by, e, law, column, n):
+    angle = n[SENSE] * (n[OFFSET] + value_of(by, e, law, column))
+    return math.cos(angle), math.sin(angle)
+
+
+turn_rydriver = alternatives({PoseAlone: _tabulated, AlongLaws: _evaluated, PerCoordinate: _evaluated})
+"""Cosine and sine of s (offset + f)."""

@@ -10,12 +10,23 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import inlined, lazy
-from mbsd.kinematics.groups.carrying.branch import doubted, predicted
+import numpy as np
+
+from mbsd.kinematics.groups.carrying.branch import doubted
 from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turned_x, turned_y
-from mbsd.kinematics.groups.carrying.columns import AVOID, COS, NEAR, OMEGA, SIGN, SIN, SINE, SPEED, X, Y
-from mbsd.kinematics.groups.carrying.places import point_along, point_of, put_on, root_of
-from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED, aim, carried, hang, reach
+from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIGN, SIN, SINE, X, Y
+from mbsd.kinematics.groups.carrying.purposes import (
+    columns_of,
+    expected_angle,
+    formula,
+    law_rate,
+    may_change,
+    note_change,
+    reached,
+    speed_of,
+    value_of,
+)
+from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, LAW, ROD
 from mbsd.kinematics.groups.kind import GroupKind, Made, line
 from mbsd.kinematics.groups.links import Link, Places
@@ -23,7 +34,7 @@ from mbsd.kinematics.groups.links import Link, Places
 P1_X, P1_Y, PA_X, PA_Y, CA_X, CA_Y, Q2_X, Q2_Y, LENGTH, BRANCH = range(10)
 """P on K1, P on A, C on A, Q on K2, constant length beside the law's, sign of the root."""
 UA_X, UA_Y, SQUARE = CA_X, CA_Y, BRANCH
-"""For columns of B: u / a^2 on A, a^2; a = |u|."""
+"""In a row of Groups.row: u / a^2 on A, a^2; a = |u|."""
 
 
 def rod(at: Places, a: int, links: dict[str, Link]) -> Made:
@@ -35,95 +46,26 @@ def rod(at: Places, a: int, links: dict[str, Link]) -> Made:
     return ROD, (a, -1, pin.other, held.other), held.motion, [*numbers, branch]
 
 
-def _embedded(n: list[float]) -> list[float]:
+def _row(n: np.ndarray) -> list[np.ndarray]:
     on_a, square = line(n[CA_X] - n[PA_X], n[CA_Y] - n[PA_Y])
     return [*n[:CA_X], *on_a, *n[Q2_X:BRANCH], square]
 
 
-KIND = GroupKind(ROD, "rod", _embedded, one=("LR",), of_one=rod, branch=BRANCH)
+KIND = GroupKind(ROD, "rod", _row, one=("LR",), of_one=rod, branch=BRANCH, watched=1)
 
 
-@lazy(int)
-def solve_rod(bodies, n, law, qk, vk, ak, last, turn, point):
-    """Positions and rates; law (3,): l and its rates beside the constant length. See prp.solve_prp."""
-    p = point[0]
-    r = point[1]
-    a = bodies[FIRST]
-    carried(qk, vk, ak, turn, bodies[K1], n[P1_X], n[P1_Y], p)
-    carried(qk, vk, ak, turn, bodies[K2], n[Q2_X], n[Q2_Y], r)
-    lx = n[CA_X] - n[PA_X]
-    ly = n[CA_Y] - n[PA_Y]
-    rod = n[LENGTH] + law[0]
-    first = lx * lx + ly * ly
-    dx = r[0] - p[0]
-    dy = r[1] - p[1]
-    square = dx * dx + dy * dy
-    second = rod * rod
-    middle = first + second - square
-    left = 4.0 * first * second - middle * middle
-    fx = r[2] - p[2]
-    fy = r[3] - p[3]
-    point[3, 0] = left
-    point[3, 1] = 8.0 * first * rod * law[1] - 4.0 * middle * (rod * law[1] - dx * fx - dy * fy)
-    state = reach(left, 4.0 * first * second)
-    if state != SOLVED:
-        return state
-    inverse = 1.0 / square
-    along = 0.5 * (square + first - second) * inverse
-    height = n[BRANCH] * 0.5 * inverse * math.sqrt(left)
-    ux = along * dx - height * dy
-    uy = along * dy + height * dx
-    wx = ux - dx
-    wy = uy - dy
-    aim(turn, qk, last[3 * a + 2], a, ux, uy, lx, ly)
-    lever = 1.0 / (wy * ux - wx * uy)
-    omega = (rod * law[1] + wx * fx + wy * fy) * lever
-    rate_x = -omega * uy - fx
-    rate_y = omega * ux - fy
-    fx = r[4] - p[4] + omega * omega * ux
-    fy = r[5] - p[5] + omega * omega * uy
-    bend = law[1] * law[1] + rod * law[2] - rate_x * rate_x - rate_y * rate_y
-    vk[3 * a + 2] = omega
-    ak[3 * a + 2] = (bend + wx * fx + wy * fy) * lever
-    hang(qk, vk, ak, turn, a, p, n[PA_X], n[PA_Y])
-    return SOLVED
-
-
-@inlined
-def place_rod(bodies, n, driven, place, p, r):
-    """Places alone; driven (2,): the law's length first. See rrr.place_rrr."""
-    a = bodies[FIRST]
-    k1 = bodies[K1]
-    k2 = bodies[K2]
-    point_of(place, k1, n[P1_X], n[P1_Y], p)
-    point_of(place, k2, n[Q2_X], n[Q2_Y], r)
-    lx = n[CA_X] - n[PA_X]
-    ly = n[CA_Y] - n[PA_Y]
-    second = (n[LENGTH] + driven[0]) ** 2
-    first = lx * lx + ly * ly
-    dx = r[0] - p[0]
-    dy = r[1] - p[1]
-    square = dx * dx + dy * dy
-    inverse = 1.0 / square
-    along = 0.5 * (square + first - second) * inverse
-    left = first * inverse - along * along
-    root = root_of(left)
-    if root < 0.0:
-        return root
-    height = n[BRANCH] * root
-    point_along(place, a, along * dx - height * dy, along * dy + height * dx, lx, ly)
-    put_on(place, a, p[0], p[1], n[PA_X], n[PA_Y])
-    return root
-
-
-@lazy(int)
-def embed_rod(bodies, n, body, rate, base, coordinate, drive):
-    """Positions and columns of B. See prp.embed_prp."""
+@formula
+def solve_rod(by, e):
+    """Place the body of group e and fill its rates. See prp.solve_prp."""
+    bodies = by.group[e]
+    n = by.number[e]
+    body = by.body
+    rate = by.rate
     a = bodies[FIRST]
     k1 = bodies[K1]
     k2 = bodies[K2]
     law = bodies[LAW]
-    columns = coordinate.shape[0] - 1
+    columns = columns_of(by)
     px = turned_x(body, k1, n[P1_X], n[P1_Y])
     py = turned_y(body, k1, n[P1_X], n[P1_Y])
     qx = turned_x(body, k2, n[Q2_X], n[Q2_Y])
@@ -132,16 +74,18 @@ def embed_rod(bodies, n, body, rate, base, coordinate, drive):
     cy = body[k1, Y] + py
     dx = body[k2, X] + qx - cx
     dy = body[k2, Y] + qy - cy
-    rod = n[LENGTH] + drive[law, 0]
+    rod = n[LENGTH] + value_of(by, e, law, -1)
     square = dx * dx + dy * dy
     half = 0.5 * (square + n[SQUARE] - rod * rod)
-    cross = n[SQUARE] * square - half * half
-    n[SINE] = cross / (n[SQUARE] * rod * rod)
-    if not n[SINE] > n[AVOID]:
-        return DOUBTED
-    cross = math.sqrt(cross)
-    if n[NEAR] > 0.0:
-        theta = predicted(base, coordinate, a)
+    left = n[SQUARE] * square - half * half
+    scale = n[SQUARE] * rod * rod
+    n[SINE] = left / scale
+    state = reached(by, n)
+    if state != SOLVED:
+        return state
+    cross = math.sqrt(left)
+    if may_change(by, n):
+        theta = expected_angle(by, a)
         c = math.cos(theta)
         s = math.sin(theta)
         side = n[SQUARE] * ((s * n[UA_X] + c * n[UA_Y]) * dx - (c * n[UA_X] - s * n[UA_Y]) * dy)
@@ -169,17 +113,26 @@ def embed_rod(bodies, n, body, rate, base, coordinate, drive):
         change = 0.0
         if j == columns:
             body[a, OMEGA] = turning
+            growing = rod * law_rate(by, law, 1)
+            approach = dx * past_x + dy * past_y
+            note_change(
+                by,
+                n,
+                (2.0 * n[SQUARE] * approach - 2.0 * half * (approach - growing)) / scale
+                - 2.0 * n[SINE] * growing / (rod * rod),
+            )
             past_x = -turning * uy - past_x
             past_y = turning * ux - past_y
             fx += turning * turning * ux
             fy += turning * turning * uy
-            change = drive[law, 1] * drive[law, 1] + rod * drive[law, 2] - past_x * past_x - past_y * past_y
+            change = law_rate(by, law, 1) * law_rate(by, law, 1) + rod * law_rate(by, law, 2)
+            change -= past_x * past_x + past_y * past_y
         elif j == columns - 1 and law > 0:
-            change = rod * drive[law, 1]
+            change = rod * law_rate(by, law, 1)
         omega = (change + wx * fx + wy * fy) * lever
         if j < columns:
-            turning += omega * coordinate[j, SPEED]
-            past_x += fx * coordinate[j, SPEED]
-            past_y += fy * coordinate[j, SPEED]
+            turning += omega * speed_of(by, j)
+            past_x += fx * speed_of(by, j)
+            past_y += fy * speed_of(by, j)
         hang_column(body, rate, columns, j, a, cx, cy, omega, ax, ay)
     return SOLVED

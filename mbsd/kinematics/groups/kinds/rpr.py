@@ -13,12 +13,20 @@ import math
 
 import numpy as np
 
-from mbsd.compiling.jit import inlined, lazy
-from mbsd.kinematics.groups.carrying.branch import doubted, predicted
+from mbsd.kinematics.groups.carrying.branch import doubted
 from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turn_as, turned_x, turned_y
-from mbsd.kinematics.groups.carrying.columns import AVOID, COS, NEAR, OMEGA, SIGN, SIN, SINE, SPEED, X, Y
-from mbsd.kinematics.groups.carrying.places import point_along, point_of, put_on, root_of, turn_with
-from mbsd.kinematics.groups.carrying.rates import DOUBTED, MEETING, SOLVED, aim, carried, follow, hang, reach
+from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIGN, SIN, SINE, X, Y
+from mbsd.kinematics.groups.carrying.purposes import (
+    columns_of,
+    expected_angle,
+    formula,
+    may_change,
+    note_change,
+    reached,
+    speed_of,
+    too_short,
+)
+from mbsd.kinematics.groups.carrying.rates import DOUBTED, MEETING, SOLVED
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, RPR, SECOND
 from mbsd.kinematics.groups.kind import Bodies, GroupKind, Made
 from mbsd.kinematics.groups.links import Link, Places, Vector, own_angle, turned
@@ -26,7 +34,7 @@ from mbsd.kinematics.groups.links import Link, Places, Vector, own_angle, turned
 P1_X, P1_Y, PA_X, PA_Y, E_X, E_Y, OFFSET, Q2_X, Q2_Y, ANGLE, QB_X, QB_Y, BRANCH = range(13)
 """P on K1, P on A, e on A, offset of Q from it, Q on K2, angle of B against A, Q on B, sign of the root."""
 COS_B, SIN_B = ANGLE, BRANCH
-"""For columns of B: cosine and sine of that angle."""
+"""In a row of Groups.row: cosine and sine of that angle."""
 
 
 def in_own_slot(at: Places, a: int, links: dict[str, Link]) -> Made | None:
@@ -68,100 +76,36 @@ def _made(
     return RPR, bodies, 0, [*numbers, branch]
 
 
-def _embedded(n: list[float]) -> list[float]:
-    return [*n[:ANGLE], math.cos(n[ANGLE]), *n[QB_X:BRANCH], math.sin(n[ANGLE])]
+def _row(n: np.ndarray) -> list[np.ndarray]:
+    return [*n[:ANGLE], np.cos(n[ANGLE]), *n[QB_X:BRANCH], np.sin(n[ANGLE])]
 
 
 KIND = GroupKind(
     RPR,
     "RPR",
-    _embedded,
+    _row,
     one=("RS",),
     of_one=in_own_slot,
     two=("RPR",),
     of_two=on_each_other,
     branch=BRANCH,
-    angles=((1, ANGLE),),
+    follows=((1, ANGLE, FIRST),),
+    watched=1,
 )
 
 
-@lazy(int)
-def solve_rpr(bodies, n, qk, vk, ak, last, tiny, turn, point):
-    """Positions and rates; last (3 nb,): the pose before; tiny (m^2): what counts as zero. See prp.solve_prp."""
-    p = point[0]
-    r = point[1]
-    body = bodies[FIRST]
-    other = bodies[SECOND]
-    k1 = bodies[K1]
-    k2 = bodies[K2]
-    at = 3 * body
-    carried(qk, vk, ak, turn, k1, n[P1_X], n[P1_Y], p)
-    carried(qk, vk, ak, turn, k2, n[Q2_X], n[Q2_Y], r)
-    dx = r[0] - p[0]
-    dy = r[1] - p[1]
-    square = dx * dx + dy * dy
-    left = square - n[OFFSET] * n[OFFSET]
-    point[3, 0] = left
-    state = reach(left, square)
-    if not left > tiny:
-        state = min(state, MEETING)
-    if state != SOLVED:
-        return state
-    root = n[BRANCH] * math.sqrt(left)
-    aim(turn, qk, last[at + 2], body, dx, dy, root * n[E_X] - n[OFFSET] * n[E_Y], root * n[E_Y] + n[OFFSET] * n[E_X])
-    ex = turn[body, 0] * n[E_X] - turn[body, 1] * n[E_Y]
-    ey = turn[body, 1] * n[E_X] + turn[body, 0] * n[E_Y]
-    fx = r[2] - p[2]
-    fy = r[3] - p[3]
-    inverse = 1.0 / root
-    omega = (ex * fy - ey * fx) * inverse
-    rate = dx * fx + dy * fy
-    point[3, 1] = 2.0 * rate
-    rate *= inverse
-    fx = r[4] - p[4] + omega * omega * dx + 2.0 * omega * rate * ey
-    fy = r[5] - p[5] + omega * omega * dy - 2.0 * omega * rate * ex
-    vk[at + 2] = omega
-    ak[at + 2] = (ex * fy - ey * fx) * inverse
-    hang(qk, vk, ak, turn, body, p, n[PA_X], n[PA_Y])
-    if other >= 0:
-        follow(qk, vk, ak, turn, other, body, n[ANGLE])
-        hang(qk, vk, ak, turn, other, r, n[QB_X], n[QB_Y])
-    return SOLVED
-
-
-@inlined
-def place_rpr(bodies, n, turn_b, place, p, r):
-    """Places alone; turn_b (2,): cosine and sine of the angle of B. See rrr.place_rrr."""
+@formula
+def solve_rpr(by, e):
+    """Place the bodies of group e and fill their rates. See prp.solve_prp."""
+    bodies = by.group[e]
+    n = by.number[e]
+    body = by.body
+    rate = by.rate
     a = bodies[FIRST]
     b = bodies[SECOND]
     k1 = bodies[K1]
     k2 = bodies[K2]
-    point_of(place, k1, n[P1_X], n[P1_Y], p)
-    point_of(place, k2, n[Q2_X], n[Q2_Y], r)
-    dx = r[0] - p[0]
-    dy = r[1] - p[1]
-    square = dx * dx + dy * dy
-    left = 1.0 - n[OFFSET] * n[OFFSET] / square
-    root = root_of(left)
-    if root < 0.0:
-        return root
-    way = n[BRANCH] * root * math.sqrt(square)
-    point_along(place, a, dx, dy, way * n[E_X] - n[OFFSET] * n[E_Y], way * n[E_Y] + n[OFFSET] * n[E_X])
-    put_on(place, a, p[0], p[1], n[PA_X], n[PA_Y])
-    if b >= 0:
-        turn_with(place, b, a, turn_b)
-        put_on(place, b, r[0], r[1], n[QB_X], n[QB_Y])
-    return root
-
-
-@lazy(int)
-def embed_rpr(bodies, n, body, rate, base, coordinate):
-    """Positions and columns of B. See prp.embed_prp."""
-    a = bodies[FIRST]
-    b = bodies[SECOND]
-    k1 = bodies[K1]
-    k2 = bodies[K2]
-    columns = coordinate.shape[0] - 1
+    columns = columns_of(by)
     px = turned_x(body, k1, n[P1_X], n[P1_Y])
     py = turned_y(body, k1, n[P1_X], n[P1_Y])
     qx = turned_x(body, k2, n[Q2_X], n[Q2_Y])
@@ -175,11 +119,14 @@ def embed_rpr(bodies, n, body, rate, base, coordinate):
     square = dx * dx + dy * dy
     left = square - n[OFFSET] * n[OFFSET]
     n[SINE] = left / square if square > 0.0 else 0.0
-    if not n[SINE] > n[AVOID]:
-        return DOUBTED
+    state = reached(by, n)
+    if too_short(by, left):
+        state = min(state, MEETING)
+    if state != SOLVED:
+        return state
     root = math.sqrt(left)
-    if n[NEAR] > 0.0:
-        theta = predicted(base, coordinate, a)
+    if may_change(by, n):
+        theta = expected_angle(by, a)
         c = math.cos(theta)
         s = math.sin(theta)
         side = (c * n[E_X] - s * n[E_Y]) * dx + (s * n[E_X] + c * n[E_Y]) * dy
@@ -195,12 +142,12 @@ def embed_rpr(bodies, n, body, rate, base, coordinate):
     body[a, SIN] = ey * n[E_X] - ex * n[E_Y]
     ax = put(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
     ay = put(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
-    bx = 0.0
-    by = 0.0
+    rx = 0.0
+    ry = 0.0
     if b >= 0:
         turn_as(body, b, a, n[COS_B], n[SIN_B])
-        bx = put(body, b, tx, ty, n[QB_X], n[QB_Y], 0)
-        by = put(body, b, tx, ty, n[QB_X], n[QB_Y], 1)
+        rx = put(body, b, tx, ty, n[QB_X], n[QB_Y], 0)
+        ry = put(body, b, tx, ty, n[QB_X], n[QB_Y], 1)
     inverse = 1.0 / root
     turning = 0.0
     sliding = 0.0
@@ -215,13 +162,14 @@ def embed_rpr(bodies, n, body, rate, base, coordinate):
             body[a, OMEGA] = turning
             if b >= 0:
                 body[b, OMEGA] = turning
+            note_change(by, n, 2.0 * n[OFFSET] * n[OFFSET] * sliding * root / (square * square))
             fx += turning * turning * dx + 2.0 * turning * sliding * ey
             fy += turning * turning * dy - 2.0 * turning * sliding * ex
         omega = (ex * fy - ey * fx) * inverse
         if j < columns:
-            turning += omega * coordinate[j, SPEED]
-            sliding += (dx * fx + dy * fy) * inverse * coordinate[j, SPEED]
+            turning += omega * speed_of(by, j)
+            sliding += (dx * fx + dy * fy) * inverse * speed_of(by, j)
         hang_column(body, rate, columns, j, a, cx, cy, omega, ax, ay)
         if b >= 0:
-            hang_column(body, rate, columns, j, b, tx, ty, omega, bx, by)
+            hang_column(body, rate, columns, j, b, tx, ty, omega, rx, ry)
     return SOLVED

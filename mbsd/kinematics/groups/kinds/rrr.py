@@ -13,11 +13,20 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import inlined, merged
-from mbsd.kinematics.groups.carrying.branch import doubted, predicted
-from mbsd.kinematics.groups.carrying.columns import AVOID, COS, NEAR, OMEGA, SIGN, SIN, SINE, SPEED, X, Y
-from mbsd.kinematics.groups.carrying.places import point_along, point_of, put_on, root_of
-from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED, aim, carried, hang, reach
+import numpy as np
+
+from mbsd.compiling.jit import merged
+from mbsd.kinematics.groups.carrying.branch import doubted
+from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIGN, SIN, SINE, X, Y
+from mbsd.kinematics.groups.carrying.purposes import (
+    columns_of,
+    expected_angle,
+    may_change,
+    note_change,
+    reached,
+    speed_of,
+)
+from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, RRR, SECOND
 from mbsd.kinematics.groups.kind import GroupKind, Made, line
 from mbsd.kinematics.groups.links import Link, Places
@@ -26,7 +35,7 @@ P1_X, P1_Y, PA_X, PA_Y, CA_X, CA_Y, Q2_X, Q2_Y, QB_X, QB_Y, CB_X, CB_Y, BRANCH =
 """P on K1, P on A, C on A, Q on K2, Q on B, C on B, sign of the root."""
 UA_X, UA_Y, WB_X, WB_Y = CA_X, CA_Y, CB_X, CB_Y
 SQUARE, DIFFERENCE, PER_SQUARES = range(12, 15)
-"""For columns of B: u / a^2 on A, w / b^2 on B, a^2, a^2 - b^2, 1 / (a^2 b^2)."""
+"""In a row of Groups.row: u / a^2 on A, w / b^2 on B, a^2, a^2 - b^2, 1 / (a^2 b^2)."""
 
 
 def two_pinned(at: Places, a: int, b: int, outer_a: Link, inner: Link, outer_b: Link) -> Made:
@@ -42,110 +51,27 @@ def two_pinned(at: Places, a: int, b: int, outer_a: Link, inner: Link, outer_b: 
     return RRR, (a, b, outer_a.other, outer_b.other), 0, [*numbers, branch]
 
 
-def _embedded(n: list[float]) -> list[float]:
+def _row(n: np.ndarray) -> list[np.ndarray]:
     on_a, first = line(n[CA_X] - n[PA_X], n[CA_Y] - n[PA_Y])
     on_b, second = line(n[CB_X] - n[QB_X], n[CB_Y] - n[QB_Y])
     return [*n[:CA_X], *on_a, *n[Q2_X:CB_X], *on_b, first, first - second, 1.0 / (first * second)]
 
 
-KIND = GroupKind(RRR, "RRR", _embedded, two=("RRR",), of_two=two_pinned, branch=BRANCH)
+KIND = GroupKind(RRR, "RRR", _row, two=("RRR",), of_two=two_pinned, branch=BRANCH, watched=2)
 
 
 @merged
-def solve_rrr(bodies, n, qk, vk, ak, last, turn, point):
-    """Positions and rates; last (3 nb,): the pose before. See prp.solve_prp."""
-    body = bodies[FIRST]
-    other = bodies[SECOND]
-    k1 = bodies[K1]
-    k2 = bodies[K2]
-    p = point[0]
-    r = point[1]
-    at = 3 * body
-    carried(qk, vk, ak, turn, k1, n[P1_X], n[P1_Y], p)
-    carried(qk, vk, ak, turn, k2, n[Q2_X], n[Q2_Y], r)
-    lx = n[CA_X] - n[PA_X]
-    ly = n[CA_Y] - n[PA_Y]
-    mx = n[CB_X] - n[QB_X]
-    my = n[CB_Y] - n[QB_Y]
-    first = lx * lx + ly * ly
-    second = mx * mx + my * my
-    dx = r[0] - p[0]
-    dy = r[1] - p[1]
-    square = dx * dx + dy * dy
-    middle = first + second - square
-    left = 4.0 * first * second - middle * middle
-    state = reach(left, 4.0 * first * second)
-    if state != SOLVED:
-        return state
-    inverse = 1.0 / square
-    along = 0.5 * (square + first - second) * inverse
-    height = n[BRANCH] * 0.5 * inverse * math.sqrt(left)
-    ux = along * dx - height * dy
-    uy = along * dy + height * dx
-    wx = ux - dx
-    wy = uy - dy
-    aim(turn, qk, last[at + 2], body, ux, uy, lx, ly)
-    aim(turn, qk, last[3 * other + 2], other, wx, wy, mx, my)
-    det = 1.0 / (uy * wx - ux * wy)
-    fx = r[2] - p[2]
-    fy = r[3] - p[3]
-    point[3, 0] = left
-    point[3, 1] = 4.0 * middle * (dx * fx + dy * fy)
-    omega = (fx * wx + fy * wy) * det
-    turning = (fx * ux + fy * uy) * det
-    fx = r[4] - p[4] + omega * omega * ux - turning * turning * wx
-    fy = r[5] - p[5] + omega * omega * uy - turning * turning * wy
-    vk[at + 2] = -omega
-    ak[at + 2] = -(fx * wx + fy * wy) * det
-    vk[3 * other + 2] = -turning
-    ak[3 * other + 2] = -(fx * ux + fy * uy) * det
-    hang(qk, vk, ak, turn, body, p, n[PA_X], n[PA_Y])
-    hang(qk, vk, ak, turn, other, r, n[QB_X], n[QB_Y])
-    return SOLVED
-
-
-@inlined
-def place_rrr(bodies, n, place, p, r):
-    """Places alone; returns the root, which must go on smoothly, or what places.root_of says. Scratch p, r (2,)."""
+def solve_rrr(by, e):
+    """Place the bodies of group e and fill their rates. See prp.solve_prp."""
+    bodies = by.group[e]
+    n = by.number[e]
+    body = by.body
+    rate = by.rate
     a = bodies[FIRST]
     b = bodies[SECOND]
     k1 = bodies[K1]
     k2 = bodies[K2]
-    point_of(place, k1, n[P1_X], n[P1_Y], p)
-    point_of(place, k2, n[Q2_X], n[Q2_Y], r)
-    lx = n[CA_X] - n[PA_X]
-    ly = n[CA_Y] - n[PA_Y]
-    mx = n[CB_X] - n[QB_X]
-    my = n[CB_Y] - n[QB_Y]
-    second = mx * mx + my * my
-    first = lx * lx + ly * ly
-    dx = r[0] - p[0]
-    dy = r[1] - p[1]
-    square = dx * dx + dy * dy
-    inverse = 1.0 / square
-    along = 0.5 * (square + first - second) * inverse
-    left = first * inverse - along * along
-    root = root_of(left)
-    if root < 0.0:
-        return root
-    height = n[BRANCH] * root
-    ux = along * dx - height * dy
-    uy = along * dy + height * dx
-    point_along(place, a, ux, uy, lx, ly)
-    put_on(place, a, p[0], p[1], n[PA_X], n[PA_Y])
-    point_along(place, b, ux - dx, uy - dy, mx, my)
-    put_on(place, b, r[0], r[1], n[QB_X], n[QB_Y])
-    return root
-
-
-@merged
-def embed_rrr(bodies, n, body, rate, base, coordinate):
-    """Positions and columns of B. See prp.embed_prp."""
-    a = bodies[FIRST]
-    b = bodies[SECOND]
-    k1 = bodies[K1]
-    k2 = bodies[K2]
-    columns = coordinate.shape[0] - 1
+    columns = columns_of(by)
     c = body[k1, COS]
     s = body[k1, SIN]
     px = c * n[P1_X] - s * n[P1_Y]
@@ -164,12 +90,13 @@ def embed_rrr(bodies, n, body, rate, base, coordinate):
     half = 0.5 * (square + n[DIFFERENCE])
     cross = n[SQUARE] * square - half * half
     n[SINE] = cross * n[PER_SQUARES]
-    if not n[SINE] > n[AVOID]:
-        return DOUBTED
+    state = reached(by, n)
+    if state != SOLVED:
+        return state
     inverse = 1.0 / square
     cross = math.sqrt(cross)
-    if n[NEAR] > 0.0:
-        theta = predicted(base, coordinate, a)
+    if may_change(by, n):
+        theta = expected_angle(by, a)
         c = math.cos(theta)
         s = math.sin(theta)
         side = n[SQUARE] * ((s * n[UA_X] + c * n[UA_Y]) * dx - (c * n[UA_X] - s * n[UA_Y]) * dy)
@@ -196,12 +123,16 @@ def embed_rrr(bodies, n, body, rate, base, coordinate):
     s = wy * n[WB_X] - wx * n[WB_Y]
     body[b, COS] = c
     body[b, SIN] = s
-    bx = c * n[QB_X] - s * n[QB_Y]
-    by = s * n[QB_X] + c * n[QB_Y]
-    body[b, X] = ex - bx
-    body[b, Y] = ey - by
+    rx = c * n[QB_X] - s * n[QB_Y]
+    ry = s * n[QB_X] + c * n[QB_Y]
+    body[b, X] = ex - rx
+    body[b, Y] = ey - ry
+    if columns < 0:
+        return SOLVED
     turning_a = 0.0
     turning_b = 0.0
+    fx = 0.0
+    fy = 0.0
     for j in range(columns):
         at = 3 * j
         omega = rate[k1, at + 2]
@@ -213,15 +144,16 @@ def embed_rrr(bodies, n, body, rate, base, coordinate):
         fx = ex - cx
         fy = ey - cy
         omega = (fx * wx + fy * wy) * det
-        turning_a += omega * coordinate[j, SPEED]
+        turning_a += omega * speed_of(by, j)
         rate[a, at] = cx + omega * ay
         rate[a, at + 1] = cy - omega * ax
         rate[a, at + 2] = omega
         omega = (fx * ux + fy * uy) * det
-        turning_b += omega * coordinate[j, SPEED]
-        rate[b, at] = ex + omega * by
-        rate[b, at + 1] = ey - omega * bx
+        turning_b += omega * speed_of(by, j)
+        rate[b, at] = ex + omega * ry
+        rate[b, at + 1] = ey - omega * rx
         rate[b, at + 2] = omega
+    note_change(by, n, 2.0 * (n[SQUARE] - half) * (dx * fx + dy * fy) * n[PER_SQUARES])
     body[a, OMEGA] = turning_a
     body[b, OMEGA] = turning_b
     turning_a *= turning_a
@@ -242,7 +174,7 @@ def embed_rrr(bodies, n, body, rate, base, coordinate):
     rate[a, at + 1] = cy - omega * ax + turning_a * ay
     rate[a, at + 2] = omega
     omega = (fx * ux + fy * uy) * det
-    rate[b, at] = ex + omega * by + turning_b * bx
-    rate[b, at + 1] = ey - omega * bx + turning_b * by
+    rate[b, at] = ex + omega * ry + turning_b * rx
+    rate[b, at + 1] = ey - omega * rx + turning_b * ry
     rate[b, at + 2] = omega
     return SOLVED

@@ -17,7 +17,7 @@ from mbsd.kinematics.groups.links import Link, Places
 P1_X, P1_Y, PA_X, PA_Y, CONSTANT, CARRIES_ON = range(6)
 """P on K1, P on A, constant of the sum (rad), 1 if other groups stand on A."""
 SHARE_2, SHARE_3, BODY_3 = range(5, 8)
-"""For columns of B, in which a sum has two angles: those of bodies K2 and THIRD. What they count, and that body."""
+"""In independent coordinates, where a sum has the angles of bodies K2 and THIRD: what they count, and that body."""
 UNSURE = 1.0
 """Angle (rad) by which the prediction may miss: whole turns count here, for their share of one turns A."""
 
@@ -29,11 +29,6 @@ def train(at: Places, body: int, pin: Link, constant: float, shares: dict[int, f
     (second, share_2), (third, share_3) = [*shares.items(), (0, 0.0), (0, 0.0)][:2]
     numbers = [*at.pin(pin), constant, share_2, share_3, float(third)]
     return TRAIN, (body, -1, pin.other, second), 0, numbers
-
-
-def embedded(n: list[float]) -> list[float]:
-    """Its numbers for columns of B."""
-    return n[:BODY_3]
 
 
 @lazy(None)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
+import numpy as np
 
-from mbsd.compiling.jit import inlined, lazy, merged
+from mbsd.compiling.jit import merged
 from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turn_as, turned_x, turned_y
 from mbsd.kinematics.groups.carrying.columns import OMEGA, X, Y
-from mbsd.kinematics.groups.carrying.places import point_of, put_on, turn_with
-from mbsd.kinematics.groups.carrying.rates import SOLVED, carried, follow, hang
+from mbsd.kinematics.groups.carrying.purposes import columns_of
+from mbsd.kinematics.groups.carrying.rates import SOLVED
 from mbsd.kinematics.groups.groups import FIRST, K1, WELDED
 from mbsd.kinematics.groups.kind import GroupKind, Made
 from mbsd.kinematics.groups.links import Link, Places, own_angle
@@ -16,7 +16,7 @@ from mbsd.kinematics.groups.links import Link, Places, own_angle
 P1_X, P1_Y, PA_X, PA_Y, ANGLE = range(5)
 """P on K1, P on A; angle of A against K1 (rad)."""
 COS_A, SIN_A = ANGLE, 5
-"""For columns of B: its cosine and sine."""
+"""In a row of Groups.row: its cosine and sine."""
 
 
 def welded(at: Places, body: int, links: dict[str, Link]) -> Made:
@@ -25,40 +25,22 @@ def welded(at: Places, body: int, links: dict[str, Link]) -> Made:
     return WELDED, (body, -1, weld.other, 0), 0, [*at.pin(weld), own_angle(weld)]
 
 
-def _embedded(n: list[float]) -> list[float]:
-    return [*n[:ANGLE], math.cos(n[ANGLE]), math.sin(n[ANGLE])]
+def _row(n: np.ndarray) -> list[np.ndarray]:
+    return [*n[:ANGLE], np.cos(n[ANGLE]), np.sin(n[ANGLE])]
 
 
-KIND = GroupKind(WELDED, "welded", _embedded, one=("W",), of_one=welded, angles=((0, ANGLE),))
+KIND = GroupKind(WELDED, "welded", _row, one=("W",), of_one=welded, follows=((0, ANGLE, K1),))
 
 
 @merged
-def solve_welded(bodies, n, qk, vk, ak, turn, point):
-    """Positions and rates. See prp.solve_prp."""
-    body = bodies[FIRST]
-    k1 = bodies[K1]
-    p = point[0]
-    follow(qk, vk, ak, turn, body, k1, n[ANGLE])
-    carried(qk, vk, ak, turn, k1, n[P1_X], n[P1_Y], p)
-    hang(qk, vk, ak, turn, body, p, n[PA_X], n[PA_Y])
-
-
-@inlined
-def place_welded(bodies, n, turn_a, place, p):
-    """Places alone; turn_a (2,): cosine and sine of the angle. See rrr.place_rrr."""
+def solve_welded(by, e):
+    """Place the body of group e and fill its rates. See prp.solve_prp."""
+    bodies = by.group[e]
+    n = by.number[e]
+    body = by.body
     a = bodies[FIRST]
     k1 = bodies[K1]
-    point_of(place, k1, n[P1_X], n[P1_Y], p)
-    turn_with(place, a, k1, turn_a)
-    put_on(place, a, p[0], p[1], n[PA_X], n[PA_Y])
-
-
-@lazy(int)
-def embed_welded(bodies, n, body, rate, coordinate):
-    """Positions and columns of B. See prp.embed_prp."""
-    a = bodies[FIRST]
-    k1 = bodies[K1]
-    columns = coordinate.shape[0] - 1
+    columns = columns_of(by)
     px = turned_x(body, k1, n[P1_X], n[P1_Y])
     py = turned_y(body, k1, n[P1_X], n[P1_Y])
     turn_as(body, a, k1, n[COS_A], n[SIN_A])
@@ -68,7 +50,7 @@ def embed_welded(bodies, n, body, rate, coordinate):
     ay = put(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
     body[a, OMEGA] = body[k1, OMEGA]
     for j in range(columns + 1):
-        cx = carry_column(body, rate, columns, j, k1, px, py, 0)
-        cy = carry_column(body, rate, columns, j, k1, px, py, 1)
-        hang_column(body, rate, columns, j, a, cx, cy, rate[k1, 3 * j + 2], ax, ay)
+        cx = carry_column(body, by.rate, columns, j, k1, px, py, 0)
+        cy = carry_column(body, by.rate, columns, j, k1, px, py, 1)
+        hang_column(body, by.rate, columns, j, a, cx, cy, by.rate[k1, 3 * j + 2], ax, ay)
     return SOLVED

@@ -7,15 +7,12 @@ n . (Q - S_0 - s e) = 0, n the normal of the slot; k the point Q as K1 carries i
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from mbsd.compiling.jit import inlined, lazy
 from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turn_as, turned_x, turned_y
-from mbsd.kinematics.groups.carrying.columns import OMEGA, SPEED, X, Y
-from mbsd.kinematics.groups.carrying.places import point_of, put_on, turn_with
-from mbsd.kinematics.groups.carrying.rates import SOLVED, carried, follow, hang
+from mbsd.kinematics.groups.carrying.columns import OMEGA, X, Y
+from mbsd.kinematics.groups.carrying.purposes import columns_of, formula, speed_of
+from mbsd.kinematics.groups.carrying.rates import SOLVED
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, YOKE
 from mbsd.kinematics.groups.kind import GroupKind, Made
 from mbsd.kinematics.groups.links import Link, Places, cross, turned
@@ -23,7 +20,7 @@ from mbsd.kinematics.groups.links import Link, Places, cross, turned
 S1_X, S1_Y, E_X, E_Y, N_X, N_Y, Q2_X, Q2_Y, ANGLE, SA_X, SA_Y = range(11)
 """S_0, e and n on K1, Q on K2, angle of A against K1, the slot's point on A."""
 COS_A, SIN_A = ANGLE, 11
-"""For columns of B: cosine and sine of that angle."""
+"""In a row of Groups.row: cosine and sine of that angle."""
 PARALLEL = 1e-9
 """Sine of the angle between slide and slot below which they make no group."""
 
@@ -42,79 +39,24 @@ def yoke(at: Places, a: int, links: dict[str, Link]) -> Made | None:
     return YOKE, (a, -1, slide.other, slot.other), 0, [float(number) for number in numbers]
 
 
-def _embedded(n: list[float]) -> list[float]:
-    return [*n[:ANGLE], math.cos(n[ANGLE]), *n[SA_X:SIN_A], math.sin(n[ANGLE])]
+def _row(n: np.ndarray) -> list[np.ndarray]:
+    return [*n[:ANGLE], np.cos(n[ANGLE]), *n[SA_X:SIN_A], np.sin(n[ANGLE])]
 
 
-KIND = GroupKind(YOKE, "yoke", _embedded, one=("PS",), of_one=yoke, angles=((0, ANGLE),))
+KIND = GroupKind(YOKE, "yoke", _row, one=("PS",), of_one=yoke, follows=((0, ANGLE, K1),), watched=1)
 
 
-@lazy(int)
-def solve_yoke(bodies, n, qk, vk, ak, turn, point):
-    """Positions and rates. See prp.solve_prp."""
-    p = point[0]
-    r = point[1]
-    g = point[2]
-    body = bodies[FIRST]
-    k1 = bodies[K1]
-    k2 = bodies[K2]
-    point[3, 0] = 1.0
-    point[3, 1] = 0.0
-    carried(qk, vk, ak, turn, k1, n[S1_X], n[S1_Y], p)
-    carried(qk, vk, ak, turn, k2, n[Q2_X], n[Q2_Y], r)
-    ex = turn[k1, 0] * n[E_X] - turn[k1, 1] * n[E_Y]
-    ey = turn[k1, 1] * n[E_X] + turn[k1, 0] * n[E_Y]
-    nx = turn[k1, 0] * n[N_X] - turn[k1, 1] * n[N_Y]
-    ny = turn[k1, 1] * n[N_X] + turn[k1, 0] * n[N_Y]
-    spin = vk[3 * k1 + 2]
-    turning = ak[3 * k1 + 2]
-    dx = r[0] - p[0]
-    dy = r[1] - p[1]
-    inverse = 1.0 / (nx * ex + ny * ey)
-    slide = (nx * dx + ny * dy) * inverse
-    sx = slide * ex
-    sy = slide * ey
-    fx = r[2] - p[2] + spin * dy
-    fy = r[3] - p[3] - spin * dx
-    rate = (nx * fx + ny * fy) * inverse
-    ux = r[4] - p[4] + turning * dy + spin * spin * dx + 2.0 * spin * fy
-    uy = r[5] - p[5] - turning * dx + spin * spin * dy - 2.0 * spin * fx
-    along = (nx * ux + ny * uy) * inverse
-    g[0] = p[0] + sx
-    g[1] = p[1] + sy
-    g[2] = p[2] - spin * sy + rate * ex
-    g[3] = p[3] + spin * sx + rate * ey
-    g[4] = p[4] - turning * sy - spin * spin * sx - 2.0 * spin * rate * ey + along * ex
-    g[5] = p[5] + turning * sx - spin * spin * sy + 2.0 * spin * rate * ex + along * ey
-    follow(qk, vk, ak, turn, body, k1, n[ANGLE])
-    hang(qk, vk, ak, turn, body, g, n[SA_X], n[SA_Y])
-    return SOLVED
-
-
-@inlined
-def place_yoke(bodies, n, turn_a, place, p, r):
-    """Places alone; turn_a (2,): cosine and sine of the angle. See rrr.place_rrr."""
+@formula
+def solve_yoke(by, e):
+    """Place the body of group e and fill its rates. See prp.solve_prp."""
+    bodies = by.group[e]
+    n = by.number[e]
+    body = by.body
+    rate = by.rate
     a = bodies[FIRST]
     k1 = bodies[K1]
     k2 = bodies[K2]
-    point_of(place, k1, n[S1_X], n[S1_Y], p)
-    point_of(place, k2, n[Q2_X], n[Q2_Y], r)
-    ex = place[k1, 2] * n[E_X] - place[k1, 3] * n[E_Y]
-    ey = place[k1, 3] * n[E_X] + place[k1, 2] * n[E_Y]
-    nx = place[k1, 2] * n[N_X] - place[k1, 3] * n[N_Y]
-    ny = place[k1, 3] * n[N_X] + place[k1, 2] * n[N_Y]
-    slide = (nx * (r[0] - p[0]) + ny * (r[1] - p[1])) / (nx * ex + ny * ey)
-    turn_with(place, a, k1, turn_a)
-    put_on(place, a, p[0] + slide * ex, p[1] + slide * ey, n[SA_X], n[SA_Y])
-
-
-@lazy(int)
-def embed_yoke(bodies, n, body, rate, coordinate):
-    """Positions and columns of B. See prp.embed_prp."""
-    a = bodies[FIRST]
-    k1 = bodies[K1]
-    k2 = bodies[K2]
-    columns = coordinate.shape[0] - 1
+    columns = columns_of(by)
     px = turned_x(body, k1, n[S1_X], n[S1_Y])
     py = turned_y(body, k1, n[S1_X], n[S1_Y])
     ex = turned_x(body, k1, n[E_X], n[E_Y])
@@ -153,8 +95,8 @@ def embed_yoke(bodies, n, body, rate, coordinate):
             ty += 2.0 * spin * sliding * ex
         slip = (nx * fx + ny * fy) * inverse
         if j < columns:
-            sliding += slip * coordinate[j, SPEED]
-            past_x += fx * coordinate[j, SPEED]
-            past_y += fy * coordinate[j, SPEED]
+            sliding += slip * speed_of(by, j)
+            past_x += fx * speed_of(by, j)
+            past_y += fy * speed_of(by, j)
         hang_column(body, rate, columns, j, a, tx + slip * ex, ty + slip * ey, rate[k1, 3 * j + 2], ax, ay)
     return SOLVED

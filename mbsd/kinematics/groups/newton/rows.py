@@ -32,7 +32,6 @@ from mbsd.kinematics.groups.blocks import (
     UNKNOWN,
 )
 from mbsd.kinematics.groups.carrying.rates import carried, follow, hang
-from mbsd.kinematics.groups.kinds.slide import solve_slide
 from mbsd.kinematics.groups.newton.fused import fused
 
 
@@ -64,6 +63,19 @@ def read_unknowns(block, q, turn, u):
 
 
 @fused
+def slid(q, v, a, turn, parent, n, way, speed, gain, point):
+    """The point of a slide on ``parent`` at its way (m), with its rates: S'' = k'' + 2 omega s' e_perp + s'' e."""
+    ex = turn[parent, 0] * n[2] - turn[parent, 1] * n[3]
+    ey = turn[parent, 1] * n[2] + turn[parent, 0] * n[3]
+    carried(q, v, a, turn, parent, n[0] + way * n[2], n[1] + way * n[3], point)
+    spin = 2.0 * v[3 * parent + 2] * speed
+    point[2] += speed * ex
+    point[3] += speed * ey
+    point[4] += gain * ex - spin * ey
+    point[5] += gain * ey + spin * ex
+
+
+@fused
 def move(block, u, turned, motion, point):
     """Place the block's bodies by the unknowns u (3, n) with their rates; ``turned``: pins' angles are in ``turn``."""
     tree = block.tree
@@ -86,7 +98,9 @@ def move(block, u, turned, motion, point):
             turn[body, 0] = math.cos(q[3 * body + 2])
             turn[body, 1] = math.sin(q[3 * body + 2])
         elif hangs == SLIDE:
-            solve_slide(tree[e], n, u[:, c], q, v, a, turn, point)
+            follow(q, v, a, turn, body, parent, n[4])
+            slid(q, v, a, turn, parent, n, u[0, c], u[1, c], u[2, c], point[0])
+            hang(q, v, a, turn, body, point[0], n[5], n[6])
         else:
             if hangs == PIN:
                 q[3 * body + 2] = u[0, c]

@@ -1,0 +1,221 @@
+"""What a group is solved for, and what its formulas in kinds/ need to know of it: one formula serves all three.
+
+    PoseAlone      poses of many designs, whose drivers' angles are tabulated          no columns
+    AlongLaws      a driven motion: rates in time, then accelerations                  1 column, and the last
+    PerCoordinate  rates for each independent coordinate, then convective ones         C columns, and the last
+
+A driven motion is the case of one coordinate, the time, whose speed is 1. The class of the first argument of a kernel
+decides which of the functions here it calls when it is compiled (mbsd/compiling/alternatives.py), so the number of
+columns of the first two is known then, and nothing is left of what they do not need.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from mbsd.compiling.alternatives import alternatives
+from mbsd.compiling.jit import internal, lazy, merged
+from mbsd.kinematics.groups.carrying.branch import predicted
+from mbsd.kinematics.groups.carrying.columns import AVOID, CHANGE, NEAR, SINE, SPEED, VALUE
+from mbsd.kinematics.groups.carrying.rates import DOUBTED, MEETING, OPEN, SOLVED
+
+FLAT = 1e-12
+"""Squared sine at which branches meet: lengths that agree to this part count as equal."""
+FLAT_ALONE = 1e-10
+"""The same for poses alone, between which nothing else is looked at."""
+
+
+class PoseAlone(NamedTuple):
+    """Poses of one design."""
+
+    group: Any
+    """(g, 8) and ``number`` (g, 21): tables.py."""
+    number: Any
+    body: Any
+    """(nb, 7) columns in columns.py."""
+    rate: Any
+    """Never read."""
+    driven: Any
+    """(g, 2) cosine and sine of the angle of DRIVEN groups, value of the law of the others."""
+
+
+class AlongLaws(NamedTuple):
+    """All bodies at one time of a driven motion."""
+
+    group: Any
+    number: Any
+    body: Any
+    rate: Any
+    """(nb, 6) velocities, accelerations."""
+    drive: Any
+    """(motions + 1, 3) laws and their rates; the first row is zero."""
+    tiny: Any
+    """Square of a length that counts as zero (m^2)."""
+
+
+class PerCoordinate(NamedTuple):
+    """All bodies in independent coordinates (mbsd/dynamics/embedding/arrays.py)."""
+
+    group: Any
+    number: Any
+    body: Any
+    rate: Any
+    """(nb, 3 (C + 1))"""
+    base: Any
+    coordinate: Any
+    drive: Any
+
+
+def formula(function: Callable[..., Any]) -> Any:
+    """The kernel of a kind that few mechanisms hold: compiled when one first does.
+
+    The loop over designs takes its code in, for there a call costs as much as the pose.
+    """
+    called = lazy(int)(function)
+    return alternatives({PoseAlone: merged(function), AlongLaws: called, PerCoordinate: called})
+
+
+@internal
+def _no_columns(by):
+    return -1
+
+
+@internal
+def _time(by):
+    return 1
+
+
+@internal
+def _coordinates(by):
+    return by.coordinate.shape[0] - 1
+
+
+columns_of = alternatives({PoseAlone: _no_columns, AlongLaws: _time, PerCoordinate: _coordinates})
+"""C, or -1 where poses alone are solved."""
+
+
+@internal
+def _unit_speed(by, j):
+    return 1.0
+
+
+@internal
+def _speed(by, j):
+    return by.coordinate[j, SPEED]
+
+
+speed_of = alternatives({PoseAlone: _unit_speed, AlongLaws: _unit_speed, PerCoordinate: _speed})
+"""z_j', by which rates in column j count to rates in time."""
+
+
+@internal
+def _reached_alone(by, n):
+    if n[SINE] > FLAT_ALONE:
+        return SOLVED
+    return OPEN if n[SINE] < -FLAT_ALONE else DOUBTED
+
+
+@internal
+def _reached_along(by, n):
+    if n[SINE] > FLAT:
+        return SOLVED
+    return OPEN if n[SINE] < -FLAT else MEETING
+
+
+@internal
+def _reached(by, n):
+    return SOLVED if n[SINE] > n[AVOID] else DOUBTED
+
+
+reached = alternatives({PoseAlone: _reached_alone, AlongLaws: _reached_along, PerCoordinate: _reached})
+"""SOLVED where a group with this squared sine closes and its two poses are apart, else why not."""
+
+
+@internal
+def _never_short(by, square):
+    return False
+
+
+@internal
+def _short(by, square):
+    return not square > by.tiny
+
+
+too_short = alternatives({PoseAlone: _never_short, AlongLaws: _short, PerCoordinate: _never_short})
+"""Whether a squared distance counts as zero."""
+
+
+@internal
+def _keeps(by, n):
+    return False
+
+
+@internal
+def _near(by, n):
+    return n[NEAR] > 0.0
+
+
+may_change = alternatives({PoseAlone: _keeps, AlongLaws: _keeps, PerCoordinate: _near})
+"""Whether a group asks anew which of its two poses it takes."""
+
+
+@internal
+def _unexpected(by, b):
+    return 0.0
+
+
+@internal
+def _expected(by, b):
+    return predicted(by.base, by.coordinate, b)
+
+
+expected_angle = alternatives({PoseAlone: _unexpected, AlongLaws: _unexpected, PerCoordinate: _expected})
+"""Angle of body b (rad) to which the motion since the last accepted pose leads."""
+
+
+@internal
+def _not_noted(by, n, change):
+    pass
+
+
+@internal
+def _noted(by, n, change):
+    n[CHANGE] = change
+
+
+note_change = alternatives({PoseAlone: _not_noted, AlongLaws: _noted, PerCoordinate: _not_noted})
+"""Keep the rate of the squared sine (1/s)."""
+
+
+@internal
+def _value_alone(by, e, law, column):
+    return by.driven[e, 0]
+
+
+@internal
+def _value_along(by, e, law, column):
+    return by.drive[law, 0]
+
+
+@internal
+def _value(by, e, law, column):
+    return by.coordinate[column, VALUE] if column >= 0 else by.drive[law, 0]
+
+
+value_of = alternatives({PoseAlone: _value_alone, AlongLaws: _value_along, PerCoordinate: _value})
+"""What the law, or the coordinate where there is one, says of group e."""
+
+
+@internal
+def _no_rate(by, law, order):
+    return 0.0
+
+
+@internal
+def _rate_of_law(by, law, order):
+    return by.drive[law, order]
+
+
+law_rate = alternatives({PoseAlone: _no_rate, AlongLaws: _rate_of_law, PerCoordinate: _rate_of_law})
+"""First or second rate of a law; zero for law 0."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,8 @@ from benchmarks.dynamics.pins import GROUND, Pinned, Record
 from benchmarks.dynamics.stepping import tolerances
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.runs.choose import ChoosingRun, integrate
+from mbsd.dynamics.runs.run import Run
+from mbsd.dynamics.runs.to_end import in_reference, independent_steps, integrate
 from mbsd.dynamics.simulate import integrator_named
 
 VERSION = mbsd.__version__
@@ -58,9 +60,10 @@ def prepare(case: Case, settings: dict[str, Any]) -> tuple[Callable[[], Callable
 
     def fresh() -> Callable[[], Any]:
         state, out = prepared.begun(ends)
-        run = ChoosingRun(prepared, method, settings["tolerance"], case.duration, case.duration, {})
-        begun = run.embedded(state) or run
-        return lambda: begun.in_one_go(state, out)
+        run = Run(prepared, method, settings["tolerance"], case.duration, case.duration, {})
+        independent = independent_steps(run, state)
+        to_end = independent.to_end if independent else partial(in_reference, run)
+        return lambda: to_end(state, out)
 
     def record() -> Record:
         times = np.linspace(0.0, case.duration, SAMPLES + 1)

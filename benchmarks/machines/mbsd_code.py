@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,8 @@ import numpy as np
 import mbsd
 from benchmarks import four_bar, machines
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
-from mbsd.dynamics.runs.choose import ChoosingRun
+from mbsd.dynamics.runs.run import Run
+from mbsd.dynamics.runs.to_end import in_reference, independent_steps
 from mbsd.dynamics.simulate import integrator_named
 from mbsd.kinematics.march import kinematics_at
 from mbsd.kinematics.prepare import prepare as prepared
@@ -107,8 +109,9 @@ def _falling() -> tuple[Callable[[], Callable[[], Any]], Callable[[Any], float]]
 
     def fresh() -> Callable[[], Any]:
         state, out = ready.begun(ends)
-        run = ChoosingRun(ready, method, TOLERANCE, machines.DURATION, machines.DURATION, {})
-        begun = run.embedded(state) or run
-        return lambda: (begun.in_one_go(state, out), out)
+        run = Run(ready, method, TOLERANCE, machines.DURATION, machines.DURATION, {})
+        independent = independent_steps(run, state)
+        to_end = independent.to_end if independent else partial(in_reference, run)
+        return lambda: (to_end(state, out), out)
 
     return fresh, lambda result: abs(float(result[1].y[-1, 0, 4]) - machines.height(machines.DURATION))

@@ -8,11 +8,12 @@ import numpy as np
 
 from mbsd.base.errors import SimulationError
 from mbsd.compiling.interrupts import kept
-from mbsd.dynamics.events.run import EventRun
+from mbsd.dynamics.events.steps import EventSteps
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.multipliers import fill_multipliers
-from mbsd.dynamics.runs.choose import ChoosingRun
 from mbsd.dynamics.runs.recording import Recording
+from mbsd.dynamics.runs.run import Run
+from mbsd.dynamics.runs.to_end import to_end
 from mbsd.dynamics.state import ACCEPTED, NEXT, TIME, WORK, Output
 from mbsd.model.event import Event
 
@@ -21,7 +22,7 @@ Progress = Callable[[float], None] | None
 
 def follow(
     ready: PreparedDynamics,
-    run: ChoosingRun,
+    run: Run,
     times: np.ndarray,
     events: list[Event],
     event_rows: bool,
@@ -32,8 +33,8 @@ def follow(
         return _followed(ready, run, times, events, event_rows, progress)
 
 
-def recording_of(met: EventRun, event_rows: bool = False) -> Recording:
-    """Recording of an event run that has ended: outputs that were reached, with rows at events if asked for."""
+def recording_of(met: EventSteps, event_rows: bool = False) -> Recording:
+    """Recording of steps with events that have ended: outputs that were reached, with rows at events if asked for."""
     written = int(met.state.count[NEXT])
     out, held = Output(*(part[:written] for part in met.out)), met.held[:written]
     rows = met.rows if event_rows else met.rows[-1:] if met.ended else []
@@ -49,7 +50,7 @@ def recording_of(met: EventRun, event_rows: bool = False) -> Recording:
 
 
 def resumed(
-    ready: PreparedDynamics, run: ChoosingRun, recording: Recording, times: np.ndarray, events: list[Event]
+    ready: PreparedDynamics, run: Run, recording: Recording, times: np.ndarray, events: list[Event]
 ) -> Recording:
     """The motion at other times (T,), rising and within the recording: each from the last point known before it."""
     began = np.array([snapshot.time for snapshot in recording.snapshots])
@@ -69,7 +70,7 @@ def resumed(
         state, out = ready.begun(times[first:last])
         state.clock[TIME] = snapshot.time if k < 0 else recording.out.t[k]
         state.y[...] = snapshot.y if k < 0 else recording.out.y[k]
-        met = EventRun(ready, run, state, out, events)
+        met = EventSteps(ready, run, state, out, events)
         met.resume(snapshot, snapshot.work if k < 0 else float(recording.out.work[k]))
         if recording.approaches is not None:
             recording.approaches.recall(float(state.clock[TIME]))
@@ -84,7 +85,7 @@ def resumed(
             state.clock[TIME] = snapshot.time if k < 0 else recording.out.t[k]
             state.y[...] = snapshot.y if k < 0 else recording.out.y[k]
             state.clock[WORK] = snapshot.work if k < 0 else recording.out.work[k]
-            if run.to_end(state, out):
+            if to_end(run, state, out):
                 fill_multipliers(ready.packed, ready.dynamics, out.t, out.y, out.lam, out.margin)
             held = np.broadcast_to(ready.switches.held(), out.lam.shape)
             pieces.append(Recording(out, held, int(state.count[ACCEPTED])))
@@ -97,7 +98,7 @@ def resumed(
 
 def _followed(
     ready: PreparedDynamics,
-    run: ChoosingRun,
+    run: Run,
     times: np.ndarray,
     events: list[Event],
     event_rows: bool,
@@ -105,10 +106,10 @@ def _followed(
 ) -> Recording:
     state, out = ready.begun(times)
     ready.approaches.forget()
-    met = EventRun(ready, run, state, out, events)
+    met = EventSteps(ready, run, state, out, events)
     if not events and not ready.switches.contacts and not ready.sticks:
         met.snapshots.append(met.snapshot())
-        independent = run.to_end(state, out, progress)
+        independent = to_end(run, state, out, progress)
         steps, held = int(state.count[ACCEPTED]), met.held | ready.switches.held()
         return Recording(out, held, steps, [], met.snapshots, ready.approaches.copy(), independent)
     met.begin()

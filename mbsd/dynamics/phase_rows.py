@@ -9,8 +9,8 @@ import numpy as np
 from mbsd.arrays.chambers import phase_changes
 from mbsd.dynamics.follow import resumed
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.runs.choose import ChoosingRun
 from mbsd.dynamics.runs.recording import Recording
+from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.state import Output
 from mbsd.model.event import Event
 from mbsd.results.jump_rows import Asked, jumps_of
@@ -18,7 +18,7 @@ from mbsd.results.jump_rows import Asked, jumps_of
 
 def with_phase_changes(
     ready: PreparedDynamics,
-    run: ChoosingRun,
+    run: Run,
     recording: Recording,
     events: list[Event],
     grid: np.ndarray,

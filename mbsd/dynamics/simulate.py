@@ -29,9 +29,8 @@ from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.multipliers import multipliers_along
 from mbsd.dynamics.rows.joint_sticks import standing
-from mbsd.dynamics.runs.choose import ChoosingRun
 from mbsd.dynamics.runs.recording import Recording
-from mbsd.dynamics.runs.running import AUTO, FORMULATIONS, INDEPENDENT
+from mbsd.dynamics.runs.run import AUTO, FORMULATIONS, INDEPENDENT, Run
 from mbsd.dynamics.start.large import MANY_COORDINATES
 from mbsd.kinematics.limits.joints import refuse_passed
 from mbsd.kinematics.multipliers import JACOBIAN_NUMBERS
@@ -83,7 +82,7 @@ def simulate(
             InitialConditionWarning,
         )
     longest = step or float(np.diff(grid).max())
-    run = ChoosingRun(ready, integrator, tolerance, longest, float(grid[-1] - grid[0]), options, formulation)
+    run = Run(ready, integrator, tolerance, longest, float(grid[-1] - grid[0]), options, formulation)
     events = list(m.events.values())
     if formulation == INDEPENDENT and (events or ready.switches.contacts or ready.sticks):
         raise ModelError(

@@ -13,9 +13,9 @@ from mbsd import Mechanism, ModelError, constant_rate, harmonic
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.multipliers import fill_multipliers
-from mbsd.dynamics.runs import embedded_run
-from mbsd.dynamics.runs.choose import integrate
+from mbsd.dynamics.runs import independent_steps
 from mbsd.dynamics.runs.embed import embed, embedded_at_start
+from mbsd.dynamics.runs.to_end import integrate
 from mbsd.dynamics.simulate import integrator_named
 from mbsd.kinematics.groups.groups import KIND
 from mbsd.kinematics.groups.registry import NAMES
@@ -211,13 +211,13 @@ def double_rocker() -> Mechanism:
 
 def test_coordinates_change_where_others_are_better(monkeypatch: pytest.MonkeyPatch) -> None:
     taken = []
-    original = embedded_run.EmbeddedRun._take
+    original = independent_steps.IndependentSteps._take
 
     def watched(self, made, *rest) -> None:
         taken.append(made.coordinates[0].body)
         original(self, made, *rest)
 
-    monkeypatch.setattr(embedded_run.EmbeddedRun, "_take", watched)
+    monkeypatch.setattr(independent_steps.IndependentSteps, "_take", watched)
     one, other = both(double_rocker(), 2.0, tolerance=1e-11)
     agree(one, other, close=1e-5)
     assert len(set(taken)) > 1, "no other coordinate was taken"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mbsd import Mechanism
-from mbsd.dynamics.events.run import EventRun
+from mbsd.dynamics.events.steps import EventSteps
 from mbsd.dynamics.integrators.dop853.loop import DOP853
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.runs.run import Run
@@ -26,16 +26,16 @@ def bouncer() -> Mechanism:
     return m
 
 
-def begun(times: np.ndarray) -> tuple[EventRun, list[bytes]]:
+def begun(times: np.ndarray) -> tuple[EventSteps, list[bytes]]:
     ready = prepare_dynamics(bouncer(), 0.0, float(times[-1]), contacts=True)
     state, out = ready.begun(times)
     run = Run(ready, DOP853, 1e-8, 1e-3, float(times[-1]), {})
-    met = EventRun(ready, run, state, out, list(bouncer().events.values()))
+    met = EventSteps(ready, run, state, out, list(bouncer().events.values()))
     met.begin()
     return met, _constants(met)
 
 
-def _constants(met: EventRun) -> list[bytes]:
+def _constants(met: EventSteps) -> list[bytes]:
     """Arrays of the mechanism that are no part of the record: they must not change."""
     dynamics, packed = met.dynamics, met.packed
     arrays = [*packed.system, dynamics.inertia, dynamics.inverse, dynamics.metric, dynamics.weight, *dynamics.laws]

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, SimulationError
-from mbsd.dynamics.runs import pace, running
+from mbsd.dynamics.runs import pace, run
 
 
 def pendulum() -> Mechanism:
@@ -81,7 +81,7 @@ def test_stiff_dampers_that_take_many_steps_are_let_run(monkeypatch: pytest.Monk
 
 def test_long_runs_say_where_they_are(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
     monkeypatch.setattr(pace, "PATIENCE", 1e-6)
-    monkeypatch.setattr(running, "STEPS_AT_ONCE", 20)
+    monkeypatch.setattr(run, "STEPS_AT_ONCE", 20)
     with caplog.at_level(logging.WARNING, "mbsd"):
         pendulum().simulate(20.0)
     words = [record.getMessage() for record in caplog.records]

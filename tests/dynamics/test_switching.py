@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
-from mbsd.dynamics.runs.choose import ChoosingRun
+from mbsd.dynamics.runs.run import Run
+from mbsd.dynamics.runs.to_end import to_end
 from mbsd.dynamics.simulate import integrator_named
 from mbsd.dynamics.state import EVALUATIONS
 
@@ -33,9 +34,8 @@ def moved(m: Mechanism, times: np.ndarray, tolerance: float, formulation: str) -
     ready = prepare_dynamics(m, float(times[0]), float(times[-1]))
     state, out = ready.begun(times)
     duration = float(times[-1] - times[0])
-    ChoosingRun(ready, integrator_named(m.name, "dop853"), tolerance, duration, duration, {}, formulation).to_end(
-        state, out
-    )
+    run = Run(ready, integrator_named(m.name, "dop853"), tolerance, duration, duration, {}, formulation)
+    to_end(run, state, out)
     return out.y, int(state.count[EVALUATIONS])
 
 
@@ -147,6 +147,6 @@ def test_runs_repeated_are_the_same_to_the_last_digit() -> None:
     found = []
     for _ in range(2):
         state, out = ready.begun(np.linspace(0.0, 1.0, 5))
-        ChoosingRun(ready, integrator_named("ball", "dop853"), 1e-7, 1.0, 1.0, {}).to_end(state, out)
+        to_end(Run(ready, integrator_named("ball", "dop853"), 1e-7, 1.0, 1.0, {}), state, out)
         found.append(out.y)
     assert np.array_equal(*found)

@@ -18,7 +18,7 @@ from mbsd.dynamics.runs.stuck import diagnosis
 from mbsd.dynamics.state import ACCEPTED, REJECTED, TIME, State
 
 if TYPE_CHECKING:
-    from mbsd.dynamics.runs.running import Running
+    from mbsd.dynamics.runs.run import Run
 
 LOG = logging.getLogger("mbsd")
 CHECKED = 2000
@@ -32,7 +32,7 @@ PATIENCE = 10.0
 class Pace:
     """Pace of one run from where ``state`` stands to ``end`` (s)."""
 
-    def __init__(self, run: Running, state: State, end: float, progress: Callable[[float], None] | None) -> None:
+    def __init__(self, run: Run, state: State, end: float, progress: Callable[[float], None] | None) -> None:
         self.run, self.state, self.end, self.progress = run, state, end, progress
         self.start = self.last = float(state.clock[TIME])
         self._told = PATIENCE

@@ -28,7 +28,7 @@ from mbsd.equations.joint_friction import X
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from mbsd.dynamics.runs.running import Running
+    from mbsd.dynamics.runs.run import Run
     from mbsd.model.force import Force
 
 NEAR, FAR = np.array([1.0, 3.0, 10.0]), np.array([30.0, 100.0, 300.0, 1000.0])
@@ -56,7 +56,7 @@ class Stiffest(NamedTuple):
     rate: float
 
 
-def diagnosis(run: Running, state: State, h: float, left: float) -> str | None:
+def diagnosis(run: Run, state: State, h: float, left: float) -> str | None:
     """What keeps steps at h (s), with the remedy, or None if the run may go on; ``left`` steps are still to do."""
     cause = jump(run, state, h)
     slope = _slope(run, state)
@@ -77,7 +77,7 @@ def diagnosis(run: Running, state: State, h: float, left: float) -> str | None:
     )
 
 
-def jump(run: Running, state: State, h: float) -> str | None:
+def jump(run: Run, state: State, h: float) -> str | None:
     """The force that jumps within some steps of h (s), with the remedy, or None."""
     slope = _slope(run, state)
     cause = None if slope is None else _jumping(run, float(state.clock[TIME]), state.y, slope, h)
@@ -90,14 +90,14 @@ def jump(run: Running, state: State, h: float) -> str | None:
     )
 
 
-def _slope(run: Running, state: State) -> np.ndarray | None:
+def _slope(run: Run, state: State) -> np.ndarray | None:
     """(2, 3 nb) d(state)/dt, or None where it is not finite."""
     slope, time = np.zeros_like(state.y), float(state.clock[TIME])
     derivative(run.ready.dynamics, run.scratch, time, state.y, slope, np.zeros_like(state.lam))
     return slope if np.isfinite(slope).all() else None
 
 
-def _own_time(run: Running, state: State, slope: np.ndarray) -> float:
+def _own_time(run: Run, state: State, slope: np.ndarray) -> float:
     """Time (s) in which bodies move by the mechanism's size or turn by 1 rad."""
     dynamics, packed = run.ready.dynamics, run.ready.packed
     speed = float(np.abs(state.y[1] * dynamics.per_size)[3:].max())
@@ -106,7 +106,7 @@ def _own_time(run: Running, state: State, slope: np.ndarray) -> float:
     return 1.0 / max(speed, math.sqrt(bend), math.sqrt(fall), 1.0 / (run.ready.end - run.ready.start))
 
 
-def _jumping(run: Running, time: float, y: np.ndarray, slope: np.ndarray, h: float) -> tuple[Force, float] | None:
+def _jumping(run: Run, time: float, y: np.ndarray, slope: np.ndarray, h: float) -> tuple[Force, float] | None:
     """The force that jumps most, and by how much."""
     ahead = h * np.concatenate([-FAR[::-1], -NEAR[::-1], [0.0], NEAR, FAR])
     states = y + ahead[:, None, None] * slope
@@ -126,7 +126,7 @@ def _jumping(run: Running, time: float, y: np.ndarray, slope: np.ndarray, h: flo
     return best
 
 
-def _stiffest(run: Running, time: float, y: np.ndarray, slope: np.ndarray) -> Stiffest | None:
+def _stiffest(run: Run, time: float, y: np.ndarray, slope: np.ndarray) -> Stiffest | None:
     dynamics = run.ready.dynamics
     per_size, inverse = dynamics.per_size, dynamics.inverse
     n3 = y.shape[1]
@@ -152,7 +152,7 @@ def _stiffest(run: Running, time: float, y: np.ndarray, slope: np.ndarray) -> St
     return best
 
 
-def _each(run: Running, times: np.ndarray, states: np.ndarray) -> Iterator[tuple[Force, np.ndarray]]:
+def _each(run: Run, times: np.ndarray, states: np.ndarray) -> Iterator[tuple[Force, np.ndarray]]:
     """Each force and its loads (T, 3 nb) at times (T,) and states (T, 2, 3 nb).
 
     Friction of joints is that under the last normal forces.

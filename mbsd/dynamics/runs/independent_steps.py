@@ -1,12 +1,10 @@
-"""A run in independent coordinates that changes them when others are better, and passes in reference coordinates
-where none is clear."""
+"""Steps in independent coordinates, which change when others are better; reference ones help where none is clear."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING
 
 from mbsd.dynamics import state as run_state
 from mbsd.dynamics.embedding.arrays import LIMIT, SENSITIVITY
@@ -14,10 +12,9 @@ from mbsd.dynamics.embedding.equations import write_alone
 from mbsd.dynamics.runs.embed import DOUBLED, GOOD, POOR, Embedded, begin_at, embed, embedding_scratch
 from mbsd.dynamics.runs.indexing import Genevas
 from mbsd.dynamics.runs.pace import Pace
+from mbsd.dynamics.runs.reference_steps import advance
+from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.state import NEXT, STARTED, STEP, TIME, WORK
-
-if TYPE_CHECKING:
-    from mbsd.dynamics.runs.run import Run
 
 PASSING = 6
 """Steps in reference coordinates before independent ones are tried again; doubled while they do not lead away."""
@@ -29,7 +26,7 @@ HYSTERESIS = 0.7
 """A new choice must be better by this factor."""
 
 
-class EmbeddedRun:
+class IndependentSteps:
     """See the file. Clock and counters are those of the state in reference coordinates with which it begins."""
 
     def __init__(self, run: Run, made: Embedded, state: run_state.State) -> None:
@@ -38,10 +35,10 @@ class EmbeddedRun:
         self._passing, self._passed = PASSING, -math.inf
         self._take(made)
 
-    def in_one_go(
+    def to_end(
         self, state: run_state.State, out: run_state.Output, progress: Callable[[float], None] | None = None
     ) -> None:
-        """Go on to the last output time; ``state`` is the one with which this run began."""
+        """Go on to the last output time; ``state`` is the one with which these steps began."""
         start, end = float(state.clock[TIME]), float(out.t[-1])
         target = end
         pace = None if progress is None else Pace(self.run, state, end, progress)
@@ -145,7 +142,7 @@ class EmbeddedRun:
         near = self.whole.clock[TIME] - self._passed < AWAY * self.settings.longest
         self._passing = min(2 * self._passing, self.run.steps_at_once) if near else PASSING
         while True:
-            status = self.run.advance(self.whole, out, end, self._passing)
+            status = advance(self.run, self.whole, out, end, self._passing)
             self._passed = float(self.whole.clock[TIME])
             if status == run_state.REACHED:
                 return False

@@ -1,4 +1,4 @@
-"""A simulation with events: step by step, back to the start of the step where one happens, and on from there.
+"""Steps of a run with events: one by one, back to the start of the step where one happens, and on from there.
 
     step     one step of the integrator; do monitored scalars fall through zero within it?
     root     from the state before the step, integrate to shorter and shorter ends, until the scalar is zero
@@ -36,6 +36,7 @@ from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.rows.held import STICKS
 from mbsd.dynamics.runs.pace import Pace
 from mbsd.dynamics.runs.recording import Snapshot
+from mbsd.dynamics.runs.reference_steps import advance
 from mbsd.dynamics.state import (
     EVALUATIONS,
     NEXT,
@@ -62,8 +63,8 @@ AT_ONE_TIME = 500
 """Events that may happen without time going on."""
 
 
-class EventRun:
-    """One run from ``state``; what happened is in ``happenings``, points to go on from in ``snapshots``."""
+class EventSteps:
+    """Steps from ``state``; what happened is in ``happenings``, points to go on from in ``snapshots``."""
 
     def __init__(self, ready: PreparedDynamics, run: Run, state: State, out: Output, events: list[Event]) -> None:
         self.ready, self.packed, self.dynamics, self.switches = ready, ready.packed, ready.dynamics, ready.switches
@@ -118,7 +119,7 @@ class EventRun:
             self.ready.stops.cross(state)
             self._make_valid()
             before = copied(state)
-            status = self.run.advance(state, self.out, end, 1)
+            status = advance(self.run, state, self.out, end, 1)
             crossing = self._crossing(before) if state.clock[TIME] > before.clock[TIME] else None
             pace.note(extra=0 if crossing is None else EVENT_STEPS)
             if crossing is None:
@@ -228,7 +229,7 @@ class EventRun:
         if time > before.clock[TIME]:
             nowhere = self.run.nowhere
             trial.count[NEXT] = len(nowhere.t)
-            self.run.advance(trial, nowhere, time)
+            advance(self.run, trial, nowhere, time)
         at = np.array([trial.clock[TIME]])
         sample = Samples(self.packed, self.dynamics, self.run.scratch, at, trial.y[0][None], trial.y[1][None])
         return float(monitor.value(sample)[0])
@@ -261,7 +262,7 @@ class EventRun:
         for target, source in zip(self.state, before, strict=True):
             target[...] = source
         if root > start:
-            self.run.advance(self.state, self.out, root)
+            advance(self.run, self.state, self.out, root)
 
     def _turn_side(self, monitor: Monitor) -> None:
         self.now.events[monitor.name] = -(self.now.events[monitor.name] or 1.0)

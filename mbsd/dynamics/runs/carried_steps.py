@@ -1,4 +1,4 @@
-"""Runs in reference coordinates, carried by independent ones across poses where joints nearly depend on each other.
+"""Steps in reference coordinates, carried by independent ones across poses where joints nearly depend on each other.
 
 There the multipliers grow without bound, and rounding with them: with the inverse square of the distance from the pose
 in velocities, with its inverse cube in accelerations. A step that comes near such a pose is taken back, and the
@@ -8,21 +8,18 @@ without such coordinates pass as well as they can.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from mbsd.base.errors import SimulationError
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.runs.embed import can_embed, embed, embedded_at_start
-from mbsd.dynamics.runs.embedded_run import EmbeddedRun
+from mbsd.dynamics.runs.independent_steps import IndependentSteps
+from mbsd.dynamics.runs.pace import Pace
+from mbsd.dynamics.runs.reference_steps import advance
+from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.state import PAUSED, REACHED, TIME, Output, State, copied
 from mbsd.kinematics.groups.groups import KIND
 from mbsd.kinematics.groups.registry import BRANCH
-
-if TYPE_CHECKING:
-    from mbsd.dynamics.runs.pace import Pace
-    from mbsd.dynamics.runs.run import Run
 
 NEAR = 0.05
 """Part of the largest margin so far below which a pose is near a singular one; it goes with the distance squared."""
@@ -39,8 +36,8 @@ def can_carry(run: Run) -> bool:
     return any(int(kind) in BRANCH for kind in made.arrays.group[:, KIND])
 
 
-class Across:
-    """One run, step by step."""
+class CarriedSteps:
+    """See the file; one step at a time."""
 
     def __init__(self, run: Run, state: State, out: Output, pace: Pace) -> None:
         self.run, self.state, self.out, self.pace = run, state, out, pace
@@ -54,7 +51,7 @@ class Across:
         while True:
             before, failure = copied(self.state), None
             try:
-                status = self.run.advance(self.state, self.out, self.end, 1)
+                status = advance(self.run, self.state, self.out, self.end, 1)
             except SimulationError as error:
                 if vain:
                     raise
@@ -96,7 +93,7 @@ class Across:
         made = embed(self.run.ready, state.y[0], state.y[1], float(state.clock[TIME]))
         if made is None:
             return None
-        independent = EmbeddedRun(self.run, made, state)
+        independent = IndependentSteps(self.run, made, state)
         moved = False
         while True:
             status = independent.one_step(self.out, self.end)

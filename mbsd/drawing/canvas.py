@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
+from mbsd.drawing.carriers import Carrier
 from mbsd.drawing.look import INK, PAPER
 
 Point = np.ndarray
+TOGETHER = 0.2
+"""Names whose places are nearer (units) are written as one."""
 
 
 @dataclass(frozen=True)
@@ -24,6 +28,8 @@ class Label:
     clearance: float
     colour: str
     size: float
+    carrier: Carrier | None = None
+    """What carries it through a motion; None: nothing does."""
 
 
 @dataclass(eq=False)
@@ -44,8 +50,19 @@ class Canvas:
     coils: dict[str, int] = field(default_factory=dict)
     """Turns of the springs drawn, by force: a spring that moves keeps them."""
     labels: list[Label] = field(default_factory=list)
+    carrier: Carrier | None = None
+    """What carries what is being drawn through a motion; None: nothing does, and it is drawn anew in every pose."""
     sign: str | None = None
     """What is being drawn, where it is shown on demand: a canvas that records keeps it."""
+
+    @contextmanager
+    def on(self, carrier: Carrier | None) -> Iterator[None]:
+        """While this lasts, what is drawn is carried so."""
+        before, self.carrier = self.carrier, carrier
+        try:
+            yield
+        finally:
+            self.carrier = before
 
     def line(
         self, points: Sequence[Point] | Point, colour: str = INK, width: float = 1.4, order: float = 4, **more: Any
@@ -109,10 +126,10 @@ class Canvas:
     def label(self, text: str, anchor: Point, clearance: float, colour: str = INK, size: float = 10.0) -> None:
         """Ask for a name; it is placed when all is drawn. Names that share a place are one: ``A, B``."""
         for k, other in enumerate(self.labels):
-            if other.colour == colour and float(np.hypot(*(other.anchor - anchor))) < 0.2 * self.unit:
+            if other.colour == colour and float(np.hypot(*(other.anchor - anchor))) < TOGETHER * self.unit:
                 self.labels[k] = replace(other, text=f"{other.text}, {text}")
                 return
-        self.labels.append(Label(text, anchor, clearance, colour, size))
+        self.labels.append(Label(text, anchor, clearance, colour, size, self.carrier))
 
     def keep(self, path: Point) -> None:
         """Remember a polyline as an obstacle, sampled every half unit."""

@@ -12,6 +12,7 @@ from mbsd.base.arguments import switch
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
 from mbsd.drawing.canvas import Canvas
+from mbsd.drawing.carriers import GROUND, at_place, on_body
 from mbsd.drawing.inks import body_inks
 from mbsd.drawing.look import AXIS_X, AXIS_Y, FAINT, INK, QUIET
 from mbsd.drawing.names import place_names
@@ -23,7 +24,7 @@ from mbsd.drawing.symbols.outline import rounded
 from mbsd.drawing.symbols.place import Place, free_side
 from mbsd.drawing.symbols.reach import reach
 from mbsd.drawing.symbols.touching import contact_reach, draw_contacts
-from mbsd.drawing.symbols.wheels import name_place
+from mbsd.drawing.symbols.wheels import rim_of, ring_gear
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model
 
@@ -103,9 +104,11 @@ def draw_on(
     """
     points, unit = {name: _points(m, pose, name) for name in m.bodies}, canvas.unit
     for name in colours:
-        _link(canvas, m, pose, name, points[name], colours[name], frames)
+        with canvas.on(on_body(name)):
+            _link(canvas, m, pose, name, points[name], colours[name], frames)
     if frames:
-        _frame(canvas, pose, "ground", 2.6)
+        with canvas.on(GROUND):
+            _frame(canvas, pose, "ground", 2.6)
     for joint in (*m.joints.values(), *m.drivers.values()):
         side = free_side(_leaving(m, pose, points, joint.j, unit)) if sides is None else sides[joint.name]
         draw_joint(canvas, Place(joint, pose, colours, side))
@@ -113,12 +116,14 @@ def draw_on(
         draw_force(canvas, force, pose, list(m.joints.values()))
     draw_contacts(canvas, list(m.contacts.values()), pose, colours)
     for name, marker in m.traces.items():
-        canvas.circle(pose.place(marker), 0.3, fill=colours.get(marker.body.name, INK), order=9, width=0.8)
-        canvas.label(name, pose.place(marker), 0.5, colours.get(marker.body.name, INK))
+        with canvas.on(at_place(marker)):
+            canvas.circle(pose.place(marker), 0.3, fill=colours.get(marker.body.name, INK), order=9, width=0.8)
+            canvas.label(name, pose.place(marker), 0.5, colours.get(marker.body.name, INK))
     for name in colours:
-        rim = name_place(m, pose, name, unit)
-        place, clearance = (_middle(points[name]), 1.1) if rim is None else (rim, 0.4)
-        canvas.label(name, place, clearance, colours[name], 9.5)
+        ring = ring_gear(m, name)
+        with canvas.on(on_body(name) if ring is None else at_place(ring.i)):
+            place, clearance = (_middle(points[name]), 1.1) if ring is None else (rim_of(ring, pose, unit), 0.4)
+            canvas.label(name, place, clearance, colours[name], 9.5)
 
 
 def steady_sides(m: Model, poses: Sequence[Pose], unit: float) -> dict[str, np.ndarray]:
@@ -185,7 +190,8 @@ def _link(canvas: Canvas, m: Model, pose: Pose, name: str, points: np.ndarray, e
     if extent > 0.5 * canvas.unit or not sliding:
         canvas.shape(rounded(points, 0.95 * canvas.unit), edge=edge, fill=edge, width=1.5, order=2, alpha=0.16)
     if body.mass > 0:
-        _centre_of_mass(canvas, pose.of(name, *body.com))
+        with canvas.on(at_place(body.at(*body.com))):
+            _centre_of_mass(canvas, pose.of(name, *body.com))
     if frames:
         _frame(canvas, pose, name, 1.9)
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mbsd.drawing.canvas import Canvas, Label, Point
+from mbsd.drawing.carriers import Carrier
 from mbsd.drawing.look import AXIS_X, AXIS_Y, FAINT, INK, LOAD, MOVED, PAPER, QUIET, WRONG
 from mbsd.drawing.pose import pose_of
 from mbsd.drawing.skeleton import draw_on, measure
@@ -52,6 +53,8 @@ class Stroke:
     """Lengths of strokes and gaps in line widths; empty: solid."""
     sign: str | None = None
     """``"centre of mass"``, of its mark."""
+    carrier: Carrier | None = None
+    """What carries it through a motion; None: nothing does."""
 
 
 @dataclass(frozen=True)
@@ -71,6 +74,8 @@ class Recorder(Canvas):
     """A canvas that keeps what is drawn."""
 
     strokes: list[Stroke] = field(default_factory=list)
+    names: list[Label] = field(default_factory=list)
+    """Each by itself, where ``labels`` has those that share a place as one."""
 
     def line(
         self, points: Sequence[Point] | Point, colour: str = INK, width: float = 1.4, order: float = 4, **more: Any
@@ -100,6 +105,7 @@ class Recorder(Canvas):
 
     def label(self, text: str, anchor: Point, clearance: float, colour: str = INK, size: float = 10.0) -> None:
         """Ask for a name; its colour is kept as a role."""
+        self.names.append(Label(text, anchor, clearance, _role(colour), size, self.carrier))
         super().label(text, anchor, clearance, _role(colour), size)
 
     def _keep(
@@ -115,7 +121,9 @@ class Recorder(Canvas):
     ) -> None:
         role = None if fill is None else _role(fill)
         dashes = tuple(map(float, dash))
-        self.strokes.append(Stroke(points, closed, _role(ink), role, alpha, width, order, dashes, self.sign))
+        self.strokes.append(
+            Stroke(points, closed, _role(ink), role, alpha, width, order, dashes, self.sign, self.carrier)
+        )
 
 
 def strokes_of(solution: Solution, steps: Sequence[int]) -> list[Strokes]:

@@ -47,6 +47,9 @@ class Light(msgspec.Struct, kw_only=True, frozen=True):
     sun: Sun | None = None
     shadow: Place = (-0.9, 1.5, 4.2)
     """Where the page's one lamp with a shadow shines from, where there is no sun."""
+    bounce: float = 0.0
+    """Irradiance of ground and wall over pi: light that bounces meets them as lamps of their mean colour times this and
+    goes no further; 0: they are lit for it, too."""
 
 
 class Sky(msgspec.Struct, kw_only=True, frozen=True):

@@ -9,6 +9,7 @@ import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.drawing.canvas import Canvas
+from mbsd.drawing.carriers import along_line, at_place, beside, on_body
 from mbsd.drawing.look import LOAD
 from mbsd.drawing.pose import Pose
 from mbsd.model.cylinders.cycle import Opening
@@ -33,9 +34,11 @@ def draw_engine_cylinder(canvas: Canvas, force: Force, pose: Pose, joints: Seque
     half = max(0.5 * force.params["bore"], 0.5 * canvas.unit)
     here, head, low, openings = _barrel(force, pose, joints, half)
     barrel = [(low, -half), (head, -half), (head, half), (low, half)]
-    canvas.line([origin + x * u + y * n for x, y in barrel], LOAD, 1.6, order=3)
+    with canvas.on(on_body(force.i.body.name)):
+        canvas.line([origin + x * u + y * n for x, y in barrel], LOAD, 1.6, order=3)
     crown = [origin + here * u + side * 0.97 * half * n for side in (-1.0, 1.0)]
-    canvas.line(crown, LOAD, 2.4, order=3.2)
+    with canvas.on(beside(force.i, force.j)):
+        canvas.line(crown, LOAD, 2.4, order=3.2)
     sides = [-1.0, 1.0] if len(openings) > 1 else [-1.0]
     for side, opening in zip(sides, openings, strict=False):
         if opening.port is None:
@@ -46,7 +49,8 @@ def draw_engine_cylinder(canvas: Canvas, force: Force, pose: Pose, joints: Seque
             out = half * (1.0 + (2.0 if opening.open else 1.0) * LIFT)
             ends = [(at, side * half), (at, side * out)]
         canvas.line([origin + x * u + y * n for x, y in ends], LOAD, 3.0, order=3.1)
-    canvas.label(force.name, origin + 0.5 * (head + here) * u + half * n, 0.6, LOAD)
+    with canvas.on(along_line(force.i, force.j)):
+        canvas.label(force.name, origin + 0.5 * (head + here) * u + half * n, 0.6, LOAD)
 
 
 def engine_cylinder_reach(force: Force, pose: Pose, joints: Sequence[Joint]) -> np.ndarray:
@@ -91,6 +95,8 @@ def draw_strut(canvas: Canvas, force: Force, pose: Pose) -> None:
     canvas.line([i + x * u + y * n for x, y in box], LOAD, 1.4, order=3)
     canvas.line([j, i + piston * u], LOAD, 1.8, order=3.1)
     canvas.line([i + piston * u + side * 0.9 * half * n for side in (-1.0, 1.0)], LOAD, 2.2, order=3.1)
-    for point in (i, j):
-        canvas.circle(point, 0.26, edge=LOAD, fill=LOAD, order=5.5, width=0.5)
-    canvas.label(force.name, (i + j) / 2, 1.3, LOAD)
+    for marker, point in ((force.i, i), (force.j, j)):
+        with canvas.on(at_place(marker)):
+            canvas.circle(point, 0.26, edge=LOAD, fill=LOAD, order=5.5, width=0.5)
+    with canvas.on(along_line(force.i, force.j)):
+        canvas.label(force.name, (i + j) / 2, 1.3, LOAD)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.drawing.canvas import Canvas
+from mbsd.drawing.carriers import on_body
 from mbsd.drawing.look import PAPER, QUIET
 from mbsd.drawing.symbols.reach import geneva_radius
 
@@ -30,16 +31,16 @@ def draw_geneva(canvas: Canvas, place: Place) -> None:
     turned = place.pose.axis(joint.j)
     wheel = place.colours.get(joint.j.body.name, QUIET)
     outline = _wheel(slots, distance, radius, rim, wide)
-    canvas.shape(_placed(place.j, turned, outline), edge=wheel, fill=wheel, width=1.4, order=1.8, alpha=0.14)
+    with canvas.on(on_body(joint.j.body.name)):
+        canvas.shape(_placed(place.j, turned, outline), edge=wheel, fill=wheel, width=1.4, order=1.8, alpha=0.14)
     crank = place.colours.get(joint.i.body.name, QUIET)
-    canvas.shape(
-        _placed(place.i, place.axis, _lock(slots, distance - rim, LOCK * radius)),
-        edge=crank, fill=crank, width=1.2, order=1.9, alpha=0.14,
-    )  # fmt: skip
+    lock = _placed(place.i, place.axis, _lock(slots, distance - rim, LOCK * radius))
     pin = place.i + radius * place.axis
-    canvas.line([place.i, pin], crank, 3.0, order=3)
-    canvas.circle(pin, wide / u * PIN / WIDE, edge=crank, fill=PAPER, width=1.4, order=8)
-    canvas.label(joint.name, pin, 0.7)
+    with canvas.on(on_body(joint.i.body.name)):
+        canvas.shape(lock, edge=crank, fill=crank, width=1.2, order=1.9, alpha=0.14)
+        canvas.line([place.i, pin], crank, 3.0, order=3)
+        canvas.circle(pin, wide / u * PIN / WIDE, edge=crank, fill=PAPER, width=1.4, order=8)
+        canvas.label(joint.name, pin, 0.7)
 
 
 def _placed(centre: np.ndarray, axis: np.ndarray, points: np.ndarray) -> np.ndarray:

@@ -13,6 +13,7 @@ from collections.abc import Callable
 import numpy as np
 
 from mbsd.drawing.canvas import Canvas
+from mbsd.drawing.carriers import GROUND, along_line, at_place, beside, on_body
 from mbsd.drawing.look import INK, MOVED, PAPER, QUIET, WRONG
 from mbsd.drawing.symbols.cam import draw_cam
 from mbsd.drawing.symbols.geneva import draw_geneva
@@ -35,9 +36,10 @@ def _revolute(canvas: Canvas, place: Place) -> None:
     centre = place.j
     if place.grounded:
         _support(canvas, place.grounded_end, place.free_side)
-    canvas.circle(centre, PIN, order=8, width=1.5)
-    _open(canvas, place)
-    canvas.label(place.joint.name, centre, PIN + 0.35)
+    with canvas.on(place.carrier):
+        canvas.circle(centre, PIN, order=8, width=1.5)
+        _open(canvas, place)
+        canvas.label(place.joint.name, centre, PIN + 0.35)
 
 
 def _support(canvas: Canvas, pin: np.ndarray, side: np.ndarray) -> None:
@@ -47,8 +49,9 @@ def _support(canvas: Canvas, pin: np.ndarray, side: np.ndarray) -> None:
     canvas.supports.append(pin)
     across = np.array([-side[1], side[0]]) * canvas.unit
     base = pin + 1.75 * canvas.unit * side
-    canvas.shape(np.array([pin, base + 1.05 * across, base - 1.05 * across]), order=1.6, fill=PAPER)
-    canvas.hatched(base - 1.6 * across, base + 1.6 * across, side)
+    with canvas.on(GROUND):
+        canvas.shape(np.array([pin, base + 1.05 * across, base - 1.05 * across]), order=1.6, fill=PAPER)
+        canvas.hatched(base - 1.6 * across, base + 1.6 * across, side)
 
 
 def _prismatic(canvas: Canvas, place: Place) -> None:
@@ -59,17 +62,20 @@ def _prismatic(canvas: Canvas, place: Place) -> None:
     if place.grounded:
         side = -normal if normal[1] > 0 or (normal[1] == 0 and normal[0] > 0) else normal
         a, b = (end + BLOCK[1] * u * side for end in place.range(2.4 * u))
-        canvas.hatched(a, b, side)
+        with canvas.on(on_body(place.joint.i.body.name)):
+            canvas.hatched(a, b, side)
     else:
         a, b = place.range(2.8 * u)
-        canvas.line([a, b], place.colours[place.joint.i.body.name], 2.2, order=3.5)
+        with canvas.on(on_body(place.joint.i.body.name)):
+            canvas.line([a, b], place.colours[place.joint.i.body.name], 2.2, order=3.5)
     box = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)]) * np.array(BLOCK) * u
     centre = place.j if not place.pose.closed else on_guide
     outline = centre + box[:, :1] * axis + box[:, 1:] * normal
     colour = place.colours.get(sliding, QUIET)
-    canvas.shape(outline, edge=PAPER, order=4.4)
-    canvas.shape(outline, edge=colour, fill=colour, width=1.6, order=4.5, alpha=0.22)
-    canvas.label(place.joint.name, centre, BLOCK[0] + 0.2)
+    with canvas.on(on_body(sliding)):
+        canvas.shape(outline, edge=PAPER, order=4.4)
+        canvas.shape(outline, edge=colour, fill=colour, width=1.6, order=4.5, alpha=0.22)
+        canvas.label(place.joint.name, centre, BLOCK[0] + 0.2)
 
 
 def _slot(canvas: Canvas, place: Place) -> None:
@@ -77,13 +83,15 @@ def _slot(canvas: Canvas, place: Place) -> None:
 
     u = canvas.unit
     a, b = place.range(1.6 * u)
-    if place.joint.i.body.name == "ground":
-        side = np.array([place.axis[1], -place.axis[0]])
-        canvas.hatched(a + 1.1 * u * side, b + 1.1 * u * side, side)
     edge = place.colours.get(place.joint.i.body.name, INK)
-    canvas.shape(rounded(np.array([a, b]), 0.78 * u), edge=edge, order=4.6, width=1.3, alpha=0.6)
-    canvas.circle(place.j, PIN, order=8, width=1.5)
-    canvas.label(place.joint.name, place.j, PIN + 0.5)
+    with canvas.on(on_body(place.joint.i.body.name)):
+        if place.joint.i.body.name == "ground":
+            side = np.array([place.axis[1], -place.axis[0]])
+            canvas.hatched(a + 1.1 * u * side, b + 1.1 * u * side, side)
+        canvas.shape(rounded(np.array([a, b]), 0.78 * u), edge=edge, order=4.6, width=1.3, alpha=0.6)
+    with canvas.on(at_place(place.joint.j)):
+        canvas.circle(place.j, PIN, order=8, width=1.5)
+        canvas.label(place.joint.name, place.j, PIN + 0.5)
 
 
 def _weld(canvas: Canvas, place: Place) -> None:
@@ -91,17 +99,20 @@ def _weld(canvas: Canvas, place: Place) -> None:
     if place.grounded:
         side = place.free_side
         across = np.array([-side[1], side[0]]) * 1.6 * u
-        canvas.hatched(place.j + 0.6 * u * side - across, place.j + 0.6 * u * side + across, side)
+        with canvas.on(GROUND):
+            canvas.hatched(place.j + 0.6 * u * side - across, place.j + 0.6 * u * side + across, side)
     square = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)]) * 0.55 * u
-    canvas.shape(place.j + square, fill=INK, order=8)
-    _open(canvas, place)
-    canvas.label(place.joint.name, place.j, 0.9)
+    with canvas.on(place.carrier):
+        canvas.shape(place.j + square, fill=INK, order=8)
+        _open(canvas, place)
+        canvas.label(place.joint.name, place.j, 0.9)
 
 
 def _distance(canvas: Canvas, place: Place) -> None:
-    canvas.line([place.i, place.j], INK, 1.8, order=5)
+    with canvas.on(along_line(place.joint.i, place.joint.j)):
+        canvas.line([place.i, place.j], INK, 1.8, order=5)
+        canvas.label(place.joint.name, (place.i + place.j) / 2, 0.4)
     _ends(canvas, place)
-    canvas.label(place.joint.name, (place.i + place.j) / 2, 0.4)
 
 
 def _ends(canvas: Canvas, place: Place) -> None:
@@ -110,15 +121,18 @@ def _ends(canvas: Canvas, place: Place) -> None:
         if marker.body.name == "ground":
             gap = other - end
             _support(canvas, end, free_side([math.atan2(gap[1], gap[0])]))
-        canvas.circle(end, 0.72 * PIN, order=8.5, width=1.2)
+        with canvas.on(at_place(marker)):
+            canvas.circle(end, 0.72 * PIN, order=8.5, width=1.2)
 
 
 def _link(canvas: Canvas, place: Place) -> None:
     """A kind without a symbol of its own."""
-    canvas.line([place.i, place.j], INK, 1.2, order=5, linestyle=(0, (4, 2)))
-    for end in (place.i, place.j):
-        canvas.circle(end, 0.3, order=8, fill=INK)
-    canvas.label(place.joint.name, (place.i + place.j) / 2, 0.5)
+    with canvas.on(along_line(place.joint.i, place.joint.j)):
+        canvas.line([place.i, place.j], INK, 1.2, order=5, linestyle=(0, (4, 2)))
+        canvas.label(place.joint.name, (place.i + place.j) / 2, 0.5)
+    for marker, end in ((place.joint.i, place.i), (place.joint.j, place.j)):
+        with canvas.on(at_place(marker)):
+            canvas.circle(end, 0.3, order=8, fill=INK)
 
 
 def _open(canvas: Canvas, place: Place) -> None:
@@ -136,9 +150,10 @@ def _drive_angle(canvas: Canvas, place: Place) -> None:
     toward = place.pose.frames[place.joint.j.body.name][2]
     angles = toward + np.radians(np.linspace(20, 120, 25))
     arc = centre + 2.1 * u * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    canvas.line(arc[:-2], MOVED, 1.8, order=7)
-    canvas.head(arc[-1], arc[-1] - arc[-3], MOVED)
-    canvas.label(place.joint.name, arc[12], 0.3, MOVED)
+    with canvas.on(on_body(place.joint.j.body.name)):
+        canvas.line(arc[:-2], MOVED, 1.8, order=7)
+        canvas.head(arc[-1], arc[-1] - arc[-3], MOVED)
+        canvas.label(place.joint.name, arc[12], 0.3, MOVED)
 
 
 def _drive_coordinate(canvas: Canvas, place: Place) -> None:
@@ -146,9 +161,11 @@ def _drive_coordinate(canvas: Canvas, place: Place) -> None:
     normal = np.array([-axis[1], axis[0]])
     normal = normal if normal[1] > 0 or (normal[1] == 0 and normal[0] > 0) else -normal
     start = place.j + 1.9 * u * normal
-    canvas.line([start - 1.4 * u * axis, start + 1.1 * u * axis], MOVED, 1.8, order=7)
-    canvas.head(start + 1.6 * u * axis, axis, MOVED)
-    canvas.label(place.joint.name, start, 0.3, MOVED)
+    with canvas.on(beside(place.joint.i, place.joint.j)):
+        canvas.line([start - 1.4 * u * axis, start + 1.1 * u * axis], MOVED, 1.8, order=7)
+        canvas.head(start + 1.6 * u * axis, axis, MOVED)
+    with canvas.on(at_place(place.joint.j)):
+        canvas.label(place.joint.name, start, 0.3, MOVED)
 
 
 def _drive_distance(canvas: Canvas, place: Place) -> None:
@@ -158,10 +175,11 @@ def _drive_distance(canvas: Canvas, place: Place) -> None:
     along = gap / length if length > 0 else place.axis
     across = np.array([-along[1], along[0]]) * 0.6 * u
     a, b = place.i + 0.12 * gap, place.i + 0.62 * gap
-    canvas.line([place.i, place.j], MOVED, 2.0, order=5)
-    canvas.shape(np.array([a + across, b + across, b - across, a - across]), edge=MOVED, order=5.5)
+    with canvas.on(along_line(place.joint.i, place.joint.j)):
+        canvas.line([place.i, place.j], MOVED, 2.0, order=5)
+        canvas.shape(np.array([a + across, b + across, b - across, a - across]), edge=MOVED, order=5.5)
+        canvas.label(place.joint.name, (a + b) / 2, 0.8, MOVED)
     _ends(canvas, place)
-    canvas.label(place.joint.name, (a + b) / 2, 0.8, MOVED)
 
 
 SYMBOLS: dict[str, Callable[[Canvas, Place], None]] = {

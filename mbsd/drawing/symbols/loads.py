@@ -10,6 +10,7 @@ import numpy as np
 
 from mbsd.base.codes import AXIS, DAMPING, LINE, PUSH, TURN
 from mbsd.drawing.canvas import Canvas
+from mbsd.drawing.carriers import Carrier, End, along_line, at_place, beside
 from mbsd.drawing.look import LOAD
 from mbsd.drawing.pose import Pose
 from mbsd.drawing.symbols.cylinder import draw_engine_cylinder, draw_strut, engine_cylinder_reach
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 COILS = 5, 12
 """Fewest and most; between them one for each 1.4 units."""
+WIDE, NARROW = 0.65, 0.3
+"""Half the width of a coil, in units; of a short spring, in its length."""
 
 
 def draw_force(canvas: Canvas, force: Force, pose: Pose, joints: Sequence[Joint] = ()) -> None:
@@ -38,24 +41,34 @@ def draw_force(canvas: Canvas, force: Force, pose: Pose, joints: Sequence[Joint]
         return
     element = force.kind.elements(force)[0]
     if element.kind == TURN:
-        _turning(canvas, force, j)
+        with canvas.on(at_place(force.j)):
+            _turning(canvas, force, j)
     elif element.kind == PUSH:
         way = -1.0 if force.params.get("force", 0.0) < 0 else 1.0
-        _arrow(canvas, force.name, j, way * pose.axis(force.i))
+        with canvas.on(beside(force.i, force.j)):
+            tail = _arrow(canvas, j, way * pose.axis(force.i))
+        with canvas.on(at_place(force.j)):
+            canvas.label(force.name, tail, 0.4, LOAD)
     elif force.kind.sign == "attraction":
-        canvas.line([i, j], LOAD, 1.0, order=3, linestyle=(0, (1, 2)))
-        canvas.label(force.name, (i + j) / 2, 0.4, LOAD)
+        with canvas.on(along_line(force.i, force.j)):
+            canvas.line([i, j], LOAD, 1.0, order=3, linestyle=(0, (1, 2)))
+            canvas.label(force.name, (i + j) / 2, 0.4, LOAD)
     elif element.kind == LINE or len(force.kind.elements(force)) == 1:
         end = i + float((j - i) @ pose.axis(force.i)) * pose.axis(force.i) if element.kind == AXIS else j
         damped = any(term.kind == DAMPING and term.a != 0.0 for term in element.terms)
-        _coil(canvas, force.name, i, end, damped)
-        for point in (i, end):
-            canvas.circle(point, 0.26, edge=LOAD, fill=LOAD, order=5.5, width=0.5)
-        canvas.label(force.name, (i + end) / 2, 1.3, LOAD)
+        line = along_line(force.i, force.j)
+        with canvas.on(line if _keeps_width(force, pose, end, canvas.unit) else None):
+            _coil(canvas, force.name, i, end, damped)
+        for point, carrier in ((i, at_place(force.i)), (end, at_place(force.j) if end is j else None)):
+            with canvas.on(carrier):
+                canvas.circle(point, 0.26, edge=LOAD, fill=LOAD, order=5.5, width=0.5)
+        with canvas.on(line):
+            canvas.label(force.name, (i + end) / 2, 1.3, LOAD)
     else:  # springs along both axes: a bushing
-        for radius in (1.0, 0.5):
-            canvas.circle(j, radius, edge=LOAD, order=3.2, width=1.2, alpha=0.3)
-        canvas.label(force.name, j, 1.2, LOAD)
+        with canvas.on(at_place(force.j)):
+            for radius in (1.0, 0.5):
+                canvas.circle(j, radius, edge=LOAD, order=3.2, width=1.2, alpha=0.3)
+            canvas.label(force.name, j, 1.2, LOAD)
 
 
 def force_reach(force: Force, pose: Pose, joints: Sequence[Joint] = ()) -> np.ndarray:
@@ -75,10 +88,13 @@ def draw_special(canvas: Canvas, force: Force, pose: Pose) -> None:
     if "stiffness" in force.params:
         _surface(canvas, force, pose)
     bodies = force.params.get("bodies", ())
-    places = [pose.of(name, 0.0, 0.0) for name in bodies] or [pose.place(force.j)]
-    for place in places:
-        canvas.circle(place, 0.9, edge=LOAD, order=3.2, width=1.2, alpha=0.3)
-    canvas.label(force.name, places[0], 1.2, LOAD)
+    places = [(Carrier("place", (End(name),)), pose.of(name, 0.0, 0.0)) for name in bodies]
+    places = places or [(at_place(force.j), pose.place(force.j))]
+    for carrier, place in places:
+        with canvas.on(carrier):
+            canvas.circle(place, 0.9, edge=LOAD, order=3.2, width=1.2, alpha=0.3)
+    with canvas.on(places[0][0]):
+        canvas.label(force.name, places[0][1], 1.2, LOAD)
 
 
 def _surface(canvas: Canvas, force: Force, pose: Pose) -> None:
@@ -88,7 +104,16 @@ def _surface(canvas: Canvas, force: Force, pose: Pose) -> None:
     radius, body = force.params["radius"], force.i.body.name
     path = surface_way(force, pose, max(BESIDE * radius, 3.0 * canvas.unit))
     draw_way(canvas, path, body, {body: LOAD})
-    canvas.circle(pose.place(force.j), radius / canvas.unit, edge=LOAD, order=1.6, width=1.2, alpha=0.1)
+    with canvas.on(at_place(force.j)):
+        canvas.circle(pose.place(force.j), radius / canvas.unit, edge=LOAD, order=1.6, width=1.2, alpha=0.1)
+
+
+def _keeps_width(force: Force, pose: Pose, end: np.ndarray, unit: float) -> bool:
+    """Whether a spring from marker to marker is nowhere so short that its coils are drawn narrower."""
+    gap = pose.place(force.j) - pose.place(force.i)
+    along, aside = (ways.get(f"force {force.name}", np.zeros(0)) for ways in (pose.travel, pose.aside))
+    shortest = float(np.hypot(along, aside).min(initial=float(np.hypot(*gap))))
+    return bool(np.array_equal(end, pose.place(force.j))) and NARROW * shortest >= WIDE * unit
 
 
 def _coil(canvas: Canvas, name: str, i: np.ndarray, j: np.ndarray, damped: bool) -> None:
@@ -99,7 +124,7 @@ def _coil(canvas: Canvas, name: str, i: np.ndarray, j: np.ndarray, damped: bool)
         return
     along = (j - i) / length
     across = np.array([-along[1], along[0]])
-    half = min(0.65 * canvas.unit, 0.3 * length)
+    half = min(WIDE * canvas.unit, NARROW * length)
     shift = 1.1 * half * across if damped else np.zeros(2)
     first, last = i + 0.18 * length * along, j - 0.18 * length * along
     coils = canvas.coils.setdefault(name, int(np.clip(round(0.64 * length / (1.4 * canvas.unit)), *COILS)))
@@ -130,9 +155,10 @@ def _turning(canvas: Canvas, force: Force, centre: np.ndarray) -> None:
     canvas.label(force.name, centre, 2.2, LOAD)
 
 
-def _arrow(canvas: Canvas, name: str, at: np.ndarray, along: np.ndarray) -> None:
+def _arrow(canvas: Canvas, at: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """The arrow of a force from outside; returns its tail (m)."""
     tail = at - 4.0 * canvas.unit * along
     tip = at - 0.75 * canvas.unit * along
     canvas.line([tail, tip - 0.5 * canvas.unit * along], LOAD, 2.0, order=9.5)
     canvas.head(tip, along, LOAD)
-    canvas.label(name, tail, 0.4, LOAD)
+    return tail

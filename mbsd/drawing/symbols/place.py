@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mbsd.drawing.carriers import GROUND, Carrier, at_place
 from mbsd.drawing.pose import Pose
 from mbsd.model.joint import Joint
 
@@ -43,6 +44,11 @@ class Place:
     def grounded(self) -> bool:
         """Whether one of the two bodies is ground."""
         return "ground" in self.joint.bodies
+
+    @property
+    def carrier(self) -> Carrier:
+        """What carries the second marker: ground too, where the joint holds it there."""
+        return GROUND if self.grounded else at_place(self.joint.j)
 
     @property
     def grounded_end(self) -> np.ndarray:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.drawing.canvas import Canvas
+from mbsd.drawing.carriers import at_place, on_body
 from mbsd.drawing.look import INK, PAPER, QUIET
 from mbsd.drawing.symbols.reach import BESIDE
 from mbsd.drawing.symbols.ways import curve_way, draw_way
@@ -44,12 +45,15 @@ def draw_rack(canvas: Canvas, place: Place) -> None:
     outline = foot + along[:, None] * axis + height[:, None] * normal
     ends = [foot + b * axis - back * normal, foot + a * axis - back * normal]
     colour = place.colours.get(place.joint.i.body.name, QUIET)
-    canvas.shape(np.vstack([outline, ends]), edge=colour, fill=colour, width=1.3, order=1.8, alpha=0.12)
-    canvas.line([foot + a * axis, foot + b * axis], colour, 0.7, order=1.9, linestyle=(0, (8, 2, 2, 2)))
-    if place.joint.i.body.name == "ground":
-        canvas.hatched(ends[1], ends[0], -normal)
-    draw_gear(canvas, pinion, radius, teeth, phase, place.colours.get(name, QUIET), False)
-    canvas.label(place.joint.name, foot, 0.5)
+    with canvas.on(on_body(place.joint.i.body.name)):
+        canvas.shape(np.vstack([outline, ends]), edge=colour, fill=colour, width=1.3, order=1.8, alpha=0.12)
+        canvas.line([foot + a * axis, foot + b * axis], colour, 0.7, order=1.9, linestyle=(0, (8, 2, 2, 2)))
+        if place.joint.i.body.name == "ground":
+            canvas.hatched(ends[1], ends[0], -normal)
+    with canvas.on(on_body(name)):
+        draw_gear(canvas, pinion, radius, teeth, phase, place.colours.get(name, QUIET), False)
+    with canvas.on(at_place(place.joint.j)):
+        canvas.label(place.joint.name, foot, 0.5)
 
 
 def draw_rolling_disc(canvas: Canvas, place: Place) -> None:
@@ -59,37 +63,42 @@ def draw_rolling_disc(canvas: Canvas, place: Place) -> None:
     draw_way(canvas, np.array([a, b]), place.joint.i.body.name, place.colours)
     _disc(canvas, place, radius)
     foot = place.i + float((place.j - place.i) @ axis) * axis
-    canvas.label(place.joint.name, foot, 0.6)
+    with canvas.on(at_place(place.joint.j)):
+        canvas.label(place.joint.name, foot, 0.6)
 
 
 def draw_rolling_on_curve(canvas: Canvas, place: Place) -> None:
     """A disc about marker j on a curve fixed to marker i."""
     draw_way(canvas, _curve(place), place.joint.i.body.name, place.colours)
     _disc(canvas, place, place.joint.params["radius"])
-    canvas.label(place.joint.name, place.j, 0.6)
+    with canvas.on(at_place(place.joint.j)):
+        canvas.label(place.joint.name, place.j, 0.6)
 
 
 def draw_point_on_curve(canvas: Canvas, place: Place) -> None:
     """A point on a curve fixed to marker i, or a disc that slides beside it."""
     path = _curve(place)
     ground = place.joint.i.body.name == "ground"
-    canvas.line(path, INK if ground else place.colours[place.joint.i.body.name], 1.6, order=3.5)
-    if ground:
-        middle = len(path) // 2
-        along = path[middle] - path[middle - 1]
-        along = along / float(np.hypot(*along)) * canvas.unit
-        canvas.hatched(path[middle] - along, path[middle] + along, np.array([along[1], -along[0]]) / canvas.unit)
+    with canvas.on(on_body(place.joint.i.body.name)):
+        canvas.line(path, INK if ground else place.colours[place.joint.i.body.name], 1.6, order=3.5)
+        if ground:
+            middle = len(path) // 2
+            along = path[middle] - path[middle - 1]
+            along = along / float(np.hypot(*along)) * canvas.unit
+            canvas.hatched(path[middle] - along, path[middle] + along, np.array([along[1], -along[0]]) / canvas.unit)
     distance = abs(place.joint.params["distance"])
-    if distance > 0.0:
-        canvas.circle(place.j, distance / canvas.unit, order=1.8, width=1.2, alpha=0.0)
-    canvas.circle(place.j, 0.45, fill=PAPER, order=8, width=1.4)
-    canvas.label(place.joint.name, place.j, 0.8)
+    with canvas.on(at_place(place.joint.j)):
+        if distance > 0.0:
+            canvas.circle(place.j, distance / canvas.unit, order=1.8, width=1.2, alpha=0.0)
+        canvas.circle(place.j, 0.45, fill=PAPER, order=8, width=1.4)
+        canvas.label(place.joint.name, place.j, 0.8)
 
 
 def _disc(canvas: Canvas, place: Place, radius: float) -> None:
     marker: Marker = place.joint.j
     colour = place.colours.get(marker.body.name, QUIET)
-    draw_disc(canvas, place.j, radius, place.pose.frames[marker.body.name][2], colour)
+    with canvas.on(on_body(marker.body.name)):
+        draw_disc(canvas, place.j, radius, place.pose.frames[marker.body.name][2], colour)
 
 
 def _curve(place: Place) -> np.ndarray:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from mbsd.drawing.canvas import Canvas
+from mbsd.drawing.carriers import on_body
 from mbsd.drawing.look import INK, QUIET
 from mbsd.drawing.pose import Pose
 from mbsd.drawing.symbols.reach import ROUND
@@ -78,11 +79,13 @@ def _floor(canvas: Canvas, feet: list[Joint], pose: Pose, colours: dict[str, str
     first, axis = pose.place(feet[0].i), pose.axis(feet[0].i)
     ends = np.concatenate([float((pose.place(foot.i) - first) @ axis) + _travel(foot, pose) for foot in feet])
     a, b = (first + way * axis for way in (ends.min() - BEYOND * canvas.unit, ends.max() + BEYOND * canvas.unit))
-    if feet[0].i.body.name == "ground":
-        canvas.hatched(a, b, np.array([axis[1], -axis[0]]))
-    else:
-        canvas.line([a, b], colours.get(feet[0].i.body.name, QUIET), 2.2, order=3.5)
-    canvas.label(feet[0].name if len(feet) == 1 else f"{feet[0].name} ...", b, 0.5)
+    name = feet[0].i.body.name
+    with canvas.on(on_body(name)):
+        if name == "ground":
+            canvas.hatched(a, b, np.array([axis[1], -axis[0]]))
+        else:
+            canvas.line([a, b], colours.get(name, QUIET), 2.2, order=3.5)
+        canvas.label(feet[0].name if len(feet) == 1 else f"{feet[0].name} ...", b, 0.5)
 
 
 def _terrain(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
@@ -95,7 +98,8 @@ def _disc(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> 
     name, radius = joint.j.body.name, joint.params.get("radius", 0.0)
     if radius > 0.0:
         turn = pose.frames[name][2] + joint.j.angle
-        draw_disc(canvas, pose.place(joint.j), radius, turn, colours.get(name, QUIET))
+        with canvas.on(on_body(name)):
+            draw_disc(canvas, pose.place(joint.j), radius, turn, colours.get(name, QUIET))
 
 
 def _discs(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
@@ -103,11 +107,12 @@ def _discs(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) ->
     for marker, key in ((joint.i, "radius_i"), (joint.j, "radius_j")):
         name, centre, radius = marker.body.name, pose.place(marker), joint.params[key]
         colour = colours.get(name, QUIET)
-        if joint.params["inside"] and marker is joint.i:
-            turn = np.linspace(0.0, 2 * math.pi, 97)
-            canvas.line(centre + radius * np.stack([np.cos(turn), np.sin(turn)], axis=1), colour, 2.0, order=1.8)
-        elif radius > 0.0:
-            draw_disc(canvas, centre, radius, pose.frames[name][2] + marker.angle, colour)
+        with canvas.on(on_body(name)):
+            if joint.params["inside"] and marker is joint.i:
+                turn = np.linspace(0.0, 2 * math.pi, 97)
+                canvas.line(centre + radius * np.stack([np.cos(turn), np.sin(turn)], axis=1), colour, 2.0, order=1.8)
+            elif radius > 0.0:
+                draw_disc(canvas, centre, radius, pose.frames[name][2] + marker.angle, colour)
 
 
 def _coordinate_stop(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
@@ -115,7 +120,8 @@ def _coordinate_stop(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str
     axis, colour = pose.axis(joint.i), colours.get(joint.i.body.name, INK)
     end = pose.place(joint.i) + joint.params["at"] * axis
     across = 1.5 * canvas.unit * np.array([-axis[1], axis[0]])
-    canvas.line([end - across, end + across], colour, 3.0, order=4.2)
+    with canvas.on(on_body(joint.i.body.name)):
+        canvas.line([end - across, end + across], colour, 3.0, order=4.2)
 
 
 def _angle_stop(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
@@ -123,7 +129,8 @@ def _angle_stop(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str
     start, axis = pose.place(joint.i), pose.axis(joint.i)
     angle = math.atan2(axis[1], axis[0]) + joint.params["at"]
     out = canvas.unit * np.array([math.cos(angle), math.sin(angle)])
-    canvas.line([start + 1.2 * out, start + 2.6 * out], colours.get(joint.i.body.name, INK), 3.0, order=4.2)
+    with canvas.on(on_body(joint.i.body.name)):
+        canvas.line([start + 1.2 * out, start + 2.6 * out], colours.get(joint.i.body.name, INK), 3.0, order=4.2)
 
 
 def _rope_line(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:

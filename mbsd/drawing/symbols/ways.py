@@ -7,6 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from mbsd.drawing.canvas import Canvas
+from mbsd.drawing.carriers import on_body
 from mbsd.drawing.pose import Pose
 from mbsd.drawing.symbols.reach import BESIDE, placed
 from mbsd.model.body import Marker
@@ -24,9 +25,14 @@ MOST = 400
 
 def draw_way(canvas: Canvas, path: np.ndarray, body: str, colours: dict[str, str]) -> None:
     """A line or curve of a body that something runs on, on its left; ground's has strokes on the other side."""
-    if body != "ground":
-        canvas.line(path, colours[body], 2.2, order=3.5)
-        return
+    with canvas.on(on_body(body)):
+        if body == "ground":
+            _hatched(canvas, path)
+        else:
+            canvas.line(path, colours[body], 2.2, order=3.5)
+
+
+def _hatched(canvas: Canvas, path: np.ndarray) -> None:
     canvas.line(path, order=1.5)
     steps = np.diff(path, axis=0)
     arc = np.concatenate([[0.0], np.cumsum(np.hypot(*steps.T))])

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from mbsd.drawing.canvas import Canvas
+from mbsd.drawing.carriers import along_line, on_body
 from mbsd.drawing.look import INK, QUIET
 from mbsd.drawing.pose import Pose
 from mbsd.model.joint import Joint
@@ -50,19 +51,25 @@ def draw_gear_pair(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, 
         teeth = max(3, round(wheels[key_j][0] * r_i / r_j))
         wheels[key_i] = teeth, teeth * line - math.pi + (-here if internal else here)
     if new_i:
-        draw_gear(canvas, i, r_i, *wheels[key_i], colours.get(key_i[0], QUIET), internal)
+        with canvas.on(on_body(key_i[0])):
+            draw_gear(canvas, i, r_i, *wheels[key_i], colours.get(key_i[0], QUIET), internal)
     if new_j:
-        draw_gear(canvas, j, r_j, *wheels[key_j], colours.get(key_j[0], QUIET), False)
-    canvas.label(joint.name, i + r_i * np.array([math.cos(line), math.sin(line)]), 0.5)
+        with canvas.on(on_body(key_j[0])):
+            draw_gear(canvas, j, r_j, *wheels[key_j], colours.get(key_j[0], QUIET), False)
+    with canvas.on(along_line(joint.i, joint.j)):
+        canvas.label(joint.name, i + r_i * np.array([math.cos(line), math.sin(line)]), 0.5)
 
 
-def name_place(m: Model, pose: Pose, name: str, unit: float) -> np.ndarray | None:
-    """Where a ring gear's name belongs: at its rim; None for other bodies."""
-    for joint in m.joints.values():
-        if joint.params.get("internal") and joint.i.body.name == name:
-            away = (with_radii(joint.params)["radius_i"] + RIM * unit) * math.sqrt(0.5)
-            return pose.place(joint.i) + away * np.array([-1.0, 1.0])
-    return None
+def ring_gear(m: Model, name: str) -> Joint | None:
+    """The mesh of which a body is the ring gear; None for other bodies."""
+    internal = (joint for joint in m.joints.values() if joint.params.get("internal"))
+    return next((joint for joint in internal if joint.i.body.name == name), None)
+
+
+def rim_of(joint: Joint, pose: Pose, unit: float) -> np.ndarray:
+    """Where a ring gear's name belongs: at its rim."""
+    away = (with_radii(joint.params)["radius_i"] + RIM * unit) * math.sqrt(0.5)
+    return pose.place(joint.i) + away * np.array([-1.0, 1.0])
 
 
 def tooth(phase: np.ndarray) -> np.ndarray:
@@ -104,7 +111,8 @@ def draw_belt(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str])
     ends = []
     for marker, key in ((joint.i, "radius_i"), (joint.j, "radius_j")):
         centre, radius = pose.place(marker), with_radii(joint.params)[key]
-        draw_disc(canvas, centre, radius, pose.frames[marker.body.name][2], colours.get(marker.body.name, QUIET))
+        with canvas.on(on_body(marker.body.name)):
+            draw_disc(canvas, centre, radius, pose.frames[marker.body.name][2], colours.get(marker.body.name, QUIET))
         ends.append((centre, radius))
     (i, r_i), (j, r_j) = ends
     gap = j - i
@@ -114,5 +122,7 @@ def draw_belt(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str])
         line, lean = math.atan2(gap[1], gap[0]), math.acos((r_i - other) / length)
         for side in (1, -1):
             normal = np.array([math.cos(line + side * lean), math.sin(line + side * lean)])
-            canvas.line([i + r_i * normal, j + other * normal], INK, 1.8, order=3)
-    canvas.label(joint.name, (i + j) / 2, 0.6)
+            with canvas.on(along_line(joint.i, joint.j)):
+                canvas.line([i + r_i * normal, j + other * normal], INK, 1.8, order=3)
+    with canvas.on(along_line(joint.i, joint.j)):
+        canvas.label(joint.name, (i + j) / 2, 0.6)

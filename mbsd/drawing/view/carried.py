@@ -1,39 +1,30 @@
-"""The skeleton for any moment of a motion: each stroke with what carries it, found from some poses.
+"""The skeleton for any moment of a motion: the strokes of its first pose, each with what carries it (carriers.py).
 
-ground    it stays where it is
-body      it moves with a body's frame
-place     it moves with a point of a body, and does not turn
-line      it moves with the line from one point of a body to one of another: it is stretched along it, not across
-shapes    nothing of these: it is recorded in many poses, and what is between two is a mean of both
-
-Where several hold, the first one is taken. Outlines are compared as curves, because their corners may be others.
+What nothing carries is drawn in many poses.
 """
 
 from __future__ import annotations
 
 import difflib
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from mbsd.drawing.canvas import Label
+from mbsd.drawing.canvas import TOGETHER, Label
+from mbsd.drawing.carriers import Carrier, Frames
 from mbsd.drawing.pose import Tracks, tracks_of
 from mbsd.drawing.skeleton import draw_on
 from mbsd.drawing.steady import Steady, steady_of
 from mbsd.drawing.strokes import Recorder, Stroke
-from mbsd.drawing.view.carriers import GROUND, Carrier, Frames, candidates
-from mbsd.drawing.view.curves import alike, resampled
+from mbsd.drawing.view.curves import resampled
+from mbsd.model.mechanism import Model
 from mbsd.results.solution import Solution
 
 LOOKED_AT = 9
-"""Poses that must agree."""
+"""Poses from which extent, size of symbols and turns of springs are taken."""
 SHAPES = 60
 """Poses in which a stroke is recorded that nothing carries, in equal times, and the end of the motion."""
-SLACK = 0.02
-"""How far two curves may be apart that count as one, in units of the symbols."""
-TEETH = 0.15
-"""The same of outlines of a body's own colour: teeth are sampled elsewhere in every pose."""
 
 
 @dataclass(frozen=True)
@@ -63,63 +54,49 @@ def moving(solution: Solution) -> Moving:
     m, tracks = solution.mechanism, tracks_of(solution)
     steps = _steps(solution.t, SHAPES)
     places = np.unique(np.linspace(0, len(steps) - 1, LOOKED_AT).round().astype(int))
-    looked = [int(step) for step in steps[places]]
-    colours = {name: f"body:{name}" for name in m.bodies if name != "ground"}
-    steady = steady_of(m, [tracks.pose(step) for step in looked], colours, Recorder)
-    drawn = {step: _drawn(solution, tracks, steady, colours, step) for step in looked}
-    first, frames = drawn[looked[0]], {step: Frames(tracks, step) for step in looked}
-    known = candidates(m)
-
-    def holds(candidate: Carrier, series: Sequence[np.ndarray | None], closed: bool, slack: float) -> bool:
-        pairs = reversed(list(zip(looked, series, strict=True)))
-        return all(
-            points is not None
-            and alike(candidate.moved(series[0], frames[looked[0]], frames[step]), points, closed, slack)
-            for step, points in pairs
-        )
-
-    def carrier(series: Sequence[np.ndarray | None], closed: bool, ink: str) -> Carrier | None:
-        named = [
-            candidate for candidate in known if candidate.kind == "body" and f"body:{candidate.ends[0].body}" == ink
-        ]
-        strict = [(candidate, SLACK) for candidate in (GROUND, *named, *known)]
-        tried = [*strict, *((candidate, TEETH) for candidate in named if closed)]
-        return next(
-            (candidate for candidate, slack in tried if holds(candidate, series, closed, slack * steady.unit)), None
-        )
-
-    series = {step: _aligned(first.strokes, canvas.strokes) for step, canvas in drawn.items()}
-    carriers = [
-        carrier([series[step][k] for step in looked], stroke.closed, stroke.ink)
-        for k, stroke in enumerate(first.strokes)
-    ]
-    free = [k for k, by in enumerate(carriers) if by is None]
-    shapes: dict[int, list[np.ndarray]] = {k: [] for k in free}
-    if free:
-        for step in steps:
-            canvas = drawn.get(int(step)) or _drawn(solution, tracks, steady, colours, int(step))
-            here = _aligned(first.strokes, canvas.strokes)
-            for k in free:
-                points = here[k]
-                shapes[k].append(np.zeros((0, 2)) if points is None else points)
+    steady = steady_of(m, [tracks.pose(int(step)) for step in steps[places]], _colours(m), Recorder)
+    first = drawn_at(m, tracks, steady, int(steps[0]))
+    free = [stroke for stroke in first.strokes if stroke.carrier is None]
+    shapes = iter(_shapes(m, tracks, steady, steps, free))
     strokes = [
-        Carried(stroke, by)
-        if by is not None
-        else Carried(stroke, Carrier("shapes"), resampled(shapes[k], stroke.closed))
-        for k, (stroke, by) in enumerate(zip(first.strokes, carriers, strict=True))
+        Carried(stroke, stroke.carrier)
+        if stroke.carrier is not None
+        else Carried(stroke, Carrier("shapes"), next(shapes))
+        for stroke in first.strokes
     ]
-    names = []
-    for k, label in enumerate(first.labels):
-        places = [
-            canvas.labels[k].anchor.reshape(1, 2)
-            if len(canvas.labels) > k and canvas.labels[k].text == label.text
-            else None
-            for canvas in drawn.values()
-        ]
-        by = carrier(places, False, label.colour)
-        if by is not None:
-            names.append((label, by))
-    return Moving(strokes, names, solution.t[steps], steady)
+    return Moving(strokes, names_over(first, tracks, steps[places]), solution.t[steps], steady)
+
+
+def drawn_at(m: Model, tracks: Tracks, steady: Steady, step: int) -> Recorder:
+    """The skeleton at one output."""
+    canvas = Recorder(None, steady.unit)
+    steady.ready(canvas, {name: float(view.theta[step] - view.theta[0]) for name, view in tracks.views.items()})
+    draw_on(canvas, m, tracks.pose(step), _colours(m), False, steady.sides)
+    return canvas
+
+
+def names_over(first: Recorder, tracks: Tracks, steps: np.ndarray) -> list[tuple[Label, Carrier]]:
+    """Names with what carries them from where they are at the first of ``steps``; those that share a place at all of
+    these are one."""
+    frames = [Frames(tracks, int(step)) for step in steps]
+    out: list[tuple[Label, Carrier, np.ndarray]] = []
+    for label in first.names:
+        if label.carrier is None:
+            continue
+        anchor = label.anchor.reshape(1, 2)
+        places = np.concatenate([label.carrier.moved(anchor, frames[0], now) for now in frames])
+        for k, (other, carrier, there) in enumerate(out):
+            apart = float(np.hypot(*(places - there).T).max())
+            if other.colour == label.colour and apart < TOGETHER * first.unit:
+                out[k] = replace(other, text=f"{other.text}, {label.text}"), carrier, there
+                break
+        else:
+            out.append((label, label.carrier, places))
+    return [(label, carrier) for label, carrier, _ in out]
+
+
+def _colours(m: Model) -> dict[str, str]:
+    return {name: f"body:{name}" for name in m.bodies if name != "ground"}
 
 
 def _steps(t: np.ndarray, count: int) -> np.ndarray:
@@ -128,15 +105,17 @@ def _steps(t: np.ndarray, count: int) -> np.ndarray:
     return np.unique(np.abs(t[:, None] - times).argmin(axis=0))
 
 
-def _drawn(solution: Solution, tracks: Tracks, steady: Steady, colours: dict[str, str], step: int) -> Recorder:
-    canvas = Recorder(None, steady.unit)
-    turned = {name: float(view.theta[step] - view.theta[0]) for name, view in tracks.views.items()}
-    steady.ready(canvas, turned)
-    draw_on(canvas, solution.mechanism, tracks.pose(step), colours, False, steady.sides)
-    return canvas
+def _shapes(m: Model, tracks: Tracks, steady: Steady, steps: np.ndarray, free: list[Stroke]) -> list[list[np.ndarray]]:
+    """Points of strokes that nothing carries, at all steps."""
+    shapes: list[list[np.ndarray]] = [[] for _ in free]
+    for step in steps if free else ():
+        here = [stroke for stroke in drawn_at(m, tracks, steady, int(step)).strokes if stroke.carrier is None]
+        for shape, points in zip(shapes, _aligned(free, here), strict=True):
+            shape.append(np.zeros((0, 2)) if points is None else points)
+    return [resampled(shape, stroke.closed) for shape, stroke in zip(shapes, free, strict=True)]
 
 
-def _aligned(first: list[Stroke], other: list[Stroke]) -> list[np.ndarray | None]:
+def _aligned(first: Sequence[Stroke], other: Sequence[Stroke]) -> list[np.ndarray | None]:
     """The points of each stroke of ``first`` in another pose; None where it is not drawn there."""
     if len(first) == len(other):
         return [stroke.points for stroke in other]

@@ -1,23 +1,10 @@
-"""Polylines compared and sampled as the curves that they are."""
+"""Polylines sampled as the curves that they are."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 import numpy as np
-
-
-def alike(a: np.ndarray, b: np.ndarray, closed: bool, slack: float) -> bool:
-    """Whether no corner of one polyline (k, 2) is farther than ``slack`` (m) from the other."""
-    if not len(a) or not len(b):
-        return len(a) == len(b)
-    if a.shape == b.shape and float(np.abs(a - b).max()) <= slack:
-        return True
-    if not closed:
-        return False
-    if max(np.abs(a.min(axis=0) - b.min(axis=0)).max(), np.abs(a.max(axis=0) - b.max(axis=0)).max()) > 2 * slack:
-        return False
-    return _far(a, b) <= slack and _far(b, a) <= slack
 
 
 def resampled(shapes: Sequence[np.ndarray], closed: bool) -> list[np.ndarray]:
@@ -45,12 +32,3 @@ def _sampled(shape: np.ndarray, count: int, closed: bool) -> np.ndarray:
     way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(shape, axis=0).T))])
     along = np.linspace(0.0, way[-1], count + 1)[:-1] if closed else np.linspace(0.0, way[-1], count)
     return np.stack([np.interp(along, way, shape[:, k]) for k in range(2)], axis=1)
-
-
-def _far(points: np.ndarray, outline: np.ndarray) -> float:
-    """The largest distance of points (n, 2) from a closed outline (k, 2)."""
-    ways = np.roll(outline, -1, axis=0) - outline
-    off = points[:, None] - outline
-    square = np.maximum((ways**2).sum(axis=1), 1e-300)
-    part = np.clip((off * ways).sum(axis=2) / square, 0.0, 1.0)
-    return float(np.sqrt(((off - part[..., None] * ways) ** 2).sum(axis=2).min(axis=1).max()))

@@ -13,9 +13,9 @@ import numpy as np
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
 from mbsd.base.files import write_whole
+from mbsd.drawing.carriers import Carrier
 from mbsd.drawing.inks import body_inks, on_dark
 from mbsd.drawing.view.carried import moving
-from mbsd.drawing.view.carriers import Carrier
 from mbsd.results.solution import Solution
 
 MOST = 361

@@ -1,5 +1,5 @@
 // Plays a skeleton on a canvas: {name, unit, low, high, t, loops, bodies: {name: [x, y, theta]}, inks: {name: [on light, on dark]}, times, strokes, names}.
-// What carries a stroke is told in carried.py. Plain JavaScript, no libraries.
+// What carries a stroke is stated in carriers.py. Plain JavaScript, no libraries.
 (function (root, data) {
   "use strict";
   const LIGHT = { ink: "#20252b", quiet: "#5d6670", paper: "#ffffff", faint: "#e9ecef", driver: "#c2410c", load: "#4b5563", wrong: "#c81e1e" };

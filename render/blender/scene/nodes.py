@@ -41,6 +41,13 @@ class Graph:
             self.set(node, index, value)
         return node.outputs[0]
 
+    def mixed(self, ray: str, others: Any, these: Any) -> Any:
+        """The shader ``these`` for rays of one sort, e.g. "Is Camera Ray", and ``others`` for all else."""
+        mix = self.add("MixShader")
+        for index, value in enumerate((self.add("LightPath").outputs[ray], others, these)):
+            self.set(mix, index, value)
+        return mix.outputs[0]
+
     def ramp(self, factor: Any, stops: list[tuple[float, tuple[float, float, float]]]) -> Any:
         """A colour ramp, smooth between its stops."""
         node = self.tree.nodes.new("ShaderNodeValToRGB")

@@ -15,6 +15,7 @@ from render.blender.scene.world import backdrop, lights, pegboard, sky, vice
 from render.blender.scene.world.shapes import Thing
 from render.film.framing import studio as studio_axes
 from render.film.scene import Point, StudioSpec
+from render.looks.look import Light
 from shared.contract.mount import Z
 
 BESIDE = 0.35
@@ -26,12 +27,15 @@ def build(scene: Any, studio: StudioSpec) -> None:
     look, stands = studio.look, studio.up != Z
     sky.build(scene, look.sky, studio.up)
     light = look.standing if stands else look.lying
-    things = [backdrop.build(scene, studio), *(lights.softbox(scene, studio, box) for box in light.softboxes)]
+    things = [
+        backdrop.build(scene, studio, light.bounce),
+        *(lights.softbox(scene, studio, box) for box in light.softboxes),
+    ]
     if light.sun is not None:
         things += lights.sun(scene, studio, light.sun)
     if studio.wall is not None and (look.wall is None or look.wall.kind == "sweep"):
         things.append(backdrop.wall(scene, studio))
-    things += _workshop(scene, studio)
+    things += _workshop(scene, studio, light)
     if stands:
         for thing in things:
             thing.matrix_world = to_world(studio.up) @ thing.matrix_basis
@@ -48,7 +52,7 @@ def to_world(up: Point) -> Any:
     return Matrix(studio_axes(up).T.tolist()).to_4x4()
 
 
-def _workshop(scene: Any, studio: StudioSpec) -> list[Any]:
+def _workshop(scene: Any, studio: StudioSpec, light: Light) -> list[Any]:
     """The things of a bench, where the machine does not reach: a wall with tools and a vice."""
     from mathutils import Matrix, Vector
 
@@ -61,10 +65,11 @@ def _workshop(scene: Any, studio: StudioSpec) -> list[Any]:
         behind = away / radius + look.wall.away
         if studio.wall is not None:
             behind = (studio.wall - studio.centre[1]) / radius
-        pegboard.build(made[-1], look.wall.colour, behind, right / radius)
+        pegboard.build(made[-1], look.wall.colour, behind, right / radius, light.bounce)
     if look.vice and studio.wall is None:
         turn = Matrix.Rotation(studio.azimuth, 4, "Z")
         place = turn @ Vector((-0.62 * right, away + BESIDE * radius, 0.0))
         made.append(Thing(scene, "vice", radius, floor + place, studio.azimuth + 0.5))
+        made[-1].seen_only = True
         vice.build(made[-1])
     return [thing.root for thing in made]

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from mbsd import Mechanism, Solution
+from mbsd import Solution
 from mbsd.drawing.view.carried import Moving, moving
 from mbsd.drawing.view.redrawn import redrawn
 from mechanisms.stages.solve.motion_file import to_motion
@@ -27,7 +26,7 @@ class Shown:
     """Makes payloads of one mechanism; ``quick`` ones keep size of symbols and extent of the last whole one."""
 
     def __init__(self) -> None:
-        self._last: tuple[Moving, Mechanism] | None = None
+        self._last: Moving | None = None
         self._motion: tuple[Motion, Told] | None = None
 
     def of(
@@ -40,10 +39,10 @@ class Shown:
         arrows: bool = True,
     ) -> bytes:
         """Bytes of the payload without its parts; raises UserError for a shot that names what is not there."""
-        skeleton = redrawn(solution, *self._last) if quick and self._last is not None else None
+        skeleton = redrawn(solution, self._last) if quick and self._last is not None else None
         if skeleton is None:
             skeleton = moving(solution)
-            self._last = skeleton, copy.copy(solution.mechanism)
+            self._last = skeleton
         motion = to_motion(solution, parts, "", {}, sources)
         skeleton_data = moving_of(solution, skeleton)
         self._motion = motion, skeleton_data

@@ -18,7 +18,7 @@ OPEN = 300.0
 PLASTER = (0.58, 0.57, 0.55)
 
 
-def build(scene: Any, studio: StudioSpec) -> Any:
+def build(scene: Any, studio: StudioSpec, bounce: float) -> Any:
     """One sheet around the origin under the machine's middle, its x along the picture."""
     import bpy
 
@@ -37,7 +37,8 @@ def build(scene: Any, studio: StudioSpec) -> Any:
     thing.location = (studio.centre[0], studio.centre[1], studio.floor)
     thing.rotation_euler = (0.0, 0.0, studio.azimuth)
     scene.collection.objects.link(thing)
-    mesh.materials.append(ground.paint(look.ground, radius, look.sky.horizon if look.wall is None else None))
+    haze = look.sky.horizon if look.wall is None else None
+    mesh.materials.append(ground.paint(look.ground, radius, haze, bounce))
     return thing
 
 

@@ -17,31 +17,37 @@ LANE = 1.55
 """From the machine to the line at the edge of its lane."""
 
 
-def paint(ground: Ground, radius: float, haze: Colour | None = None) -> Any:
-    """The material of a ground around the origin of its object; it fades into ``haze`` far away."""
+def paint(ground: Ground, radius: float, haze: Colour | None = None, bounce: float = 0.0) -> Any:
+    """The material of a ground around the origin of its object; it fades into ``haze`` far away. ``bounce``: see
+    Light in render/looks/look.py."""
     import bpy
 
     made = bpy.data.materials.new(ground.texture)
     made.use_nodes = True
+    made.cycles.emission_sampling = "NONE"
     graph = Graph(made.node_tree).clear()
     place = graph.add("Mapping", Vector=graph.add("TexCoord").outputs["Object"], Scale=(1 / radius,) * 3).outputs[0]
     shader = TEXTURES[ground.texture](graph, ground, place)
     if ground.texture != "paint":
-        shader = _seen_only(graph, shader, ground)
+        shader = _seen_only(graph, shader, ground, bounce)
     if haze is not None:
         shader = _hazed(graph, shader, haze, radius)
     graph.add("OutputMaterial", Surface=shader)
     return made
 
 
-def _seen_only(graph: Graph, shader: Any, ground: Ground) -> Any:
+def _seen_only(graph: Graph, shader: Any, ground: Ground, bounce: float) -> Any:
     """The texture for the eye; light that bounces meets the colour between its two: half the time of a frame."""
     middle: Colour = tuple((a + b) / 2 for a, b in zip(ground.colour, ground.other, strict=True))  # pyright: ignore[reportAssignmentType]
-    mix = graph.add("MixShader")
-    seen = graph.add("LightPath").outputs["Is Camera Ray"]
-    for index, value in enumerate((seen, graph.add("BsdfDiffuse", Color=middle).outputs[0], shader)):
-        graph.set(mix, index, value)
-    return mix.outputs[0]
+    plain = graph.add("BsdfDiffuse", Color=middle).outputs[0]
+    if bounce > 0.0:
+        plain = graph.mixed("Is Diffuse Ray", plain, glow(graph, middle, bounce))
+    return graph.mixed("Is Camera Ray", plain, shader)
+
+
+def glow(graph: Graph, colour: Colour, bounce: float) -> Any:
+    """What light that bounces meets instead of a bright surface that would be lit once more: a tenth of a frame."""
+    return graph.add("Emission", Color=colour, Strength=bounce).outputs[0]
 
 
 def _hazed(graph: Graph, shader: Any, haze: Colour, radius: float) -> Any:

@@ -9,6 +9,7 @@ from typing import Any
 
 from render.blender.scene.materials import material
 from render.blender.scene.nodes import Graph
+from render.blender.scene.world.ground import glow
 from render.blender.scene.world.shapes import Thing
 from render.film.scene import SurfaceSpec
 from render.looks.look import Colour
@@ -21,14 +22,19 @@ STEEL = SurfaceSpec(colour=(0.48, 0.49, 0.50), finish="brushed", roughness=0.32)
 BLACK = SurfaceSpec(colour=(0.03, 0.03, 0.032), finish="rubber", roughness=0.5)
 RED = SurfaceSpec(colour=(0.40, 0.035, 0.02), finish="plastic", roughness=0.32)
 AMBER = SurfaceSpec(colour=(0.62, 0.30, 0.03), finish="plastic", roughness=0.3)
+BATTEN = (0.42, 0.27, 0.14)
 ASH = SurfaceSpec(colour=(0.50, 0.33, 0.17), finish="wood", roughness=0.45)
 
 
-def build(thing: Thing, colour: Colour, away: float, clear: float) -> None:
-    """The wall at y = ``away`` from the floor up, the origin of ``thing`` at the floor; tools hang beside ``clear``."""
-    board = _board(colour, thing.radius)
+def build(thing: Thing, colour: Colour, away: float, clear: float, bounce: float) -> None:
+    """The wall at y = ``away`` from the floor up, the origin of ``thing`` at the floor; tools hang beside ``clear``.
+
+    Only the eye sees the tools: so far off their light is not missed. ``bounce``: see Light in render/looks/look.py.
+    """
+    board = _board(colour, thing.radius, bounce)
     thing.box((-WIDE, away, 0.10), (WIDE, away + 0.05, HIGH), board, 0.0)
-    thing.box((-WIDE, away - 0.03, 0.0), (WIDE, away + 0.05, 0.13), material(ASH, "batten"), 0.006)
+    thing.box((-WIDE, away - 0.03, 0.0), (WIDE, away + 0.05, 0.13), _paint(BATTEN), 0.006)
+    thing.seen_only = True
     front = away - 0.05
     steel, black = material(STEEL, "tool"), material(BLACK, "grip")
     grips = [material(RED, "red grip"), material(AMBER, "amber grip")]
@@ -41,12 +47,13 @@ def build(thing: Thing, colour: Colour, away: float, clear: float) -> None:
     _hammer(thing, right + 1.23, front, 1.55, steel, material(ASH, "shaft"), black)
 
 
-def _board(colour: Colour, radius: float) -> Any:
+def _board(colour: Colour, radius: float, bounce: float) -> Any:
     """Painted hardboard; its holes are black."""
     import bpy
 
     made = bpy.data.materials.new("pegboard")
     made.use_nodes = True
+    made.cycles.emission_sampling = "NONE"
     graph = Graph(made.node_tree).clear()
     place = graph.add("TexCoord").outputs["Object"]
     split = graph.add("SeparateXYZ", Vector=place)
@@ -65,7 +72,19 @@ def _board(colour: Colour, radius: float) -> Any:
     )
     graph.set(shade, 0, colour)
     shader = graph.add("BsdfDiffuse", Color=shade.outputs[0])
-    graph.add("OutputMaterial", Surface=shader.outputs[0])
+    surface = graph.mixed("Is Camera Ray", glow(graph, colour, bounce), shader.outputs[0])
+    graph.add("OutputMaterial", Surface=surface)
+    return made
+
+
+def _paint(colour: Colour) -> Any:
+    """Mat paint: what runs along the whole wall meets most of the light that bounces, so it mirrors nothing."""
+    import bpy
+
+    made = bpy.data.materials.new("batten")
+    made.use_nodes = True
+    graph = Graph(made.node_tree).clear()
+    graph.add("OutputMaterial", Surface=graph.add("BsdfDiffuse", Color=colour).outputs[0])
     return made
 
 

@@ -22,6 +22,8 @@ class Thing:
         import bpy
 
         self.scene, self.radius = scene, radius
+        self.seen_only = False
+        """Whether light that bounces passes through what is added from now on."""
         self.root = bpy.data.objects.new(name, None)
         self.root.location = place
         self.root.rotation_euler = (0.0, 0.0, azimuth)
@@ -72,6 +74,7 @@ class Thing:
         mesh.materials.append(paint)
         thing = bpy.data.objects.new(mesh.name, mesh)
         thing.parent = self.root
+        thing.visible_diffuse = thing.visible_glossy = not self.seen_only
         self.scene.collection.objects.link(thing)
         if bevel:
             rounded = thing.modifiers.new("bevel", "BEVEL")

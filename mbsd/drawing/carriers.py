@@ -1,4 +1,11 @@
-"""What may carry a stroke: ground, bodies, their points, lines between two points."""
+"""What carries a stroke of the skeleton through a motion; each symbol says it of what it draws.
+
+ground    it stays where it is
+body      it moves with a body's frame
+place     it moves with a point of a body, and does not turn
+line      it moves with the line from one point to another: it is stretched along it, not across
+shapes    nothing of these: it is drawn anew in many poses, and what is between two is a mean of both
+"""
 
 from __future__ import annotations
 
@@ -10,7 +17,6 @@ import numpy as np
 
 from mbsd.drawing.pose import Tracks
 from mbsd.model.body import Marker
-from mbsd.model.mechanism import Model
 
 Kind = Literal["ground", "body", "place", "line", "shapes"]
 
@@ -70,16 +76,26 @@ class Carrier:
 GROUND = Carrier("ground")
 
 
-def candidates(m: Model) -> list[Carrier]:
-    """All of a model, in the order in which they are tried."""
-    pairs = [*m.joints.values(), *m.drivers.values(), *m.forces.values(), *m.contacts.values()]
-    ends = [(_end(pair.i), _end(pair.j)) for pair in pairs]
-    bodies = [Carrier("body", (End(name),)) for name in m.bodies if name != "ground"]
-    centres = [End(name, *map(float, body.com)) for name, body in m.bodies.items() if name != "ground"]
-    ours = [end for pair in ends for end in pair if end.body != "ground"]
-    places = [Carrier("place", (end,)) for end in (*centres, *ours)]
-    lines = [Carrier("line", pair) for pair in ends]
-    return list(dict.fromkeys([*bodies, *places, *lines]))
+def on_body(name: str) -> Carrier:
+    """A body's frame."""
+    return GROUND if name == "ground" else Carrier("body", (End(name),))
+
+
+def at_place(marker: Marker) -> Carrier:
+    """The place of a marker."""
+    return GROUND if marker.body.name == "ground" else Carrier("place", (_end(marker),))
+
+
+def along_line(i: Marker, j: Marker) -> Carrier:
+    """The line from marker i to marker j."""
+    return Carrier("line", (_end(i), _end(j)))
+
+
+def beside(i: Marker, j: Marker) -> Carrier | None:
+    """The place of marker j, for what is drawn there along the axes of marker i; None where these turn otherwise."""
+    if i.body is j.body:
+        return on_body(i.body.name)
+    return at_place(j) if i.body.name == "ground" else None
 
 
 def _end(marker: Marker) -> End:

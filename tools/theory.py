@@ -78,7 +78,6 @@ SECTIONS = (
         (
             "mbsd/dynamics/embedding",
             "mbsd/dynamics/embedding/blocks/block.py",
-            "mbsd/dynamics/embedding/blocks/pinned.py",
         ),
     ),
     (

@@ -36,7 +36,7 @@ from mbsd.kinematics.groups.links import Link
 from mbsd.kinematics.groups.plan import Plan, links_of_joints
 from mbsd.kinematics.groups.trains import Trains
 
-CLOSED, PINNED, BESIDE, EACH, WHOLE = 0.05, 0.17, 0.1, 0.2, 0.15
+CLOSED, PINNED, BESIDE, EACH, WHOLE = 0.05, 0.22, 0.1, 0.2, 0.15
 """Measured costs of one time (us): of a closed group, of a block of one pinned body, of another block beside what each
 of its unknowns costs, and of a body in Newton-Raphson of the whole."""
 

@@ -15,7 +15,6 @@ from __future__ import annotations
 from mbsd.compiling.jit import lazy
 from mbsd.compiling.views import table
 from mbsd.dynamics.embedding.blocks.coupled import move_coupled, place_coupled
-from mbsd.dynamics.embedding.blocks.pinned import move_pinned, place_pinned
 from mbsd.dynamics.embedding.blocks.places import (
     ARMS,
     ARMS_WIDTH,
@@ -48,7 +47,7 @@ from mbsd.dynamics.embedding.blocks.places import (
     V,
 )
 from mbsd.dynamics.embedding.blocks.records import Past
-from mbsd.kinematics.groups.blocks import BODY, HANGS, LARGEST, PIN, SIZE
+from mbsd.kinematics.groups.blocks import BODY, LARGEST, SIZE
 from mbsd.kinematics.groups.carrying.branch import angle_of, predicted
 from mbsd.kinematics.groups.carrying.columns import BASE, COS, INERTIA, MASS, OMEGA, SIN, VALUE, X, Y
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
@@ -123,16 +122,10 @@ def embed_block(k, block, block_number, numbers, work, body, rate, base, coordin
     step = take_near(tables.near, body, base, coordinate, q, past.q, turn, 1.0 / tables.arms[0, SIZE])
     if step < 0.0:
         return DOUBTED
-    if count == 1 and n == 1 and tree[0, HANGS] == PIN:
-        determinant = place_pinned(tables, motion, scratch, past, coordinate, drive, step, now)
-        if determinant != 0.0:
-            move_pinned(tables, motion, scratch, determinant, past.here[0], rate, coordinate, drive)
-    else:
-        determinant = place_coupled(tables, motion, scratch, past, coordinate, drive, step, now)
-        if determinant != 0.0:
-            move_coupled(tables, motion, scratch, past.here, rate, coordinate, drive)
+    determinant = place_coupled(tables, motion, scratch, past, coordinate, drive, step, now)
     if determinant == 0.0:
         return DOUBTED
+    move_coupled(tables, motion, scratch, past.here, rate, coordinate, drive)
     work[block[DETERMINANT_AT] + k] = determinant
     for j in range(columns):
         seen[j] = coordinate[j, VALUE]

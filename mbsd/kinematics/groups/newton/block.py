@@ -16,22 +16,20 @@ from mbsd.kinematics.groups.blocks import (
     BODIES,
     BODY,
     EQUATIONS,
-    HANGS,
     LARGEST,
     LAWS,
     MOTION,
     MOVING,
     NEAR,
-    PIN,
     SIZE,
     STRIDE,
 )
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, MEETING, SOLVED
 from mbsd.kinematics.groups.newton.call import PYTHON, SIGNATURE
 from mbsd.kinematics.groups.newton.fused import fused
+from mbsd.kinematics.groups.newton.guard import extrapolated, in_doubt
 from mbsd.kinematics.groups.newton.iteration import iterate
 from mbsd.kinematics.groups.newton.matrix import held, solve
-from mbsd.kinematics.groups.newton.pinned import extrapolated, in_doubt, solve_pinned
 from mbsd.kinematics.groups.newton.records import Block, History, Motion, Work
 from mbsd.kinematics.groups.newton.rows import bend_of, move, read_unknowns
 from mbsd.kinematics.law_step import jumps
@@ -126,14 +124,6 @@ def _at_address(
         carray(scratch, (LONG,)),
         carray(point, (4, 8)),
     )
-    return solve_any(k, block, history, work)
-
-
-@fused
-def solve_any(k, block, history, work):
-    """Fill row k of q, v, a (T, 3 nb) for the bodies of one block; returns SOLVED, or why not."""
-    if block.head[EQUATIONS] == 1 and block.head[BODIES] == 1 and block.tree[0, HANGS] == PIN:
-        return solve_pinned(k, block, history, work)
     return solve_arrays(k, block, history, work)
 
 
@@ -144,7 +134,7 @@ def _from_arrays(
     """The same with arrays, where nothing is compiled."""
     block = Block(head, tree, rows, near, frame, arms, numbers)
     history = History(times, drives, q, v, a, turn, start, determinant)
-    return solve_any(k, block, history, Work(unknown, jac, out, du, scratch, point))
+    return solve_arrays(k, block, history, Work(unknown, jac, out, du, scratch, point))
 
 
 if COMPILED:

@@ -41,7 +41,7 @@ def embed_groups(
     single = rate.shape[1] == 6
     total = 0.0
     push = 0.0
-    by = PerCoordinate(group, number, body, rate, base, coordinate, drive)
+    case = PerCoordinate(group, number, body, rate, base, coordinate, drive)
     for e in range(group.shape[0]):
         bodies = group[e]
         if bodies[KIND] == BLOCK:
@@ -51,7 +51,7 @@ def embed_groups(
         elif bodies[KIND] == TRAIN:
             status = embed_train(bodies, number[e], body, rate, base, coordinate)
         else:
-            status = solve_group(by, e)
+            status = solve_group(case, e)
         if status != SOLVED:
             return status
         if single and bodies[KIND] == BLOCK:

@@ -35,9 +35,9 @@ def place_designs(group, row, start, driven, every, place, rate, roots, last, bo
             last[i] = start[3 * turned[i] + 2]
         for k in range(driven.shape[0]):
             state = SOLVED
-            by = PoseAlone(group, row[design], place, rate, driven[k])
+            case = PoseAlone(group, row[design], place, rate, driven[k])
             for e in range(group.shape[0]):
-                state = solve_group(by, e)
+                state = solve_group(case, e)
                 if state != SOLVED:
                     break
                 root = math.sqrt(row[design, e, SINE])

@@ -78,7 +78,7 @@ def solve_groups(
         last = start if k == 0 else q[k - 1]
         goes_on = k > first_row
         h = times[k] - times[k - 1] if goes_on else 0.0
-        by = AlongLaws(groups.group, groups.row, body, rate, drives[k], tiny)
+        case = AlongLaws(groups.group, groups.row, body, rate, drives[k], tiny)
         for e in range(groups.kind.shape[0]):
             kind = groups.kind[e]
             bodies = groups.group[e]
@@ -113,7 +113,7 @@ def solve_groups(
             law = bodies[LAW]
             if law > 0 and goes_on and jumps(drives[k, law], drives[k - 1, law], h, stride[law]):
                 return DOUBTED, k, 0.5
-            state = solve_group(by, e)
+            state = solve_group(case, e)
             if state != SOLVED:
                 return state, k, 0.0
             for side in range(2):

@@ -16,23 +16,23 @@ from mbsd.kinematics.groups.kinds.yoke import solve_yoke
 
 
 @merged
-def solve_group(by, e):
+def solve_group(case, e):
     """Place the bodies of group e and fill their rates; see kinds/prp.py. Returns SOLVED, or why not."""
-    kind = by.group[e, KIND]
+    kind = case.group[e, KIND]
     if kind == RRR:
-        return solve_rrr(by, e)
+        return solve_rrr(case, e)
     if kind == DRIVEN:
-        return solve_driven(by, e)
+        return solve_driven(case, e)
     if kind == WELDED:
-        return solve_welded(by, e)
+        return solve_welded(case, e)
     if kind == RRP:
-        return solve_rrp(by, e)
+        return solve_rrp(case, e)
     if kind == RPR:
-        return solve_rpr(by, e)
+        return solve_rpr(case, e)
     if kind == YOKE:
-        return solve_yoke(by, e)
+        return solve_yoke(case, e)
     if kind == PRP:
-        return solve_prp(by, e)
+        return solve_prp(case, e)
     if kind == ROD:
-        return solve_rod(by, e)
-    return solve_slide(by, e)
+        return solve_rod(case, e)
+    return solve_slide(case, e)

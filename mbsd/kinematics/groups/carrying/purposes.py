@@ -77,18 +77,18 @@ def formula(function: Callable[..., Any]) -> Any:
 
 
 @internal
-def _no_columns(by):
+def _no_columns(case):
     return -1
 
 
 @internal
-def _time(by):
+def _time(case):
     return 1
 
 
 @internal
-def _coordinates(by):
-    return by.coordinate.shape[0] - 1
+def _coordinates(case):
+    return case.coordinate.shape[0] - 1
 
 
 columns_of = alternatives({PoseAlone: _no_columns, AlongLaws: _time, PerCoordinate: _coordinates})
@@ -96,13 +96,13 @@ columns_of = alternatives({PoseAlone: _no_columns, AlongLaws: _time, PerCoordina
 
 
 @internal
-def _unit_speed(by, j):
+def _unit_speed(case, j):
     return 1.0
 
 
 @internal
-def _speed(by, j):
-    return by.coordinate[j, SPEED]
+def _speed(case, j):
+    return case.coordinate[j, SPEED]
 
 
 speed_of = alternatives({PoseAlone: _unit_speed, AlongLaws: _unit_speed, PerCoordinate: _speed})
@@ -110,21 +110,21 @@ speed_of = alternatives({PoseAlone: _unit_speed, AlongLaws: _unit_speed, PerCoor
 
 
 @internal
-def _reached_alone(by, n):
+def _reached_alone(case, n):
     if n[SINE] > FLAT_ALONE:
         return SOLVED
     return OPEN if n[SINE] < -FLAT_ALONE else DOUBTED
 
 
 @internal
-def _reached_along(by, n):
+def _reached_along(case, n):
     if n[SINE] > FLAT:
         return SOLVED
     return OPEN if n[SINE] < -FLAT else MEETING
 
 
 @internal
-def _reached(by, n):
+def _reached(case, n):
     return SOLVED if n[SINE] > n[AVOID] else DOUBTED
 
 
@@ -133,13 +133,13 @@ reached = alternatives({PoseAlone: _reached_alone, AlongLaws: _reached_along, Pe
 
 
 @internal
-def _never_short(by, square):
+def _never_short(case, square):
     return False
 
 
 @internal
-def _short(by, square):
-    return not square > by.tiny
+def _short(case, square):
+    return not square > case.tiny
 
 
 too_short = alternatives({PoseAlone: _never_short, AlongLaws: _short, PerCoordinate: _never_short})
@@ -147,12 +147,12 @@ too_short = alternatives({PoseAlone: _never_short, AlongLaws: _short, PerCoordin
 
 
 @internal
-def _keeps(by, n):
+def _keeps(case, n):
     return False
 
 
 @internal
-def _near(by, n):
+def _near(case, n):
     return n[NEAR] > 0.0
 
 
@@ -161,13 +161,13 @@ may_change = alternatives({PoseAlone: _keeps, AlongLaws: _keeps, PerCoordinate: 
 
 
 @internal
-def _unexpected(by, b):
+def _unexpected(case, b):
     return 0.0
 
 
 @internal
-def _expected(by, b):
-    return predicted(by.base, by.coordinate, b)
+def _expected(case, b):
+    return predicted(case.base, case.coordinate, b)
 
 
 expected_angle = alternatives({PoseAlone: _unexpected, AlongLaws: _unexpected, PerCoordinate: _expected})
@@ -175,12 +175,12 @@ expected_angle = alternatives({PoseAlone: _unexpected, AlongLaws: _unexpected, P
 
 
 @internal
-def _not_noted(by, n, change):
+def _not_noted(case, n, change):
     pass
 
 
 @internal
-def _noted(by, n, change):
+def _noted(case, n, change):
     n[CHANGE] = change
 
 
@@ -189,18 +189,18 @@ note_change = alternatives({PoseAlone: _not_noted, AlongLaws: _noted, PerCoordin
 
 
 @internal
-def _value_alone(by, e, law, column):
-    return by.driven[e, 0]
+def _value_alone(case, e, law, column):
+    return case.driven[e, 0]
 
 
 @internal
-def _value_along(by, e, law, column):
-    return by.drive[law, 0]
+def _value_along(case, e, law, column):
+    return case.drive[law, 0]
 
 
 @internal
-def _value(by, e, law, column):
-    return by.coordinate[column, VALUE] if column >= 0 else by.drive[law, 0]
+def _value(case, e, law, column):
+    return case.coordinate[column, VALUE] if column >= 0 else case.drive[law, 0]
 
 
 value_of = alternatives({PoseAlone: _value_alone, AlongLaws: _value_along, PerCoordinate: _value})
@@ -208,13 +208,13 @@ value_of = alternatives({PoseAlone: _value_alone, AlongLaws: _value_along, PerCo
 
 
 @internal
-def _no_rate(by, law, order):
+def _no_rate(case, law, order):
     return 0.0
 
 
 @internal
-def _rate_of_law(by, law, order):
-    return by.drive[law, order]
+def _rate_of_law(case, law, order):
+    return case.drive[law, order]
 
 
 law_rate = alternatives({PoseAlone: _no_rate, AlongLaws: _rate_of_law, PerCoordinate: _rate_of_law})

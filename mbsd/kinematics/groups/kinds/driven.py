@@ -39,23 +39,23 @@ KIND = GroupKind(DRIVEN, "driven", lambda n: [*n[:6]], one=("DR",), of_one=drive
 
 
 @merged
-def solve_driven(by, e):
+def solve_driven(case, e):
     """Place the body of group e and fill its rates. See prp.solve_prp."""
-    bodies = by.group[e]
-    n = by.number[e]
-    body = by.body
-    rate = by.rate
+    bodies = case.group[e]
+    n = case.number[e]
+    body = case.body
+    rate = case.rate
     a = bodies[FIRST]
     k1 = bodies[K1]
     k2 = bodies[K2]
     law = bodies[LAW]
     column = bodies[COORDINATE]
-    columns = columns_of(by)
+    columns = columns_of(case)
     c = body[k1, COS]
     s = body[k1, SIN]
     px = c * n[P1_X] - s * n[P1_Y]
     py = s * n[P1_X] + c * n[P1_Y]
-    qx, qy = turn_rydriver(by, e, law, column, n)
+    qx, qy = turn_rydriver(case, e, law, column, n)
     dx = body[k2, COS]
     dy = body[k2, SIN]
     c = dx * qx - dy * qy
@@ -78,8 +78,8 @@ def solve_driven(by, e):
         if j == column:
             omega += n[SENSE]
         elif j == columns - 1 and law > 0:
-            omega += n[SENSE] * law_rate(by, law, 1)
-        turning += omega * speed_of(by, j)
+            omega += n[SENSE] * law_rate(case, law, 1)
+        turning += omega * speed_of(case, j)
         rate[a, at] = cx + omega * ay
         rate[a, at + 1] = cy - omega * ax
         rate[a, at + 2] = omega
@@ -92,7 +92,7 @@ def solve_driven(by, e):
     cy = rate[k1, at + 1] + omega * px - square * py
     omega = rate[k2, at + 2]
     if law > 0:
-        omega += n[SENSE] * law_rate(by, law, 2)
+        omega += n[SENSE] * law_rate(case, law, 2)
     rate[a, at] = cx + omega * ay + turning * ax
     rate[a, at + 1] = cy - omega * ax + turning * ay
     rate[a, at + 2] = omega
@@ -100,13 +100,13 @@ def solve_driven(by, e):
 
 
 @internal
-def _tabulated(by, e, law, column, n):
-    return by.driven[e, 0], by.driven[e, 1]
+def _tabulated(case, e, law, column, n):
+    return case.driven[e, 0], case.driven[e, 1]
 
 
 @internal
-def _evaluated(by, e, law, column, n):
-    angle = n[SENSE] * (n[OFFSET] + value_of(by, e, law, column))
+def _evaluated(case, e, law, column, n):
+    angle = n[SENSE] * (n[OFFSET] + value_of(case, e, law, column))
     return math.cos(angle), math.sin(angle)
 
 

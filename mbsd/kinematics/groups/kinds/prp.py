@@ -68,22 +68,22 @@ KIND = GroupKind(
 
 
 @formula
-def solve_prp(by, e):
+def solve_prp(case, e):
     """Place the bodies of group e and fill their rates; return SOLVED, or why not.
 
-    ``by`` says what for: a record of carrying/purposes.py, with the tables of all groups and bodies. ``body`` takes
+    ``case`` says what for: a record of carrying/purposes.py, with the tables of all groups and bodies. ``body`` takes
     poses and ``rate`` the rates for each column, of which the last are accelerations. ``number[e, SINE]`` takes the
     squared sine that vanishes where the two poses of the group meet.
     """
-    bodies = by.group[e]
-    n = by.number[e]
-    body = by.body
-    rate = by.rate
+    bodies = case.group[e]
+    n = case.number[e]
+    body = case.body
+    rate = case.rate
     a = bodies[FIRST]
     b = bodies[SECOND]
     k1 = bodies[K1]
     k2 = bodies[K2]
-    columns = columns_of(by)
+    columns = columns_of(case)
     px = turned_x(body, k1, n[C1_X], n[C1_Y])
     py = turned_y(body, k1, n[C1_X], n[C1_Y])
     ex = turned_x(body, k1, n[E1_X], n[E1_Y])
@@ -94,7 +94,7 @@ def solve_prp(by, e):
     fy = turned_y(body, k2, n[E2_X], n[E2_Y])
     sine = fx * ey - fy * ex
     n[SINE] = sine * sine
-    state = reached(by, n)
+    state = reached(case, n)
     if state != SOLVED:
         return state
     inverse = 1.0 / sine
@@ -112,14 +112,14 @@ def solve_prp(by, e):
     ax = put(body, a, tx, ty, n[CA_X], n[CA_Y], 0)
     ay = put(body, a, tx, ty, n[CA_X], n[CA_Y], 1)
     body[a, OMEGA] = body[k1, OMEGA]
-    rx = 0.0
-    ry = 0.0
+    bx = 0.0
+    by = 0.0
     if b >= 0:
         turn_as(body, b, k2, n[COS_B], n[SIN_B])
-        rx = put(body, b, tx, ty, n[CB_X], n[CB_Y], 0)
-        ry = put(body, b, tx, ty, n[CB_X], n[CB_Y], 1)
+        bx = put(body, b, tx, ty, n[CB_X], n[CB_Y], 0)
+        by = put(body, b, tx, ty, n[CB_X], n[CB_Y], 1)
         body[b, OMEGA] = body[k2, OMEGA]
-    note_change(by, n, 2.0 * sine * (fx * ex + fy * ey) * (body[k1, OMEGA] - body[k2, OMEGA]))
+    note_change(case, n, 2.0 * sine * (fx * ex + fy * ey) * (body[k1, OMEGA] - body[k2, OMEGA]))
     slip1 = 0.0
     slip2 = 0.0
     for j in range(columns + 1):
@@ -138,11 +138,11 @@ def solve_prp(by, e):
         dy = ty - cy
         along = (fx * dy - fy * dx) * inverse
         if j < columns:
-            slip1 += along * speed_of(by, j)
-            slip2 += (ex * dy - ey * dx) * inverse * speed_of(by, j)
+            slip1 += along * speed_of(case, j)
+            slip2 += (ex * dy - ey * dx) * inverse * speed_of(case, j)
         gx = cx + along * ex
         gy = cy + along * ey
         hang_column(body, rate, columns, j, a, gx, gy, rate[k1, 3 * j + 2], ax, ay)
         if b >= 0:
-            hang_column(body, rate, columns, j, b, gx, gy, rate[k2, 3 * j + 2], rx, ry)
+            hang_column(body, rate, columns, j, b, gx, gy, rate[k2, 3 * j + 2], bx, by)
     return SOLVED

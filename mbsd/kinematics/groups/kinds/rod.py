@@ -55,17 +55,17 @@ KIND = GroupKind(ROD, "rod", _row, one=("LR",), of_one=rod, branch=BRANCH, watch
 
 
 @formula
-def solve_rod(by, e):
+def solve_rod(case, e):
     """Place the body of group e and fill its rates. See prp.solve_prp."""
-    bodies = by.group[e]
-    n = by.number[e]
-    body = by.body
-    rate = by.rate
+    bodies = case.group[e]
+    n = case.number[e]
+    body = case.body
+    rate = case.rate
     a = bodies[FIRST]
     k1 = bodies[K1]
     k2 = bodies[K2]
     law = bodies[LAW]
-    columns = columns_of(by)
+    columns = columns_of(case)
     px = turned_x(body, k1, n[P1_X], n[P1_Y])
     py = turned_y(body, k1, n[P1_X], n[P1_Y])
     qx = turned_x(body, k2, n[Q2_X], n[Q2_Y])
@@ -74,18 +74,18 @@ def solve_rod(by, e):
     cy = body[k1, Y] + py
     dx = body[k2, X] + qx - cx
     dy = body[k2, Y] + qy - cy
-    rod = n[LENGTH] + value_of(by, e, law, -1)
+    rod = n[LENGTH] + value_of(case, e, law, -1)
     square = dx * dx + dy * dy
     half = 0.5 * (square + n[SQUARE] - rod * rod)
     left = n[SQUARE] * square - half * half
     scale = n[SQUARE] * rod * rod
     n[SINE] = left / scale
-    state = reached(by, n)
+    state = reached(case, n)
     if state != SOLVED:
         return state
     cross = math.sqrt(left)
-    if may_change(by, n):
-        theta = expected_angle(by, a)
+    if may_change(case, n):
+        theta = expected_angle(case, a)
         c = math.cos(theta)
         s = math.sin(theta)
         side = n[SQUARE] * ((s * n[UA_X] + c * n[UA_Y]) * dx - (c * n[UA_X] - s * n[UA_Y]) * dy)
@@ -113,10 +113,10 @@ def solve_rod(by, e):
         change = 0.0
         if j == columns:
             body[a, OMEGA] = turning
-            growing = rod * law_rate(by, law, 1)
+            growing = rod * law_rate(case, law, 1)
             approach = dx * past_x + dy * past_y
             note_change(
-                by,
+                case,
                 n,
                 (2.0 * n[SQUARE] * approach - 2.0 * half * (approach - growing)) / scale
                 - 2.0 * n[SINE] * growing / (rod * rod),
@@ -125,14 +125,14 @@ def solve_rod(by, e):
             past_y = turning * ux - past_y
             fx += turning * turning * ux
             fy += turning * turning * uy
-            change = law_rate(by, law, 1) * law_rate(by, law, 1) + rod * law_rate(by, law, 2)
+            change = law_rate(case, law, 1) * law_rate(case, law, 1) + rod * law_rate(case, law, 2)
             change -= past_x * past_x + past_y * past_y
         elif j == columns - 1 and law > 0:
-            change = rod * law_rate(by, law, 1)
+            change = rod * law_rate(case, law, 1)
         omega = (change + wx * fx + wy * fy) * lever
         if j < columns:
-            turning += omega * speed_of(by, j)
-            past_x += fx * speed_of(by, j)
-            past_y += fy * speed_of(by, j)
+            turning += omega * speed_of(case, j)
+            past_x += fx * speed_of(case, j)
+            past_y += fy * speed_of(case, j)
         hang_column(body, rate, columns, j, a, cx, cy, omega, ax, ay)
     return SOLVED

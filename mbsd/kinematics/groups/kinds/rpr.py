@@ -95,17 +95,17 @@ KIND = GroupKind(
 
 
 @formula
-def solve_rpr(by, e):
+def solve_rpr(case, e):
     """Place the bodies of group e and fill their rates. See prp.solve_prp."""
-    bodies = by.group[e]
-    n = by.number[e]
-    body = by.body
-    rate = by.rate
+    bodies = case.group[e]
+    n = case.number[e]
+    body = case.body
+    rate = case.rate
     a = bodies[FIRST]
     b = bodies[SECOND]
     k1 = bodies[K1]
     k2 = bodies[K2]
-    columns = columns_of(by)
+    columns = columns_of(case)
     px = turned_x(body, k1, n[P1_X], n[P1_Y])
     py = turned_y(body, k1, n[P1_X], n[P1_Y])
     qx = turned_x(body, k2, n[Q2_X], n[Q2_Y])
@@ -119,14 +119,14 @@ def solve_rpr(by, e):
     square = dx * dx + dy * dy
     left = square - n[OFFSET] * n[OFFSET]
     n[SINE] = left / square if square > 0.0 else 0.0
-    state = reached(by, n)
-    if too_short(by, left):
+    state = reached(case, n)
+    if too_short(case, left):
         state = min(state, MEETING)
     if state != SOLVED:
         return state
     root = math.sqrt(left)
-    if may_change(by, n):
-        theta = expected_angle(by, a)
+    if may_change(case, n):
+        theta = expected_angle(case, a)
         c = math.cos(theta)
         s = math.sin(theta)
         side = (c * n[E_X] - s * n[E_Y]) * dx + (s * n[E_X] + c * n[E_Y]) * dy
@@ -142,12 +142,12 @@ def solve_rpr(by, e):
     body[a, SIN] = ey * n[E_X] - ex * n[E_Y]
     ax = put(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
     ay = put(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
-    rx = 0.0
-    ry = 0.0
+    bx = 0.0
+    by = 0.0
     if b >= 0:
         turn_as(body, b, a, n[COS_B], n[SIN_B])
-        rx = put(body, b, tx, ty, n[QB_X], n[QB_Y], 0)
-        ry = put(body, b, tx, ty, n[QB_X], n[QB_Y], 1)
+        bx = put(body, b, tx, ty, n[QB_X], n[QB_Y], 0)
+        by = put(body, b, tx, ty, n[QB_X], n[QB_Y], 1)
     inverse = 1.0 / root
     turning = 0.0
     sliding = 0.0
@@ -162,14 +162,14 @@ def solve_rpr(by, e):
             body[a, OMEGA] = turning
             if b >= 0:
                 body[b, OMEGA] = turning
-            note_change(by, n, 2.0 * n[OFFSET] * n[OFFSET] * sliding * root / (square * square))
+            note_change(case, n, 2.0 * n[OFFSET] * n[OFFSET] * sliding * root / (square * square))
             fx += turning * turning * dx + 2.0 * turning * sliding * ey
             fy += turning * turning * dy - 2.0 * turning * sliding * ex
         omega = (ex * fy - ey * fx) * inverse
         if j < columns:
-            turning += omega * speed_of(by, j)
-            sliding += (dx * fx + dy * fy) * inverse * speed_of(by, j)
+            turning += omega * speed_of(case, j)
+            sliding += (dx * fx + dy * fy) * inverse * speed_of(case, j)
         hang_column(body, rate, columns, j, a, cx, cy, omega, ax, ay)
         if b >= 0:
-            hang_column(body, rate, columns, j, b, tx, ty, omega, rx, ry)
+            hang_column(body, rate, columns, j, b, tx, ty, omega, bx, by)
     return SOLVED

@@ -80,17 +80,17 @@ KIND = GroupKind(
 
 
 @formula
-def solve_rrp(by, e):
+def solve_rrp(case, e):
     """Place the bodies of group e and fill their rates. See prp.solve_prp."""
-    bodies = by.group[e]
-    n = by.number[e]
-    body = by.body
-    rate = by.rate
+    bodies = case.group[e]
+    n = case.number[e]
+    body = case.body
+    rate = case.rate
     a = bodies[FIRST]
     b = bodies[SECOND]
     k1 = bodies[K1]
     k2 = bodies[K2]
-    columns = columns_of(by)
+    columns = columns_of(case)
     px = turned_x(body, k1, n[P1_X], n[P1_Y])
     py = turned_y(body, k1, n[P1_X], n[P1_Y])
     qx = turned_x(body, k2, n[C2_X], n[C2_Y])
@@ -103,12 +103,12 @@ def solve_rrp(by, e):
     across = dx * ey - dy * ex
     left = n[SQUARE] - across * across
     n[SINE] = left * n[PER_SQUARE]
-    state = reached(by, n)
+    state = reached(case, n)
     if state != SOLVED:
         return state
     root = math.sqrt(left)
-    if may_change(by, n):
-        theta = expected_angle(by, a)
+    if may_change(case, n):
+        theta = expected_angle(case, a)
         c = math.cos(theta)
         s = math.sin(theta)
         side = n[SQUARE] * ((c * n[UA_X] - s * n[UA_Y]) * ex + (s * n[UA_X] + c * n[UA_Y]) * ey)
@@ -129,12 +129,12 @@ def solve_rrp(by, e):
     cy = body[k1, Y] + py
     ax = put(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
     ay = put(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
-    rx = 0.0
-    ry = 0.0
+    bx = 0.0
+    by = 0.0
     if b >= 0:
         turn_as(body, b, k2, n[COS_B], n[SIN_B])
-        rx = put(body, b, tx, ty, n[CB_X], n[CB_Y], 0)
-        ry = put(body, b, tx, ty, n[CB_X], n[CB_Y], 1)
+        bx = put(body, b, tx, ty, n[CB_X], n[CB_Y], 0)
+        by = put(body, b, tx, ty, n[CB_X], n[CB_Y], 1)
         body[b, OMEGA] = body[k2, OMEGA]
     inverse = 1.0 / root
     turning = 0.0
@@ -149,7 +149,7 @@ def solve_rrp(by, e):
         if j == columns:
             body[a, OMEGA] = turning
             spin = body[k2, OMEGA]
-            note_change(by, n, -2.0 * across * (fx * ey - fy * ex + spin * root) * n[PER_SQUARE])
+            note_change(case, n, -2.0 * across * (fx * ey - fy * ex + spin * root) * n[PER_SQUARE])
             twice = 2.0 * spin * sliding
             tx -= twice * ey
             ty += twice * ex
@@ -161,9 +161,9 @@ def solve_rrp(by, e):
         omega = (ex * fy - ey * fx) * inverse
         slip = -(ux * fx + uy * fy) * inverse
         if j < columns:
-            turning += omega * speed_of(by, j)
-            sliding += slip * speed_of(by, j)
+            turning += omega * speed_of(case, j)
+            sliding += slip * speed_of(case, j)
         hang_column(body, rate, columns, j, a, cx, cy, omega, ax, ay)
         if b >= 0:
-            hang_column(body, rate, columns, j, b, tx + slip * ex, ty + slip * ey, rate[k2, 3 * j + 2], rx, ry)
+            hang_column(body, rate, columns, j, b, tx + slip * ex, ty + slip * ey, rate[k2, 3 * j + 2], bx, by)
     return SOLVED

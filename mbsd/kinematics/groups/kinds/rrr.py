@@ -61,17 +61,17 @@ KIND = GroupKind(RRR, "RRR", _row, two=("RRR",), of_two=two_pinned, branch=BRANC
 
 
 @merged
-def solve_rrr(by, e):
+def solve_rrr(case, e):
     """Place the bodies of group e and fill their rates. See prp.solve_prp."""
-    bodies = by.group[e]
-    n = by.number[e]
-    body = by.body
-    rate = by.rate
+    bodies = case.group[e]
+    n = case.number[e]
+    body = case.body
+    rate = case.rate
     a = bodies[FIRST]
     b = bodies[SECOND]
     k1 = bodies[K1]
     k2 = bodies[K2]
-    columns = columns_of(by)
+    columns = columns_of(case)
     c = body[k1, COS]
     s = body[k1, SIN]
     px = c * n[P1_X] - s * n[P1_Y]
@@ -90,13 +90,13 @@ def solve_rrr(by, e):
     half = 0.5 * (square + n[DIFFERENCE])
     cross = n[SQUARE] * square - half * half
     n[SINE] = cross * n[PER_SQUARES]
-    state = reached(by, n)
+    state = reached(case, n)
     if state != SOLVED:
         return state
     inverse = 1.0 / square
     cross = math.sqrt(cross)
-    if may_change(by, n):
-        theta = expected_angle(by, a)
+    if may_change(case, n):
+        theta = expected_angle(case, a)
         c = math.cos(theta)
         s = math.sin(theta)
         side = n[SQUARE] * ((s * n[UA_X] + c * n[UA_Y]) * dx - (c * n[UA_X] - s * n[UA_Y]) * dy)
@@ -123,10 +123,10 @@ def solve_rrr(by, e):
     s = wy * n[WB_X] - wx * n[WB_Y]
     body[b, COS] = c
     body[b, SIN] = s
-    rx = c * n[QB_X] - s * n[QB_Y]
-    ry = s * n[QB_X] + c * n[QB_Y]
-    body[b, X] = ex - rx
-    body[b, Y] = ey - ry
+    bx = c * n[QB_X] - s * n[QB_Y]
+    by = s * n[QB_X] + c * n[QB_Y]
+    body[b, X] = ex - bx
+    body[b, Y] = ey - by
     if columns < 0:
         return SOLVED
     turning_a = 0.0
@@ -144,16 +144,16 @@ def solve_rrr(by, e):
         fx = ex - cx
         fy = ey - cy
         omega = (fx * wx + fy * wy) * det
-        turning_a += omega * speed_of(by, j)
+        turning_a += omega * speed_of(case, j)
         rate[a, at] = cx + omega * ay
         rate[a, at + 1] = cy - omega * ax
         rate[a, at + 2] = omega
         omega = (fx * ux + fy * uy) * det
-        turning_b += omega * speed_of(by, j)
-        rate[b, at] = ex + omega * ry
-        rate[b, at + 1] = ey - omega * rx
+        turning_b += omega * speed_of(case, j)
+        rate[b, at] = ex + omega * by
+        rate[b, at + 1] = ey - omega * bx
         rate[b, at + 2] = omega
-    note_change(by, n, 2.0 * (n[SQUARE] - half) * (dx * fx + dy * fy) * n[PER_SQUARES])
+    note_change(case, n, 2.0 * (n[SQUARE] - half) * (dx * fx + dy * fy) * n[PER_SQUARES])
     body[a, OMEGA] = turning_a
     body[b, OMEGA] = turning_b
     turning_a *= turning_a
@@ -174,7 +174,7 @@ def solve_rrr(by, e):
     rate[a, at + 1] = cy - omega * ax + turning_a * ay
     rate[a, at + 2] = omega
     omega = (fx * ux + fy * uy) * det
-    rate[b, at] = ex + omega * ry + turning_b * rx
-    rate[b, at + 1] = ey - omega * rx + turning_b * ry
+    rate[b, at] = ex + omega * by + turning_b * bx
+    rate[b, at + 1] = ey - omega * bx + turning_b * by
     rate[b, at + 2] = omega
     return SOLVED

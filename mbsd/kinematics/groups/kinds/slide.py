@@ -49,20 +49,20 @@ KIND = GroupKind(SLIDE, "driven slide", _row, one=("AP",), of_one=driven_slide, 
 
 
 @formula
-def solve_slide(by, e):
+def solve_slide(case, e):
     """Place the body of group e and fill its rates. See prp.solve_prp."""
-    bodies = by.group[e]
-    n = by.number[e]
-    body = by.body
-    rate = by.rate
+    bodies = case.group[e]
+    n = case.number[e]
+    body = case.body
+    rate = case.rate
     a = bodies[FIRST]
     k1 = bodies[K1]
     law = bodies[LAW]
     column = bodies[COORDINATE]
-    columns = columns_of(by)
+    columns = columns_of(case)
     gx = turned_x(body, k1, n[G_X], n[G_Y])
     gy = turned_y(body, k1, n[G_X], n[G_Y])
-    way = value_of(by, e, law, column)
+    way = value_of(case, e, law, column)
     px = turned_x(body, k1, n[S1_X], n[S1_Y]) + way * gx
     py = turned_y(body, k1, n[S1_X], n[S1_Y]) + way * gy
     turn_as(body, a, k1, n[COS_A], n[SIN_A])
@@ -79,13 +79,13 @@ def solve_slide(by, e):
         if j == column:
             slip = 1.0
         elif law > 0 and j == columns - 1:
-            slip = law_rate(by, law, 1)
+            slip = law_rate(case, law, 1)
         elif j == columns:
-            slip = law_rate(by, law, 2)
+            slip = law_rate(case, law, 2)
             twice = 2.0 * body[k1, OMEGA] * sliding
             cx -= twice * gy
             cy += twice * gx
         if j < columns:
-            sliding += slip * speed_of(by, j)
+            sliding += slip * speed_of(case, j)
         hang_column(body, rate, columns, j, a, cx + slip * gx, cy + slip * gy, rate[k1, 3 * j + 2], ax, ay)
     return SOLVED

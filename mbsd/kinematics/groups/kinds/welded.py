@@ -33,14 +33,14 @@ KIND = GroupKind(WELDED, "welded", _row, one=("W",), of_one=welded, follows=((0,
 
 
 @merged
-def solve_welded(by, e):
+def solve_welded(case, e):
     """Place the body of group e and fill its rates. See prp.solve_prp."""
-    bodies = by.group[e]
-    n = by.number[e]
-    body = by.body
+    bodies = case.group[e]
+    n = case.number[e]
+    body = case.body
     a = bodies[FIRST]
     k1 = bodies[K1]
-    columns = columns_of(by)
+    columns = columns_of(case)
     px = turned_x(body, k1, n[P1_X], n[P1_Y])
     py = turned_y(body, k1, n[P1_X], n[P1_Y])
     turn_as(body, a, k1, n[COS_A], n[SIN_A])
@@ -50,7 +50,7 @@ def solve_welded(by, e):
     ay = put(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
     body[a, OMEGA] = body[k1, OMEGA]
     for j in range(columns + 1):
-        cx = carry_column(body, by.rate, columns, j, k1, px, py, 0)
-        cy = carry_column(body, by.rate, columns, j, k1, px, py, 1)
-        hang_column(body, by.rate, columns, j, a, cx, cy, by.rate[k1, 3 * j + 2], ax, ay)
+        cx = carry_column(body, case.rate, columns, j, k1, px, py, 0)
+        cy = carry_column(body, case.rate, columns, j, k1, px, py, 1)
+        hang_column(body, case.rate, columns, j, a, cx, cy, case.rate[k1, 3 * j + 2], ax, ay)
     return SOLVED

@@ -47,16 +47,16 @@ KIND = GroupKind(YOKE, "yoke", _row, one=("PS",), of_one=yoke, follows=((0, ANGL
 
 
 @formula
-def solve_yoke(by, e):
+def solve_yoke(case, e):
     """Place the body of group e and fill its rates. See prp.solve_prp."""
-    bodies = by.group[e]
-    n = by.number[e]
-    body = by.body
-    rate = by.rate
+    bodies = case.group[e]
+    n = case.number[e]
+    body = case.body
+    rate = case.rate
     a = bodies[FIRST]
     k1 = bodies[K1]
     k2 = bodies[K2]
-    columns = columns_of(by)
+    columns = columns_of(case)
     px = turned_x(body, k1, n[S1_X], n[S1_Y])
     py = turned_y(body, k1, n[S1_X], n[S1_Y])
     ex = turned_x(body, k1, n[E_X], n[E_Y])
@@ -95,8 +95,8 @@ def solve_yoke(by, e):
             ty += 2.0 * spin * sliding * ex
         slip = (nx * fx + ny * fy) * inverse
         if j < columns:
-            sliding += slip * speed_of(by, j)
-            past_x += fx * speed_of(by, j)
-            past_y += fy * speed_of(by, j)
+            sliding += slip * speed_of(case, j)
+            past_x += fx * speed_of(case, j)
+            past_y += fy * speed_of(case, j)
         hang_column(body, rate, columns, j, a, tx + slip * ex, ty + slip * ey, rate[k1, 3 * j + 2], ax, ay)
     return SOLVED

@@ -9,8 +9,8 @@ from __future__ import annotations
 from mbsd.compiling.jit import inlined
 from mbsd.dynamics.embedding.blocks.block import embed_block
 from mbsd.kinematics.groups.blocks import BLOCK, TRAIN
+from mbsd.kinematics.groups.carrying.cases import PerCoordinate
 from mbsd.kinematics.groups.carrying.columns import INERTIA, MASS
-from mbsd.kinematics.groups.carrying.purposes import PerCoordinate
 from mbsd.kinematics.groups.carrying.rates import SOLVED
 from mbsd.kinematics.groups.groups import FIRST, KIND, LAW, SECOND
 from mbsd.kinematics.groups.kinds.train import embed_train

@@ -1,6 +1,6 @@
 """Positions alone, over many designs: numbers change from one to the next, the plan and the drivers' angles stay.
 
-The formulas are those of all groups, without rates (carrying/purposes.py). Directions are kept as cosine and sine, so
+The formulas are those of all groups, without rates (carrying/cases.py). Directions are kept as cosine and sine, so
 nothing but a square root or two is left for a step; the angles of drivers are tabulated once for all designs. The sine
 of each group must go on smoothly from its last two values; where its other sign is as near, the design is given up as
 doubted.
@@ -11,8 +11,8 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import threaded
+from mbsd.kinematics.groups.carrying.cases import PoseAlone
 from mbsd.kinematics.groups.carrying.columns import COS, SIN, SINE, X, Y
-from mbsd.kinematics.groups.carrying.purposes import PoseAlone
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED, WOUND
 from mbsd.kinematics.groups.solve_group import solve_group
 

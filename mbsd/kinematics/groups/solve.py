@@ -13,8 +13,8 @@ import math
 
 from mbsd.compiling.jit import internal, kernel
 from mbsd.kinematics.groups.blocks import BLOCK, BODIES, BODY, DOUBTED_BEFORE, NEAR_AT, ROWS_AT, TRAIN, TREE_AT
+from mbsd.kinematics.groups.carrying.cases import AlongLaws
 from mbsd.kinematics.groups.carrying.columns import CHANGE, COS, OMEGA, SIN, SINE, X, Y
-from mbsd.kinematics.groups.carrying.purposes import AlongLaws
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED, dip, wound
 from mbsd.kinematics.groups.groups import DRIVEN, FIRST, LAW, SECOND, WATCHED
 from mbsd.kinematics.groups.kinds.driven import SENSE

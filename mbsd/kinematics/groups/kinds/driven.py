@@ -9,8 +9,7 @@ import math
 
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import internal, merged
-from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIN, X, Y
-from mbsd.kinematics.groups.carrying.purposes import (
+from mbsd.kinematics.groups.carrying.cases import (
     AlongLaws,
     PerCoordinate,
     PoseAlone,
@@ -19,6 +18,7 @@ from mbsd.kinematics.groups.carrying.purposes import (
     speed_of,
     value_of,
 )
+from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIN, X, Y
 from mbsd.kinematics.groups.carrying.rates import SOLVED
 from mbsd.kinematics.groups.groups import COORDINATE, DRIVEN, FIRST, K1, K2, LAW
 from mbsd.kinematics.groups.kind import GroupKind, Made

@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turn_as, turned_x, turned_y
+from mbsd.kinematics.groups.carrying.cases import columns_of, formula, note_change, reached, speed_of
 from mbsd.kinematics.groups.carrying.columns import OMEGA, SINE, X, Y
-from mbsd.kinematics.groups.carrying.purposes import columns_of, formula, note_change, reached, speed_of
 from mbsd.kinematics.groups.carrying.rates import SOLVED
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, PRP, SECOND
 from mbsd.kinematics.groups.kind import GroupKind, Made
@@ -71,7 +71,7 @@ KIND = GroupKind(
 def solve_prp(case, e):
     """Place the bodies of group e and fill their rates; return SOLVED, or why not.
 
-    ``case`` says what for: a record of carrying/purposes.py, with the tables of all groups and bodies. ``body`` takes
+    ``case`` says what for: a record of carrying/cases.py, with the tables of all groups and bodies. ``body`` takes
     poses and ``rate`` the rates for each column, of which the last are accelerations. ``number[e, SINE]`` takes the
     squared sine that vanishes where the two poses of the group meet.
     """

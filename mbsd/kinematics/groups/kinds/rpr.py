@@ -15,8 +15,7 @@ import numpy as np
 
 from mbsd.kinematics.groups.carrying.branch import doubted
 from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turn_as, turned_x, turned_y
-from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIGN, SIN, SINE, X, Y
-from mbsd.kinematics.groups.carrying.purposes import (
+from mbsd.kinematics.groups.carrying.cases import (
     columns_of,
     expected_angle,
     formula,
@@ -26,6 +25,7 @@ from mbsd.kinematics.groups.carrying.purposes import (
     speed_of,
     too_short,
 )
+from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIGN, SIN, SINE, X, Y
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, MEETING, SOLVED
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, RPR, SECOND
 from mbsd.kinematics.groups.kind import Bodies, GroupKind, Made

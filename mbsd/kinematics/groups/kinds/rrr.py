@@ -17,8 +17,7 @@ import numpy as np
 
 from mbsd.compiling.jit import merged
 from mbsd.kinematics.groups.carrying.branch import doubted
-from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIGN, SIN, SINE, X, Y
-from mbsd.kinematics.groups.carrying.purposes import (
+from mbsd.kinematics.groups.carrying.cases import (
     columns_of,
     expected_angle,
     may_change,
@@ -26,6 +25,7 @@ from mbsd.kinematics.groups.carrying.purposes import (
     reached,
     speed_of,
 )
+from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIGN, SIN, SINE, X, Y
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, RRR, SECOND
 from mbsd.kinematics.groups.kind import GroupKind, Made, line

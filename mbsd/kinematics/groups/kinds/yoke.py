@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turn_as, turned_x, turned_y
+from mbsd.kinematics.groups.carrying.cases import columns_of, formula, speed_of
 from mbsd.kinematics.groups.carrying.columns import OMEGA, X, Y
-from mbsd.kinematics.groups.carrying.purposes import columns_of, formula, speed_of
 from mbsd.kinematics.groups.carrying.rates import SOLVED
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, YOKE
 from mbsd.kinematics.groups.kind import GroupKind, Made

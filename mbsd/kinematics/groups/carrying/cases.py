@@ -11,13 +11,14 @@ columns of the first two is known then, and nothing is left of what they do not 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from mbsd.compiling.alternatives import alternatives
-from mbsd.compiling.jit import internal, lazy, merged
-from mbsd.kinematics.groups.carrying.branch import predicted
-from mbsd.kinematics.groups.carrying.columns import AVOID, CHANGE, NEAR, SINE, SPEED, VALUE
+from mbsd.compiling.jit import inlined, internal, lazy, merged
+from mbsd.kinematics.groups.carrying.branch import doubted, predicted
+from mbsd.kinematics.groups.carrying.columns import AVOID, CHANGE, NEAR, SIGN, SINE, SPEED, VALUE
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, MEETING, OPEN, SOLVED
 
 FLAT = 1e-12
@@ -76,17 +77,17 @@ def formula(function: Callable[..., Any]) -> Any:
     return alternatives({PoseAlone: merged(function), AlongLaws: called, PerCoordinate: called})
 
 
-@internal
+@inlined
 def _no_columns(case):
     return -1
 
 
-@internal
+@inlined
 def _time(case):
     return 1
 
 
-@internal
+@inlined
 def _coordinates(case):
     return case.coordinate.shape[0] - 1
 
@@ -95,12 +96,12 @@ columns_of = alternatives({PoseAlone: _no_columns, AlongLaws: _time, PerCoordina
 """C, or -1 where poses alone are solved."""
 
 
-@internal
+@inlined
 def _unit_speed(case, j):
     return 1.0
 
 
-@internal
+@inlined
 def _speed(case, j):
     return case.coordinate[j, SPEED]
 
@@ -109,21 +110,21 @@ speed_of = alternatives({PoseAlone: _unit_speed, AlongLaws: _unit_speed, PerCoor
 """z_j', by which rates in column j count to rates in time."""
 
 
-@internal
+@inlined
 def _reached_alone(case, n):
     if n[SINE] > FLAT_ALONE:
         return SOLVED
     return OPEN if n[SINE] < -FLAT_ALONE else DOUBTED
 
 
-@internal
+@inlined
 def _reached_along(case, n):
     if n[SINE] > FLAT:
         return SOLVED
     return OPEN if n[SINE] < -FLAT else MEETING
 
 
-@internal
+@inlined
 def _reached(case, n):
     return SOLVED if n[SINE] > n[AVOID] else DOUBTED
 
@@ -132,12 +133,12 @@ reached = alternatives({PoseAlone: _reached_alone, AlongLaws: _reached_along, Pe
 """SOLVED where a group with this squared sine closes and its two poses are apart, else why not."""
 
 
-@internal
+@inlined
 def _never_short(case, square):
     return False
 
 
-@internal
+@inlined
 def _short(case, square):
     return not square > case.tiny
 
@@ -146,40 +147,37 @@ too_short = alternatives({PoseAlone: _never_short, AlongLaws: _short, PerCoordin
 """Whether a squared distance counts as zero."""
 
 
-@internal
-def _keeps(case, n):
-    return False
+@inlined
+def _kept(case, n, b, lx, ly, tx, ty, apart):
+    return n[SIGN]
 
 
 @internal
-def _near(case, n):
-    return n[NEAR] > 0.0
+def _asked(case, n, b, lx, ly, tx, ty, apart):
+    if n[NEAR] > 0.0:
+        theta = predicted(case.base, case.coordinate, b)
+        c = math.cos(theta)
+        s = math.sin(theta)
+        side = (c * lx - s * ly) * tx + (s * lx + c * ly) * ty
+        if doubted(side, apart):
+            return 0.0
+        n[SIGN] = 1.0 if side > 0.0 else -1.0
+    return n[SIGN]
 
 
-may_change = alternatives({PoseAlone: _keeps, AlongLaws: _keeps, PerCoordinate: _near})
-"""Whether a group asks anew which of its two poses it takes."""
+branch_of = alternatives({PoseAlone: _kept, AlongLaws: _kept, PerCoordinate: _asked})
+"""Sign of the root, or 0 where it is in doubt: near to where both poses meet that to which the motion leads.
+
+Then it is the side to which (lx, ly) of body b points along (tx, ty); ``apart`` >= 0: how far it points there.
+"""
 
 
-@internal
-def _unexpected(case, b):
-    return 0.0
-
-
-@internal
-def _expected(case, b):
-    return predicted(case.base, case.coordinate, b)
-
-
-expected_angle = alternatives({PoseAlone: _unexpected, AlongLaws: _unexpected, PerCoordinate: _expected})
-"""Angle of body b (rad) to which the motion since the last accepted pose leads."""
-
-
-@internal
+@inlined
 def _not_noted(case, n, change):
     pass
 
 
-@internal
+@inlined
 def _noted(case, n, change):
     n[CHANGE] = change
 
@@ -188,17 +186,17 @@ note_change = alternatives({PoseAlone: _not_noted, AlongLaws: _noted, PerCoordin
 """Keep the rate of the squared sine (1/s)."""
 
 
-@internal
+@inlined
 def _value_alone(case, e, law, column):
     return case.driven[e, 0]
 
 
-@internal
+@inlined
 def _value_along(case, e, law, column):
     return case.drive[law, 0]
 
 
-@internal
+@inlined
 def _value(case, e, law, column):
     return case.coordinate[column, VALUE] if column >= 0 else case.drive[law, 0]
 
@@ -207,12 +205,12 @@ value_of = alternatives({PoseAlone: _value_alone, AlongLaws: _value_along, PerCo
 """What the law, or the coordinate where there is one, says of group e."""
 
 
-@internal
+@inlined
 def _no_rate(case, law, order):
     return 0.0
 
 
-@internal
+@inlined
 def _rate_of_law(case, law, order):
     return case.drive[law, order]
 

@@ -12,20 +12,18 @@ import math
 
 import numpy as np
 
-from mbsd.kinematics.groups.carrying.branch import doubted
 from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turned_x, turned_y
 from mbsd.kinematics.groups.carrying.cases import (
+    branch_of,
     columns_of,
-    expected_angle,
     formula,
     law_rate,
-    may_change,
     note_change,
     reached,
     speed_of,
     value_of,
 )
-from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIGN, SIN, SINE, X, Y
+from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIN, SINE, X, Y
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, LAW, ROD
 from mbsd.kinematics.groups.kind import GroupKind, Made, line
@@ -84,15 +82,10 @@ def solve_rod(case, e):
     if state != SOLVED:
         return state
     cross = math.sqrt(left)
-    if may_change(case, n):
-        theta = expected_angle(case, a)
-        c = math.cos(theta)
-        s = math.sin(theta)
-        side = n[SQUARE] * ((s * n[UA_X] + c * n[UA_Y]) * dx - (c * n[UA_X] - s * n[UA_Y]) * dy)
-        if doubted(side, cross):
-            return DOUBTED
-        n[SIGN] = 1.0 if side > 0.0 else -1.0
-    cross *= n[SIGN]
+    sign = branch_of(case, n, a, n[SQUARE] * n[UA_X], n[SQUARE] * n[UA_Y], -dy, dx, cross)
+    if sign == 0.0:
+        return DOUBTED
+    cross *= sign
     ux = (half * dx - cross * dy) / square
     uy = (half * dy + cross * dx) / square
     wx = ux - dx

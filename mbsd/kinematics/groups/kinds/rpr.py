@@ -13,19 +13,17 @@ import math
 
 import numpy as np
 
-from mbsd.kinematics.groups.carrying.branch import doubted
 from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turn_as, turned_x, turned_y
 from mbsd.kinematics.groups.carrying.cases import (
+    branch_of,
     columns_of,
-    expected_angle,
     formula,
-    may_change,
     note_change,
     reached,
     speed_of,
     too_short,
 )
-from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIGN, SIN, SINE, X, Y
+from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIN, SINE, X, Y
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, MEETING, SOLVED
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, RPR, SECOND
 from mbsd.kinematics.groups.kind import Bodies, GroupKind, Made
@@ -125,15 +123,10 @@ def solve_rpr(case, e):
     if state != SOLVED:
         return state
     root = math.sqrt(left)
-    if may_change(case, n):
-        theta = expected_angle(case, a)
-        c = math.cos(theta)
-        s = math.sin(theta)
-        side = (c * n[E_X] - s * n[E_Y]) * dx + (s * n[E_X] + c * n[E_Y]) * dy
-        if doubted(side, root):
-            return DOUBTED
-        n[SIGN] = 1.0 if side > 0.0 else -1.0
-    root *= n[SIGN]
+    sign = branch_of(case, n, a, n[E_X], n[E_Y], dx, dy, root)
+    if sign == 0.0:
+        return DOUBTED
+    root *= sign
     # the axis and its normal in the group's frame: d = root e + offset e_perp
     inverse = 1.0 / square
     ex = (root * dx + n[OFFSET] * dy) * inverse

@@ -13,18 +13,16 @@ import math
 
 import numpy as np
 
-from mbsd.kinematics.groups.carrying.branch import doubted
 from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turn_as, turned_x, turned_y
 from mbsd.kinematics.groups.carrying.cases import (
+    branch_of,
     columns_of,
-    expected_angle,
     formula,
-    may_change,
     note_change,
     reached,
     speed_of,
 )
-from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIGN, SIN, SINE, X, Y
+from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIN, SINE, X, Y
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, RRP, SECOND
 from mbsd.kinematics.groups.kind import Bodies, GroupKind, Made, line
@@ -107,15 +105,10 @@ def solve_rrp(case, e):
     if state != SOLVED:
         return state
     root = math.sqrt(left)
-    if may_change(case, n):
-        theta = expected_angle(case, a)
-        c = math.cos(theta)
-        s = math.sin(theta)
-        side = n[SQUARE] * ((c * n[UA_X] - s * n[UA_Y]) * ex + (s * n[UA_X] + c * n[UA_Y]) * ey)
-        if doubted(side, root):
-            return DOUBTED
-        n[SIGN] = 1.0 if side > 0.0 else -1.0
-    root *= n[SIGN]
+    sign = branch_of(case, n, a, n[SQUARE] * n[UA_X], n[SQUARE] * n[UA_Y], ex, ey, root)
+    if sign == 0.0:
+        return DOUBTED
+    root *= sign
     slide = root - along
     sx = qx + slide * ex
     sy = qy + slide * ey

@@ -16,16 +16,14 @@ import math
 import numpy as np
 
 from mbsd.compiling.jit import merged
-from mbsd.kinematics.groups.carrying.branch import doubted
 from mbsd.kinematics.groups.carrying.cases import (
+    branch_of,
     columns_of,
-    expected_angle,
-    may_change,
     note_change,
     reached,
     speed_of,
 )
-from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIGN, SIN, SINE, X, Y
+from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIN, SINE, X, Y
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, RRR, SECOND
 from mbsd.kinematics.groups.kind import GroupKind, Made, line
@@ -95,15 +93,10 @@ def solve_rrr(case, e):
         return state
     inverse = 1.0 / square
     cross = math.sqrt(cross)
-    if may_change(case, n):
-        theta = expected_angle(case, a)
-        c = math.cos(theta)
-        s = math.sin(theta)
-        side = n[SQUARE] * ((s * n[UA_X] + c * n[UA_Y]) * dx - (c * n[UA_X] - s * n[UA_Y]) * dy)
-        if doubted(side, cross):
-            return DOUBTED
-        n[SIGN] = 1.0 if side > 0.0 else -1.0
-    cross *= n[SIGN]
+    sign = branch_of(case, n, a, n[SQUARE] * n[UA_X], n[SQUARE] * n[UA_Y], -dy, dx, cross)
+    if sign == 0.0:
+        return DOUBTED
+    cross *= sign
     det = 1.0 / cross
     along = half * inverse
     cross *= inverse

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbsd.compiling.jit import merged
 from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turn_as, turned_x, turned_y
-from mbsd.kinematics.groups.carrying.cases import columns_of
+from mbsd.kinematics.groups.carrying.cases import columns_of, formula
 from mbsd.kinematics.groups.carrying.columns import OMEGA, X, Y
 from mbsd.kinematics.groups.carrying.rates import SOLVED
 from mbsd.kinematics.groups.groups import FIRST, K1, WELDED
@@ -32,7 +31,7 @@ def _row(n: np.ndarray) -> list[np.ndarray]:
 KIND = GroupKind(WELDED, "welded", _row, one=("W",), of_one=welded, follows=((0, ANGLE, K1),))
 
 
-@merged
+@formula
 def solve_welded(case, e):
     """Place the body of group e and fill its rates. See prp.solve_prp."""
     bodies = case.group[e]
